@@ -16,29 +16,19 @@ YEARS = 50
 class AnnualRow:
     """How often a year something happens.
 
-    Parameters
-    ----------
-    rate : float
-        Times a year.
-    low, high : float, optional
-        95 % sampling interval of the rate: it covers the number of draws only. None where it happened in no draw, where
-        not all was simulated, or where the hazard curve does not reach far enough.
-    chance_a_year, chance_in_50_years : float
-        Chance of at least once.
-    fit : str
-        What was integrated: a lognormal fitted to the shares, or the table of shares where that is not near enough.
-    median_g : float, optional
-        Ground PGA at which it happens in half of the draws [g], by the lognormal; None where that was not used, or half
-        was not reached within the curve.
-    dispersion : float, optional
-        Logarithmic standard deviation of the lognormal; None likewise.
-    misfit : float, optional
-        Its largest difference from a share.
-    at_least : bool
-        Whether the rate is a lower bound: the motions may be too weak, the hazard curve does not reach far enough, or
-        several pieces of one row were taken to fall together.
-    ends_matter : bool
-        Whether more than 5 % of the rate comes, or could come, from outside the hazard curve.
+    * `rate`: times a year.
+    * `low`, `high`: 95 % sampling interval of the rate: it covers the number of draws only. None where it happened in
+      no draw, where not all was simulated, or where the hazard curve does not reach far enough.
+    * `chance_a_year`, `chance_in_50_years`: chance of at least once.
+    * `fit`: what was integrated: a lognormal fitted to the shares, or the table of shares where that is not near
+      enough.
+    * `median_g`: ground PGA at which it happens in half of the draws [g], by the lognormal; None where that was not
+      used, or half was not reached within the curve.
+    * `dispersion`: logarithmic standard deviation of the lognormal; None likewise.
+    * `misfit`: its largest difference from a share.
+    * `at_least`: whether the rate is a lower bound: the motions may be too weak, the hazard curve does not reach far
+      enough, or several pieces of one row were taken to fall together.
+    * `ends_matter`: whether more than 5 % of the rate comes, or could come, from outside the hazard curve.
     """
 
     rate: float
@@ -58,44 +48,25 @@ class AnnualRow:
 class AnnualTables:
     """What annual chances rest on, and those of the building.
 
-    Parameters
-    ----------
-    file : str
-        The file of the hazard curve.
-    missing : str
-        Why nothing was evaluated, and what to fill in; empty where it was.
-    latitude, longitude : float, optional
-        Of the site of the curve [deg].
-    distance_km : float, optional
-        From there to the building.
-    curve_pga_g, curve_rate : tuple of float
-        Points of the curve: peak ground acceleration, and how often a year it is exceeded.
-    ground_pga_g : float, optional
-        Ground PGA of the scenario: the floors' motions are taken to grow in proportion to it.
-    motion_dispersion : float
-        Logarithmic standard deviation of the floors' motions at a ground PGA.
-    runs : int
-        Draws at each level.
-    factors : tuple of float
-        Factors on the motions of the scenario under which every piece was rocked.
-    pieces, not_evaluated, cannot_rock : int
-        Free-standing pieces that are counted, those that are not, as they were not simulated, and those that are too
-        stocky to rock.
-    at_least : int
-        Those of the counted ones whose motions may be too weak.
-    is_lower_bound : bool
-        Whether the expected falls are a lower bound: for that, because some pieces were not simulated, or because the
-        hazard curve does not reach far enough.
-    expected_falls : float
-        Free-standing pieces that fall a year, on average.
-    expected_low, expected_high : float, optional
-        95 % sampling interval of that; None where nothing fell.
-    life_safety_pieces : int
-        Counted pieces whose Importance is life safety; those of one row fall together.
-    life_safety : AnnualRow, optional
-        Any of those falls; None where there are none.
-    remarks : tuple of str
-        What a reader has to know of the curve and its ends.
+    * `file`: the file of the hazard curve.
+    * `missing`: why nothing was evaluated, and what to fill in; empty where it was.
+    * `latitude`, `longitude`: of the site of the curve [deg].
+    * `distance_km`: from there to the building.
+    * `curve_pga_g`, `curve_rate`: points of the curve: peak ground acceleration, and how often a year it is exceeded.
+    * `ground_pga_g`: ground PGA of the scenario: the floors' motions are taken to grow in proportion to it.
+    * `motion_dispersion`: logarithmic standard deviation of the floors' motions at a ground PGA.
+    * `runs`: draws at each level.
+    * `factors`: factors on the motions of the scenario under which every piece was rocked.
+    * `pieces`, `not_evaluated`, `cannot_rock`: free-standing pieces that are counted, those that are not, as they were
+      not simulated, and those that are too stocky to rock.
+    * `at_least`: those of the counted ones whose motions may be too weak.
+    * `is_lower_bound`: whether the expected falls are a lower bound: for that, because some pieces were not simulated,
+      or because the hazard curve does not reach far enough.
+    * `expected_falls`: free-standing pieces that fall a year, on average.
+    * `expected_low`, `expected_high`: 95 % sampling interval of that; None where nothing fell.
+    * `life_safety_pieces`: counted pieces whose Importance is life safety; those of one row fall together.
+    * `life_safety`: any of those falls; None where there are none.
+    * `remarks`: what a reader has to know of the curve and its ends.
     """
 
     file: str

@@ -30,6 +30,8 @@ def find_tension(
 ) -> FloatArray:  # fmt: skip
     """Return the tension in a bracket, at least 0, in the unit of `weight`.
 
+    Raises ValueError if a bracket is not above the floor.
+
     Parameters
     ----------
     weight : array
@@ -44,11 +46,6 @@ def find_tension(
         h, of the bracket above the floor, above 0 [m].
     vertical : array
         k_v, upward, over g [-].
-
-    Raises
-    ------
-    ValueError
-        If a bracket is not above the floor.
     """
     w, k, b, z, h, up = (np.asarray(one, float) for one in (weight, acceleration, breadth, centre, height, vertical))
     _check_height(h)
@@ -86,7 +83,7 @@ def find_code_demand(
     ductility: float = LEAST_DUCTILITY,
     period: float | None = None,
 ) -> float:
-    """Return F_p/W by ASCE 7-22, 13.3.1 [-].
+    """Return F_p/W by ASCE 7-22, 13.3.1 [-]; raises ValueError if the height ratio is not between 0 and 1.
 
     Parameters
     ----------
@@ -102,11 +99,6 @@ def find_code_demand(
         R_mu of the building [-]: taken as at least 1.3 above grade, and as 1 at or below it.
     period : float, optional
         T_a of the building [s]; None where it is not known.
-
-    Raises
-    ------
-    ValueError
-        If the height ratio is not between 0 and 1.
     """
     if not 0 <= height_ratio <= 1:
         raise ValueError(f"height_ratio is {height_ratio}, expected 0 to 1")

@@ -29,10 +29,7 @@ def cache_folder() -> Path:
 def choose_folder(chosen: str | None = None) -> tuple[Path | None, str]:
     """Return the folder that compiled code is kept in, and what is wrong with one that is not used.
 
-    Parameters
-    ----------
-    chosen : str, optional
-        The folder that numba has been given, "" for none; by default what NUMBA_CACHE_DIR names.
+    `chosen`: the folder that numba has been given, "" for none; by default what NUMBA_CACHE_DIR names.
 
     Returns
     -------

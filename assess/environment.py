@@ -15,10 +15,7 @@ LAST = 253_402_300_799
 def find_source_date() -> datetime.datetime | None:
     """Return the time in UTC that SOURCE_DATE_EPOCH gives; None where it is not set, or empty.
 
-    Raises
-    ------
-    InputError
-        If it is no number of seconds from 1970 to 9999.
+    Raises InputError if it is no number of seconds from 1970 to 9999.
     """
     text = os.environ.get(DATE, "")
     if not text:

@@ -52,14 +52,7 @@ class Gap(Problem):
     """A problem that is no mistake: the workbook does not say yet how a floor shakes."""
 
     __slots__ = ()
-    lacks: ClassVar[Literal["shaking", "elevation", "furniture"]] = "shaking"
-
-
-class ElevationGap(Gap):
-    """A problem that is no mistake: the ground's shaking is known, but not yet where a floor lies above it."""
-
-    __slots__ = ()
-    lacks = "elevation"
+    lacks: ClassVar[Literal["shaking", "furniture"]] = "shaking"
 
 
 class FurnitureGap(Gap):

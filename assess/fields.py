@@ -17,7 +17,7 @@ from assess.model import ANCHORED, AXES, IMPORTANCE, SIZES_FROM
 from assess.results import BASES, BRANCHES, CaseRow, ItemRow, MotionRow, Results, Simulation
 from assess.risk import RiskClass
 
-Kind = Literal["text", "number", "count", "share", "flag", "class", "list", "signs", "records"]
+Kind = Literal["text", "number", "count", "share", "flag", "class", "list", "signs", "factors", "records"]
 """What a field holds: a share lies in [0, 1]; a class is one of `RiskClass`; signs are a list of 1 and -1; records are
 rows within the row."""
 Where = Literal["json", "csv", "excel", "pieces", "risky", "methods"]
@@ -103,12 +103,12 @@ def _word(risk: RiskClass | None) -> str | None:
     return None if risk is None else risk.word
 
 
-def _simulated(name: str) -> Callable[[Any], Any]:
+def _simulated(name: str, *, is_ideal: bool = False) -> Callable[[Any], Any]:
     value = attrgetter(name)
 
     def read(row: Any) -> Any:
         found: Simulation | None = row.simulation if isinstance(row, CaseRow) else row.governing.simulation
-        return None if found is None else value(found)
+        return None if found is None or (is_ideal and found.ideal is None) else value(found)
 
     return read
 
@@ -116,7 +116,8 @@ def _simulated(name: str) -> Callable[[Any], Any]:
 def _simulation_field(name: str, kind: Kind, label: str, path: tuple[str, ...] = (), **more: Any) -> Field:
     key = "_".join(("verification", *(path or (name,))))
     return Field(
-        key=key, read=_simulated(name), path=("verification", *(path or (name,))), label=label, kind=kind,
+        key=key, read=_simulated(name, is_ideal=path[:1] == ("ideal",)), path=("verification", *(path or (name,))),
+        label=label, kind=kind,
         **{"shows": DATA, **more},
     )  # fmt: skip
 
@@ -126,11 +127,21 @@ SIMULATION_FIELDS = (
         "runs", "count", fill("Motions"),
         help="Draws of an earthquake like this one and of the piece, a motion each, that it was simulated under.",
     ),
-    _simulation_field("overturned", "count", fill("Overturned"), help="Draws in which it overturned."),
-    _simulation_field("probability", "share", fill("Chance"), help="`overturned` / `runs`."),
+    _simulation_field(
+        "draws", "count", fill("Draws"), help="Draws of all pieces exactly alike on its floor: `runs` of each."
+    ),
+    _simulation_field("overturned", "count", fill("Overturned"), help="Those of them in which the piece overturned."),
+    _simulation_field("probability", "share", fill("Chance"), help="`overturned` / `draws`."),
     _simulation_field("low", "share", fill("Low"), help="Lower end of the 95 % sampling interval (Wilson)."),
     _simulation_field("high", "share", fill("High"), help="Upper end of it."),
     _simulation_field("runs", "count", fill("Motions"), ("ideal", "runs"), help="Motions, the same as of the draws."),
+    _simulation_field(
+        "if_slower", "share", fill("Chance if slower"), is_optional=True,
+        help="Chance in the third of the draws with the least PFV/PFA, where ground motion and building are drawn.",
+    ),
+    _simulation_field(
+        "if_faster", "share", fill("Chance if faster"), is_optional=True, help="Chance in that with the most.",
+    ),
     _simulation_field(
         "ideal.overturned", "count", fill("Overturned"), ("ideal", "overturned"),
         help="Motions under which the piece overturned exactly as given, if exactly this motion recurred.",
@@ -202,11 +213,16 @@ def _adopted(name: str, read: Callable[[Any], Any], label: str, kind: Kind, **mo
 
 
 ADOPTED_FIELDS = (
-    _adopted("method", lambda one: one.method, fill("Method"), "text", help="Key of the method whose value it is."),
+    _adopted(
+        "method", lambda one: one.method, fill("Method"), "text",
+        help='Key of the method whose value it is; "" where the piece cannot rock.',
+    ),
     _adopted(
         "basis", lambda one: one.basis, fill("Basis"), "text", choices=BASES,
-        help="`simulated`; `formula`: not simulated; or `unconfirmed`: the formula's class, as the motions of a "
-        "simulation that gave a lower one may be too weak. Counts, lists and sums never mix them.",
+        help="`simulated`; `formula`: not simulated; `unconfirmed`: the formula's class, as the motions of a "
+        "simulation that gave a lower one may be too weak; or `cannot rock`: too stocky, or not even the strongest "
+        "motion that may be drawn can start it. Counts, lists and sums never mix the first three; the last is low, and "
+        "counts with those of the run.",
     ),
     _adopted(
         "probability", lambda one: one.probability, fill("Chance of overturning"), "share", format="0.0%",
@@ -227,6 +243,28 @@ ADOPTED_FIELDS = (
         "flags", lambda one: list(one.flags), fill("Flags"), "list", short=fill("Marks"), shows=DATA | {"pieces"},
     ),
 )  # fmt: skip
+
+FORMULA_CLASSES = (
+    Field(
+        key="class_formula",
+        read=lambda one: one.formula_class.word,
+        path=("class_formula",),
+        label=fill("Class (formula)"),
+        kind="class",
+        shows=DATA | {"pieces", "risky"},
+        help="By the formula that *Class by* chooses, the highest under any of its motions; low where it cannot rock.",
+    ),
+    Field(
+        key="class_or",
+        read=lambda one: one.paper_class.word,
+        path=("class_or",),
+        label=fill("Class (OR)"),
+        kind="class",
+        shows=DATA | {"pieces", "risky"},
+        help="By the paper's formula under the governing motion; low where it cannot rock.",
+    ),
+)
+"""The classes of a row of furniture by formula, beside the one that is adopted."""
 
 
 def _annual(name: str, label: str, kind: Kind, **more: Any) -> Field:
@@ -447,6 +485,7 @@ def arrange_item_fields(methods: Sequence[MethodInfo], sheet: str) -> tuple[Fiel
         *(field for method in methods for field in method_fields(method)),
         *SIMULATION_FIELDS,
         *ADOPTED_FIELDS,
+        *FORMULA_CLASSES,
         *ANNUAL_FIELDS,
         axes,
         _of_item("anchored", fill("Anchored"), choices=ANCHORED, width=10),
@@ -545,13 +584,17 @@ def _signs(row: MotionRow) -> list[int] | None:
     return None if row.ensemble is None or row.ensemble.signs is None else list(row.ensemble.signs)
 
 
+def _bands(row: MotionRow) -> list[float] | None:
+    return None if row.ensemble is None or row.ensemble.bands is None else list(row.ensemble.bands)
+
+
 def _profile(name: str) -> Callable[[MotionRow], Any]:
     return lambda row: None if row.profile is None else getattr(row.profile, name)
 
 
 MOTION_FIELDS = (
     Field(key="axis", read=lambda row: row.axis, label=fill("Axis"), choices=AXES),
-    Field(key="source", read=lambda row: row.source, choices=("record", "given", "interpolated", "profile")),
+    Field(key="source", read=lambda row: row.source, choices=("record", "given", "interpolated", "profile", "beam")),
     Field(
         key="pfa_g", read=lambda row: row.pfa_g, kind="number", label=fill("PFA"), unit="g", format="0.000",
         help="After treatment.",
@@ -573,8 +616,16 @@ MOTION_FIELDS = (
         help="Whether the profile agrees with public implementations of the code.",
     ),
     _of_motion("clause"),
-    _of_motion("height_ratio", "number", label=fill("z/h"), format="0.000", help="z/h of the profile."),
+    _of_motion("height_ratio", "number", label=fill("z/h"), format="0.000", help="Its height over the roof's."),
     _of_motion("amplification", "number", label=fill("Amplification"), format="0.000", help="PFA over ground PGA."),
+    Field(
+        key="dispersion", read=lambda row: row.dispersion, kind="number", label=fill("Motion uncertainty"),
+        format="0.00", help="Standard deviation of ln amplitude that is drawn, from one earthquake to the next.",
+    ),
+    Field(
+        key="pfv_follows", read=lambda row: row.pfv_follows, kind="flag",
+        help="Whether PFV is not known by itself and follows PFA.",
+    ),
     _of_motion("record", help="The record as the workbook names it."),
     _of_motion(
         "pfa_file_g", "number", label=fill("PFA in the file"), unit="g", format="0.000",
@@ -592,15 +643,20 @@ MOTION_FIELDS = (
     Field(key="notes", read=lambda row: list(row.notes), kind="list"),
     _ensemble("motions", "count", label=fill("Motions"), format="#,##0"),
     _ensemble(
-        "generic_spectrum", "flag", help="Whether only peaks are known, so that the motions follow a generic spectrum.",
+        "assumed_motion", "flag", help="Whether no record is known, so that ground motion and building are drawn.",
     ),
     _ensemble(
-        "unknown_period", "flag",
-        help="Whether neither T1 nor the building's height is known, so that they may not lower a class.",
+        "unknown_building", "flag",
+        help="Whether neither T1, Height, Storeys nor an Elevation is known, so that no class is confirmed.",
     ),
     _ensemble(
         "weak_motions", "flag",
         help="Whether the motions are weaker than the floor's, so that they may not lower a class.",
+    ),
+    Field(
+        key="ensemble_bands", read=_bands, path=("ensemble", "bands"), kind="factors", is_optional=True,
+        flat=lambda value: value or [],
+        help="Factors above and below PFA/(2 pi PFV) by which drawn motions were brought to the floor's peaks.",
     ),
     Field(
         key="ensemble_signs", read=_signs, path=("ensemble", "signs"), kind="signs", is_optional=True,

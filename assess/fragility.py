@@ -42,20 +42,12 @@ WHY: Mapping[Kind, Text] = {
 class Fragility:
     """How many fell at each level, and the lognormal fitted to it.
 
-    Parameters
-    ----------
-    levels : (n,) array
-        Rising levels of the intensity measure, above 0, in any one unit.
-    fallen, trials : (n,) arrays
-        How many fell at each, and of how many, above 0.
-    kind : str
-        "fitted", or why there is no fit: a key of `WHY`.
-    median : float
-        Level at which half fall, in the unit of `levels`; NaN where nothing was fitted.
-    dispersion : float
-        Logarithmic standard deviation [-]; NaN likewise.
-    misfit : float
-        Largest |fitted - observed share| over the levels [-]; NaN likewise.
+    * `levels` (n,): rising levels of the intensity measure, above 0, in any one unit.
+    * `fallen`, `trials` (n,): how many fell at each, and of how many, above 0.
+    * `kind`: "fitted", or why there is no fit: a key of `WHY`.
+    * `median`: level at which half fall, in the unit of `levels`; NaN where nothing was fitted.
+    * `dispersion`: logarithmic standard deviation [-]; NaN likewise.
+    * `misfit`: largest |fitted - observed share| over the levels [-]; NaN likewise.
     """
 
     levels: FloatArray
@@ -88,18 +80,10 @@ def fit_fragility(levels: ArrayLike, fallen: ArrayLike, trials: ArrayLike) -> Fr
     Levels without trials are left out, the others sorted, and equal ones put together. Where the likelihood has no
     maximum at a rising chance, nothing is fitted and `Fragility.kind` tells why; the table is kept in any case.
 
-    Parameters
-    ----------
-    levels : (n,) array
-        Levels of the intensity measure, above 0, in any one unit.
-    fallen, trials : (n,) arrays
-        How many fell at each level, and of how many; not necessarily whole numbers.
-
-    Raises
-    ------
-    ValueError
-        If the arrays differ in shape, a number is not finite, a level is not above 0, a count is below 0 or above its
-        trials, or there are no trials at all.
+    `levels`, (n,): levels of the intensity measure, above 0, in any one unit.
+    `fallen` and `trials`, (n,): how many fell at each level, and of how many; not necessarily whole numbers.
+    Raises ValueError if the arrays differ in shape, a number is not finite, a level is not above 0, a count is below 0
+    or above its trials, or there are no trials at all.
     """
     im, fell, count = _check(levels, fallen, trials)
     kind = _classify(im, fell, count)
@@ -126,7 +110,6 @@ def lognormal_chance(im: ArrayLike, median: float, dispersion: float) -> FloatAr
 
 
 def _check(levels: ArrayLike, fallen: ArrayLike, trials: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return levels with trials, rising, with their counts; ValueError as `fit_fragility`."""
     im, fell, count = (np.asarray(values, dtype=np.float64) for values in (levels, fallen, trials))
     if not im.ndim == 1 or not im.shape == fell.shape == count.shape:
         raise ValueError(
@@ -145,7 +128,6 @@ def _check(levels: ArrayLike, fallen: ArrayLike, trials: ArrayLike) -> tuple[Flo
 
 
 def _classify(im: FloatArray, fell: FloatArray, count: FloatArray) -> Kind:
-    """Return why there is no maximum of the likelihood, or "fitted" where there is one."""
     stood = count - fell
     if not fell.any():
         return "none fell"

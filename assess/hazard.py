@@ -50,20 +50,12 @@ Line = tuple[int, list[str]]
 class HazardCurve:
     """Annual rates at which peak ground accelerations are exceeded at a site.
 
-    Parameters
-    ----------
-    file : str
-        As shown to people.
-    pga : (n,) array
-        Rising peak ground accelerations, above 0 [m/s2]; n is 2 or more.
-    rate : (n,) array
-        Annual rate of exceedance of each, above 0, nowhere rising [1/year].
-    latitude, longitude : float, optional
-        Of the site of the curve [deg], where the file tells.
-    distance : float, optional
-        From there to the building [m], where both are known.
-    notes : tuple of Text
-        What reading left out or found unusual.
+    * `file`: as shown to people.
+    * `pga` (n,): rising peak ground accelerations, above 0 [m/s2]; n is 2 or more.
+    * `rate` (n,): annual rate of exceedance of each, above 0, nowhere rising [1/year].
+    * `latitude`, `longitude`: of the site of the curve [deg], where the file tells.
+    * `distance`: from there to the building [m], where both are known.
+    * `notes`: what reading left out or found unusual.
     """
 
     file: str
@@ -91,10 +83,7 @@ class HazardCurve:
 def read_hazard(path: Path, *, latitude: float | None = None, longitude: float | None = None) -> HazardCurve:
     """Read the hazard curve of a file, as `parse_hazard`.
 
-    Raises
-    ------
-    InputError
-        If it cannot be read or used; the message names the file, and the line where there is one.
+    Raises InputError if it cannot be read or used; the message names the file, and the line where there is one.
     """
     return parse_hazard(read_bytes(path), path.name, latitude=latitude, longitude=longitude)
 
@@ -116,6 +105,10 @@ def parse_hazard(
 
     Of several sites the nearest to the building is taken. A chance P in T years becomes the rate -ln(1 - P)/T.
 
+    Raises InputError if it is no such file, a number is damaged or impossible, rates rise with PGA, fewer than two
+    points remain, or there are several sites and the building's place is not known; the message names the file and the
+    line.
+
     Parameters
     ----------
     data : bytes
@@ -124,12 +117,6 @@ def parse_hazard(
     name : str
     latitude, longitude : float, optional
         Of the building [deg].
-
-    Raises
-    ------
-    InputError
-        If it is no such file, a number is damaged or impossible, rates rise with PGA, fewer than two points remain, or
-        there are several sites and the building's place is not known; the message names the file and the line.
     """
     try:
         lines = split_text(_decode(data))
@@ -183,7 +170,6 @@ def _split(lines: Sequence[str]) -> Iterator[Line]:
 
 
 def _read_number(text: str, line: int, column: str) -> float:
-    """Return a number of a cell; InputError, which names line and column, if it is none."""
     value = float(text) if _NUMBER.fullmatch(text) else math.nan
     if not math.isfinite(value):
         message = fill("line {line}: {column} is {text!r}, not a number", line=line, column=column, text=text[:40])
@@ -300,7 +286,6 @@ def _read_sites(
 
 
 def _read_comment(comments: str) -> tuple[float, tuple[Text, ...]]:
-    """Return the years for which chances hold, and what is unusual about the curve."""
     imt, time, kind = (pattern.search(comments) for pattern in (_IMT, _TIME, _KIND))
     if imt is not None and imt[1].strip() != "PGA":
         raise InputError(fill("the curve is of {imt}, expected PGA", imt=imt[1].strip()[:40]))
@@ -318,7 +303,6 @@ def _read_comment(comments: str) -> tuple[float, tuple[Text, ...]]:
 
 
 def _read_levels(heading: Sequence[str], line: int) -> tuple[FloatArray, list[int]]:
-    """Return the levels [g] that are in the names of columns, and the places of those."""
     found = [(place, _LEVEL.fullmatch(cell)) for place, cell in enumerate(heading)]
     places = [place for place, match in found if match]
     levels = np.array([_read_number(match[1], line, heading[place]) for place, match in found if match])
@@ -330,7 +314,6 @@ def _read_levels(heading: Sequence[str], line: int) -> tuple[FloatArray, list[in
 def _choose_site(
     heading: Sequence[str], rows: Sequence[Line], latitude: float | None, longitude: float | None
 ) -> tuple[Line, tuple[float, float], float | None]:
-    """Return the row of the nearest site, its latitude and longitude, and its distance [m] where that is known."""
     if not rows:
         raise InputError(fill("there are no sites below the headings"))
     sites = np.array([_read_site(heading, line, cells) for line, cells in rows])

@@ -206,10 +206,7 @@ def find_language(name: str) -> str:
 def load_catalogue(code: str, folder: Path | None = None) -> Catalogue:
     """Return the catalogue of a language; texts that `folder` has of its own come first.
 
-    Raises
-    ------
-    InputError
-        If a catalogue cannot be read, or a text lacks or invents a ``{name}``.
+    Raises InputError if a catalogue cannot be read, or a text lacks or invents a ``{name}``.
     """
     has_own = folder is not None and (folder / "texts" / f"{code}.po").is_file()
     if code == ENGLISH.code and not has_own:
@@ -240,7 +237,6 @@ def _read(path: Path) -> tuple[dict[str, tuple[str, ...]], Callable[[int], int]]
 
 
 def _forms(text: object) -> tuple[str, ...]:
-    """Return a text of a catalogue as all its forms, for one and for many."""
     return tuple(str(one) for one in text) if isinstance(text, (tuple, list)) else (str(text or ""),)
 
 

@@ -1,15 +1,15 @@
 """Macroseismic intensity to the peak motion of the ground: for those who know neither an acceleration nor a record.
 
 A choice of `SHAKINGS` stands for the middle of a class of intensity. MMI classes give median PGA and PGV by Worden et
-al. (2012), which are those that the legend of ShakeMap prints. JMA classes give PGV by Midorikawa et al. (1999); no
-relation of the class to PGA was found, so that PGA is derived: PGV to MMI and MMI to PGA, both by Worden et al. (2012).
-The scatter of the steps adds up as if their errors were independent, and the class adds its own width.
+al. (2012), which are those that the legend of ShakeMap prints. JMA classes give PGV by Midorikawa et al. (1999); PGA
+follows by the ratio of the two that is drawn. The scatter is that of PGV, which rules; a class adds its own width.
 
 Departures: distance and magnitude terms are left out, as in ShakeMap's legend. Classes that are open above (MMI X and
 JMA 7) are taken as one whole unit of intensity about their number: a lower limit would be on the unsafe side.
 
 References
 ----------
+Newmark NM, Hall WJ (1982). Earthquake Spectra and Design. Earthquake Engineering Research Institute.
 Worden CB, Gerstenberger MC, Rhoades DA, Wald DJ (2012). Probabilistic relationships between ground-motion parameters
 and Modified Mercalli intensity in California. BSSA 102(1):204-221. doi:10.1785/0120110156. Coefficients as
 implemented in USGS ShakeMap (esi-shakelib 1.2.1, gmice/wgrw12.py).
@@ -23,6 +23,13 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+
+from assess.units import GRAVITY
+
+RATIO = 1.05 / GRAVITY
+"""Median PGV/PGA of the ground [s], where one of them alone is known: 105 cm/s per g, the geometric mean of the 122 on
+firm soil and 91 on rock of Newmark and Hall (1982). Assumed: not compared with the print. The 44 far-field components
+of FEMA P-695 have 103."""
 
 WORDEN = (
     "Worden CB, Gerstenberger MC, Rhoades DA, Wald DJ (2012). Probabilistic relationships between ground-motion "
@@ -57,8 +64,8 @@ class Bilinear:
         """Return the median Y [cm/s2 or cm/s] given MMI [-], 4 or more."""
         return float(10 ** ((mmi - self.c1) / self.c2 if mmi <= self.t2 else (mmi - self.c3) / self.c4))
 
-    def evaluate(self, y: float) -> float:
-        """Return the median MMI [-] given Y [cm/s2 or cm/s], at least that of MMI IV."""
+    def estimate(self, y: float) -> float:
+        """Return MMI [-] given Y [cm/s2 or cm/s]; below MMI IV it is not theirs."""
         log = math.log10(y)
         return self.c1 + self.c2 * log if log <= self.t1 else self.c3 + self.c4 * log
 
@@ -89,14 +96,14 @@ class Shaking:
         What it is taken for: MMI, or JMA instrumental intensity.
     pga, pgv : float
         Medians [m/s2], [m/s].
-    scatter, pgv_scatter : float
-        Standard deviation of ln PGA and of ln PGV given the class, rounded up to 0.01 [-].
+    scatter : float
+        Standard deviation of ln PGV given the class, rounded up to 0.01 [-].
     sources : tuple of str
         The relations in short.
     references : tuple of str
         The relations in full.
     is_derived : bool
-        Whether PGA follows from PGV by way of MMI.
+        Whether PGA follows from PGV, by the ratio that is drawn.
     is_open : bool
         Whether the class has no upper limit.
     """
@@ -107,7 +114,6 @@ class Shaking:
     pga: float
     pgv: float
     scatter: float
-    pgv_scatter: float
     sources: tuple[str, ...]
     references: tuple[str, ...]
     is_derived: bool = False
@@ -126,8 +132,7 @@ def _from_mmi(choice: str, mmi: int) -> Shaking:
         intensity=float(mmi),
         pga=WORDEN_PGA.invert(mmi) / 100,
         pgv=WORDEN_PGV.invert(mmi) / 100,
-        scatter=_round_up(WORDEN_PGA.sigma_log),
-        pgv_scatter=_round_up(WORDEN_PGV.sigma_log),
+        scatter=_round_up(WORDEN_PGV.sigma_log),
         sources=("Worden et al. 2012",),
         references=(WORDEN,),
         is_open=mmi == 10,
@@ -138,20 +143,15 @@ def _from_jma(choice: str, name: str, low: float, high: float, *, is_open: bool 
     """Return a class of JMA intensity that reaches from `low` to `high`, within which every value is as likely."""
     middle, spread = (low + high) / 2, (high - low) / math.sqrt(12)
     pgv = invert_jma(middle)
-    # Independent errors: class and equation to log PGV, log PGV to MMI, MMI to log PGA; all on the upper branches.
-    log_pgv = math.hypot(spread, JMA_SIGMA) / JMA_1
-    mmi = math.hypot(WORDEN_PGV.c4 * log_pgv, WORDEN_PGV.sigma_mmi)
-    log_pga = math.hypot(mmi / WORDEN_PGA.c4, WORDEN_PGA.sigma_log)
     return Shaking(
         choice=choice,
         name=name,
         intensity=middle,
-        pga=WORDEN_PGA.invert(WORDEN_PGV.evaluate(pgv)) / 100,
+        pga=pgv / 100 / RATIO,
         pgv=pgv / 100,
-        scatter=_round_up(log_pga),
-        pgv_scatter=_round_up(log_pgv),
-        sources=("Midorikawa et al. 1999", "Worden et al. 2012"),
-        references=(MIDORIKAWA, WORDEN),
+        scatter=_round_up(math.hypot(spread, JMA_SIGMA) / JMA_1),
+        sources=("Midorikawa et al. 1999",),
+        references=(MIDORIKAWA,),
         is_derived=True,
         is_open=is_open,
     )
@@ -175,3 +175,13 @@ _ALL = (
 
 SHAKINGS: Mapping[str, Shaking] = MappingProxyType({one.choice: one for one in _ALL})
 """The classes by their choice in the workbook: words of the legend of ShakeMap, and classes of the JMA."""
+
+
+def name_mmi(pga: float, pgv: float | None) -> str:
+    """Return the class of MMI of a ground motion [m/s2], [m/s], as a choice of `SHAKINGS`: by PGV, where it is known.
+
+    "" below MMI IV; MMI X stands for all above.
+    """
+    mmi = WORDEN_PGV.estimate(100 * pgv) if pgv else WORDEN_PGA.estimate(100 * pga)
+    named = {one.intensity: one.choice for one in _ALL if one.choice.startswith("MMI")}
+    return named.get(min(round(mmi), 10), "")

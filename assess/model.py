@@ -15,6 +15,7 @@ from assess.hazard import HazardCurve
 from assess.i18n import count, fill, find_language
 from assess.motion.formats import parse_records, select
 from assess.motion.record import Record
+from assess.motion.scenario import PGA_OF_SDS
 from assess.motion.site_ground import SiteGround
 from assess.rocking.block import MIDDLE
 from assess.units import LENGTH, to_edge
@@ -31,6 +32,7 @@ SIZES_FROM = ("measured", "model", "scan")
 """Where the sizes of a piece come from: of those of a scan base and height are drawn wider."""
 MEASURED, SCANNED = SIZES_FROM[0], SIZES_FROM[-1]
 IMPORTANCE = ("life safety", "function", "property")
+STRUCTURES = ("frame", "walls", "dual", "timber", "masonry", "unknown")
 
 NEAR_AXIS = 15.0
 """Up to this angle [deg] from an axis a piece, or a record, counts as lying along it."""
@@ -68,11 +70,11 @@ class Building:
     """The building and the earthquake; a blank text or None where the workbook says nothing.
 
     Lengths in m, `period` in s, accelerations in m/s2, velocities in m/s, `azimuth_deg` clockwise from north,
-    `latitude` and `longitude` in degrees, north and east positive. `shaking` is a key of `assess.intensity.SHAKINGS`,
-    `shakemap` and `hazard` are the names of files: of the grid of a ShakeMap, and of the curve.
-    `motion_uncertainty` is a standard deviation of the natural logarithm of PFA [-], `piece_uncertainty` whether pieces
-    vary from one simulated earthquake to the next; None where blank. `cells` tells in which cell of the sheet a field
-    stands.
+    `latitude` and `longitude` in degrees, north and east positive. `structure` is one of `STRUCTURES`, `shaking` a key
+    of `assess.intensity.SHAKINGS`, `class_by` one of `assess.settings.CLASS_BY`; `shakemap` and `hazard` name files: of
+    the grid of a ShakeMap, and of the curve. `motion_uncertainty` is a standard deviation of the natural logarithm of
+    PFA [-], `piece_uncertainty` whether pieces vary from one simulated earthquake to the next; None where blank.
+    `cells` tells in which cell of the sheet a field stands.
     """
 
     building: str = ""
@@ -84,6 +86,7 @@ class Building:
     storeys: int | None = None
     height: float | None = None
     period: float | None = None
+    structure: str = ""
     azimuth_deg: float | None = None
     prepared_by: str = ""
     checked_by: str = ""
@@ -94,6 +97,7 @@ class Building:
     logo: Path | None = None
     scenario: str = ""
     scenario_kind: str = ""
+    class_by: str = ""
     ground_pga: float | None = None
     ground_pgv: float | None = None
     sds: float | None = None
@@ -106,6 +110,12 @@ class Building:
     piece_uncertainty: bool | None = None
     language: str = ""
     cells: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def known_pga(self) -> float | None:
+        """Ground PGA [m/s2], 0.4 SDS where that is given alone."""
+        by_sds = None if self.sds is None else PGA_OF_SDS * self.sds
+        return by_sds if self.ground_pga is None else self.ground_pga
 
     def cell(self, name: str) -> str:
         """Address of a field; "" where the sheet lacks it."""

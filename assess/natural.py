@@ -11,16 +11,6 @@ def natural_key(name: str) -> tuple[tuple[tuple[int, str], ...], str]:
 
     Of equal numbers the one with fewer digits comes first: 25-7 before 25-07. Names that differ in capitals alone keep
     one order as well, so that no order depends on that of the input.
-
-    Parameters
-    ----------
-    name : str
-        The name of a piece, floor, room or route.
-
-    Returns
-    -------
-    tuple
-        Compares with that of any other name.
     """
     plain = unicodedata.normalize("NFKC", name).casefold().strip()
     parts = _NUMBER.split(plain)

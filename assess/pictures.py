@@ -44,10 +44,7 @@ class PictureError(InputError):
 def count_pixels(data: bytes) -> int:
     """Return how many pixels a picture has by its header.
 
-    Raises
-    ------
-    PictureError
-        If it is no PNG or JPEG, is too large, or its header is damaged.
+    Raises PictureError if it is no PNG or JPEG, is too large, or its header is damaged.
     """
     size = _read_size(data)
     if math.prod(size) > MOST_PIXELS:
@@ -63,10 +60,7 @@ def count_pixels(data: bytes) -> int:
 def check_picture(data: bytes) -> None:
     """Decode a picture as reports do.
 
-    Raises
-    ------
-    PictureError
-        If it is no PNG or JPEG, is too large, or is damaged; the message says how to fix it.
+    Raises PictureError if it is no PNG or JPEG, is too large, or is damaged; the message says how to fix it.
     """
     _decode(data)
 
@@ -74,10 +68,7 @@ def check_picture(data: bytes) -> None:
 def prepare_picture(data: bytes) -> tuple[bytes, str]:
     """Return the bytes of a picture as a report embeds it, and their media type; large ones are made smaller.
 
-    Raises
-    ------
-    PictureError
-        As `check_picture`.
+    Raises PictureError as `check_picture`.
     """
     picture = _decode(data)
     kind = "PNG" if data.startswith(PNG) else "JPEG"
@@ -91,10 +82,7 @@ def prepare_picture(data: bytes) -> tuple[bytes, str]:
 def prepare_photo(data: bytes) -> bytes:
     """Return a photo as a small JPEG, upright, and without what the camera wrote into it (place, date).
 
-    Raises
-    ------
-    PictureError
-        As `check_picture`.
+    Raises PictureError as `check_picture`.
     """
     return _write_jpeg(_shrink(data, PHOTO), 75)
 
@@ -102,17 +90,13 @@ def prepare_photo(data: bytes) -> bytes:
 def prepare_plan(data: bytes, most: int) -> tuple[bytes, float]:
     """Return a plan as a grey JPEG of at most `most` pixels on its longer side, and its height over its width [-].
 
-    Raises
-    ------
-    PictureError
-        As `check_picture`.
+    Raises PictureError as `check_picture`.
     """
     picture = _shrink(data, most).convert("L")
     return _write_jpeg(picture, 70), picture.height / picture.width
 
 
 def _shrink(data: bytes, most: int) -> "Image":
-    """Return a picture upright, on white, of at most `most` pixels on its longer side."""
     from PIL import Image, ImageOps
 
     picture = _decode(data, most)
@@ -139,7 +123,6 @@ def _write_jpeg(picture: "Image", quality: int) -> bytes:
 
 
 def _decode(data: bytes, shown: int = SHOWN) -> "Image":
-    """Return the decoded picture, a JPEG at the size nearest above what is shown."""
     from PIL import Image
 
     count_pixels(data)
@@ -178,7 +161,6 @@ def damaged() -> PictureError:
 
 
 def _read_size(data: bytes) -> tuple[int, int]:
-    """Return width and height [pixels] as the header has them."""
     if len(data) > MOST_BYTES:
         raise PictureError(fill("it is larger than {most} MB. Save it smaller", most=MOST_BYTES >> 20))
     if data.startswith(PNG):
@@ -193,7 +175,6 @@ def _read_size(data: bytes) -> tuple[int, int]:
 
 
 def _read_frame(data: bytes) -> tuple[int, int]:
-    """Return width and height of the first frame of a JPEG; zeros where there is none before the data."""
     at = 2
     while at + 9 <= len(data) and data[at] == 0xFF:
         marker = data[at + 1]

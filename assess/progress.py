@@ -123,8 +123,6 @@ class Progress:
 
 @dataclass(slots=True)
 class _Aside(Generic[_Found]):
-    """Work in a thread of its own, and what came out."""
-
     work: Callable[[], _Found]
     done: Event = field(default_factory=Event)
     _found: list[_Found] = field(default_factory=list)

@@ -39,17 +39,11 @@ REACH = 10.0
 class AnnualRate:
     """How often a year, and how much of it the ends of the hazard curve decide.
 
-    Parameters
-    ----------
-    rate : float
-        [1/year]: all that the curve holds, and what lies beyond its last point at the chance there.
-    most : float
-        The same if all beyond the last point made it fall [1/year].
-    beyond : float
-        Share of `rate` that lies beyond the last point [-].
-    below : float
-        Share that would be added below the first point, if the curve's first power law went on for a decade [-] of
-        the sum; it is not counted in `rate`.
+    * `rate`: [1/year]: all that the curve holds, and what lies beyond its last point at the chance there.
+    * `most`: the same if all beyond the last point made it fall [1/year].
+    * `beyond`: share of `rate` that lies beyond the last point [-].
+    * `below`: share that would be added below the first point, if the curve's first power law went on for a decade [-]
+      of the sum; it is not counted in `rate`.
     """
 
     rate: float
@@ -90,6 +84,8 @@ def evaluate_rate(curve: HazardCurve, fragility: Fragility) -> AnnualRate:
 def integrate_lognormal(curve: HazardCurve, *, median: float, dispersion: float) -> AnnualRate:
     """Return the annual rate of a lognormal fragility, exact for power laws between the points of the curve.
 
+    Raises ValueError if the median is not above 0, or the dispersion is below 0, or one is not finite.
+
     Parameters
     ----------
     curve : HazardCurve
@@ -97,18 +93,15 @@ def integrate_lognormal(curve: HazardCurve, *, median: float, dispersion: float)
         θ, above 0 [m/s2].
     dispersion : float
         β [-]; with 0 all fall above the median and none below.
-
-    Raises
-    ------
-    ValueError
-        If the median is not above 0, or the dispersion is below 0, or one is not finite.
     """
     if not (0 < median < math.inf and 0 <= dispersion < math.inf):
         raise ValueError(f"median is {median} and dispersion {dispersion}, expected above 0 and 0 or above")
 
     def integrate(pga: FloatArray, rate: FloatArray) -> float:
         if dispersion == 0:
-            return _exceed(pga, rate, median)
+            if median > pga[-1]:
+                return 0.0
+            return float(np.exp(np.interp(math.log(median), np.log(pga), np.log(rate))))
         return float(rate[0] * lognormal_chance(pga[0], median, dispersion)) + _add_parts(
             pga, rate, np.log(pga / median) / dispersion, dispersion
         )
@@ -122,6 +115,8 @@ def integrate_table(curve: HazardCurve, levels: ArrayLike, shares: ArrayLike) ->
     The share is linear in the peak ground acceleration between levels, from 0 at no acceleration on; beyond the last
     level it stays what it is there.
 
+    Raises ValueError if levels do not rise from above 0, or shares lie outside 0 to 1.
+
     Parameters
     ----------
     curve : HazardCurve
@@ -129,11 +124,6 @@ def integrate_table(curve: HazardCurve, levels: ArrayLike, shares: ArrayLike) ->
         Rising peak ground accelerations, above 0 [m/s2].
     shares : (n,) array
         Share that falls at each [-], 0 to 1.
-
-    Raises
-    ------
-    ValueError
-        If levels do not rise from above 0, or shares lie outside 0 to 1.
     """
     at = np.concatenate([[0.0], np.asarray(levels, dtype=np.float64)])
     chance = np.concatenate([[0.0], np.asarray(shares, dtype=np.float64)])
@@ -198,13 +188,6 @@ def _build(curve: HazardCurve, integrate: Callable[[FloatArray, FloatArray], flo
         beyond=last * at_last / found if found > 0 else 0.0,
         below=max(0.0, 1 - found / more) if more > 0 else 0.0,
     )
-
-
-def _exceed(pga: FloatArray, rate: FloatArray, level: float) -> float:
-    """Return the rate at which a level is exceeded, as far as the curve tells: 0 beyond its end."""
-    if level > pga[-1]:
-        return 0.0
-    return float(np.exp(np.interp(math.log(level), np.log(pga), np.log(rate))))
 
 
 def _add_parts(pga: FloatArray, rate: FloatArray, x: FloatArray, dispersion: float) -> float:

@@ -7,8 +7,8 @@ motion lie in one file, to which `Results.series` refers.
 
 import difflib
 import statistics
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
@@ -22,26 +22,27 @@ from assess.i18n import Text, count, fill, join, nfill
 from assess.methods import MethodInfo, Outcome
 from assess.methods._method import ALIKE
 from assess.model import MEASURED, Building, CatalogueType, Place
-from assess.motion.scenario import ROOF_FACTOR
 from assess.risk import RiskClass, classify
 from assess.rocking.draws import TRIED, Uncertainty
 from assess.route_results import RouteTables
 from assess.schedule_results import NOTHING, Schedule
-from assess.settings import Settings
+from assess.settings import CLASS_BY, Settings
 
 if TYPE_CHECKING:
     import pandas as pd
 
 Detail = float | str | bool | None
 
-BASES = ("formula", "simulated", "unconfirmed")
-"""What an adopted risk rests on: the formula, where nothing was simulated; the simulation; or the formula, where
-simulation gave a lower class that cannot be relied on. Lists, counts and sums do not mix them."""
+CANNOT_ROCK = "cannot rock"
+BASES = ("formula", "simulated", "unconfirmed", CANNOT_ROCK)
+"""What an adopted risk rests on: the formula, where nothing was simulated; the simulation; the formula, where
+simulation gave a lower class that cannot be relied on; or that the piece cannot rock, so that it is low. Lists, counts
+and sums do not mix them, but for the last, which counts with those of the run."""
 BRANCHES: tuple[str, ...] = (fill("rest"), fill("slide"), fill("rock"), fill("slide and rock"))
 """How a piece starts to move, in words."""
 PIECE_FLAGS = (
     "does_not_rock", "slides", "shenton_extended", "wall_higher", "fell_in_record", "ideal_higher", "either_axis",
-    "generic_spectrum", "unknown_period", "weak_motions", "undecided", "unconfirmed",
+    "assumed_motion", "unknown_building", "weak_motions", "undecided", "unconfirmed",
 )  # fmt: skip
 """Flags that belong to a piece rather than to one method, in the order in which they are listed."""
 PIECE_FLAG_TEXTS: Mapping[str, str] = {
@@ -50,7 +51,8 @@ PIECE_FLAG_TEXTS: Mapping[str, str] = {
         "its class"
     ),
     "unconfirmed": fill(
-        "simulation gave a lower class, which is not adopted, as its motions may be too weak: the formula's stands"
+        "nothing is known of the building: its class is at least that of the faster third of the draws; or the motions "
+        "are weaker than the floor's, and the formula's class stands, as simulation gave a lower one"
     ),
     "either_axis": fill(
         "nearly square on plan, and its axis is blank: the chance is that of a fall along either axis in one earthquake"
@@ -80,10 +82,16 @@ MOTION_FLAGS: Mapping[str, str] = {
     "assumed_elevation": fill(
         "Elevation is blank: assumed as the floor's number, the ground floor being 0, times Height over Storeys"
     ),
-    "pfv_estimated": fill("PFV was not given: estimated from PFA and the building's period T1"),
-    "pfv_capped": fill(
-        "the estimate of PFV was larger than {factor:.2f} times Ground PGV, an assumed factor, and is set to that",
-        factor=ROOF_FACTOR,
+    "drawn_building": fill(
+        "no motion of this floor is known: PFA and PFV are medians over drawn buildings on the ground motion"
+    ),
+    "unknown_height": fill("the height of the floor in the building is not known: z/h is drawn from 0.25 to 1"),
+    "unknown_building": fill(
+        "neither T1, Height, Storeys nor an Elevation is known: T1 is drawn from 0.15 to 3 s and z/h from 0.25 to 1"
+    ),
+    "beyond_table": fill(
+        "T1 or PGV/PGA lies beyond the table of floor medians, 0.06 to 6.5 s and 12 to 400 cm/s per g: the nearest "
+        "entry is taken"
     ),
 }
 """Flags of a floor's motion, and their meanings."""
@@ -150,7 +158,7 @@ class FitRow:
     """How generated motions meet their target.
 
     `matched_to_s` and `worst_period_s` are periods [s]; deviations, ratios of means and scatters (coefficients of
-    variation) are shares [-]; `pfv_ratio` is None where no PFV is to be matched.
+    variation) are shares [-].
     """
 
     matched_to_s: float
@@ -159,7 +167,7 @@ class FitRow:
     worst_period_s: float
     pfa_ratio: float
     pfa_scatter: float
-    pfv_ratio: float | None
+    pfv_ratio: float
     pfv_scatter: float
     spectrum_scatter: float
 
@@ -170,31 +178,22 @@ class EnsembleRow:
 
     `cases` is the number of pieces (rows) that were simulated, `fell_in_record` of how many it is known that they
     overturn under the record itself, None where there is no record. `is_generated` is False for the user's own motions.
+    `bands` are the factors above and below PFA/(2 pi PFV) by which drawn motions were brought to the floor's peaks [-].
     `signs` tells by octave, with centres of 0.1 to 25.6 Hz, whether they move as the shared phases say (1) or against
     them (-1); None where that is not known, and they move as the phases say.
     """
 
     motions: int
     least_motions: int
-    generic_spectrum: bool
-    unknown_period: bool
+    assumed_motion: bool
+    unknown_building: bool
     weak_motions: bool
     is_generated: bool
     cases: int
     fell_in_record: int | None
     fit: FitRow | None
     signs: tuple[int, ...] | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class EstimateRow:
-    """What a PFV was estimated from: its ratio to PFA [cm/s for each g], and the most that it may be [cm/s].
-
-    The latter is None where Ground PGV is not known.
-    """
-
-    ratio: float
-    largest_cm_s: float | None
+    bands: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -207,26 +206,30 @@ class MotionRow:
         Its place in `Results.motions`.
     floor, axis : str
         Where it serves.
-    source : "record", "given", "interpolated" or "profile"
+    source : "record", "given", "interpolated", "profile" or "beam"
         Where it comes from.
     label : str
-        The source in short: the record's name, "given", the profile's code, or the two floors.
+        The source in short: the record's name, "given", the profile's code, the two floors, or what shakes the beam.
     pfa_g, pfv_cm_s : float
         Peaks; `pfv_cm_s` is None where it is unknown.
     flags : tuple of str
         Keys of `MOTION_FLAGS`.
     between : tuple of str
         The floors below and above that it is interpolated between.
-    profile, clause, height_ratio, amplification
-        The code's profile, and what it gave here [-].
+    profile, clause
+        The code's profile.
+    height_ratio, amplification : float, optional
+        z/h [-], and PFA over the ground's PGA where it follows from that [-].
     record : str
         The record as the workbook names it, "" where there is none; what its file says stands behind it.
     pfa_file_g : float
         The record's peak before treatment.
     treatment : str
         What was done to the record.
-    estimate : EstimateRow, optional
-        What its PFV follows when its PFA is edited; None where it is not estimated from a PFA of its own.
+    pfv_follows : bool
+        Whether its PFV follows its PFA where that is edited, as it is not known by itself.
+    dispersion : float
+        Standard deviation of ln of its amplitude from one earthquake to the next that is drawn [-].
     ensemble : EnsembleRow, optional
         What pieces were simulated under; None where none was.
     """
@@ -257,7 +260,8 @@ class MotionRow:
     samples: int | None = None
     treatment: str = ""
     notes: tuple[str, ...] = ()
-    estimate: EstimateRow | None = None
+    pfv_follows: bool = False
+    dispersion: float = 0.0
     ensemble: EnsembleRow | None = None
 
     @property
@@ -415,26 +419,33 @@ class Simulation:
 
     Parameters
     ----------
-    runs, overturned : int
-        Draws of an earthquake and of the piece, and those in which it overturned.
+    runs, draws, overturned : int
+        Draws of an earthquake and of the piece; those of all pieces exactly alike on the floor; and those of the latter
+        in which the piece overturned.
     probability, low, high : float
-        Their ratio and its sampling interval [-].
-    ideal : Ideal
-        The same without uncertainty of the motion and of the piece.
+        The ratio of the last two, and its sampling interval [-].
+    ideal : Ideal, optional
+        The same without uncertainty of the motion and of the piece; None where ground motion and building are drawn,
+        which cannot recur, unless the run leaves uncertainty out.
     tried : mapping of float to float
-        The ratio at other dispersions of the motion, by the dispersion [-].
+        The ratio at other dispersions of the motion, by the dispersion [-]; empty where ground and building are drawn.
+    if_slower, if_faster : float, optional
+        There: the ratio in the third of the draws with the least PFV/PFA, and in that with the most [-].
     record_overturned, record_max_rotation_ratio : bool, float, optional
         Whether it overturns under the recorded motion itself, and the largest |theta| over the critical angle there
         [-]; None where no record is known.
     """
 
     runs: int
+    draws: int
     overturned: int
     probability: float
     low: float
     high: float
-    ideal: Ideal
+    ideal: Ideal | None
     tried: Mapping[float, float]
+    if_slower: float | None
+    if_faster: float | None
     record_overturned: bool | None
     record_max_rotation_ratio: float | None
 
@@ -463,8 +474,8 @@ class Adopted:
 
     `basis` is one of `BASES`. `low` and `high` bound the sampling interval of a simulated chance, and are None where
     the formula's is adopted. `upper` is the class by the upper bound. `lowered_from` is the class by formula where
-    simulation lowered it, which it may not where `is_doubtful`. `can_rock`: whether the strongest motion that may be
-    drawn can start the piece rocking.
+    simulation lowered it, which it may not where `is_doubtful`; None of an unconfirmed class. `method` is "" where the
+    piece cannot rock; `rocks_from` is the share of g b/z that PFA has to reach for it to rock in any draw [-].
     """
 
     method: str
@@ -476,8 +487,15 @@ class Adopted:
     upper: RiskClass
     lowered_from: RiskClass | None
     is_doubtful: bool
-    can_rock: bool
+    rocks_from: float
     flags: tuple[str, ...]
+
+    @property
+    def lower(self) -> RiskClass:
+        """The class by the lower end of the interval; at least high where it overturns under the record itself."""
+        least = RiskClass.HIGH if "fell_in_record" in self.flags else RiskClass.LOW
+        found = None if self.low is None else classify(self.low)
+        return self.risk if found is None else min(self.risk, max(found, least))
 
     @property
     def is_simulated(self) -> bool:
@@ -486,8 +504,18 @@ class Adopted:
 
     @property
     def is_unconfirmed(self) -> bool:
-        """Whether the formula's class stands although simulation gave a lower one."""
+        """Whether nothing is known of the building, or the formula's class stands for a lower simulated one."""
         return self.basis == "unconfirmed"
+
+    @property
+    def has_simulated(self) -> bool:
+        """Whether the chance is that of the simulation, confirmed or, where nothing is known of the building, not."""
+        return self.is_simulated or (self.is_unconfirmed and "unknown_building" in self.flags)
+
+    @property
+    def can_rock(self) -> bool:
+        """Whether it is not too stocky to rock, and the strongest motion that may be drawn can start it."""
+        return self.basis != CANNOT_ROCK
 
 
 @dataclass(frozen=True, slots=True)
@@ -511,8 +539,8 @@ class CaseRow:
 class ItemResult:
     """One row of furniture with its governing case, the risk adopted from it, and all its cases.
 
-    `formula` is the result of the adopted formula's method by case, for the properties below. `main_basis` is that of
-    the run (`Results.main_basis`).
+    `formula_key` and `paper_key` name the adopted formula and the paper's. `main_basis` is that of the run
+    (`Results.main_basis`). `fell` tells in which draws it falls, None where that is not known.
     """
 
     item: ItemRow
@@ -520,7 +548,9 @@ class ItemResult:
     adopted: Adopted
     cases: tuple[CaseRow, ...]
     formula_key: str
+    paper_key: str
     main_basis: str = "formula"
+    fell: NDArray[np.bool_] | None = field(default=None, compare=False, repr=False)
 
     @property
     def apart(self) -> str:
@@ -528,7 +558,7 @@ class ItemResult:
 
         One of "unconfirmed" and, in a run that simulated other pieces, "formula".
         """
-        return "" if self.adopted.basis == self.main_basis else self.adopted.basis
+        return "" if self.adopted.basis in (self.main_basis, CANNOT_ROCK) else self.adopted.basis
 
     @property
     def routes(self) -> tuple[str, ...]:
@@ -537,12 +567,12 @@ class ItemResult:
 
     @property
     def by_formula(self) -> CaseRow:
-        """The case that the formula alone would have govern: its larger value, then the larger PFA, then X."""
+        """The case that the formula alone would have govern, of those under which it can rock if there are any."""
         return min(self.cases, key=self._formula_first)
 
     def _formula_first(self, case: CaseRow) -> tuple[float, float]:
-        value = case.methods[self.formula_key].value
-        return -round(value if value is not None else 0.0, ALIKE), -round(case.motion.pfa_g, ALIKE)
+        value = (case.methods[self.formula_key].value or 0.0) if case.adopted.can_rock else -1.0
+        return -round(value, ALIKE), -round(case.motion.pfa_g, ALIKE)
 
     @property
     def formula(self) -> MethodResult:
@@ -551,8 +581,13 @@ class ItemResult:
 
     @property
     def formula_class(self) -> RiskClass:
-        """The highest class that the formula gives under any of its motions."""
+        """The highest class that the formula gives under any of its motions; low where the piece cannot rock."""
         return _formula_class(self.cases, self.formula_key)
+
+    @property
+    def paper_class(self) -> RiskClass:
+        """The class by the paper's formula under the governing motion; low where the piece cannot rock."""
+        return _formula_class((self.governing,), self.paper_key)
 
     @property
     def is_simulated(self) -> bool:
@@ -591,7 +626,9 @@ class ItemResult:
 
 
 def _formula_class(cases: Sequence[CaseRow], key: str) -> RiskClass:
-    classes = [classify(value) for case in cases if (value := case.methods[key].value) is not None]
+    """Return the highest class by a formula under the motions that can start the piece; low where none can."""
+    rocked = (case.methods[key].value for case in cases if case.adopted.can_rock)
+    classes = [classify(value) for value in rocked if value is not None]
     return max((one for one in classes if one is not None), default=RiskClass.LOW)
 
 
@@ -602,6 +639,56 @@ class WorkedMethod:
     key: str
     steps: tuple[str, ...]
     value: float
+
+
+# ---------------------------------------------------------------- draws
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DrawTable:
+    """In which draws of an earthquake each of m items falls.
+
+    Parameters
+    ----------
+    draws : int
+        Draws that all simulated items have in common, the first ones; 0 where nothing was simulated.
+    packed : (m, ceil(draws/8)) integer array
+        One bit a draw, the first in the highest bit.
+    is_known : (m,) boolean array
+        Which items have draws: those that were simulated, and those that cannot rock.
+    """
+
+    draws: int
+    packed: NDArray[np.uint8]
+    is_known: NDArray[np.bool_]
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, DrawTable):
+            return NotImplemented
+        pairs = (self.packed, other.packed), (self.is_known, other.is_known)
+        return self.draws == other.draws and all(np.array_equal(*pair) for pair in pairs)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def read(self, item: int) -> NDArray[np.bool_] | None:
+        """Return in which draws an item falls, (draws,); None where that is not known."""
+        if not self.draws or not self.is_known[item]:
+            return None
+        return np.unpackbits(self.packed[item], count=self.draws).astype(np.bool_)
+
+
+NO_DRAWS = DrawTable(0, np.zeros((0, 0), dtype=np.uint8), np.zeros(0, dtype=np.bool_))
+
+
+def sum_falls(counted: Iterable[ItemResult]) -> NDArray[np.int64] | None:
+    """Return how many pieces of some rows fall in each draw; None where that is not known of all of them."""
+    total: NDArray[np.int64] | None = None
+    for one in counted:
+        if one.fell is None:
+            return None
+        falls = one.item.quantity * one.fell.astype(np.int64)
+        total = falls if total is None else total + falls
+    return total
 
 
 # ---------------------------------------------------------------- cases
@@ -618,7 +705,7 @@ class CaseTable:
     outcomes : mapping of str to Outcome
         Every method's values, details and flags, (n,) each, by its key.
     adopted : mapping of str to (n,) array
-        probability, low, high [-]; risk, upper (classes); basis (place in `BASES`); doubtful, ideal_higher, can_rock,
+        probability, low, high, rocks_from [-]; risk, upper (classes); basis (place in `BASES`); doubtful, ideal_higher,
         either_axis (boolean).
     """
 
@@ -680,10 +767,14 @@ class _CaseReader:
     def _simulated(self, case: int, probability: float) -> Simulation:
         found = {name: values[case] for name, values in self._found.items()}
         fell = found["record_overturned"]
-        ideal = Ideal(int(found["ideal_overturned"]), found["ideal"], found["ideal_low"], found["ideal_high"])
+        ideal = None
+        if found["ideal"] is not None:
+            ideal = Ideal(int(found["ideal_overturned"]), found["ideal"], found["ideal_low"], found["ideal_high"])
         return Simulation(
-            int(found["runs"]), int(found["overturned"]), probability, found["low"], found["high"], ideal,
-            {one: found[f"dispersion_{one:g}"] for one in TRIED},
+            int(found["runs"]), int(found["draws"]), int(found["overturned"]), probability, found["low"],
+            found["high"], ideal,
+            {one: value for one in TRIED if (value := found[f"dispersion_{one:g}"]) is not None},
+            found["if_slower"], found["if_faster"],
             None if fell is None else bool(fell), found["record_rotation"],
         )  # fmt: skip
 
@@ -696,8 +787,11 @@ class _CaseReader:
         raised |= {"unconfirmed"} if basis == "unconfirmed" else set()
         raised |= {name for name in ("ideal_higher", "either_axis") if adopted[name][case]}
         piece = [flag for flag in PIECE_FLAGS if flag in raised] if raised else []
+        is_simulated = basis == "simulated" or (basis == "unconfirmed" and "unknown_building" in raised)
+        method = "" if basis == CANNOT_ROCK else self._simulation if is_simulated else self._formula
+        own = () if basis == CANNOT_ROCK else methods[self._formula].flags
         return Adopted(
-            method=self._simulation if basis == "simulated" else self._formula,
+            method=method,
             basis=basis,
             probability=adopted["probability"][case],
             low=adopted["low"][case],
@@ -706,8 +800,8 @@ class _CaseReader:
             upper=RiskClass(adopted["upper"][case]),
             lowered_from=None,
             is_doubtful=adopted["doubtful"][case],
-            can_rock=adopted["can_rock"][case],
-            flags=tuple(dict.fromkeys((*methods[self._formula].flags, *motion.flags, *piece))),
+            rocks_from=adopted["rocks_from"][case],
+            flags=tuple(dict.fromkeys((*own, *motion.flags, *piece))),
         )
 
 
@@ -813,6 +907,8 @@ class EarthquakeDraws:
         Share of its variance that is common to all places [-]; what scenarios carry is left out.
     is_shared_given : bool
         Whether the ShakeMap gives that share; else it is that of Boore et al. (2014).
+    measure : "PGA" or "PGV"
+        The peak of the ground whose share and correlation they are.
     range_km : float
         Distance at which the correlation of the rest has fallen to exp(-3).
     scenarios : int
@@ -825,6 +921,7 @@ class EarthquakeDraws:
     is_placed: bool
     shared: float
     is_shared_given: bool
+    measure: Literal["PGA", "PGV"]
     range_km: float
     scenarios: int
     scenario_share: float
@@ -844,14 +941,12 @@ class AssumedShaking:
         What it is taken for: MMI, or JMA instrumental intensity.
     pga_g, pgv_cm_s : float
         Published medians of the ground's peaks, before the settings' factor.
-    scatter, pgv_scatter : float
-        Standard deviation of ln PGA and of ln PGV given the intensity [-].
+    scatter : float
+        Standard deviation of ln PGV given the intensity [-].
     is_derived : bool
-        Whether PGA follows from PGV by way of MMI.
+        Whether PGA follows from PGV, by the ratio that is drawn.
     is_open : bool
         Whether the class has no upper limit.
-    profile : str
-        The code's design profile over the height.
     sources, references : tuple of str
         The relations in short and in full.
     """
@@ -862,10 +957,8 @@ class AssumedShaking:
     pga_g: float
     pgv_cm_s: float
     scatter: float
-    pgv_scatter: float
     is_derived: bool
     is_open: bool
-    profile: str
     sources: tuple[str, ...]
     references: tuple[str, ...]
 
@@ -913,9 +1006,9 @@ class SiteGroundInfo:
     pga_g, pgv_cm_s : float
         Medians at the building, before the settings' factor; `pgv_cm_s` is null where it is not known.
     psa : tuple of GroundPsa
-        Spectral accelerations, as far as they are known; the floors' motion does not follow from them.
+        Spectral accelerations, as far as they are known; for information.
     dispersion : float
-        Standard deviation of ln PGA at the building [-].
+        Standard deviation of ln PGV at the building [-], or of ln PGA where PGV is not known.
     dispersion_source : str
         Where that comes from.
     own_dispersion : float
@@ -926,8 +1019,6 @@ class SiteGroundInfo:
         From the building to the site of the scenarios.
     scenarios : int
         Number of scenarios; 0 for a map.
-    profile : str
-        The code's design profile over the height.
     facts : tuple of GroundFact
         The earthquake, version and status of the map, and the like.
     cautions : tuple of str
@@ -946,7 +1037,6 @@ class SiteGroundInfo:
     shared: float | None
     distance_km: float | None
     scenarios: int
-    profile: str
     facts: tuple[GroundFact, ...]
     cautions: tuple[str, ...]
 
@@ -1046,6 +1136,8 @@ class Results:
         Where series for figures lie.
     schedule : Schedule
         What to fix, with what, and what is to be expected before and after.
+    draws : DrawTable
+        In which draws each row falls.
     """
 
     settings: Settings
@@ -1066,6 +1158,7 @@ class Results:
     worked_item: int | None
     series: Series
     schedule: Schedule = NOTHING
+    draws: DrawTable = field(default_factory=lambda: NO_DRAWS)
 
     def __len__(self) -> int:
         return len(self.item_rows)
@@ -1105,12 +1198,18 @@ class Results:
         cases = tuple(self._read(case) for case in range(item.first_case, item.last_case))
         governing = cases[item.governing - item.first_case]
         adopted = self._adopt_worst(governing, cases)
-        return ItemResult(item, governing, adopted, cases, self.formula.key, self.main_basis)
+        keys, fell = (self.formula.key, self.paper_formula.key), self.draws.read(index)
+        return ItemResult(item, governing, adopted, cases, *keys, self.main_basis, fell)
 
     @property
     def formula(self) -> MethodInfo:
         """The method whose value is adopted where nothing was simulated."""
-        return next(one for one in self.methods if one.role == "adopted formula")
+        return next(one for one in self.methods if one.role == (self.settings.class_by or CLASS_BY[0]))
+
+    @property
+    def paper_formula(self) -> MethodInfo:
+        """The formula that the paper proposes: its class is shown beside that of the adopted one."""
+        return next(one for one in self.methods if one.role == "proposed OR")
 
     @property
     def simulation(self) -> MethodInfo:
@@ -1151,18 +1250,19 @@ class Results:
     def _adopt_worst(self, governing: CaseRow, cases: Sequence[CaseRow]) -> Adopted:
         """Return the risk of a piece: the governing chance, with the highest classes under any motion of the piece.
 
-        A class that is lower than the highest that the formula gives under any of them is marked.
+        A class that is lower than the highest that the formula gives under any of them is marked, if it is confirmed.
         """
         if all(case.simulation is None for case in cases):
             return governing.adopted  # the formula's, of which the largest governs
         risk, upper = max(case.adopted.risk for case in cases), max(case.adopted.upper for case in cases)
         formula = _formula_class(cases, self.formula.key)
+        is_lowered = risk < formula and governing.adopted.can_rock and not governing.adopted.is_unconfirmed
         carried = [flag for flag in CARRIED if any(flag in case.adopted.flags for case in cases)]
         return replace(
             governing.adopted,
             risk=risk,
             upper=upper,
-            lowered_from=formula if risk < formula else None,
+            lowered_from=formula if is_lowered else None,
             flags=tuple(dict.fromkeys((*governing.adopted.flags, *carried))),
         )
 

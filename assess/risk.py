@@ -53,10 +53,7 @@ LIMITS = (0.03, 0.3, 0.7)
 def classify(probability: float) -> RiskClass | None:
     """Return the class of a probability in [0, 1], or None where it is unknown (NaN).
 
-    Raises
-    ------
-    ValueError
-        If `probability` lies outside [0, 1].
+    Raises ValueError if `probability` lies outside [0, 1].
     """
     if math.isnan(probability):
         return None
@@ -69,6 +66,18 @@ def classify_all(probability: ArrayLike) -> NDArray[np.int64]:
     """Return the classes, as integers, of probabilities in [0, 1]; -1 for NaN."""
     values = np.asarray(probability, dtype=np.float64)
     return np.where(np.isnan(values), -1, np.searchsorted(LIMITS, values, side="right")).astype(np.int64)
+
+
+ENDS = (0.05, 0.95)
+"""Shares of the draws that do not exceed the ends of a range over earthquakes."""
+
+
+def find_ends(numbers: ArrayLike | None) -> tuple[float, float] | tuple[None, None]:
+    """Return what 5 and 95 % of the draws of a sum do not exceed; None for each where there are no draws."""
+    if numbers is None:
+        return None, None
+    low, high = np.quantile(np.asarray(numbers), ENDS, method="inverted_cdf").tolist()
+    return low, high
 
 
 NORMAL_95 = 1.959963984540054

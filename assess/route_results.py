@@ -30,14 +30,14 @@ FLAGS: Mapping[str, str] = {
     "own_rooms": "placed pieces of other rooms do not count unless they name it",
     "no_plan": "its places have no positions: only pieces that name it count",
     "between_floors": "its places lie on different floors: only pieces that name it count",
-    "unconfirmed_period": "its lower simulated class is not confirmed, as neither T1 nor the height of the building is "
-    "known: it counts as standing and as fallen",
+    "unconfirmed_building": "its class is not confirmed, as nothing is known of the building: it counts as standing "
+    "and as fallen",
     "unconfirmed_motions": "its lower simulated class is not confirmed, as the motions are weaker than the floor's: it "
     "counts as standing and as fallen",
 }
 """What each flag of a piece beside a segment, or of a segment, means."""
 
-DOUBTS: Mapping[str, str] = {"unknown_period": "unconfirmed_period", "weak_motions": "unconfirmed_motions"}
+DOUBTS: Mapping[str, str] = {"unknown_building": "unconfirmed_building", "weak_motions": "unconfirmed_motions"}
 """Flags of unconfirmed pieces, by the flag of the simulation that keeps a lower class from being adopted."""
 
 
@@ -82,7 +82,7 @@ MISSING: Mapping[str, str] = {
     "positions": "X and Y, or Route, of pieces that may reach it (Items)",
     "furniture": "the furniture of the building (Items)",
     "beyond_stairs": "segments from stairs to an exit (Routes)",
-    "unconfirmed_period": "Period T1 or Height (Building)",
+    "unconfirmed_building": "Period T1 or Height (Building)",
     "unconfirmed_motions": "motions of your own that reach the PFA and PFV of the floor",
 }
 """What may be missing, by the keys of `MissingRow.what`, and the sheet to fill it in."""

@@ -91,6 +91,8 @@ ENTRY_FIELDS = (
 
 STATE_FIELDS = (
     _of("falls", "number", fill("Expected falls"), help="Of free-standing pieces of the run's basis."),
+    _of("falls_low", "number", is_optional=True, help="Falls that 5 % of the draws do not exceed."),
+    _of("falls_high", "number", is_optional=True, help="Falls that 95 % of the draws do not exceed."),
     *(
         Field(
             key=f"pieces_{risk.word.replace(' ', '_')}", path=("pieces", risk.word.replace(" ", "_")), kind="count",

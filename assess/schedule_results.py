@@ -112,6 +112,8 @@ class State:
     ----------
     falls : float
         Expected number of free-standing pieces that fall, of the run's basis.
+    falls_low, falls_high : float, optional
+        What 5 and 95 % of the draws do not exceed; None where nothing was simulated.
     apart : int
         Free-standing pieces that stand apart: unconfirmed, or by formula only where others were simulated.
     classes : tuple of int
@@ -138,6 +140,8 @@ class State:
     rooms_at_risk: tuple[str, ...]
     unknown_routes: int = 0
     unknown_rooms: int = 0
+    falls_low: float | None = None
+    falls_high: float | None = None
 
     def count(self, risk: RiskClass) -> int:
         """Return how many pieces are of a class."""

@@ -32,6 +32,10 @@ SCENARIOS: tuple[str, ...] = get_args(Scenario)
 """Source of the floor motion: as filled, floor by floor a record, then given PFA and PFV, then between the floors
 above and below, then a code's profile; or records alone, given peaks alone, or one profile on every floor."""
 
+ClassBy = Literal["best formula", "proposed OR"]
+CLASS_BY: tuple[str, ...] = get_args(ClassBy)
+"""Which formula gives the class of what is not simulated: that which agrees best with simulation, or the paper's."""
+
 LONGEST_SHOWN = 40
 """Characters of a wrong value that a message repeats."""
 
@@ -91,6 +95,7 @@ def _read_flag(value: Any) -> bool | None:
 _positive = partial(_read_number, is_allowed=lambda number: number > 0)
 _RULES: Mapping[str, tuple[Callable[[Any], Any], Text]] = {
     "scenario": (partial(_read_choice, choices=SCENARIOS), fill("one of: {names}", names=", ".join(SCENARIOS))),
+    "class_by": (partial(_read_choice, choices=CLASS_BY), fill("one of: {names}", names=", ".join(CLASS_BY))),
     "verify": (partial(_read_choice, choices=VERIFY), fill("one of: {names}", names=", ".join(VERIFY))),
     "runs": (_read_runs, fill("1 to {most:,}, or {auto}", most=MOST_RUNS, auto=AUTO)),
     "seed": (partial(_read_whole, low=0, high=math.inf), fill("a whole number, 0 or above")),
@@ -118,6 +123,8 @@ _RULES: Mapping[str, tuple[Callable[[Any], Any], Text]] = {
     ),
 }
 """What reads the value of each setting, None for one that cannot be used, and what was expected."""
+_BY_WORKBOOK = ("scenario", "class_by")
+"""Settings of which None stands for what the workbook says."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -130,6 +137,9 @@ class Settings:
     ----------
     scenario : str, optional
         One of `SCENARIOS`; None takes the workbook's own, which is "as filled" where it is blank.
+    class_by : str, optional
+        Which formula gives the class where nothing was simulated, one of `CLASS_BY`; None takes the workbook's own,
+        which is "best formula" where it is blank.
     verify : str
         Which pieces are simulated by direct integration, one of `VERIFY`.
     runs : int or "auto"
@@ -173,6 +183,7 @@ class Settings:
     """
 
     scenario: Scenario | None = None
+    class_by: ClassBy | None = None
     verify: Verify = "all"
     runs: int | Literal["auto"] = RUNS
     seed: int = SEED
@@ -194,7 +205,7 @@ class Settings:
         for name, (read, expected) in _RULES.items():
             given = getattr(self, name)
             value = None if given is None else read(given)
-            if value is None and not (name == "scenario" and given is None):
+            if value is None and not (name in _BY_WORKBOOK and given is None):
                 shown = _show(given)
                 text = fill("{name} is {value}, expected {expected}", name=name, value=shown, expected=expected)
                 raise SettingsError(text)

@@ -1,6 +1,5 @@
-"""Figures of generated motions: how an ensemble meets its target, and generic targets beside what was recorded."""
+"""The figure of generated motions: how an ensemble meets its target."""
 
-from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
@@ -8,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.motion.generate import Generator
-from assess.motion.record import FloatArray
 from assess.motion.spectrum import build_periods, response_spectrum
 from assess.report.figures.draw import draw
 from assess.units import GRAVITY
@@ -61,31 +59,6 @@ def _paint_spectra(axes: Any, generator: Generator, motions: NDArray[Any]) -> No
         words += f", PFV {fit.pfv_ratio:.2f} (± {fit.pfv_scatter:.2f})" if fit.pfv_ratio == fit.pfv_ratio else ""
         axes.set_title(words, fontsize=7, loc="left")
     axes.legend(fontsize=7, frameon=False)
-
-
-def draw_targets(
-    panels: Sequence[tuple[str, Sequence[FloatArray], Sequence[tuple[str, FloatArray]]]],
-    periods: FloatArray,
-    kind: str = "svg",
-) -> bytes:
-    """Draw, panel by panel, recorded PSA/PFA (m,) of floors, and the generic targets by name, over `periods` (m,)."""
-    return draw(10, 3.6, partial(_paint_targets, panels, periods), kind)
-
-
-def _paint_targets(panels: Sequence[Any], periods: FloatArray, figure: Any) -> None:
-    styles = (("#b03a2e", "-"), ("#1b4f72", "--"), ("#196f3d", "-."))
-    for axes, (title, recorded, targets) in zip(
-        figure.subplots(1, len(panels), sharey=True, squeeze=False)[0], panels, strict=True
-    ):
-        for ratio in recorded:
-            axes.plot(periods, ratio, color="#999999", linewidth=0.7)
-        axes.plot([], [], color="#999999", label=f"{len(recorded)} recorded")
-        for (name, ratio), (colour, line) in zip(targets, styles, strict=False):
-            axes.plot(periods, ratio, color=colour, linestyle=line, linewidth=1.3, label=name)
-        _dress(axes)
-        axes.set_title(title, fontsize=8, loc="left")
-        axes.legend(fontsize=6.5, frameon=False)
-    figure.axes[0].set_ylabel("PSA/PFA, 5 % [-]")
 
 
 def _dress(axes: Any) -> None:

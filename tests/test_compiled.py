@@ -16,7 +16,7 @@ from tests.workbooks import write
 
 PACKAGE = Path(assess.__file__).parent
 FIRST_USE = (
-    "import numpy as np\nfrom assess.motion.bending import bend_rows\n"
+    "import numpy as np\nfrom assess.motion.recipe import bend_rows\n"
     "bend_rows(np.ones((1, 10), np.float32), 1.0, 0.1)\n"
 )
 
@@ -55,7 +55,7 @@ def test_another_folder_may_be_named(tmp_path):
 def test_importing_leaves_the_folder_of_others_as_it_was(tmp_path):
     """Only this package's functions are kept there, not those that a notebook compiles afterwards."""
     _child(
-        "from numba import config\nbefore = config.CACHE_DIR\nimport assess.motion.bending\n"
+        "from numba import config\nbefore = config.CACHE_DIR\nimport assess.motion.recipe\n"
         "assert config.CACHE_DIR == before",
         XDG_CACHE_HOME=tmp_path,
     )

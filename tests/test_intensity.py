@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from assess.intensity import MIDORIKAWA, SHAKINGS, WORDEN, WORDEN_PGA, WORDEN_PGV, invert_jma
+from assess.intensity import MIDORIKAWA, RATIO, SHAKINGS, WORDEN, WORDEN_PGA, WORDEN_PGV, invert_jma, name_mmi
 from assess.units import GRAVITY
 
 LEGEND = {
@@ -36,7 +36,9 @@ def test_a_relation_and_its_inverse_agree(relation):
     for tenths in range(40, 110):
         mmi = tenths / 10
         if abs(mmi - relation.t2) > 0.1:  # the printed breaks in log Y and in MMI differ in the second decimal
-            assert relation.evaluate(relation.invert(mmi)) == pytest.approx(mmi)
+            log = math.log10(relation.invert(mmi))
+            c_1, c_2 = (relation.c1, relation.c2) if log <= relation.t1 else (relation.c3, relation.c4)
+            assert c_1 + c_2 * log == pytest.approx(mmi)
 
 
 def test_jma_limits_by_midorikawa():
@@ -50,15 +52,21 @@ def test_jma_classes_stand_for_their_middle(name):
     shaking = BY_NAME[name]
     assert shaking.intensity == (low + high) / 2
     assert invert_jma(low) < 100 * shaking.pgv < invert_jma(high)
-    assert shaking.references == (MIDORIKAWA, WORDEN)
+    assert shaking.references == (MIDORIKAWA,)
 
 
-def test_pga_of_a_jma_class_goes_by_way_of_mmi():
-    """5 upper by hand: PGV 31.2 cm/s, MMI 2.89 + 3.16 log 31.2 = 7.61, log PGA = (7.61 + 1.60)/3.70, 309 cm/s2."""
+def test_pga_of_a_jma_class_follows_from_pgv():
+    """5 upper by hand: PGV 31.2 cm/s over 105 cm/s per g is 0.297 g."""
     shaking = BY_NAME["JMA 5+"]
     assert 100 * shaking.pgv == pytest.approx(31.2, rel=0.002)
-    assert 100 * shaking.pga == pytest.approx(309, rel=0.005)
-    assert shaking.is_derived
+    assert shaking.pga / GRAVITY == pytest.approx(0.297, rel=0.003)
+    assert [one.name for one in SHAKINGS.values() if one.is_derived] == [one for one in BY_NAME if "JMA" in one]
+
+
+def test_the_ratio_of_pgv_to_pga_is_that_between_soil_and_rock_of_newmark_and_hall():
+    """122 and 91 cm/s per g: their geometric mean is 105.4."""
+    found = 100 * RATIO * GRAVITY
+    assert found == pytest.approx(math.sqrt(122 * 91), rel=0.005)
 
 
 def test_an_open_class_does_not_stand_for_its_lower_limit():
@@ -69,19 +77,31 @@ def test_an_open_class_does_not_stand_for_its_lower_limit():
     assert [one.name for one in SHAKINGS.values() if one.is_open] == ["MMI X", "JMA 7"]
 
 
-def test_the_scatter_is_the_published_one_and_never_below_it():
+@pytest.mark.parametrize("name", LEGEND)
+def test_peaks_have_the_class_that_the_legend_gives_them(name):
+    pga, pgv = LEGEND[name]
+    assert name_mmi(pga / 100 * GRAVITY, pgv / 100) == name_mmi(pga / 100 * GRAVITY, None) == BY_NAME[name].choice
+
+
+def test_pgv_decides_on_the_class_and_what_is_weak_or_beyond_has_the_nearest_word():
+    """New York: 0.547 g would be MMI VIII or more; 13.6 cm/s is VI."""
+    assert name_mmi(0.547 * GRAVITY, 0.136) == "MMI VI, strong"
+    assert name_mmi(0.547 * GRAVITY, None) == "MMI VIII, severe"
+    assert name_mmi(0.005 * GRAVITY, 0.005) == ""
+    assert name_mmi(3 * GRAVITY, 6.0) == "MMI X, extreme"
+
+
+def test_the_scatter_is_the_published_one_of_pgv():
+    """0.38 log10 units given MMI, rounded up."""
     for shaking in SHAKINGS.values():
-        published = 0.35 * math.log(10)
-        assert published <= shaking.scatter
         if not shaking.is_derived:
-            assert shaking.scatter == 0.81
-            assert shaking.pgv_scatter == 0.88
+            assert 0 <= shaking.scatter - 0.38 * math.log(10) < 0.01
 
 
-def test_the_scatter_of_a_derived_pga_adds_up_every_step():
-    """5 upper by hand: sqrt(0.144^2 + 0.21^2)/1.72 = 0.148; x 3.16 and with 0.63: 0.785 MMI; /3.70 and with 0.35."""
-    assert BY_NAME["JMA 5+"].scatter == pytest.approx(math.log(10) * math.hypot(0.785 / 3.70, 0.35), abs=0.011)
-    assert BY_NAME["JMA 4"].scatter > BY_NAME["JMA 5+"].scatter > BY_NAME["MMI VII"].scatter
+def test_the_scatter_of_a_jma_class_adds_its_width_to_that_of_the_equation():
+    """5 upper by hand: sqrt(0.144^2 + 0.21^2)/1.72 = 0.148 log10 units of PGV; 4 is twice as wide."""
+    assert BY_NAME["JMA 5+"].scatter == pytest.approx(0.148 * math.log(10), abs=0.011)
+    assert BY_NAME["JMA 4"].scatter > BY_NAME["JMA 5+"].scatter >= 0.21 / 1.72 * math.log(10)
 
 
 @pytest.mark.parametrize("scale", ["MMI", "JMA"])

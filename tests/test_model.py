@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from assess.errors import RecordError
-from assess.model import Floor, FloorRecord, Inventory
+from assess.model import STRUCTURES, Floor, FloorRecord, Inventory
+from assess.motion.assumed import STIFFNESS, UNKNOWN
 from assess.motion.formats import read_records
 from assess.workbook.read import read_inventory
 from tests.workbook.books import read, write
@@ -102,3 +103,8 @@ def test_a_notebook_shows_one_line(market_street: Inventory) -> None:
     shown = dataclasses.replace(market_street, building=dataclasses.replace(market_street.building, building="<b>"))
     assert "<b>&lt;b&gt;</b>: 121 items on 4 floors" in shown._repr_html_()
     assert len(shown._repr_html_()) < 300
+
+
+def test_every_structure_has_a_stiffness():
+    assert tuple(STIFFNESS) == STRUCTURES
+    assert STRUCTURES[-1] == UNKNOWN

@@ -215,11 +215,11 @@ def test_what_depends_on_unconfirmed_pieces_is_not_known(tmp_path):
     aisle, west = found["segments"][0], found["routes"][0]
     for one in (aisle, west):
         assert one["state"] == "not known"
-        assert {"what": "unconfirmed_period", "names": ["tall"], "cells": []} in one["missing"]
+        assert {"what": "unconfirmed_building", "names": ["tall"], "cells": []} in one["missing"]
         assert (one["blocked"]["probability"], one["blocked"]["pieces"], one["blocked"]["unconfirmed"]) == (0, 0, 1)
         assert one["blocked_if_unconfirmed_fall"]["probability"] == 1
     assert aisle["pieces"][0]["falls_while_blocked"] is None
-    assert "unconfirmed_period" in aisle["pieces"][0]["flags"]
+    assert "unconfirmed_building" in aisle["pieces"][0]["flags"]
     assert [one["state"] for one in found["rooms"]] == ["not known", "not known"]
     assert found["rooms"][0]["loses_if_unconfirmed_fall"]["probability"] == 1
     assert (found["unknown_routes"], found["unknown_rooms"], found["blocked_routes_expected"]) == (2, 2, 0)

@@ -97,7 +97,7 @@ def test_settings_are_changed_by_keyword():
     assert change_settings(Settings(seed=3), {"verify": "none"}) == Settings(seed=3, verify="none")
     with pytest.raises(SettingsError, match=r"^verfy is an unknown setting\. Did you mean verify\?$"):
         change_settings(None, {"verfy": "none"})
-    with pytest.raises(SettingsError, match="xyz is an unknown setting; expected one of: scenario, verify"):
+    with pytest.raises(SettingsError, match="xyz is an unknown setting; expected one of: scenario, class_by"):
         change_settings(None, {"xyz": 1})
     with pytest.raises(SettingsError, match="runs is 0, expected"):
         change_settings(None, {"runs": 0})

@@ -34,38 +34,18 @@ _CODE = re.compile(r"^[\w .-]*\d[\w .-]*\s*:\s*")
 
 
 def convert(data: bytes, name: str = "COBie.xlsx") -> bytes:
-    """Return the inventory workbook of a COBie file.
-
-    Raises
-    ------
-    WorkbookError
-        As of `read_cobie`.
-    """
+    """Return the inventory workbook of a COBie file; raises WorkbookError as `read_cobie`."""
     return build_workbook(read_cobie(data, name))
 
 
 def read_cobie(source: Path | bytes, name: str, progress: Progress = SILENT) -> ImportedBuilding:
     """Read the furniture of a COBie file.
 
-    Parameters
-    ----------
-    source : Path or bytes
-        The .xlsx.
-    name : str
-        How messages and the Catalogue call it.
-    progress : Progress
-        Checked while it is read.
+    `name`: how messages and the Catalogue call it.
+    Raises WorkbookError if it is no COBie file, is damaged or larger than the limits, lacks a sheet or a column, names
+    no unit of length, or one in which no size of its furniture can be.
 
-    Returns
-    -------
-    ImportedBuilding
-        Pieces, floors and types, with what was left out and why.
-
-    Raises
-    ------
-    WorkbookError
-        If it is no COBie file, is damaged or larger than the limits, lacks a sheet or a column, names no unit of
-        length, or one in which no size of its furniture can be.
+    Returns pieces, floors and types, with what was left out and why.
     """
     sheets = read_sheets(source, name, progress)
     unit = find_unit(sheets["Facility"])
@@ -120,7 +100,6 @@ class _Sorted:
             self._place(row, kind)
 
     def _place(self, row: Mapping[str, Any], kind: CobieType) -> None:
-        """Add a component whose sizes are known, if it is known on which floor it stands."""
         named = say(row.get("Space"))
         room, floor = self._find_space(named)
         if floor is None:
@@ -134,7 +113,6 @@ class _Sorted:
         self.pieces.append(_Piece(name, kind, floor, room, own or name))
 
     def _find_space(self, named: str) -> tuple[str, CobieFloor | None]:
-        """Return room and floor of a space; of several that are split by commas the first that is known."""
         if key(named) in self.spaces:
             return self.spaces[key(named)]
         for part in named.split(","):
@@ -163,9 +141,6 @@ def _read_spaces(sheet: CobieSheet, floors: Mapping[str, CobieFloor]) -> dict[st
     return found
 
 
-# ---------------------------------------------------------------- rows
-
-
 def _describe_building(sheet: CobieSheet) -> dict[str, Any]:
     row = sheet.rows[0][1] if sheet.rows else {}
     use = _CODE.sub("", say(row.get("Category")))
@@ -187,13 +162,9 @@ def _list_items(pieces: Sequence[_Piece]) -> Iterator[dict[str, Any]]:
 
 
 def _list_types(pieces: Sequence[_Piece], name: str) -> Iterator[dict[str, Any]]:
-    """Yield the types of the pieces, in the order of their first piece."""
     for kind in dict.fromkeys(piece.type for piece in pieces):
         source = fill("COBie file {name}, sheet Type: nominal sizes", name=name)
         yield {"type": kind.name, **kind.sizes_cm(), "source": source}
-
-
-# ---------------------------------------------------------------- remarks
 
 
 def _note_facilities(sheet: CobieSheet) -> Iterator[Text]:
@@ -202,7 +173,6 @@ def _note_facilities(sheet: CobieSheet) -> Iterator[Text]:
 
 
 def _note_pieces(found: _Sorted) -> Iterator[Text]:
-    """Yield what has to be checked of the pieces."""
     if found.with_several_spaces:
         yield nfill(
             "{n} piece names several spaces; the first that is known was taken.",

@@ -1,9 +1,9 @@
 """The floors of a COBie file: which become rows of Floors, and the height of the building.
 
 Elevations in such files count from any datum: the ground, the sea level, 100 m for the ground floor. The inventory
-needs them above the ground. They are taken as they stand: from a datum below the ground all floors come out nearer to
-the roof, and a design profile then over-estimates their shaking. To count them from the lowest floor would
-under-estimate that of a file that covers upper floors alone.
+needs them above the ground. They are taken as they stand: from a datum below the ground all floors come out as the
+uppermost of a taller building. To count them from the lowest floor would do the contrary to a file that covers upper
+floors alone.
 """
 
 from collections.abc import Collection, Mapping, Sequence
@@ -34,11 +34,6 @@ class CobieFloor:
     category: str = ""
     elevation: float | None = None
     height: float | None = None
-
-    @property
-    def is_storey(self) -> bool:
-        """Whether it is a storey, as far as its category tells."""
-        return self.category.casefold() not in NO_STOREYS
 
 
 def read_floors(sheet: CobieSheet, unit: str) -> tuple[dict[str, CobieFloor], list[Text]]:
@@ -73,14 +68,10 @@ def list_rows(
 ) -> tuple[list[dict[str, Any]], dict[str, Any], list[Text]]:
     """Return the rows of Floors from the lowest, the fields of Building that follow from them, and remarks.
 
-    Parameters
-    ----------
-    floors : mapping
-        From `read_floors`.
-    used : collection of str
-        Names of those with pieces, which stay even if they are no storeys.
+    `floors`: from `read_floors`.
+    `used`: names of those with pieces, which stay even if they are no storeys.
     """
-    kept = [floor for floor in floors.values() if floor.is_storey or floor.name in used]
+    kept = [floor for floor in floors.values() if floor.category.casefold() not in NO_STOREYS or floor.name in used]
     kept.sort(key=lambda floor: floor.elevation or 0.0)
     remarks = note_datum([(floor.name, floor.elevation) for floor in kept if floor.elevation is not None])
     blank = [floor.name for floor in kept if floor.elevation is None]
@@ -96,8 +87,8 @@ def note_datum(known: Sequence[tuple[str, float]]) -> list[Text]:
     if known[0][1] > NEAR_GROUND[1]:
         text = fill(
             "The lowest floor, {floor}, is at {elevation:g} m in the file. If it lies at the ground, subtract that "
-            "from every Elevation in Floors and from Height in Building: else a design profile over-estimates the "
-            "shaking.",
+            "from every Elevation in Floors and from Height in Building: else it shakes as the top of a taller "
+            "building.",
             floor=known[0][0], elevation=round(known[0][1], 3),
         )  # fmt: skip
         return [text]
@@ -120,7 +111,6 @@ def _list_row(floor: CobieFloor) -> dict[str, Any]:
 
 
 def _find_height(floors: Collection[CobieFloor], kept: Sequence[CobieFloor]) -> dict[str, Any]:
-    """Return the height of the roof, where the file tells it; by default it is the highest floor."""
     tops = [one.elevation for one in floors if one.category.casefold() == "roof" and one.elevation is not None]
     tops += [one.elevation + one.height for one in kept if one.elevation is not None and one.height is not None]
     highest = max((one.elevation for one in kept if one.elevation is not None), default=0.0)

@@ -90,19 +90,8 @@ def _list_sheets(source: Path | bytes) -> list[str]:
 def read_sheets(source: Path | bytes, name: str, progress: Progress = SILENT) -> dict[str, CobieSheet]:
     """Return the sheets of `COLUMNS` by their names in COBie.
 
-    Parameters
-    ----------
-    source : Path or bytes
-        The .xlsx, within the limits of `assess.workbook.open`.
-    name : str
-        How messages call it.
-    progress : Progress
-        Checked while it is read.
-
-    Raises
-    ------
-    WorkbookError
-        If it cannot be opened, is no COBie file, or a sheet, a column or the header row is missing.
+    `source`: the .xlsx, within the limits of `assess.workbook.open`.
+    Raises WorkbookError if it cannot be opened, is no COBie file, or a sheet, a column or the header row is missing.
     """
     data = source if isinstance(source, bytes) else read_file(source)
     try:
@@ -122,7 +111,6 @@ def _say_what_to_leave_out(problem: Problem) -> Problem:
 
 
 def _find_sheets(book: Book, name: str) -> dict[str, str]:
-    """Return the names that the file gives to the sheets; raises WorkbookError where one is missing."""
     present = {plain(one): one for one in reversed(list(book.sheets))}
     missing = [sheet for sheet in COLUMNS if plain(sheet) not in present]
     if not missing:
@@ -161,7 +149,6 @@ def _read_sheet(book: Book, sheet: str, own: str) -> CobieSheet:
 
 
 def _find_columns(cells: Cells, wanted: Mapping[str, str]) -> dict[int, str]:
-    """Return the columns whose header is in a row, by their place; of two alike the first."""
     found: dict[int, str] = {}
     for at, value in sorted(cells.items()):
         column = wanted.get(plain(value)) if isinstance(value, str) else None
@@ -171,7 +158,6 @@ def _find_columns(cells: Cells, wanted: Mapping[str, str]) -> dict[int, str]:
 
 
 def _read_row(number: int, cells: Cells, columns: Mapping[int, str]) -> Iterator[tuple[int, Row]]:
-    """Yield a row with its number, unless it is blank, or of the template."""
     typed = {columns[at]: value for at, value in cells.items() if at in columns and not is_blank(value)}
     texts = {column: say(value).casefold() for column, value in typed.items()}
     is_header = all(plain(text) == plain(column) for column, text in texts.items())

@@ -45,10 +45,7 @@ class CobieType:
 def find_unit(sheet: CobieSheet) -> str:
     """Return the unit of lengths of the file, one of `assess.units.LENGTH`.
 
-    Raises
-    ------
-    WorkbookError
-        If LinearUnits is blank or names no unit that sizes of furniture are given in.
+    Raises WorkbookError if LinearUnits is blank or names no unit that sizes of furniture are given in.
     """
     number, row = sheet.rows[0] if sheet.rows else (2, {})
     typed = say(row.get("LinearUnits"))
@@ -66,10 +63,7 @@ def find_unit(sheet: CobieSheet) -> str:
 def check_unit(facility: CobieSheet, types: CobieSheet, unit: str) -> None:
     """Refuse the unit of a file if no size of its furniture is in range in it, and most are in another.
 
-    Raises
-    ------
-    WorkbookError
-        If so; it names the cell of LinearUnits.
+    Raises WorkbookError if so; it names the cell of LinearUnits.
     """
     sizes = [
         (say(row.get("Name")), column, number)
@@ -116,11 +110,6 @@ def _read_type(name: str, row: Mapping[str, Any], unit: str) -> CobieType:
     missing = [column for column in SIZES if _is_missing(row.get(column))]
     if missing:
         return replace(kind, reason=fill("no {columns}", columns=", ".join(missing)))
-    return _with_sizes(kind, row, unit)
-
-
-def _with_sizes(kind: CobieType, row: Mapping[str, Any], unit: str) -> CobieType:
-    """Return a type with its sizes, or with what is wrong with them."""
     try:
         length, width, height = (read_length(CATALOGUE.column("height"), one, row[one], unit) for one in SIZES)
     except CellError as error:
@@ -133,10 +122,7 @@ def read_length(column: Column, label: str, value: object, unit: str) -> float:
 
     Numbers stored as texts are read as programs write them, with a point as the decimal sign.
 
-    Raises
-    ------
-    CellError
-        If it is no number, or out of the limits.
+    Raises CellError if it is no number, or out of the limits.
     """
     typed = read_number(value)
     found, _ = read_cell(replace(column, label=label), value if typed is None else typed, unit)

@@ -57,12 +57,7 @@ def find_ground(model: BuildingModel) -> Storey | None:
 def find_kinds(model: BuildingModel, sides: Mapping[str, Sides] | None = None) -> dict[str, DoorKind]:
     """Return what each door is, by its key.
 
-    Parameters
-    ----------
-    model : BuildingModel
-        The building.
-    sides : mapping of str to Sides, optional
-        From `find_sides`, where they are known already.
+    `sides`: from `find_sides`, where they are known already.
     """
     sides = find_sides(model) if sides is None else sides
     ground = find_ground(model)
@@ -92,7 +87,6 @@ def _by_storey(doors: Sequence[Door]) -> dict[str, list[Door]]:
 
 
 def _probe(doors: Sequence[Door], spaces: Sequence[Space], walls: Sequence[Area]) -> Iterator[Sides]:
-    """Yield the sides of the doors of one storey."""
     search, solids = SpaceSearch(spaces), [to_polygon(one) for one in walls]
     tree = shapely.STRtree(solids)
     for door in doors:

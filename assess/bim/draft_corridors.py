@@ -104,14 +104,12 @@ def find_axes(room: Room) -> list[Axis]:
 
 
 def _list_walls(area: shapely.Polygon) -> Iterator[tuple[Point, Point]]:
-    """Yield the sides of an area, its inside to the left of each."""
     for ring in (oriented := shapely.geometry.polygon.orient(area)).interiors, [oriented.exterior]:
         for one in ring:
             yield from pairwise([(float(x), float(y)) for x, y, *_ in one.coords])
 
 
 def _face(one: tuple[Point, Point], other: tuple[Point, Point], width: float) -> Axis | None:
-    """Return the middle line between two walls, if they face each other."""
     if not (measure(*one) > NARROWEST and measure(*other) > NARROWEST):
         return None
     wall = Axis(one[0], one[1], 0.0)
@@ -131,9 +129,6 @@ def _face(one: tuple[Point, Point], other: tuple[Point, Point], width: float) ->
 
 def _shift(point: Point, along: Sequence[float], by: float) -> Point:
     return point[0] - by * along[1], point[1] + by * along[0]
-
-
-# ---------------------------------------------------------------- places on the middle line
 
 
 @dataclass(frozen=True, slots=True)

@@ -246,7 +246,6 @@ def build_rooms(plan: FloorPlan, links: Iterable[Link]) -> dict[str, Room]:
 
 
 def _widest(area: BaseGeometry, otherwise: BaseGeometry) -> BaseGeometry:
-    """Return what has an area of a geometry; `otherwise` where nothing has."""
     polygons = list(list_polygons(area))
     return shapely.MultiPolygon(polygons) if len(polygons) > 1 else polygons[0] if polygons else otherwise
 
@@ -272,11 +271,10 @@ def find_room_points(model: BuildingModel) -> dict[str, Point]:
     for storey in model.storeys:
         plan = build_plan(model, storey)
         found |= place_rooms(model, plan, build_rooms(plan, ()))
-    return {space.key: found.get(space.key) or _first_corner(space) for space in model.spaces}
-
-
-def _first_corner(space: Space) -> Point:
-    return next((ring[0] for ring in space.area if ring), (0.0, 0.0))
+    return {
+        space.key: found.get(space.key) or next((ring[0] for ring in space.area if ring), (0.0, 0.0))
+        for space in model.spaces
+    }
 
 
 def place_rooms(model: BuildingModel, plan: FloorPlan, rooms: Mapping[str, Room]) -> dict[str, Point]:
@@ -288,7 +286,6 @@ def place_rooms(model: BuildingModel, plan: FloorPlan, rooms: Mapping[str, Room]
 
 
 def _find_middle(area: BaseGeometry, taken: BaseGeometry) -> Point:
-    """Return the middle of the widest part of an area, apart from points that are taken."""
     polygon = max(list_polygons(area), key=lambda one: one.area)
     near = taken.intersection(polygon.buffer(APART))
     rest = max(list_polygons(polygon.difference(near.buffer(APART))), key=lambda one: one.area, default=polygon)
@@ -296,7 +293,6 @@ def _find_middle(area: BaseGeometry, taken: BaseGeometry) -> Point:
 
 
 def _find_widest(polygon: shapely.Polygon) -> Point:
-    """Return the centre of the largest circle in a polygon, to the centimetre."""
     from shapely.ops import polylabel
 
     low_x, low_y, high_x, high_y = polygon.bounds

@@ -111,7 +111,6 @@ def _join(graph: "nx.Graph[str]", one: str, other: str, *, cost: float, space: s
 
 
 def _add_stairs(network: Network, stairs: Iterable[Stair], levels: Mapping[str, float]) -> None:
-    """Join both ends of each stair."""
     ends: dict[str, dict[str, str]] = {}
     for stair in stairs:
         name = f"stair {stair.key} {stair.end}"
@@ -123,9 +122,6 @@ def _add_stairs(network: Network, stairs: Iterable[Stair], levels: Mapping[str, 
             rise = abs(levels[head.storey] - levels[foot.storey])
             cost = math.hypot(measure(foot.at, head.at), PER_RISE * rise)
             _join(network.graph, own["foot"], own["head"], cost=cost, space="", width=None)
-
-
-# ---------------------------------------------------------------- the ways out
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,7 +154,6 @@ def find_steps(network: Network) -> dict[str, Step]:
 
 
 def _grow(graph: "nx.Graph[str]", ends: Sequence[str], without: Collection[str]) -> dict[str, Step]:
-    """Return the next step of every node from which some ends can be reached."""
     if not ends:
         return {}
     rest = graph.subgraph([name for name in graph if name not in without])
@@ -177,7 +172,6 @@ def _grow(graph: "nx.Graph[str]", ends: Sequence[str], without: Collection[str])
 
 
 def _follow(steps: Mapping[str, Step], starts: Iterable[str]) -> Iterator[Step]:
-    """Yield each step on the ways out of some nodes once."""
     seen: set[str] = set()
     for start in starts:
         name = start

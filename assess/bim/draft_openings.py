@@ -70,7 +70,6 @@ def find_openings(plan: FloorPlan, doors: Sequence[Door]) -> list[Link]:
 
 
 def _cast(plan: FloorPlan) -> _Rays:
-    """Return the rays from all edges of all rooms."""
     at, outward, room, edge = [np.empty((0, 2))], [np.empty((0, 2))], list[int](), list[int]()
     count = 0
     for number, polygon in enumerate(plan.polygons):
@@ -90,7 +89,6 @@ def _cast(plan: FloorPlan) -> _Rays:
 
 
 def _list_edges(polygon: shapely.Polygon) -> Iterator[tuple[Point, Point]]:
-    """Yield the edges of a polygon, its inside to the left of each."""
     simple = polygon.simplify(STEP / 5)
     for one in list_polygons(simple if simple.is_valid else polygon):
         oriented = shapely.geometry.polygon.orient(one)
@@ -123,7 +121,6 @@ def _find_reached(plan: FloorPlan, rays: _Rays, doors: Sequence[Door]) -> tuple[
 
 
 def _draw(rays: _Rays) -> Any:
-    """Return the rays as lines, (n,)."""
     return shapely.linestrings(np.stack([rays.at - INSIDE * rays.outward, rays.at + WIDEST_GAP * rays.outward], axis=1))
 
 
@@ -146,19 +143,16 @@ def _group(rays: _Rays, reached: Sequence[int], full: Sequence[bool] | None) -> 
     """Yield the stretches, the widest first: those free of furniture, or all where it is not told (`full`)."""
     edges, rooms = rays.edge.tolist(), rays.room.tolist()
     found = []
-    for (_, other), group in groupby(range(len(edges)), key=lambda ray: (edges[ray], _leads(ray, reached, full))):
+    for (_, other), group in groupby(
+        range(len(edges)), key=lambda ray: (edges[ray], -1 if full is not None and full[ray] else reached[ray])
+    ):
         if other >= 0:
             own = list(group)
             found.append(_Stretch(rooms[own[0]], other, own, is_free=full is not None))
     yield from sorted(found, key=lambda one: (-len(one.rays), one.rays[0]))
 
 
-def _leads(ray: int, reached: Sequence[int], full: Sequence[bool] | None) -> int:
-    return -1 if full is not None and full[ray] else reached[ray]
-
-
 def _link(plan: FloorPlan, stretch: _Stretch, rays: _Rays) -> Link:
-    """Return the opening that the rays of a stretch pass through."""
     first, last = stretch.rays[0], stretch.rays[-1]
     middle = rays.at[[first, last]].mean(axis=0)
     u, v = rays.outward[first].tolist()

@@ -105,7 +105,6 @@ def find_ways(room: Room, own: str, place: Point) -> Ways:
 
 
 def _walk(ways: Ways, distance: float, floor: BaseGeometry, cost: float) -> None:
-    """Add the ways that keep a distance [m] from what bounds a floor."""
     room = ways.room
     inner = floor.buffer(-distance, join_style="mitre")
     passages = [_clear(room, link, distance, floor) for link in room.links]
@@ -119,7 +118,11 @@ def _walk(ways: Ways, distance: float, floor: BaseGeometry, cost: float) -> None
         for far in (room.floor.distance(shapely.Point(link.at)) + distance + TIGHT,)
     ]
     corners = ways.add(_choose(ways, [*before, *_list_corners(inner)]))
-    ways.join(_pair(ways.ends, corners), area, cost)
+    near = {
+        tuple(sorted(pair))
+        for pair in (*_near(ways.ends, ways.ends), *_near(ways.ends, corners), *_near(corners, corners))
+    }
+    ways.join(sorted((one, other) for one, other in near if one != other), area, cost)
 
 
 def _clear(room: Room, link: Link, distance: float, floor: BaseGeometry) -> BaseGeometry:
@@ -160,12 +163,6 @@ def _choose(ways: Ways, points: Iterable[Point]) -> list[Point]:
     return list(grid.values())
 
 
-def _pair(ends: Mapping[str, Point], corners: Mapping[str, Point]) -> list[tuple[str, str]]:
-    """Return the nodes of two groups that may see each other: all, or where there are many, those that are near."""
-    near = {tuple(sorted(pair)) for pair in (*_near(ends, ends), *_near(ends, corners), *_near(corners, corners))}
-    return sorted((one, other) for one, other in near if one != other)
-
-
 def _near(own: Mapping[str, Point], others: Mapping[str, Point]) -> Iterator[tuple[str, str]]:
     """Yield each of some nodes with each of others, or with its nearest where they are many."""
     if max(len(own), len(others)) <= MOST_CORNERS:
@@ -177,14 +174,14 @@ def _near(own: Mapping[str, Point], others: Mapping[str, Point]) -> Iterator[tup
         yield from ((name, names[one]) for one in np.argsort(far, kind="stable")[: NEAREST + 1].tolist())
 
 
-# ---------------------------------------------------------------- corridors
-
-
 def _follow_axes(ways: Ways) -> None:
-    """Add the ways along the middle of a corridor, and those from its ends to there."""
     room = ways.room
     axes = find_axes(room)
-    joints = [(f"end {at} {end}", point) for at, axis in enumerate(axes) for end, point in enumerate(_ends(axis))]
+    joints = [
+        (f"end {at} {end}", point)
+        for at, axis in enumerate(axes)
+        for end, point in enumerate((axis.point(axis.inset), axis.point(axis.length - axis.inset)))
+    ]
     every = [*ways.ends.items(), *joints]
     area = shapely.union_all([room.floor, *(room.passage(link, SHORTEST) for link in room.links)]).buffer(TIGHT)
     own: dict[str, list[str]] = {}
@@ -197,10 +194,6 @@ def _follow_axes(ways: Ways) -> None:
               for other in own.get(joints[at][0], ()) if one != other}  # fmt: skip
     pairs |= {*_near({name: at for name, at in ways.ends.items() if name not in own}, ways.points)}
     ways.join(sorted(pairs), area, 1.0)
-
-
-def _ends(axis: Axis) -> tuple[Point, Point]:
-    return axis.point(axis.inset), axis.point(axis.length - axis.inset)
 
 
 def _add_axis(ways: Ways, axis: Axis, spots: Sequence[Spot], own: dict[str, list[str]], number: int) -> list[str]:
@@ -218,7 +211,6 @@ def _add_axis(ways: Ways, axis: Axis, spots: Sequence[Spot], own: dict[str, list
 
 
 def _is_on(axis: Axis, point: Point) -> bool:
-    """Tell whether a point lies on the part of an axis along which ways run."""
     along, away = axis.find(point)
     return away < SHORTEST and axis.inset <= along <= axis.length - axis.inset
 

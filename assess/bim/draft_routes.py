@@ -63,19 +63,11 @@ class DraftRoutes:
 def draft_routes(model: BuildingModel, names: Mapping[str, str]) -> DraftRoutes:
     """Draft the evacuation routes of a building.
 
-    Parameters
-    ----------
-    model : BuildingModel
-        The building.
-    names : mapping of str to str
-        The names of places: of rooms and doors by their keys, of ends of stairs by key and end (``KEY foot``). Rooms
-        lie at `assess.bim.draft_floor.find_room_points`. Names of floors by the keys of storeys, where they are not
-        those of the model.
+    `names`: the names of places: of rooms and doors by their keys, of ends of stairs by key and end (``KEY foot``).
+    Rooms lie at `assess.bim.draft_floor.find_room_points`. Names of floors by the keys of storeys, where they are not
+    those of the model.
 
-    Returns
-    -------
-    DraftRoutes
-        Empty, with remarks that say why, where there is nothing to draft.
+    The draft is empty, with remarks that say why, where there is nothing to draft.
     """
     network = build_network(model)
     steps = find_steps(network)
@@ -86,9 +78,6 @@ def draft_routes(model: BuildingModel, names: Mapping[str, str]) -> DraftRoutes:
     )
     remarks = _note_draft(model, network, routes, lost) if routes else _note_none(model, network)
     return DraftRoutes(places=sheet.places, routes=routes, unreached=lost, remarks=tuple(remarks))
-
-
-# ---------------------------------------------------------------- rows
 
 
 @dataclass(slots=True)
@@ -134,7 +123,6 @@ class _Sheet:
         return name
 
     def _name(self, node: str) -> str:
-        """Return the name of the place of a node, which is added where there is none yet."""
         own = self.network.nodes[node]
         if own.place:
             return self.names[own.place]
@@ -160,7 +148,6 @@ class _Sheet:
         return self.names.get(storey) or own[storey]
 
     def _describe(self, step: Step) -> dict[str, Any]:
-        """Return a segment without its route."""
         ends = self.network.nodes[step.start], self.network.nodes[step.end]
         row: dict[str, Any] = {"start": self._name(step.start), "end": self._name(step.end)}
         way = self.network.graph.edges[step.start, step.end]
@@ -187,11 +174,7 @@ class _Sheet:
         return "" if any(";" in room for room in rooms) else "; ".join(rooms)
 
 
-# ---------------------------------------------------------------- remarks
-
-
 def _note_draft(model: BuildingModel, network: Network, routes: Rows, lost: Sequence[str]) -> Iterator[Text]:
-    """Yield what was assumed of a draft."""
     yield nfill(
         "{n} evacuation route was drafted from the rooms and doors of the model: walk it, correct it, and take "
         "'{mark}' off its name.",
@@ -253,7 +236,6 @@ def _note_lost(lost: Sequence[str]) -> Iterator[Text]:
 
 
 def _note_none(model: BuildingModel, network: Network) -> Iterator[Text]:
-    """Yield why there is no draft."""
     if not network.rooms:
         yield fill("No evacuation routes were drafted: the model has no rooms.")
     elif not model.doors and not model.stairs:

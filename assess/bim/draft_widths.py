@@ -31,6 +31,8 @@ AT_STAIR = 0.5
 def measure_gap(plan: FloorPlan, space: str, ends: tuple[Point, Point], links: Iterable[Link]) -> float | None:
     """Return the least distance between what stands to the left and to the right of a segment [m].
 
+    It is None where nothing stands on one of its sides up to `BESIDE`.
+
     Parameters
     ----------
     plan : FloorPlan
@@ -41,11 +43,6 @@ def measure_gap(plan: FloorPlan, space: str, ends: tuple[Point, Point], links: I
         Both ends of the segment [m].
     links : iterable of Link
         The doors, openings and stairs at its ends: in these no wall is met.
-
-    Returns
-    -------
-    float or None
-        None where nothing stands on one of its sides up to `BESIDE`.
     """
     line = shapely.LineString(ends)
     wide = line.buffer(BESIDE, cap_style="flat")
@@ -60,7 +57,6 @@ def measure_gap(plan: FloorPlan, space: str, ends: tuple[Point, Point], links: I
 
 
 def _pass_through(floor: BaseGeometry, link: Link) -> shapely.Polygon:
-    """Return where a link leads through the wall to a floor."""
     at = shapely.Point(link.at)
     reach = floor.distance(at) if not floor.is_empty else 0.0
     if link.normal == (0.0, 0.0):
@@ -83,15 +79,9 @@ def _measure_sides(line: shapely.LineString, stands: BaseGeometry) -> float | No
 def set_widths(links: Sequence[Link], between_walls: float | None, gap: float | None) -> dict[str, Any]:
     """Return the widths of a segment and what is assumed of them.
 
-    Parameters
-    ----------
-    links : sequence of Link
-        What is at its ends.
-    between_walls : float, optional
-        The free width of a corridor in whose middle it lies [m].
-    gap : float, optional
-        From `measure_gap`: it counts beside one of the others, and where it is less than the width that must stay free
-        otherwise.
+    `between_walls`: the free width of a corridor in whose middle it lies [m].
+    `gap`: from `measure_gap`: it counts beside one of the others, and where it is less than the width that must stay
+    free otherwise.
     """
     narrow = [link for link in links if link.overall > 0 or 0 < link.clear < DEFAULT_WIDTH]
     known = [link.clear for link in narrow] + ([] if between_walls is None else [between_walls])

@@ -61,6 +61,8 @@ def find_camera(
 ) -> Camera | None:
     """Return a camera that sees all of some pieces from above, from the side to which the first may fall.
 
+    None where no place is known.
+
     Parameters
     ----------
     pairs : sequence of (ExportPiece, ModelElement)
@@ -69,11 +71,6 @@ def find_camera(
         The doors that are seen as well, if they are not too far away.
     centre : Point
         From there a piece is seen whose back is not known, nor the room that it stands in.
-
-    Returns
-    -------
-    Camera, optional
-        None where no place is known.
     """
     placed = [(piece, one, (one.low, one.high)) for piece, one in pairs if one.low is not None and one.high is not None]
     if not placed:
@@ -103,13 +100,9 @@ def _find_side(piece: ExportPiece, middle: Point, centre: Point) -> Point:
 
 
 def _join(boxes: Sequence[Box]) -> Box:
-    """Return the box around boxes."""
     x1, y1, z1 = (min(low[axis] for low, _ in boxes) for axis in range(3))
     x2, y2, z2 = (max(high[axis] for _, high in boxes) for axis in range(3))
     return (x1, y1, z1), (x2, y2, z2)
-
-
-# ---------------------------------------------------------------- where it may stand
 
 
 def _stand_inside(boxes: Sequence[Box], side: Point, room: Box | None) -> Camera | None:
@@ -151,11 +144,7 @@ def _step_back(boxes: Sequence[Box], side: Point, room: Box | None) -> Camera | 
     return _take_first(points, boxes)
 
 
-# ---------------------------------------------------------------- what it sees
-
-
 def _take_first(points: Floats, boxes: Sequence[Box]) -> Camera | None:
-    """Return a camera at the first of some points, of shape (n, 3), from which all boxes are in view."""
     corners = np.unique([corner for low, high in boxes for corner in itertools.product(*zip(low, high, strict=True))],
                         axis=0)  # fmt: skip
     for part in np.array_split(points, max(1, len(points) // 32)):
@@ -187,7 +176,6 @@ def _aim(points: Floats, corners: Floats) -> tuple[Floats, NDArray[np.bool_]]:
 
 
 def _scale(vectors: Floats) -> Floats:
-    """Return vectors of length 1."""
     lengths: Floats = np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), STEEPEST)
     return vectors / lengths
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from assess.bim.export_model import PROPERTY_SET, ModelElement, ModelPart, read_elements
+from assess.bim.export_model import PROPERTY_SET, ModelPart, read_elements
 from assess.bim.export_properties import add_properties
 from assess.bim.export_results import ExportPiece, ExportRun
 from assess.bim.export_topics import Topics, list_entries, write_topics
@@ -55,27 +55,11 @@ def build_export(
 ) -> Export:
     """Bring results back to a building model.
 
-    Parameters
-    ----------
-    found : ExportRun
-        The results.
-    model : Path
-        The model.
-    progress : Progress
-        Checked while the model is read.
-    with_properties, with_topics : bool
-        Whether the model with property sets is made, and whether topics are.
+    `with_properties` and `with_topics`: whether the model with property sets is made, and whether topics are.
+    Raises ModelError if the model cannot be read, ifcopenshell is not installed, no piece is in the model, or a piece
+    has such a property set already.
 
-    Returns
-    -------
-    Export
-        What is to be written, and what could not be.
-
-    Raises
-    ------
-    ModelError
-        If the model cannot be read, ifcopenshell is not installed, no piece is in the model, or a piece has such a
-        property set already.
+    Returns what is to be written, and what could not be.
     """
     check_installed()
     check_model(model, model.name)
@@ -83,7 +67,11 @@ def build_export(
     part = _read(found, model, progress, list(sharing), with_topics=with_topics)
     elements = {one.key: one for one in part.elements}
     pairs = [(one, elements[one.source_id]) for one in found.pieces if one.source_id in elements]
-    worst = [(max(own, key=_rank), elements[key]) for key, own in sharing.items() if key in elements]
+    worst = [
+        (max(own, key=lambda one: (one.upper, one.past.chance.probability)), elements[key])
+        for key, own in sharing.items()
+        if key in elements
+    ]
     _check_refused(found, model, part, worst)
     _check_pairs(found, model, worst, with_properties=with_properties)
     return Export(
@@ -101,7 +89,6 @@ def build_export(
 
 
 def _group(pieces: Sequence[ExportPiece]) -> dict[str, list[ExportPiece]]:
-    """Return the pieces that have a Source ID by it."""
     found: dict[str, list[ExportPiece]] = {}
     for one in pieces:
         if one.source_id:
@@ -109,17 +96,11 @@ def _group(pieces: Sequence[ExportPiece]) -> dict[str, list[ExportPiece]]:
     return found
 
 
-def _rank(one: ExportPiece) -> tuple[int, float]:
-    """Return by what the worst of several pieces is told."""
-    return one.upper, one.past.chance.probability
-
-
 def _list_names(groups: Iterable[Sequence[ExportPiece]]) -> tuple[str, ...]:
     return tuple(one.past.item for own in groups for one in own)
 
 
 def _read(found: ExportRun, model: Path, progress: Progress, wanted: Sequence[str], *, with_topics: bool) -> ModelPart:
-    """Return what the export needs to know of the model: for topics also the places of the pieces to fix."""
     placed = None
     if with_topics:
         keys = {one.past.item: one.source_id for one in found.pieces if one.source_id}
@@ -128,7 +109,6 @@ def _read(found: ExportRun, model: Path, progress: Progress, wanted: Sequence[st
 
 
 def _check_refused(found: ExportRun, model: Path, part: ModelPart, pairs: Sequence[Pair]) -> None:
-    """Raise ModelError where no piece is in the model, but something else that has its Source ID."""
     if part.refused and not pairs:
         key, name = next(iter(part.refused.items()))
         raise ModelError(
@@ -139,23 +119,18 @@ def _check_refused(found: ExportRun, model: Path, part: ModelPart, pairs: Sequen
 
 
 def _check_pairs(found: ExportRun, model: Path, pairs: Sequence[Pair], *, with_properties: bool) -> None:
-    """Raise ModelError where no piece is in the model, or one has such a property set already."""
     if not pairs:
         raise ModelError(
             fill("None of the Source IDs in {results} is that of an element of {model}. Name the model that the "
                  "workbook was imported from.", results=found.run.path, model=model.name)
         )  # fmt: skip
-    done = [_name(element) for _, element in pairs if element.has_set]
+    done = [element.name or element.key for _, element in pairs if element.has_set]
     if done and with_properties:
         raise ModelError(
             fill("{model} holds {set} already, on {n:,} of the pieces (the first is {name}): it was exported before. "
                  "Name the model without it, as it was before that export.",
                  model=model.name, set=PROPERTY_SET, n=len(done), name=done[0])
         )  # fmt: skip
-
-
-def _name(element: ModelElement) -> str:
-    return element.name or element.key
 
 
 def _read_bytes(model: Path) -> bytes:

@@ -82,21 +82,9 @@ class ModelPart:
 def read_elements(path: Path, name: str, keys: Sequence[str], placed: Sequence[str] | None) -> ModelPart:
     """Find elements in a building model by their GlobalIds.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    name : str
-        How messages call it.
-    keys : sequence of str
-        GlobalIds; those that nothing in the model has are left out of what is returned.
-    placed : sequence of str, optional
-        Those of which the place is needed, and with them the doors; None where no place is.
-
-    Raises
-    ------
-    ModelError
-        If it is no whole building model, or names no unit of length and places are needed.
+    `keys`: GlobalIds; those that nothing in the model has are left out of what is returned.
+    `placed`: those of which the place is needed, and with them the doors; None where no place is.
+    Raises ModelError if it is no whole building model, or names no unit of length and places are needed.
     """
     check_model(path, name)
     model = open_model(path, name)
@@ -109,7 +97,11 @@ def read_elements(path: Path, name: str, keys: Sequence[str], placed: Sequence[s
 def _understand(model: Any, name: str, keys: Sequence[str], placed: Sequence[str] | None) -> ModelPart:
     """Return what was found of a model; errors of Python where an entity is not as its schema asks for."""
     known = {key: one for key in keys if (one := _find(model, key)) is not None}
-    found = {key: one for key, one in known.items() if _may_be_furniture(one)}
+    found = {
+        key: one
+        for key, one in known.items()
+        if one.is_a("IfcElement") and not any(one.is_a(name) for name in NOT_FURNITURE)
+    }
     elements = [_describe(model, key, one) for key, one in found.items()]
     doors: list[ModelDoor] = []
     if placed is not None:
@@ -129,15 +121,10 @@ def _understand(model: Any, name: str, keys: Sequence[str], placed: Sequence[str
 
 
 def _find(model: Any, key: str) -> Any:
-    """Return what has a GlobalId, None where there is nothing."""
     try:
         return model.by_guid(key)
     except RuntimeError:
         return None
-
-
-def _may_be_furniture(one: Any) -> bool:
-    return one.is_a("IfcElement") and not any(one.is_a(name) for name in NOT_FURNITURE)
 
 
 def _find_owner(model: Any, one: Any) -> int:
@@ -156,7 +143,6 @@ def _describe(model: Any, key: str, one: Any) -> ModelElement:
 
 
 def _place(elements: Sequence[ModelElement], boxes: Mapping[int, Box], rooms: Mapping[int, Box]) -> list[ModelElement]:
-    """Return elements with the boxes around them and around the rooms that they stand in."""
     return [
         replace(one, low=box[0], high=box[1], room=_find_room(find_middle(box), rooms.values()))
         if (box := boxes.get(one.number)) is not None
@@ -166,7 +152,6 @@ def _place(elements: Sequence[ModelElement], boxes: Mapping[int, Box], rooms: Ma
 
 
 def _find_room(point: Place, rooms: Iterable[Box]) -> Box | None:
-    """Return the smallest room whose box holds a point."""
     around = [(low, high) for low, high in rooms if all(low[at] <= point[at] <= high[at] for at in range(3))]
     return min(around, key=lambda box: math.prod(box[1][at] - box[0][at] for at in range(3)), default=None)
 
@@ -178,7 +163,6 @@ def find_middle(box: Box) -> Place:
 
 
 def _find_boxes(model: Any, elements: Sequence[Any], unit: float) -> dict[int, Box]:
-    """Return the boxes around elements by their numbers; of one without a shape its origin, twice."""
     from assess.bim.ifc_elements import join_parts
 
     boxes = {one.id(): (place, place) for one in elements if (place := _find_origin(one, unit)) is not None}

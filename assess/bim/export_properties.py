@@ -33,23 +33,8 @@ def add_properties(
 ) -> bytes:
     """Return a building model with a property set on each of its pieces.
 
-    Parameters
-    ----------
-    data : bytes
-        The model.
-    name : str
-        How messages call it.
-    part : ModelPart
-        What was found of it.
-    found : ExportRun
-        The results.
-    pieces : sequence of (ExportPiece, ModelElement)
-        The pieces with their elements: of several with one Source ID, the worst.
-
-    Raises
-    ------
-    ModelError
-        If the file does not end as an IFC file does.
+    `pieces`: the pieces with their elements: of several with one Source ID, the worst.
+    Raises ModelError if the file does not end as an IFC file does.
     """
     lines: list[str] = []
     planned, routes = find_works(found.entries), find_routes(found.segments)
@@ -106,16 +91,8 @@ def list_properties(
 
     RiskClass is the class in the words of the report, so that what is outside its classes is no class here either.
 
-    Parameters
-    ----------
-    run : PastRun
-        The run.
-    one : ExportPiece
-        The piece.
-    routes : sequence of str
-        Those that it may block.
-    planned : Planned, optional
-        Its part of the schedule; None where it has none.
+    `routes`: those that it may block.
+    `planned`: its part of the schedule; None where it has none.
     """
     return [
         *_list_risk(run, one),
@@ -139,7 +116,6 @@ def _list_risk(run: PastRun, one: ExportPiece) -> Iterator[tuple[str, str]]:
 
 
 def _list_inputs(one: ExportPiece) -> Iterator[tuple[str, str]]:
-    """Yield what the result rests on, with units in the names."""
     inputs = one.past.inputs
     yield "Item", write_label(one.past.item)
     yield "Description", write_label(describe(one))
@@ -161,7 +137,6 @@ def _list_importance(one: ExportPiece, routes: Sequence[str]) -> Iterator[tuple[
 
 
 def _list_fixing(entry: ExportEntry, work: ExportWork) -> Iterator[tuple[str, str]]:
-    """Yield the place of a piece in the schedule, and the forces on its fixings."""
     yield "FixOrder", write_integer(entry.place)
     yield "FixingDetail", write_label(_(DETAILS[work.detail].title))
     yield "FixingTension_kN", write_real(work.tension_kn)
@@ -172,7 +147,6 @@ def _list_fixing(entry: ExportEntry, work: ExportWork) -> Iterator[tuple[str, st
 
 
 def _list_sharing(pieces: int) -> Iterator[tuple[str, str]]:
-    """Yield of how many pieces with the Source ID of the element this is the worst, where there are several."""
     if pieces > 1:
         several = _("{n:,} pieces with this Source ID, the worst", n=pieces)
         yield "Of", write_label(_("2 pieces with this Source ID, the worse") if pieces == 2 else several)

@@ -13,6 +13,7 @@ from assess.compare.read_results import Reader, read_record
 from assess.details import DETAILS
 from assess.errors import InputError
 from assess.i18n import fill
+from assess.methods import simulation
 from assess.report.ranking import RouteStep
 from assess.risk import RiskClass
 from assess.route_results import RouteState
@@ -34,6 +35,8 @@ class ExportPiece:
         Its identifier in the model, "" where it has none.
     upper : RiskClass
         Its class, upper estimate.
+    has_simulated : bool
+        Whether its chance is that of a simulation, be it confirmed or not.
     importance : str
         "" where none is given.
     pfa_source : str
@@ -49,6 +52,7 @@ class ExportPiece:
     past: PastPiece
     source_id: str
     upper: RiskClass
+    has_simulated: bool
     importance: str
     pfa_source: str
     place: Point | None
@@ -122,10 +126,8 @@ class ExportRun:
 def read_export(path: Path) -> ExportRun:
     """Read results.json for an export.
 
-    Raises
-    ------
-    InputError
-        If it cannot be read (see `assess.compare.read_results.read_run`), or holds no identifier of any piece.
+    Raises InputError if it cannot be read (see `assess.compare.read_results.read_run`), or holds no identifier of any
+    piece.
     """
     run, record, reader = read_record(path)
     rows = reader.rows(record, "items", "")
@@ -140,11 +142,15 @@ def read_export(path: Path) -> ExportRun:
         )  # fmt: skip
     routes = reader.part(record, "routes", "")
     schedule = reader.part(record, "schedule", "")
+    known = {one.past.item for one in pieces}
     return ExportRun(
         run=run,
         language=str(reader.part(record, "assess", "").get("language") or ""),
         pieces=pieces,
-        entries=_read_entries(reader, schedule, {one.past.item for one in pieces}),
+        entries=tuple(
+            _read_entry(reader, row, f"schedule.entries[{at}]", known)
+            for at, row in enumerate(reader.rows(schedule, "entries", "schedule"))
+        ),
         segments=tuple(_read_segments(reader, routes)),
         steps=tuple(_read_steps(reader, routes, pieces)),
     )
@@ -158,6 +164,7 @@ def _read_piece(reader: Reader, row: Mapping[str, Any], past: PastPiece, place: 
         past=past,
         source_id=_text(reader, row, "source_id", place).strip(),
         upper=_CLASSES[reader.choice(adopted, "class_upper", inside, tuple(_CLASSES))],
+        has_simulated=_text(reader, adopted, "method", inside) == simulation().key,
         importance=_text(reader, row, "importance", place),
         pfa_source=_text(reader, row, "pfa_source", place),
         place=None if x is None or y is None else (x, y),
@@ -171,17 +178,9 @@ def _text(reader: Reader, row: Mapping[str, Any], name: str, place: str) -> str:
 
 
 def _number(row: Mapping[str, Any], name: str) -> float | None:
-    """Return a number of any sign, None for what is none."""
     value = row.get(name)
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
     return float(value) if is_number and abs(value) < 1e9 else None  # type: ignore[arg-type]
-
-
-def _read_entries(reader: Reader, schedule: Mapping[str, Any], known: set[str]) -> tuple[ExportEntry, ...]:
-    return tuple(
-        _read_entry(reader, row, f"schedule.entries[{at}]", known)
-        for at, row in enumerate(reader.rows(schedule, "entries", "schedule"))
-    )
 
 
 def _read_entry(reader: Reader, row: Mapping[str, Any], place: str, known: set[str]) -> ExportEntry:

@@ -50,7 +50,6 @@ def write_text(text: str) -> str:
 
 
 def _find_kind(sign: str) -> int:
-    """Return how many bytes a sign takes in an escape, 0 for one that stands as it is."""
     if " " <= sign <= "~":
         return 0
     return 2 if ord(sign) <= 0xFFFF else 4
@@ -82,19 +81,8 @@ def write_integer(value: int) -> str:
 def append_lines(data: bytes, lines: Sequence[str], name: str) -> bytes:
     """Return a file with lines at the end of its data, whose other bytes all stay; line ends as those of the file.
 
-    Parameters
-    ----------
-    data : bytes
-        A STEP physical file.
-    lines : sequence of str
-        Entities in ASCII, each with its semicolon.
-    name : str
-        How messages call the file.
-
-    Raises
-    ------
-    ModelError
-        If its data do not end where the file does.
+    `lines`: entities in ASCII, each with its semicolon.
+    Raises ModelError if its data do not end where the file does.
     """
     at = _find_end(data, name)
     end = b"\r\n" if b"\r\n" in data[:4096] else b"\n"

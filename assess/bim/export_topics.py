@@ -71,16 +71,7 @@ def list_entries(found: ExportRun, keys: Mapping[str, str]) -> list[ExportEntry]
 def write_topics(name: str, part: ModelPart, found: ExportRun, pairs: Sequence[Pair]) -> Topics:
     """Return the topics of a schedule.
 
-    Parameters
-    ----------
-    name : str
-        Name of the model's file.
-    part : ModelPart
-        What was found of it, with the boxes of the pieces in the schedule.
-    found : ExportRun
-        The results.
-    pairs : sequence of (ExportPiece, ModelElement)
-        The pieces in the model.
+    `part`: what was found of it, with the boxes of the pieces in the schedule.
     """
     by_item = {piece.past.item: (piece, element) for piece, element in pairs}
     entries = list_entries(found, {item: element.key for item, (_piece, element) in by_item.items()})
@@ -129,7 +120,6 @@ def _identify(pairs: Sequence[Pair], counts: Mapping[str, int]) -> str:
 
 
 def _write_topic(name: str, part: ModelPart, found: ExportRun, topic: Topic) -> dict[str, bytes]:
-    """Return the files of a topic by their names, its folder first."""
     view = _build_view(topic)
     key = str(make_uuid("viewpoint", topic.guid, _dump(view).decode()))
     view.set("Guid", key)
@@ -146,7 +136,6 @@ def _write_topic(name: str, part: ModelPart, found: ExportRun, topic: Topic) -> 
 
 
 def _build_topic(found: ExportRun, topic: Topic) -> _Element:
-    """Return the element Topic; its parts are in the order of the schema."""
     entry, run = topic.entry, found.run
     pieces = [piece for piece, _element in topic.pairs]
     upper = max(one.upper for one in pieces)
@@ -176,7 +165,6 @@ def _list_labels(found: ExportRun, topic: Topic) -> list[str]:
 
 
 def _list_selected(topic: Topic) -> list[str]:
-    """Return lines that name the doors that are selected, and the pieces that could not be."""
     lines = [
         _("Also selected: door {name} ({key}), on the route that may be blocked.", name=one.name, key=one.key)
         for one in topic.doors
@@ -197,11 +185,7 @@ def find_date(run: PastRun) -> datetime.datetime:
     return datetime.datetime(day.year, day.month, day.day, tzinfo=datetime.UTC)
 
 
-# ---------------------------------------------------------------- viewpoints
-
-
 def _build_view(topic: Topic) -> _Element:
-    """Return a viewpoint without its identifier: what is selected, with all else in sight, and the camera."""
     view = _Element("VisualizationInfo")
     components = _add(view, "Components")
     selection = _add(components, "Selection")
@@ -221,9 +205,6 @@ def _add_place(parent: _Element, name: str, place: Place) -> None:
     one = _add(parent, name)
     for axis, value in zip("XYZ", place, strict=True):
         _add(one, axis, f"{value:.6f}")
-
-
-# ---------------------------------------------------------------- XML and zip
 
 
 def _add(parent: _Element, name: str, text: str | None = None, **attributes: str) -> _Element:

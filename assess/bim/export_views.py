@@ -23,10 +23,7 @@ Pair = tuple[ExportPiece, ModelElement]
 def find_shift(pairs: Sequence[Pair]) -> Point | None:
     """Return what is to be added to positions of the workbook to have those of the model [m].
 
-    Returns
-    -------
-    tuple of float, optional
-        Whole metres; None where no position is known, or where those of workbook and model do not agree.
+    Whole metres; None where no position is known, or where those of workbook and model do not agree.
     """
     known = [(one.place, middle) for one, element in pairs if one.place and (middle := _find_middle(element))]
     if not known:
@@ -37,11 +34,7 @@ def find_shift(pairs: Sequence[Pair]) -> Point | None:
 
 
 def _find_middle(element: ModelElement) -> Place | None:
-    """Return the middle of the box around an element; None where that is not known."""
     return None if element.low is None or element.high is None else find_middle((element.low, element.high))
-
-
-# ---------------------------------------------------------------- doors
 
 
 def find_doors(
@@ -84,7 +77,6 @@ def _find_door(
 
 
 def _distance(door: ModelDoor, start: Point, end: Point) -> float:
-    """Return how far a door is from the line between two points in plan."""
     return min(_distance_to_line(point, start, end) for point in door.points)
 
 
@@ -93,9 +85,6 @@ def _distance_to_line(point: Point, start: Point, end: Point) -> float:
     length = (x2 - x1) ** 2 + (y2 - y1) ** 2
     along = 0.0 if length == 0 else max(0.0, min(1.0, ((x - x1) * (x2 - x1) + (y - y1) * (y2 - y1)) / length))
     return math.dist(point, (x1 + along * (x2 - x1), y1 + along * (y2 - y1)))
-
-
-# ---------------------------------------------------------------- the middle
 
 
 def find_centre(elements: Mapping[str, ModelElement]) -> Point:

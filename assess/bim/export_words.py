@@ -18,10 +18,16 @@ from assess.report.findings.schedule_words import (
     shorten_names,
 )
 from assess.report.ranking import RouteStep, say_effect
+from assess.results import CANNOT_ROCK
 from assess.risk import RiskClass, classify
 from assess.settings import SCENARIOS
 
-BASES = {"simulated": fill("simulated"), "formula": fill("formula"), "unconfirmed": fill("unconfirmed")}
+BASES = {
+    "simulated": fill("simulated"),
+    "formula": fill("formula"),
+    "unconfirmed": fill("unconfirmed"),
+    CANNOT_ROCK: fill("cannot rock"),
+}
 AS_FILLED = SCENARIOS[0]
 LONGEST = 60
 """Characters of a description that a title shows."""
@@ -29,9 +35,6 @@ MOST_KINDS = 3
 """Kinds of pieces that a title names; the rest are counted."""
 MOST_CHANCES = 20
 """Pieces of a topic whose chances its description lists; the Excel report holds all."""
-
-
-# ---------------------------------------------------------------- a piece
 
 
 def say_standing(run: PastRun, one: ExportPiece) -> str:
@@ -47,12 +50,14 @@ def say_risk(run: PastRun, pieces: Sequence[ExportPiece]) -> str:
 
 def _say_class(run: PastRun, one: ExportPiece, upper: RiskClass, *, is_short: bool) -> str:
     past, word = one.past, words.risk_word(one.past.risk)
+    is_by_faster = past.basis == UNCONFIRMED and one.has_simulated  # nothing is known of the building
     if past.basis == UNCONFIRMED:
-        word = _("unconfirmed (formula: {risk})", risk=word)
-    elif past.basis != run.main_basis:
+        with_formula = _("unconfirmed (formula: {risk})", risk=word)
+        word = _("unconfirmed ({risk})", risk=word) if is_by_faster else with_formula
+    elif past.basis not in (run.main_basis, CANNOT_ROCK):
         word = _("{risk} by formula only", risk=word)
     notes = [word]
-    if not is_short and classify(past.chance.probability) != past.risk:
+    if not (is_short or is_by_faster) and classify(past.chance.probability) != past.risk:
         notes.append(_("as it overturns under the record itself"))
     if upper > past.risk:
         notes.append(words.could_be(words.risk_word(upper)))
@@ -81,9 +86,6 @@ def list_routes(found: ExportRun, items: Sequence[str]) -> list[str]:
     return list(dict.fromkeys(one.route for one in found.segments if one.items & wanted))
 
 
-# ---------------------------------------------------------------- a run
-
-
 def say_scenario(run: PastRun) -> str:
     """Return the earthquake in words, and where the floor motion comes from."""
     building, settings = run.building, run.settings
@@ -99,7 +101,6 @@ def say_scenario(run: PastRun) -> str:
 
 
 def _say_shaking(run: PastRun) -> str:
-    """Return the assumed intensity, "" where none is assumed."""
     choice = next((one.choice for one in SHAKINGS.values() if one.name == run.shaking), run.shaking)
     return _("{intensity} (assumed)", intensity=_(choice)) if choice else ""
 
@@ -117,9 +118,6 @@ def say_report(run: PastRun) -> str:
 def say_program(run: PastRun) -> str:
     """Return the program that assessed it, with its version."""
     return f"assess {run.version}"
-
-
-# ---------------------------------------------------------------- an entry
 
 
 def say_title(found: ExportRun, entry: ExportEntry, pieces: Sequence[ExportPiece]) -> str:
@@ -154,7 +152,6 @@ def name_kinds(kinds: Iterable[str]) -> str:
 
 
 def _name(one: ExportPiece, pieces: Sequence[ExportPiece]) -> str:
-    """Return the name of a piece, with its kind where those of the others differ."""
     kind, item = describe(one), one.past.item
     return item if kind == item or all(describe(other) == kind for other in pieces) else f"{item} ({kind})"
 
@@ -206,7 +203,6 @@ def say_reason(found: ExportRun, entry: ExportEntry, pieces: Sequence[ExportPiec
 
 
 def _list_work(work: ExportWork, *, is_only: bool) -> Iterator[str]:
-    """Yield how alike pieces may be fixed, and the forces on their fixings."""
     title = _(DETAILS[work.detail].title)
     named = "" if is_only else f"{join_names(shorten_names(work.items))}: "
     least = _("at least {n}, as no capacity is printed", n=work.fixings) if work.is_least else f"{work.fixings:,}"
@@ -218,14 +214,12 @@ def _list_work(work: ExportWork, *, is_only: bool) -> Iterator[str]:
 
 
 def _describe_detail(detail: Detail) -> Iterator[str]:
-    """Yield what a way to fix pieces is, and what is known against it."""
     title = _capital(_(detail.title))
     yield _("{title}: {what}. One fixing is: {fixing}.", title=title, what=_(detail.what), fixing=_(detail.fixing))
     yield _("Known against it: {weakness} ({source}).", weakness=_(detail.weakness), source=_(detail.source))
 
 
 def _list_remarks(work: ExportWork) -> Iterator[str]:
-    """Yield what is to be known of the forces."""
     if work.tension_code_kn is not None:
         yield _("Tension by the code: {code} kN.", code=say_force(work.tension_code_kn))
     if work.tension_high_kn == 0:

@@ -88,7 +88,6 @@ def _list_corners(*groups: Sequence[Area]) -> Iterator[Point]:
 
 
 def _span(door: Door) -> tuple[Point, Point]:
-    """Return the two jambs of a door: ends of the line across its opening."""
     turn = math.radians(door.normal_deg + 90)
     dx, dy = math.cos(turn) * door.width / 2, math.sin(turn) * door.width / 2
     return (door.x - dx, door.y - dy), (door.x + dx, door.y + dy)

@@ -90,14 +90,7 @@ def tell_apart(elements: Iterable[Element]) -> dict[int, str]:
 def list_shapes(model: Any, elements: Sequence[Element], *, with_openings: bool = False) -> Iterator[tuple[int, Shape]]:
     """Yield the shape of each element that has one, by its number in the file.
 
-    Parameters
-    ----------
-    model : ifcopenshell.file
-        The model.
-    elements : sequence
-        The elements.
-    with_openings : bool
-        Whether openings are cut out, which takes most of the time: needed for walls alone.
+    `with_openings`: whether openings are cut out, which takes most of the time: needed for walls alone.
     """
     import ifcopenshell.geom
 
@@ -134,7 +127,6 @@ def _iterate(model: Any, settings: Any, elements: Sequence[Element]) -> Iterator
 
 
 def _create(settings: Any, element: Element) -> Shape | None:
-    """Return the shape of one element, None where the library cannot make sense of it."""
     import ifcopenshell.geom
 
     try:
@@ -154,7 +146,6 @@ def _to_shape(found: Any) -> Shape | None:
 
 
 def _is_near(values: FloatArray) -> bool:
-    """Tell whether all lengths are numbers, and none lies beyond all maps."""
     return bool((np.abs(values) <= FARTHEST).all())
 
 

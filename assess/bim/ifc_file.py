@@ -24,16 +24,13 @@ _NO_MODEL = fill("it does not begin as an IFC file (ISO-10303-21) does. Export t
 
 def is_model(start: bytes) -> bool:
     """Tell whether a file begins as a STEP physical file does."""
-    return _strip(start).startswith(FIRST)
+    return start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(FIRST)
 
 
 def check_model(path: Path, name: str) -> None:
     """Raise unless a file is a whole STEP file of a known schema, as far as can be told without reading all of it.
 
-    Raises
-    ------
-    ModelError
-        If it cannot be opened, is empty, too large, packed, XML, no model, cut off, or of another schema.
+    Raises ModelError if it cannot be opened, is empty, too large, packed, XML, no model, cut off, or of another schema.
     """
     try:
         size = path.stat().st_size
@@ -49,7 +46,6 @@ def check_model(path: Path, name: str) -> None:
 
 
 def _find_fault(size: int, start: bytes, end: bytes) -> Text | None:
-    """Return why a file cannot be read, None if it can."""
     if size == 0:
         return fill("it is empty. Export the building again")
     if size > MOST_BYTES:
@@ -71,10 +67,6 @@ def _find_fault(size: int, start: bytes, end: bytes) -> Text | None:
     return None
 
 
-def _strip(start: bytes) -> bytes:
-    return start.removeprefix(b"\xef\xbb\xbf").lstrip()
-
-
 def check_installed() -> None:
     """Raise ModelError with the line that tells how to install the library, if it is not there."""
     from importlib.util import find_spec
@@ -86,10 +78,7 @@ def check_installed() -> None:
 def open_model(path: Path, name: str) -> Any:
     """Return the model of a file that `check_model` has passed.
 
-    Raises
-    ------
-    ModelError
-        If the library cannot make sense of it.
+    Raises ModelError if the library cannot make sense of it.
     """
     import ifcopenshell
 

@@ -21,24 +21,10 @@ from assess.i18n import Text, fill, nfill
 def read_model(path: Path, name: str, also: Sequence[str] = ()) -> BuildingModel:
     """Read a building model; call it in a process of its own (`assess.bim.model_process`).
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    name : str
-        How messages and the workbook call it.
-    also : sequence of str
-        Further classes whose elements are pieces, such as IfcBuildingElementProxy.
+    `also`: further classes whose elements are pieces, such as IfcBuildingElementProxy.
+    Raises ModelError if it is no whole building model, names no unit of length, holds no building, or `also` names no
+    class.
 
-    Returns
-    -------
-    BuildingModel
-        Storeys, rooms, doors, stairs, walls and pieces.
-
-    Raises
-    ------
-    ModelError
-        If it is no whole building model, names no unit of length, holds no building, or `also` names no class.
     """
     check_model(path, name)
     model = open_model(path, name)
@@ -96,7 +82,6 @@ def _read(
 
 
 def _note_rooms(model: Any, spaces: Sequence[Any], found: FoundPieces) -> list[Text]:
-    """Return what else there is to know of rooms."""
     remarks = []
     missing = len(model.by_type("IfcSpace")) - len(spaces)
     if not spaces and not missing:

@@ -65,10 +65,8 @@ def find_pieces(
 ) -> FoundPieces:
     """Return the pieces of a model.
 
-    Raises
-    ------
-    ModelError
-        If `also` names a class that the schema of the model does not have, or there are over `MOST_PIECES` pieces.
+    Raises ModelError if `also` names a class that the schema of the model does not have, or there are over
+    `MOST_PIECES` pieces.
     """
     found = FoundPieces()
     _check_classes(model, also)
@@ -123,9 +121,6 @@ def _is_appliance(element: Element) -> bool:
     return kind is not None and kind.is_a() in APPLIANCES
 
 
-# ---------------------------------------------------------------- names
-
-
 def name_type(element: Element) -> str:
     """Return the type of an element in words: as a program for buildings shows it, without its number.
 
@@ -148,9 +143,6 @@ def _is_fitted(kind: str) -> bool:
     return any(word in kind.casefold() for word in FITTED)
 
 
-# ---------------------------------------------------------------- places
-
-
 class _Places:
     """Finds the storey and the room of an element: that which holds it in the model, else the smallest it stands in."""
 
@@ -169,13 +161,9 @@ class _Places:
             return self._spaces[holder].storey, self._spaces[holder]
         storey = find_storey(element)
         if storey not in self.storeys:
-            storey = self._find_below(bottom)
+            below = [one for one in self.storeys.values() if one.level <= bottom + _NEAR_FLOOR]
+            storey = (max(below, key=lambda one: one.level) if below else next(iter(self.storeys.values()))).key
         return storey, next(self._list_at(storey, x, y, bottom), None)
-
-    def _find_below(self, bottom: float) -> str:
-        """Return the highest storey whose floor lies below a height, else the lowest."""
-        below = [one for one in self.storeys.values() if one.level <= bottom + _NEAR_FLOOR]
-        return (max(below, key=lambda one: one.level) if below else next(iter(self.storeys.values()))).key
 
     def _list_at(self, storey: str, x: float, y: float, bottom: float) -> Iterator[Space]:
         if storey in self._searches:

@@ -50,7 +50,6 @@ def list_spaces(model: Any, storeys: Mapping[str, Storey]) -> Iterator[Space]:
 
 
 def _find_known(element: Element, storeys: Mapping[str, Storey]) -> str | None:
-    """Return the key of the storey of an element; of a model without storeys the one that stands for all of it."""
     storey = find_storey(element)
     if storey in storeys:
         return storey
@@ -109,7 +108,6 @@ def list_stairs(model: Any, storeys: Sequence[Storey]) -> Iterator[Stair]:
 
 
 def _find_step(points: FloatArray, level: float) -> Point:
-    """Return the middle of the step at a level."""
     near = points[np.abs(points[:, 2] - level) < RISER]
     plan = (near if len(near) else points)[:, :2]
     x, y = (plan.max(axis=0) + plan.min(axis=0)) / 2

@@ -23,13 +23,7 @@ _ARC = (1.0, 60.0, 3600.0, 3.6e9)
 
 
 def find_unit(model: Any, name: str) -> float:
-    """Return the metres in a unit of length of the model.
-
-    Raises
-    ------
-    ModelError
-        If it names no unit of length.
-    """
+    """Return the metres in a unit of length of the model; raises ModelError if it names no unit of length."""
     from ifcopenshell.util.unit import calculate_unit_scale
 
     assigned = [one for project in model.by_type("IfcProject") if (one := project.UnitsInContext)]

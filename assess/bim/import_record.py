@@ -30,10 +30,7 @@ def describe(found: ImportedBuilding) -> Iterator[str]:
 def keep_record(found: ImportedBuilding, path: Path) -> ImportedBuilding:
     """Return an import with its record among its files: those lines, the hash of the model and the version.
 
-    Raises
-    ------
-    OSError
-        If the file cannot be read again.
+    Raises OSError if the file cannot be read again.
     """
     with path.open("rb") as file:
         digest = hashlib.file_digest(file, "sha256").hexdigest()

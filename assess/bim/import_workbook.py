@@ -95,10 +95,7 @@ class ImportedBuilding:
 def build_workbook(imported: ImportedBuilding) -> bytes:
     """Return the workbook of an import, in the language in use.
 
-    Raises
-    ------
-    OSError
-        If there is no room for temporary files.
+    Raises OSError if there is no room for temporary files.
     """
     content = Content(list_rows(imported))
     if len(imported.items) <= MOST_LIVE:
@@ -111,24 +108,19 @@ def build_workbook(imported: ImportedBuilding) -> bytes:
 
 def list_rows(imported: ImportedBuilding) -> dict[str, Rows]:
     """Return the rows of the workbook by sheet, as `assess.workbook.read.read_inventory` takes them, too."""
+    own = {key(row["type"]) for row in imported.types}
     rows = {
         "Building": [imported.building],
         "Floors": imported.floors,
         "Items": imported.items,
         "Places": imported.places,
         "Routes": imported.routes,
-        "Catalogue": _join_types(imported.types),
+        "Catalogue": [*imported.types, *(row for row in read_catalogue() if key(row["type"]) not in own)],
     }
     return {
         name: [_cut_texts(row, _LONG | {"room"} if name == "Routes" else _LONG) for row in sheet]
         for name, sheet in rows.items()
     }
-
-
-def _join_types(types: Rows) -> list[Mapping[str, Any]]:
-    """Return the built-in types and those of a file, which take the place of built-in ones of their name."""
-    own = {key(row["type"]) for row in types}
-    return [*types, *(row for row in read_catalogue() if key(row["type"]) not in own)]
 
 
 def _cut_texts(row: Mapping[str, Any], long: Collection[str]) -> dict[str, Any]:

@@ -39,9 +39,6 @@ def _list_points(model: BuildingModel) -> Iterator[Point]:
         yield from area[0]
 
 
-# ---------------------------------------------------------------- what lies far from the rest
-
-
 def _leave_out_far(model: BuildingModel) -> BuildingModel:
     """Return a model without what lies far from most of it: elements forgotten at the origin, damaged positions."""
     points = list(_list_points(model))
@@ -87,7 +84,6 @@ def _keep_areas(plans: Mapping[str, tuple[Area, ...]], is_near: Callable[..., bo
 
 
 def _count(model: BuildingModel) -> int:
-    """Return how many rooms, doors, stairs and parts of walls there are."""
     areas = sum(map(len, (*model.walls.values(), *model.windows.values())))
     return len(model.spaces) + len(model.doors) + len(model.stairs) + areas
 
@@ -96,9 +92,6 @@ def _note_far(count: int) -> Iterator[Text]:
     if count:
         yield fill("Rooms, doors, stairs and parts of walls that lie more than {reach:g} km from the middle of the "
                    "building were left out: {n:,}.", n=count, reach=REACH / 1000)  # fmt: skip
-
-
-# ---------------------------------------------------------------- moving it
 
 
 def _move(model: BuildingModel, by: Point) -> BuildingModel:

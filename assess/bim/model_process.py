@@ -41,21 +41,9 @@ def run_apart(
 ) -> _Found:
     """Return what `work` returns, called in a process of its own.
 
-    Parameters
-    ----------
-    name : str
-        How messages call the file that is worked on.
-    progress : Progress
-        Checked while it works; the process is stopped if the work is cancelled.
-    work : callable
-        A function of a module of this package; arguments and what it returns are plain data.
+    `work`: a function of a module of this package; arguments and what it returns are plain data.
 
-    Raises
-    ------
-    ModelError
-        If the process crashed, or reached a limit.
-    AssessError
-        As `work` raises it.
+    Raises ModelError if the process crashed, or reached a limit; AssessError as `work` raises it.
     """
     with TemporaryDirectory(prefix="assess-model-") as folder:
         order = (work.__module__, work.__qualname__, args, named, SECONDS, MEMORY)
@@ -71,7 +59,6 @@ def run_apart(
 
 
 def _wait(folder: str, name: str, progress: Progress) -> int:
-    """Run the process to its end, and return its status."""
     process = _start(folder)
     end = time.monotonic() + PATIENCE * SECONDS
     try:
@@ -99,7 +86,6 @@ def _start(folder: str) -> "subprocess.Popen[bytes]":
 
 
 def _explain(name: str, status: int) -> ModelError:
-    """Return why there is no answer, by how the process ended."""
     xcpu = getattr(signal, "SIGXCPU", 0)
     if xcpu and status == -xcpu:
         return _too_long(name)

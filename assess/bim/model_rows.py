@@ -60,24 +60,27 @@ FITTED = fill("fitted furniture, usually fixed: look at it, and fill in Anchored
 def list_building(model: BuildingModel, routes: Drafts = "none") -> ImportedBuilding:
     """Return what a model tells of a building as rows, plans, and what was left out.
 
-    Parameters
-    ----------
-    model : BuildingModel
-        From `assess.bim.ifc_model` and its like.
-    routes : "none" or "draft"
-        Whether evacuation routes are drafted from the rooms to the exits.
+    `model`: from `assess.bim.ifc_model` and its like.
+    `routes`: whether evacuation routes are drafted from the rooms to the exits.
     """
-    storeys = _keep_storeys(model)
+    holders: Sequence[Piece | Space | Door | Stair] = (*model.pieces, *model.spaces, *model.doors, *model.stairs)
+    used = {one.storey for one in holders}
+    storeys = [one for one in model.storeys if one.key in used] or list(model.storeys)
     floors = name_floors(storeys)
     places = name_places(model, floors)
     pieces, outside = _sort_by_size(sort_pieces(model.pieces, storeys, places))
     drawn = {one.key: plan for one in storeys if (plan := draw_storey(model, one)) is not None}
     files = dict(zip(drawn, name_plans(model.source, (floors[key] for key in drawn)), strict=True))
-    types = _name_types(pieces)
+    found = dict.fromkeys(_type_key(one) for one in pieces)
+    types = dict(zip(found, name_apart(one[0] for one in found), strict=True))
     draft = _draft(model, {**places, **floors}, routes)
+    values = {
+        "building": model.name, "address": model.address, "latitude": model.latitude, "longitude": model.longitude,
+        "azimuth_deg": model.azimuth_deg, "height": _find_height(model, storeys),
+    }  # fmt: skip
     return ImportedBuilding(
         source=model.source,
-        building=_describe_building(model, storeys),
+        building={name: value for name, value in values.items() if value not in (None, "")},
         floors=[_list_floor(one, floors, drawn.get(one.key), files) for one in storeys],
         items=list(_list_items(model, pieces, types, floors, places)),
         places=[*_list_spaces(model, floors, places), *_list_points(model, floors, places), *draft.places],
@@ -88,13 +91,6 @@ def list_building(model: BuildingModel, routes: Drafts = "none") -> ImportedBuil
         remarks=(*model.remarks, *_note(model, storeys, pieces)),
         files={files[key]: plan.svg for key, plan in drawn.items()},
     )
-
-
-def _keep_storeys(model: BuildingModel) -> list[Storey]:
-    """Return the storeys that hold something; all of a model that shows walls alone."""
-    holders: Sequence[Piece | Space | Door | Stair] = (*model.pieces, *model.spaces, *model.doors, *model.stairs)
-    used = {one.storey for one in holders}
-    return [one for one in model.storeys if one.key in used] or list(model.storeys)
 
 
 # ---------------------------------------------------------------- sizes
@@ -144,7 +140,7 @@ def find_sizes(piece: Piece) -> Sized:
     supports = breadth
     reach = piece.support_reach
     safe = breadth if reach is None or 2 * reach >= breadth - SAME else 2 * reach
-    is_oblique = safe < breadth and _is_oblique(piece)
+    is_oblique = safe < breadth and (ALONG <= (piece.support_angle_deg - piece.angle_deg) % 90 <= 90 - ALONG)
     if is_oblique or safe == 0:
         breadth, width, angle = safe, piece.support_across, piece.support_angle_deg
     sizes = (breadth, width, piece.height, supports, safe)
@@ -162,13 +158,7 @@ def find_sizes(piece: Piece) -> Sized:
     )
 
 
-def _is_oblique(piece: Piece) -> bool:
-    """Tell whether the nearest edge of the base of a piece is along neither of its sides."""
-    return ALONG <= (piece.support_angle_deg - piece.angle_deg) % 90 <= 90 - ALONG
-
-
 def _sort_by_size(pieces: Sequence[Piece]) -> tuple[list[Sized], list[Skipped]]:
-    """Return the pieces whose sizes a workbook takes, and the others as left out."""
     sized = [find_sizes(one) for one in pieces]
     fits = [all(LOW <= size <= HIGH for size in one.sizes.values()) for one in sized]
     outside = fill("a size outside {low:g} to {high:g} cm", low=LOW, high=HIGH)
@@ -181,25 +171,11 @@ def _sort_by_size(pieces: Sequence[Piece]) -> tuple[list[Sized], list[Skipped]]:
     return kept, [Skipped(kind, number, reason) for (kind, reason), number in counts.items()]
 
 
-def _name_types(pieces: Sequence[Sized]) -> dict[tuple[str, float, float, float], str]:
-    """Return the name of each type by that of the model and its sizes, of which one type of the model may have many."""
-    found = dict.fromkeys(_type_key(one) for one in pieces)
-    return dict(zip(found, name_apart(one[0] for one in found), strict=True))
-
-
 def _type_key(one: Sized) -> tuple[str, float, float, float]:
     return one.piece.type, one.breadth, one.width, one.height
 
 
 # ---------------------------------------------------------------- rows
-
-
-def _describe_building(model: BuildingModel, storeys: Sequence[Storey]) -> dict[str, Any]:
-    values = {
-        "building": model.name, "address": model.address, "latitude": model.latitude, "longitude": model.longitude,
-        "azimuth_deg": model.azimuth_deg, "height": _find_height(model, storeys),
-    }  # fmt: skip
-    return {name: value for name, value in values.items() if value not in (None, "")}
 
 
 def _find_height(model: BuildingModel, storeys: Sequence[Storey]) -> float | None:
@@ -225,12 +201,10 @@ def _list_floor(storey: Storey, floors: Names, plan: Drawn | None, files: Names)
 
 
 def _is_known(storey: Storey) -> bool:
-    """Tell whether a workbook takes the elevation of a storey."""
     return LOWEST <= storey.elevation <= HIGHEST
 
 
 def _note_elevations(storeys: Sequence[Storey], floors: Names) -> list[Text]:
-    """Return what has to be checked of the elevations of storeys."""
     odd = [floors[one.key] for one in storeys if not _is_known(one)]
     notes = note_datum([(floors[one.key], one.elevation) for one in storeys if _is_known(one)])
     if odd:
@@ -268,7 +242,6 @@ def _list_notes(one: Sized) -> Iterator[str]:
 
 
 def _note_supports(one: Sized) -> str:
-    """Return the body of a piece and the distance between its supports, and how Breadth comes of these."""
     sizes = (one.piece.breadth, one.piece.width, one.piece.height)
     breadth, width, height = (CENTIMETRES * size for size in sizes)
     body = gettext("body {breadth:.1f} x {width:.1f} x {height:.1f} cm, {support:g} cm between the outer supports",
@@ -301,7 +274,6 @@ def _list_spaces(model: BuildingModel, floors: Names, places: Names) -> Iterator
 
 
 def _find_stair_rooms(model: BuildingModel) -> set[str]:
-    """Return the keys of the spaces in which a stair begins or ends."""
     found = set()
     for storey in {one.storey for one in model.stairs}:
         search = SpaceSearch([one for one in model.spaces if one.storey == storey])
@@ -315,14 +287,8 @@ def find_kind(space: Space, doors: int = 0, *, holds_stair: bool = False) -> Lit
 
     Rooms are checked for losing all their ways out, corridors and stairs are not: so a name alone makes none.
 
-    Parameters
-    ----------
-    space : Space
-        The room.
-    doors : int
-        How many doors it has.
-    holds_stair : bool
-        Whether a stair begins or ends in it.
+    `doors`: how many doors it has.
+    `holds_stair`: whether a stair begins or ends in it.
     """
     words = set(re.findall(r"[^\W\d_]+", f"{space.name} {space.title}".casefold()))
     if holds_stair and words & set(STAIRS):
@@ -332,14 +298,12 @@ def find_kind(space: Space, doors: int = 0, *, holds_stair: bool = False) -> Lit
 
 
 def _is_slender(area: Area) -> bool:
-    """Tell whether a room is long and narrow, round corners too."""
     polygon = to_polygon(area)
     rectangle = find_rectangle(np.array(polygon.exterior.coords)) if polygon.area > 0 else None
     return rectangle is not None and (rectangle.long >= SLENDER * rectangle.short or find_width(polygon) > 0)
 
 
 def _write_outline(area: Area) -> str:
-    """Return the outer ring of a room as a cell holds it, simplified where it has too many corners; "" if none."""
     polygon, coarse = to_polygon(area), 0.0
     corners = list(polygon.exterior.coords)[:-1]
     while len(corners) > MOST:
@@ -377,7 +341,6 @@ class _Draft:
 
 
 def _draft(model: BuildingModel, places: Names, routes: Drafts) -> _Draft:
-    """Return the drafted routes, none unless they are asked for."""
     if routes == "none":
         return _Draft()
     from assess.bim.draft_routes import draft_routes
@@ -396,7 +359,6 @@ def _list_skipped(model: BuildingModel) -> Iterator[Skipped]:
 
 
 def _warn_of_supports(pieces: Sequence[Sized]) -> Iterator[Text]:
-    """Yield a warning of pieces that tip to one side sooner than their Breadth says."""
     off = sum(one.is_off_middle for one in pieces)
     if off:
         yield nfill(
@@ -408,7 +370,6 @@ def _warn_of_supports(pieces: Sequence[Sized]) -> Iterator[Text]:
 
 
 def _note(model: BuildingModel, storeys: Sequence[Storey], pieces: Sequence[Sized]) -> Iterator[Text]:
-    """Yield what else is to be checked."""
     fitted = sum(one.piece.is_fitted for one in pieces)
     if fitted:
         yield nfill(

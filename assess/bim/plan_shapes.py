@@ -162,7 +162,6 @@ def _find_base_edge(plan: FloatArray, feet: FloatArray, rectangle: Rectangle) ->
 
 
 def _in_own_axes(shape: Shape) -> Rectangle | None:
-    """Return the rectangle round a plan in the piece's own axes; None if it is tilted."""
     if abs(shape.axes[2, 2]) < UPRIGHT:
         return None
     x = shape.axes[:2, 0] / math.hypot(*shape.axes[:2, 0])
@@ -174,7 +173,6 @@ def _in_own_axes(shape: Shape) -> Rectangle | None:
 
 
 def _order(centre: FloatArray, x: FloatArray, along: float, across: float) -> Rectangle:
-    """Return a rectangle by its sides along a direction and across it."""
     angle = math.degrees(math.atan2(x[1], x[0]))
     if along > across:
         along, across, angle = across, along, angle + 90
@@ -226,7 +224,6 @@ def cut(shape: Shape, level: float) -> list[Polygon]:
 
 
 def _list(made: Any) -> list[Any]:
-    """Return the geometries that shapely made: an array of them, or one."""
     return list(made) if isinstance(made, np.ndarray) else [made]
 
 

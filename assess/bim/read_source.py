@@ -30,25 +30,11 @@ def read_source(
 ) -> ImportedBuilding:
     """Read the furniture of a building from a building model (IFC), a scan (RoomPlan), a home, or a COBie file.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    name : str
-        How messages and the workbook call it.
-    progress : Progress
-        Checked while it is read.
-    routes : "none" or "draft"
-        Whether evacuation routes are drafted; COBie files have no positions to draft them from.
-    also : sequence of str
-        Further classes of an IFC model whose elements are furniture.
+    `routes`: whether evacuation routes are drafted; COBie files have no positions to draft them from.
+    `also`: further classes of an IFC model whose elements are furniture.
 
-    Raises
-    ------
-    ModelError, WorkbookError
-        If it is none of these, is damaged, or beyond a limit; the message says how to fix it.
-    InputError
-        If it cannot be opened.
+    Raises ModelError or WorkbookError if it is none of these, is damaged, or beyond a limit: the message tells the
+    fix; InputError if it cannot be opened.
     """
     if not path.exists():
         raise InputError(fill("{name} does not exist. Check the name and the folder.", name=name))
@@ -65,7 +51,6 @@ def read_source(
 def _read(
     path: Path, name: str, start: bytes, progress: Progress, routes: Drafts, also: Sequence[str]
 ) -> ImportedBuilding:
-    """Read a file with the reader that its beginning asks for."""
     text = start.removeprefix(b"\xef\xbb\xbf").lstrip()
     if start.startswith(_ZIP):
         return _read_packed(path, name, progress, routes)
@@ -84,7 +69,6 @@ def _read(
 def _build_apart(
     read: Reader, path: Path, name: str, progress: Progress, routes: Drafts, also: Sequence[str] = ()
 ) -> ImportedBuilding:
-    """Read a file and make rows, plans and routes of it in a process with limits, in the language in use."""
     return run_apart(name, progress, build, read, path.resolve(), name, routes, tuple(also), spoken().code)
 
 
@@ -123,7 +107,6 @@ def _read_bytes(path: Path, most: int) -> bytes:
 
 
 def _read_packed(path: Path, name: str, progress: Progress, routes: Drafts) -> ImportedBuilding:
-    """Read a file that is a zip: a spreadsheet, or a home."""
     parts = _list_parts(path, name)
     if any(part.lower().endswith((".ifc", ".ifcxml")) for part in parts):
         check_model(path, name)

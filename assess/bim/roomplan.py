@@ -74,17 +74,8 @@ EXITS = fill(
 def read_roomplan(data: bytes, name: str) -> BuildingModel:
     """Return what a scan tells of a building.
 
-    Parameters
-    ----------
-    data : bytes
-        The file.
-    name : str
-        How messages call it.
-
-    Raises
-    ------
-    ModelError
-        If it is no scan, damaged, or beyond a limit; the message names the place in the file, as ``objects[3]``.
+    Raises ModelError if it is no scan, damaged, or beyond a limit; the message names the place in the file, as
+    ``objects[3]``.
     """
     scan = parse_scan(data, name)
     scan = scan.turned(turn_by(-find_turn(scan.walls)))
@@ -119,9 +110,6 @@ def _list_storeys(scan: Scan) -> tuple[Storey, ...]:
         Storey(str(story), gettext("Storey {n}", n=story), level - ground, level)
         for story, level in sorted(levels.items(), key=lambda one: (one[1], one[0]))
     )
-
-
-# ---------------------------------------------------------------- pieces
 
 
 @dataclass(slots=True)
@@ -173,11 +161,7 @@ def _to_piece(one: Scanned, kind: str, room: Space | None, bottom: float) -> Pie
     )  # fmt: skip
 
 
-# ---------------------------------------------------------------- doors and stairs
-
-
 def _list_doors(scan: Scan, levels: dict[int, float]) -> Iterator[Door]:
-    """Yield the doors, and the openings that people walk through; each identifier once."""
     taken: set[str] = set()
     named = ((gettext("Door"), scan.doors), (gettext("Opening"), scan.openings))
     for name, one in ((name, one) for name, several in named for one in several):
@@ -193,16 +177,12 @@ def _list_doors(scan: Scan, levels: dict[int, float]) -> Iterator[Door]:
 
 
 def _list_stairs(scan: Scan, levels: dict[int, float]) -> Iterator[Stair]:
-    """Yield the foot of each stair, at its centre, and its head where a storey lies at its top."""
     for one in scan.objects:
         if one.kind == STAIRS:
             x, y, top = float(one.origin[0]), float(one.origin[1]), one.bottom + one.sizes[1]
             yield Stair(one.key, str(one.story), say_word(one.kind), "foot", x, y)
             above = [story for story, level in levels.items() if abs(level - top) <= NEAR_STOREY and story != one.story]
             yield from (Stair(one.key, str(story), say_word(one.kind), "head", x, y) for story in above[:1])
-
-
-# ---------------------------------------------------------------- what a user should know
 
 
 def _warn_of_rooms(scan: Scan) -> Iterator[Text]:

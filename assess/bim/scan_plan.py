@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from statistics import median
-from typing import Any
 
 import numpy as np
 import shapely
@@ -57,9 +56,6 @@ def _height_of(floor: Scanned) -> float:
     return float(floor.corners[:, 2].mean() if len(floor.corners) else floor.origin[2])
 
 
-# ---------------------------------------------------------------- walls and windows
-
-
 def draw_walls(scan: Scan, story: int) -> tuple[Area, ...]:
     """Return the walls of a storey with gaps at its doors, windows and openings; those of cylinders are left out."""
     walls = [_lay(one, WALL) for one in scan.walls if one.story == story and is_upright(one) and not one.is_curved]
@@ -77,7 +73,6 @@ def draw_windows(scan: Scan, story: int) -> tuple[Area, ...]:
 
 
 def _lay(one: Scanned, least: float) -> Polygon:
-    """Return the plan of an upright surface, at least so thick."""
     width, thick = one.sizes[0] / 2, max(one.sizes[2], least) / 2
     along, across = (one.axes[:2, axis] for axis in (0, 2))
     return Polygon([one.origin[:2] + x * along + y * across for x, y in _around(width, thick)])
@@ -85,9 +80,6 @@ def _lay(one: Scanned, least: float) -> Polygon:
 
 def _around(x: float, y: float) -> tuple[tuple[float, float], ...]:
     return (-x, -y), (x, -y), (x, y), (-x, y)
-
-
-# ---------------------------------------------------------------- rooms
 
 
 def find_rooms(scan: Scan, stories: Iterable[int]) -> list[Space]:
@@ -112,13 +104,14 @@ def _list_floors(scan: Scan, story: int) -> Iterator[tuple[str, Polygon, float]]
     for one in scan.floors:
         if one.story == story:
             corners = one.corners if len(one.corners) >= 3 else _corners_of(one)
-            polygon = _largest(shapely.make_valid(Polygon(corners[:, :2])))
+            polygon = max(
+                list_polygons(shapely.make_valid(Polygon(corners[:, :2]))), key=lambda one: one.area, default=Polygon()
+            )
             if polygon.area >= SMALLEST_ROOM:
                 yield one.key, polygon, _height_of(one)
 
 
 def _corners_of(floor: Scanned) -> FloatArray:
-    """Return the corners of a floor without an outline: a rectangle in its own plane, of which one size is about 0."""
     width, height, depth = (size / 2 for size in floor.sizes)
     is_flat = height <= depth
     local = np.array([(x, 0.0, y) if is_flat else (x, y, 0.0) for x, y in _around(width, depth if is_flat else height)])
@@ -139,12 +132,7 @@ def _close_walls(scan: Scan, story: int) -> Iterator[tuple[str, Polygon, float]]
             yield f"room {story} {number}", polygon, level
 
 
-def _largest(geometry: Any) -> Polygon:
-    return max(list_polygons(geometry), key=lambda one: one.area, default=Polygon())
-
-
 def _name(labels: Sequence[Label], story: int, polygon: Polygon, *, is_only: bool) -> str:
-    """Return what a room is used for, by the labels whose centres lie in it; of a single room by all of them."""
     own = [
         one.words
         for one in labels

@@ -128,10 +128,7 @@ class Scan:
 def parse_scan(data: bytes, name: str) -> Scan:
     """Return the values of a file.
 
-    Raises
-    ------
-    ModelError
-        If it is no scan, damaged, or beyond a limit; the message names the place in the file.
+    Raises ModelError if it is no scan, damaged, or beyond a limit; the message names the place in the file.
     """
     document = _load(data, name)
     rooms = _list_rooms(document, name)
@@ -147,7 +144,6 @@ def parse_scan(data: bytes, name: str) -> Scan:
 
 
 def _load(data: bytes, name: str) -> dict[str, Any]:
-    """Return the document of a file: one object that holds lists of a scan."""
     if len(data) > MOST_BYTES:
         raise ModelError(
             fill("{name} is larger than {most} MB, the most that is read of a scan. Scan fewer rooms at a time.",
@@ -181,7 +177,6 @@ def _no_scan(name: str) -> ModelError:
 
 
 def _list_rooms(document: Mapping[str, Any], name: str) -> list[tuple[str, Mapping[str, Any]]]:
-    """Return the rooms of a structure with their places in the file."""
     rooms = document.get("rooms") or []
     if not isinstance(rooms, list) or not all(
         isinstance(one, dict) and any(isinstance(one.get(kind), list) for kind in LISTS) for one in rooms
@@ -264,7 +259,6 @@ class _Reader:
         return width, height, depth
 
     def _read_transform(self, found: object, place: str) -> tuple[FloatArray, FloatArray]:
-        """Return the axes and the centre of an element, Z upwards."""
         values = found
         if isinstance(found, list) and len(found) == 4 and all(isinstance(one, list) for one in found):
             values = [value for column in found for value in column]
@@ -309,7 +303,6 @@ class _Reader:
 
 
 def _is_number(value: object, most: float) -> bool:
-    """Return whether a value is a finite number of at most that amount; NaN is none."""
     return isinstance(value, (int, float)) and not isinstance(value, bool) and -most <= value <= most
 
 
@@ -318,7 +311,6 @@ def _is_point(value: object) -> bool:
 
 
 def _whole(value: object, otherwise: int) -> int:
-    """Return the number of a storey."""
     return value if isinstance(value, int) and not isinstance(value, bool) and abs(value) <= MOST_STORY else otherwise
 
 

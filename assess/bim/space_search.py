@@ -23,12 +23,8 @@ class SpaceSearch:
     def find_all(self, points: Sequence[Point], reach: float = 0.0) -> list[list[Space]]:
         """Return the spaces that hold each point, the smallest first; of those that are as large the first.
 
-        Parameters
-        ----------
-        points : sequence of Point
-            In plan [m].
-        reach : float
-            How far a space may be from a point that it holds [m].
+        `points`: in plan [m].
+        `reach`: how far a space may be from a point that it holds [m].
         """
         found: list[list[int]] = [[] for _ in points]
         places = [shapely.Point(one) for one in points]
@@ -41,12 +37,8 @@ class SpaceSearch:
 def find_rooms_at(places: Sequence[tuple[str, Point]], spaces: Sequence[Space]) -> list[Space | None]:
     """Return the smallest space that holds each place, None where there is none.
 
-    Parameters
-    ----------
-    places : sequence of (str, Point)
-        Key of the storey, and point in plan [m].
-    spaces : sequence of Space
-        Those of all storeys.
+    `places`: key of the storey, and point in plan [m].
+    `spaces`: those of all storeys.
     """
     found: list[Space | None] = [None] * len(places)
     for storey in {key for key, _ in places}:

@@ -77,17 +77,8 @@ class _Element:
 def read_sweet_home(data: bytes, name: str) -> BuildingModel:
     """Return what a home tells of a building.
 
-    Parameters
-    ----------
-    data : bytes
-        The file.
-    name : str
-        How messages call it.
-
-    Raises
-    ------
-    ModelError
-        If it is no home, of a version that is not read, damaged, or beyond a limit; with the place in its Home.xml.
+    Raises ModelError if it is no home, of a version that is not read, damaged, or beyond a limit; with the place in its
+    Home.xml.
     """
     home = _Home(name)
     home.parse(_unpack(data, name))
@@ -95,7 +86,6 @@ def read_sweet_home(data: bytes, name: str) -> BuildingModel:
 
 
 def _unpack(data: bytes, name: str) -> bytes:
-    """Return Home.xml of a file."""
     if len(data) > MOST_BYTES:
         raise _too_large(name)
     try:
@@ -140,8 +130,6 @@ def _damaged(name: str) -> ModelError:
 
 
 class _Home:
-    """Takes in the elements of a home, and makes a model of them."""
-
     def __init__(self, name: str) -> None:
         self.name = name
         self.levels: list[_Element] = []
@@ -244,6 +232,7 @@ class _Home:
         passages = [one for one in drawn if one.is_opening]
         doors = [one for one in passages if one.bottom <= SILL]
         pieces = tuple(self._list_pieces([one for one in boxes if not one.is_opening], spaces))
+        north = self.number(self.compass, "northDirection", 0.0) if self.compass else 0.0
         return BuildingModel(
             source=self.name,
             schema=SCHEMA,
@@ -258,13 +247,12 @@ class _Home:
                 for one in storeys
             },
             left_out=tuple(LeftOut(SCHEMA, *one[:2], number, one[2]) for one, number in self.left_out.items()),
-            azimuth_deg=self._find_azimuth(),
+            azimuth_deg=round((90 - math.degrees(north)) % 360, 1) if north else None,
             warnings=(DRAWN_SIZES,) if pieces else (),
             remarks=tuple(self.remarks),
         )
 
     def _list_storeys(self) -> tuple[Storey, ...]:
-        """Return the levels from the lowest; one without a key where the home has none."""
         found = [
             Storey(one.values.get("id", one.place), _say(one.values.get("name")) or one.place, height, height)
             for one in self.levels
@@ -315,7 +303,6 @@ class _Home:
                 self.left_out[one.name, reason, reason is not IS_STAIR] += 1
 
     def _draw_walls(self, storey: str, passages: Sequence["_Box"]) -> tuple[Area, ...]:
-        """Return the walls of a level with gaps at doors and windows; round ones are left out."""
         own = [one for one in self.walls if self.levels == [] or one.values.get("level", storey) == storey]
         straight = [one for one in own if not self.number(one, "arcExtent", 0.0)]
         if len(straight) < len(own):
@@ -330,11 +317,6 @@ class _Home:
         ends = [(self.metres(wall, f"x{end}"), -self.metres(wall, f"y{end}")) for end in ("Start", "End")]
         band: Polygon = LineString(ends).buffer(self.metres(wall, "thickness") / 2, cap_style="square")
         return band
-
-    def _find_azimuth(self) -> float | None:
-        """Return the compass direction of X [deg]; None where the compass was left as it was, up the plan."""
-        north = self.number(self.compass, "northDirection", 0.0) if self.compass else 0.0
-        return round((90 - math.degrees(north)) % 360, 1) if north else None
 
 
 def _say(value: str | None) -> str:
@@ -418,7 +400,6 @@ class _Box:
 
 
 def _list_stairs(boxes: Sequence[_Box], storeys: Sequence[Storey]) -> Iterator[Stair]:
-    """Yield the foot and the head of each stair, at its centre: the head on the next level."""
     keys = [one.key for one in storeys]
     for one in boxes:
         if one.is_stair and not one.is_opening:

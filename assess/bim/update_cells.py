@@ -1,10 +1,9 @@
-"""Cells of one sheet that follow a building model: compared in the unit of their header, set or kept, and listed."""
+"""Cells of one sheet that follow a building model: compared in their unit, set or kept, and listed as changes."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal
 
-from assess.bim.update_changes import Change, Kind
 from assess.i18n import Text, fill
 from assess.units import QUANTITIES
 from assess.workbook.held import HeldCells, Place
@@ -17,7 +16,85 @@ from assess.workbook.patch import Value
 from assess.workbook.places import split_range
 from assess.workbook.plain_rows import column_letters
 from assess.workbook.schema import NO, YES, Column
-from assess.workbook.values import is_blank, read_text
+from assess.workbook.values import is_blank, read_text, shorten
+
+Kind = Literal["changed", "added", "missing", "kept", "left_out"]
+RENAMED = fill("it seems to have been renamed")
+"""Why a name stays."""
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """One thing that an update did, or deliberately did not do.
+
+    Attributes
+    ----------
+    kind : str
+        "changed": the cell got another value. "added": the row is new. "missing": the model no longer has what the row
+        was imported from; the row stays. "kept": the model has another value, and the workbook's stays. "left_out":
+        what the model has was not written.
+    sheet, cell : str
+        As the workbook calls the sheet, and the address; of a row that of its name. `cell` is "" where there is none.
+    item : str
+        Name of the piece, floor, place or type; "" for a line of Building.
+    label : str
+        Header of the column as the workbook has it, with its unit; "" for a row.
+    was, now : float, str, bool or None
+        What the cell held, and what it holds now; of "kept" what the model has. Numbers are in the header's unit.
+    reason : Text
+        Why something was kept or left out, where that does not go without saying.
+    """
+
+    kind: Kind
+    sheet: str
+    cell: str
+    item: str = ""
+    label: str = ""
+    was: Value = None
+    now: Value = None
+    reason: Text | str = ""
+
+
+def describe(change: Change) -> Text:
+    """Return a change as a sentence: "Items H14 Breadth [cm] of Wardrobe 3: 54.5 -> 60"."""
+    if change.kind == "changed":
+        return fill("{what}: {was} -> {now}", what=_name(change), was=_say(change.was), now=_say(change.now))
+    if change.kind == "added":
+        return fill("{what} was added", what=_name(change))
+    if change.kind == "missing":
+        return fill("{what} is missing in the model; its row stays", what=_name(change))
+    return _with_reason(_describe_kept(change), change.reason)
+
+
+def _describe_kept(change: Change) -> Text:
+    if change.kind == "left_out":
+        return fill("{what} of the model was left out", what=_name(change))
+    if not change.label:
+        return fill("{what} stays as it is", what=_name(change))
+    return fill(
+        "{what} stays {was}; the model has {now}", what=_name(change), was=_say(change.was), now=_say(change.now)
+    )
+
+
+def _with_reason(text: Text, reason: Text | str) -> Text:
+    return fill("{text}: {reason}", text=text, reason=reason) if reason else text
+
+
+def _name(change: Change) -> Text:
+    """Return where something is and what it is: "Items H14 Breadth [cm] of Wardrobe 3"."""
+    place = f"{change.sheet} {change.cell}".strip()
+    if change.label and change.item:
+        return fill("{place} {label} of {name}", place=place, label=change.label, name=change.item)
+    return fill("{place} {name}", place=place, name=change.label or change.item)
+
+
+def _say(value: Value) -> Text | str:
+    if value is None:
+        return fill("blank")
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return fill("{number:.10g}{unit}", number=value, unit="")
+    return shorten(value)
+
 
 TOLERANCE = {"length": 5e-4, "angle": 0.05}
 """Differences up to which two numbers are the same, by quantity [m, deg]."""
@@ -76,8 +153,6 @@ class SheetUpdate:
         """Return what a cell has to hold for a value in the unit of SI headers; None where nothing can be written."""
         return _to_cell(self.table.sheet.column(name), self.table.units.get(name, ""), wanted)
 
-    # ------------------------------------------------------------ one cell
-
     def replace(self, row: Row, name: str, wanted: Any) -> None:
         """Set a cell that the model owns, unless it holds the same but for rounding; nothing never clears a cell."""
         if not self._differs(row, name, wanted):
@@ -126,8 +201,6 @@ class SheetUpdate:
         was, now = _show(self.raw(name, row)), self.to_cell(name, wanted)
         self.changes.append(Change(kind, self.cells.title, cell, item, self.label(name), was, now, reason))
 
-    # ------------------------------------------------------------ rows
-
     def name_of(self, row: Row) -> str:
         """Return the name of a row, that in the first column of its table; "" for a form."""
         if self.table.sheet.layout == "form":
@@ -160,9 +233,6 @@ class SheetUpdate:
         self.changes.append(Change("added", self.cells.title, cell, str(row[first])))
 
 
-# ---------------------------------------------------------------- values
-
-
 def _to_cell(column: Column, unit: str, wanted: Any) -> Value:
     if isinstance(wanted, bool):
         wanted = YES if wanted else NO
@@ -182,7 +252,6 @@ def _convert(column: Column, unit: str, number: float) -> float:
 
 
 def _write_outline(column: Column, unit: str, text: str) -> str | None:
-    """Return an outline in another unit, None for one that has to be converted and cannot be read."""
     if unit == column.unit:
         return text
     try:
@@ -223,7 +292,6 @@ def _is_inside(place: Place, area: tuple[int, int, int, int]) -> bool:
 
 
 def _show(value: Any) -> Value:
-    """Return what a cell held as a change tells it."""
     if value is None or value is UNSAVED:
         return None
     if isinstance(value, Percent):

@@ -23,12 +23,8 @@ _NUMBER = re.compile(r"(?: \(\d+\))+$")
 def match_floors(model: Levels, workbook: Levels, pairs: Iterable[tuple[str, str]]) -> dict[str, str]:
     """Return the floor of the workbook that each floor of a model is; those of the model alone are left out.
 
-    Parameters
-    ----------
-    model, workbook : mapping of str to float or None
-        The floors, with their elevations [m].
-    pairs : iterable of (str, str)
-        The floors, in the model and in the workbook, of every piece that both have.
+    `model` and `workbook`: the floors, with their elevations [m].
+    `pairs`: the floors, in the model and in the workbook, of every piece that both have.
 
     Notes
     -----
@@ -80,12 +76,8 @@ def _is_level(one: float | None, other: float | None) -> bool:
 def match_rooms(trios: Iterable[tuple[str, str, str]], known: Collection[str]) -> dict[tuple[str, str], str]:
     """Return the names that people gave to rooms, by floor and room of the model as names are compared.
 
-    Parameters
-    ----------
-    trios : iterable of (str, str, str)
-        Of every piece that both have: its floor as names are compared, its room in the model and in the workbook.
-    known : collection of str
-        All rooms of the model, as names are compared: a piece in another one of these was moved.
+    `trios`: of every piece that both have: its floor as names are compared, its room in the model and in the workbook.
+    `known`: all rooms of the model, as names are compared: a piece in another one of these was moved.
 
     Notes
     -----

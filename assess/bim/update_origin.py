@@ -4,7 +4,7 @@ What an import takes off positions follows the outermost element of the model, s
 by `assess.bim.model_position.ROUND`. People's own rows and the points of routes keep the origin of the first import.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from statistics import median
 from typing import Any
 
@@ -51,10 +51,8 @@ def _move_row(row: Mapping[str, Any], by: Point) -> dict[str, Any]:
             if row.get(name) is not None:
                 moved[name] = round(row[name] + distance, 3)
     if row.get("outline"):
-        moved["outline"] = "; ".join(_move_corner(corner.split(), by) for corner in row["outline"].split(";"))
+        moved["outline"] = "; ".join(
+            " ".join(f"{round(float(one) + distance, 3):g}" for one, distance in zip(corner.split(), by, strict=True))
+            for corner in row["outline"].split(";")
+        )
     return moved
-
-
-def _move_corner(corner: Sequence[str], by: Point) -> str:
-    """Return a corner as `assess.bim.model_rows` writes it."""
-    return " ".join(f"{round(float(one) + distance, 3):g}" for one, distance in zip(corner, by, strict=True))

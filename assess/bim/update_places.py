@@ -9,8 +9,7 @@ from math import hypot
 from typing import Any
 
 from assess.bim.import_workbook import name_apart
-from assess.bim.update_cells import SheetUpdate
-from assess.bim.update_changes import RENAMED
+from assess.bim.update_cells import RENAMED, SheetUpdate
 from assess.bim.update_names import Named, match_alike
 from assess.bim.update_rows import BookUpdate, Rows
 from assess.workbook.names import key
@@ -27,14 +26,8 @@ def update_places(
 ) -> None:
     """Move the places that both have, and add those of the model alone.
 
-    Parameters
-    ----------
-    book : BookUpdate
-        The workbook.
-    rows : sequence of mapping
-        The places of the model; those without a kind, which routes pass, are not used.
-    find_floor, find_room : callable
-        What people call a floor of the model, and a room of it on such a floor.
+    `rows`: the places of the model; those without a kind, which routes pass, are not used.
+    `find_floor` and `find_room`: what people call a floor of the model, and a room of it on such a floor.
     """
     sheet = book.sheets.get("Places")
     own = sheet.table.with_all("place") if sheet else []
@@ -44,7 +37,10 @@ def update_places(
         renamed = find_room(row["floor"], row["place"])
         row["place"] = renamed if key(renamed) in named else row["place"]
     found = match_alike(
-        [_describe_model(row) for row in model], [_describe(row) for row in own], _is_near, by_content=True
+        [Named(row["place"], (key(row["floor"]), row.get("x"), row.get("y"))) for row in model],
+        [Named(row.get("place"), (key(row.get("floor") or ""), row.get("x"), row.get("y"))) for row in own],
+        _is_near,
+        by_content=True,
     )
     if sheet:
         sheet.note_columns(FOLLOWED, model)
@@ -57,21 +53,12 @@ def update_places(
 
 
 def _update_place(sheet: SheetUpdate, row: Row, model: dict[str, Any]) -> None:
-    """Move a place, unless people have put it on another floor; its name stays."""
     if key(row.get("floor") or "") != key(model["floor"]):
         sheet.keep(row, "floor", model["floor"])
         return
     sheet.keep(row, "place", model["place"], RENAMED)
     for name in FOLLOWED:
         sheet.replace(row, name, model.get(name))
-
-
-def _describe_model(row: dict[str, Any]) -> Named:
-    return Named(row["place"], (key(row["floor"]), row.get("x"), row.get("y")))
-
-
-def _describe(row: Row) -> Named:
-    return Named(row.get("place"), (key(row.get("floor") or ""), row.get("x"), row.get("y")))
 
 
 def _is_near(one: Sequence[Any], other: Sequence[Any]) -> bool:

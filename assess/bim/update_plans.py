@@ -29,6 +29,8 @@ Files = Path | Mapping[str, bytes] | None
 class PlanUpdate:
     """The plans of one update.
 
+    `files`: the plans to write.
+
     Parameters
     ----------
     sheet : SheetUpdate, optional
@@ -39,11 +41,6 @@ class PlanUpdate:
         File names that the model had when the workbook was imported from it.
     beside : Path or mapping of str to bytes, optional
         The folder of the workbook, or the files beside it.
-
-    Attributes
-    ----------
-    files : dict of str to bytes
-        The plans to write.
     """
 
     def __init__(
@@ -103,8 +100,6 @@ class PlanUpdate:
         if self._read(name) != data:
             self.files[name] = data
 
-    # ------------------------------------------------------------ names and files
-
     def _find_name(self, wanted: str, data: bytes, first: Iterable[str]) -> str:
         """Return the first name under which a plan can be written: no file of users has it, and no other plan."""
         others = self._wanted - {key(wanted)}
@@ -130,7 +125,6 @@ class PlanUpdate:
         return there is None or is_drawn(there) or there in self._imported.files.values()
 
     def _read(self, name: str) -> bytes | None:
-        """Return a file beside the workbook, None where there is none; of one that cannot be read, nothing."""
         if not isinstance(self._beside, Path):
             return (self._beside or {}).get(name)
         path = self._beside / name

@@ -4,8 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from assess.bim.update_cells import SheetUpdate
-from assess.bim.update_changes import Change
+from assess.bim.update_cells import Change, SheetUpdate
 from assess.errors import Problem
 from assess.i18n import Text, fill, nfill
 from assess.workbook.names import is_live, split_header
@@ -52,10 +51,7 @@ class BookUpdate:
 def add_rows(update: SheetUpdate, rows: Rows) -> Problem | None:
     """Fill in new rows after the last one that is filled; formulas that are prepared there stay.
 
-    Returns
-    -------
-    Problem, optional
-        Why no row was added, where it is not certain that they belong there: a warning.
+    Returns why no row was added, where it is not certain that they belong there: a warning.
     """
     last = _find_last(update)
     why = _find_hindrance(update, last, len(rows))
@@ -73,7 +69,6 @@ def add_rows(update: SheetUpdate, rows: Rows) -> Problem | None:
 
 
 def _find_last(update: SheetUpdate) -> int:
-    """Return the last row that holds something, other than prepared formulas; that of the headers if none does."""
     table, cells = update.table, update.cells
     headers = cells.cells.get(table.header, {})
     named = {at: split_header(read_text(value))[0] for at, value in headers.items() if isinstance(value, str)}
@@ -90,7 +85,6 @@ def _find_last(update: SheetUpdate) -> int:
 
 
 def _find_hindrance(update: SheetUpdate, last: int, count: int) -> Text | str:
-    """Return why no rows can be added after a row, "" where they can."""
     table = update.table
     needed = [column.name for column in table.sheet.columns if column.required]
     if not table.header or not all(name in table.places for name in needed):

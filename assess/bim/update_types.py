@@ -44,10 +44,7 @@ class TypeUpdate:
     def match(self, pairs: Iterable[tuple[str, str]]) -> None:
         """Find out which types are which.
 
-        Parameters
-        ----------
-        pairs : iterable of (str, str)
-            The types, in the model and in the workbook, of every piece that both have.
+        `pairs`: the types, in the model and in the workbook, of every piece that both have.
         """
         sheet = self.book.sheets.get("Catalogue")
         self._own = sheet.table.with_all("type") if sheet else ()
@@ -92,7 +89,6 @@ class TypeUpdate:
 
 
 def _find_sizes(row: Mapping[str, Any]) -> tuple[float | None, ...]:
-    """Return the sizes of a type of the model [m]."""
     return tuple(None if row.get(name) is None else row[name] * CATALOGUE.column(name).factor for name in SIZES)
 
 
@@ -103,7 +99,6 @@ def _is_same(sizes: Sequence[float | None], others: Sequence[float | None]) -> b
 
 
 def _is_built_in(row: Row) -> bool:
-    """Tell whether a type of the Catalogue is as it comes with the program, in any language."""
     return (key(row.get("type")), key(row.get("source") or "")) in _list_built_in()
 
 

@@ -18,8 +18,7 @@ from typing import Any, TypeVar
 
 from assess.bim.building_model import Point
 from assess.bim.import_workbook import ImportedBuilding, list_rows, name_apart
-from assess.bim.update_cells import SheetUpdate
-from assess.bim.update_changes import RENAMED, Change, describe
+from assess.bim.update_cells import RENAMED, Change, SheetUpdate, describe
 from assess.bim.update_names import match_floors, match_rooms
 from assess.bim.update_origin import Pair, find_offset, move_rows
 from assess.bim.update_places import update_places
@@ -56,7 +55,7 @@ class Updated:
     data : bytes
         The workbook; the very bytes from before where no cell was to change.
     changes : tuple of Change
-        All that was done, and all that was not: see `assess.bim.update_changes.Change`.
+        All that was done, and all that was not: see `assess.bim.update_cells.Change`.
     problems : tuple of Problem
         Why new rows could not be added, as warnings.
     moved : Point
@@ -128,14 +127,9 @@ def update_workbook(
         patches = {one.cells.title: one.values for one in written.values()}
         data = patch_workbook(data, patches, name=name, progress=progress).data
         if not written.keys() <= _IDLE:
-            data = _store_results(data, name, progress, records)
+            inventory = read_inventory(data, records=records, strict=False, progress=progress)
+            data = patch_workbook(data, {}, find_results(data, inventory), name=name, progress=progress).data
     return Updated(data, tuple(changes), tuple(book.problems), building.moved, building.plans.files)
-
-
-def _store_results(data: bytes, name: str, progress: Progress, records: Files) -> bytes:
-    """Return a workbook whose live formulas have stored what they show now, or nothing where that is not known."""
-    inventory = read_inventory(data, records=records, strict=False, progress=progress)
-    return patch_workbook(data, {}, find_results(data, inventory), name=name, progress=progress).data
 
 
 # ---------------------------------------------------------------- the building
@@ -181,10 +175,7 @@ class _BuildingUpdate:
     def _match_items(self) -> tuple[list[Pair], list[Mapping[str, Any]]]:
         """Return the pieces that both have, and those of the model that the workbook lacks.
 
-        Raises
-        ------
-        InputError
-            If there are none that both have.
+        Raises InputError if there are none that both have.
         """
         if not self.rows["Items"]:
             message = fill("{source} holds no furniture that can be imported; {name} stays as it is.",
@@ -229,7 +220,6 @@ class _BuildingUpdate:
         self.floors = {one: own[name].get("floor") for one, name in found.items()}
 
     def _match_rooms(self, stayed: Sequence[Pair]) -> None:
-        """Find out which rooms people have renamed, by the pieces that are still on their floor."""
         known = {key(row["room"]) for row in self.rows["Items"] if row.get("room")}
         known |= {key(row["place"]) for row in self.rows["Places"]}
         trios = (
@@ -240,15 +230,12 @@ class _BuildingUpdate:
         self.rooms = match_rooms(trios, known)
 
     def _find_floor(self, name: str) -> str:
-        """Return what the workbook calls a floor of the model; a new one as the model does."""
         return self.floors.get(key(name), name)
 
     def _find_room(self, floor: str, room: str) -> str:
-        """Return what people call a room of the model on a floor of the workbook."""
         return self.rooms.get((key(floor), key(room)), room)
 
     def _note_renamed(self, pairs: Sequence[Pair]) -> None:
-        """List each room, and each type, that keeps the name that people gave to it."""
         rooms, types = dict(self.rooms), dict(self.types.renamed)
         for model, row in pairs:
             room, kind = (key(row.get("floor")), key(model.get("room") or "")), key(model.get("type") or "")
@@ -272,10 +259,7 @@ class _BuildingUpdate:
     def _update_floors(self) -> None:
         """Update the floors that both have, and add those of the model alone.
 
-        Raises
-        ------
-        WorkbookError
-            If floors cannot be added: pieces would stand on floors that are not there.
+        Raises WorkbookError if floors cannot be added: pieces would stand on floors that are not there.
         """
         sheet = self.book.sheets.get("Floors")
         own, uses = _by_floor(sheet.table) if sheet else {}, Counter(map(key, self.floors.values()))
@@ -313,7 +297,6 @@ class _BuildingUpdate:
             sheet.keep(row, "type", self.types.find(model.get("type") or ""))
 
     def _update_sizes(self, model: Mapping[str, Any], row: Row) -> None:
-        """Update the sizes, unless people have measured them."""
         sheet, origin = self.items, model.get("sizes_from")
         is_measured = _is_measured(sheet, row, origin)
         for name in SIZES:
@@ -325,7 +308,6 @@ class _BuildingUpdate:
             sheet.replace(row, "sizes_from", origin)
 
     def _name_new(self, new: Rows) -> list[dict[str, Any]]:
-        """Return the rows of new pieces, with names that no other row has, and floors and rooms as people call them."""
         taken = [str(row.get("item")) for row in self.items.table.with_all("item")]
         names = name_apart([*taken, *(row["item"] for row in new)])[len(taken) :]
         found = []
@@ -353,7 +335,6 @@ def _is_measured(sheet: SheetUpdate, row: Row, origin: str | None) -> bool:
 
 
 def _by_id(rows: Iterable[_Row]) -> dict[str, list[_Row]]:
-    """Return rows by their Source ID, without those that have none."""
     found: dict[str, list[_Row]] = {}
     for row in rows:
         if one := read_text(row.get("source_id") or ""):
@@ -362,7 +343,6 @@ def _by_id(rows: Iterable[_Row]) -> dict[str, list[_Row]]:
 
 
 def _pair(own: Iterable[Row], model: Iterable[Mapping[str, Any]]) -> Iterator[Pair]:
-    """Yield the pieces that both have, by Source IDs that each has once."""
     known = _by_id(own)
     for one, rows in _by_id(model).items():
         if len(rows) == 1 == len(known.get(one, ())):
@@ -378,5 +358,4 @@ def _list_sources(book: BookUpdate, suffix: str) -> Iterator[str]:
 
 
 def _by_floor(table: Table) -> dict[str, Row]:
-    """Return the floors of a workbook by their names as names are compared; of two alike the first."""
     return {key(row.get("floor")): row for row in reversed(table.with_all("floor"))}

@@ -90,9 +90,6 @@ def _end_incomplete(path: Path, problems: Sequence[Problem]) -> Never:
     raise typer.Exit(1)
 
 
-# ---------------------------------------------------------------- the corrected copy
-
-
 def _write_corrected(path: Path, out: Path, *, replaces: bool) -> "Inventory":
     """Write the corrected workbook, if there is anything to correct, and print what was changed."""
     from assess.pipeline.corrected import correct_workbook

@@ -102,7 +102,7 @@ def _build(source: Path, out: Path, progress: Progress, choices: Mapping[str, An
     from assess.bim.read_source import read_source
 
     found = read_source(source, source.name, progress, **choices)
-    plans = _place_plans(out, found)
+    plans = {out.parent / name: data for name, data in found.files.items()}
     _check_plans(plans, replaces=replaces)
     return _Made(progress.wait_for(lambda: build_workbook(found)), plans, found, found.is_complete)
 
@@ -144,10 +144,6 @@ def _check_unchanged(out: Path, data: bytes) -> None:
         raise OutputError(f"{out.name} was changed while the model was read: run the import again.")
 
 
-def _place_plans(out: Path, found: "ImportedBuilding") -> dict[Path, bytes]:
-    return {out.parent / name: data for name, data in found.files.items()}
-
-
 def _describe_written(out: Path, made: _Made, *, is_new: bool) -> str:
     drawn = sum(path.suffix == ".svg" for path in made.plans)
     parts = [*([str(out)] if made.data is not None else ()), *([count(drawn, "plan")] if drawn else ())]
@@ -162,7 +158,6 @@ def _quote(path: Path) -> str:
 
 
 def _check_choices(routes: Routes, *, replaces: bool, updates: bool) -> None:
-    """Raise InputError where choices exclude each other."""
     if updates and replaces:
         raise InputError("--update keeps what is in the workbook, --force replaces it: give one of them.")
     if updates and routes is not Routes.none:

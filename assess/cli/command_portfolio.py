@@ -10,6 +10,7 @@ import typer
 from assess.cli.completion import list_of, one_of
 from assess.cli.console import InterruptedWorkError, count, print_error, show_progress
 from assess.cli.options import (
+    ClassBy,
     GroundMotions,
     Runs,
     Scale,
@@ -38,7 +39,7 @@ EXAMPLES = (
     "assess portfolio index.csv --ground-motions oq-export --out city --background coast.geojson",
     "assess portfolio buildings --formats parquet,html --language it --scale 1.2 --ideal --route-risk 0.01",
     "assess portfolio /share/buildings --out /share/city --scheduler tcp://10.0.0.5:8786",
-    "assess portfolio buildings --jobs 4",
+    'assess portfolio buildings --verify none --class-by "proposed OR" --jobs 4',
 )
 FORMATS = ("parquet", "xlsx", "html", "pdf")
 """Those of `assess.portfolio.run_portfolio`, which takes long to import."""
@@ -70,6 +71,7 @@ def command(
     runs: Runs = None,
     seed: Seed = None,
     scenario: Scenario = None,
+    class_by: ClassBy = None,
     scale: Scale = 1.0,
     ideal: Annotated[
         bool,
@@ -129,7 +131,7 @@ def command(
     if ideal and verify == "none":
         raise InputError("--ideal is about the simulation: leave out --ideal or --verify none")
     given = read_settings(verify=verify, runs=runs, seed=seed, scenario=scenario, scale=scale, ideal=ideal,
-                          route_risk=route_risk)  # fmt: skip
+                          route_risk=route_risk, class_by=class_by)  # fmt: skip
     folder = out or Path(f"{source.resolve().stem}-portfolio")
     if example:
         _check_extras(wanted, scheduler)
@@ -191,7 +193,7 @@ def _say_repeat(source: Path, settings: Settings, shakemap: Path | None, ground_
     named = {
         "--shakemap": shakemap and _quote(shakemap), "--ground-motions": ground_motions and _quote(ground_motions),
         **{f"--{name.replace('_', '-')}": shlex.quote(str(getattr(settings, name)))
-           for name in ("verify", "runs", "seed", "scenario", "scale", "route_risk")
+           for name in ("verify", "runs", "seed", "scenario", "scale", "route_risk", "class_by")
            if getattr(settings, name) != getattr(default, name)},
     }  # fmt: skip
     options = [f"{option} {value}" for option, value in named.items() if value is not None]
@@ -219,8 +221,8 @@ def _read_background(file: Path | None) -> "Background | None":
 
 def _tell(result: "PortfolioResult", settings: Settings) -> None:
     """Print what was found; exit status 1 where a building was skipped."""
-    from assess.portfolio.building_words import name_skipped
     from assess.portfolio.city_totals import build_totals
+    from assess.portfolio.piece_words import name_skipped
 
     for line in describe_city(build_totals(result.view), result, settings):
         typer.echo(line)
@@ -239,8 +241,7 @@ def _tell(result: "PortfolioResult", settings: Settings) -> None:
 def describe_city(totals: "CityTotals", result: "PortfolioResult", settings: Settings) -> Iterator[str]:
     """Yield what was assessed, what is expected to fall, apart by inventory and basis, and what was skipped."""
     from assess.portfolio.city_totals import is_made_up
-    from assess.portfolio.city_words import list_copies, list_setting_cautions, say_ground
-    from assess.portfolio.ground_words import list_ground_cautions
+    from assess.portfolio.city_words import list_copies, list_ground_cautions, list_setting_cautions, say_ground
 
     earlier = f" ({result.kept:,} of them by an earlier run)" if result.kept else ""
     yield f"{count(totals.assessed, 'building')} assessed{earlier}, {totals.skipped:,} skipped."

@@ -10,6 +10,7 @@ from assess.cli.completion import list_of, one_of
 from assess.cli.console import print_warnings, show_progress
 from assess.cli.opening import open_file
 from assess.cli.options import (
+    ClassBy,
     GroundMotions,
     Jobs,
     Runs,
@@ -45,6 +46,7 @@ EXAMPLES = (
     "assess run building.xlsx --language it --accessible --route-risk 0.01",
     "assess run building.xlsx --method own.toml --template my-templates",
     "assess run building.xlsx --city",
+    'assess run building.xlsx --verify none --class-by "proposed OR"',
     "assess run building.xlsx --shakemap grid.xml",
     "assess run building.xlsx --ground-motions oq-export --out scenarios",
 )
@@ -57,7 +59,7 @@ PLAIN = frozenset(("json", "csv", "xlsx"))
 """Formats that need no series of figures."""
 OPENED = ("html", "pdf", "xlsx")
 """Reports that --open opens: the first of these that was written."""
-UNCONFIRMED = "simulation gave a lower class than the formula, but its motions may be too weak to rely on."
+UNCONFIRMED = "nothing is known of the building, or the motions may be too weak for a lower class to rest on."
 """What the count of unconfirmed pieces means."""
 
 
@@ -83,6 +85,7 @@ def command(
     shakemap: ShakeMapFile = None,
     ground_motions: GroundMotions = None,
     scenario: Scenario = None,
+    class_by: ClassBy = None,
     scale: Scale = 1.0,
     anchor: Annotated[
         str | None,
@@ -158,7 +161,7 @@ def command(
         raise InputError("--ideal is about the simulation: leave out --ideal or --verify none")
     settings = read_settings(
         verify=verify, runs=runs, seed=seed, scenario=scenario, scale=scale, ideal=ideal, scale_motions=scale_motions,
-        route_risk=route_risk, anchor=anchor, city=city,
+        route_risk=route_risk, anchor=anchor, city=city, class_by=class_by,
     )  # fmt: skip
     _check_folder(folder, wanted)
     options = _read_options(language, templates, accessible)
@@ -294,7 +297,12 @@ def describe_result(results: "Results") -> Iterator[str]:
     rows = tuple(results)
     counts = count("", rows)
     for risk in reversed(RiskClass):
-        yield f"{risk.label:<13} {counts.by_class[risk]:>6,} {'piece' if counts.by_class[risk] == 1 else 'pieces'}"
+        span = counts.say(risk)
+        unit = "piece" if counts.by_class[risk] == 1 else "pieces"
+        note = f" ({span} by the sampling intervals)" if "–" in span else ""
+        yield f"{risk.label:<13} {counts.by_class[risk]:>6,} {unit}{note}"
+    if counts.cannot_rock:
+        yield f"{'  cannot rock':<13} {counts.cannot_rock:>6,} of the low ones: too stocky, or no motion can start them"
     if counts.unconfirmed:
         ways = [*list_ways_to_settle(list_apart(rows, "unconfirmed")), "Records of your own: --motions."]
         yield " ".join([f"{'  unconfirmed':<13} {counts.unconfirmed:>6,}, not counted above: {UNCONFIRMED}", *ways])

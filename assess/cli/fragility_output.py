@@ -92,11 +92,11 @@ class Curves:
     def cautions(self) -> Iterator[str]:
         """Yield what in this building makes the curves less certain, and what was left out."""
         every = [one for curve in self.found.curves for one in curve.motions]
-        if floors := self._list_floors(one for one in every if one.is_generic):
-            yield f"Only peaks are known for {name_floors(floors)}: the motions follow a generic spectrum."
+        if floors := self._list_floors(one for one in every if one.is_assumed):
+            yield f"No record is known for {name_floors(floors)}: ground motion and building are drawn."
         for chosen, why, fix in (
-            ((one for one in every if one.is_unshaped), "as neither T1 nor the building's height is known",
-             "Enter the Period T1 or the Height in the sheet Building."),
+            ((one for one in every if one.is_unknown), "as nothing is known of the building",
+             "Enter Storeys or the Period T1 in the sheet Building."),
             ((one for one in every if one.is_weak), "as they are weaker than the floor's", ""),
         ):  # fmt: skip
             if floors := self._list_floors(chosen):
@@ -160,8 +160,8 @@ class Curves:
             **_range("centre_of_gravity_{}_percent", [_to_percent(item.centre_of_gravity) for item in one.items]),
             **_range("rocks_from_{}_g", [value / GRAVITY for value in thresholds]),
             **_range("pfv_per_pfa_{}_s", ratios),
-            "generic_spectrum": any(motion.is_generic for motion in motions),
-            "unknown_period": any(motion.is_unshaped for motion in motions),
+            "assumed_motion": any(motion.is_assumed for motion in motions),
+            "unknown_building": any(motion.is_unknown for motion in motions),
             "weak_motions": any(motion.is_weak for motion in motions),
             "may_be_too_low": one.may_be_too_low,
         }
@@ -288,8 +288,8 @@ def _describe_motions(one: FloorMotions) -> dict[str, Any]:
         "mean_pfa_g": one.mean_pfa / GRAVITY,
         "mean_pfv_cm_s": 100 * one.mean_pfv,
         "pfv_per_pfa_s": one.pfv_per_pfa,
-        "generic_spectrum": one.is_generic,
-        "unknown_period": one.is_unshaped,
+        "assumed_motion": one.is_assumed,
+        "unknown_building": one.is_unknown,
         "weak_motions": one.is_weak,
     }
 

@@ -91,9 +91,6 @@ def _hide_interrupts(error: "sys.UnraisableHookArgs") -> None:
         sys.__unraisablehook__(error)
 
 
-# ---------------------------------------------------------------- during the work
-
-
 @contextmanager
 def cancel_by_signal(cancel: threading.Event) -> Iterator[None]:
     """Have the first signal set `cancel`, and the next one raise KeyboardInterrupt in the main thread."""

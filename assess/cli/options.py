@@ -12,7 +12,7 @@ import typer
 from assess.cli.completion import one_of
 from assess.cli.console import count
 from assess.errors import InputError, OutputError
-from assess.settings import AUTO, MOST_SCALE, RUNS, SCENARIOS, SEED, Settings, change_settings
+from assess.settings import AUTO, CLASS_BY, MOST_SCALE, RUNS, SCENARIOS, SEED, Settings, change_settings
 
 if TYPE_CHECKING:
     from assess.motion.site_ground import GroundField
@@ -41,6 +41,14 @@ Scenario = Annotated[
         help=f"Source of the floor motion: {', '.join(SCENARIOS)}.",
         show_default="the workbook's",
         autocompletion=one_of(SCENARIOS),
+    ),
+]
+ClassBy = Annotated[
+    str | None,
+    typer.Option(
+        help=f"Formula that gives the class of what is not simulated: {', '.join(CLASS_BY)}.",
+        show_default="the workbook's",
+        autocompletion=one_of(CLASS_BY),
     ),
 ]
 Jobs = Annotated[

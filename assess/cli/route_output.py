@@ -72,10 +72,10 @@ class Sweep:
     def cautions(self) -> Iterator[str]:
         """Yield what in this building makes the chances less certain."""
         if floors := self.fragility.generic:
-            yield (f"Only peaks are known for {name_floors(floors)}: the motions follow a generic spectrum.")
+            yield f"No record is known for {name_floors(floors)}: ground motion and building are drawn."
         for floors, why, fix in (
-            (self.fragility.unshaped, "as neither T1 nor the building's height is known",
-             "Enter the Period T1 or the Height in the sheet Building."),
+            (self.fragility.unshaped, "as nothing is known of the building",
+             "Enter Storeys or the Period T1 in the sheet Building."),
             (self.fragility.weak, "as they are weaker than the floor's",
              "assess run --motions takes motions of your own."),
         ):  # fmt: skip

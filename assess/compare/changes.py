@@ -25,6 +25,7 @@ from assess.compare.past_run import (
 from assess.errors import InputError
 from assess.i18n import fill
 from assess.natural import natural_key
+from assess.results import CANNOT_ROCK
 from assess.workbook.names import key
 
 SAME = 1e-6
@@ -220,20 +221,13 @@ class Comparison:
         return _add_up([one for one, _ in both], [one for _, one in both], is_comparable=True)
 
     def _is_whole(self, one: PieceChange) -> bool:
-        """Whether a row is in the sums of both runs, or of neither."""
         counted = [one.before is not None and self.before.is_counted(one.before)]
         counted.append(one.after is not None and self.after.is_counted(one.after))
         return counted[0] == counted[1] and (not counted[0] or not one.more)
 
 
 def compare(before: PastRun, after: PastRun) -> Comparison:
-    """Compare two runs.
-
-    Raises
-    ------
-    InputError
-        If they have no item in common: they are of different buildings.
-    """
+    """Compare two runs; raises InputError if they have no item in common: they are of different buildings."""
     pieces = _match(before.pieces, after.pieces, lambda one: key(one.item))
     if (before.pieces or after.pieces) and not any(one and other for one, other in pieces):
         raise InputError(
@@ -263,14 +257,11 @@ def compare(before: PastRun, after: PastRun) -> Comparison:
 def _match(
     before: Sequence[_Row], after: Sequence[_Row], name: Callable[[_Row], object]
 ) -> list[tuple[_Row | None, _Row | None]]:
-    """Return the rows of two runs by their names, None where a run lacks it."""
     was, now = {name(one): one for one in before}, {name(one): one for one in after}
     return [(was.get(one), now.get(one)) for one in dict.fromkeys((*was, *now))]
 
 
 def _arrange(changes: Iterable[_Row], rank: Callable[[_Row], tuple[Direction, float, str]]) -> tuple[_Row, ...]:
-    """Return changes in the order of their directions, then of a number, then of their names."""
-
     def place(one: _Row) -> tuple[object, ...]:
         direction, number, name = rank(one)
         return ORDER.index(direction), number, natural_key(name)
@@ -296,14 +287,13 @@ def _compare_piece(was: PastRun, now: PastRun, before: PastPiece | None, after: 
 
 
 def _direct(before: PastPiece | None, after: PastPiece | None) -> tuple[Direction, bool | None]:
-    """Return where a piece goes, and whether the difference lies within the sampling interval."""
     if before is None or after is None:
         return (Direction.ADDED if before is None else Direction.REMOVED), None
     if before.is_held or after.is_held:
         if before.is_held and after.is_held:
             return Direction.SAME, None
         return (Direction.WORSE if before.is_held else Direction.BETTER), None
-    if before.basis != after.basis:
+    if before.basis != after.basis and CANNOT_ROCK not in (before.basis, after.basis):
         return Direction.UNCLEAR, None
     is_within = lies_within(before.chance, after.chance)
     if before.risk != after.risk:
@@ -312,7 +302,6 @@ def _direct(before: PastPiece | None, after: PastPiece | None) -> tuple[Directio
 
 
 def _direct_chance(before: PastChance, after: PastChance, is_within: bool | None) -> Direction:
-    """Return where a chance goes; nowhere where the difference lies within the sampling interval."""
     difference = after.probability - before.probability
     if is_within or abs(difference) <= SAME:
         return Direction.SAME
@@ -333,14 +322,12 @@ def _is_equal(one: object, other: object) -> bool:
 
 
 def _difference(change: PieceChange) -> float:
-    """Return how far the chance of a piece goes up, for the order of lists; 0 where that cannot be told."""
     if change.before is None or change.after is None or change.direction == Direction.UNCLEAR:
         return 0.0
     return change.after.chance.probability - change.before.chance.probability
 
 
 def _compare_states(before: PastState | None, after: PastState | None, is_comparable: bool) -> StateChange:
-    """Compare a route or a room; chances only where both runs rest on the same basis."""
     one = _either(after, before)
     direction, is_within = _direct_state(before, after, is_comparable)
     return StateChange(
@@ -356,7 +343,6 @@ def _compare_states(before: PastState | None, after: PastState | None, is_compar
 def _direct_state(
     before: PastState | None, after: PastState | None, is_comparable: bool
 ) -> tuple[Direction, bool | None]:
-    """Return where a route or room goes, and whether the difference lies within the intervals of its chances."""
     if before is None or after is None:
         return (Direction.ADDED if before is None else Direction.REMOVED), None
     was, now = (one.chance if one.state in SEVERITY else None for one in (before, after))
@@ -375,7 +361,6 @@ def _direct_state(
 
 
 def _either(one: _Row | None, other: _Row | None) -> _Row:
-    """Return the first of two rows that is there; one is."""
     found = other if one is None else one
     if found is None:
         raise ValueError("a change has neither side")

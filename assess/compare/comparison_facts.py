@@ -64,7 +64,6 @@ def _list_origins(before: PastRun, after: PastRun) -> Iterator[Fact]:
 
 
 def _list_settings(before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[Fact]:
-    """Yield the settings that differ, and those that are always shown, in the order of `say.SETTINGS`."""
     for name in dict.fromkeys((*say.SETTINGS, *sorted({*before, *after}))):
         was, now = before.get(name), after.get(name)
         if was != now or name in say.ALWAYS:
@@ -79,7 +78,6 @@ def _list_motions(before: PastRun, after: PastRun) -> Iterator[Fact]:
 
 
 def _say_motions(run: PastRun, other: PastRun) -> str:
-    """Return how many files of motions a run read, and which of them the other did not."""
     own = [name for name, digest in run.motions.items() if other.motions.get(name) != digest]
     if not own:
         return ngettext("{n:,} file", "{n:,} files", len(run.motions))
@@ -94,7 +92,6 @@ def _say_motions(run: PastRun, other: PastRun) -> str:
 def _list_differing(
     before: Mapping[str, Any], after: Mapping[str, Any], names: Mapping[str, str], left_out: Sequence[str] = ()
 ) -> Iterator[Fact]:
-    """Yield the entries of two records that differ; `names` are their labels, else their keys."""
     for name in dict.fromkeys((*before, *after)):
         was, now = before.get(name), after.get(name)
         if was != now and name not in left_out:

@@ -113,7 +113,6 @@ def check_out(folder: Path, formats: Sequence[str]) -> None:
 
 
 def _arrange(formats: Sequence[str]) -> list[str]:
-    """Return formats in the order in which they are written."""
     unknown = [name for name in formats if name not in FILES]
     if unknown:
         known = ", ".join(sorted(FILES))
@@ -122,7 +121,6 @@ def _arrange(formats: Sequence[str]) -> list[str]:
 
 
 def _write_all(job: _Job, formats: Sequence[str]) -> PdfUnavailableError | None:
-    """Write the formats into the stage; return why there is no PDF, where it was to be written."""
     missing: PdfUnavailableError | None = None
     with job.progress.stage("rendering", ", ".join(formats)) as stage:
         for at, name in enumerate(formats):
@@ -140,7 +138,6 @@ def _write_all(job: _Job, formats: Sequence[str]) -> PdfUnavailableError | None:
 
 
 def _write_one(job: _Job, name: str) -> None:
-    """Write a format into the stage, down to the disk, and list it."""
     path, data = job.stage / FILES[name], job.stage / FILES["json"]
     if name == "json":
         write_data(job.view.found, path, dict(sorted(job.listed.items())))

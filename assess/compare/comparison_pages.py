@@ -78,10 +78,6 @@ def _say_adopted(piece: PastPiece) -> str:
     return _("free-standing: {chance}", chance=chance) if piece.is_held else chance
 
 
-def _say_standing(standing: str) -> str:
-    return words.DASH if standing == ABSENT else say.label_standing(standing)
-
-
 FILTERS = {
     "cut": words.cut,
     "in_share": say_share,
@@ -90,7 +86,7 @@ FILTERS = {
     "say_chance": say.say_chance,
     "say_direction": say.say_direction,
     "say_inputs": say.say_inputs,
-    "standing_label": _say_standing,
+    "standing_label": lambda standing: words.DASH if standing == ABSENT else say.label_standing(standing),
     "standing_style": say.style_standing,
     "state_name": say.name_state,
 }

@@ -26,12 +26,7 @@ Side = Callable[[Any], Any]
 def write_tables(view: View, path: Path, progress: Progress = SILENT) -> None:
     """Write compare.xlsx in the language in use.
 
-    Raises
-    ------
-    OSError
-        If the file cannot be written.
-    CancelledError
-        If `progress` was cancelled; no file is left.
+    Raises OSError if the file cannot be written; CancelledError if `progress` was cancelled (no file is left).
     """
 
     def write(book: Any) -> None:
@@ -67,11 +62,7 @@ def _write_sheets(book: Any, view: View, progress: Progress) -> None:
         write(pen, page, view)
 
 
-# ---------------------------------------------------------------- one sheet each
-
-
 def _write_summary(pen: Pen, page: Any, view: View) -> None:
-    """Write what gets worse, then the counts."""
     page.set_column(0, 0, 52)
     page.set_column(1, 2, 12)
     page.set_column(3, 3, 34)
@@ -115,7 +106,6 @@ _TONES: dict[str, dict[str, Any]] = {
 
 
 def _write_matrix(pen: Pen, page: Any, view: View) -> None:
-    """Write the pieces by class before and after."""
     matrix = view.build_matrix()
     labels = [
         _("BEFORE ↓ AFTER →"),
@@ -143,7 +133,6 @@ def _write_matrix(pen: Pen, page: Any, view: View) -> None:
 
 
 def _write_items(pen: Pen, page: Any, view: View) -> None:
-    """Write every row of furniture."""
     pen.listing(page, _list_item_columns(), view.found.pieces)
 
 
@@ -178,7 +167,6 @@ def _list_item_columns() -> list[Column]:
 def _write_states(
     pen: Pen, page: Any, _view: View, *, label: str, rows: Sequence[StateChange], with_floor: bool
 ) -> None:
-    """Write every route or room."""
     sides = ((_("BEFORE"), _before), (_("AFTER"), _after))
     columns = [
         Column(_("Change"), 20, name_direction),
@@ -193,8 +181,6 @@ def _write_states(
 
 
 def _list_chances(run: str, read: Callable[[Any], PastChance | None]) -> list[Column]:
-    """Return the columns of a chance and its interval."""
-
     def part(name: str, one: Any) -> float | None:
         found = read(one)
         return None if found is None else getattr(found, name)
@@ -207,7 +193,6 @@ def _list_chances(run: str, read: Callable[[Any], PastChance | None]) -> list[Co
 
 
 def _write_facts(pen: Pen, page: Any, view: View) -> None:
-    """Write what the two runs are."""
     columns = [
         Column(_("What"), 40, lambda one: one.label),
         Column(_("BEFORE"), 44, lambda one: one.before),
@@ -215,9 +200,6 @@ def _write_facts(pen: Pen, page: Any, view: View) -> None:
         Column(_("Differs"), 10, lambda one: _say_flag(one.differs)),
     ]
     pen.listing(page, columns, list_facts(view.found))
-
-
-# ---------------------------------------------------------------- cells
 
 
 def name_direction(one: PieceChange | StateChange) -> str:
@@ -234,7 +216,6 @@ def _after(one: PieceChange | StateChange) -> Any:
 
 
 def _read(side: Side, read: Callable[[Any], Any], one: Any) -> Any:
-    """Return what `read` finds in a side of a change, None where the run lacks the row."""
     found: PastPiece | None = side(one)
     return None if found is None else read(found)
 

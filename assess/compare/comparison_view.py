@@ -210,7 +210,6 @@ class View:
         return [text for text in texts if text]
 
     def _name_unjoined(self) -> list[str]:
-        """Return which rooms no segment joins to a way out."""
         was, now = self.before.unjoined_rooms, self.after.unjoined_rooms
         if was == now:
             return [_say_unjoined_in_both(len(now), _name_rooms(now))] if now else []
@@ -300,7 +299,6 @@ class View:
         return lines
 
     def _count_left_out(self) -> list[CountLine]:
-        """Return how many routes and rooms the expected numbers leave out in either run; nothing where none."""
         was, now = self.before, self.after
         counts = (
             (_("left out of these averages: routes not known"), was.unknown_routes, now.unknown_routes),
@@ -313,7 +311,6 @@ class View:
     def _count_states(
         self, before: Sequence[PastState], after: Sequence[PastState], label: Callable[[str], str]
     ) -> list[CountLine]:
-        """Return the routes or rooms by state."""
         was, now = count_states(before), count_states(after)
         return [
             _line(
@@ -468,7 +465,6 @@ def _say_within(n: int) -> str:
 
 
 def _name_row(one: PieceChange, count: int) -> str:
-    """Return a row by its name, with the number of its pieces where that is not one."""
     name = words.cut(one.piece.item, 30)
     return f"{name} (×{words.NO_BREAK}{number(count, ',d')})" if count > 1 else name
 

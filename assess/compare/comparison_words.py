@@ -5,10 +5,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from assess.compare.changes import ABSENT, Direction, PieceChange, StateChange, Total
-from assess.compare.past_run import ANCHORED, BY_FORMULA, UNCONFIRMED, PastChance, PastRun
+from assess.compare.past_run import ANCHORED, BY_FORMULA, INPUTS, UNCONFIRMED, PastChance, PastRun
 from assess.i18n import Text, fill, ngettext, number
 from assess.i18n import gettext as _
 from assess.report import words
+from assess.results import CANNOT_ROCK
 from assess.risk import RiskClass
 
 LONGEST = 60
@@ -38,27 +39,6 @@ SETTINGS: Mapping[str, Text] = {
 """Settings by name; of later versions' others the name is shown."""
 ALWAYS = ("scale", "anchor")
 """Settings that are shown even where both runs have the same."""
-INPUTS: Mapping[str, tuple[Text, str]] = {
-    "floor": (fill("Floor"), ""),
-    "room": (fill("Room"), ""),
-    "type": (fill("Type"), ""),
-    "quantity": (fill("Pieces"), ""),
-    "breadth_cm": (fill("Breadth"), "cm"),
-    "width_cm": (fill("Width"), "cm"),
-    "height_cm": (fill("Height"), "cm"),
-    "sizes_from": (fill("Sizes from"), ""),
-    "centre_of_gravity": (fill("Centre of gravity"), ""),
-    "weight_kg": (fill("Weight"), "kg"),
-    "friction": (fill("Friction"), ""),
-    "anchored": (fill("Anchored"), ""),
-    "bracket_height_cm": (fill("Bracket height"), "cm"),
-    "bracket_capacity_kn": (fill("Bracket capacity"), "kN"),
-    "against_wall": (fill("Against wall"), ""),
-    "axis": (fill("Axis"), ""),
-    "pfa_g": (fill("PFA"), "g"),
-    "pfv_cm_s": (fill("PFV"), "cm/s"),
-}
-"""Inputs of a piece by field, with their units."""
 _DIRECTIONS: Mapping[Direction, Text] = {
     Direction.WORSE: fill("worse"),
     Direction.RISES: fill("higher chance"),
@@ -79,6 +59,7 @@ _BASES: Mapping[str, Text] = {
     "simulated": fill("simulated"),
     "formula": fill("by formula"),
     "unconfirmed": fill("unconfirmed"),
+    CANNOT_ROCK: fill("cannot rock"),
 }
 _CLASSES = {risk.word: risk for risk in RiskClass}
 _SYMBOLS = {UNCONFIRMED: words.UNCONFIRMED, BY_FORMULA: words.BY_FORMULA, ANCHORED: words.ANCHORED}

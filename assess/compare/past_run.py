@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from assess.i18n import Text, fill
+from assess.results import CANNOT_ROCK
 from assess.risk import RiskClass
 from assess.route_results import RouteState
 
@@ -15,6 +17,27 @@ UNCONFIRMED, BY_FORMULA, ANCHORED = "unconfirmed", "by formula", "anchored"
 APART = (UNCONFIRMED, BY_FORMULA, ANCHORED)
 """What stands outside the classes of a run."""
 NOT_KNOWN = str(RouteState.NOT_KNOWN)
+INPUTS: Mapping[str, tuple[Text, str]] = {
+    "floor": (fill("Floor"), ""),
+    "room": (fill("Room"), ""),
+    "type": (fill("Type"), ""),
+    "quantity": (fill("Pieces"), ""),
+    "breadth_cm": (fill("Breadth"), "cm"),
+    "width_cm": (fill("Width"), "cm"),
+    "height_cm": (fill("Height"), "cm"),
+    "sizes_from": (fill("Sizes from"), ""),
+    "centre_of_gravity": (fill("Centre of gravity"), ""),
+    "weight_kg": (fill("Weight"), "kg"),
+    "friction": (fill("Friction"), ""),
+    "anchored": (fill("Anchored"), ""),
+    "bracket_height_cm": (fill("Bracket height"), "cm"),
+    "bracket_capacity_kn": (fill("Bracket capacity"), "kN"),
+    "against_wall": (fill("Against wall"), ""),
+    "axis": (fill("Axis"), ""),
+    "pfa_g": (fill("PFA"), "g"),
+    "pfv_cm_s": (fill("PFV"), "cm/s"),
+}
+"""Inputs of a piece, whose change explains that of its chance, by field: label and unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +62,7 @@ class PastPiece:
     is_held : bool
         Whether it counts as anchored: then it has no class.
     basis : str
-        What its chance rests on: "simulated", "formula", or "unconfirmed", where the formula's stands.
+        What its chance rests on: one of `assess.results.BASES`.
     risk : RiskClass
         The adopted class.
     chance : PastChance
@@ -160,13 +183,16 @@ class PastRun:
         return "simulated" if self.is_simulated else "formula"
 
     def is_counted(self, piece: PastPiece) -> bool:
-        """Whether a piece is in the classes and sums of the run: free-standing, and of the basis of the run."""
-        return not piece.is_held and piece.basis == self.main_basis
+        """Whether a piece is in the classes and sums of the run: free-standing, and of the basis of the run.
+
+        One that cannot rock is.
+        """
+        return not piece.is_held and piece.basis in (self.main_basis, CANNOT_ROCK)
 
     def standing(self, piece: PastPiece) -> str:
         """Return the class of a piece in words, or one of `APART`."""
         if piece.is_held:
             return ANCHORED
-        if piece.basis == self.main_basis:
+        if self.is_counted(piece):
             return piece.risk.word
         return UNCONFIRMED if piece.basis == UNCONFIRMED else BY_FORMULA

@@ -26,27 +26,6 @@ COMPARISON = "comparison"
 """Entry that tells compare.json, which is no run, from results.json."""
 MOST_BYTES = 1 << 30
 """Size [bytes] above which a file is not read: 20,000 items take a tenth of it."""
-INPUTS = (
-    "floor",
-    "room",
-    "type",
-    "quantity",
-    "breadth_cm",
-    "width_cm",
-    "height_cm",
-    "sizes_from",
-    "centre_of_gravity",
-    "weight_kg",
-    "friction",
-    "anchored",
-    "bracket_height_cm",
-    "bracket_capacity_kn",
-    "against_wall",
-    "axis",
-    "pfa_g",
-    "pfv_cm_s",
-)
-"""Fields of a piece whose change explains that of its chance."""
 _CLASSES = {risk.word: risk for risk in RiskClass}
 _TOP = ("building", "floors", "items", "routes")
 _MISSING = object()
@@ -83,7 +62,6 @@ def read_record(path: Path) -> tuple[past.PastRun, Mapping[str, Any], "Reader"]:
 
 
 def _load(path: Path, file: Path) -> tuple[bytes, datetime.datetime]:
-    """Return the bytes of a file and when it was written."""
     try:
         if not file.is_file():
             if path.is_dir():
@@ -114,7 +92,6 @@ def _load(path: Path, file: Path) -> tuple[bytes, datetime.datetime]:
 
 
 def _parse(file: Path, data: bytes) -> Mapping[str, Any]:
-    """Return the object in JSON that a file holds."""
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -155,7 +132,6 @@ def _describe_foreign(file: Path) -> Text:
 
 
 def _check_origin(file: Path, record: Mapping[str, Any]) -> None:
-    """Raise InputError unless a record is that of a run, by a version whose schema is read."""
     schema, origin = record.get("schema"), record.get("assess")
     if not isinstance(schema, str) or not isinstance(origin, dict):
         raise InputError(_describe_foreign(file))
@@ -432,11 +408,10 @@ def _read_inputs(row: Mapping[str, Any]) -> dict[str, Any]:
     if bracket.get("is_height_assumed") is True:
         found["bracket_height_cm"] = None
     found["sizes_from"] = found.get("sizes_from") or MEASURED  # results before 5.2 do not tell it
-    return {name: _plain(found.get(name)) for name in INPUTS}
+    return {name: _plain(found.get(name)) for name in past.INPUTS}
 
 
 def _plain(value: Any) -> Any:
-    """Return a value that is shown as it is: a text on one line, a flag, a number; None of anything else."""
     if isinstance(value, str):
         return plain_line(value)
     is_shown = isinstance(value, bool) or (isinstance(value, int | float) and -_MOST < value < _MOST)
@@ -444,7 +419,6 @@ def _plain(value: Any) -> Any:
 
 
 def _is_number(value: Any) -> bool:
-    """Whether a value is a finite number from 0 whose size a float can hold."""
     return (
         isinstance(value, int | float) and not isinstance(value, bool) and 0 <= value < 1e300 and math.isfinite(value)
     )

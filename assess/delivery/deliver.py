@@ -3,12 +3,12 @@
 import os
 import shutil
 import stat
+import sys
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from assess.delivery.disk import flush_file, flush_folder, write_through
-from assess.delivery.exchange import can_exchange, exchange
 from assess.delivery.folder_lock import locked
 from assess.delivery.moves import Move, has_journal, plan_move, recover
 from assess.delivery.stages import NEW, note_exchange, staging
@@ -18,6 +18,8 @@ from assess.i18n import fill
 from assess.progress import SILENT, Progress
 
 # ---------------------------------------------------------------- a folder
+
+_AT_FDCWD, _RENAME_EXCHANGE, _RENAME_SWAP = -100, 2, 2
 
 
 @contextmanager
@@ -163,7 +165,6 @@ def _is_stood_in(folder: Path) -> bool:
 
 
 def _move(stage: Path, target: Path, old: Collection[str]) -> None:
-    """Move the files one by one."""
     with ExitStack() as stack:
         inside = stage if stage.parent == target else stack.enter_context(staging(target))
         if inside != stage:
@@ -220,7 +221,9 @@ def save(files: Mapping[Path, bytes]) -> None:
             for path, data in files.items():
                 folder = path.parent.resolve()
                 if folder not in stages:
-                    made += _make_folders(folder)
+                    missing = [one for one in (folder, *folder.parents) if not one.exists()][::-1]
+                    folder.mkdir(parents=True, exist_ok=True)
+                    made += missing
                     stages[folder] = stack.enter_context(staging(folder))
                 write_through(stages[folder] / NEW / path.name, data)
             _place(stages, stack)
@@ -229,13 +232,6 @@ def save(files: Mapping[Path, bytes]) -> None:
             with suppress(OSError):
                 folder.rmdir()
         raise
-
-
-def _make_folders(folder: Path) -> list[Path]:
-    """Make a folder and those above it that are missing; return them, from the top."""
-    missing = [one for one in (folder, *folder.parents) if not one.exists()][::-1]
-    folder.mkdir(parents=True, exist_ok=True)
-    return missing
 
 
 @contextmanager
@@ -263,3 +259,27 @@ def _place(stages: Mapping[Path, Path], stack: ExitStack) -> None:
         finish_move(folder)
     with moving():
         _move_all([plan_move(folder, stage) for folder, stage in stages.items()])
+
+
+def can_exchange() -> bool:
+    """Whether this system has such a call; a file system may refuse it."""
+    return sys.platform in ("linux", "darwin")
+
+
+def exchange(one: Path, other: Path) -> bool:
+    """Exchange two folders; False if the system or the file system cannot, and then nothing has changed.
+
+    Linux: renameat2 (man 2 rename; since 3.15). macOS: renamex_np (man 2 renamex_np; since 10.12, on APFS).
+    """
+    if not can_exchange():
+        return False
+    import ctypes
+
+    try:
+        library = ctypes.CDLL(None, use_errno=True)
+        first, second = os.fsencode(one), os.fsencode(other)
+        if sys.platform == "darwin":
+            return int(library.renamex_np(first, second, _RENAME_SWAP)) == 0
+        return int(library.renameat2(_AT_FDCWD, first, _AT_FDCWD, second, _RENAME_EXCHANGE)) == 0
+    except (AttributeError, OSError):  # a C library that is older than the call
+        return False

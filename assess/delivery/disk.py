@@ -11,10 +11,7 @@ _BLOCK = 1 << 20
 def write_through(path: Path, data: bytes) -> None:
     """Write a file down to the disk, so that a full disk shows here; its folder is made if missing.
 
-    Raises
-    ------
-    OSError
-        If it cannot be written; `filename` names it, which the system leaves out where the disk is full.
+    Raises OSError if it cannot be written; `filename` names it, which the system leaves out where the disk is full.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     try:

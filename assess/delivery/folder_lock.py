@@ -91,7 +91,6 @@ def _lock(handle: int) -> bool | None:
 
 
 def _is_same(handle: int, path: Path) -> bool:
-    """Whether a name still stands for what was opened by it."""
     try:
         return os.path.samestat(os.fstat(handle), path.stat())
     except OSError:
@@ -102,12 +101,7 @@ def _is_same(handle: int, path: Path) -> bool:
 def locked(folder: Path, progress: Progress = SILENT) -> Iterator[None]:
     """Hold the lock on a folder.
 
-    Raises
-    ------
-    OutputError
-        If another run has held it for `PATIENCE`.
-    CancelledError
-        If the work was cancelled.
+    Raises OutputError if another run has held it for `PATIENCE`; CancelledError if the work was cancelled.
     """
     lock, latest = FolderLock(folder), time.monotonic() + PATIENCE
     while not lock.take():

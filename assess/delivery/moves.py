@@ -99,10 +99,7 @@ class Move:
 def plan_move(folder: Path, stage: Path, remove: Iterable[str] = ()) -> Move:
     """Plan to move what is in the folder `NEW` of a stage to `folder`, where `remove` goes if it is not replaced.
 
-    Raises
-    ------
-    OSError
-        If a folder stands where a file belongs.
+    Raises OSError if a folder stands where a file belongs.
     """
     root = stage / NEW
     new = {path.relative_to(root).as_posix(): find_digest(path) or "" for path in root.rglob("*") if path.is_file()}
@@ -114,7 +111,6 @@ def plan_move(folder: Path, stage: Path, remove: Iterable[str] = ()) -> Move:
 
 
 def _keep(path: Path, kept: Path) -> None:
-    """Keep a file under another name, too: a link to it, else a copy."""
     kept.parent.mkdir(parents=True, exist_ok=True)
     try:
         os.link(path, kept)
@@ -123,18 +119,10 @@ def _keep(path: Path, kept: Path) -> None:
         flush_file(kept)
 
 
-# ---------------------------------------------------------------- after a process was killed
-
-
 def recover(folder: Path) -> None:
     """Finish the move of a process that was killed, if there is one; to be called under the folder's lock.
 
-    Raises
-    ------
-    InputError
-        If the journal is damaged, or a file was changed since.
-    OSError
-        If a file cannot be moved.
+    Raises InputError if the journal is damaged, or a file was changed since; OSError if a file cannot be moved.
     """
     for name in JOURNALS:
         if (folder / name).is_file():
@@ -169,14 +157,12 @@ def _read(folder: Path, name: str) -> Move:
 
 
 def _is_inside(folder: Path, name: str) -> bool:
-    """Whether a name is that of a file in the folder or below it, through no link."""
     path = PurePosixPath(name)
     is_plain = not path.is_absolute() and ".." not in path.parts and not set(name) & set("\\:\0")
     return bool(name) and is_plain and not any((folder / one).is_symlink() for one in list(path.parents)[:-1])
 
 
 def _check(move: Move) -> None:
-    """Raise InputError if a file is neither as it was nor as it is to be."""
     for name in {**move.new, **move.old}:
         path = move.folder / name
         known = {move.new.get(name), move.old.get(name)} - {None}

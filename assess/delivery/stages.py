@@ -63,7 +63,6 @@ def sweep(where: Path) -> None:
 
 
 def _is_ours(stage: Path) -> bool:
-    """Whether a stage is a folder of this user."""
     try:
         found = stage.lstat()
     except OSError:

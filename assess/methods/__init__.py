@@ -4,7 +4,8 @@ import importlib
 import pkgutil
 from functools import cache
 
-from assess.methods._info import Column, FittedOn, MethodInfo, Parameter, Range, Reason, Reference, Role
+from assess.methods._alike import Alike
+from assess.methods._info import Column, FittedOn, MethodInfo, Parameter, Range, Reason, Reference
 from assess.methods._method import Cases, Example, Joint, LiveCells, Method, Outcome
 from assess.methods._simulate import (
     LOOKS,
@@ -17,9 +18,9 @@ from assess.methods._simulate import (
 )
 
 __all__ = [
-    "LOOKS", "LOOKS_Z", "Cases", "Column", "Example", "FittedOn", "Joint", "LiveCells", "Method", "MethodInfo",
-    "Outcome", "Parameter", "Range", "Reason", "Reference", "adopted_formula", "all_methods", "interval_width",
-    "make_batches", "rock_cases", "rock_draws", "run_side_by_side", "simulation",
+    "LOOKS", "LOOKS_Z", "Alike", "Cases", "Column", "Example", "FittedOn", "Joint", "LiveCells", "Method",
+    "MethodInfo", "Outcome", "Parameter", "Range", "Reason", "Reference", "adopted_formula", "all_methods",
+    "interval_width", "make_batches", "paper_formula", "rock_cases", "rock_draws", "run_side_by_side", "simulation",
 ]  # fmt: skip
 
 
@@ -31,9 +32,14 @@ def all_methods() -> tuple[Method, ...]:
     return tuple(sorted((module.METHOD for module in modules), key=lambda method: method.order))
 
 
-def adopted_formula() -> Method:
-    """Return the formula whose value is adopted where nothing was simulated."""
-    return _find("adopted formula")
+def adopted_formula(class_by: str | None = None) -> Method:
+    """Return the formula of `assess.settings.CLASS_BY` that is adopted where nothing was simulated: the best one."""
+    return _find(class_by or "best formula")
+
+
+def paper_formula() -> Method:
+    """Return the formula that the paper proposes: its class is shown beside that of the adopted one."""
+    return _find("proposed OR")
 
 
 def simulation() -> Method:
@@ -42,6 +48,6 @@ def simulation() -> Method:
 
 
 @cache
-def _find(role: Role) -> Method:
+def _find(role: str) -> Method:
     (found,) = (method for method in all_methods() if method.role == role)
     return found

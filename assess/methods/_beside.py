@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from assess.methods._method import NO_WALL, SIDE_UNKNOWN, BoolArray, Cases, FloatArray
 from assess.methods._simulate import draw_body
 from assess.progress import SILENT, Progress
-from assess.rocking.draws import Uncertainty
+from assess.rocking.draws import CUT, Uncertainty
 from assess.rocking.sliding import UNKNOWN, Branch, branch, is_outside_shenton, peak_slip
 from assess.settings import Settings
 from assess.units import LENGTH
@@ -50,7 +50,7 @@ def find_extended(cases: Cases) -> BoolArray:
 
 def may_slide(cases: Cases, settings: Settings) -> BoolArray:
     """Return where a piece slides under the strongest motion that may be drawn, whose peak may be above the PFA."""
-    strongest = cases.pfa * (1.0 if settings.ideal else cases.uncertainty.largest) / cases.still
+    strongest = cases.pfa * (1.0 if settings.ideal else np.exp(CUT * cases.dispersion)) / cases.still
     found = branch(cases.breadth, cases.height, cases.friction, strongest, centre=cases.centre)
     return np.isin(found, SLIDING)
 
@@ -95,8 +95,9 @@ class Beside:
     _fell: list[BoolArray] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        certain = Uncertainty(motion=0.0, piece=False)
-        self.drawn = replace(self.cases, uncertainty=certain) if self.settings.ideal else self.cases
+        certain, none = Uncertainty(motion=0.0, piece=False), np.zeros_like(self.cases.dispersion)
+        as_given = replace(self.cases, uncertainty=certain, dispersion=none)
+        self.drawn = as_given if self.settings.ideal else self.cases
 
     @property
     def is_wanted(self) -> bool:
@@ -110,7 +111,8 @@ class Beside:
         if not self.is_wanted:
             return
         numbers = self.drawn.earthquakes.draw(self.settings.seed, first, len(motions))
-        scale = np.exp(self.drawn.uncertainty.motion * numbers)
+        floor = np.concatenate([self.sliders, self.walled])[0]  # all are on one
+        scale = np.exp(self.drawn.dispersion[floor] * numbers)
         every = motions.astype(np.float64)
         if self.sliders.size:
             self._slips.append(self._slide(every, time_step, scale, threads, progress))

@@ -97,24 +97,20 @@ class Expression(NDArrayOperatorsMixin):
         return Expression(self.notation, self.notation.number(float(value)), ATOM, float(value))
 
 
-# ---------------------------------------------------------------- spreadsheets
-
-
 def _shortest(value: float) -> str:
-    return repr(value).removesuffix(".0")
+    return '""' if value != value else repr(value).removesuffix(".0")
 
 
 EXCEL = Notation(
     plus="+", minus="-", times="*", power="^{}".format, number=_shortest,
     functions={
         np.log: "LN({})", np.exp: "EXP({})", np.sqrt: "SQRT({})", NORMAL_CDF: "NORMSDIST({})",
+        np.cos: "COS({})", np.sin: "SIN({})", np.arctan: "ATAN({})",
         np.maximum: "MAX({},{})", np.minimum: "MIN({},{})", np.where: "IF({},{},{})", np.isnan: "NOT(ISNUMBER({}))",
     },
 )  # fmt: skip
 """Functions of Excel 2007; a power never begins with a sign, which Excel would apply first (-2^2 is 4 there)."""
 
-
-# ---------------------------------------------------------------- worked examples
 
 _DECIMAL = re.compile(r"\d+\.\d+")
 
@@ -161,18 +157,6 @@ def show_ratio(example: Example) -> Text:
 def show_pfa(example: Example) -> Text:
     """Return the step from PFA in g to that in cm/s²."""
     return show("PFA", number(example.pfa / G, ".6g") * number(G, ".3f"), ".6g", "cm/s²")
-
-
-def note_estimate(example: Example) -> list[Text]:
-    """Return the note that PFV is an estimate, where it is."""
-    if "pfv_estimated" not in example.flags:
-        return []
-    return [
-        fill(
-            "PFV = {PFV:.6g} cm/s is an estimate from PFA, the building's period T1 and, where known, Ground PGV.",
-            PFV=example.pfv,
-        )
-    ]
 
 
 def compare(symbol: str, peak: float, limit: Any, unit: str, *, is_above: bool) -> Text:

@@ -22,7 +22,6 @@ from assess.i18n import Text, fill, join
 from assess.methods._expression import localise, show_pfa, show_ratio
 from assess.methods._method import (
     PFV_FLAGS,
-    RESTS_ON_ESTIMATE,
     BoolArray,
     Cases,
     Column,
@@ -35,7 +34,6 @@ from assess.methods._method import (
     Reason,
     Reference,
     normal_cdf,
-    rests_on_estimate,
 )  # fmt: skip
 from assess.rocking.block import frequency_parameter
 from assess.settings import Settings
@@ -179,8 +177,7 @@ class Fitted:
         known = ~np.isnan(value)
         flags = {"extrapolated": known & ~self.holds(cases), "clipped": known & (value != raw)}
         if isinstance(self.formula, Probit):
-            flags |= {"pfv_unknown": np.isnan(cases.pfv), "pfv_estimated": known & cases.pfv_estimated}
-            flags["rests_on_estimated_pfv"] = rests_on_estimate(value, cases)
+            flags["pfv_unknown"] = np.isnan(cases.pfv)
         return Outcome(value, {"raw": raw}, flags)
 
 
@@ -254,7 +251,6 @@ FLAGS_OF_POLYNOMIAL = {
 FLAGS_OF_PROBIT = {
     "extrapolated": fill("outside the data that it was fitted to"),
     **PFV_FLAGS,
-    **RESTS_ON_ESTIMATE,
 }
 
 

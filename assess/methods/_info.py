@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 from assess.units import ROUNDING
 
-Role = Literal["adopted formula", "simulation", "other"]
+Role = Literal["best formula", "proposed OR", "simulation", "other"]
 Side = Literal["", "above", "below"]
 
 DECIMALS = 3
@@ -101,21 +101,10 @@ FACTS: Mapping[str, str] = {
 """Numbers of a piece and its motion that a `Reason` may name, and their formats; ``pfa_to_start`` is PFA/(g·B/H)."""
 
 
-ESTIMATED = (
-    "PFV {pfv_cm_s} cm/s was not given: it is an estimate from PFA, the building's period T1 and, where known, "
-    "Ground PGV, on which every method that depends on velocity relies."
-)
-"""The reason that several methods give where the flag ``pfv_estimated`` is raised."""
 PFV_FLAGS: Mapping[str, str] = {
     "pfv_unknown": "not evaluated: it needs the peak floor velocity, which is unknown here",
-    "pfv_estimated": "peak floor velocity estimated from PFA and the building's period",
 }
-"""Flags of several methods that depend on velocity, and what they mean."""
-RESTS_ON_ESTIMATE: Mapping[str, str] = {
-    "rests_on_estimated_pfv": "its class rests on an estimated peak floor velocity: from the peak acceleration alone "
-    "it would be lower, or unknown",
-}
-"""The flag of methods with a class that an estimated velocity raises, and what it means."""
+"""The flag of methods that depend on velocity, and what it means."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,9 +155,9 @@ class MethodInfo:
         Heading of a narrow column.
     symbol : str
         Of its value in equations: "OR", "R", "P".
-    role : "adopted formula", "simulation" or "other"
-        The value of the adopted formula counts where nothing was simulated; the simulation integrates the cases that
-        have an ensemble. There is one of each.
+    role : "best formula", "proposed OR", "simulation" or "other"
+        Of the first two the one that `Settings.class_by` names is adopted where nothing was simulated; the simulation
+        integrates the cases that have an ensemble. There is one of each.
     kind : "probability" or "criterion"
         A probability has a class; a criterion is met or not met.
     order : int
@@ -229,6 +218,11 @@ class MethodInfo:
     parameters: tuple[Parameter, ...] = ()
     reasons: tuple[Reason, ...] = ()
     fitted: FittedOn | None = None
+
+    @property
+    def ruled_by(self) -> Literal["pfa", "pfv"]:
+        """The peak of the floor motion with which its value rises, by which it tells the worse of several motions."""
+        return "pfv" if "pfa" not in self.needs else "pfa"
 
     @property
     def tier(self) -> Literal["screening", "verification"]:

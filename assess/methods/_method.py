@@ -9,9 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from assess.methods._info import (
-    ESTIMATED,
     PFV_FLAGS,
-    RESTS_ON_ESTIMATE,
     Column,
     FittedOn,
     MethodInfo,
@@ -21,15 +19,14 @@ from assess.methods._info import (
     Reference,
 )
 from assess.progress import SILENT, Progress
-from assess.risk import classify_all
 from assess.rocking.block import MIDDLE, stocky_limit, threshold
-from assess.rocking.draws import STILL, STILL_SCANNED, Earthquakes, Uncertainty
+from assess.rocking.draws import PEAK, STILL, STILL_SCANNED, Earthquakes, Uncertainty
 from assess.settings import Settings
 
 __all__ = [
-    "ALIKE", "ESTIMATED", "NORMAL_CDF", "PFV_FLAGS", "RESTS_ON_ESTIMATE", "BoolArray", "Cases", "Column", "Ensemble",
+    "ALIKE", "NORMAL_CDF", "PFV_FLAGS", "BoolArray", "Cases", "Column", "Ensemble",
     "Example", "FittedOn", "FloatArray", "Joint", "LiveCells", "Method", "MethodInfo", "Motions", "Outcome",
-    "Parameter", "Range", "Reason", "Reference", "normal_cdf", "rests_on_estimate",
+    "Parameter", "Range", "Reason", "Reference", "normal_cdf",
 ]  # fmt: skip
 
 if TYPE_CHECKING:
@@ -48,13 +45,13 @@ class Ensemble(Protocol):
     """The motions of one floor along one axis, for methods that integrate; they are made when asked for."""
 
     @property
-    def is_generic(self) -> bool:
-        """Whether its spectrum is a generic one, of a floor of which only peaks are known."""
+    def is_assumed(self) -> bool:
+        """Whether ground motion and building are drawn, of a floor without a record."""
         ...
 
     @property
-    def is_unshaped(self) -> bool:
-        """Whether its generic spectrum rests on neither T1 nor the building's height: it may be too weak."""
+    def is_unknown(self) -> bool:
+        """Whether nothing is known of the building, nor of the floor's height."""
         ...
 
     @property
@@ -90,6 +87,11 @@ class Motions(Protocol):
         """Whether they are weaker than the floor's motion."""
         ...
 
+    @property
+    def bands(self) -> tuple[float, float] | None:
+        """Factors above and below the corner by which drawn motions are brought to the floor's peaks [-]."""
+        ...
+
     def realise(self, first: int, count: int) -> list[tuple[NDArray[Any], float]]:
         """Return motions `first` to `first + count - 1` in batches: (k, n) [m/s2], and their time step [s]."""
         ...
@@ -107,8 +109,6 @@ class Cases:
         Peak floor acceleration [m/s2] and velocity [m/s].
     friction : (n,) array
         Coefficient of friction [-]; NaN where no sliding is assumed.
-    pfv_estimated : (n,) boolean array
-        Where `pfv` was estimated from PFA and the building's period.
     restitution : (n,) array
         Angular velocity after an impact over that before it [-]; NaN is Housner's.
     ensemble : (n,) integer array
@@ -121,9 +121,17 @@ class Cases:
         Where the sizes were measured by a scan, so that they are less certain.
     slides_under : (n,) integer array
         Which of `ensembles` the slip of the piece is to be found under; -1 where it is not.
+    alike : (n,) integer array
+        Cases of one number differ in nothing that is computed with: they have one chance.
+    quantity : (n,) integer array
+        Pieces of the row.
     wall : (n,) integer array
         `NO_WALL`; else the direction along the motion in which a wall at its back leaves it free to turn, 1 or -1; or
         `SIDE_UNKNOWN`.
+    dispersion : (n,) array
+        Standard deviation of ln amplitude of the floor's motion from one earthquake to the next [-].
+    peak : (n,) array
+        That of ln of the peaks of its motions over `pfa` [-].
     ensembles : sequence of Ensemble
         Motions of floors.
     uncertainty : Uncertainty
@@ -137,14 +145,17 @@ class Cases:
     pfa: FloatArray
     pfv: FloatArray
     friction: FloatArray
-    pfv_estimated: BoolArray
     restitution: FloatArray
     ensemble: NDArray[np.intp]
     centre: FloatArray
     name: NDArray[np.int64]
     scanned: BoolArray
     slides_under: NDArray[np.intp]
+    alike: NDArray[np.intp]
+    quantity: NDArray[np.int64]
     wall: NDArray[np.int8]
+    dispersion: FloatArray
+    peak: FloatArray
     ensembles: Sequence[Ensemble] = ()
     uncertainty: Uncertainty = field(default_factory=Uncertainty)
     earthquakes: Earthquakes = field(default_factory=Earthquakes)
@@ -158,7 +169,6 @@ class Cases:
         pfa: ArrayLike = math.nan,
         pfv: ArrayLike = math.nan,
         friction: ArrayLike = math.nan,
-        pfv_estimated: ArrayLike = False,
         restitution: ArrayLike = math.nan,
         ensemble: ArrayLike = -1,
         centre: ArrayLike = MIDDLE,
@@ -171,15 +181,19 @@ class Cases:
     ) -> Self:
         """Build a batch from numbers and arrays, brought to one length; what is left out is unknown."""
         given = np.broadcast_arrays(
-            *np.atleast_1d(breadth, height, pfa, pfv, friction, restitution, centre, pfv_estimated, ensemble, name,
-                           slides_under, wall, scanned)
+            *np.atleast_1d(breadth, height, pfa, pfv, friction, restitution, centre, ensemble, name, slides_under, wall,
+                           scanned)
         )  # fmt: skip
         b, h, a, v, mu, eta, z = (np.array(values, dtype=np.float64) for values in given[:7])
-        estimated, which = np.array(given[7], dtype=np.bool_), np.array(given[8], dtype=np.intp)
-        names, slides = np.array(given[9], dtype=np.int64), np.array(given[10], dtype=np.intp)
-        walls, by_scan = np.array(given[11], dtype=np.int8), np.array(given[12], dtype=np.bool_)
-        drawn = uncertainty or Uncertainty()
-        return cls(b, h, a, v, mu, estimated, eta, which, z, names, by_scan, slides, walls, ensembles, drawn)
+        which, names = np.array(given[7], dtype=np.intp), np.array(given[8], dtype=np.int64)
+        slides, walls = np.array(given[9], dtype=np.intp), np.array(given[10], dtype=np.int8)
+        by_scan, drawn = np.array(given[11], dtype=np.bool_), uncertainty or Uncertainty()
+        alike, quantity = np.arange(b.size), np.ones(b.size, dtype=np.int64)
+        spread, peak = (np.full(b.size, one) for one in (drawn.motion, PEAK))
+        return cls(
+            b, h, a, v, mu, eta, which, z, names, by_scan, slides, alike, quantity, walls, spread, peak, ensembles,
+            drawn,
+        )  # fmt: skip
 
     @property
     def breadth_to_height(self) -> FloatArray:
@@ -228,6 +242,8 @@ class Joint:
         Response spectra of the first motions, at most 100, under which a case was integrated, and of their target.
     is_weak : bool
         Whether the motions are weaker than the floor's.
+    bands : tuple of two floats, optional
+        Factors by which drawn motions were brought to the floor's peaks [-].
     """
 
     ensemble: int
@@ -240,6 +256,7 @@ class Joint:
     fit: "Fit | None"
     spectra: "Spectra | None" = None
     is_weak: bool = False
+    bands: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -349,17 +366,3 @@ def normal_cdf(x: Any) -> Any:
     """Standard normal distribution function of `x` [-], accurate in both tails; NaN stays NaN."""
     found = NORMAL_CDF(x)
     return np.asarray(found, dtype=np.float64) if isinstance(found, (float, np.ndarray)) else found
-
-
-def rests_on_estimate(value: FloatArray, cases: Cases, without: ArrayLike = math.nan) -> BoolArray:
-    """Tell for each of n cases whether an estimated PFV raises its class.
-
-    Parameters
-    ----------
-    value : (n,) array
-        The chance [-].
-    cases : Cases
-    without : (n,) array
-        The chance by the peak acceleration alone [-]; NaN where there is none, which counts as low.
-    """
-    return np.asarray(cases.pfv_estimated & (classify_all(value) > np.maximum(classify_all(without), 0)))

@@ -86,7 +86,7 @@ def rock_draws(
     time_step: float,
     *,
     first: int,
-    dispersions: Sequence[float],
+    dispersions: Sequence[float | FloatArray],
     seed: int,
     threads: int,
     progress: Progress = SILENT,
@@ -94,18 +94,19 @@ def rock_draws(
     """Return whether each of the cases `own` overturns in each draw, and how far it turns: (d, m, k) each.
 
     Motion k of `motions`, draw `first` + k, is scaled by one factor for the whole building, and the pieces are those of
-    that draw where they are uncertain; once for each of d `dispersions` of the motion.
+    that draw where they are uncertain; once for each of d `dispersions` of the motion, of all cases or of each (m,).
     """
     from assess.rocking.ensemble import rock_blocks
 
     count = len(motions)
     drawn = draw_body(cases, own, seed, first, count)
     b, h, z, eta = drawn.breadth, drawn.height, drawn.centre, drawn.restitution
-    scales = [np.exp(one * cases.earthquakes.draw(seed, first, count)) for one in dispersions]
+    numbers = cases.earthquakes.draw(seed, first, count)
+    scales = [np.exp(np.broadcast_to(one, own.size)[:, None] * numbers) for one in dispersions]
     every = len(dispersions), 1
     found = rock_blocks(
         np.tile(b, every), np.tile(h, every), motions, time_step,
-        restitution=np.tile(eta, every), centre=np.tile(z, every), scale=np.repeat(scales, own.size, axis=0),
+        restitution=np.tile(eta, every), centre=np.tile(z, every), scale=np.concatenate(scales),
         threads=threads, progress=progress,
     )  # fmt: skip
     wanted = len(dispersions), own.size, count

@@ -23,27 +23,26 @@ method of ASCE 43-05, Appendix A, at a rotation of α, with the Newmark-Hall med
 5 % damping).
 """
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from assess.i18n import Text
-from assess.methods._expression import G, note_estimate, number, show
+from assess.methods._expression import G, number, show
 from assess.methods._method import (
-    ESTIMATED,
     PFV_FLAGS,
-    RESTS_ON_ESTIMATE,
     Cases,
     Column,
     Example,
     FloatArray,
+    LiveCells,
     Method,
     Outcome,
     Range,
     Reason,
     Reference,
     normal_cdf,
-    rests_on_estimate,
 )  # fmt: skip
 from assess.rocking.block import STOCKY, critical_angle
 from assess.settings import Settings
@@ -95,15 +94,22 @@ def evaluate(cases: Cases, settings: Settings) -> Outcome:
     """Evaluate the fragility at the floor's PFV."""
     median = median_pfv(cases.breadth, cases.height)
     value = normal_cdf(np.log(cases.pfv / median) / BETA)
-    known = ~np.isnan(value)
+    is_rocking = ~np.isnan(cases.pfv) & ~cases.is_stocky
     flags = {
         "pfv_unknown": np.isnan(cases.pfv),
-        "pfv_estimated": known & cases.pfv_estimated,
-        "rests_on_estimated_pfv": rests_on_estimate(value, cases),
         "does_not_rock": cases.is_stocky,
-        "extrapolated": known & ~CHECKED_BREADTH_TO_HEIGHT.holds(cases.breadth_to_height),
+        "extrapolated": is_rocking & ~CHECKED_BREADTH_TO_HEIGHT.holds(cases.breadth_to_height),
     }
     return Outcome(value, {"median_pfv_cm_s": median / VELOCITY["cm/s"]}, flags)
+
+
+def live(cells: LiveCells) -> Mapping[str, Any]:
+    """Return the value; blank where PFV is unknown or the piece is too stocky, 0 without shaking."""
+    B_H, PFV, alpha = cells.breadth_to_height, cells.pfv_cm_s, np.arctan(cells.breadth_to_height)
+    beta_e = _effective_damping(_restitution(alpha))
+    median = _impulse_velocity(cells.height_cm, alpha, G) / _velocity_amplification(beta_e)
+    chance = np.where(PFV <= 0, 0, normal_cdf(np.log(PFV / median) / BETA))
+    return {"value": np.where(B_H < STOCKY, np.where(np.isnan(PFV), np.nan, chance), np.nan)}
 
 
 def steps(example: Example) -> list[Text]:
@@ -117,7 +123,6 @@ def steps(example: Example) -> list[Text]:
     median = number(float(V_imp.value), ".6g") / _velocity_amplification(number(float(beta_e.value), ".6f"))
     z = np.log(PFV / number(example.number("median_pfv_cm_s"), ".6g")) / BETA
     return [
-        *note_estimate(example),
         show("α = atan(B/H)", alpha, ".6f", "rad"),
         show("V_imp = √[(4/3)·g·H·(1/cos α - 1)/cos² α]", V_imp, ".6g", "cm/s"),
         show("C_R = 1 - 1.5·sin² α", C_R, ".6f"),
@@ -134,8 +139,11 @@ METHOD = Method(
     title="FEMA P-58 contents",
     short_title="FEMA P-58",
     symbol="P",
+    role="best formula",
     kind="probability",
-    order=60,
+    order=5,
+    selects=True,
+    selecting_flags=("extrapolated",),
     predicts="The chance that unanchored contents overturn, from their size and the peak floor velocity.",
     reference=Reference(
         authors="Federal Emergency Management Agency",
@@ -148,6 +156,7 @@ METHOD = Method(
     valid={"breadth_to_height": CHECKED_BREADTH_TO_HEIGHT},
     evaluate=evaluate,
     steps=steps,
+    live=live,
     columns=(Column("median_pfv_cm_s", "Median PFV", "cm/s", ".1f"),),
     reasons=(
         Reason(
@@ -160,7 +169,6 @@ METHOD = Method(
             "FEMA P-58 depends on velocity only: PFV is {pfv_cm_s} cm/s, its median for such pieces {median_pfv_cm_s} "
             "cm/s.",
         ),
-        Reason(ESTIMATED, flag="pfv_estimated"),
         Reason(
             "B/H {breadth_to_height} lies outside that of the published medians of FEMA P-58.",
             flag="extrapolated",
@@ -185,7 +193,6 @@ METHOD = Method(
     ),
     flags={
         **PFV_FLAGS,
-        **RESTS_ON_ESTIMATE,
         "does_not_rock": "not evaluated: B/H is 1.41 or more, so the piece does not rock",
         "extrapolated": "outside the B/H of the nine published medians (0.155 to 0.625)",
     },

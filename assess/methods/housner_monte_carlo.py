@@ -22,14 +22,13 @@ motion and the piece as exactly known; that is found as well (`ideal`), but adop
 this one, of a piece like this one: see `assess.rocking.draws`.
 """
 
-import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.i18n import Text, fill, nfill
+from assess.methods._alike import Alike
 from assess.methods._beside import (
     Beside,
     BesideFound,
@@ -38,13 +37,12 @@ from assess.methods._beside import (
     find_walled,
     name_branch,
 )
-from assess.methods._expression import number, show
+from assess.methods._housner_steps import steps
 from assess.methods._method import (
     BoolArray,
     Cases,
     Column,
     Ensemble,
-    Example,
     FloatArray,
     Joint,
     Method,
@@ -55,11 +53,9 @@ from assess.methods._method import (
 )  # fmt: skip
 from assess.methods._simulate import LOOKS, interval_width, make_batches, rock_cases, rock_draws, run_side_by_side
 from assess.progress import SILENT, Progress, Stage
-from assess.risk import classify_all, wilson_end, wilson_interval
-from assess.rocking.block import MIDDLE
+from assess.risk import classify_all, wilson_interval
 from assess.rocking.draws import TRIED
 from assess.settings import AUTO, Settings
-from assess.units import GRAVITY, LENGTH
 
 BATCH = 500
 """Motions made at once."""
@@ -90,16 +86,20 @@ def evaluate(cases: Cases, settings: Settings, *, threads: int = 1, stage: Stage
 
 def _summarise(found: "_Found", cases: Cases, settings: Settings, joints: list[Joint]) -> Outcome:
     done = found.runs > 0
-    drawn, ideal = (_count(fallen, found.runs, settings) for fallen in (found.overturned, found.ideal))
+    drawn = _count(found.overturned, found.runs, found.draws, settings)
+    exact = found.runs if settings.ideal else np.where(found.assumed, 0, found.runs)  # what is drawn cannot recur
+    ideal = _count(found.ideal, exact, exact, settings)
     open_low, open_high = (ideal if settings.ideal else drawn)[2:]
     detail = {
-        "runs": np.where(done, found.runs, np.nan),
+        **{name: np.where(done, one, np.nan) for name, one in (("runs", found.runs), ("draws", found.draws))},
         **dict(zip(("overturned", "low", "high"), (drawn[0], *drawn[2:]), strict=True)),
         **dict(zip(("ideal_overturned", "ideal", "ideal_low", "ideal_high"), ideal, strict=True)),
         **{
-            f"dispersion_{one:g}": _count(fallen, found.runs, settings)[1]
+            f"dispersion_{one:g}": np.where(found.assumed, np.nan, _count(fallen, found.runs, found.draws, settings)[1])
             for one, fallen in zip(TRIED, found.tried, strict=True)
         },
+        "if_slower": found.if_slower,
+        "if_faster": found.if_faster,
         "record_overturned": found.record_fell,
         "record_rotation": found.record_rotation,
         "sliding_branch": name_branch(find_branch(cases)),
@@ -107,41 +107,59 @@ def _summarise(found: "_Found", cases: Cases, settings: Settings, joints: list[J
         "slip_84_cm": found.slip_high,
         "one_sided": found.one_sided,
     }
-    flags = {
+    undecided = done & (settings.runs == AUTO) & (classify_all(open_low) != classify_all(open_high))
+    return Outcome(drawn[1], detail, _list_flags(found, cases) | {"undecided": undecided}, tuple(joints))
+
+
+def _list_flags(found: "_Found", cases: Cases) -> dict[str, BoolArray]:
+    return {
         "fell_in_record": found.record_fell == 1,
         "shenton_extended": find_extended(cases),
         "wall_higher": found.wall_higher,
-        "generic_spectrum": found.generic,
-        "unknown_period": found.unshaped,
+        "assumed_motion": found.assumed,
+        "unknown_building": found.unknown,
         "weak_motions": found.weak,
-        "undecided": done & (settings.runs == AUTO) & (classify_all(open_low) != classify_all(open_high)),
         "does_not_rock": cases.is_stocky,
     }
-    return Outcome(drawn[1], detail, flags, tuple(joints))
 
 
-def _count(fallen: NDArray[np.int64], runs: NDArray[np.int64], settings: Settings) -> tuple[FloatArray, ...]:
-    """Return how many draws overturn each case, their share, and its interval; NaN where there are none."""
+def _count(
+    fallen: NDArray[np.int64], runs: NDArray[np.int64], draws: NDArray[np.int64], settings: Settings
+) -> tuple[FloatArray, ...]:
+    """Return how many of the draws overturn each case, their share, and its interval; NaN where there are none.
+
+    `draws` are those of all pieces alike, which have their earthquakes in common: the interval is that of `runs`.
+    """
     done, some = runs > 0, np.maximum(runs, 1)
-    ends = wilson_interval(fallen, some, interval_width(settings))
-    return tuple(np.where(done, one, np.nan) for one in (fallen, fallen / some, *ends))
+    share = fallen / np.maximum(draws, 1)
+    ends = wilson_interval(share * some, some, interval_width(settings))
+    return tuple(np.where(done, one, np.nan) for one in (fallen, share, *ends))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Rocked:
-    """What the cases of one ensemble did: in draws at each of `TRIED` (d, m), and under the record itself (m,)."""
+    """What the cases of one ensemble did.
 
+    `tried` (d, m) counts falls at each of `TRIED`, `record` is what they do under the record itself, `thirds` the
+    chance in the slower and in the faster third of drawn motions, (m,) each.
+    """
+
+    alike: Alike
     joint: Joint
     tried: NDArray[np.int64]
     record: tuple[FloatArray, FloatArray]
+    thirds: tuple[FloatArray, FloatArray]
     beside: BesideFound
 
-    @property
-    def wall_higher(self) -> BoolArray:
-        """Whether each of the walled cases falls in more draws than it does without the wall: in the same draws."""
-        own, free = self.joint.cases, self.joint.ideal if self.beside.is_ideal else self.joint.fell
-        alone = free[np.isin(own, self.beside.walled), : self.beside.draws]
-        return np.asarray(self.beside.one_sided > alone.mean(axis=1))
+    def find_one_sided(self) -> tuple[FloatArray, BoolArray]:
+        """Return the chance of each walled case, and whether it is above that without the wall in the same draws."""
+        has_wall = np.isin(self.joint.cases, self.beside.walled)
+        free = self.joint.ideal if self.beside.is_ideal else self.joint.fell
+        one_sided = np.zeros(has_wall.size)
+        one_sided[has_wall] = self.beside.one_sided
+        alone = self.alike.average(free[:, : self.beside.draws].mean(axis=1))[has_wall]
+        chance = self.alike.average(one_sided)[has_wall]
+        return chance, np.asarray(chance > alone)
 
 
 @dataclass(slots=True)
@@ -149,6 +167,7 @@ class _Found:
     """What was found, case by case."""
 
     runs: NDArray[np.int64]
+    draws: NDArray[np.int64]
     overturned: NDArray[np.int64]
     ideal: NDArray[np.int64]
     tried: NDArray[np.int64]
@@ -157,28 +176,33 @@ class _Found:
     slip_median: FloatArray
     slip_high: FloatArray
     one_sided: FloatArray
-    generic: BoolArray
-    unshaped: BoolArray
+    if_slower: FloatArray
+    if_faster: FloatArray
+    assumed: BoolArray
+    unknown: BoolArray
     weak: BoolArray
     wall_higher: BoolArray
 
     @classmethod
     def empty(cls, count: int) -> "_Found":
-        runs, overturned, ideal = (np.zeros(count, dtype=np.int64) for _ in range(3))
-        unknown = (np.full(count, np.nan) for _ in range(5))
+        runs, draws, overturned, ideal = (np.zeros(count, dtype=np.int64) for _ in range(4))
+        unknown = (np.full(count, np.nan) for _ in range(7))
         no = (np.zeros(count, dtype=np.bool_) for _ in range(4))
-        return cls(runs, overturned, ideal, np.zeros((len(TRIED), count), dtype=np.int64), *unknown, *no)
+        tried = np.zeros((len(TRIED), count), dtype=np.int64)
+        return cls(runs, draws, overturned, ideal, tried, *unknown, *no)
 
     def take(self, rocked: _Rocked, ensemble: Ensemble) -> None:
-        joint = rocked.joint
+        joint, alike = rocked.joint, rocked.alike
         own = joint.cases
-        self.runs[own], self.overturned[own] = joint.runs, joint.fell.sum(axis=1)
-        self.ideal[own], self.tried[:, own] = joint.ideal.sum(axis=1), rocked.tried
+        self.runs[own], self.draws[own] = joint.runs, joint.runs * alike.total
+        self.overturned[own], self.ideal[own] = alike.add_up(joint.fell.sum(axis=1)), joint.ideal.sum(axis=1)
+        self.tried[:, own] = alike.add_up(rocked.tried)
         self.record_fell[own], self.record_rotation[own] = rocked.record
         beside = rocked.beside
         self.slip_median[beside.sliders], self.slip_high[beside.sliders] = beside.slip_median_cm, beside.slip_high_cm
-        self.one_sided[beside.walled], self.wall_higher[beside.walled] = beside.one_sided, rocked.wall_higher
-        self.generic[own], self.unshaped[own] = ensemble.is_generic, ensemble.is_unshaped
+        self.one_sided[beside.walled], self.wall_higher[beside.walled] = rocked.find_one_sided()
+        self.if_slower[own], self.if_faster[own] = rocked.thirds
+        self.assumed[own], self.unknown[own] = ensemble.is_assumed, ensemble.is_unknown
         self.weak[own] = joint.is_weak
 
 
@@ -209,6 +233,7 @@ class _Run:
         fell, ideal = np.zeros((count, 0), np.bool_), np.zeros((count, 0), np.bool_)
         rotation, tried = np.zeros((count, 0), np.float32), np.zeros((len(TRIED), count), dtype=np.int64)
         size, going, beside = min(BATCH, MOST_PAIRS // max(1, count) + 1), np.arange(count), self._beside()
+        alike, speeds = Alike.of(self.cases.alike[self.own], self.cases.quantity[self.own]), list[FloatArray]()
         for first, last in zip((0, *checks), checks, strict=False):
             wider = ((0, 0), (0, last - first))
             fell, ideal, rotation = np.pad(fell, wider), np.pad(ideal, wider), np.pad(rotation, wider)
@@ -217,22 +242,32 @@ class _Run:
                 if going.size:
                     drawn, turned = self._rock_draws(self.own[going], batch, time_step, at)
                     fell[going, here], rotation[going, here] = drawn[0], turned[0]
-                    tried[:, going] += drawn[1:].sum(axis=2)
-                    ideal[going, here], _ = self._rock(self.own[going], batch, time_step)
+                    tried[:, going] += 0 if self.ensemble.is_assumed else drawn[1:].sum(axis=2)
+                    speeds += [_find_speeds(batch, time_step)] if self.ensemble.is_assumed else []
+                    if self.settings.ideal or not self.ensemble.is_assumed:
+                        ideal[going, here], _ = self._rock(self.own[going], batch, time_step)
                 if first == 0:
                     beside.add(batch, time_step, at, self.threads, self.progress)
                 self.stage.at(here.stop / checks[-1], self.number)
             runs[going] = last
-            going = going[_is_open((ideal if self.settings.ideal else fell)[going], self.settings)]
+            counted = ideal if self.settings.ideal else fell
+            going = going[_is_open(alike.average(counted.sum(axis=1))[going], last, self.settings)]
             if not going.size:
                 break
         self.stage.at(1.0, self.number)
-        joint = Joint(
+        joint, thirds = self._join(motions, runs, fell, ideal, rotation), _find_thirds(counted, runs, speeds, alike)
+        return _Rocked(alike, joint, tried, self._rock_under_record(), thirds, beside.finish())
+
+    def _join(
+        self, motions: Motions, runs: NDArray[np.int64], fell: BoolArray, ideal: BoolArray,
+        rotation: NDArray[np.float32],
+    ) -> Joint:  # fmt: skip
+        count = fell.shape[1]
+        return Joint(
             ensemble=self.number, cases=self.own, runs=runs, fell=fell, ideal=ideal, rotation=rotation,
-            examples=_examples(motions, fell.shape[1]), fit=motions.fit,
-            spectra=motions.spectra and motions.spectra.first(fell.shape[1]), is_weak=motions.is_weak,
+            examples=_examples(motions, count), fit=motions.fit,
+            spectra=motions.spectra and motions.spectra.first(count), is_weak=motions.is_weak, bands=motions.bands,
         )  # fmt: skip
-        return _Rocked(joint, tried, self._rock_under_record(), beside.finish())
 
     def _beside(self) -> Beside:
         sliders = np.flatnonzero(self.cases.slides_under == self.number)
@@ -252,11 +287,35 @@ class _Run:
     def _rock_draws(
         self, own: NDArray[np.intp], motions: FloatArray, time_step: float, first: int
     ) -> tuple[BoolArray, FloatArray]:
-        """Return what the cases did at the dispersion of the run and at each of `TRIED`, (1 + d, m, k)."""
+        """Return what the cases did at the floor's dispersion and, with a record, at each of `TRIED`, (1 + d, m, k)."""
+        others = () if self.ensemble.is_assumed else TRIED
         return rock_draws(
-            self.cases, own, motions, time_step, first=first, dispersions=(self.cases.uncertainty.motion, *TRIED),
+            self.cases, own, motions, time_step, first=first, dispersions=(self.cases.dispersion[own], *others),
             seed=self.settings.seed, threads=self.threads, progress=self.progress,
         )  # fmt: skip
+
+
+def _find_speeds(motions: FloatArray, time_step: float) -> FloatArray:
+    """Return PFV over PFA of motions (k, n) [s]."""
+    from assess.motion.target_fit import measure_peaks
+
+    pfa, pfv = measure_peaks(motions, time_step).T
+    return np.asarray(pfv / pfa)
+
+
+def _find_thirds(
+    fell: BoolArray, runs: NDArray[np.int64], speeds: Sequence[FloatArray], alike: Alike
+) -> tuple[FloatArray, FloatArray]:
+    """Return the chances (m,) in the third of the draws with the least PFV/PFA and in that with the most; else NaN."""
+    found = np.full((2, len(runs)), np.nan)
+    every = np.concatenate(speeds) if speeds else np.zeros(0)
+    for count in np.unique(runs[runs > 0]).tolist() if every.size else ():
+        order = np.argsort(every[:count], kind="stable")
+        own, third = runs == count, max(1, count // 3)
+        for row, draws in zip(found, (order[:third], order[-third:]), strict=True):
+            row[own] = fell[:, draws].mean(axis=1)[own]
+    slower, faster = (alike.average(row) for row in found)
+    return slower, faster
 
 
 def _examples(motions: Motions, count: int) -> list[tuple[NDArray[np.float32], float]]:
@@ -264,93 +323,10 @@ def _examples(motions: Motions, count: int) -> list[tuple[NDArray[np.float32], f
     return [(one.astype(np.float32), time_step) for batch, time_step in batches for one in batch]
 
 
-def _is_open(fell: BoolArray, settings: Settings) -> BoolArray:
-    """Return which cases' intervals reach over more than one class."""
-    low, high = wilson_interval(fell.sum(axis=1), fell.shape[1], interval_width(settings))
+def _is_open(fallen: FloatArray, runs: int, settings: Settings) -> BoolArray:
+    """Return which cases' intervals reach over more than one class, by how often they fell in so many draws."""
+    low, high = wilson_interval(fallen, runs, interval_width(settings))
     return np.asarray(classify_all(low) != classify_all(high), dtype=np.bool_)
-
-
-def steps(example: Example) -> list[Text]:
-    """Work the numbers of the block, then the share of motions that overturn it, and its interval."""
-    return [*_work_block(example), *_work_share(example), *_work_record(example)]
-
-
-def _work_block(example: Example) -> list[Text]:
-    B, H = (number(one * LENGTH["cm"], ".6g") for one in (example.breadth, example.height))
-    steps, eta, limit = _uniform(B, H) if example.centre == MIDDLE else _any_body(B, H, example.centre)
-    if not math.isnan(example.restitution):
-        eta = fill("η = {eta:g}, as set for the building.", eta=example.restitution)
-    starts = fill(
-        "The piece starts to rock where the floor's acceleration exceeds {limit:.4f} m/s².", limit=limit.value
-    )
-    return [*steps, eta, starts]
-
-
-def _uniform(B: Any, H: Any) -> tuple[list[Text], Text, Any]:
-    """Work a uniform block, as published: its numbers, its restitution, and where rocking starts."""
-    alpha, r, g = np.arctan(B / H), 0.5 * np.sqrt(B**2 + H**2), number(GRAVITY, ".5f")
-    limit = g * B / H
-    p = np.sqrt(3 * g / (4 * number(float(r.value), ".6g")))
-    steps = [
-        show("α = atan(B/H)", alpha, ".6f", "rad"),
-        show("r = ½·√(B² + H²)", r, ".5f", "m"),
-        show("p = √(3g/4r)", p, ".4f", "rad/s"),
-        show("g·B/H", limit, ".4f", "m/s²"),
-    ]
-    return steps, show("η = 1 - 1.5·sin² α", 1 - 1.5 * np.sin(number(float(alpha.value), ".6f")) ** 2, ".4f"), limit
-
-
-def _any_body(B: Any, H: Any, centre: float) -> tuple[list[Text], Text, Any]:
-    """Work a body whose centre of gravity is not at mid-height: its numbers, restitution, and where rocking starts."""
-    half, height = B / 2, number(centre, ".4g") * H
-    b, z, g = number(float(half.value), ".6g"), number(float(height.value), ".6g"), number(GRAVITY, ".5f")
-    limit, alpha, radius = g * b / z, np.arctan(b / z), np.sqrt(b**2 + z**2)
-    R = number(float(radius.value), ".6g")
-    inertia = (B**2 + H**2) / 12 + R**2
-    I = number(float(inertia.value), ".6g")  # noqa: E741 - the symbol of mechanics
-    steps = [
-        show("b = B/2", half, ".5f", "m"),
-        show("z_c", height, ".5f", "m"),
-        show("α = atan(b/z_c)", alpha, ".6f", "rad"),
-        show("R = √(b² + z_c²)", radius, ".5f", "m"),
-        show("I₀/m = (B² + H²)/12 + R²", inertia, ".5f"),
-        show("p = √(m·g·R/I₀)", np.sqrt(g * R / I), ".4f", "rad/s"),
-        show("g·b/z_c", limit, ".4f", "m/s²"),
-    ]
-    return steps, show("η = 1 - 2·m·R²·sin² α/I₀", 1 - 2 * b**2 / I, ".4f"), limit
-
-
-def _work_share(example: Example) -> list[Text]:
-    k, n, z = example.number("overturned"), example.number("runs"), interval_width(example.settings)
-    share, runs, width = number(example.value, ".5f"), number(n, ".0f"), number(z, ".4f")
-    numbers = {"low": example.number("low"), "high": example.number("high"), "z": z}
-    return [
-        nfill(
-            "It overturned in {k:,} of {n:,} draw of an earthquake like this one.",
-            "It overturned in {k:,} of {n:,} draws of an earthquake like this one.",
-            int(n), k=int(k),
-        ),
-        show("R = k/N", number(k, ".0f") / runs, ".4f"),
-        show("R_low", wilson_end(share, runs, width, is_high=False), ".4f"),
-        show("R_high", wilson_end(share, runs, width, is_high=True), ".4f"),
-        fill("The 95 % interval reaches from {low:.4f} to {high:.4f} (Wilson, z = {z:.2f}).", **numbers),
-        nfill(
-            "If exactly this motion recurred and the piece were exactly as given, it would overturn under {k:,} of "
-            "{n:,} motion.",
-            "If exactly this motion recurred and the piece were exactly as given, it would overturn under {k:,} of "
-            "{n:,} motions.",
-            int(n), k=int(example.number("ideal_overturned")),
-        ),
-    ]  # fmt: skip
-
-
-def _work_record(example: Example) -> list[Text]:
-    fell = example.number("record_overturned")
-    if math.isnan(fell):
-        return []
-    if fell:
-        return [fill("Under the recorded motion itself it overturns, so its class is at least high.")]
-    return [fill("Under the recorded motion itself it does not overturn.")]
 
 
 METHOD = Method(
@@ -361,7 +337,7 @@ METHOD = Method(
     kind="probability",
     order=70,
     predicts="The chance that a free-standing piece overturns, from its rocking integrated under many motions that are "
-    "compatible with the floor's response spectrum, in an earthquake like this one.",
+    "compatible with the floor's record or drawn for its building, in an earthquake like this one.",
     reference=Reference(
         authors="Housner G",
         year="1963",
@@ -374,6 +350,7 @@ METHOD = Method(
     steps=steps,
     columns=(
         Column("runs", "Draws", kind="count", format=",.0f"),
+        Column("draws", "Draws of all pieces alike", kind="count", format=",.0f"),
         Column("overturned", "Overturned", kind="count", format=",.0f"),
         Column("low", "Lower end of the interval"),
         Column("high", "Upper end of the interval"),
@@ -383,6 +360,8 @@ METHOD = Method(
         Column("ideal_high", "Upper end of its interval"),
         Column("dispersion_0.2", "Chance with a dispersion of the motion of 0.2"),
         Column("dispersion_0.6", "Chance with a dispersion of the motion of 0.6"),
+        Column("if_slower", "Chance in the third of the draws with the least PFV/PFA"),
+        Column("if_faster", "Chance in the third of the draws with the most PFV/PFA"),
         Column("record_overturned", "Overturns under the record", kind="truth", format=".0f"),
         Column("record_rotation", "Largest rotation under the record over the critical angle", format=".2f"),
         Column("sliding_branch", "How it starts to move", kind="text", format=""),
@@ -393,7 +372,7 @@ METHOD = Method(
     reasons=(
         Reason(
             "Direct integration follows each piece through whole motions of the floor, with its size. Draws that "
-            "overturn it: {overturned} of {runs}.",
+            "overturn it: {overturned} of {draws}.",
         ),
         Reason(
             "PFA {pfa_g} g is {pfa_to_start} times g·B/H, above which a uniform block can start to rock; the draws "
@@ -408,8 +387,9 @@ METHOD = Method(
             can_rock=True,
         ),
         Reason(
-            "Only peaks of this floor are known: the integrated motions follow a generic spectrum.",
-            flag="generic_spectrum",
+            "No record of this floor is known: the integrated motions are those of drawn earthquakes in drawn "
+            "buildings.",
+            flag="assumed_motion",
         ),
         Reason("The motions that were integrated are weaker than the floor's.", flag="weak_motions"),
     ),
@@ -430,10 +410,12 @@ METHOD = Method(
     assumptions=(
         "The piece is rigid and free-standing; its centre of gravity is at mid-height, or where the workbook gives it; "
         "it neither slides nor bounces, and moves in one plane; vertical motion is left out.",
-        "An earthquake like this one: β is 0.4, assumed, unless the workbook gives another dispersion or what is known "
-        "of the ground's motion raises it. ε is normal, and correlated from place to place in a city; scenarios of the "
-        "ground bring their own numbers. Base, height, centre of gravity and restitution of each piece are drawn; "
-        "their means and dispersions are assumed. Normal numbers are cut at 3 standard deviations.",
+        "An earthquake like this one: on floors with a record, or driven by one, β is 0.4, assumed, unless the "
+        "workbook gives another. Elsewhere drawn motions scatter by themselves, and β is that of what gives the ground "
+        "motion: of a ShakeMap, a field or an intensity; 0 of a typed peak or a code. ε is normal, and correlated from "
+        "place to place in a city; scenarios of the ground bring their own numbers. Base, height, centre of gravity "
+        "and restitution of each piece are drawn; their means and dispersions are assumed. Normal numbers are cut at 3 "
+        "standard deviations.",
         "Sizes that were measured by a scan are less certain: base and height are drawn with standard deviations of "
         "0.1 and 0.05 of the given ones, also assumed.",
         "Draw k has one scale for the whole building, and its motions have the same random phases on every floor along "
@@ -441,8 +423,12 @@ METHOD = Method(
         "the records; elsewhere the signs of modes are not known.",
         "Motions are linear between samples. A block at rest can start again. After the end of a motion it is followed "
         "until it can no longer fall.",
-        "The interval is Wilson's, 95 % (z = 1.96): it covers the number of draws only, not the model of the block, "
-        "how well the floor's motion is known, or the assumed dispersions.",
+        "The factors exp(β·ε_k) are stratified: each 25 draws have one ε in each 25th of its distribution, 200 one in "
+        "each 200th. Pieces that are exactly alike on a floor have one chance, from the draws of all of them; which of "
+        "them fall together in a draw is kept.",
+        "The interval is Wilson's, 95 % (z = 1.96), of N independent draws: it covers the number of draws only, not "
+        "the model of the block, how well the floor's motion is known, or the assumed dispersions. As the draws are "
+        "stratified, it is wider than it has to be.",
         "The chance is that of a piece that does not slide. How it starts to move at the floor's PFA is shown beside, "
         "by Shenton's limits (1996), resting and sliding friction being equal. So is the peak slip of a block that "
         "slides and does not rock (Newmark 1965), under the same draws: it depends on the friction and the floor "
@@ -466,10 +452,9 @@ METHOD = Method(
     ),
     flags={
         "fell_in_record": "it overturns under the recorded motion itself, so its class is at least high",
-        "generic_spectrum": "no record of this floor is known: its motions were made for a generic spectrum, "
-        "which is assumed",
-        "unknown_period": "neither T1 nor the building's height is known, so that the generic spectrum may be too weak "
-        "at long periods: simulation may raise a class, never lower it",
+        "assumed_motion": "no record of this floor is known: ground motion and building are drawn",
+        "unknown_building": "neither T1, Height, Storeys nor an Elevation is known: buildings of every period and "
+        "floors of every height are drawn, and its class is that of the faster third of them where that is higher",
         "weak_motions": "the motions are weaker than the floor's: simulation may raise a class, never lower it",
         "shenton_extended": "Shenton's limits hold for a centre of gravity at mid-height: how this piece starts to "
         "move is derived in the same way for its own",

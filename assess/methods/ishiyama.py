@@ -48,8 +48,7 @@ def evaluate(cases: Cases, settings: Settings) -> Outcome:
     known = sizes_and_pfa & ~unknown
     value = np.where(known, (cases.pfa > limit_A) & (limit_V < PFV), np.nan)
     detail = {"threshold_pfa_g": limit_A / ACCELERATION["g"], "threshold_pfv_cm_s": limit_V}
-    flags = {"pfv_unknown": unknown, "pfv_estimated": known & cases.pfv_estimated & ~np.isnan(PFV)}
-    return Outcome(value, detail, flags)
+    return Outcome(value, detail, {"pfv_unknown": unknown})
 
 
 def steps(example: Example) -> list[Text]:

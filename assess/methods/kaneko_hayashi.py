@@ -37,11 +37,8 @@ import numpy as np
 
 from assess.i18n import Text, fill
 from assess.methods._beside import find_sliding
-from assess.methods._expression import G, note_estimate, number, show, show_pfa, show_ratio
+from assess.methods._expression import G, number, show, show_pfa, show_ratio
 from assess.methods._method import (
-    ESTIMATED,
-    PFV_FLAGS,
-    RESTS_ON_ESTIMATE,
     Cases,
     Column,
     Example,
@@ -52,7 +49,6 @@ from assess.methods._method import (
     Reason,
     Reference,
     normal_cdf,
-    rests_on_estimate,
 )  # fmt: skip
 from assess.settings import Settings
 from assess.units import ACCELERATION, LENGTH, ROUNDING, VELOCITY
@@ -109,7 +105,6 @@ def evaluate(cases: Cases, settings: Settings) -> Outcome:
     alpha, zeta_A, zeta_V = settings.slide_coefficient, settings.zeta_acceleration, settings.zeta_velocity
     value = _risk(B, H, B / H, PFA, PFV, alpha, zeta_A, zeta_V)
     F_f, F_b = _eq7_floor_frequency(PFA, PFV), _eq7_boundary_frequency(H, B / H)
-    by_acceleration = _eq5(alpha, np.log(PFA), _eq6_lambda_a(B / H, G), zeta_A)
     known = ~np.isnan(value)
     branch = np.select([~known, np.isnan(PFV), F_f > F_b], ["", "bound", "pfv"], default="pfa")
     detail = {
@@ -121,8 +116,6 @@ def evaluate(cases: Cases, settings: Settings) -> Outcome:
     }
     flags = {
         "pfv_unknown_upper_bound": branch == "bound",
-        "pfv_estimated": known & cases.pfv_estimated & (branch != "bound"),
-        "rests_on_estimated_pfv": (branch == "pfv") & rests_on_estimate(value, cases, without=by_acceleration),
         "near_switch": known & (np.abs(np.log(F_f / F_b)) <= math.log(NEAR_SWITCH) * (1 + ROUNDING)),
         "slides": known & find_sliding(cases),
     }
@@ -176,7 +169,6 @@ def _work_switch(example: Example, x: Any, PFA: Any, lambda_A: Any) -> list[Text
         symbols, zeta = "z = (ln PFA - λ_A)/ζ_A", settings.zeta_acceleration
         z = (np.log(PFA) - lambda_A) / zeta
     return [
-        *note_estimate(example),
         show("λ_V = ln[10·B/√H·(1 + B/H)^2.5]", lambda_V, ".5f"),
         show("F_f = PFA/(2π·PFV)", _eq7_floor_frequency(PFA, PFV), ".4f", "Hz"),
         show("F_b = 15.6/√H·(1 + B/H)^-1.5", _eq7_boundary_frequency(H, x), ".4f", "Hz"),
@@ -252,7 +244,6 @@ METHOD = Method(
             "formula jumps between acceleration and velocity: a slightly different size or motion may change it much.",
             flag="near_switch",
         ),
-        Reason(ESTIMATED, flag="pfv_estimated"),
     ),
     equations=(
         "R = α·Φ((ln PFA - λ_A)/ζ_A) where F_f ≤ F_b;  R = α·Φ((ln PFV - λ_V)/ζ_V) where F_f > F_b   (5)",
@@ -278,8 +269,6 @@ METHOD = Method(
     ),
     flags={
         "pfv_unknown_upper_bound": "peak floor velocity unknown: the largest risk over every velocity is shown",
-        "pfv_estimated": PFV_FLAGS["pfv_estimated"],
-        **RESTS_ON_ESTIMATE,
         "near_switch": "within 10 % of the frequency at which the formula jumps from acceleration to velocity",
         "slides": "at the floor's PFA the piece slides, or slides and rocks (Shenton 1996), which the result does not "
         "count in its favour",

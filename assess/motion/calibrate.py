@@ -1,4 +1,13 @@
-"""How the recipe of an ensemble is found on its first realisations: the filter, the bending and the wavelets."""
+"""How the recipe of an ensemble is found on its first realisations: the filter, the bending and the wavelets.
+
+The filter is found by Gauss-Newton steps of random vibration. It is a power spectrum, straight in logarithms between
+the oscillators' own frequencies. The variance of an oscillator's response is a sum over the parts of the filter, and
+its peak goes with the root: so the share of each part in the variance is half the slope of the logarithm of the peak,
+which a step inverts for all oscillators at once.
+
+Source of the idea: Gasparini DA, Vanmarcke EH (1976). Simulated earthquake motions compatible with prescribed response
+spectra. MIT, Department of Civil Engineering, R76-4 (peak factors, here without time; the inversion is ours)
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -6,16 +15,81 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.motion.bending import bend_to
-from assess.motion.filtering import choose_periods, gains_of, guess_power, improve, response_matrix
 from assess.motion.noise import Transforms, find_rates
-from assess.motion.recipe import Bending, Recipe
-from assess.motion.record import FloatArray
+from assess.motion.recipe import Bending, Recipe, bend_to
+from assess.motion.record import CORNER, FloatArray
 from assess.motion.rows import GROUP, run_groups
+from assess.motion.spectrum import DAMPING
 from assess.motion.sweep import Single, Sweep
 from assess.motion.target import JUDGED_FROM, Grid, Target, matched_to
 from assess.motion.wavelets import Correction, build_wavelets
 from assess.progress import Progress
+
+ROLL_OFF = 8
+"""Order with which the filter falls off below the corner of the records' own treatment."""
+RIDGE = 0.2
+"""Damping of a step [-]; less of it raises energy and duration without a better match."""
+MOST_OFF, MOST_STEP = 0.5, 2.0
+"""Logarithms to which errors and steps of power are clipped [-]."""
+GUESSES, GUESSED, CYCLED = 12, 0.8, 20.0
+"""Steps before a motion is made, the power of each, and the duration by which peak factors are guessed [s]."""
+FINE = 800
+"""Frequencies by which variances are integrated."""
+
+
+def choose_periods(target: Target) -> NDArray[np.int64]:
+    """Return places among the target's periods: of each two neighbours the one whose ordinate stands out more."""
+    logs = np.pad(np.log(target.pseudo), 2, mode="edge")
+    out = np.abs(logs[2:-2] - (logs[:-4] + logs[4:]) / 2)
+    pairs = out[: out.size // 2 * 2].reshape(-1, 2)
+    return np.asarray(2 * np.arange(len(pairs)) + (pairs[:, 1] > pairs[:, 0]), np.int64)
+
+
+def roll_off(frequencies: FloatArray) -> FloatArray:
+    """Return the filter's power below the corner of the records' treatment [-], at frequencies [Hz] from 0 on."""
+    return np.asarray(np.where(frequencies > 0, 1 / (1 + (CORNER / np.maximum(frequencies, 1e-9)) ** ROLL_OFF), 0.0))
+
+
+def response_matrix(periods: FloatArray, time_step: float) -> FloatArray:
+    """Return the variance of the response at each period (m, ) to unit power of each part of the filter (, m)."""
+    fine = np.geomspace(CORNER / 5, 0.5 / time_step, FINE)
+    places = np.interp(np.log(fine), -np.log(periods[::-1]), np.arange(periods.size, dtype=float)[::-1])
+    parts = np.maximum(0, 1 - np.abs(places[:, None] - np.arange(periods.size)))
+    own = 1 / periods[:, None]
+    gain = own**4 / ((own**2 - fine**2) ** 2 + (2 * DAMPING * own * fine) ** 2)
+    # No matrix product: libraries share it out among threads of their own.
+    return np.asarray(np.einsum("ij,jk->ik", gain * fine * roll_off(fine), parts))
+
+
+def improve(matrix: FloatArray, power: FloatArray, error: FloatArray, weight: FloatArray) -> FloatArray:
+    """Return the filter's power (m,) after a step towards responses larger by exp(error), each with its weight."""
+    share = matrix * power
+    share /= share.sum(axis=1, keepdims=True)
+    left = share.T * weight
+    slope = np.einsum("ij,jk->ik", left, share) + RIDGE * np.eye(power.size)
+    step = np.linalg.solve(slope, (left * np.clip(error, -MOST_OFF, MOST_OFF)).sum(axis=1))
+    return np.asarray(power * np.exp(np.clip(2 * step, -MOST_STEP, MOST_STEP)))
+
+
+def guess_power(matrix: FloatArray, periods: FloatArray, wanted: FloatArray) -> FloatArray:
+    """Return the power (m,) that random vibration alone gives for mean peaks `wanted` (m,).
+
+    Each part is corrected by what its own oscillator lacks, which keeps the filter smooth where spectra leave it open.
+    """
+    variance = wanted**2 / (2 * np.log(2.8 * np.maximum(CYCLED / periods, 1)))
+    power = (wanted * periods) ** 2
+    for _ in range(GUESSES):
+        missing = variance / (matrix * power).sum(axis=1)
+        power *= missing**GUESSED
+    return np.asarray(power)
+
+
+def gains_of(power: FloatArray, periods: FloatArray, frequencies: FloatArray) -> NDArray[np.float32]:
+    """Return the filter at frequencies [Hz] from 0 on: straight in logarithms between the oscillators' own."""
+    at = np.log(np.maximum(frequencies, 1e-9))
+    shape = np.exp(np.interp(at, -np.log(periods[::-1]), np.log(power[::-1]) / 2))
+    return (shape * np.sqrt(roll_off(frequencies))).astype(np.float32)
+
 
 ROUNDS = (40, 40, 40, 40, 100, 100)
 """Realisations made in each round of filtering: few are enough for the first steps."""
@@ -54,8 +128,6 @@ WITHIN = 0.02
 """Ordinates this close to the target [-] are not corrected."""
 NEARER, BEYOND = 1.04, 1.2
 """Ordinates are corrected from and up to these ratios beyond the periods at which the match is judged [-]."""
-LIFTED = 0.1
-"""What the PFA of a generic floor is lifted at most [-]: its spectrum may not allow more."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,8 +171,7 @@ class Bench:
 class Filtering:
     """What the rounds of filtering match: `wanted` (m,) [m/s2] at `periods` (m,) [s], each with its weight."""
 
-    target: Target
-    places: NDArray[np.int64]
+    wanted: FloatArray
     periods: FloatArray
     weight: FloatArray
     matrix: FloatArray
@@ -112,58 +183,40 @@ class Filtering:
         """Return it for a target on the grid of a recipe."""
         places, step = choose_periods(target), recipe.grid.time_step
         periods = target.periods[places]
-        farthest = BEYOND**2 * matched_to(periods, target.capped(target.velocity_level)[places])
+        farthest = BEYOND**2 * matched_to(periods, target.pseudo[places])
         return cls(
-            target=target, places=places, periods=periods, weight=np.where(periods > farthest, FAINT, 1.0),
+            wanted=target.pseudo[places], periods=periods, weight=np.where(periods > farthest, FAINT, 1.0),
             matrix=response_matrix(periods, step), sweep=Sweep.of(periods, step, recipe.grid.count),
             frequencies=find_rates(recipe.grid).frequencies,
         )  # fmt: skip
-
-    def wanted(self, level: float) -> FloatArray:
-        """Return the ordinates to match, with pseudo-velocity kept to `level` [m/s]."""
-        return self.target.capped(level)[self.places]
-
-    def missing(self, level: float, error: FloatArray) -> float:
-        """Return the level that motions have over `level` where that caps; logarithms `error` (m,) are what they lack.
-
-        PFV goes with the level that motions have, which follows the one asked for a few rounds later.
-        """
-        is_capped = self.wanted(level) < self.target.pseudo[self.places]
-        return float(np.exp(-error[is_capped].mean())) if is_capped.any() else 1.0
 
     def gains(self, power: FloatArray) -> Single:
         """Return the filter of this power (m,)."""
         return gains_of(power, self.periods, self.frequencies)
 
 
-def find_filter(
-    target: Target, recipe: Recipe, noise: Sequence[Transforms], bench: Bench
-) -> tuple[Target, Recipe, Single]:
-    """Return the target with the spectrum that can be had, the recipe with filter and bending, and all its motions.
+def find_filter(target: Target, recipe: Recipe, noise: Sequence[Transforms], bench: Bench) -> tuple[Recipe, Single]:
+    """Return the recipe with filter and bending, and all its motions.
 
     `noise` holds the groups of the realisations by which everything is set.
     """
-    work, level = Filtering.of(target, recipe), target.velocity_level
-    power = guess_power(work.matrix, work.periods, work.wanted(level))
+    work = Filtering.of(target, recipe)
+    power = guess_power(work.matrix, work.periods, work.wanted)
     for number, size in enumerate(ROUNDS):
         recipe = replace(recipe, gains=work.gains(power))
         motions, peaks = bench.shape(recipe, noise, size)
         if number == 0:  # the level first: only then can peaks be judged, and nothing has been bent by them yet
-            ratio = float(np.median(work.wanted(level) / bench.mean(work.sweep, motions)))
+            ratio = float(np.median(work.wanted / bench.mean(work.sweep, motions)))
             motions, peaks, power = motions * np.float32(ratio), peaks * ratio, power * ratio**2
         _bend(motions, peaks[:, 1], target.pfa, bench, is_last=False)
-        error = np.log(work.wanted(level) / bench.mean(work.sweep, motions))
+        error = np.log(work.wanted / bench.mean(work.sweep, motions))
         power = improve(work.matrix, power, error, work.weight)
-        if target.is_generic and target.pfv > 0:
-            level *= work.missing(level, error) * target.pfv / float(peaks[:, 0].mean())
-        elif target.pfv > 0:
-            wanted = bend_to(peaks[:, 0], target.pfv, MOST_SHARPENED, PFV_LOW, PFV_HIGH)
-            recipe = replace(recipe, by_pfv=recipe.by_pfv + TURNED * (wanted - recipe.by_pfv))
+        wanted = bend_to(peaks[:, 0], target.pfv, MOST_SHARPENED, PFV_LOW, PFV_HIGH)
+        recipe = replace(recipe, by_pfv=recipe.by_pfv + TURNED * (wanted - recipe.by_pfv))
     recipe = replace(recipe, gains=work.gains(power))
     motions, peaks = bench.shape(recipe, noise, GROUP * len(noise))
     bending = _bend(motions, peaks[:, 1], target.pfa, bench)
-    target = replace(target, pseudo=target.capped(level), velocity_level=level)
-    return target, replace(recipe, steps=(bending,)), motions
+    return replace(recipe, steps=(bending,)), motions
 
 
 def _bend(
@@ -244,9 +297,7 @@ def find_corrections(target: Target, recipe: Recipe, motions: Single, bench: Ben
         elif (places := work.places(kind)).size:
             found.extend(work.correct(motions, places))
     recipe = replace(recipe, steps=recipe.steps + tuple(found))
-    wanted = target.pfa / float(_pfa(motions).mean())
-    lift = float(np.clip(wanted, 1 - LIFTED, 1 + LIFTED)) if target.is_generic else wanted
-    recipe = replace(recipe, lift=lift, scale=wanted / lift)
+    recipe = replace(recipe, lift=target.pfa / float(_pfa(motions).mean()))
     bench.run(lambda rows: recipe.finish(motions[rows]), len(motions))
     return recipe
 

@@ -20,8 +20,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from assess.motion.envelope import PAD, husid_envelopes, octaves, split
 from assess.motion.record import FloatArray
+from assess.motion.target import PAD, husid_envelopes, octaves, split
 
 DEVIATIONS = 2.0
 """Coherence below as many standard deviations of that of unrelated noise has no sign [-]."""

@@ -40,20 +40,12 @@ CALIBRATED = 100
 class Generator:
     """Makes the motions of one floor along one axis; `build_generator` finds what it holds.
 
-    Parameters
-    ----------
-    target : Target
-        As matched: where a PFV was given to a generic spectrum, it is capped to meet it.
-    grid, seed, axis, threads, progress, signs
-        As given to `build_generator`.
-    recipe : Recipe
-        What turns noise into motions.
-    made : (100, n) array
-        The first realisations [m/s2], which were made while it was found.
-    fit : Fit
-        How they meet the target.
-    spectra : Spectra
-        Their spectra.
+    * `target`: of the floor.
+    * `grid`, `seed`, `axis`, `threads`, `progress`, `signs`: as given to `build_generator`.
+    * `recipe`: what turns noise into motions.
+    * `made` (100, n): the first realisations [m/s2], which were made while it was found.
+    * `fit`: how they meet the target.
+    * `spectra`: their spectra.
     """
 
     target: Target
@@ -145,7 +137,7 @@ def build_generator(
 
     run_rows(draw, len(noise), threads, progress)
     recipe = Recipe.of(target, grid)
-    target, recipe, motions = find_filter(target, recipe, noise, bench)
+    recipe, motions = find_filter(target, recipe, noise, bench)
     recipe = find_corrections(target, recipe, motions, bench)
     fit, spectra = measure_match(target, motions, grid.time_step, threads, progress)
     return Generator(

@@ -3,7 +3,8 @@
 A folder holds ``gmf-data.csv`` (``site_id`` or ``custom_site_id``, ``event_id``, ``gmv_PGA`` [g], and others such as
 ``gmv_PGV`` [cm/s] and ``gmv_SA(1.0)`` [g]) and ``sitemesh.csv`` or ``sites.csv`` (the same name of a site, ``lon``,
 ``lat`` [deg]). Lines that begin with # are comments. A building takes the values of the nearest site: the median is
-exp of the mean of ln PGA over the events, the dispersion their standard deviation, and each event is a scenario.
+exp of the mean of ln over the events. Each event is a scenario, with its ln PGV, or ln PGA where there is no PGV; the
+dispersion is their standard deviation.
 
 The engine leaves out an event at a site where its motion is below a minimum. The scenarios of such a site would be too
 strong together, and are refused.
@@ -59,30 +60,17 @@ _KEYS = ("site_id", _TEXT)
 class GroundScenarios:
     """Computed scenarios of the ground motion; it pickles as its folder and hash, and is read again, once a process.
 
-    Parameters
-    ----------
-    file : str
-        Name of the file of the values.
-    sha256 : str
-        Hash of the hashes of both files.
-    sites_file : str
-        Name of the file of the sites.
-    hashes : tuple of two str
-        Of the values and of the sites.
-    path : Path
-        The folder.
-    latitude, longitude : (n,) array
-        Of the sites [deg].
-    start : (n + 1,) array
-        Rows of `values` of each site: those of the i-th from ``start[i]`` to ``start[i + 1]``.
-    events : (rows,) array
-        Number of the event, rising within a site.
-    values : (rows, measures) array
-        By the order of `measures` [g, cm/s].
-    measures : tuple of str
-        Names of the columns: gmv_PGA first.
-    event_count : int
-        Events that have a value anywhere.
+    * `file`: name of the file of the values.
+    * `sha256`: hash of the hashes of both files.
+    * `sites_file`: name of the file of the sites.
+    * `hashes`: of the values and of the sites.
+    * `path`: the folder.
+    * `latitude`, `longitude` (n,): of the sites [deg].
+    * `start` (n + 1,): rows of `values` of each site: those of the i-th from ``start[i]`` to ``start[i + 1]``.
+    * `events` (rows,): number of the event, rising within a site.
+    * `values` (rows, measures): by the order of `measures` [g, cm/s].
+    * `measures`: names of the columns: gmv_PGA first.
+    * `event_count`: events that have a value anywhere.
     """
 
     file: str
@@ -142,9 +130,10 @@ class GroundScenarios:
 
     def _describe(self, logs: FloatArray, distance: float) -> SiteGround:
         medians = dict(zip(self.measures, np.exp(logs.mean(axis=0)).tolist(), strict=True))
-        dispersion = float(logs[:, 0].std()) if len(logs) > 1 else 0.0
+        ruling = logs[:, self.measures.index("gmv_PGV") if "gmv_PGV" in medians else 0]
+        dispersion = float(ruling.std()) if len(logs) > 1 else 0.0
         dispersion = dispersion if dispersion > 1e-9 else 0.0
-        numbers = (logs[:, 0] - logs[:, 0].mean()) / dispersion if dispersion else np.zeros(len(logs))
+        numbers = (ruling - ruling.mean()) / dispersion if dispersion else np.zeros(len(logs))
         return SiteGround(
             kind="scenarios",
             file=self.file,

@@ -6,20 +6,18 @@ floor are turned by them before anything else is done to the noise.
 """
 
 import math
-import threading
-from collections import OrderedDict
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from assess.compiled import compiled
-from assess.motion.envelope import PAD, STRETCH, Envelopes, octaves, split
 from assess.motion.floor_signs import turn_phases
+from assess.motion.kept import Kept
 from assess.motion.record import FloatArray
 from assess.motion.rows import GROUP
-from assess.motion.target import Grid
+from assess.motion.target import PAD, STRETCH, Envelopes, Grid, octaves, split
 from assess.progress import Progress
 
 Single = NDArray[np.float32]
@@ -32,9 +30,6 @@ ROOM = 3.9
 widens it."""
 PHASES = 4096
 """Random phases are multiples of a turn over this number."""
-KEPT = 96_000_000
-"""Noise that is kept for further floors, in bytes: 200 motions of 12,000 samples on two axes are 55 million."""
-
 Signs = tuple[int, ...]
 """1 or -1 by octave."""
 
@@ -45,16 +40,10 @@ _AXES = {"X": 0, "Y": 1}
 class Rates:
     """How noise is made on a grid.
 
-    Parameters
-    ----------
-    length : int
-        Samples of the transforms: those of the grid and zeros, so that what is filtered does not come round.
-    frequencies : (f,) array
-        Of the transforms [Hz].
-    weights : (b, f) array
-        Of each octave [-].
-    depths : tuple of int
-        Each octave is made of every such sample.
+    * `length`: samples of the transforms: those of the grid and zeros, so that what is filtered does not come round.
+    * `frequencies` (f,): of the transforms [Hz].
+    * `weights` (b, f): of each octave [-].
+    * `depths`: each octave is made of every such sample.
     """
 
     length: int
@@ -84,38 +73,13 @@ class Bands:
     octaves: tuple[Single, ...]
 
     @property
-    def size(self) -> int:
+    def nbytes(self) -> int:
         """Bytes."""
         return sum(band.nbytes for band in self.octaves)
 
 
-@dataclass(slots=True)
-class _Store:
-    """Noise that has been drawn, the latest used last; what is over `KEPT` is dropped."""
-
-    held: OrderedDict[tuple[object, ...], Bands] = field(default_factory=OrderedDict)
-    lock: threading.Lock = field(default_factory=threading.Lock)
-
-    def find(self, key: tuple[object, ...]) -> Bands | None:
-        with self.lock:
-            if key in self.held:
-                self.held.move_to_end(key)
-            return self.held.get(key)
-
-    def keep(self, key: tuple[object, ...], bands: Bands) -> None:
-        with self.lock:
-            self.held[key] = bands
-            while sum(one.size for one in self.held.values()) > KEPT:
-                self.held.popitem(last=False)
-
-
-_STORE = _Store()
-
-
-def forget() -> None:
-    """Drop the noise that is kept."""
-    with _STORE.lock:
-        _STORE.held.clear()
+KEPT: Kept[Bands] = Kept(96_000_000)
+"""Noise for further floors: 200 motions of 12,000 samples on two axes are 55 million bytes."""
 
 
 def draw_bands(grid: Grid, seed: int, axis: str, group: int, progress: Progress, signs: Signs | None = None) -> Bands:
@@ -130,10 +94,10 @@ def draw_bands(grid: Grid, seed: int, axis: str, group: int, progress: Progress,
     """
     signs = signs if signs is not None and min(signs) < 0 else None
     key = (grid, seed, _AXES[axis], group, signs)
-    bands = _STORE.find(key)
+    bands = KEPT.find(key)
     if bands is None:
         bands = _draw(grid, seed, _AXES[axis], group, progress, signs)
-        _STORE.keep(key, bands)
+        KEPT.keep(key, bands)
     return bands
 
 
@@ -167,8 +131,11 @@ def draw_noise(
     group: int,
     progress: Progress,
     signs: Signs | None = None,
+    stretches: FloatArray | None = None,
 ) -> Transforms:
     """Return the transforms of a group of white noise under the envelopes of a floor, turned by its signs.
+
+    `stretches` (GROUP,) of the time of each motion are drawn unless they are given [-].
 
     Returns
     -------
@@ -179,11 +146,12 @@ def draw_noise(
 
     rates, bands = find_rates(grid), draw_bands(grid, seed, axis, group, progress, signs)
     noise = np.zeros((GROUP, rates.frequencies.size), np.complex64)
+    by = 1 / (bands.stretches if stretches is None else stretches)
     for number, (band, depth) in enumerate(zip(bands.octaves, rates.depths, strict=True)):
         progress.check()
         values = envelopes.values[min(number, len(envelopes.values) - 1)]
         under = np.zeros_like(band)
-        _modulate(band, values, 1 / bands.stretches, envelopes.half_time / grid.time_step, depth, under)
+        _modulate(band, values, by, envelopes.half_time / grid.time_step, depth, under)
         transform = rfft(under, axis=1, overwrite_x=True)
         noise[:, : transform.shape[1]] += transform
     return noise

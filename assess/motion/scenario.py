@@ -1,4 +1,4 @@
-"""Peaks of floors without sensors: PFA by the profiles that codes give for design, PFV estimated from PFA and T1.
+"""Peaks of floors without sensors: PFA by the profiles that codes give for design.
 
 A profile gives the factor by which a rigid piece on a floor at height z of a building of height h is shaken more than
 the ground: PFA = ground PGA x amplification. Ground PGA is 0.4 SDS (ASCE 7) or alpha S (EN 1998-1, NTC 2018). Codes
@@ -10,7 +10,6 @@ References
 ASCE/SEI 7-22 and 7-16, section 13.3.1; EN 1998-1:2004, 4.3.5.2; NTC 2018 with Circolare 2019, C7.2.3.
 """
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -29,24 +28,14 @@ VERIFIED = "agrees with public implementations of the code"
 class Profile:
     """How one code lets the peak acceleration grow with height.
 
-    Parameters
-    ----------
-    key, title : str
-        Its name among the scenarios, and in full.
-    clause, equation : str
-        The clause of the code, and its equation for a rigid component.
-    reference : str
-        The code.
-    verified : bool
-        Whether the equation agrees with public implementations of the code.
-    remark : str
-        How many programs it was checked against, and what was left out of it, in whole sentences.
-    factor : callable
-        Height ratio [-], from 0 to 1, and T1 [s] or None to amplification [-].
-    reduced : bool
-        Whether the code divides by R_mu, for the ductility of the building.
-    clause_without_period : str
-        The clause of the equation that applies while T1 is unknown.
+    * `key`, `title`: its name among the scenarios, and in full.
+    * `clause`, `equation`: the clause of the code, and its equation for a rigid component.
+    * `reference`: the code.
+    * `verified`: whether the equation agrees with public implementations of the code.
+    * `remark`: how many programs it was checked against, and what was left out of it, in whole sentences.
+    * `factor`: height ratio [-], from 0 to 1, and T1 [s] or None to amplification [-].
+    * `reduced`: whether the code divides by R_mu, for the ductility of the building.
+    * `clause_without_period`: the clause of the equation that applies while T1 is unknown.
     """
 
     key: str
@@ -170,46 +159,4 @@ _ALL = (
 )
 
 PROFILES: Mapping[str, Profile] = MappingProxyType({profile.key: profile for profile in _ALL})
-"""The profiles by name, the default first."""
-
-DEFAULT = _ALL[0]
-"""The profile of a floor of which nothing but its height is known."""
-
-HIGHEST_FLOOR_FREQUENCY = 1.3
-"""Upper end [Hz] of the frequency with which PFV is estimated from PFA: an assumption, ICC-ES AC156's lower corner. The
-floors of a stiff building move with the ground; without it, their velocity would be underestimated."""
-
-
-def estimate_pfv(pfa: float, period: float) -> float:
-    """Return PFV [m/s] = PFA/(2 pi f), f = min(1/T1, 1.3 Hz), from PFA [m/s2] and the building's period T1 [s].
-
-    It is the paper's equivalent floor frequency, equation (7), solved for PFV.
-    """
-    return pfa / (2 * math.pi * min(1 / period, HIGHEST_FLOOR_FREQUENCY))
-
-
-VELOCITY_AMPLIFICATION = 2.30
-"""Pseudo-velocity of an oscillator of 5 % damping over PGV [-], largest over all periods, 84th percentile: Newmark and
-Hall (1982). Assumed: not compared with the publication; their median, 1.65, is that of public implementations."""
-
-ROOF_PARTICIPATION = 4 / math.pi
-"""Roof of a uniform shear beam over an oscillator, in the first mode [-]: Miranda and Taghavi (2005)."""
-
-ROOF_FACTOR = round(1 + VELOCITY_AMPLIFICATION * ROOF_PARTICIPATION, 2)
-"""PFV over PGV that an estimate does not exceed [-]: the ground's own motion, and that of the roof relative to it in
-the first mode, as if both peaked together."""
-
-
-def cap_pfv(ground_pgv: float) -> float:
-    """Return the most that `estimate_pfv` is taken for [m/s], on every floor, from the ground's PGV [m/s].
-
-    On the recorded floors of the package PFV is 0.91 to 2.14 times PGV. Of the roofs of shear beams on the FEMA P-695
-    far-field motions, T1 0.3 to 6 s, 2 % exceed it.
-
-    References
-    ----------
-    Newmark NM, Hall WJ (1982). Earthquake Spectra and Design. Earthquake Engineering Research Institute.
-    Miranda E, Taghavi S (2005). Approximate floor acceleration demands in multistory buildings. I: Formulation.
-    Journal of Structural Engineering 131(2):203-211. doi:10.1061/(ASCE)0733-9445(2005)131:2(203).
-    """
-    return ROOF_FACTOR * ground_pgv
+"""The profiles by name."""

@@ -38,16 +38,10 @@ _FOREIGN = (b"\x89HDF", b"PK\x03\x04", b"\x1f\x8b", b"{", b"[", b"%PDF", b"\xff\
 class Grid:
     """The fields of a grid of ShakeMap.
 
-    Parameters
-    ----------
-    header, event : mapping of str to str
-        Attributes of the file's root and of its event.
-    latitude, longitude : (m,) and (n,) array
-        Rising [deg].
-    fields : mapping of str to (m, n) array
-        Values as in the file, by the name of the field.
-    units : mapping of str to str
-        Units as in the file, by the name of the field.
+    * `header`, `event`: attributes of the file's root and of its event.
+    * `latitude`, `longitude` (m,): rising [deg].
+    * `fields`: values as in the file, by the name of the field.
+    * `units`: units as in the file, by the name of the field.
     """
 
     header: Mapping[str, str]
@@ -148,7 +142,15 @@ def _build(reader: _Reader) -> Grid:
             raise InputError(fill("the element {name} is missing", name=name))
     names = _name_fields(reader.names)
     columns, rows = (_read_count(reader.found["grid_specification"], name) for name in ("nlon", "nlat"))
-    _check_size(columns, rows)
+    if columns * rows > MOST_POINTS:
+        raise InputError(
+            fill(
+                "grid_specification: {columns:,} x {rows:,} points are more than {most:,}",
+                columns=columns,
+                rows=rows,
+                most=MOST_POINTS,
+            )
+        )
     table = _read_numbers(reader.texts, len(names), rows * columns)
     fields = {name: table[:, at] for at, (name, _) in enumerate(names)}
     latitude, longitude, order = _arrange(fields.pop("LAT"), fields.pop("LON"), rows, columns)
@@ -185,18 +187,6 @@ def _read_count(specification: Mapping[str, str], name: str) -> int:
     if not (text.isascii() and text.isdigit() and len(text) < 20 and int(text) > 1):
         raise InputError(fill("grid_specification: {name} is {text!r}, expected 2 or more", name=name, text=text))
     return int(text)
-
-
-def _check_size(columns: int, rows: int) -> None:
-    if columns * rows > MOST_POINTS:
-        raise InputError(
-            fill(
-                "grid_specification: {columns:,} x {rows:,} points are more than {most:,}",
-                columns=columns,
-                rows=rows,
-                most=MOST_POINTS,
-            )
-        )
 
 
 def _read_numbers(texts: Sequence[str], width: int, rows: int) -> FloatArray:

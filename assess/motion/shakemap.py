@@ -2,17 +2,15 @@
 
 The values of the map are medians; they hold the effect of the ground (Vs30), which is not applied again. Between the
 points of the grid ln of a value is interpolated linearly along both axes; nothing is taken beyond the grid. The
-standard deviation of ln PGA is the field STDPGA of the grid, else that of uncertainty.xml in the same folder, else that
-of Boore et al. (2014); a field that is 0 at every point counts as none. It mixes what a whole earthquake and what
-single places have of their own; where uncertainty.xml holds the parts of the ground-motion model (GMPE_INTER_STDPGA,
-GMPE_INTRA_STDPGA), their share is taken from there.
+standard deviation of ln PGV is the field STDPGV of the grid, else that of uncertainty.xml in the same folder, else that
+of PGA, STDPGA, else that of Boore et al. (2014); a field that is 0 at every point counts as none. Where the map has no
+PGV, that of PGA rules. It mixes what a whole earthquake and what single places have of their own; where uncertainty.xml
+holds the parts of the ground-motion model (GMPE_INTER_STDPGV, GMPE_INTRA_STDPGV), their share is taken from there.
 
 References
 ----------
 Worden CB, Wald DJ (2016). ShakeMap manual online. U.S. Geological Survey, doi:10.5066/F7D21VPQ
-Boore DM, Stewart JP, Seyhan E, Atkinson GM (2014). NGA-West2 equations for predicting PGA, PGV, and 5% damped PSA for
-shallow crustal earthquakes. Earthquake Spectra 30(3):1057-1085. doi:10.1193/070113EQS184M (PGA: tau between events
-and phi within, each linear in magnitude from 4.5 to 5.5, before its terms for distance and Vs30)
+Boore DM, Stewart JP, Seyhan E, Atkinson GM (2014): see `assess.motion.spatial_field`.
 """
 
 import hashlib
@@ -30,21 +28,22 @@ from assess.errors import InputError
 from assess.i18n import Text, fill, join, nfill
 from assess.motion.shake_grid import LARGEST_FILE, FloatArray, Grid, describe_place, find_turn, parse_grid
 from assess.motion.site_ground import SiteGround
-from assess.motion.spatial_field import BETWEEN, MAGNITUDES, WITHIN
+from assess.motion.spatial_field import MAGNITUDES, SCATTERS, Measure
 from assess.units import GRAVITY
 
 LARGEST_SIGMA = 3.0
-"""Standard deviations of ln PGA above this are a slip."""
+"""Standard deviations of ln of a peak above this are a slip."""
 LARGEST_PGA = 10 * GRAVITY
 """Accelerations above this [m/s2] are a slip in the unit; 5 % damped spectra may be three times it."""
 LARGEST_PGV = 10.0
 """Velocities above this [m/s] are a slip in the unit."""
 
-SIGMA, BETWEEN_FIELD, WITHIN_FIELD = "STDPGA", "GMPE_INTER_STDPGA", "GMPE_INTRA_STDPGA"
+SIGMAS = frozenset({"STDPGA", "STDPGV"})
+PARTS = frozenset({"GMPE_INTER_STDPGA", "GMPE_INTRA_STDPGA", "GMPE_INTER_STDPGV", "GMPE_INTRA_STDPGV"})
 _PSA = re.compile(r"(?:PSA|SA)(\d)(\d)", re.ASCII)
 _PER_CENT_G = frozenset({"", "pctg", "%g", "pct_g", "%_g"})
 _CM_PER_S = frozenset({"", "cms", "cm/s", "cm/sec"})
-_LN = frozenset({"", "ln(pctg)", "ln(%g)", "ln(g)", "ln"})
+_LN = frozenset({"", "ln(pctg)", "ln(%g)", "ln(g)", "ln", "ln(cms)", "ln(cm/s)"})
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -53,24 +52,14 @@ class ShakeMap:
 
     Read from a file, it pickles as the file's path and hash and is read again, once a process.
 
-    Parameters
-    ----------
-    file : str
-        Name of the file of the grid.
-    sha256 : str
-        Hash of its bytes; with an uncertainty.xml, of the hashes of both files.
-    grid_sha256 : str
-        Hash of the grid's bytes alone.
-    grid : Grid
-        What the grid holds.
-    uncertainty_file, uncertainty_sha256 : str
-        Name and hash of the file of uncertainties; "" where there is none.
-    uncertainty : Grid, optional
-        What that holds.
-    path : Path, optional
-        Where the grid was read from.
-    gaps : int
-        Points of the grid at which a field that is used is not a number.
+    * `file`: name of the file of the grid.
+    * `sha256`: hash of its bytes; with an uncertainty.xml, of the hashes of both files.
+    * `grid_sha256`: hash of the grid's bytes alone.
+    * `grid`: what the grid holds.
+    * `uncertainty_file`, `uncertainty_sha256`: name and hash of the file of uncertainties; "" where there is none.
+    * `uncertainty`: what that holds.
+    * `path`: where the grid was read from.
+    * `gaps`: points of the grid at which a field that is used is not a number.
     """
 
     file: str
@@ -122,7 +111,8 @@ class ShakeMap:
     def _describe(self, read: "_Reading", pga: float, latitude: float, longitude: float) -> SiteGround:
         pgv = read("PGV", logarithmic=True) / 100 if "PGV" in self.grid.fields else math.nan
         psa = ((period, read(name, logarithmic=True) * GRAVITY / 100) for name, period in _list_psa(self.grid))
-        sigma, source, shared = self._find_sigma(read, latitude, longitude)
+        measure: Measure = "PGA" if math.isnan(pgv) else "PGV"
+        sigma, source, shared = self._find_sigma(measure, read, latitude, longitude)
         return SiteGround(
             kind="shakemap",
             file=self.file,
@@ -137,23 +127,25 @@ class ShakeMap:
             cautions=tuple(self._list_cautions(read)),
         )
 
-    def _find_sigma(self, read: "_Reading", latitude: float, longitude: float) -> tuple[float, Text, float | None]:
-        """Return the standard deviation of ln PGA [-], where it comes from, and its share common to all places."""
-        beside = self._look_beside(latitude, longitude)
-        shared = _find_shared(beside) if beside else None
-        why = fill("the map has none at this place")
-        for reading, file in ((read, self.file), (beside, self.uncertainty_file)):
-            sigma = reading(SIGMA) if reading and SIGMA in reading.fields else math.nan
-            if sigma == 0 and reading and not (reading.fields[SIGMA] > 0).any():
-                why = fill("the map's STDPGA is 0 everywhere")
-            elif not math.isnan(sigma):
-                return sigma, fill("STDPGA of {file}", file=file), shared
-        return self._assume_sigma(why)
+    def _find_sigma(
+        self, measure: Measure, read: "_Reading", latitude: float, longitude: float
+    ) -> tuple[float, Text, float | None]:
+        """Return the standard deviation of ln of a peak [-], where it comes from, and its share common to all places.
 
-    def _assume_sigma(self, why: Text) -> tuple[float, Text, float]:
-        """Return the scatter of a ground-motion model at the magnitude, or from 5.5 on where that is not known."""
+        That of PGA stands in for that of PGV: both are small near a station, and far from one alike.
+        """
+        beside = self._look_beside(latitude, longitude)
+        shared = next((one for name in (measure, "PGA") if (one := _find_shared(beside, name)) is not None), None)
+        why = fill("the map has none at this place")
+        for name in dict.fromkeys((f"STD{measure}", "STDPGA")):
+            for reading, file in ((read, self.file), (beside, self.uncertainty_file)):
+                sigma = reading(name) if reading and name in reading.fields else math.nan
+                if sigma == 0 and reading and not (reading.fields[name] > 0).any():
+                    why = fill("the map's {name} is 0 everywhere", name=name)
+                elif not math.isnan(sigma):
+                    return sigma, fill("{name} of {file}", name=name, file=file), shared
         magnitude = _read_magnitude(self.grid)
-        between, within = (float(np.interp(magnitude, MAGNITUDES, values)) for values in (BETWEEN, WITHIN))
+        between, within = SCATTERS[measure].at(magnitude)
         source = fill("assumed, as {why}: the total of Boore et al. 2014 for this magnitude", why=why)
         if magnitude >= MAGNITUDES[1]:
             source = fill("assumed, as {why}: the total of Boore et al. 2014 for magnitude 5.5 or more", why=why)
@@ -305,7 +297,17 @@ def _count_gaps(grid: Grid) -> int:
 
 @lru_cache(maxsize=2)  # workbooks of one folder name the same map
 def _read_grid(data: bytes) -> Grid:
-    return _check_grid(parse_grid(data))
+    grid = parse_grid(data)
+    if "PGA" not in grid.fields:
+        raise InputError(fill("the field PGA is missing: give the file grid.xml of a ShakeMap"))
+    psa = [name for name, _ in _list_psa(grid)]
+    _check_field(grid, "PGA", _PER_CENT_G, "%g", 100 * LARGEST_PGA / GRAVITY)
+    for name in psa:
+        _check_field(grid, name, _PER_CENT_G, "%g", 300 * LARGEST_PGA / GRAVITY)
+    if "PGV" in grid.fields:
+        _check_field(grid, "PGV", _CM_PER_S, "cm/s", 100 * LARGEST_PGV)
+    _check_sigmas(grid, SIGMAS)
+    return _keep(grid, {"PGA", "PGV", *SIGMAS, "SVEL", *psa})
 
 
 def _read_uncertainty(data: bytes, grid: Grid, name: str, grid_name: str) -> Grid:
@@ -314,7 +316,7 @@ def _read_uncertainty(data: bytes, grid: Grid, name: str, grid_name: str) -> Gri
         return _named(name, lambda: _check_uncertainty(parse_grid(data), grid))
     except InputError as error:
         way = fill(
-            "You can remove the file: the STDPGA of {grid} is then used, or an assumed one where it has none",
+            "You can remove the file: the STDPGV or STDPGA of {grid} is then used, or an assumed one where it has none",
             grid=grid_name,
         )
         raise InputError(join(". ", (error.message, way))) from None
@@ -330,21 +332,6 @@ def _named(name: str, read: Callable[[], Grid]) -> Grid:
 # ---------------------------------------------------------------- fields
 
 
-def _check_grid(grid: Grid) -> Grid:
-    """Return a grid with the fields that are used."""
-    if "PGA" not in grid.fields:
-        raise InputError(fill("the field PGA is missing: give the file grid.xml of a ShakeMap"))
-    psa = [name for name, _ in _list_psa(grid)]
-    _check_field(grid, "PGA", _PER_CENT_G, "%g", 100 * LARGEST_PGA / GRAVITY)
-    for name in psa:
-        _check_field(grid, name, _PER_CENT_G, "%g", 300 * LARGEST_PGA / GRAVITY)
-    if "PGV" in grid.fields:
-        _check_field(grid, "PGV", _CM_PER_S, "cm/s", 100 * LARGEST_PGV)
-    if SIGMA in grid.fields:
-        _check_field(grid, SIGMA, _LN, "ln(%g)", LARGEST_SIGMA)
-    return _keep(grid, {"PGA", "PGV", SIGMA, "SVEL", *psa})
-
-
 def _check_uncertainty(beside: Grid, grid: Grid) -> Grid:
     """Return a grid of uncertainties with the fields that are used."""
     own, other = _find_event(grid), _find_event(beside)
@@ -353,10 +340,13 @@ def _check_uncertainty(beside: Grid, grid: Grid) -> Grid:
             "it is of the event {other!r}, but the grid of {own!r}: name the right grid", own=own, other=other
         )
         raise InputError(message)
-    used = {SIGMA, BETWEEN_FIELD, WITHIN_FIELD}
-    for name in sorted(used & beside.fields.keys()):
-        _check_field(beside, name, _LN, "ln(%g)", LARGEST_SIGMA)
-    return _keep(beside, used)
+    _check_sigmas(beside, SIGMAS | PARTS)
+    return _keep(beside, set(SIGMAS | PARTS))
+
+
+def _check_sigmas(grid: Grid, names: frozenset[str]) -> None:
+    for name in sorted(names & grid.fields.keys()):
+        _check_field(grid, name, _LN, "ln(cm/s)" if name.endswith("PGV") else "ln(%g)", LARGEST_SIGMA)
 
 
 def _check_field(grid: Grid, name: str, units: frozenset[str], unit: str, most: float) -> None:
@@ -406,11 +396,12 @@ def _read_magnitude(grid: Grid) -> float:
     return magnitude if math.isfinite(magnitude) else math.inf
 
 
-def _find_shared(beside: "_Reading") -> float | None:
+def _find_shared(beside: "_Reading | None", measure: str) -> float | None:
     """Return the share of the variance of the ground-motion model that lies between earthquakes [-]."""
-    if not {BETWEEN_FIELD, WITHIN_FIELD} <= beside.fields.keys():
+    parts = f"GMPE_INTER_STD{measure}", f"GMPE_INTRA_STD{measure}"
+    if beside is None or not set(parts) <= beside.fields.keys():
         return None
-    between, within = (beside(name) ** 2 for name in (BETWEEN_FIELD, WITHIN_FIELD))
+    between, within = (beside(name) ** 2 for name in parts)
     return between / (between + within) if between + within > 0 else None
 
 

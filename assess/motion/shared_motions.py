@@ -10,14 +10,12 @@ The latest are kept, in so many bytes. Several threads may ask at once; one of t
 
 import hashlib
 import threading
-from collections import OrderedDict
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from assess.motion.generate import Generator, build_generator
+from assess.motion.kept import Kept, waiting
 from assess.motion.noise import Signs
 from assess.motion.rows import GROUP
 from assess.motion.sweep import Single
@@ -25,12 +23,8 @@ from assess.motion.target import Grid, Target
 from assess.motion.target_fit import Fit, Spectra
 from assess.progress import SILENT, Progress
 
-KEPT = 160_000_000
-"""Motions that are kept for further floors, in bytes: 200 motions of 30 s take 5 million."""
 MOST_GROUPS = 25
 """Groups of motions that are kept of one target; whoever wants more has them made anew."""
-ASKED_EVERY = 0.05
-"""Time [s] after which a thread that waits for another asks whether to stop."""
 
 
 @dataclass(slots=True, eq=False)
@@ -42,84 +36,22 @@ class _Entry:
     lock: threading.Lock = field(default_factory=threading.Lock)
 
     @property
-    def size(self) -> int:
+    def nbytes(self) -> int:
         """Bytes."""
         made = self.generator.made.nbytes + self.generator.spectra.ordinates.nbytes
         return made + self.generator.recipe.gains.nbytes + sum(one.nbytes for one in [*self.groups.values()])
 
 
-@dataclass(slots=True)
-class _Store:
-    """What has been made, the latest used last; what is over `KEPT` is dropped."""
-
-    held: OrderedDict[bytes, _Entry] = field(default_factory=OrderedDict)
-    busy: dict[bytes, threading.Lock] = field(default_factory=dict)
-    lock: threading.Lock = field(default_factory=threading.Lock)
-
-    def find(self, key: bytes) -> _Entry | None:
-        with self.lock:
-            if key in self.held:
-                self.held.move_to_end(key)
-            return self.held.get(key)
-
-    def keep(self, key: bytes, entry: _Entry) -> None:
-        with self.lock:
-            self.held[key] = entry
-            self.held.move_to_end(key)
-            while sum(one.size for one in self.held.values()) > KEPT:
-                self.held.popitem(last=False)
-
-    def find_or_make(self, key: bytes, make: Callable[[], Generator], progress: Progress) -> _Entry:
-        with self.lock:
-            own = self.busy.setdefault(key, threading.Lock())
-        try:
-            with _waiting(own, progress):
-                entry = self.find(key)
-                if entry is None:
-                    entry = _Entry(make())
-                    self.keep(key, entry)
-                return entry
-        finally:
-            with self.lock:
-                self.busy.pop(key, None)
-
-
-_STORE = _Store()
-
-
-def forget() -> None:
-    """Drop the motions that are kept."""
-    with _STORE.lock:
-        _STORE.held.clear()
-
-
-def count_kept() -> int:
-    """Return how many bytes of motions are kept."""
-    with _STORE.lock:
-        return sum(one.size for one in _STORE.held.values())
-
-
-@contextmanager
-def _waiting(lock: threading.Lock, progress: Progress) -> Iterator[None]:
-    """Hold a lock; raise CancelledError while waiting for it if the work is to stop."""
-    while not lock.acquire(timeout=ASKED_EVERY):
-        progress.check()
-    try:
-        yield
-    finally:
-        lock.release()
+KEPT: Kept[_Entry] = Kept(160_000_000)
+"""Motions for further floors: 200 motions of 30 s take 5 million bytes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SharedMotions:
     """The motions of one floor along one axis: those of its shape, multiplied by a factor [-].
 
-    Parameters
-    ----------
-    generator : Generator
-        Of the shape, in the threads and under the progress of the caller.
-    factor : float
-        Of the floor [-].
+    * `generator`: of the shape, in the threads and under the progress of the caller.
+    * `factor`: of the floor [-].
     """
 
     generator: Generator
@@ -145,9 +77,9 @@ class SharedMotions:
         They may be changed. Errors as of `Generator.realise`.
         """
         start, end = first // GROUP, -(-(first + count) // GROUP)
-        with _waiting(self._entry.lock, self.generator.progress):
+        with waiting(self._entry.lock, self.generator.progress):
             motions = self._find_groups(start, end)
-        _STORE.keep(self._key, self._entry)
+        KEPT.keep(self._key, self._entry)
         motions *= np.float32(self.factor)
         return motions[first - start * GROUP :][:count]
 
@@ -190,24 +122,24 @@ def share_motions(
         As of `assess.motion.generate.build_generator`; errors likewise.
     """
 
-    def make() -> Generator:
+    def make() -> _Entry:
         found = build_generator(target, grid, seed=seed, axis=axis, threads=threads, progress=progress, signs=signs)
         found.made.flags.writeable = False
-        return replace(found, threads=1, progress=SILENT)
+        return _Entry(replace(found, threads=1, progress=SILENT))
 
     key = _name(target, grid, seed, axis, signs)
-    entry = _STORE.find_or_make(key, make, progress)
+    entry = KEPT.find_or_make(key, make, progress)
     return SharedMotions(replace(entry.generator, threads=threads, progress=progress), factor, key, entry)
 
 
 def _name(target: Target, grid: Grid, seed: int, axis: str, signs: Signs | None) -> bytes:
     """Return the hash of all that the motions depend on."""
     envelopes, signs = target.envelopes, signs if signs is not None and min(signs) < 0 else None
-    found = hashlib.sha256(repr((grid, seed, axis, signs, target.is_generic)).encode())
-    numbers = target.pfa, target.pfv, target.velocity_level, envelopes.half_time
+    found = hashlib.sha256(repr((grid, seed, axis, signs)).encode())
+    numbers = target.pfa, target.pfv, envelopes.half_time
     arrays = target.periods, target.pseudo, envelopes.centres, envelopes.values, target.acceleration
     for one in (numbers, *arrays):
-        values = np.ascontiguousarray(() if one is None else one, np.float64)
+        values = np.ascontiguousarray(one, np.float64)
         found.update(repr(values.shape).encode())
         found.update(values.tobytes())
     return found.digest()

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 from assess.i18n import Text
+from assess.motion.spatial_field import Measure
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -12,32 +13,20 @@ class SiteGround:
 
     It takes the place of Ground PGA, SDS, Ground PGV and Shaking.
 
-    Parameters
-    ----------
-    kind : "shakemap" or "scenarios"
-        What it comes from.
-    file : str
-        Name of its file.
-    sha256 : str
-        Hash of the file's bytes.
-    pga, pgv : float
-        Medians [m/s2], [m/s]; `pgv` is None where it is not known.
-    psa : tuple of pairs
-        Period [s] and median 5 % spectral acceleration [m/s2], as far as they are known.
-    dispersion : float
-        Standard deviation of ln PGA at this place [-].
-    dispersion_source : Text
-        Where that comes from, in words.
-    shared : float, optional
-        Share of its variance that is common to all places in one earthquake [-]; None where that is not known.
-    distance : float, optional
-        From the place to the site of the scenarios [m].
-    scenarios : tuple of float
-        ln PGA of each scenario, less their mean, over their standard deviation [-]; draw k takes number k.
-    facts : tuple of pairs of Text
-        What a reader has to know of its origin: the event, version and status of the map, and the like.
-    cautions : tuple of Text
-        What makes it less certain than `dispersion` tells: a map that nobody has reviewed, a site that is far away.
+    * `kind`: what it comes from.
+    * `file`: name of its file.
+    * `sha256`: hash of the file's bytes.
+    * `pga`, `pgv`: medians [m/s2], [m/s]; `pgv` is None where it is not known.
+    * `psa`: period [s] and median 5 % spectral acceleration [m/s2], as far as they are known.
+    * `dispersion`: standard deviation of ln of `measure` at this place [-].
+    * `dispersion_source`: where that comes from, in words.
+    * `shared`: share of its variance that is common to all places in one earthquake [-]; None where that is not known.
+    * `distance`: from the place to the site of the scenarios [m].
+    * `scenarios`: ln of `measure` of each scenario, less their mean, over their standard deviation [-]; draw k takes
+      number k.
+    * `facts`: what a reader has to know of its origin: the event, version and status of the map, and the like.
+    * `cautions`: what makes it less certain than `dispersion` tells: a map that nobody has reviewed, a site that is far
+      away.
     """
 
     kind: Literal["shakemap", "scenarios"]
@@ -53,6 +42,11 @@ class SiteGround:
     scenarios: tuple[float, ...] = ()
     facts: tuple[tuple[Text, Text], ...] = ()
     cautions: tuple[Text, ...] = ()
+
+    @property
+    def measure(self) -> Measure:
+        """The peak that rules, whose scatter is drawn: PGV where it is known."""
+        return "PGA" if self.pgv is None else "PGV"
 
 
 class GroundField(Protocol):

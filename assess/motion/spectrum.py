@@ -26,24 +26,15 @@ DAMPING = 0.05
 class Spectrum:
     """Peak responses of damped oscillators: the arrays have the shape of the motions, periods (m,) in place of samples.
 
-    Parameters
-    ----------
-    periods : (m,) array
-        [s]
-    pseudo : (..., m) array
-        Pseudo-acceleration, the peak relative displacement times the circular frequency squared [m/s2].
-    absolute : (..., m) array
-        Peak absolute acceleration [m/s2].
+    * `periods` (m,): [s]
+    * `pseudo` (..., m): pseudo-acceleration, the peak relative displacement times the circular frequency squared
+      [m/s2].
+    * `absolute` (..., m): peak absolute acceleration [m/s2].
     """
 
     periods: FloatArray
     pseudo: FloatArray
     absolute: FloatArray
-
-    @property
-    def pseudo_velocity(self) -> FloatArray:
-        """Pseudo-velocity [m/s], (..., m)."""
-        return self.pseudo * self.periods / (2 * math.pi)
 
 
 def build_periods(shortest: float = 0.02, longest: float = 10.0, count: int = 120) -> FloatArray:

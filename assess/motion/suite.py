@@ -27,16 +27,11 @@ TEXTS = frozenset({".md", ".html", ".htm", ".pdf", ".rst", ".ini", ".db"})
 class Suite:
     """Motions of the user's own, as treated; motion k is one earthquake, the same on every floor and axis.
 
-    Parameters
-    ----------
-    folder : str
-        Name of the folder.
-    motions : tuple of (str, Motion)
-        Every horizontal channel, by file and channel, in the order of their time steps and then of their names.
-    files : mapping of str to str
-        Hashes (SHA-256) of the files.
-    notes : tuple of str
-        What was left out, and why.
+    * `folder`: name of the folder.
+    * `motions`: every horizontal channel, by file and channel, in the order of their time steps and then of their
+      names.
+    * `files`: hashes (SHA-256) of the files.
+    * `notes`: what was left out, and why.
     """
 
     folder: str

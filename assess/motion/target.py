@@ -1,13 +1,13 @@
-"""What generated motions of a floor have to match: a 5 % response spectrum, peaks, and how the shaking grows and fades.
+"""What generated motions of a floor have to match: the 5 % response spectrum of its record, its peaks, and how it grows
+and fades.
 
-A recorded motion gives all of it. For a floor of which only a peak is known there is a generic spectrum: an
-assumption, built from the shape of ICC-ES AC156 and checked against the recorded floors that come with the tests.
+A recorded motion has its low frequencies at other times than its high ones: a tall building's first mode goes on while
+the shaking of its higher modes has passed. One envelope for all makes the peaks of the modes meet, and PFV up to half
+as large again as the record's; so each octave has its own, from the record's Husid curve in that octave.
 
 References
 ----------
-ICC-ES AC156, Acceptance criteria for seismic certification by shake-table testing of nonstructural components: corners
-at 8.3 and 33.3 Hz, slope of the long-period branch, and envelope of 5, 15 and 10 s. Assumed: not compared with the
-document.
+Husid RL (1969). Características de terremotos, análisis general. Revista del IDIEM 8:21-42.
 """
 
 import math
@@ -16,8 +16,73 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from assess.motion.envelope import Envelopes, hold_envelopes, hold_times, husid_envelopes
 from assess.motion.record import FloatArray, Motion, resample
+
+LOWEST, HIGHEST = 0.1, 25.6
+"""Centres of the first and last octave [Hz]; the first reaches down to 0, the last up to the Nyquist frequency."""
+SMOOTHED, CYCLES = 0.5, 2.0
+"""A Husid curve is smoothed over this time [s], and over this many cycles of its octave, whichever is longer."""
+REACH = 4.0
+"""Standard deviations to which that smoothing reaches [-]."""
+
+STRETCH = 0.2
+"""Standard deviation of the logarithm of duration among realisations [-]: an assumption. Equations that predict the
+duration of ground motion leave 0.4 and more unexplained from one earthquake to another."""
+PAD = 20.0
+"""Zeros after the samples while motions are filtered [s], so that what is filtered does not come round."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Envelopes:
+    """Amplitudes `values` (b, n) of b octaves with `centres` (b,) [Hz].
+
+    Durations are stretched about `half_time` [s]: when half of a record's energy has passed.
+    """
+
+    centres: FloatArray
+    values: FloatArray
+    half_time: float
+
+
+def octaves() -> FloatArray:
+    """Return the centres of the octaves [Hz]."""
+    return np.geomspace(LOWEST, HIGHEST, round(math.log2(HIGHEST / LOWEST)) + 1)
+
+
+def split(frequencies: FloatArray, centres: FloatArray) -> FloatArray:
+    """Return the weight of each octave at each frequency [-], (b, f): between two centres one fades into the next."""
+    place = np.log2(np.maximum(frequencies, 1e-9) / centres[0])
+    away = np.abs(np.clip(place, 0, centres.size - 1) - np.arange(centres.size)[:, None])
+    return np.where(away < 1, np.cos(np.pi / 2 * np.minimum(away, 1)) ** 2, 0.0)
+
+
+def husid_envelopes(acceleration: FloatArray, time_step: float) -> Envelopes:
+    """Return the envelopes of a motion (n,) [m/s2]: the root of the slope of its Husid curve in each octave."""
+    from scipy.fft import irfft, next_fast_len, rfft
+
+    count, centres = acceleration.size, octaves()
+    length = int(next_fast_len(count + math.ceil(PAD / time_step), real=True))
+    weights = split(np.asarray(np.fft.rfftfreq(length, time_step), np.float64), centres)
+    bands = irfft(rfft(acceleration, length) * weights, length, axis=1)[:, :count]
+    power = np.array(
+        [
+            _smooth(band**2, max(SMOOTHED, CYCLES / centre) / time_step)
+            for band, centre in zip(bands, centres, strict=True)
+        ]
+    )
+    passed = np.cumsum(acceleration**2)
+    half = float(np.searchsorted(passed, passed[-1] / 2)) * time_step
+    return Envelopes(centres, np.sqrt(power / np.maximum(power.mean(axis=1, keepdims=True), 1e-300)), half)
+
+
+def _smooth(values: FloatArray, width: float) -> FloatArray:
+    """Return values (n,) under a normal curve with a standard deviation of `width` samples; zeros beyond the ends."""
+    from scipy.fft import irfft, next_fast_len, rfft
+
+    length = int(next_fast_len(values.size + math.ceil(REACH * width), real=True))
+    curve = np.exp(-2 * (np.pi * width * np.fft.rfftfreq(length)) ** 2)
+    return np.asarray(np.maximum(irfft(rfft(values, length) * curve, length)[: values.size], 0.0))
+
 
 TIME_STEP = 0.005
 """Step of generated motions [s]: ten samples in the shortest period that is matched."""
@@ -25,36 +90,6 @@ SHORTEST, LONGEST, COUNT = 0.03, 10.0, 160
 """Periods at which spectra are matched [s], evenly spaced in their logarithm."""
 JUDGED_FROM = 0.05
 """Shortest period at which a match is judged [s]; below, a spectrum holds little more than PFA."""
-
-RIGID_BELOW, PLATEAU_FROM = 1 / 33.3, 1 / 8.3
-"""Periods [s] up to which PSA equals PFA, and from which the plateau runs: AC156's corners."""
-PLATEAU = 2.5
-"""PSA/PFA of the plateau [-]: AC156's A_FLX/A_RIG, which it lowers up a building and which is kept here."""
-SLOPE = 0.89771
-"""Fall of PSA with frequency below AC156's lowest corner, 1.3 Hz [-]."""
-PLATEAU_TO = 1 / 1.3
-"""Period at which the plateau ends where T1 is unknown [s]."""
-
-RESONANCE = 4.0
-"""PSA/PFA at a resonance [-]."""
-RESONANCES = ((1 / 6.5, 1 / 4.5), (1.0, 1.0))
-"""Bands of resonance, as ratios to T1 [-]: a higher mode, and T1. The 21 recorded motions of buildings that we hold
-peak at 3 to 5, most at a higher mode: 575 Market Street (T1 of 5 to 6 s) at 0.9 to 1.0 s, Berkeley (T1 of 0.8 to 1 s)
-at 0.09 to 0.2 s, Alhambra (2 s) at 0.25 s; a shear beam has its third mode at T1/5."""
-LONGER = 2.5
-"""How much longer than estimated by height T1 may be [-]: that of 575 Market Street is, 6 s for 2.35 s. The band of the
-higher mode is widened as much where T1 is estimated."""
-RAMP = 1.25
-"""Ratio of periods [-] over which a resonance fades into the plateau."""
-SHORTEST_PLATEAU_END = 1.0
-"""The plateau runs at least to this period [s], however stiff the building."""
-
-LEVEL_OF_PFV = 2.0
-"""Pseudo-velocity over PFV [-] from which the cap of a generic spectrum starts; it is adapted until PFV is met."""
-
-CODE_FACTOR, CODE_POWER = 0.0488, 0.75
-"""T1 [s] of a building of height h [m] is about CODE_FACTOR h**CODE_POWER: ASCE 7-22 Eq. 12.8-7, "all other structural
-systems". It is meant to be short."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,47 +109,24 @@ class Grid:
 class Target:
     """What an ensemble is to match.
 
-    Parameters
-    ----------
-    periods, pseudo : (m,) arrays
-        5 % pseudo-acceleration [m/s2] over period [s].
-    velocity_level : float
-        Pseudo-velocity that caps a generic spectrum [m/s], to begin with; infinite where no PFV is given.
-    pfa, pfv : float
-        Peaks [m/s2], [m/s]; `pfv` is NaN where none is to be matched.
-    envelopes : Envelopes
-        How the shaking grows and fades.
-    acceleration : (n,) array, optional
-        The recorded motion that sets it [m/s2].
+    * `periods`, `pseudo` (m,): 5 % pseudo-acceleration [m/s2] over period [s].
+    * `pfa`, `pfv`: peaks [m/s2], [m/s].
+    * `envelopes`: how the shaking grows and fades.
+    * `acceleration` (n,): the recorded motion that sets it [m/s2].
     """
 
     periods: FloatArray
     pseudo: FloatArray
-    velocity_level: float
     pfa: float
     pfv: float
     envelopes: Envelopes
-    acceleration: FloatArray | None = None
-
-    @property
-    def is_generic(self) -> bool:
-        """Whether it was made from peaks alone."""
-        return self.acceleration is None
+    acceleration: FloatArray
 
     def ordinates(self, periods: FloatArray, time_step: float = TIME_STEP) -> FloatArray:
-        """Return pseudo-acceleration [m/s2] at other periods [s]: a record's own, else between those matched.
-
-        `time_step` [s] is that of the grid.
-        """
-        if self.acceleration is None:
-            return np.exp(np.interp(np.log(periods), np.log(self.periods), np.log(self.pseudo)))
+        """Return the record's pseudo-acceleration [m/s2] at other periods [s]; `time_step` [s] is that of the grid."""
         from assess.motion.spectrum import response_spectrum
 
         return response_spectrum(self.acceleration, time_step, periods).pseudo
-
-    def capped(self, level: float) -> FloatArray:
-        """Return pseudo-acceleration to match [m/s2], (m,), with pseudo-velocity kept to `level` [m/s]."""
-        return np.minimum(self.pseudo, level * 2 * np.pi / self.periods)
 
 
 def matched_to(periods: FloatArray, pseudo: FloatArray) -> float:
@@ -127,21 +139,11 @@ def matched_to(periods: FloatArray, pseudo: FloatArray) -> float:
     return float(min(max(3.0, 1.5 * longest), LONGEST))
 
 
-def build_grid(motions: Iterable[Motion], *, has_generic: bool = False, period: float | None = None) -> Grid:
-    """Return the grid of a building: as long as its longest record, and as the envelope of floors without one.
-
-    Parameters
-    ----------
-    motions : iterable of Motion
-        The recorded motions of all its floors.
-    has_generic : bool
-        Whether it has floors without a record; it has if there are no motions.
-    period : float, optional
-        T1 [s]; it lengthens the envelope of floors without a record.
-    """
+def build_grid(motions: Iterable[Motion], *, at_least: Grid | None = None) -> Grid:
+    """Return the grid of a building: as long as its longest record, and as that of drawn motions where it has any."""
     seconds = [(motion.acceleration.size - 1) * motion.time_step for motion in motions]
-    if has_generic or not seconds:
-        seconds.append(sum(hold_times(period)))
+    if at_least is not None:
+        seconds.append(at_least.duration)
     return Grid(TIME_STEP, math.ceil(max(seconds) / TIME_STEP - 1e-6) + 1)
 
 
@@ -161,74 +163,8 @@ def recorded_target(motion: Motion, grid: Grid) -> Target:
     return Target(
         periods=periods,
         pseudo=response_spectrum(acceleration, grid.time_step, periods).pseudo,
-        velocity_level=math.inf,
         pfa=motion.pfa,
         pfv=motion.pfv,
         envelopes=husid_envelopes(acceleration, grid.time_step),
         acceleration=acceleration,
     )
-
-
-def generic_target(
-    pfa: float, grid: Grid, *, pfv: float = math.nan, period: float | None = None, height: float | None = None
-) -> Target:
-    """Return the target of a floor of which only a peak is known.
-
-    Parameters
-    ----------
-    pfa : float
-        Peak floor acceleration [m/s2].
-    grid : Grid
-        The building's samples.
-    pfv : float
-        Peak floor velocity, where one is given [m/s]; the level of the long-period branch follows it.
-    period, height : float, optional
-        T1 of the building [s]; its height [m], by which T1 is estimated where it is unknown. With neither, the spectrum
-        is that of a building of a few storeys, and unsafe for a tall one.
-
-    Raises
-    ------
-    ValueError
-        If a number is not above 0.
-    """
-    given, is_capped = (pfa, pfv, period, height), not math.isnan(pfv)
-    if not all(value is None or 0 < value < math.inf for value in (pfa, pfv if is_capped else None, period, height)):
-        raise ValueError(f"pfa, pfv, period and height are {given}, expected finite numbers above 0")
-    from assess.motion.spectrum import build_periods
-
-    periods = build_periods(SHORTEST, LONGEST, COUNT)
-    first = period or estimate_period(height)
-    return Target(
-        periods=periods,
-        pseudo=pfa * generic_shape(periods, first, is_estimated=period is None, falls=not is_capped),
-        velocity_level=LEVEL_OF_PFV * pfv if is_capped else math.inf,
-        pfa=pfa,
-        pfv=pfv,
-        envelopes=hold_envelopes(grid.count, grid.time_step, first),
-    )
-
-
-def estimate_period(height: float | None) -> float | None:
-    """Return T1 [s] of a building of this height [m], by which a generic spectrum is shaped where T1 is unknown."""
-    return None if height is None else CODE_FACTOR * height**CODE_POWER
-
-
-def generic_shape(
-    periods: FloatArray, period: float | None, *, is_estimated: bool = False, falls: bool = True
-) -> FloatArray:
-    """Return PSA/PFA [-], (m,), of a floor of a building with T1 [s], which may be estimated, or with T1 unknown.
-
-    Where it `falls`, the plateau ends where pseudo-velocity is that of the resonance at T1, at 1.6 T1 but not before
-    1 s, and pseudo-velocity is constant beyond (T1 unknown: AC156's slope beyond 0.77 s); else the plateau goes on, and
-    a pseudo-velocity taken from a known PFV has to cap it.
-    """
-    rise = math.log(PLATEAU) / math.log(PLATEAU_FROM / RIGID_BELOW)
-    shape = np.clip((periods / RIGID_BELOW) ** rise, 1.0, PLATEAU)
-    if period is None:
-        return np.where(falls & (periods > PLATEAU_TO), PLATEAU * (periods / PLATEAU_TO) ** -SLOPE, shape)
-    (mode_from, mode_to), own = RESONANCES
-    for first, last in ((mode_from, mode_to * (LONGER if is_estimated else 1.0)), own):
-        away = np.maximum(np.log(periods / (last * period)), np.log(first * period / periods)) / math.log(RAMP)
-        shape = shape * (1 + (RESONANCE / PLATEAU - 1) * np.clip(1 - away, 0.0, 1.0))
-    level = max(RESONANCE * period, PLATEAU * max(period, SHORTEST_PLATEAU_END))
-    return np.minimum(shape, level / periods) if falls else shape

@@ -1,6 +1,5 @@
 """How an ensemble of motions meets its target, in figures that a report can print, and its spectra."""
 
-import math
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -17,22 +16,15 @@ from assess.progress import SILENT, Progress
 class Fit:
     """How the mean of an ensemble meets its target, and how its realisations scatter.
 
-    Parameters
-    ----------
-    count : int
-        Realisations.
-    matched_to : float
-        Longest period at which the spectrum is judged [s]; the shortest is 0.05 s.
-    mean_deviation, worst_deviation : float
-        Of the mean spectrum from the target's [-]: the mean size, and the largest, signed.
-    worst_period : float
-        Where the largest is [s].
-    pfa_ratio, pfv_ratio : float
-        Mean peaks over the target's [-]; `pfv_ratio` is NaN where no PFV is to be matched.
-    pfa_scatter, pfv_scatter, spectrum_scatter : float
-        Coefficients of variation [-]: of the peaks, and of the spectrum, averaged over its periods.
-    drift : float
-        Largest final velocity over PFV [-].
+    * `count`: realisations.
+    * `matched_to`: longest period at which the spectrum is judged [s]; the shortest is 0.05 s.
+    * `mean_deviation`, `worst_deviation`: of the mean spectrum from the target's [-]: the mean size, and the largest,
+      signed.
+    * `worst_period`: where the largest is [s].
+    * `pfa_ratio`, `pfv_ratio`: mean peaks over the target's [-].
+    * `pfa_scatter`, `pfv_scatter`, `spectrum_scatter`: coefficients of variation [-]: of the peaks, and of the
+      spectrum, averaged over its periods.
+    * `drift`: largest final velocity over PFV [-].
     """
 
     count: int
@@ -52,14 +44,9 @@ class Fit:
 class Spectra:
     """Response spectra of the first motions of an ensemble.
 
-    Parameters
-    ----------
-    periods : (p,) array
-        [s]
-    ordinates : (k, p) array
-        5 % pseudo-acceleration of each motion [m/s2].
-    target : (p,) array, optional
-        What their mean is to meet [m/s2]; None for motions that were given.
+    * `periods` (p,): [s]
+    * `ordinates` (k, p): 5 % pseudo-acceleration of each motion [m/s2].
+    * `target` (p,): what their mean is to meet [m/s2]; None for motions that were given.
     """
 
     periods: FloatArray
@@ -79,16 +66,11 @@ def velocities(acceleration: NDArray[Any], time_step: float) -> FloatArray:
 
 def measure_peaks(acceleration: NDArray[Any], time_step: float) -> FloatArray:
     """Return PFA [m/s2] and PFV [m/s] of motions (k, n) [m/s2] that start at rest, (k, 2)."""
-    from assess.motion.bending import measure_rows
+    from assess.motion.recipe import measure_rows
 
     peaks = np.empty((len(acceleration), 3))
     measure_rows(np.asarray(acceleration, np.float32), time_step, peaks)
     return peaks[:, :2]
-
-
-def measure_fit(target: Target, acceleration: NDArray[Any], time_step: float, threads: int = 1) -> Fit:
-    """Return how motions (k, n) [m/s2] meet their target, half-way between the periods that were matched."""
-    return measure_match(target, acceleration, time_step, threads)[0]
 
 
 def measure_match(
@@ -99,7 +81,7 @@ def measure_match(
     The periods lie half-way between those that were matched, from 0.05 s to where the match is judged. Motions and
     spectra are in single precision.
     """
-    from assess.motion.bending import measure_rows
+    from assess.motion.recipe import measure_rows
     from assess.motion.sweep import Sweep
 
     wanted_to = matched_to(target.periods, target.pseudo)
@@ -138,7 +120,7 @@ def _summarise(
         worst_period=float(periods[worst]),
         pfa_ratio=float(pfa.mean() / target.pfa),
         pfa_scatter=float(pfa.std() / pfa.mean()),
-        pfv_ratio=float(pfv.mean() / target.pfv) if target.pfv > 0 else math.nan,
+        pfv_ratio=float(pfv.mean() / target.pfv),
         pfv_scatter=float(pfv.std() / pfv.mean()),
         spectrum_scatter=float((pseudo.std(axis=0, dtype=np.float64) / mean).mean()),
         drift=float((np.abs(end) / pfv).max()),

@@ -1,8 +1,9 @@
 """The adopted risk: that of the simulation where it ran and its motions can be relied on, else that of the formula.
 
-A class that simulation lowers is marked. Where its motions may be too weak (a generic spectrum of a building of which
-neither T1 nor height is known, motions weaker than the floor's) simulation may raise a class, but not lower it: then
-the formula's class stands, unconfirmed. A piece that cannot start to rock is low whatever its motions are. A piece
+A piece that cannot rock is low whatever a formula says: one that is too stocky to, or that not even the strongest
+motion that may be drawn can start. A class that simulation lowers is marked. Where its motions are weaker than the
+floor's, simulation may raise a class, but not lower it: then the formula's class stands, unconfirmed. Where nothing is
+known of the building, the class is that of the faster third of the draws where that is higher, and unconfirmed. A piece
 that overturns under the record itself is at least high.
 """
 
@@ -17,6 +18,8 @@ from assess.methods._method import ALIKE, BoolArray, FloatArray
 from assess.model import Inventory
 from assess.results import BASES
 from assess.risk import RiskClass, classify_all
+from assess.rocking.block import STOCKY
+from assess.rocking.draws import MARGIN, Uncertainty
 from assess.route_results import DOUBTS
 from assess.routes.chances import Falls
 from assess.settings import Settings
@@ -24,7 +27,7 @@ from assess.units import GRAVITY
 
 IntArray = NDArray[np.int64]
 
-FORMULA, SIMULATED, UNCONFIRMED = range(len(BASES))
+FORMULA, SIMULATED, UNCONFIRMED, CANNOT_ROCK = range(len(BASES))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,10 +48,10 @@ class Adoption:
         Where simulation may not lower a class.
     ideal_higher : (n,) boolean array
         Where the class of the piece as given, under exactly this motion, is above the adopted one.
-    can_rock : (n,) boolean array
-        Where the strongest motion that may be drawn can start the piece rocking.
     either_axis : (n,) boolean array
         Where it is the chance of a fall along either axis; see `assess.pipeline.either_axis`.
+    rocks_from : (n,) array
+        Share of g b/z that PFA has to reach for the piece to rock in any draw [-].
     """
 
     probability: FloatArray
@@ -59,58 +62,92 @@ class Adoption:
     basis: NDArray[np.int8]
     doubtful: BoolArray
     ideal_higher: BoolArray
-    can_rock: BoolArray
     either_axis: BoolArray
+    rocks_from: FloatArray
+
+    @property
+    def can_rock(self) -> BoolArray:
+        """Where the piece is not too stocky to rock, and the strongest motion that may be drawn can start it, (n,)."""
+        return np.asarray(self.basis != CANNOT_ROCK)
 
 
 def find_can_rock(cases: Cases, settings: Settings) -> BoolArray:
-    """Return where the strongest motion that may be drawn can start a piece rocking: PFA e^(3 beta) >= 0.85 g b/z.
+    """Return where the strongest motion that may be drawn can start a piece rocking: PFA e^(3 s) >= 0.65 g b/z.
 
-    0.64 takes the place of 0.85 where the sizes were measured by a scan.
+    s is the standard deviation of ln of what is drawn: earthquake, peak of the motion, and slenderness of the piece. A
+    piece that is too stocky never rocks.
     """
-    strongest = cases.pfa * (1.0 if settings.ideal else cases.uncertainty.largest)
-    return np.asarray(strongest >= cases.still * GRAVITY * cases.threshold)
+    start = find_start(cases, settings) * GRAVITY * cases.threshold
+    return np.asarray((cases.pfa >= start) & ~cases.is_stocky)
+
+
+def find_start(cases: Cases, settings: Settings) -> FloatArray:
+    """Return the share of g b/z that PFA has to reach for a piece to rock in any draw, (n,) [-]."""
+    drawn, spread = Uncertainty(piece=not settings.ideal), np.zeros_like(cases.dispersion)
+    spread = spread if settings.ideal else cases.dispersion
+    return MARGIN / drawn.largest_start(cases.centre, cases.scanned, spread, cases.peak)
 
 
 def adopt(outcomes: Mapping[str, Outcome], cases: Cases, settings: Settings) -> Adoption:
     """Adopt a risk for every case."""
-    formula, simulated = outcomes[adopted_formula().key].value, outcomes[simulation().key]
+    formula, simulated = _find_by_formula(outcomes, cases, settings), outcomes[simulation().key]
     ideal, raised = simulated.detail["ideal"].astype(np.float64), simulated.flags
     names = ("ideal_low", "ideal_high") if settings.ideal else ("low", "high")
     value, (low, high) = ideal if settings.ideal else simulated.value, (_numbers(simulated, name) for name in names)
-    has_run, can_rock = ~np.isnan(value), find_can_rock(cases, settings)
-    doubtful = (raised["unknown_period"] | raised["weak_motions"]) & can_rock
-    unconfirmed = has_run & doubtful & (classify_all(value) < classify_all(formula))
-    confirmed = has_run & ~unconfirmed
-    probability = np.where(confirmed, value, formula)
+    has_run = ~np.isnan(value)
+    has_fallen = (has_run & (value > 0)) | raised["fell_in_record"]
+    can_rock = find_can_rock(cases, settings) | has_fallen  # motions of the user's own may exceed the floor's
+    is_unknown, faster = raised["unknown_building"], _numbers(simulated, "if_faster")
+    doubtful, is_lower = (is_unknown | raised["weak_motions"]) & can_rock, classify_all(value) < classify_all(formula)
+    lowered = has_run & raised["weak_motions"] & can_rock & is_lower
+    unconfirmed = lowered | (has_run & is_unknown & can_rock)
+    probability = np.select([~can_rock, has_run & ~lowered], [0.0, value], formula)
     at_least = np.where(raised["fell_in_record"], int(RiskClass.HIGH), int(RiskClass.LOW))
+    at_least = np.maximum(at_least, np.where(is_unknown & can_rock, classify_all(faster), int(RiskClass.LOW)))
     risk = np.maximum(classify_all(probability), at_least)
     ideal_higher = has_run & (classify_all(ideal) > risk)
-    upper = np.where(has_run, np.maximum(risk, classify_all(high)), risk)
+    upper = np.where(has_run & can_rock, np.maximum(risk, classify_all(high)), risk)
+    basis = np.select([~can_rock, unconfirmed, has_run], [CANNOT_ROCK, UNCONFIRMED, SIMULATED], FORMULA)
     return Adoption(
         probability=probability,
-        low=np.where(confirmed, low, np.nan),
-        high=np.where(confirmed, high, np.nan),
+        low=np.where(basis == SIMULATED, low, np.nan),
+        high=np.where(basis == SIMULATED, high, np.nan),
         risk=risk,
         upper=np.where(ideal_higher, np.maximum(upper, classify_all(ideal)), upper),
-        basis=np.where(unconfirmed, UNCONFIRMED, np.where(confirmed, SIMULATED, FORMULA)).astype(np.int8),
+        basis=basis.astype(np.int8),
         doubtful=doubtful,
         ideal_higher=ideal_higher,
-        can_rock=can_rock,
-        either_axis=np.zeros(value.size, dtype=np.bool_),
+        either_axis=np.zeros_like(can_rock),
+        rocks_from=find_start(cases, settings),
     )
+
+
+def _find_by_formula(outcomes: Mapping[str, Outcome], cases: Cases, settings: Settings) -> FloatArray:
+    """Return the chance by the adopted formula, (n,).
+
+    FEMA P-58 is for pieces of uniform weight, and has no value where such a piece is too stocky to rock: a top-heavy
+    one can rock all the same, and its chance is taken to be none.
+    """
+    found = outcomes[adopted_formula(settings.class_by).key].value
+    return np.where(np.isnan(found) & (cases.breadth_to_height >= STOCKY), 0.0, found)
 
 
 def _numbers(outcome: Outcome, name: str) -> FloatArray:
     return outcome.detail[name].astype(np.float64)
 
 
-def find_governing(probability: FloatArray, case_item: NDArray[np.intp], pfa: FloatArray) -> NDArray[np.intp]:
+def find_ruling(cases: Cases, settings: Settings) -> FloatArray:
+    """Return the peak that tells the worse of several motions, (n,): PFV or PFA, by the adopted formula."""
+    return np.asarray(getattr(cases, adopted_formula(settings.class_by).ruled_by))
+
+
+def find_governing(adoption: Adoption, case_item: NDArray[np.intp], peak: FloatArray) -> NDArray[np.intp]:
     """Return the index of the case that governs each item.
 
-    That of the larger probability, then of the larger PFA, then the first, which is X.
+    That of the larger probability, of equal ones first those under which the piece can rock, then that of the larger
+    `peak` (`find_ruling`), then the first, which is X.
     """
-    by_peak, by_chance = -np.round(pfa / GRAVITY, ALIKE), -np.round(probability, ALIKE)
+    by_peak, by_chance = -np.round(peak, ALIKE), -np.round(adoption.probability + adoption.can_rock, ALIKE)
     order = np.lexsort((by_peak, by_chance, case_item))
     first = np.searchsorted(case_item[order], np.arange(case_item[-1] + 1 if len(case_item) else 0))
     return order[first]
@@ -163,7 +200,7 @@ def build_falls(
     rows = {int(case): (joint, row) for joint in found.joints for row, case in enumerate(joint.cases)}
     fell = {}
     for at, case in enumerate(int(one) for one in governing):
-        if case in rows and adoption.basis[case] == SIMULATED:
+        if case in rows and adoption.basis[case] in (SIMULATED, CANNOT_ROCK):
             joint, row = rows[case]
             fell[at] = (joint.ideal if settings.ideal else joint.fell)[row, : joint.runs[row]]
     fell |= either_axis
@@ -177,6 +214,7 @@ def build_falls(
             if adoption.basis[case] == UNCONFIRMED
         },
         in_record=_numbers(found, "record_overturned")[governing],
+        stands=~adoption.can_rock[governing],
         anchored=held,
         quantity=np.array([item.quantity for item in inventory.items], dtype=np.intp),
     )

@@ -9,7 +9,8 @@ one scale for the whole building, as the level is: so it is not drawn, but share
 What is not simulated has no annual chance. Under motions that may be too weak, a rate is a lower bound.
 """
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+import math
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,21 +18,127 @@ import numpy as np
 from assess.annual_results import Annual, AnnualRow, AnnualTables, AnnualWays
 from assess.hazard import HazardCurve
 from assess.i18n import Text, fill, nfill
-from assess.methods import Cases
+from assess.methods import Cases, interval_width
 from assess.methods._method import BoolArray, FloatArray
 from assess.pipeline.annual_integral import MOST_LEVELS, STEP, Integral, space
-from assess.pipeline.annual_ways import evaluate_ways
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.demand import Ground, find_ground
+from assess.pipeline.floor_demand import Demand
+from assess.pipeline.known_ground import Ground, find_ground
 from assess.pipeline.level_falls import find_falls
 from assess.pipeline.levels import RockedLevels, rock_levels
-from assess.pipeline.verify import MOST_PAIRS, find_uncertainty
+from assess.pipeline.verify import MOST_PAIRS
 from assess.progress import Progress
 from assess.rates import list_remarks
-from assess.rocking.draws import MOTION, Uncertainty
-from assess.routes.chances import Falls
+from assess.rocking.draws import CUT, MOTION
+from assess.routes.chances import Couplings, Draws, Falls, find_chances, to_array
+from assess.routes.network import build_course
+from assess.routes.rooms import list_rooms
+from assess.routes.scene import Scene
+from assess.routes.widths import kinds_of
 from assess.settings import AUTO, RUNS, Settings
 from assess.units import GRAVITY, ROUNDING
+
+Happens = Callable[[Scene, Draws], int]
+"""Returns of a scene and some draws the set of those in which something happens."""
+
+
+def evaluate_ways(
+    assessment: Assessment,
+    falls: Sequence[Falls],
+    integral: Integral,
+    doubtful: Collection[int],
+    settings: Settings,
+    progress: Progress,
+) -> AnnualWays:
+    """Evaluate the routes of which any segment is evaluated, and the rooms of the network.
+
+    Parameters
+    ----------
+    assessment : Assessment
+        Of the building.
+    falls : sequence of Falls
+        How its pieces fall at each level.
+    integral : Integral
+        Over the hazard curve, at the same levels.
+    doubtful : collection of int
+        Pieces (by index) whose falls are rather too few: what rests on them is a lower bound.
+    settings : Settings
+        Of the draws.
+    progress : Progress
+        Checked for a cancel.
+
+    Raises
+    ------
+    CancelledError
+        If the caller stops the work.
+    """
+    if not assessment.obstructions:
+        return AnnualWays({}, {}, {})
+    z, lanes = interval_width(settings), tuple(assessment.obstructions)
+    scenes = [Scene(assessment.inventory, lanes, one, settings.route_risk, settings.seed, z, progress) for one in falls]
+    ways = _Ways(scenes, integral, frozenset(doubtful))
+    names = dict.fromkeys(one.segment.route for one in lanes if one.is_evaluated)
+    found = {name: ways.route(name) for name in names}
+    return AnnualWays(
+        routes={name: row for name, (row, _) in found.items()},
+        routes_if_anchors_fail={name: row for name, (_, row) in found.items() if row is not None},
+        rooms={
+            place.place: ways.find(
+                part.segments,
+                lambda scene, draws, part=part, name=place.place: part.cut_off(  # type: ignore[misc]
+                    scene.blocked(draws, part.segments), [name], draws.every
+                )[0],
+            )
+            for place, part in list_rooms(scenes[0])
+        },
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Ways:
+    """The segments at each level."""
+
+    scenes: Sequence[Scene]
+    integral: Integral
+    doubtful: frozenset[int]
+
+    def route(self, name: str) -> tuple[AnnualRow, AnnualRow | None]:
+        """Return the rows of a route if all anchors hold, and if they fail; None where it has no anchored pieces."""
+        first = self.scenes[0]
+        segments = first.segments_of(name)
+        course = build_course(segments, kinds_of(first.inventory.places))
+
+        def happens(scene: Scene, draws: Draws) -> int:
+            return course.is_blocked(scene.blocked(draws, segments), draws.every)
+
+        anchored = any(first.falls.anchored[item] for item, _ in first.keys(segments, anchors_fail=True))
+        fails = self.find(segments, happens, anchors_fail=True) if anchored else None
+        return self.find(segments, happens), fails
+
+    def find(self, segments: Collection[int], happens: Happens, *, anchors_fail: bool = False) -> AnnualRow:
+        """Return the annual row of what happens on some segments."""
+        every = [(scene, scene.couplings(segments, anchors_fail=anchors_fail)) for scene in self.scenes]
+        last, own = every[-1]
+        if not happens(last, own.ends):
+            return self.integral.never
+        shares = np.array([_share(scene, own, happens) for scene, own in every])
+        spread = None
+        if all(own.is_joint for _, own in every):
+            runs = [own.joint.weight.size for _, own in every]
+            spread = (
+                self.integral.find_spread(
+                    np.array([to_array(happens(scene, own.joint), runs[0]) for scene, own in every])
+                )
+                if len(set(runs)) == 1
+                else None
+            )
+        reaching = {item for item, _ in every[0][1].keys}
+        return self.integral.of_shares(shares, spread, at_least=bool(reaching & self.doubtful))
+
+
+def _share(scene: Scene, couplings: Couplings, happens: Happens) -> float:
+    return find_chances(couplings, lambda draws: [happens(scene, draws)], scene.z)[0].probability
+
 
 LOWER = 6
 """Levels that are added below at a time."""
@@ -75,6 +182,13 @@ def _find_missing(assessment: Assessment, ground: Ground) -> Text | str:
     return ""
 
 
+def _find_dispersion(demand: Demand) -> float:
+    """Return the standard deviation of ln of a floor's amplitude at a ground PGA [-]."""
+    if demand.own_dispersion or demand.motion is None:
+        return demand.own_dispersion
+    return MOTION
+
+
 def _describe_curve(curve: HazardCurve) -> AnnualTables:
     return AnnualTables(
         file=curve.file,
@@ -97,9 +211,17 @@ class _Annual:
 
     @property
     def cases(self) -> Cases:
-        """The cases, with the dispersion of the floors' motions at a ground PGA, which is never none."""
-        own = find_uncertainty(self.assessment.inventory.building)  # at a PGA: without that of PGA itself
-        return replace(self.assessment.cases, uncertainty=Uncertainty(motion=own.motion or MOTION, piece=own.piece))
+        """The cases, with the dispersion of the floors' motions at a ground PGA.
+
+        On floors with a record it is never none; drawn motions scatter by themselves.
+        """
+        found = [_find_dispersion(one) for one in self.assessment.case_demand]
+        return replace(self.assessment.cases, dispersion=np.array(found, dtype=np.float64))
+
+    @property
+    def largest(self) -> float:
+        """The factor that no motion at a ground PGA exceeds [-]."""
+        return math.exp(CUT * float(self.cases.dispersion.max(initial=0.0)))
 
     @property
     def settings(self) -> Settings:
@@ -111,14 +233,14 @@ class _Annual:
     @property
     def floor(self) -> float:
         """The lowest level that matters, as ground PGA [m/s2]: scattered motions of the first point of the curve."""
-        return float(self.curve.pga[0]) / self.cases.uncertainty.largest
+        return float(self.curve.pga[0]) / self.largest
 
     def find_levels(self) -> FloatArray:
         """Return rising levels, as ground PGA [m/s2]: from where about nothing rocks to beyond the end of the curve."""
         cases = self.cases
         rocked = cases.ensemble >= 0
         start = cases.still[rocked] * GRAVITY * cases.threshold[rocked] / cases.pfa[rocked]
-        last = float(self.curve.pga[-1]) * cases.uncertainty.largest
+        last = float(self.curve.pga[-1]) * self.largest
         return space(float(np.clip(self.ground * start.min(), self.floor, last / STEP)), last)
 
     def evaluate(self, jobs: int | None, progress: Progress) -> Annual:
@@ -139,20 +261,41 @@ class _Annual:
         factors = np.repeat((levels / self.ground)[np.newaxis], len(cases.ensembles), axis=0)
         return rock_levels(
             cases, assessment.case_item, assessment.case_demand, factors, self.settings,
-            dispersion=0.0, jobs=jobs, progress=progress,
+            dispersion=np.zeros(cases.breadth.size), jobs=jobs, progress=progress,
         )  # fmt: skip
 
     def _integrate(self, levels: FloatArray, rocked: Sequence[RockedLevels], progress: Progress) -> Annual:
         assessment, cases = self.assessment, self.cases
         falls = [self._find_falls(at, float(level), rocked) for at, level in enumerate(levels)]
-        integrate = Integral(self.curve, levels, cases.uncertainty.motion, int(self.settings.runs))
+        spreads = sorted({float(one) for one in cases.dispersion})
+        integrals = {one: Integral(self.curve, levels, one, int(self.settings.runs)) for one in spreads}
+        integrate = integrals[spreads[-1]]  # of the whole building: the largest
+        of_item = {
+            item: max(float(one) for one in cases.dispersion[assessment.case_item == item]) for item in falls[0].fell
+        }
         doubtful = self._list_doubtful(rocked)
         fell = {item: np.array([one.fell[item] for one in falls]) for item in sorted(falls[0].fell)}
-        items = {item: integrate.of_draws(own, at_least=item in doubtful) for item, own in fell.items()}
+        shares = self._average(fell)
+        items = {item: integrals[of_item[item]].of_draws(shares[item], at_least=item in doubtful) for item in fell}
         counted = [item for item in items if not assessment.anchors.held[item]]
         several = {at for at, item in enumerate(assessment.inventory.items) if item.quantity > 1}
         ways = evaluate_ways(assessment, falls, integrate, doubtful | several, self.settings, progress)
         return Annual(self._describe(levels, integrate, items, fell, counted, doubtful), items, ways)
+
+    def _average(self, fell: Mapping[int, BoolArray]) -> dict[int, FloatArray]:
+        """Return for each piece the share of it and those exactly like it that fall, by level and draw."""
+        owns: dict[int, list[int]] = {}
+        for item, kind in zip(self.assessment.case_item.tolist(), self.cases.alike.tolist(), strict=True):
+            owns.setdefault(item, []).append(kind)
+        groups: dict[tuple[int, ...], list[int]] = {}
+        for item in fell:
+            groups.setdefault(tuple(owns[item]), []).append(item)
+        quantity = [one.quantity for one in self.assessment.inventory.items]
+        found: dict[int, FloatArray] = {}
+        for group in groups.values():
+            falls = sum(quantity[item] * fell[item] for item in group)
+            found |= dict.fromkeys(group, np.asarray(falls / sum(quantity[item] for item in group)))
+        return found
 
     def _find_falls(self, at: int, level: float, rocked: Sequence[RockedLevels]) -> Falls:
         pfa = self.assessment.cases.pfa * (level / self.ground)
@@ -162,7 +305,7 @@ class _Annual:
     def _list_doubtful(self, rocked: Sequence[RockedLevels]) -> frozenset[int]:
         """Return the pieces whose motions may be too weak, by their index."""
         ensembles = zip(self.cases.ensembles, rocked, strict=True)
-        own = [one.own for made, one in ensembles if made.is_unshaped or one.is_weak]
+        own = [one.own for made, one in ensembles if made.is_unknown or one.is_weak]
         return frozenset(self.assessment.case_item[np.concatenate(own)].tolist() if own else ())
 
     def _describe(
@@ -187,7 +330,7 @@ class _Annual:
         found = replace(
             _describe_curve(self.curve),
             ground_pga_g=self.ground / GRAVITY,
-            motion_dispersion=self.cases.uncertainty.motion,
+            motion_dispersion=integrate.dispersion,
             runs=integrate.runs,
             factors=tuple((levels / self.ground).tolist()),
             pieces=everything,

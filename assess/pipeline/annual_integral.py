@@ -39,16 +39,10 @@ def space(first: float, last: float) -> FloatArray:
 class Integral:
     """A hazard curve, and levels at which shares are known.
 
-    Parameters
-    ----------
-    curve : HazardCurve
-        Of the site.
-    levels : (n,) array
-        Rising levels, as ground PGA [m/s2].
-    dispersion : float
-        Standard deviation of ln scale at a ground PGA [-], above 0.
-    runs : int
-        Draws that a share comes from.
+    * `curve`: of the site.
+    * `levels` (n,): rising levels, as ground PGA [m/s2].
+    * `dispersion`: standard deviation of ln scale at a ground PGA [-], above 0.
+    * `runs`: draws that a share comes from.
     """
 
     curve: HazardCurve
@@ -86,8 +80,8 @@ class Integral:
             dispersion=None, misfit=None, at_least=False, ends_matter=False,
         )  # fmt: skip
 
-    def of_draws(self, happened: BoolArray, *, at_least: bool) -> AnnualRow:
-        """Return the annual row of what happened at each level and draw, (levels, draws)."""
+    def of_draws(self, happened: BoolArray | FloatArray, *, at_least: bool) -> AnnualRow:
+        """Return the annual row of what happened, or its share, at each level and draw, (levels, draws)."""
         return self.of_shares(happened.mean(axis=1), self.find_spread(happened), at_least=at_least)
 
     def of_shares(self, shares: FloatArray, spread: float | None, *, at_least: bool) -> AnnualRow:

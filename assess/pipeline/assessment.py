@@ -14,7 +14,7 @@ from assess.methods._method import BoolArray, Joint
 from assess.model import Axis, Inventory
 from assess.pipeline.adopt import Adoption
 from assess.pipeline.anchors import Anchors
-from assess.pipeline.demand import Demand
+from assess.pipeline.floor_demand import Demand
 from assess.settings import Settings
 
 if TYPE_CHECKING:
@@ -26,38 +26,22 @@ if TYPE_CHECKING:
 class Assessment:
     """What a run computes with; `assess.pipeline.run.compute` makes it.
 
-    Parameters
-    ----------
-    inventory, settings
-        What was assessed, and how.
-    scenario : str
-        Where the floor motion came from, one of `assess.settings.SCENARIOS`.
-    suite : Suite, optional
-        The user's own motions, where they stood in for generated ones.
-    filled, demands : mappings of (floor, axis) to demands
-        How every floor shakes, as the workbook says and with the settings' factor on it.
-    methods : tuple of Method
-        The methods, in the order of reports.
-    cases : Cases
-        n pairs of piece and motion: every piece under every motion of its axis, or of both where its axis is blank.
-    case_item, case_demand : (n,) array, tuple of Demand
-        Which item (its index in the inventory) and which demand each case has.
-    outcomes : mapping of method key to Outcome
-        What each method gives for all cases.
-    adoption : Adoption
-        The risk that is adopted for each case.
-    either_axis : mapping of item to (k,) boolean array
-        Of each piece that may topple along both axes, in which draws it does along either.
-    governing : (items,) array
-        Index of each item's governing case.
-    anchors : Anchors
-        What the bracket of each item has to carry, and which count as anchored.
-    obstructions : sequence of Obstructions
-        What can reach the segments of evacuation routes.
-    problems : tuple of Problem
-        Warnings and notes about the input.
-    annual : Annual, optional
-        Annual chances; None where the workbook names no hazard file.
+    * `inventory`, `settings`: what was assessed, and how.
+    * `scenario`: where the floor motion came from, one of `assess.settings.SCENARIOS`.
+    * `suite`: the user's own motions, where they stood in for generated ones.
+    * `filled`, `demands`: how every floor shakes, as the workbook says and with the settings' factor on it.
+    * `methods`: the methods, in the order of reports.
+    * `cases`: n pairs of piece and motion: every piece under every motion of its axis, or of both where its axis is
+      blank.
+    * `case_item`, `case_demand` (n,): which item (its index in the inventory) and which demand each case has.
+    * `outcomes`: what each method gives for all cases.
+    * `adoption`: the risk that is adopted for each case.
+    * `either_axis`: of each piece that may topple along both axes, in which draws it does along either.
+    * `governing` (items,): index of each item's governing case.
+    * `anchors`: what the bracket of each item has to carry, and which count as anchored.
+    * `obstructions`: what can reach the segments of evacuation routes.
+    * `problems`: warnings and notes about the input.
+    * `annual`: annual chances; None where the workbook names no hazard file.
     """
 
     inventory: Inventory

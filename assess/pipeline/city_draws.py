@@ -5,16 +5,17 @@ from collections.abc import Mapping
 from assess.errors import InputError
 from assess.i18n import fill, join
 from assess.model import Inventory
-from assess.motion.spatial_field import RANGE, SHARED
+from assess.motion.spatial_field import SCATTERS, Measure
+from assess.pipeline.known_ground import find_ground
 from assess.results import EarthquakeDraws
-from assess.rocking.draws import Earthquakes, Uncertainty, name_number
+from assess.rocking.draws import Earthquakes, name_number
 from assess.settings import AUTO, RUNS, Settings
 
 MOST_DRAWS = 5000
 """Draws that scenarios may ask for at most."""
 
 
-def find_earthquakes(inventory: Inventory, settings: Settings, uncertainty: Uncertainty) -> Earthquakes:
+def find_earthquakes(inventory: Inventory, settings: Settings) -> Earthquakes:
     """Return by which numbers the draws of an earthquake scale the motions of a building.
 
     Parameters
@@ -23,26 +24,20 @@ def find_earthquakes(inventory: Inventory, settings: Settings, uncertainty: Unce
         Its place and the shaking of the ground there, as far as they are known.
     settings : Settings
         `city`: whether draws differ from place to place. A building whose place is not known takes the common part
-        alone.
-    uncertainty : Uncertainty
-        What is drawn. Scenarios carry the part of its variance that is not the building's own.
+        alone. Scenarios carry the part of the variance that is not the building's own.
     """
-    ground, own = inventory.site_ground, _own_motion(inventory)
-    variance = uncertainty.motion**2
-    given_share = max(0.0, 1 - own**2 / variance) if variance else 0.0
-    shared = SHARED if ground is None or ground.shared is None else ground.shared
+    ground, own = inventory.site_ground, inventory.building.motion_uncertainty or 0.0
+    measure: Measure = "PGA" if find_ground(inventory).pgv is None else "PGV"
+    spread = 0.0 if ground is None else ground.dispersion
+    given_share = spread**2 / (own**2 + spread**2) if spread else 0.0
+    shared = SCATTERS[measure].shared if ground is None or ground.shared is None else ground.shared
     return Earthquakes(
         place=_find_place(inventory) if settings.city else None,
         shared=shared,
+        measure=measure,
         given=() if ground is None or not given_share else ground.scenarios,
         given_share=0.0 if ground is None or not ground.scenarios else given_share,
     )
-
-
-def _own_motion(inventory: Inventory) -> float:
-    """Return the dispersion of the motion that is the building's own, without that of the ground [-]."""
-    given = inventory.building.motion_uncertainty
-    return Uncertainty().motion if given is None else given
 
 
 def _find_place(inventory: Inventory) -> tuple[float, float] | None:
@@ -57,6 +52,13 @@ def number_pieces(inventory: Inventory, settings: Settings) -> Mapping[str, int]
     return {item.item: name_number(f"{before}{item.item}") for item in inventory.items}
 
 
+def number_building(inventory: Inventory, settings: Settings) -> int:
+    """Return the number by which a building draws its T1 and PGV/PGA: in a city by its name and place."""
+    place = _find_place(inventory) if settings.city else None
+    name = inventory.building.building
+    return 0 if place is None else name_number(f"{place[0]:.6f} {place[1]:.6f} {name}")
+
+
 def describe_draws(inventory: Inventory, settings: Settings, earthquakes: Earthquakes) -> EarthquakeDraws | None:
     """Return how draws depend on the place and on scenarios; None where they do not."""
     if not settings.city and not earthquakes.given:
@@ -67,13 +69,11 @@ def describe_draws(inventory: Inventory, settings: Settings, earthquakes: Earthq
         is_placed=earthquakes.place is not None,
         shared=earthquakes.shared,
         is_shared_given=ground is not None and ground.shared is not None,
-        range_km=RANGE,
+        measure=earthquakes.measure,
+        range_km=SCATTERS[earthquakes.measure].range_km,
         scenarios=len(earthquakes.given),
         scenario_share=earthquakes.given_share,
     )
-
-
-# ---------------------------------------------------------------- how many draws
 
 
 def choose_runs(scenarios: int, runs: int | str | None = None) -> int | str:

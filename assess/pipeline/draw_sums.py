@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.methods._method import BoolArray
-from assess.pipeline.adopt import build_falls
 from assess.pipeline.assessment import Assessment
+from assess.pipeline.tables import find_falls
 from assess.progress import SILENT, Progress
-from assess.results import Results
+from assess.results import Results, sum_falls
 from assess.route_results import RouteRow, RouteState, RouteTables
 from assess.routes.chances import Falls
 from assess.settings import AUTO
@@ -30,21 +30,15 @@ SIMULATED = "simulated"
 class DrawSums:
     """Sums over the pieces and routes of a building.
 
-    Parameters
-    ----------
-    falls : (runs,) integer array, optional
-        Pieces that fall in each draw, of those in the classes; None where nothing was simulated, or each piece in a
-        number of draws of its own.
-    people_blocked, routes_blocked : (runs,) integer arrays, optional
-        People whose route is blocked in each draw, and routes, of those with joint outcomes; None likewise.
-    joint_routes : tuple of str
-        Those routes.
-    people_expected, routes_expected : float
-        Expected numbers of people whose route is blocked, and of routes, of all that are known.
-    people_apart, routes_apart : float
-        The part of them that is in no draw: of routes without joint outcomes.
-    people_not_known : int
-        People on routes whose state is not known: they are in none of these numbers.
+    * `falls` (runs,): pieces that fall in each draw, of those in the classes; None where nothing was simulated, or each
+      piece in a number of draws of its own.
+    * `people_blocked`, `routes_blocked` (runs,): people whose route is blocked in each draw, and routes, of those with
+      joint outcomes; None likewise.
+    * `joint_routes`: those routes.
+    * `people_expected`, `routes_expected`: expected numbers of people whose route is blocked, and of routes, of all
+      that are known.
+    * `people_apart`, `routes_apart`: the part of them that is in no draw: of routes without joint outcomes.
+    * `people_not_known`: people on routes whose state is not known: they are in none of these numbers.
     """
 
     falls: Numbers | None
@@ -69,11 +63,11 @@ def sum_draws(assessment: Assessment, results: Results, *, progress: Progress = 
     tables, runs = results.route_tables, assessment.settings.runs
     chances = {one.route: one.blocked.probability for one in tables.routes if _is_known(one) and one.blocked}
     people = {one.route: count_people(tables, one) or 0 for one in tables.routes}
-    falls = _find_falls(assessment) if _has_common_draws(assessment, results) else None
+    falls = find_falls(assessment) if (results.main_basis == SIMULATED and assessment.settings.runs != AUTO) else None
     blocked = {} if falls is None else _find_blocked(assessment, falls, chances, progress)
     apart = {route: chance for route, chance in chances.items() if route not in blocked}
     return DrawSums(
-        falls=None if falls is None else _sum_falls(results, falls, int(runs)),
+        falls=None if falls is None else _sum_falls(results, int(runs)),
         people_blocked=None if falls is None else _add_up(blocked, people, int(runs)),
         routes_blocked=None if falls is None else _add_up(blocked, dict.fromkeys(blocked, 1), int(runs)),
         joint_routes=tuple(blocked),
@@ -95,25 +89,10 @@ def _is_known(route: RouteRow) -> bool:
     return route.state != RouteState.NOT_KNOWN and route.blocked is not None
 
 
-def _has_common_draws(assessment: Assessment, results: Results) -> bool:
-    """Tell whether the counts rest on simulation, and all pieces were simulated in the same draws."""
-    return results.main_basis == SIMULATED and assessment.settings.runs != AUTO
-
-
-def _find_falls(assessment: Assessment) -> Falls:
-    return build_falls(
-        assessment.inventory, assessment.adoption, assessment.outcomes, assessment.governing, assessment.settings,
-        assessment.either_axis, assessment.anchors.held,
-    )  # fmt: skip
-
-
-def _sum_falls(results: Results, falls: Falls, runs: int) -> Numbers:
+def _sum_falls(results: Results, runs: int) -> Numbers:
     """Return how many pieces fall in each draw, (runs,): quantities are counted."""
-    found = np.zeros(runs, dtype=np.int64)
-    for one in results:
-        if not one.is_anchored and not one.apart and one.item.index in falls.fell:
-            found += one.item.quantity * falls.fell[one.item.index]
-    return found
+    found = sum_falls(one for one in results if not one.is_anchored and not one.apart)
+    return np.zeros(runs, dtype=np.int64) if found is None else found
 
 
 def _find_blocked(

@@ -11,11 +11,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.methods import Outcome, interval_width, simulation
+from assess.methods import Alike, Cases, Outcome, interval_width, simulation
 from assess.methods._method import BoolArray
 from assess.model import AXES, Inventory, Item
 from assess.pipeline.adopt import SIMULATED, Adoption
-from assess.pipeline.demand import Demand
+from assess.pipeline.floor_demand import Demand
 from assess.risk import classify_all, wilson_interval
 from assess.settings import Settings
 
@@ -34,6 +34,7 @@ def is_square(item: Item) -> bool:
 def unite_axes(
     adoption: Adoption,
     outcomes: Mapping[str, Outcome],
+    cases: Cases,
     inventory: Inventory,
     case_item: NDArray[np.intp],
     case_demand: Sequence[Demand],
@@ -47,23 +48,35 @@ def unite_axes(
     verdicts = dict(_verdicts(outcomes[simulation().key], adoption, settings))
     firsts = np.searchsorted(case_item, np.arange(len(inventory.items) + 1)).tolist()
     united: dict[int, BoolArray] = {}
+    pairs: dict[int, list[int]] = {}
     for index in (at for at, item in enumerate(inventory.items) if is_square(item)):
         pair = _worst_of_each_axis(range(firsts[index], firsts[index + 1]), case_demand, adoption)
         if len(pair) == len(AXES) and all(case in verdicts for case in pair):
             count = min(verdicts[case].size for case in pair)
             united[index] = np.any([verdicts[case][:count] for case in pair], axis=0)
-            _adopt_union(adoption, pair, united[index], interval_width(settings))
+            pairs[index] = pair
+    for index, share in _average(cases, pairs, united).items():
+        _adopt_union(adoption, pairs[index], share, united[index].size, interval_width(settings))
     return adoption, united
 
 
-def _adopt_union(adoption: Adoption, pair: list[int], fell: BoolArray, z: float) -> None:
-    """Put the share of the draws in `fell` in place of both chances of a `pair`."""
-    low, high = wilson_interval(fell.sum(), fell.size, z)
+def _average(cases: Cases, pairs: Mapping[int, list[int]], united: Mapping[int, BoolArray]) -> dict[int, float]:
+    """Return the share of the draws in which each item falls, that of all items alike together."""
+    kinds: dict[tuple[int, ...], int] = {}
+    numbers = [kinds.setdefault(tuple(cases.alike[pair].tolist()), len(kinds)) for pair in pairs.values()]
+    alike = Alike.of(numbers, [cases.quantity[pair[0]] for pair in pairs.values()])
+    shares = np.array([united[index].mean() for index in pairs])
+    return dict(zip(pairs, alike.average(shares).tolist(), strict=True))
+
+
+def _adopt_union(adoption: Adoption, pair: list[int], share: float, runs: int, z: float) -> None:
+    """Put a share of `runs` draws in place of both chances of a `pair`."""
+    low, high = wilson_interval(share * runs, runs, z)
     changed = {
-        "probability": fell.mean(),
+        "probability": share,
         "low": low,
         "high": high,
-        "risk": np.maximum(adoption.risk[pair], classify_all(fell.mean())),
+        "risk": np.maximum(adoption.risk[pair], classify_all(share)),
         "upper": np.maximum(adoption.upper[pair], classify_all(high)),
         "either_axis": True,
     }

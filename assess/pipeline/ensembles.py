@@ -1,17 +1,29 @@
-"""The motions of every floor and axis: generated for its record or for a generic spectrum, or the user's own."""
+"""The motions of every floor and axis: generated for its record, drawn on a beam, or the user's own.
+
+The phases of floors whose records can be compared are turned by the signs of those. Two records are compared where they
+are along one axis, of one earthquake and on one clock, as far as their files show:
+
+* the files give the same event, start and sampling interval, and both records are corrected or neither is;
+* and the start is given to a hundredth of a second, or both are channels of one recorder, or both are of one file.
+
+Where that cannot be shown a record has no sign, and its motions keep the phases as they are: a start to the minute is
+no common clock, nor is the motion of the other axis a record along this one. Parallel records of one floor count each
+for itself, as they are made at different places of it; a sign is found where two floors at least have such records.
+"""
 
 import math
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.model import Building
-from assess.motion.record import FloatArray, treat
-from assess.pipeline.demand import Demand, Demands
-from assess.pipeline.phase_signs import find_phase_signs
+from assess.model import NEAR_AXIS, Building, angle_between
+from assess.motion.record import FloatArray, Motion, Record, treat
+from assess.motion.rows import GROUP
+from assess.pipeline.floor_demand import Demand, Demands, Drawn
 from assess.progress import SILENT, Progress
 
 if TYPE_CHECKING:
@@ -28,12 +40,14 @@ class OpenMotions:
     """Motions that have been made ready: `make` returns those from a number on, and a count of them.
 
     `fit` and `spectra` are those of the first 100 motions; `is_weak` tells whether they are weaker than the floor's.
+    `bands` are the factors above and below the corner by which drawn motions are brought to the floor's peaks [-].
     """
 
     make: Callable[[int, int], list[tuple[NDArray[Any], float]]]
     fit: "Fit | None" = None
     spectra: "Spectra | None" = None
     is_weak: bool = False
+    bands: tuple[float, float] | None = None
 
     def realise(self, first: int, count: int) -> list[tuple[NDArray[Any], float]]:
         """Return motions `first` to `first + count - 1` in batches: (k, n) [m/s2], and their time step [s]."""
@@ -42,38 +56,20 @@ class OpenMotions:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GeneratedEnsemble:
-    """Motions made for the spectrum of one demand.
+    """Motions made for the spectrum of one record.
 
-    Parameters
-    ----------
-    demand : Demand
-        The floor motion that they stand for.
-    grid : Grid
-        The samples that all floors of the building share, so that motion k is one earthquake.
-    seed : int
-        Of the phases.
-    period, height : float, optional
-        T1 [s] and height [m] of the building, by which a generic spectrum is shaped.
-    signs : tuple of int, optional
-        By which its phases are turned, 1 or -1 by octave; None where they are not known.
+    * `demand`: the floor motion that they stand for.
+    * `grid`: the samples that all floors of the building share, so that motion k is one earthquake.
+    * `seed`: of the phases.
+    * `signs`: by which its phases are turned, 1 or -1 by octave; None where they are not known.
     """
 
     demand: Demand
     grid: "Grid"
     seed: int
-    period: float | None = None
-    height: float | None = None
     signs: tuple[int, ...] | None = None
-
-    @property
-    def is_generic(self) -> bool:
-        """Whether its spectrum is a generic one, since no record is known."""
-        return self.demand.motion is None
-
-    @property
-    def is_unshaped(self) -> bool:
-        """Whether its generic spectrum rests on neither T1 nor the building's height."""
-        return self.is_generic and self.period is None and self.height is None
+    is_assumed: bool = False
+    is_unknown: bool = False
 
     @property
     def record(self) -> tuple[FloatArray, float] | None:
@@ -82,26 +78,18 @@ class GeneratedEnsemble:
 
     @property
     def factor(self) -> float:
-        """What the floor's motions are of those for `build_target` [-]: its PFA [m/s2], or the scale of its record."""
-        if self.demand.motion is None:
-            return self.demand.pfa
+        """What the floor's motions are of those for `build_target` [-]: the scale of its record."""
         return 1.0 if self.demand.record is None else self.demand.scale
 
     def build_target(self) -> "Target":
-        """Return what the motions are to match, but for `factor`.
-
-        It is that of the record as it is, or a generic one of a PFA of 1 m/s2: floors with targets of one shape take
-        the same motions. The ratio of PFV to PFA, T1 and the height are taken to six digits, so that rounding errors of
-        products make no shape of its own.
-        """
-        from assess.motion.target import generic_target, recorded_target
+        """Return what the motions are to match, but for `factor`: the record as it is."""
+        from assess.motion.target import recorded_target
 
         demand = self.demand
-        if demand.motion is not None:
-            own = demand.motion if demand.record is None or demand.scale == 1.0 else treat(demand.record)
-            return recorded_target(own, self.grid)
-        pfv = math.nan if "pfv_estimated" in demand.flags else _round(demand.pfv / demand.pfa)
-        return generic_target(1.0, self.grid, pfv=pfv, period=_round(self.period), height=_round(self.height))
+        if demand.motion is None:
+            raise ValueError(f"floor {demand.floor.floor} has no record")
+        own = demand.motion if demand.record is None or demand.scale == 1.0 else treat(demand.record)
+        return recorded_target(own, self.grid)
 
     def open(self, threads: int, progress: Progress = SILENT) -> OpenMotions:
         """Find the filter and the corrections that meet the target; the motions are in single precision."""
@@ -118,13 +106,54 @@ class GeneratedEnsemble:
         )
 
 
-@overload
-def _round(value: None) -> None: ...
-@overload
-def _round(value: float) -> float: ...
-def _round(value: float | None) -> float | None:
-    """Return a number to six digits."""
-    return None if value is None else float(f"{value:.6g}")
+@dataclass(frozen=True, slots=True, eq=False)
+class DrawnEnsemble:
+    """Motions of a floor without a record: of drawn buildings on drawn motions of the ground, or on those of a record.
+
+    * `demand`: the floor motion that they stand for.
+    * `drawn`: its own.
+    * `grid`, `seed`: as of `GeneratedEnsemble`.
+    * `signs`: those of the record of the ground.
+    """
+
+    demand: Demand
+    drawn: Drawn
+    grid: "Grid"
+    seed: int
+    signs: tuple[int, ...] | None = None
+    record: None = None
+    is_assumed: bool = True
+
+    @property
+    def is_unknown(self) -> bool:
+        """Whether nothing is known of the building, nor of the floor's height."""
+        return self.drawn.is_unknown
+
+    def open(self, threads: int, progress: Progress = SILENT) -> OpenMotions:
+        """Find what brings the draws to the floor's peaks; the motions are in single precision."""
+        from assess.motion.beam_motions import Beams, open_floor
+
+        make_ground, key = self._find_ground(progress)
+        beams = Beams(self.drawn.building, self.grid, self.seed, key, make_ground)
+        found, step = open_floor(beams, self.drawn.target, threads, progress), self.grid.time_step
+
+        def make(first: int, count: int) -> list[tuple[NDArray[Any], float]]:
+            return [(found.realise(first, count, threads, progress), step)]
+
+        return OpenMotions(make, bands=(found.high, found.low))
+
+    def _find_ground(self, progress: Progress) -> tuple[Callable[[int], "NDArray[np.float32]"], object]:
+        """Return what makes the ground motions of a group, and all that they depend on."""
+        from assess.motion.drawn_ground import draw_ground
+
+        record, ground, axis = self.drawn.record, self.drawn.ground, self.demand.axis
+        if record is None:
+            return (
+                lambda group: draw_ground(ground, self.grid, seed=self.seed, axis=axis, group=group, progress=progress),
+                (ground, axis),
+            )
+        made = GeneratedEnsemble(record, self.grid, self.seed, self.signs).open(1, progress)
+        return lambda group: made.realise(group * GROUP, GROUP)[0][0], (record, axis)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -135,8 +164,8 @@ class SuiteEnsemble:
     suite: "Suite"
     is_scaled: bool
     factor: float = 1.0
-    is_generic: bool = False
-    is_unshaped: bool = False
+    is_assumed: bool = False
+    is_unknown: bool = False
     signs: tuple[int, ...] | None = None
 
     @property
@@ -153,7 +182,8 @@ class SuiteEnsemble:
     def is_weak(self) -> bool:
         """Whether their median PFA is over 10 % below the floor's, or their median PFV over 15 % below a known one."""
         pfa, pfv = self.peaks
-        is_slow = pfv < WEAK_PFV * self.demand.pfv and "pfv_estimated" not in self.demand.flags
+        is_met = self.demand.drawn is None or self.demand.drawn.target.meets == "peaks"
+        is_slow = is_met and pfv < WEAK_PFV * self.demand.pfv
         return pfa < WEAK_PFA * self.demand.pfa or is_slow
 
     @property
@@ -175,7 +205,7 @@ class SuiteEnsemble:
         return [(self.factor * batch, step) for batch, step in self.suite.realise(first, count)]
 
 
-FloorEnsemble = GeneratedEnsemble | SuiteEnsemble
+FloorEnsemble = GeneratedEnsemble | DrawnEnsemble | SuiteEnsemble
 
 
 def _record(demand: Demand) -> tuple[FloatArray, float] | None:
@@ -183,19 +213,107 @@ def _record(demand: Demand) -> tuple[FloatArray, float] | None:
 
 
 def build_ensembles(
-    chosen: Sequence[Demand], demands: Demands, building: Building, *, seed: int
-) -> tuple[GeneratedEnsemble, ...]:
+    chosen: Sequence[Demand], demands: Demands, building: Building, *, seed: int, number: int = 0
+) -> tuple[GeneratedEnsemble | DrawnEnsemble, ...]:
     """Return one ensemble a demand of `chosen`, on the grid that all `demands` of the building share.
 
-    Their signs are found among all `demands`, so that they do not depend on which are chosen.
+    Their signs are found among all `demands`, so that they do not depend on which are chosen. Buildings of another
+    `number` draw another T1, structure and PGV/PGA.
     """
-    from assess.motion.target import build_grid, estimate_period
+    from assess.motion.drawn_ground import build_beam_grid
+    from assess.motion.target import build_grid
 
-    every = {id(one): one for parallel in demands.values() for one in parallel}.values()
+    every = list({id(one): one for parallel in demands.values() for one in parallel}.values())
+    drawn = [one.drawn for one in every if one.drawn is not None]
+    longest = max((one.building.longest for one in drawn), default=0.0)
     grid = build_grid(
-        [one.motion for one in every if one.motion is not None],
-        has_generic=any(one.motion is None for one in every),
-        period=building.period or estimate_period(building.height),
+        [one.motion for one in every if one.motion is not None], at_least=build_beam_grid(longest) if drawn else None
     )
     signs = find_phase_signs(every, grid, building.azimuth_deg)
-    return tuple(GeneratedEnsemble(one, grid, seed, building.period, building.height, signs.get(one)) for one in chosen)
+    of_record = {(id(one.record), one.axis): found for one, found in signs.items()}
+
+    def build(one: Demand) -> GeneratedEnsemble | DrawnEnsemble:
+        if one.drawn is None:
+            return GeneratedEnsemble(one, grid, seed, signs.get(one))
+        own = one.drawn.of_number(number)
+        ground = own.record and of_record.get((id(own.record.record), own.record.axis))
+        return DrawnEnsemble(one, own, grid, seed, ground or None)
+
+    return tuple(map(build, chosen))
+
+
+_HUNDREDTHS = re.compile(r":\d\d\.\d\d")
+_Recorded = tuple[Demand, float | None, Motion]
+"""A floor motion, the azimuth of its record [deg], and its record as treated."""
+
+
+def find_phase_signs(
+    demands: Iterable[Demand], grid: "Grid", azimuth: float | None = None
+) -> dict[Demand, tuple[int, ...]]:
+    """Return the signs of the floor motions that have any, 1 or -1 by octave of `assess.motion.target.octaves`.
+
+    They are relative: those of the strongest motion of an axis are all 1. No factor common to all motions changes them.
+
+    Parameters
+    ----------
+    demands : iterable of Demand
+        All of the building.
+    grid : Grid
+        The samples that its floors share.
+    azimuth : float, optional
+        Of axis X, clockwise from north [deg]. A record that points against its axis is turned before it is compared;
+        one that is more than 15 deg off is not compared. Where it is unknown, the strongest record gives the direction.
+        Records of which none has a direction are taken to point alike.
+    """
+    groups: dict[Any, list[_Recorded]] = {}
+    for one in demands:
+        if one.record is not None and one.motion is not None and not one.is_borrowed:
+            key = one.axis, find_clock(one.name, one.record)
+            groups.setdefault(key, []).append((one, one.record.azimuth_deg, one.motion))
+    found: dict[Demand, tuple[int, ...]] = {}
+    for (axis, _), group in groups.items():
+        found |= _find_signs(group, grid, None if azimuth is None else azimuth + 90 * (axis == "Y"))
+    return found
+
+
+def find_clock(name: str, record: Record) -> tuple[Any, ...]:
+    """Return what tells on which clock, and in which earthquake, a record was made: the same for those on one clock.
+
+    `name` is the record as the workbook names it.
+    """
+    common = (record.event, record.start, record.time_step, record.corrected)
+    if _HUNDREDTHS.search(record.start):
+        return ("start", *common)
+    if record.recorder and (record.event or record.start):
+        return ("recorder", record.recorder, *common)
+    return ("file", name.partition("#")[0].strip(), record.file, *common)
+
+
+def _find_signs(group: Sequence[_Recorded], grid: "Grid", along: float | None) -> dict[Demand, tuple[int, ...]]:
+    """Return the signs of records on one clock; nothing where they are not of two floors at least."""
+    directed = [
+        (one, turn, motion) for (one, _, motion), turn in zip(group, _direct(group, along), strict=True) if turn
+    ]
+    if len({one.floor.floor for one, _, _ in directed}) < 2:
+        return {}
+    from assess.motion.floor_signs import find_signs
+    from assess.motion.target import put_on_grid
+
+    rows = np.stack([turn * put_on_grid(motion, grid) for _, turn, motion in directed])
+    signs = find_signs(rows, grid.time_step).tolist()
+    return {one: tuple(own) for (one, _, _), own in zip(directed, signs, strict=True)}
+
+
+def _direct(group: Sequence[_Recorded], along: float | None) -> list[int]:
+    """Return 1 for each record that points along a direction [deg], -1 for one that points against it, else 0."""
+    known = [(demand.pfa, azimuth) for demand, azimuth, _ in group if azimuth is not None]
+    if not known:
+        return [1] * len(group)
+    axis = max(known)[1] if along is None else along
+    return [0 if azimuth is None else _turn(azimuth, axis) for _, azimuth, _ in group]
+
+
+def _turn(azimuth: float, along: float) -> int:
+    if angle_between(azimuth, along) > NEAR_AXIS:
+        return 0
+    return 1 if math.cos(math.radians(azimuth - along)) > 0 else -1

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from assess.methods import Cases, make_batches, rock_cases, rock_draws, run_side_by_side
 from assess.methods._method import BoolArray, FloatArray, Motions
 from assess.motion.target_fit import measure_peaks
-from assess.pipeline.demand import Demand
+from assess.pipeline.floor_demand import Demand
 from assess.pipeline.verify import check_pairs, describe_work
 from assess.progress import SILENT, Progress, Stage
 from assess.settings import Settings, count_processors
@@ -29,16 +29,10 @@ MOST_OPENED = 32
 class RockedLevels:
     """The cases of one ensemble at every level.
 
-    Parameters
-    ----------
-    own : (m,) integer array
-        The cases; none where the motions serve slip alone.
-    fell : (levels, m, runs) boolean array
-        Whether each overturns; False at levels at which it was not rocked.
-    is_weak : bool
-        Whether the motions are weaker than the floor's.
-    pfa, pfv : float
-        Mean peaks of the motions before any factor [m/s2], [m/s]; NaN without cases.
+    * `own` (m,): the cases; none where the motions serve slip alone.
+    * `fell` (levels, m, runs): whether each overturns; False at levels at which it was not rocked.
+    * `is_weak`: whether the motions are weaker than the floor's.
+    * `pfa`, `pfv`: mean peaks of the motions before any factor [m/s2], [m/s]; NaN without cases.
     """
 
     own: NDArray[np.intp]
@@ -55,7 +49,7 @@ def rock_levels(
     factors: FloatArray,
     settings: Settings,
     *,
-    dispersion: float | None,
+    dispersion: FloatArray | None,
     wanted: BoolArray | None = None,
     jobs: int | None = None,
     opened: dict[int, Motions] | None = None,
@@ -73,7 +67,7 @@ def rock_levels(
         Of each of e ensembles the factors by which its motions are multiplied, at each of l levels [-].
     settings : Settings
         Give the number of draws, which has to be a number, and their seed.
-    dispersion : float, optional
+    dispersion : (n,) array, optional
         Of the motion's amplitude [-], with pieces drawn as the cases say; None: motions and pieces as they are.
     wanted : (n, l) boolean array, optional
         At which levels each case is rocked; at all by default.
@@ -127,7 +121,7 @@ class _Run:
     cases: Cases
     own: NDArray[np.intp]
     settings: Settings
-    dispersion: float | None
+    dispersion: FloatArray | None
     threads: int
     stage: Stage
 
@@ -152,7 +146,7 @@ class _Run:
         if self.dispersion is None:
             return rock_cases(self.cases, own, motions, time_step, self.threads, progress)[0]
         fell, _ = rock_draws(
-            self.cases, own, motions, time_step, first=first, dispersions=(self.dispersion,),
+            self.cases, own, motions, time_step, first=first, dispersions=(self.dispersion[own],),
             seed=self.settings.seed, threads=self.threads, progress=progress,
         )  # fmt: skip
         return np.asarray(fell[0])

@@ -5,28 +5,34 @@ The values are stored in a workbook next to the formulas, so that a viewer that 
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from assess.i18n import gettext
-from assess.methods import Cases, adopted_formula
+from assess.methods import Cases, adopted_formula, paper_formula
 from assess.methods._method import ALIKE
 from assess.model import AXES, Inventory, Item
 from assess.pipeline.adopt import find_can_rock
-from assess.pipeline.demand import Demand, Demands, build_demands, find_site
-from assess.pipeline.verify import find_uncertainty
-from assess.risk import classify
+from assess.pipeline.demand import build_demands
+from assess.pipeline.floor_demand import Demand, Demands
+from assess.pipeline.known_ground import find_ground
+from assess.pipeline.verify import find_peak
+from assess.risk import RiskClass, classify
 from assess.settings import SCENARIOS, Settings
-from assess.units import GRAVITY
+from assess.units import GRAVITY, VELOCITY
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, say_class
 from assess.workbook.lists import NO_SHAKING, RUN_ASSESS
 from assess.workbook.live_row import IS_ANCHORED
 from assess.workbook.read import read_inventory
-from assess.workbook.schema import CATALOGUE, CLASS, LIVE, NO, SHEETS, YES, Sheet
+from assess.workbook.schema import CATALOGUE, CLASS, CLASS_OR, LIVE, NO, SHEETS, YES, Sheet
 from assess.workbook.template import Content, Rows, Units
+
+_SCALES = {"pfa": GRAVITY, "pfv": VELOCITY["cm/s"]}
+"""Units in which the sheet compares the peaks of two axes."""
 
 
 def live_values(inventory: Inventory, scenario: str | None = None) -> list[list[float | str]]:
@@ -42,62 +48,85 @@ def live_values(inventory: Inventory, scenario: str | None = None) -> list[list[
     settings = Settings()
     kind = scenario or inventory.building.scenario_kind or SCENARIOS[0]
     demands = build_demands(inventory, kind, ductility_reduction=settings.ductility_reduction)
-    live = {"given", "profile"} if _is_assumed(kind, demands) else {"given"}
-    governing = [_find_governing(item, demands, live) for item in inventory.items]
-    cases = Cases.of(
-        breadth=np.array([item.breadth for item in inventory.items], dtype=np.float64),
-        height=np.array([item.height for item in inventory.items], dtype=np.float64),
-        pfa=np.array([np.nan if one is None else one.pfa for one in governing], dtype=np.float64),
-        pfv=np.array([np.nan if one is None else one.pfv for one in governing], dtype=np.float64),
-        centre=np.array([item.centre_of_gravity for item in inventory.items], dtype=np.float64),
-        scanned=np.array([item.is_scanned for item in inventory.items], dtype=np.bool_),
-        uncertainty=find_uncertainty(inventory.building, demands),
-    )
+    is_live = {id(one): one for one in _list_live(inventory, demands)}
+    formula = adopted_formula(inventory.building.class_by)
+    options = [_list_options(item, demands, is_live) for item in inventory.items]
+    governing = [max(own, key=partial(_round_peak, formula.ruled_by), default=None) for own in options]
+    cases = _build_cases(inventory.items, governing)
     outcomes = {method.key: method.evaluate(cases, settings) for method in LIVE_METHODS}
-    formula = outcomes[adopted_formula().key]
     values = zip(*(outcome.value.tolist() for outcome in outcomes.values()), strict=True)
-    outside = formula.flags["extrapolated"].tolist()
-    classes = list(map(_say_class, inventory.items, governing, formula.value.tolist(), outside))
-    rocks = [gettext(YES if one else NO) for one in find_can_rock(cases, settings)]
-    if find_site(demands):  # the sheet does not know the scatter of a ShakeMap
-        rocks = [gettext(RUN_ASSESS)] * len(rocks)
-    rows = zip(cases.breadth_to_height.tolist(), governing, values, classes, rocks, strict=True)
+    strongest = np.array([max((one.pfa for one in own), default=np.nan) for own in options], dtype=np.float64)
+    can_rock = find_can_rock(replace(cases, pfa=strongest), settings).tolist()
+    classes = []
+    for method in (formula, paper_formula()):
+        found = outcomes[method.key]
+        outside = found.flags["extrapolated"].tolist()
+        classes.append(list(map(_say_class, inventory.items, governing, found.value.tolist(), outside, can_rock)))
+    rocks = [gettext(YES if one else NO) for one in can_rock]
+    rows = zip(cases.breadth_to_height.tolist(), governing, values, zip(*classes, strict=True), rocks, strict=True)
     return [_write_row(*row) for row in rows]
 
 
-def _is_assumed(kind: str, demands: Demands) -> bool:
-    """Return whether every floor follows the default profile from an assumed intensity."""
-    return kind == SCENARIOS[0] and all(one.shaking for parallel in demands.values() for one in parallel)
+def _list_live(inventory: Inventory, demands: Demands) -> list[Demand]:
+    """Return the demands that the sheet knows: of typed peaks, and of the ground where no floor has its own motion."""
+    every = [one for parallel in demands.values() for one in parallel]
+    ground = find_ground(inventory)
+    is_sure = ground.site is None and ground.storeys is None
+    drawn = [one for one in every if one.drawn is not None]
+    known = [one for one in drawn if one.source == "given" and one.drawn and one.drawn.target.meets == "peaks"]
+    if not is_sure:
+        return known
+    followed = [one for one in drawn if one.source == "given" and one.drawn and one.drawn.record is None]
+    return [*known, *followed, *(every if all(one.source == "beam" for one in every) else ())]
 
 
-def _find_governing(item: Item, demands: Demands, live: Collection[str]) -> Demand | None:
-    """Return the motion with the larger PFA, the first of equal ones; None where the sheet cannot know one."""
+def _build_cases(items: Sequence[Item], motions: Sequence[Demand | None]) -> Cases:
+    known = [(one.pfa, one.pfv, one.dispersion, find_peak(one)) if one else (np.nan, np.nan, 0, 0) for one in motions]
+    pfa, pfv, spread, peak = np.array(known, dtype=np.float64).reshape(-1, 4).T
+    cases = Cases.of(
+        breadth=np.array([item.breadth for item in items], dtype=np.float64),
+        height=np.array([item.height for item in items], dtype=np.float64),
+        pfa=pfa,
+        pfv=pfv,
+        centre=np.array([item.centre_of_gravity for item in items], dtype=np.float64),
+        scanned=np.array([item.is_scanned for item in items], dtype=np.bool_),
+    )
+    return replace(cases, dispersion=spread, peak=peak)
+
+
+def _list_options(item: Item, demands: Demands, live: Collection[int]) -> list[Demand]:
+    """Return the motions of a piece; none where the sheet cannot know one of them."""
     every = [one for axis in ((item.axis,) if item.axis else AXES) for one in demands[item.floor, axis]]
-    if any(one.source not in live or "assumed_elevation" in one.flags for one in every):
-        return None
-    return max(every, key=lambda one: round(one.pfa / GRAVITY, ALIKE))
+    return every if all(id(one) in live for one in every) else []
 
 
-def _say_class(item: Item, governing: Demand | None, adopted: float, is_outside: bool) -> str:
+def _round_peak(ruling: str, demand: Demand) -> float:
+    peak: float = getattr(demand, ruling)
+    return round(peak / _SCALES[ruling], ALIKE)
+
+
+def _say_class(
+    item: Item, governing: Demand | None, adopted: float, is_outside: bool = False, can_rock: bool = True
+) -> str:
     if item.anchored == YES:
         return gettext(IS_ANCHORED if item.bracket_capacity is None else RUN_ASSESS)
     if governing is None:
         return gettext(RUN_ASSESS)
-    risk = classify(adopted)
-    return "" if risk is None else say_class(risk) + OUTSIDE * is_outside
+    risk = classify(adopted) if can_rock else RiskClass.LOW
+    return say_class(RiskClass.LOW if risk is None else risk) + OUTSIDE * (is_outside and can_rock)
 
 
 def _write_row(
-    ratio: float, governing: Demand | None, values: Sequence[float], label: str, rocks: str
+    ratio: float, governing: Demand | None, values: Sequence[float], classes: Sequence[str], rocks: str
 ) -> list[float | str]:
     if governing is None:
-        return _write_unknown(ratio, label, gettext(RUN_ASSESS))
-    return [ratio, governing.pfa / GRAVITY, *("" if np.isnan(value) else value for value in values), label, rocks]
+        return _write_unknown(ratio, classes[0], gettext(RUN_ASSESS))
+    return [ratio, governing.pfa / GRAVITY, *("" if np.isnan(value) else value for value in values), *classes, rocks]
 
 
 def _write_unknown(ratio: float, label: str, hint: str) -> list[float | str]:
-    """Return the row of a piece of whose shaking the sheet knows nothing; `label` stands for its class."""
-    return [ratio, *[hint] * (LIVE.index(CLASS) - 1), label, hint]
+    """Return the row of a piece of whose shaking the sheet knows nothing; `label` stands for its classes."""
+    return [ratio, *(label if one in (CLASS, CLASS_OR) else hint for one in LIVE[1:])]
 
 
 def with_live(content: Content, units: Units = "si", folder: Path | None = None) -> Content:
@@ -135,7 +164,7 @@ def without_shaking(content: Content, units: Units = "si") -> Content:
 
 def _write_unshaken(item: Item) -> list[float | str]:
     hint = gettext(NO_SHAKING)
-    label = _say_class(item, None, 0.0, is_outside=False) if item.anchored == YES else hint
+    label = _say_class(item, None, 0.0) if item.anchored == YES else hint
     return _write_unknown(item.breadth / item.height, label, hint)
 
 

@@ -1,6 +1,6 @@
 """How likely each piece, or a piece of each type, overturns, against the PFA or the PFV of its floor.
 
-Each piece is rocked under the motions of its floor (those compatible with its record, or with its generic spectrum),
+Each piece is rocked under the motions of its floor (those compatible with its record, or drawn where it has none),
 all multiplied by one factor, so that the floor's PFA or PFV takes each level. The same motions serve at every level;
 the shape of the spectrum stays, and with it the ratio of PFV to PFA: a fragility against PFA holds for motions of that
 ratio only. A blank axis takes the worse one at each level; a piece that is nearly square on plan falls in a draw if it
@@ -20,15 +20,15 @@ from typing import Literal, TypeVar, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.errors import InputError, Problem, WorkbookError
+from assess.errors import InputError
 from assess.fragility import Fragility, fit_fragility
 from assess.i18n import Text, fill
 from assess.methods import Cases
 from assess.methods._method import BoolArray, FloatArray
 from assess.model import AXES, Axis, Inventory, Item
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.demand import Demand
 from assess.pipeline.either_axis import is_square
+from assess.pipeline.floor_demand import Demand
 from assess.pipeline.levels import RockedLevels, find_factor, rock_levels
 from assess.pipeline.verify import choose_motions
 from assess.progress import SILENT, Progress
@@ -66,21 +66,14 @@ _Choice = TypeVar("_Choice", bound=str)
 class FloorMotions:
     """The motions of one floor along one axis, before any factor.
 
-    Parameters
-    ----------
-    floor, axis : str
-        Where.
-    source : str
-        Where its demand comes from: the record's name, "given", the profile's code, or two floors.
-    pfa, pfv : float
-        Of the floor [m/s2], [m/s]; `pfv` is NaN where it is unknown or estimated, so that the motions do not follow it.
-    mean_pfa, mean_pfv : float
-        Means over the motions [m/s2], [m/s].
-    spectrum : str
-        What their spectrum follows, in words.
-    is_generic, is_unshaped, is_weak : bool
-        Whether the spectrum is a generic one, whether it rests on neither T1 nor the building's height, and whether the
-        motions are weaker than the floor's. Under the latter two a fragility may be too low.
+    * `floor`, `axis`: where.
+    * `source`: where its demand comes from: the record's name, "given", the profile's code, or two floors.
+    * `pfa`, `pfv`: of the floor [m/s2], [m/s].
+    * `mean_pfa`, `mean_pfv`: means over the motions [m/s2], [m/s].
+    * `spectrum`: what their spectrum follows, in words.
+    * `is_assumed`, `is_unknown`, `is_weak`: whether ground motion and building are drawn, whether nothing is known of
+      the building, and whether the motions are weaker than the floor's. Under the latter two a fragility may be too
+      low.
     """
 
     floor: str
@@ -91,8 +84,8 @@ class FloorMotions:
     mean_pfa: float
     mean_pfv: float
     spectrum: Text
-    is_generic: bool
-    is_unshaped: bool
+    is_assumed: bool
+    is_unknown: bool
     is_weak: bool
 
     @property
@@ -105,19 +98,12 @@ class FloorMotions:
 class PieceFragility:
     """One curve.
 
-    Parameters
-    ----------
-    name : str
-        The item, the type, or the sizes of rows without a type.
-    type : str
-        Of its rows; "" where they have none.
-    items : tuple of Item
-        Its rows, in the order of the workbook.
-    curve : Fragility
-        How many fell at each level [m/s2] or [m/s], and the lognormal fitted to it. Of an item the trials are draws; of
-        a type each row counts by its Quantity, as all pieces of a row fall alike.
-    motions : tuple of FloorMotions
-        Those under which they were rocked.
+    * `name`: the item, the type, or the sizes of rows without a type.
+    * `type`: of its rows; "" where they have none.
+    * `items`: its rows, in the order of the workbook.
+    * `curve`: how many fell at each level [m/s2] or [m/s], and the lognormal fitted to it. Of an item the trials are
+      draws; of a type each row counts by its Quantity, as all pieces of a row fall alike.
+    * `motions`: those under which they were rocked.
     """
 
     name: str
@@ -151,25 +137,19 @@ class PieceFragility:
     @property
     def may_be_too_low(self) -> bool:
         """Whether any of its motions may be too weak, so that pieces may fall at lower levels than it says."""
-        return any(one.is_unshaped or one.is_weak for one in self.motions)
+        return any(one.is_unknown or one.is_weak for one in self.motions)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PieceFragilities:
     """The curves of a workbook.
 
-    Parameters
-    ----------
-    by, im : str
-        What has one curve, of `BY`; the intensity measure of the levels, of `MEASURES`.
-    runs, seed : int
-        Number of draws at each level, and their seed.
-    has_drawn_pieces : bool
-        Whether each draw has a base, height, centre of gravity and restitution of its own; else pieces are as given.
-    curves : tuple of PieceFragility
-        In the order of the workbook.
-    stocky : tuple of Item
-        Rows that are too stocky to rock, and left out.
+    * `by`, `im`: what has one curve, of `BY`; the intensity measure of the levels, of `MEASURES`.
+    * `runs`, `seed`: number of draws at each level, and their seed.
+    * `has_drawn_pieces`: whether each draw has a base, height, centre of gravity and restitution of its own; else
+      pieces are as given.
+    * `curves`: in the order of the workbook.
+    * `stocky`: rows that are too stocky to rock, and left out.
     """
 
     by: By
@@ -212,8 +192,6 @@ def find_piece_fragilities(
     ------
     CancelledError
         If the caller stops the work.
-    WorkbookError
-        If the measure is PFV and a floor with pieces has none, or an estimated one; it names every such floor.
     InputError
         If `by`, `im` or `levels` cannot be used, the number of motions is "auto", they are the user's own, no piece
         can rock, or the results may exceed the available memory.
@@ -225,7 +203,6 @@ def find_piece_fragilities(
     rocked = np.flatnonzero([not _is_stocky(item) for item in assessment.inventory.items])
     if not rocked.size:
         raise InputError(fill("no piece can rock: all are too stocky, or there are none."))
-    _check_velocities(assessment, rocked, im)
     return progress.wait_for(lambda: _find(assessment, rocked, by, im, given, jobs, progress))
 
 
@@ -244,7 +221,7 @@ def _find(
         assessment=assessment,
         cases=_choose_cases(assessment, rocked),
         groups=groups,
-        peaks=np.array([one.pfa if im == "pfa" else _pfv(one) for one in assessment.case_demand]),
+        peaks=np.array([one.pfa if im == "pfa" else one.pfv for one in assessment.case_demand]),
         unit=UNITS[im],
         jobs=jobs,
         progress=progress,
@@ -279,44 +256,6 @@ def _check_levels(levels: Sequence[float]) -> tuple[float, ...]:
     return values
 
 
-def _check_velocities(assessment: Assessment, rocked: NDArray[np.intp], im: Measure) -> None:
-    """Raise WorkbookError where PFV is wanted and the motions of a floor do not follow any."""
-    if im != "pfv":
-        return
-    pairs = zip(assessment.case_item.tolist(), assessment.case_demand, strict=True)
-    kept = frozenset(rocked.tolist())
-    lacking = {(one.floor.floor, one.axis): one for item, one in pairs if item in kept and math.isnan(_pfv(one))}
-    problems = [
-        Problem("error", "Floors", one.floor.cell(f"pfv_{one.axis.lower()}"), _say_lacking(one), _TO_FILL_IN)
-        for one in lacking.values()
-    ]
-    if problems:
-        raise WorkbookError([assessment.inventory.place(problem) for problem in problems])
-
-
-_TO_FILL_IN = fill("Fill in its PFA and PFV, or a record, or take PFA as the measure.")
-
-
-def _say_lacking(demand: Demand) -> Text:
-    if "pfv_estimated" in demand.flags:
-        return fill(
-            "the PFV of floor '{floor}' along {axis} is estimated from T1, and its motions do not follow it: no "
-            "fragility against PFV can be given.",
-            floor=demand.floor.floor,
-            axis=demand.axis,
-        )
-    return fill(
-        "the PFV of floor '{floor}' along {axis} is not known: no fragility against PFV can be given.",
-        floor=demand.floor.floor,
-        axis=demand.axis,
-    )
-
-
-def _pfv(demand: Demand) -> float:
-    """Return the PFV that the motions of a demand follow [m/s], NaN where there is none."""
-    return math.nan if "pfv_estimated" in demand.flags else demand.pfv
-
-
 # ---------------------------------------------------------------- which pieces have one curve
 
 
@@ -348,9 +287,9 @@ def _name(item: Item, by: By) -> tuple[str, str]:
 def _choose_cases(assessment: Assessment, rocked: NDArray[np.intp]) -> Cases:
     """Return the cases with the motions under which the items `rocked` are rocked."""
     chosen = np.isin(assessment.case_item, rocked)
-    building = assessment.inventory.building
+    inventory, settings = assessment.inventory, assessment.settings
     return choose_motions(
-        assessment.cases, chosen, assessment.case_demand, assessment.demands, building, assessment.settings, None
+        assessment.cases, chosen, assessment.case_demand, assessment.demands, inventory, settings, None
     )
 
 
@@ -418,7 +357,8 @@ class _Study:
         settings = self.assessment.settings
         rocked = rock_levels(
             own, self.assessment.case_item, self.assessment.case_demand, factors, settings,
-            dispersion=None if settings.ideal else 0.0, wanted=wanted[self.assessment.case_item][:, used],
+            dispersion=None if settings.ideal else np.zeros(self.cases.breadth.size),
+            wanted=wanted[self.assessment.case_item][:, used],
             jobs=self.jobs, progress=self.progress,
         )  # fmt: skip
         for at, one in zip(firsts, rocked, strict=True):
@@ -458,12 +398,12 @@ class _Study:
             axis=demand.axis,
             source=demand.label,
             pfa=demand.pfa,
-            pfv=_pfv(demand),
+            pfv=demand.pfv,
             mean_pfa=rocked.pfa,
             mean_pfv=rocked.pfv,
-            spectrum=_say_spectrum(demand, self.assessment.inventory),
-            is_generic=made.is_generic,
-            is_unshaped=made.is_unshaped,
+            spectrum=_say_spectrum(demand),
+            is_assumed=made.is_assumed,
+            is_unknown=made.is_unknown,
             is_weak=rocked.is_weak,
         )
 
@@ -486,20 +426,13 @@ def _read_rung(number: int) -> float:
     return float(f"{RUNGS[at]}e{decade}")
 
 
-def _say_spectrum(demand: Demand, inventory: Inventory) -> Text:
-    """Return in words what the spectrum of the motions of a demand follows."""
-    building = inventory.building
-    if demand.motion is not None:
+def _say_spectrum(demand: Demand) -> Text:
+    """Return in words what the motions of a demand follow."""
+    if demand.drawn is None:
         return fill("that of the record")
-    if building.period is not None:
-        shape = fill("generic, for T1 {period:g} s", period=building.period)
-    elif building.height is not None:
-        shape = fill("generic, for T1 by the building's height {height:g} m", height=building.height)
-    else:
-        shape = fill("generic, shape of ICC-ES AC156, T1 and height unknown")
-    if math.isnan(_pfv(demand)):
-        return shape
-    return fill("{shape}; long periods by the floor's PFV", shape=shape)
+    if demand.drawn.building.period is None:
+        return fill("drawn, nothing known of the building")
+    return fill("drawn for T1 {period:.3g} s", period=demand.drawn.building.period)
 
 
 # ---------------------------------------------------------------- the curves

@@ -4,18 +4,21 @@ Input that is not used gets a note; a warning where it is larger than what is us
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 
 from assess.errors import Problem, Severity
 from assess.i18n import Text, fill, join, nfill
-from assess.model import AXES, Axis, Floor, Inventory
+from assess.intensity import RATIO, SHAKINGS, Shaking
+from assess.model import AXES, Axis, Building, Floor, Inventory
+from assess.motion.assumed import CODE_FACTOR, CODE_POWER
 from assess.motion.record import treat
-from assess.motion.scenario import PGA_OF_SDS, Profile, cap_pfv
-from assess.motion.target import estimate_period
-from assess.pipeline.assumed_shaking import remark_on_shaking
-from assess.pipeline.demand import Demands, find_ground, serve_by_profile
-from assess.pipeline.site_remarks import remark_on_site
-from assess.units import GRAVITY, ROUNDING, VELOCITY
+from assess.motion.scenario import PGA_OF_SDS
+from assess.motion.site_ground import SiteGround
+from assess.pipeline.demand import find_shaking, find_site
+from assess.pipeline.floor_demand import Demand, Demands
+from assess.pipeline.known_ground import find_ground
+from assess.results import GroundFact, GroundPsa, SiteGroundInfo
+from assess.units import ACCELERATION, GRAVITY, ROUNDING, VELOCITY, to_edge
 
 LOSS_TO_NOTE = 0.02
 """Where treatment lowers PFA by more than this share, the report says so."""
@@ -35,6 +38,9 @@ TIMES_USUAL = (0.3, 4.0)
 MOST = 5
 """Floors, or warnings, that are named before the rest is only counted or left out."""
 
+LEAST_RATIO, LARGEST_RATIO = 10.0, 600.0
+"""Usual limits of PGV over PGA [cm/s per g]."""
+
 ALIKE = 0.01
 """Share up to which Ground PGA and 0.4 SDS count as the same."""
 
@@ -43,37 +49,47 @@ SOURCES = {
     "given": fill("given peaks"),
     "interpolated": fill("interpolated between floors"),
     "profile": fill("a code's design profile"),
+    "beam": fill("drawn buildings on the ground motion"),
 }
 """The sources of a floor's motion in words."""
 
 
 def remark(
-    inventory: Inventory, demands: Demands, scenario: str, ductility_reduction: float = 1.0
+    inventory: Inventory, demands: Demands, scenario: str, unconfirmed: Set[str] = frozenset()
 ) -> Iterator[Problem]:
-    """Yield warnings and notes on the motion of the floors and on the ground's."""
+    """Yield warnings and notes on the motion of the floors and on the ground's.
+
+    `unconfirmed` are the floors of which a piece was simulated and is unconfirmed.
+    """
     yield from _losses(demands)
-    yield from _on_shaking(inventory, demands, scenario, ductility_reduction)
+    yield from _on_shaking(inventory, demands, scenario)
     yield from remark_on_site(inventory, demands)
-    if list_floors(demands, "profile"):
+    yield from _unknown(inventory, demands, unconfirmed)
+    if list_floors(demands, "profile") or list_floors(demands, "beam"):
         yield from _above_roof(inventory, demands)
         yield from _assumed_elevations(inventory, demands)
         yield from _implausible(inventory, demands)
-    yield from _mixed(demands)
+    by_source = {text: list_floors(demands, source) for source, text in SOURCES.items()}
+    used = [
+        fill("{source} ({floors})", source=text, floors=", ".join(floors))
+        for text, floors in by_source.items()
+        if floors
+    ]
+    if len(used) > 1:
+        message = fill("the motion of the floors comes from mixed sources: {sources}.", sources=join("; ", used))
+        yield Problem("note", "Floors", "", message)
 
 
-def list_too_low(
-    inventory: Inventory, demands: Demands, scenario: str, ductility_reduction: float = 1.0
-) -> list[Problem]:
+def list_too_low(inventory: Inventory, demands: Demands, scenario: str) -> list[Problem]:
     """Return the warnings that a larger peak is known of a floor, or of the ground, than the one used."""
-    found = _on_shaking(inventory, demands, scenario, ductility_reduction)
+    found = _on_shaking(inventory, demands, scenario)
     return [problem for problem in found if problem.severity == "warning"]
 
 
-def _on_shaking(inventory: Inventory, demands: Demands, scenario: str, ductility_reduction: float) -> Iterator[Problem]:
+def _on_shaking(inventory: Inventory, demands: Demands, scenario: str) -> Iterator[Problem]:
     for floor in inventory.floors:
         for axis in AXES:
             yield from _set_aside(floor, axis, demands, scenario)
-    yield from _profile_below_known(inventory, demands, ductility_reduction)
     yield from _ground_values(inventory, demands, scenario)
     yield from remark_on_shaking(inventory, demands)
     yield from _ground_velocity(inventory, demands)
@@ -106,7 +122,7 @@ def _set_aside(floor: Floor, axis: Axis, demands: Demands, scenario: str) -> Ite
     used = demands[floor.floor, axis]
     largest = max(one.pfa for one in used)
     own = {one.source for one in used if not one.is_borrowed}
-    serves = _describe_serving("" if "record" in own else scenario, _in_g(largest))
+    serves = _describe_serving("" if "record" in own else scenario, fill("{pfa:.3f} g", pfa=largest / GRAVITY))
     if floor.records.get(axis) and "record" not in own:
         recorded = max(treat(one.record).pfa for one in floor.records[axis])
         text = fill("its PFA is {pfa:.3f} g, {serves}", pfa=recorded / GRAVITY, serves=serves)
@@ -145,62 +161,11 @@ def _severity(unused: float, used: float) -> Severity:
     return "warning" if unused > used * (1 + ROUNDING) else "note"
 
 
-def _profile_below_known(inventory: Inventory, demands: Demands, ductility_reduction: float) -> Iterator[Problem]:
-    """Warn where the profile that serves other floors would shake a known one less than it is known to be."""
-    profile, ground = find_profile(demands), find_ground(inventory)
-    for floor in inventory.floors if profile else ():
-        known = [
-            one
-            for axis in AXES
-            for one in demands[floor.floor, axis]
-            if one.source in ("record", "given") and not one.is_borrowed
-        ]
-        if not known or not profile:
-            continue
-        worst = max(known, key=lambda one: one.pfa)
-        by_profile = serve_by_profile(floor, profile, ground, inventory.building.period, ductility_reduction)
-        pfa = by_profile["X"][0].pfa if by_profile else math.inf
-        if worst.pfa > pfa * (1 + ROUNDING):
-            message = _describe_below(floor, pfa, worst.pfa, _above_weaker(floor, worst.pfa, inventory, demands))
-            fix = fill("Fill in a PFA or a record on those, or check Ground PGA in Building.")
-            cell = floor.cell(f"{'pfa' if worst.source == 'given' else 'record'}_{worst.axis.lower()}")
-            yield Problem("warning", "Floors", cell, message, fix)
-
-
-def _describe_below(floor: Floor, pfa: float, known: float, weaker: list[Text]) -> Text:
-    text = fill(
-        "the profile would give {pfa:.3f} g on floor '{floor}', where {known:.3f} g is known: the PFA of floors that "
-        "follow the profile may be too low.",
-        pfa=pfa / GRAVITY,
-        floor=floor.floor,
-        known=known / GRAVITY,
-    )
-    shown = [*weaker[:MOST], *(["..."] if len(weaker) > MOST else [])]
-    return (
-        fill("{warning} Floors above with less: {floors}.", warning=text, floors=join(", ", shown)) if weaker else text
-    )
-
-
-def _above_weaker(known: Floor, pfa: float, inventory: Inventory, demands: Demands) -> list[Text]:
-    """Name the floors on the profile above a known one that come out weaker than it."""
-    return [
-        fill("'{floor}' ({pfa:.3f} g)", floor=floor.floor, pfa=one.pfa / GRAVITY)
-        for floor in inventory.floors
-        for one in demands[floor.floor, "X"][:1]
-        if one.source == "profile" and (floor.elevation or 0) >= (known.elevation or 0) and one.pfa < pfa
-    ]
-
-
-def find_profile(demands: Demands) -> Profile | None:
-    """Return the code's profile that serves floors, of which a run has one at most."""
-    return next((one.profile for ones in demands.values() for one in ones if one.profile), None)
-
-
 def _above_roof(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
     roof = find_ground(inventory).roof
     for floor in inventory.floors:
         z = floor.elevation
-        is_served = demands[floor.floor, "X"][0].source == "profile"
+        is_served = demands[floor.floor, "X"][0].source in ("profile", "beam")
         if is_served and z is not None and roof is not None and z > max(roof, 0.0) * (1 + ROUNDING):
             message = fill("Elevation {z:g} m is above the roof, {roof:g} m: z/h is taken as 1.", z=z, roof=roof)
             fix = fill("Check it, and Height in Building.")
@@ -208,7 +173,6 @@ def _above_roof(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
 
 
 def _assumed_elevations(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
-    """Name the floors whose elevation is assumed."""
     flagged = {name for (name, _), ones in demands.items() if any("assumed_elevation" in one.flags for one in ones)}
     floors = [floor for floor in inventory.floors if floor.floor in flagged]
     if floors:
@@ -229,20 +193,14 @@ def _implausible(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
     if building.height and building.storeys:
         each = building.height / building.storeys
         if not STOREY[0] <= each <= STOREY[1]:
-            effect = fill("too large a Height lowers the profile")
-            if each < STOREY[0]:
-                effect = fill("too small a Height raises the profile")
             message = nfill(
-                "Height {height:g} m over {n} storey is {each:.3g} m a storey, outside {low:g} to {high:g} m; "
-                "{effect}.",
-                "Height {height:g} m over {n} storeys is {each:.3g} m a storey, outside {low:g} to {high:g} m; "
-                "{effect}.",
+                "Height {height:g} m over {n} storey is {each:.3g} m a storey, outside {low:g} to {high:g} m.",
+                "Height {height:g} m over {n} storeys is {each:.3g} m a storey, outside {low:g} to {high:g} m.",
                 building.storeys,
                 height=building.height,
                 each=each,
                 low=STOREY[0],
                 high=STOREY[1],
-                effect=effect,
             )
             yield Problem("warning", "Building", building.cell("height"), message, fill("Check Height and Storeys."))
     highest = max((z for floor in inventory.floors if (z := ground.place(floor)[0]) is not None), default=0.0)
@@ -254,25 +212,22 @@ def _implausible(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
         )
         yield Problem("note", "Building", building.cell("height"), message)
     if building.period and ground.roof:
-        yield from _odd_period(inventory, demands, ground.roof)
+        yield from _odd_period(inventory, ground.roof)
 
 
-def _odd_period(inventory: Inventory, demands: Demands, roof: float) -> Iterator[Problem]:
-    building, profile = inventory.building, find_profile(demands)
-    usual = estimate_period(roof) or math.inf
-    low, high = (times * usual for times in TIMES_USUAL)
-    if building.period and profile and not low <= building.period <= high:
-        lowers = profile.clause_without_period
+def _odd_period(inventory: Inventory, roof: float) -> Iterator[Problem]:
+    building = inventory.building
+    low, high = (times * CODE_FACTOR * roof**CODE_POWER for times in TIMES_USUAL)
+    if building.period and not low <= building.period <= high:
         message = fill(
             "Period T1 {period:g} s is outside {low:.3g} to {high:.3g} s, {least:g} to {most:g} times 0.0488 h^0.75 "
-            "(ASCE 7-22 Eq. 12.8-7) for a height h of {roof:g} m; {effect}.",
+            "(ASCE 7-22 Eq. 12.8-7) for a height h of {roof:g} m.",
             period=building.period,
             low=low,
             high=high,
             least=TIMES_USUAL[0],
             most=TIMES_USUAL[1],
             roof=roof,
-            effect=fill("a longer T1 lowers the profile") if lowers else fill("a longer T1 raises the PFV"),
         )
         fix = fill("Check Period T1 and Height.")
         yield Problem("warning", "Building", building.cell("period"), message, fix)
@@ -286,10 +241,10 @@ def _ground_values(inventory: Inventory, demands: Demands, scenario: str) -> Ite
     building = inventory.building
     for_anchors = "ground_pga" if building.sds is None else "sds"
     given = {"ground_pga": None if inventory.hazard else building.ground_pga, "sds": building.sds}
-    if not list_floors(demands, "profile"):
+    if not _list_drawn(demands):
         for name, label in (("ground_pga", "Ground PGA"), ("sds", "SDS")):
             if given[name] is not None:
-                why = fill("no floor follows a profile")
+                why = _say_unused(demands)
                 if scenario != "as filled":
                     why = fill("scenario '{scenario}'", scenario=fill(scenario))
                 message = fill("{what} is not used: {why}.", what=fill(label), why=why)
@@ -311,48 +266,190 @@ def _ground_values(inventory: Inventory, demands: Demands, scenario: str) -> Ite
             yield Problem(kind, "Building", building.cell("sds"), message, fill("Correct one of them, or clear it."))
 
 
-def _mixed(demands: Demands) -> Iterator[Problem]:
-    """List the sources where a run has more than one."""
-    by_source = {text: list_floors(demands, source) for source, text in SOURCES.items()}
-    used = [
-        fill("{source} ({floors})", source=text, floors=", ".join(floors))
-        for text, floors in by_source.items()
-        if floors
-    ]
-    if len(used) > 1:
-        message = fill("the motion of the floors comes from mixed sources: {sources}.", sources=join("; ", used))
-        yield Problem("note", "Floors", "", message)
+def _list_drawn(demands: Demands) -> list[Demand]:
+    """Return the demands that follow from the ground motion of Building."""
+    every = (one for parallel in demands.values() for one in parallel)
+    return [one for one in every if one.drawn is not None and not one.drawn.at_grade]
 
 
-def _in_g(pfa: float) -> Text:
-    return fill("{pfa:.3f} g", pfa=pfa / GRAVITY)
+def _say_unused(demands: Demands) -> Text:
+    """Return why none does."""
+    if any(one.drawn for parallel in demands.values() for one in parallel):
+        return fill("the motion at grade is known")
+    return fill("every floor has a record")
 
 
 def _ground_velocity(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
-    """Report a Ground PGV that caps no estimate, and one that is too small for the PFV of a floor."""
-    pgv, cell = inventory.building.ground_pgv, inventory.building.cell("ground_pgv")
-    if pgv is None:
-        return
-    every = [one for parallel in demands.values() for one in parallel]
-    if not any("pfv_estimated" in one.flags for one in every):
-        why = fill("no PFV is estimated")
-        yield Problem("note", "Building", cell, fill("{what} is not used: {why}.", what=fill("Ground PGV"), why=why))
-        return
-    known = [one for one in every if one.source in ("record", "given") and "pfv_estimated" not in one.flags]
-    fastest = max(
-        (one for one in known if one.pfv > cap_pfv(pgv) * (1 + ROUNDING)), key=lambda one: one.pfv, default=None
-    )
-    if fastest is not None:
+    """Report a Ground PGV that no floor follows, one without a PGA, and an implausible ratio of the two."""
+    building = inventory.building
+    pga, pgv, cell = find_ground(inventory).pga, building.ground_pgv, building.cell("ground_pgv")
+    if not _list_drawn(demands):
+        if pgv is not None:
+            why, what = _say_unused(demands), fill("Ground PGV")
+            yield Problem("note", "Building", cell, fill("{what} is not used: {why}.", what=what, why=why))
+    elif pgv is None:
+        if building.ground_pga is not None or building.sds is not None:
+            message = fill(
+                "Ground PGV is blank: PGV/PGA is drawn as in earthquakes of magnitude 6.5 to 7.5, {ratio:.0f} cm/s per "
+                "g in the median. Chances depend on it most.",
+                ratio=100 * RATIO * GRAVITY,
+            )
+            fix = fill("Fill in Ground PGV, or name the record of the nearest station on a floor of Elevation 0.")
+            yield Problem("note", "Building", cell, message, fix)
+    elif building.ground_pga is None and building.sds is None and not building.shakemap and not building.shaking:
         message = fill(
-            "Ground PGV {pgv} caps the PFV that is estimated at {cap}, but the PFV of floor '{floor}' is {pfv}: the "
-            "estimate for other floors may be too low.",
-            pgv=_in_cm_s(pgv),
-            cap=_in_cm_s(cap_pfv(pgv)),
-            floor=fastest.floor.floor,
-            pfv=_in_cm_s(fastest.pfv),
+            "Ground PGV is filled in without Ground PGA, which is drawn: {pga:.3f} g in the median.",
+            pga=(pga or 0.0) / GRAVITY,
         )
-        yield Problem("warning", "Building", cell, message, fill("Check Ground PGV in Building."))
+        yield Problem("warning", "Building", cell, message, fill("Fill in Ground PGA."))
+    elif pga and not LEAST_RATIO <= 100 * pgv / pga * GRAVITY <= LARGEST_RATIO:
+        message = fill(
+            "Ground PGV over the ground's PGA is {ratio:.3g} cm/s per g, outside {low:g} to {high:g}.",
+            ratio=100 * pgv / pga * GRAVITY, low=LEAST_RATIO, high=LARGEST_RATIO,
+        )  # fmt: skip
+        yield Problem("warning", "Building", cell, message, fill("Check Ground PGV, Ground PGA and their units."))
+
+
+def _unknown(inventory: Inventory, demands: Demands, unconfirmed: Set[str]) -> Iterator[Problem]:
+    """Name the floors of which neither the height nor anything of the building is known."""
+    for flag, text in _UNKNOWN.items():
+        found = [name for (name, _), parallel in demands.items() if any(flag in one.flags for one in parallel)]
+        floors = [floor for floor in inventory.floors if floor.floor in found]
+        if floors:
+            named, what = ", ".join(floor.floor for floor in floors), text
+            if flag == "unknown_building" and not unconfirmed.isdisjoint(found):
+                what = fill("{drawn}; classes stay unconfirmed", drawn=text)
+            message = nfill("floor {floors}: {what}.", "floors {floors}: {what}.", len(floors), floors=named, what=what)
+            fix = _UNKNOWN_FIX[flag]
+            yield Problem("warning", "Floors", floors[0].cell("elevation"), message, fix)
+
+
+_UNKNOWN = {
+    "unknown_building": fill(
+        "neither T1, Height, Storeys nor an Elevation is known, so that buildings of every period and floors of every "
+        "height are drawn"
+    ),
+    "unknown_height": fill("its height in the building is not known and is drawn"),
+}
+_UNKNOWN_FIX = {
+    "unknown_building": fill("Fill in Storeys in Building, and Elevation."),
+    "unknown_height": fill("Fill in Elevation."),
+}
 
 
 def _in_cm_s(pfv: float) -> Text:
     return fill("no PFV") if math.isnan(pfv) else fill("{pfv:.1f} cm/s", pfv=pfv / VELOCITY["cm/s"])
+
+
+def describe_site(building: Building, demands: Demands) -> SiteGroundInfo | None:
+    """Return the ShakeMap or the scenarios on which the motion of a floor rests; None where none does."""
+    site = find_site(demands)
+    if site is None:
+        return None
+    return SiteGroundInfo(
+        kind=site.kind,
+        file=site.file,
+        sha256=site.sha256,
+        pga_g=to_edge(site.pga, ACCELERATION["g"]),
+        pgv_cm_s=None if site.pgv is None else to_edge(site.pgv, VELOCITY["cm/s"]),
+        psa=tuple(GroundPsa(period_s=period, psa_g=to_edge(value, ACCELERATION["g"])) for period, value in site.psa),
+        dispersion=site.dispersion,
+        dispersion_source=site.dispersion_source,
+        own_dispersion=building.motion_uncertainty or 0.0,
+        shared=site.shared,
+        distance_km=None if site.distance is None else site.distance / 1000,
+        scenarios=len(site.scenarios),
+        facts=tuple(GroundFact(label=label, value=value) for label, value in site.facts),
+        cautions=site.cautions,
+    )
+
+
+def remark_on_site(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
+    """Yield the notes and warnings on a ShakeMap or scenarios; none where the building has neither."""
+    building, site = inventory.building, inventory.site_ground
+    cell = building.cell("shakemap")
+    if site is None:
+        if building.shakemap:
+            why = fill("Ground PGA or SDS is filled in")
+            message = fill("{what} is not used: {why}.", what=fill("ShakeMap file"), why=why)
+            yield Problem("note", "Building", cell, message)
+        return
+    used = find_site(demands)
+    if used is None:
+        message = fill("{what} is not used: {why}.", what=_name(site), why=fill("every floor has a motion of its own"))
+        yield Problem("note", "Building", cell, message)
+        return
+    yield Problem("note", "Building", cell, _say_used(building, used, demands))
+    yield from _list_own(demands)
+    for caution in used.cautions:
+        yield Problem("warning", "Building", cell, fill("{caution}.", caution=caution))
+
+
+def _name(site: SiteGround) -> Text:
+    if site.kind == "shakemap":
+        return fill("The ShakeMap {file}", file=site.file)
+    return fill("The ground motion of {file}", file=site.file)
+
+
+def _say_used(building: Building, site: SiteGround, demands: Demands) -> Text:
+    return fill(
+        "{what} gives the ground a PGA of {pga:.3f} g{pgv} at the building. The standard deviation of ln {measure} "
+        "there is {sigma:.3g} ({source}); with {own:.3g}, Motion uncertainty, the dispersion is {motion:.3g}, the root "
+        "of the sum of their squares.",
+        what=_name(site),
+        pga=site.pga / GRAVITY,
+        pgv="" if site.pgv is None else fill(" and a PGV of {pgv:.1f} cm/s", pgv=100 * site.pgv),
+        measure=site.measure,
+        sigma=site.dispersion,
+        source=site.dispersion_source,
+        own=building.motion_uncertainty or 0.0,
+        motion=max(one.dispersion for parallel in demands.values() for one in parallel if one.site),
+    )
+
+
+def _list_own(demands: Demands) -> Iterator[Problem]:
+    """Yield a note on the floors that keep a motion of their own."""
+    every = {name: {one.source for one in parallel} for (name, _), parallel in demands.items()}
+    own = [name for name, sources in every.items() if not sources & {"profile", "beam"}]
+    if own:
+        message = nfill(
+            "floor {floors} keeps its own motion, which could be that of another earthquake.",
+            "floors {floors} keep their own motions, which could be those of another earthquake.",
+            len(own),
+            floors=", ".join(own),
+        )
+        yield Problem("note", "Floors", "", message)
+
+
+def remark_on_shaking(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
+    """Yield the notes on the line Shaking of Building; none where it is blank."""
+    building = inventory.building
+    if building.shaking not in SHAKINGS:
+        return
+    cell, used = building.cell("shaking"), find_shaking(demands)
+    if used is None:
+        ground, why = find_ground(inventory), fill("every floor has a motion of its own")
+        if ground.shaking is None:
+            why = fill("a ShakeMap gives the ground motion") if ground.site else fill("Ground PGA or SDS is filled in")
+        yield Problem("note", "Building", cell, fill("{what} is not used: {why}.", what=fill("Shaking"), why=why))
+        return
+    message = fill(
+        "the shaking is assumed: '{choice}' stands for a ground PGA of {pga:.3f} g and a PGV of {pgv:.1f} cm/s, the "
+        "published medians.",
+        choice=fill(used.choice), pga=used.pga / GRAVITY, pgv=used.pgv / VELOCITY["cm/s"],
+    )  # fmt: skip
+    fix = fill(
+        "To know it better: type the PGA of a hazard map or a ShakeMap at the address into Ground PGA, or name records "
+        "in Floors."
+    )
+    yield Problem("note", "Building", cell, message, fix)
+    yield from _remark_on_scatter(building, used)
+
+
+def _remark_on_scatter(building: Building, used: Shaking) -> Iterator[Problem]:
+    given = building.motion_uncertainty
+    if given is not None and given < used.scatter:
+        why = fill("{scatter:.2f}, the scatter of ln PGV given the assumed intensity, is larger", scatter=used.scatter)
+        what = fill("Motion uncertainty {given:g}", given=given)
+        message = fill("{what} is not used: {why}.", what=what, why=why)
+        yield Problem("note", "Building", building.cell("motion_uncertainty"), message)

@@ -1,7 +1,7 @@
 """How likely each route is blocked, against the PFA on its floors.
 
 At each value every floor of a route shakes with that PFA along both axes: by its own motions (those compatible with its
-record, or with its generic spectrum), each scaled by the value over the floor's PFA. The same motions serve at every
+record, or drawn where it has none), each scaled by the value over the floor's PFA. The same motions serve at every
 value; the shape of the spectrum stays, and PFV scales along. Draw k is one earthquake, as in a run: motion k scaled by
 one factor for the whole building, and every piece that reaches a route as it is in that draw, by the uncertainty of the
 workbook; with `settings.ideal` without either. A piece that is too stocky to rock falls by the formula's chance at that
@@ -29,10 +29,10 @@ from assess.methods import Cases, interval_width
 from assess.methods._method import Ensemble, Motions
 from assess.model import AXES, Segment
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.ensembles import GeneratedEnsemble
+from assess.pipeline.ensembles import DrawnEnsemble, GeneratedEnsemble
 from assess.pipeline.level_falls import find_falls
 from assess.pipeline.levels import RockedLevels, find_factor, rock_levels
-from assess.pipeline.verify import choose_motions, find_uncertainty
+from assess.pipeline.verify import choose_motions
 from assess.progress import SILENT, Progress
 from assess.rocking.block import stocky_limit
 from assess.rocking.draws import Uncertainty
@@ -58,28 +58,18 @@ MOST_INSERTED = 24
 class RouteFragility:
     """One route.
 
-    Parameters
-    ----------
-    route : str
-        Its name.
-    floors : tuple of str
-        Floors of its segments.
-    blocked : tuple of Chance
-        Of its being blocked at each value, if all anchors hold.
-    if_anchors_fail : tuple of Chance, optional
-        The same with anchored pieces taken as free-standing; None where there are none.
-    is_evaluated : bool
-        Whether it is known of any of its segments what can reach it.
-    unevaluated : tuple of str
-        Names of the segments of which that is not known, at the largest value: the chances are without them, so lower
-        bounds.
-    doubtful : int
-        Pieces that reach it whose motions may be too weak; anchored ones count.
-    scenario_pfa : pair of float, optional
-        The least and the largest PFA of the scenario on its floors [m/s2]; None where its segments name no floor.
-    causes : tuple of PieceRef
-        The smallest set found of pieces without which it stays below the limit at the first value at which it does
-        not; none where it stays below at every value, or where it is blocked with nothing fallen.
+    * `route`: its name.
+    * `floors`: floors of its segments.
+    * `blocked`: of its being blocked at each value, if all anchors hold.
+    * `if_anchors_fail`: the same with anchored pieces taken as free-standing; None where there are none.
+    * `is_evaluated`: whether it is known of any of its segments what can reach it.
+    * `unevaluated`: names of the segments of which that is not known, at the largest value: the chances are without
+      them, so lower bounds.
+    * `doubtful`: pieces that reach it whose motions may be too weak; anchored ones count.
+    * `scenario_pfa`: the least and the largest PFA of the scenario on its floors [m/s2]; None where its segments name
+      no floor.
+    * `causes`: the smallest set found of pieces without which it stays below the limit at the first value at which it
+      does not; none where it stays below at every value, or where it is blocked with nothing fallen.
     """
 
     route: str
@@ -99,8 +89,8 @@ class Fragility:
 
     `inserted` are those of them that were not asked for. `limit` is the chosen risk [-], by which `causes` are found.
     `runs` is the number of draws, from `seed`; `uncertainty` is that of each, None where motions and pieces were taken
-    as they are. `generic` names the floors whose motions follow a generic spectrum, `unshaped` those of them for which
-    neither T1 nor the building's height is known, `weak` those whose motions are weaker than the floor's, as far as
+    as they are. `generic` names the floors for which ground motion and building are drawn, `unshaped` those of them for
+    which nothing is known of the building, `weak` those whose motions are weaker than the floor's, as far as
     pieces on them were rocked; `stocky` counts the pieces that are too stocky to rock, `unplaced` those on the floors
     of the routes that have neither a usable position nor a Route: they are left out.
     """
@@ -187,11 +177,11 @@ def _describe(sweep: "_Sweep", values: Sequence[float], beside: NDArray[np.intp]
     assessment, inventory = sweep.assessment, sweep.assessment.inventory
     scene = sweep.levels[sweep.values[0]].scene
     ensembles = list(zip(sweep.cases.ensembles, sweep.rocked, strict=True))
-    doubtful = {int(case) for made, one in ensembles if made.is_unshaped or one.is_weak for case in one.own}
+    doubtful = {int(case) for made, one in ensembles if made.is_unknown or one.is_weak for case in one.own}
     items = frozenset(int(assessment.case_item[case]) for case in doubtful)
 
     def name_floors(chosen: Iterable[Ensemble]) -> tuple[str, ...]:
-        names = {one.demand.floor.floor for one in chosen if isinstance(one, GeneratedEnsemble)}
+        names = {one.demand.floor.floor for one in chosen if isinstance(one, GeneratedEnsemble | DrawnEnsemble)}
         return tuple(floor.floor for floor in inventory.floors if floor.floor in names)
 
     beside_them = [inventory.items[at] for at in beside]
@@ -202,14 +192,19 @@ def _describe(sweep: "_Sweep", values: Sequence[float], beside: NDArray[np.intp]
         limit=assessment.settings.route_risk,
         runs=int(assessment.settings.runs),
         seed=assessment.settings.seed,
-        uncertainty=None if assessment.settings.ideal else sweep.cases.uncertainty,
+        uncertainty=None if assessment.settings.ideal else _find_uncertainty(sweep.cases),
         routes=tuple(_route(sweep, name, items) for name in names),
-        generic=name_floors(made for made, _ in ensembles if made.is_generic),
-        unshaped=name_floors(made for made, _ in ensembles if made.is_unshaped),
+        generic=name_floors(made for made, _ in ensembles if made.is_assumed),
+        unshaped=name_floors(made for made, _ in ensembles if made.is_unknown),
         weak=name_floors(made for made, one in ensembles if one.is_weak),
         stocky=sum(one.quantity for one in too_stocky),
         unplaced=sum(count_unplaced(scene, floor.floor, _list_on(scene, floor.floor)) for floor in inventory.floors),
     )
+
+
+def _find_uncertainty(cases: Cases) -> Uncertainty:
+    """Return the largest dispersion of a floor, and whether pieces are drawn."""
+    return replace(cases.uncertainty, motion=float(cases.dispersion.max(initial=0.0)))
 
 
 def _list_on(scene: Scene, floor: str) -> list[int]:
@@ -245,10 +240,10 @@ def _choose(assessment: Assessment, beside: NDArray[np.intp]) -> Cases:
     """Return the cases with the motions under which the pieces `beside` routes are to be rocked."""
     chosen = np.isin(assessment.case_item, beside) & ~assessment.cases.is_stocky
     inventory, settings = assessment.inventory, assessment.settings
-    uncertainty = find_uncertainty(inventory.building)  # at a PFA: without the scatter of PGA
+    own = np.array([one.own_dispersion for one in assessment.case_demand], dtype=np.float64)  # without that of PGA
     drawn = replace(assessment.cases.earthquakes, given=())  # nor are there scenarios of it
-    cases = replace(assessment.cases, uncertainty=uncertainty, earthquakes=drawn)
-    return choose_motions(cases, chosen, assessment.case_demand, assessment.demands, inventory.building, settings, None)
+    cases = replace(assessment.cases, dispersion=own, earthquakes=drawn)
+    return choose_motions(cases, chosen, assessment.case_demand, assessment.demands, inventory, settings, None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -311,7 +306,7 @@ class _Sweep:
         factors = np.array([[find_factor(value, pfa) for value in values] for pfa in peaks])
         return rock_levels(
             cases, self.assessment.case_item, self.assessment.case_demand, factors.reshape(-1, len(values)), settings,
-            dispersion=None if settings.ideal else cases.uncertainty.motion, jobs=self.jobs, opened=self.opened,
+            dispersion=None if settings.ideal else cases.dispersion, jobs=self.jobs, opened=self.opened,
             progress=self.progress,
         )  # fmt: skip
 

@@ -3,7 +3,7 @@
 import math
 import tempfile
 import weakref
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
@@ -15,35 +15,45 @@ from numpy.typing import NDArray
 from assess.delivery.traces import make_folder, remove_folder
 from assess.errors import InputError, OutputError, Problem
 from assess.i18n import fill
-from assess.methods import Cases, Method, all_methods, simulation
+from assess.methods import Cases, Method, Outcome, all_methods, simulation
 from assess.methods._method import NO_WALL, SIDE_UNKNOWN
 from assess.model import AXES, Inventory
-from assess.pipeline.adopt import adopt, build_falls, choose_items, find_governing
+from assess.pipeline.adopt import (
+    UNCONFIRMED,
+    Adoption,
+    adopt,
+    build_falls,
+    choose_items,
+    find_governing,
+    find_ruling,
+)
 from assess.pipeline.anchors import find_anchors
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.city_draws import check_draws, find_earthquakes, number_pieces
-from assess.pipeline.demand import Demand, Demands, build_demands, scale_demands
+from assess.pipeline.demand import build_demands, scale_demands
 from assess.pipeline.either_axis import unite_axes
+from assess.pipeline.floor_demand import Demand, Demands
 from assess.pipeline.remarks import list_too_low, remark
 from assess.pipeline.schedule import build_schedule, hold, list_entries
 from assess.pipeline.series import Arrays, build_series, write_series
 from assess.pipeline.tables import (
     add_annual,
     build_cases,
+    build_draws,
     build_floor,
     build_items,
     build_motions,
     build_provenance,
     list_demands,
 )
-from assess.pipeline.verify import choose_motions, find_uncertainty, remark_suite, verify
+from assess.pipeline.verify import choose_motions, find_peak, find_uncertainty, remark_suite, verify
 from assess.pipeline.what_if import anchor_first, anchor_named, spell_names
 from assess.pipeline.worked import choose_example, work_example
 from assess.progress import SILENT, Listener, Progress
 from assess.results import Results, Series
 from assess.route_results import RouteTables
 from assess.routes.walls import find_walls, remark_on_walls
-from assess.settings import SCENARIOS, Settings, change_settings
+from assess.settings import CLASS_BY, SCENARIOS, Settings, change_settings
 
 if TYPE_CHECKING:
     from assess.annual_results import Annual
@@ -71,7 +81,7 @@ def run(
     Each piece is paired with every motion of the axis it topples along (of both axes where that is not known). The
     formulas evaluate all pairs at once; then the rocking of the pieces that `settings.verify` asks for is integrated
     under many motions of their floors. The pair of the highest adopted class governs, then the larger probability, then
-    the larger PFA, then axis X.
+    the larger peak that rules the formula (PFV; PFA by the paper's), then axis X.
 
     Parameters
     ----------
@@ -136,7 +146,8 @@ def compute(
 ) -> Assessment:
     """Return the arrays of a run; parameters and errors are those of `run`."""
     every = _join_methods(methods)
-    settings = settings if suite is None else replace(settings, runs=len(suite))
+    class_by = settings.class_by or inventory.building.class_by or CLASS_BY[0]
+    settings = change_settings(settings, {"class_by": class_by} | ({} if suite is None else {"runs": len(suite)}))
     check_draws(inventory, settings)
     if isinstance(settings.anchor, tuple):
         names = spell_names(inventory, settings.anchor)
@@ -160,13 +171,13 @@ def _compute(
     filled = build_demands(inventory, scenario, ductility_reduction=settings.ductility_reduction, progress=progress)
     demands = scale_demands(filled, settings.scale)
     (case_item, case_demand), obstructions = _pair(inventory, demands), _find_obstructions(inventory, progress)
-    cases = _cases(inventory, demands, case_item, case_demand, settings)
+    cases = _cases(inventory, case_item, case_demand, settings)
     outcomes = {one.key: one.evaluate(cases, settings) for one in every if one.tier == "screening"}
     chosen = choose_items(settings.verify, every, outcomes, case_item, _on_route(inventory, obstructions))
-    cases = choose_motions(cases, chosen[case_item], case_demand, demands, inventory.building, settings, suite)
+    cases = choose_motions(cases, chosen[case_item], case_demand, demands, inventory, settings, suite)
     outcomes[simulation().key] = verify(cases, case_item, case_demand, settings, jobs=jobs, progress=progress)
-    adoption, both = unite_axes(adopt(outcomes, cases, settings), outcomes, inventory, case_item, case_demand, settings)
-    governing = find_governing(adoption.probability, case_item, cases.pfa)
+    adoption = adopt(outcomes, cases, settings)
+    adoption, both = unite_axes(adoption, outcomes, cases, inventory, case_item, case_demand, settings)
     return Assessment(
         inventory=inventory,
         settings=settings,
@@ -181,10 +192,10 @@ def _compute(
         outcomes=outcomes,
         adoption=adoption,
         either_axis=both,
-        governing=governing,
+        governing=(governing := find_governing(adoption, case_item, find_ruling(cases, settings))),
         anchors=find_anchors(inventory, cases, governing, settings),
         obstructions=obstructions,
-        problems=_list_problems(inventory, filled, scenario, settings, suite, cases, obstructions),
+        problems=_list_problems(inventory, filled, scenario, suite, cases, obstructions, adoption, outcomes, case_item),
     )
 
 
@@ -192,14 +203,18 @@ def _list_problems(
     inventory: Inventory,
     filled: Demands,
     scenario: str,
-    settings: Settings,
     suite: "Suite | None",
     cases: Cases,
     obstructions: "Sequence[Obstructions]",
+    adoption: Adoption,
+    outcomes: Mapping[str, Outcome],
+    case_item: NDArray[np.intp],
 ) -> tuple[Problem, ...]:
     """Return the problems of the workbook, and what is to be said of its motions, the user's own, and its routes."""
+    is_unconfirmed = (adoption.basis == UNCONFIRMED) & outcomes[simulation().key].flags["unknown_building"]
+    unconfirmed = {inventory.items[int(at)].floor for at in case_item[is_unconfirmed]}
     remarks = [
-        *remark(inventory, filled, scenario, settings.ductility_reduction),
+        *remark(inventory, filled, scenario, unconfirmed),
         *remark_suite(suite, cases),
         *_route_problems(inventory, obstructions),
     ]
@@ -272,6 +287,7 @@ def _build_rows(assessment: Assessment, demands: Sequence[Demand], folder: Path,
         worked=() if example is None else work_example(example, assessment),
         worked_item=example,
         series=Series(folder / SERIES),
+        draws=build_draws(assessment),
     )
 
 
@@ -286,8 +302,7 @@ def _write_series(path: Path, arrays: Arrays, progress: Progress) -> None:
 
 def _list_underestimates(assessment: Assessment) -> tuple[str, ...]:
     """Return the warnings that more shaking is known than is used."""
-    reduction = assessment.settings.ductility_reduction
-    found = list_too_low(assessment.inventory, assessment.filled, assessment.scenario, reduction)
+    found = list_too_low(assessment.inventory, assessment.filled, assessment.scenario)
     return tuple(problem.message for problem in found)
 
 
@@ -321,7 +336,6 @@ def _pair(inventory: Inventory, demands: Demands) -> tuple[NDArray[np.intp], tup
 
 def _cases(
     inventory: Inventory,
-    demands: Demands,
     case_item: NDArray[np.intp],
     case_demand: tuple[Demand, ...],
     settings: Settings,
@@ -330,23 +344,27 @@ def _cases(
         return np.array(values, dtype=np.float64)
 
     items, building = [inventory.items[index] for index in case_item], inventory.building
-    names, uncertainty = number_pieces(inventory, settings), find_uncertainty(building, demands)
+    shaken = inventory if any(one.site for one in case_demand) else replace(inventory, site_ground=None)
+    names, walls = number_pieces(inventory, settings), _list_walls(inventory, case_item, case_demand)
     return Cases(
         breadth=column([item.breadth for item in items]),
         height=column([item.height for item in items]),
         pfa=column([demand.pfa for demand in case_demand]),
         pfv=column([demand.pfv for demand in case_demand]),
         friction=column([inventory.friction_of(item) for item in items]),
-        pfv_estimated=np.array(["pfv_estimated" in demand.flags for demand in case_demand], dtype=np.bool_),
         restitution=np.full(len(items), math.nan if building.restitution is None else building.restitution),
         ensemble=np.full(len(items), -1, dtype=np.intp),
         centre=column([item.centre_of_gravity for item in items]),
         name=np.array([names[item.item] for item in items], dtype=np.int64),
         scanned=np.array([item.is_scanned for item in items], dtype=np.bool_),
         slides_under=np.full(len(items), -1, dtype=np.intp),
-        wall=_list_walls(inventory, case_item, case_demand),
-        uncertainty=uncertainty,
-        earthquakes=find_earthquakes(inventory, settings, uncertainty),
+        alike=_number_alike(inventory, case_item, case_demand, walls),
+        quantity=np.array([item.quantity for item in items], dtype=np.int64),
+        wall=walls,
+        dispersion=column([demand.dispersion for demand in case_demand]),
+        peak=column([find_peak(demand) for demand in case_demand]),
+        uncertainty=find_uncertainty(building),
+        earthquakes=find_earthquakes(shaken, settings),
     )
 
 
@@ -356,6 +374,19 @@ def _evaluate_annual(assessment: Assessment, jobs: int | None, progress: Progres
     from assess.pipeline.annual import evaluate_annual
 
     return progress.wait_for(lambda: evaluate_annual(assessment, jobs=jobs, progress=progress))
+
+
+def _number_alike(
+    inventory: Inventory, case_item: NDArray[np.intp], case_demand: tuple[Demand, ...], walls: NDArray[np.int8]
+) -> NDArray[np.intp]:
+    """Return `Cases.alike`: a number for each floor motion and what is computed with of a piece beside its name."""
+    numbers: dict[tuple[Any, ...], int] = {}
+    found = []
+    for at, demand, wall in zip(case_item.tolist(), case_demand, walls.tolist(), strict=True):
+        item = inventory.items[at]
+        sizes = item.breadth, item.height, item.centre_of_gravity, item.is_scanned, inventory.friction_of(item)
+        found.append(numbers.setdefault((demand, wall, *sizes), len(numbers)))
+    return np.array(found, dtype=np.intp)
 
 
 def _list_walls(inventory: Inventory, case_item: NDArray[np.intp], case_demand: tuple[Demand, ...]) -> NDArray[np.int8]:

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from assess.details import AT_BASE, AT_WALL, DETAILS, Detail, count_fixings, find_detail
 from assess.model import Cost, Inventory
 from assess.natural import natural_key
-from assess.results import ItemResult, ItemRow, Results
-from assess.risk import RiskClass
+from assess.results import ItemResult, ItemRow, Results, sum_falls
+from assess.risk import RiskClass, find_ends
 from assess.route_results import RouteRow, RouteState, RouteTables
 from assess.schedule_results import Schedule, ScheduleRow, State, WorkRow
 
@@ -38,7 +38,8 @@ def build_schedule(
     avoided = [sum(map(count_falls, one)) for one in entries]
     total = sum(count_falls(one) for one in rows if not one.is_anchored)
     left = list(accumulate(avoided, _take_off, initial=total))[1:]
-    costs = _find_costs(inventory.costs)
+    found = ((find_detail(one.detail), one) for one in inventory.costs)
+    costs = {detail.key: one for detail, one in found if detail}
     together = _list_together(results.route_tables.routes)
     held = {one.item.index for entry in entries for one in entry}
     return Schedule(
@@ -237,12 +238,6 @@ def find_forces(item: ItemRow, detail: Detail) -> Forces:
     )
 
 
-def _find_costs(costs: Sequence[Cost]) -> dict[str, Cost]:
-    """Return costs by the key of the detail that each names, in whatever language."""
-    found = ((find_detail(one.detail), one) for one in costs)
-    return {detail.key: one for detail, one in found if detail}
-
-
 def choose_detail(item: ItemRow) -> str:
     """Return the generic detail for a piece: at the base where it stands free of walls or is a filing cabinet."""
     named = f"{item.type} {item.description}".casefold()
@@ -261,8 +256,11 @@ def _sum_up(rows: Sequence[ItemResult], routes: RouteTables, held: Collection[in
     for one in counted:
         classes[one.adopted.risk] += one.item.quantity
     states = Counter(one.state for one in routes.routes)
+    low, high = find_ends(sum_falls(counted))
     return State(
         falls=sum(map(count_falls, counted)),
+        falls_low=low,
+        falls_high=high,
         apart=sum(one.item.quantity for one in free if one.apart),
         classes=tuple(classes[risk] for risk in RiskClass),
         anchored=sum(one.item.quantity for one in rows) - sum(one.item.quantity for one in free),

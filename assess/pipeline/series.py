@@ -36,7 +36,7 @@ from assess.methods import Cases, Method
 from assess.methods._method import FloatArray, Joint
 from assess.natural import natural_key
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.demand import Demand
+from assess.pipeline.floor_demand import Demand
 from assess.progress import SILENT, Progress
 from assess.results import ItemResult
 from assess.risk import RiskClass
@@ -178,7 +178,7 @@ def _contours(assessment: Assessment, results: Iterable[ItemResult]) -> Iterator
     yield "breadth_cm", breadth
     yield "pfa_g", pfa
     for method in assessment.methods:
-        if method.is_live:
+        if method.is_live and not (method.ruled_by == "pfv" and math.isnan(ratio)):
             yield method.key, _evaluate_grid(method, assessment, height, breadth, pfa, ratio)
 
 
@@ -216,13 +216,13 @@ def _grid(height: float, pieces: Sequence[ItemResult]) -> tuple[FloatArray, Floa
 def _evaluate_grid(
     method: Method, assessment: Assessment, height: float, breadth: FloatArray, pfa: FloatArray, ratio: float
 ) -> NDArray[np.float32]:
-    """Return the chance by a method [-] at every PFA (rows) and breadth (columns)."""
+    """Return the chance by a method [-] at every PFA (rows) and breadth (columns); 0 where no piece rocks by it."""
     wide, strong = (values.ravel() for values in np.meshgrid(breadth, pfa))
     acceleration = strong * ACCELERATION["g"]
     cases = Cases.of(
         breadth=wide * LENGTH["cm"], height=height * LENGTH["cm"], pfa=acceleration, pfv=ratio * acceleration
     )
-    value = method.evaluate(cases, assessment.settings).value
+    value = np.nan_to_num(method.evaluate(cases, assessment.settings).value)
     return value.reshape(pfa.size, breadth.size).astype(np.float32)
 
 

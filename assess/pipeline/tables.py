@@ -1,6 +1,5 @@
 """From the arrays of an assessment to the rows of `assess.results`: the edge, where units are put into names."""
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING
@@ -12,18 +11,20 @@ from assess.methods import LOOKS, interval_width, simulation
 from assess.methods._method import Joint
 from assess.model import AXES, Floor, FloorPlan, Inventory, Item
 from assess.motion.record import Record, treatment
-from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED, Profile, cap_pfv, estimate_pfv
+from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED, Profile
+from assess.pipeline.adopt import build_falls
 from assess.pipeline.anchors import Anchors
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.city_draws import describe_draws
-from assess.pipeline.demand import Demand, Demands, Ground, find_assumed, find_ground
-from assess.pipeline.site_remarks import describe_site
+from assess.pipeline.demand import find_shaking
+from assess.pipeline.floor_demand import Demand, Demands
+from assess.pipeline.remarks import describe_site
 from assess.pipeline.versions import versions
 from assess.results import (
     AssumedShaking,
     CaseTable,
+    DrawTable,
     EnsembleRow,
-    EstimateRow,
     FitRow,
     FloorRow,
     ItemRow,
@@ -33,8 +34,9 @@ from assess.results import (
     Provenance,
     SuiteInfo,
 )
+from assess.routes.chances import Falls
 from assess.routes.walls import find_walls
-from assess.units import ACCELERATION, FORCE, GRAVITY, LENGTH, VELOCITY, to_edge
+from assess.units import ACCELERATION, FORCE, LENGTH, VELOCITY, to_edge
 from assess.version import __version__
 
 if TYPE_CHECKING:
@@ -89,12 +91,9 @@ def list_demands(assessment: Assessment) -> list[Demand]:
 
 def build_motions(assessment: Assessment, demands: Sequence[Demand]) -> tuple[MotionRow, ...]:
     """Return a row for each motion, with what pieces were simulated under."""
-    joints, inventory = assessment.joints, assessment.inventory
-    ground = find_ground(inventory)
-    rows = []
+    joints, rows = assessment.joints, []
     for index, demand in enumerate(demands):
-        estimate = _describe_estimate(inventory.building.period, ground, demand)
-        row = replace(build_motion(index, demand), estimate=estimate)
+        row = build_motion(index, demand)
         joint = joints.get(demand)
         rows.append(row if joint is None else replace(row, ensemble=_ensemble(assessment, joint)))
     return tuple(rows)
@@ -117,17 +116,10 @@ def build_motion(index: int, demand: Demand) -> MotionRow:
         height_ratio=demand.height_ratio,
         amplification=demand.amplification,
         record=demand.name,
+        pfv_follows=demand.drawn is not None and demand.drawn.target.meets != "peaks",
+        dispersion=demand.dispersion,
     )
     return row if demand.record is None else _add_record(row, demand.record)
-
-
-def _describe_estimate(period: float | None, ground: Ground, demand: Demand) -> EstimateRow | None:
-    """Return what a PFV was estimated from, with T1 [s]; None where it was not, or is interpolated."""
-    if "pfv_estimated" not in demand.flags or demand.between or period is None:
-        return None
-    pgv = ground.profile_pgv if demand.profile else ground.pgv
-    cap = None if pgv is None else demand.scale * cap_pfv(pgv)
-    return EstimateRow(_sure(estimate_pfv(GRAVITY, period), "cm/s"), edge(cap, "cm/s"))
 
 
 def _add_record(row: MotionRow, record: Record) -> MotionRow:
@@ -171,14 +163,15 @@ def _ensemble(assessment: Assessment, joint: Joint) -> EnsembleRow:
     return EnsembleRow(
         motions=int(joint.runs.max()),
         least_motions=int(joint.runs.min()),
-        generic_spectrum=ensemble.is_generic,
-        unknown_period=ensemble.is_unshaped,
+        assumed_motion=ensemble.is_assumed,
+        unknown_building=ensemble.is_unknown,
         weak_motions=joint.is_weak,
         is_generated=assessment.suite is None,
         cases=int(joint.cases.size),
         fell_in_record=int(known.sum()) if known.size else None,
         fit=None if joint.fit is None else _fit(joint.fit),
         signs=ensemble.signs,
+        bands=joint.bands,
     )
 
 
@@ -190,7 +183,7 @@ def _fit(fit: "Fit") -> FitRow:
         worst_period_s=fit.worst_period,
         pfa_ratio=fit.pfa_ratio,
         pfa_scatter=fit.pfa_scatter,
-        pfv_ratio=None if math.isnan(fit.pfv_ratio) else fit.pfv_ratio,
+        pfv_ratio=fit.pfv_ratio,
         pfv_scatter=fit.pfv_scatter,
         spectrum_scatter=fit.spectrum_scatter,
     )
@@ -299,6 +292,26 @@ def build_cases(assessment: Assessment, demands: Sequence[Demand]) -> CaseTable:
     )
 
 
+def find_falls(assessment: Assessment) -> Falls:
+    """Return how the pieces fall, each under its governing motion."""
+    return build_falls(
+        assessment.inventory, assessment.adoption, assessment.outcomes, assessment.governing, assessment.settings,
+        assessment.either_axis, assessment.anchors.held,
+    )  # fmt: skip
+
+
+def build_draws(assessment: Assessment) -> DrawTable:
+    """Return in which draws each item falls."""
+    falls, count = find_falls(assessment), len(assessment.inventory.items)
+    draws = min((one.size for one in falls.fell.values()), default=0)
+    fell = np.zeros((count, draws), dtype=np.bool_)
+    for item, one in falls.fell.items():
+        fell[item] = one[:draws]
+    is_known = falls.stands.copy()
+    is_known[list(falls.fell)] = True
+    return DrawTable(draws, np.packbits(fell, axis=1), is_known)
+
+
 # ---------------------------------------------------------------- provenance
 
 
@@ -312,7 +325,7 @@ def build_provenance(assessment: Assessment) -> Provenance:
         sha256=inventory.sha256,
         files=dict(inventory.files),
         scenario=assessment.scenario,
-        uncertainty=assessment.cases.uncertainty,
+        uncertainty=replace(assessment.cases.uncertainty, motion=_find_dispersion(assessment)),
         earthquakes=describe_draws(assessment.inventory, assessment.settings, assessment.cases.earthquakes),
         shaking=_describe_shaking(assessment.demands),
         site_ground=describe_site(inventory.building, assessment.demands),
@@ -327,11 +340,15 @@ def build_provenance(assessment: Assessment) -> Provenance:
     )
 
 
+def _find_dispersion(assessment: Assessment) -> float:
+    """Return the largest standard deviation of ln amplitude that is drawn on a floor [-]."""
+    return max((one.dispersion for parallel in assessment.demands.values() for one in parallel), default=0.0)
+
+
 def _describe_shaking(demands: Demands) -> AssumedShaking | None:
-    found = find_assumed(demands)
-    if found is None:
+    shaking = find_shaking(demands)
+    if shaking is None:
         return None
-    shaking, profile = found
     return AssumedShaking(
         choice=shaking.choice,
         name=shaking.name,
@@ -339,10 +356,8 @@ def _describe_shaking(demands: Demands) -> AssumedShaking | None:
         pga_g=_sure(shaking.pga, "g"),
         pgv_cm_s=_sure(shaking.pgv, "cm/s"),
         scatter=shaking.scatter,
-        pgv_scatter=shaking.pgv_scatter,
         is_derived=shaking.is_derived,
         is_open=shaking.is_open,
-        profile=profile.key,
         sources=shaking.sources,
         references=shaking.references,
     )

@@ -1,6 +1,5 @@
 """The simulation: which pieces are integrated, and under which motions."""
 
-import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -12,11 +11,14 @@ from assess.i18n import Text, count, fill, join
 from assess.methods import LOOKS, Cases, Outcome, simulation
 from assess.methods._beside import may_slide
 from assess.methods._method import BoolArray
-from assess.model import Building
-from assess.pipeline.demand import Demand, Demands, find_shaking, find_site
+from assess.model import Building, Inventory
+from assess.motion.assumed import RATIO_SCATTER
+from assess.motion.floor_medians import SCATTER
+from assess.pipeline.city_draws import number_building
 from assess.pipeline.ensembles import FloorEnsemble, SuiteEnsemble, build_ensembles
+from assess.pipeline.floor_demand import Demand, Demands
 from assess.progress import SILENT, Progress
-from assess.rocking.draws import Uncertainty
+from assess.rocking.draws import PEAK, Uncertainty
 from assess.settings import AUTO, Settings, count_processors
 from assess.units import GRAVITY
 
@@ -28,21 +30,25 @@ MOST_PAIRS = 400_000_000
 """Results of one motion on one piece that are kept at most: they take five bytes each."""
 
 
-def find_uncertainty(building: Building, demands: Demands | None = None) -> Uncertainty:
-    """Return what is taken to be uncertain: what the workbook says, else the defaults.
+def find_uncertainty(building: Building) -> Uncertainty:
+    """Return what is taken to be uncertain on floors with a record: what the workbook says, else the defaults.
 
-    With the demands also what the ground motion adds on which they rest; that of a known peak adds nothing. Where an
-    assumed intensity serves a floor, the motion is at least as uncertain as PGA is given that intensity. That scatter
-    is the total one, of earthquakes and sites alike: it stands in for a smaller value, and adds to none. Where a
-    ShakeMap or scenarios serve one, that of their PGA is independent of the building's own and adds to its variance.
+    On other floors the dispersion of the motion is that of their `Demand`.
     """
     default, given, piece = Uncertainty(), building.motion_uncertainty, building.piece_uncertainty
-    own = default.motion if given is None else given
-    shaking, site = (find_shaking(demands), find_site(demands)) if demands else (None, None)
-    motion = max(own, shaking.scatter) if shaking else own
     return Uncertainty(
-        motion=math.hypot(own, site.dispersion) if site else motion, piece=default.piece if piece is None else piece
+        motion=default.motion if given is None else given, piece=default.piece if piece is None else piece
     )
+
+
+def find_peak(demand: Demand) -> float:
+    """Return the standard deviation of ln of the peaks of a floor's motions over its PFA [-]."""
+    if demand.drawn is None:
+        return PEAK
+    if demand.drawn.target.meets == "medians":
+        return SCATTER
+    is_by_velocity = demand.drawn.target.meets == "nothing" and demand.drawn.ground.pga is None
+    return RATIO_SCATTER if is_by_velocity else 0.0
 
 
 def choose_motions(
@@ -50,20 +56,22 @@ def choose_motions(
     chosen: BoolArray,
     case_demand: tuple[Demand, ...],
     demands: Demands,
-    building: Building,
+    inventory: Inventory,
     settings: Settings,
     suite: "Suite | None",
 ) -> Cases:
     """Return the cases with the motions under which those `chosen` (n,) that can rock are to be integrated.
 
-    Those that may slide, too stocky ones too, are to slide under the same.
+    Those that may slide, too stocky ones too, are to slide under the same. In a city every building is drawn
+    otherwise.
     """
     rocks, slides = chosen & ~cases.is_stocky, chosen & may_slide(cases, settings)
     used = rocks | slides
     wanted = list(dict.fromkeys(demand for demand, one in zip(case_demand, used, strict=True) if one))
     ensembles: tuple[FloorEnsemble, ...]
     if suite is None:
-        ensembles = build_ensembles(wanted, demands, building, seed=settings.seed) if wanted else ()
+        number, building = number_building(inventory, settings), inventory.building
+        ensembles = build_ensembles(wanted, demands, building, seed=settings.seed, number=number) if wanted else ()
     else:
         ensembles = tuple(SuiteEnsemble(demand, suite, settings.scale_motions, settings.scale) for demand in wanted)
     place = {demand: at for at, demand in enumerate(wanted)}

@@ -38,10 +38,7 @@ def read_dxf(data: bytes) -> tuple[bytes, float, tuple[str, ...], float | None]:
 
     Its frame is the box round its lines. No other file is read: external references are left out, and named.
 
-    Raises
-    ------
-    PictureError
-        If ezdxf is missing, or the drawing is too large, damaged, or holds no lines.
+    Raises PictureError if ezdxf is missing, or the drawing is too large, damaged, or holds no lines.
     """
     document = _open(data)
     reader = _Reader(document)
@@ -94,7 +91,6 @@ def _check_size(tags: Iterable[Any]) -> None:
 
 
 def _metres(document: "Document") -> float | None:
-    """Return the length of a drawing unit [m]; None where the drawing does not tell."""
     from ezdxf.enums import InsertUnits
     from ezdxf.units import conversion_factor
 

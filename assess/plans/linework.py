@@ -44,13 +44,7 @@ def empty() -> PictureError:
 
 
 def find_box(lines: Sequence[Line]) -> Box:
-    """Return the box round all lines.
-
-    Raises
-    ------
-    PictureError
-        If there are none, or they have no width and height.
-    """
+    """Return the box round all lines; raises PictureError if there are none, or they have no width and height."""
     if not lines:
         raise empty()
     points = np.concatenate([np.asarray(line, dtype=np.float64).reshape(-1, 2) for line in lines])
@@ -63,6 +57,8 @@ def find_box(lines: Sequence[Line]) -> Box:
 def pack(lines: Sequence[Line], box: Box, *, is_down: bool) -> tuple[bytes, float]:
     """Return lines as bytes, and the aspect (height over width) of `box`, which they are cut at.
 
+    Raises PictureError if nothing is left, or too much.
+
     Parameters
     ----------
     lines : sequence of sequence of (float, float)
@@ -71,11 +67,6 @@ def pack(lines: Sequence[Line], box: Box, *, is_down: bool) -> tuple[bytes, floa
         The frame of the drawing.
     is_down : bool
         Whether Y points downwards.
-
-    Raises
-    ------
-    PictureError
-        If nothing is left, or too much.
     """
     left, low, right, high = box
     wide, tall = right - left, high - low
@@ -130,7 +121,6 @@ def clip(points: FloatArray, box: Box) -> list[FloatArray]:
 
 
 def _cut(points: FloatArray, low: FloatArray, high: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """Yield the segments of a line as far as they lie between two corners."""
     start, way = points[:-1], np.diff(points, axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
         one, other = (low - start) / way, (high - start) / way

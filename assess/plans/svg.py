@@ -41,10 +41,8 @@ def read_svg(data: bytes) -> tuple[bytes, float, tuple[str, ...]]:
 
     Its frame is the viewBox, else its width and height, else the box round its lines.
 
-    Raises
-    ------
-    PictureError
-        If it is too large, damaged, declares entities, holds something that cannot be read, or no lines.
+    Raises PictureError if it is too large, damaged, declares entities, holds something that cannot be read, or no
+    lines.
     """
     if len(data) > MOST_BYTES:
         raise PictureError(fill("it is larger than {most} MB. Save it smaller", most=MOST_BYTES >> 20))
@@ -101,7 +99,6 @@ class SvgReader:
         raise PictureError(fill("it declares XML entities, as an attack does. Save it as plain SVG, or as PNG"))
 
     def _begin(self, name: str, attributes: dict[str, str]) -> None:
-        """Take in the root: the frame of the drawing."""
         if name != "svg":
             raise PictureError(fill("it is no PNG, JPEG, SVG or DXF file. Save it as one of them"))
         box = read_list(attributes["viewBox"]) if "viewBox" in attributes else None
@@ -115,7 +112,6 @@ class SvgReader:
         self._open.append((SAME, read_style(attributes, {})))
 
     def _inside(self, name: str, attributes: dict[str, str]) -> None:
-        """Take in a group or a shape."""
         above, style = self._open[-1]
         matrix = multiply(above, read_transform(attributes["transform"])) if "transform" in attributes else above
         style = read_style(attributes, style)

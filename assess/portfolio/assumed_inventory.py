@@ -185,7 +185,6 @@ def _share(number: int, levels: int) -> list[int]:
 
 @cache
 def _read_kinds() -> dict[str, tuple[_Kind, ...]]:
-    """Return the kinds of pieces by occupancy."""
     text = (files("assess.portfolio") / "p58_quantities.csv").read_text(encoding="utf-8")
     sizes = {line["type"]: line for line in catalogue_rows()}
     found: dict[str, list[_Kind]] = {}

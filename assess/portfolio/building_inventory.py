@@ -91,9 +91,6 @@ def _read_rows(
     return replace(inventory, problems=(*problems, *inventory.problems))
 
 
-# ---------------------------------------------------------------- an index that contradicts its workbook
-
-
 def _compare(inventory: Inventory, row: IndexRow, *, is_survey: bool) -> Inventory:
     """Return an inventory with a warning where the index says something else of the building."""
     found = list(_list_other(row, inventory.building))

@@ -5,21 +5,19 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from assess.details import DETAILS
 from assess.errors import Problem
 from assess.i18n import fill
 from assess.model import Inventory
-from assess.pipeline.demand import find_ground
 from assess.pipeline.draw_sums import SIMULATED, DrawSums, count_people
+from assess.pipeline.known_ground import find_ground
 from assess.portfolio.index_file import IndexRow
 from assess.portfolio.table_schemas import TABLES
-from assess.report.counts import count, count_cannot_rock
+from assess.report.counts import count
 from assess.report.findings.assumed_intensity import uses_scatter
 from assess.report.findings.route_words import say_missing
 from assess.results import ItemResult, Results
-from assess.risk import RiskClass
+from assess.risk import RiskClass, find_ends
 from assess.route_results import RouteRow, RouteState, RouteTables
 from assess.units import to_edge
 from assess.workbook.schema import BUILDING, USES
@@ -30,8 +28,6 @@ if TYPE_CHECKING:
 Record = dict[str, Any]
 OWN_MOTIONS = ("record", "given")
 """Sources of a floor's motion that are not of the ground motion of the run."""
-ENDS = (0.05, 0.95)
-"""Shares of the draws that the printed numbers of falls are not exceeded in."""
 MOST_PROBLEMS = 200
 """Problems of one building that the tables hold; the rest is counted."""
 MOST_BLOCKERS = 20
@@ -188,7 +184,7 @@ def _find_shaking(inventory: Inventory) -> tuple[str, float | None, float | None
 
 def _count_pieces(origin: Origin, results: Results) -> Record:
     rows = tuple(results)
-    counts, cannot = count("", rows), count_cannot_rock(rows, results.methods)
+    counts = count("", rows)
     main = [one for one in rows if not one.is_anchored and not one.apart]
 
     def expect(quantities: Mapping[str, int] | None) -> float | None:
@@ -202,7 +198,7 @@ def _count_pieces(origin: Origin, results: Results) -> Record:
         **{risk.word.replace(" ", "_"): counts.by_class[risk] for risk in RiskClass},
         "unconfirmed": counts.unconfirmed,
         "by_formula": counts.by_formula,
-        "cannot_rock": cannot.still + cannot.stocky,
+        "cannot_rock": counts.cannot_rock,
         "anchored": counts.anchored,
         "expected_falls": counts.expected,
         "falls_low_inventory": expect(origin.low),
@@ -213,7 +209,7 @@ def _count_pieces(origin: Origin, results: Results) -> Record:
 def _count_draws(sums: DrawSums) -> Record:
     if sums.falls is None:
         return {"draws": 0}
-    low, high = np.quantile(sums.falls, ENDS, method="inverted_cdf").tolist()
+    low, high = find_ends(sums.falls)
     return {"draws": len(sums.falls), "falls_p05": low, "falls_p95": high}
 
 

@@ -5,14 +5,13 @@ from collections.abc import Iterator
 from assess.i18n import gettext as _
 from assess.i18n import number
 from assess.methods import adopted_formula
-from assess.motion.spatial_field import RANGE, SHARED
+from assess.motion.spatial_field import SCATTERS, Measure
 from assess.portfolio.city_spread import Spread
 from assess.portfolio.city_totals import PEOPLE_RULE, CityTotals, CityView, Group
 from assess.portfolio.city_words import list_facts, say_interval, say_range, say_whole
 from assess.report import words
 from assess.report.provenance import say_reference
 from assess.risk import LIMITS
-from assess.rocking.draws import Uncertainty
 from assess.route_results import BLOCKED_FROM
 from assess.version import __version__
 
@@ -45,6 +44,8 @@ def _list_settings(view: CityView) -> Iterator[tuple[str, str]]:
         yield _("Draws, seed"), f"{say_whole(int(settings.runs))}, {settings.seed}"
     if settings.scenario:
         yield _("Motion of the floors"), settings.scenario
+    if settings.class_by:
+        yield _("Class by"), _(settings.class_by)
     if settings.scale != 1:
         yield _("Factor on all motions"), number(settings.scale, "g")
     yield _("Limit on the chance that a route is blocked"), words.percent(settings.route_risk)
@@ -70,8 +71,9 @@ def _list_method(view: CityView, totals: CityTotals) -> Iterator[str]:
     yield from _say_dispersion(view)
     yield from _say_routes(view, totals)
     if any(group.basis == "formula" for group in totals.groups):
+        formula = adopted_formula(view.settings.class_by)
         yield _("Results by formula only are chances by {formula}, under the median of the ground motion; nothing was "
-                "simulated, so that no range is given.", formula=_(adopted_formula().title))  # fmt: skip
+                "simulated, so that no range is given.", formula=_(formula.title))  # fmt: skip
     if any(group.inventory == "assumed" for group in totals.groups):
         yield _("Assumed inventories: pieces by use and floor area from the normative quantities of FEMA P-58; low, "
                 "median and high are its 10, 50 and 90 % quantities. No piece of them has been seen.")  # fmt: skip
@@ -83,9 +85,9 @@ def _say_dispersion(view: CityView) -> Iterator[str]:
     if view.ground is None or drawn.empty:
         return
     low, high = (number(float(end), ".2f") for end in (drawn.min(), drawn.max()))
-    yield _("The standard deviation of ln PFA that is drawn is √(β² + σ²): β the Motion uncertainty of the workbook, "
-            "{default} (assumed) where that is blank, σ that of the ground motion at the building. It is {low} to "
-            "{high}.", default=number(Uncertainty().motion, "g"), low=low, high=high)  # fmt: skip
+    yield _("The standard deviation of ln amplitude that is drawn is √(β² + σ²): β the Motion uncertainty of the "
+            "workbook, 0 where that is blank, σ that of the ground motion at the building. It is {low} to {high}.",
+            low=low, high=high)  # fmt: skip
 
 
 def _say_routes(view: CityView, totals: CityTotals) -> Iterator[str]:
@@ -117,20 +119,22 @@ def _say_draws(view: CityView, drawn: Spread) -> str:
                   draws=drawn.draws)  # fmt: skip
     elif view.ground is not None and view.ground.is_known:
         start = _("The motion of the ground is taken as known. Each of the {draws:,} draws varies the buildings' own "
-                  "motions alone: {shared} of their variance is common to all of them (Boore et al. 2014), the rest is "
-                  "correlated by exp(-3 h / {range:g} km) at the distance h (Jayaram and Baker 2009).",
-                  draws=drawn.draws, shared=_share(SHARED), range=RANGE)  # fmt: skip
+                  "motions alone.", draws=drawn.draws)  # fmt: skip
     elif view.ground is not None and view.ground.kind == "scenarios":
         start = _("Each of the {draws:,} draws takes one of the computed scenarios, the same for all buildings. The "
-                  "uncertainty of the buildings' own motions is drawn besides: {shared} of its variance is common to "
-                  "all of them (Boore et al. 2014), the rest is correlated by exp(-3 h / {range:g} km) at the distance "
-                  "h (Jayaram and Baker 2009).", draws=drawn.draws, shared=_share(SHARED), range=RANGE)  # fmt: skip
+                  "uncertainty of the buildings' own motions is drawn besides.", draws=drawn.draws)  # fmt: skip
     else:
-        start = _("Each of the {draws:,} draws is one earthquake for all buildings. Of the variance of ln PGA, "
-                  "{shared} is common to all of them (Boore et al. 2014) unless the ShakeMap gives that share itself; "
-                  "the rest differs from place to place, with the correlation exp(-3 h / {range:g} km) at the distance "
-                  "h (Jayaram and Baker 2009).", draws=drawn.draws, shared=_share(SHARED), range=RANGE)  # fmt: skip
-    return f"{start} {ends}"
+        start = _("Each of the {draws:,} draws is one earthquake for all buildings.", draws=drawn.draws)
+    return f"{start} {ends}" if view.settings.ideal else f"{start} {_say_places(view)} {ends}"
+
+
+def _say_places(view: CityView) -> str:
+    """Return what draws have in common from place to place."""
+    measure: Measure = "PGV" if view.buildings["ground_pgv_cm_s"].notna().any() else "PGA"
+    return _("Of the variance of ln {measure} that is drawn, {shared} is common to all buildings (Boore et al. 2014) "
+             "unless the ShakeMap gives that share itself; the rest differs from place to place, with the correlation "
+             "exp(-3 h / {range:g} km) at the distance h (Jayaram and Baker 2009).", measure=measure,
+             shared=_share(SCATTERS[measure].shared), range=SCATTERS[measure].range_km)  # fmt: skip
 
 
 def _share(value: float) -> str:
@@ -142,5 +146,5 @@ def list_references(view: CityView, totals: CityTotals) -> list[str]:
     drawn = any(group.falls.draws for group in totals.groups) and not view.settings.ideal
     by_formula = any(group.basis == "formula" or group.by_formula for group in totals.groups)
     assumed = any(group.inventory == "assumed" for group in totals.groups)
-    formula = say_reference(adopted_formula().reference)
+    formula = say_reference(adopted_formula(view.settings.class_by).reference)
     return [*((formula,) if by_formula else ()), *(REFERENCES if drawn else ()), *((P58,) if assumed else ())]

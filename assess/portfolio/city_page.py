@@ -5,9 +5,9 @@ from typing import Any
 
 from assess.i18n import LANGUAGES
 from assess.i18n import gettext as _
-from assess.portfolio import building_words as say_row
 from assess.portfolio import city_method as made
 from assess.portfolio import city_words as say
+from assess.portfolio import piece_words as say_row
 from assess.portfolio.background import Background
 from assess.portfolio.building_signs import Sign, say_sign, share_of
 from assess.portfolio.city_content import CityContent, build_content

@@ -12,13 +12,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from assess.risk import NORMAL_95, wilson_interval
+from assess.risk import NORMAL_95, find_ends, wilson_interval
 from assess.rocking.draws import name_number
 
 FloatArray = NDArray[np.float64]
 
-ENDS = (0.05, 0.95)
-"""Shares of the draws that do not exceed the ends of a range."""
 FEW = 10
 """Draws with anything in them below which the normal distribution of a mean is not relied on."""
 
@@ -84,9 +82,9 @@ def build_spread(draws: pd.DataFrame, column: str, expected: float, most: float)
         raise ValueError("the table draws does not hold the same draws for all buildings")
     every = values.reshape(-1, runs)
     total, shuffled = every.sum(axis=0), _shuffle(every, paths.tolist())
-    low, high = _find_ends(total)
+    low, high = find_ends(total)
     sampling_low, sampling_high = find_sampling(total, most)
-    alone_low, alone_high = _find_ends(shuffled)
+    alone_low, alone_high = find_ends(shuffled)
     return Spread(
         expected=expected,
         apart=_clean(expected - float(total.mean()), expected),
@@ -103,11 +101,6 @@ def build_spread(draws: pd.DataFrame, column: str, expected: float, most: float)
 def _clean(value: float, of: float) -> float:
     """Return a difference without the rounding of a sum."""
     return 0.0 if abs(value) <= 1e-9 * max(1.0, abs(of)) else value
-
-
-def _find_ends(total: FloatArray) -> tuple[float, float]:
-    low, high = np.quantile(total, ENDS, method="inverted_cdf").tolist()
-    return low, high
 
 
 def _shuffle(every: FloatArray, paths: list[str]) -> FloatArray:

@@ -5,7 +5,7 @@ is a `Group`. What falls is summed draw by draw (`assess.portfolio.city_spread`)
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import pandas as pd
@@ -13,6 +13,7 @@ import pandas as pd
 from assess.i18n import Text, fill
 from assess.portfolio.city_spread import Spread, build_spread
 from assess.portfolio.table_schemas import INVENTORIES, MADE_UP
+from assess.results import CANNOT_ROCK
 from assess.risk import RiskClass
 from assess.route_results import RouteState
 from assess.settings import Settings
@@ -126,7 +127,7 @@ class Group:
     range_over : str
         What differs from draw to draw, one of `RangeOver`: not every range is one over earthquakes.
     cannot_rock : int
-        Pieces of class high or very high by formula that cannot start to rock under their motion.
+        Pieces that are low as they cannot rock.
     falls : Spread
         Number of pieces that fall, of those in the classes.
     falls_low_inventory, falls_high_inventory : float, optional
@@ -241,6 +242,7 @@ def _build_group(view: CityView, rows: pd.DataFrame, inventory: str, basis: str)
     draws = _rows_of(view.draws, rows)
     not_known = _count_not_known(_rows_of(view.routes, rows))
     by_class = {risk: _count(rows, column) for risk, column in CLASS_COLUMNS.items()}
+    falls = build_spread(draws, "falls", _sum(rows, "expected_falls"), sum(by_class.values()))
     own, occupants = rows[_numbers(rows, "own_motions") > 0], _count(rows, "occupants")
     return Group(
         inventory=inventory,
@@ -249,7 +251,9 @@ def _build_group(view: CityView, rows: pd.DataFrame, inventory: str, basis: str)
         pieces=_count(rows, "pieces"),
         by_class=by_class,
         range_over=_find_range(view),
-        falls=build_spread(draws, "falls", _sum(rows, "expected_falls"), sum(by_class.values())),
+        falls=replace(falls, apart=0.0)
+        if falls.draws
+        else falls,  # pieces alike have one chance, and draws of their own
         falls_low_inventory=_sum_known(rows, "falls_low_inventory"),
         falls_high_inventory=_sum_known(rows, "falls_high_inventory"),
         falls_avoided=_sum(rows, "falls_avoided"),
@@ -337,7 +341,7 @@ def _list_buildings(rows: pd.DataFrame) -> Iterator[FirstBuilding]:
 
 def _list_types(pieces: pd.DataFrame, basis: str) -> Iterator[FirstType]:
     """Yield the types to start with, by `TYPE_RULE`, of pieces in the classes; those that never fall are left out."""
-    counted = pieces[(pieces["basis"] == basis) & ~_flags(pieces, "is_held")]
+    counted = pieces[pieces["basis"].isin([basis, CANNOT_ROCK]) & ~_flags(pieces, "is_held")]
     quantity, probability = _numbers(counted, "quantity"), _numbers(counted, "probability")
     kinds = [
         _name_type(_text(name), breadth, height)

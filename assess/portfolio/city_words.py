@@ -3,11 +3,12 @@
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from assess.hazard import FAR
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
+from assess.motion.ground_scenarios import FAR_CAUTION
 from assess.portfolio.city_spread import Spread
 from assess.portfolio.city_totals import CityTotals, CityView, Group, is_made_up
-from assess.portfolio.ground_words import list_ground_cautions
 from assess.report import words
 from assess.risk import RiskClass
 from assess.route_results import RouteState
@@ -112,9 +113,6 @@ def _say_falls(group: Group) -> Iterator[str]:
     else:
         yield _("No range is known, as nothing was simulated: the formula takes the median of the ground motion and "
                 "leaves its uncertainty out.")  # fmt: skip
-    if spread.draws and spread.apart > 0:
-        yield _("Expected falls that are in no range, as they were not simulated: {apart}.",
-                apart=say_number(spread.apart))  # fmt: skip
     apart = [
         *(ngettext("{n:,} unconfirmed", "{n:,} unconfirmed", n) for n in (group.unconfirmed,) if n),
         *(ngettext("{n:,} by formula only", "{n:,} by formula only", n) for n in (group.by_formula,) if n),
@@ -130,10 +128,10 @@ def _say_falls(group: Group) -> Iterator[str]:
 
 def _say_cannot_rock(group: Group) -> Iterator[str]:
     if group.cannot_rock:
-        yield ngettext("{n:,} of the pieces of class high or very high cannot start to rock under its motion: the "
-                       "formula is known to overestimate such a piece.",
-                       "{n:,} of the pieces of class high or very high cannot start to rock under their motions: the "
-                       "formula is known to overestimate such pieces.", group.cannot_rock)  # fmt: skip
+        yield ngettext("{n:,} of the pieces is low as it cannot rock: it is too stocky, or no motion that may be drawn "
+                       "can start it.",
+                       "{n:,} of the pieces are low as they cannot rock: they are too stocky, or no motion that may be "
+                       "drawn can start them.", group.cannot_rock)  # fmt: skip
 
 
 def _say_share_of_draws(group: Group, spread: Spread) -> str:
@@ -235,6 +233,23 @@ def _of_buildings(view: CityView, totals: CityTotals) -> Iterator[str]:
                 "their uncertainties differ.")  # fmt: skip
     yield from list_setting_cautions(view)
     yield from list_copies(view)
+
+
+def list_ground_cautions(view: CityView) -> Iterator[str]:
+    """Yield what holds for the ground motion of all buildings, and how many are far from the sites of its scenarios."""
+    common = view.ground.cautions if view.ground else ()
+    for text in (_(caution) for caution in common if caution.template != FAR_CAUTION):  # counted below
+        yield f"{text[:1].upper()}{text[1:]}."
+    distances = view.buildings["ground_distance_km"].dropna().astype("float64")
+    far = distances[distances > FAR / 1000]
+    if len(far):
+        yield ngettext(
+            "{n:,} building is farther than {limit} km from the nearest site of the scenarios, {most} km: its ground "
+            "motion is that of another place.",
+            "{n:,} buildings are farther than {limit} km from the nearest site of the scenarios, {most} km at most: "
+            "their ground motion is that of another place.",
+            len(far), limit=number(FAR / 1000, "g"), most=number(float(far.max()), ".0f"),
+        )  # fmt: skip
 
 
 def list_setting_cautions(view: CityView) -> Iterator[str]:

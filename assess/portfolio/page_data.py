@@ -10,7 +10,8 @@ from functools import partial
 from typing import Any
 
 from assess.i18n import gettext as _
-from assess.portfolio import building_words as say
+from assess.intensity import name_mmi
+from assess.portfolio import piece_words as say
 from assess.portfolio.building_signs import Row, find_share, sign_of_class, sign_of_routes, sign_of_share
 from assess.portfolio.city_content import CityContent
 from assess.portfolio.city_words import name_basis, name_inventory, say_number, say_place, say_range, say_whole
@@ -27,6 +28,7 @@ from assess.portfolio.piece_words import (
     say_spot,
 )
 from assess.report import words
+from assess.units import GRAVITY
 
 MOST_ROWS = 150
 """Rows of one table of a building that the page holds; the tables of the portfolio have all."""
@@ -168,7 +170,12 @@ def _say_ground(row: Row) -> str:
         "sds": _("SDS as given"), "shaking": _("assumed from the intensity"),
     }.get(row["ground_source"] or "", "")  # fmt: skip
     own = _("; {floors} floors keep a motion of their own", floors=row["own_motions"]) if row["own_motions"] else ""
-    return _("PGA {pga} g ({source}){own}", pga=words.in_g(row["ground_pga_g"]), source=source, own=own)
+    pga_g, pgv = row["ground_pga_g"], row["ground_pgv_cm_s"]
+    intensity = name_mmi(pga_g * GRAVITY, None if pgv is None else pgv / 100)
+    peaks = [_("PGA {pga} g", pga=words.in_g(pga_g))]
+    peaks += [] if pgv is None else [_("PGV {pgv} cm/s", pgv=words.fixed(pgv, 1))]
+    peaks += [_("about {intensity}", intensity=_(intensity))] if intensity else []
+    return _("{peaks} ({source}){own}", peaks=", ".join(peaks), source=source, own=own)
 
 
 def _say_classes(row: Row) -> str:

@@ -3,6 +3,7 @@
 from assess.i18n import gettext as _
 from assess.i18n import number
 from assess.portfolio.building_signs import BY_ROUTES, Row, Sign, say_sign
+from assess.portfolio.city_words import say_number, say_whole
 from assess.report import words
 from assess.risk import RiskClass
 from assess.route_results import RouteState
@@ -27,7 +28,7 @@ def label_piece(row: Row, basis: str | None) -> tuple[str, str]:
     if risk is None:
         return words.DASH, ""
     if row["basis"] == "unconfirmed":
-        said = _("unconfirmed (formula: {risk})", risk=words.risk_word(risk))
+        said = _("unconfirmed ({risk})", risk=words.risk_word(risk))
         return f"{words.UNCONFIRMED} {said}", "apart-unconfirmed"
     if row["basis"] == "formula" and basis != "formula":
         said = _("{risk} by formula only", risk=words.risk_word(risk))
@@ -103,3 +104,51 @@ def order_pieces(rows: list[Row]) -> list[Row]:
 def _order(row: Row) -> tuple[float, float, int]:
     place = float("inf") if row["work_place"] is None else row["work_place"]
     return place, -(row["probability"] or 0.0), row["row"] or 0
+
+
+def say_falls(
+    expected: float | None, unconfirmed: int | None, by_formula: int | None, left_out: int | None = None
+) -> str:
+    """Return expected falls, with the pieces that could fall as well and are not in them."""
+    apart = [
+        *([_("{pieces} unconfirmed", pieces=say_whole(unconfirmed))] if unconfirmed else []),
+        *([_("{pieces} by formula only", pieces=say_whole(by_formula))] if by_formula else []),
+        *([_("{pieces} left out of the COBie file", pieces=say_whole(left_out))] if left_out else []),
+    ]
+    if not apart:
+        return say_number(expected)
+    return _("{falls} and up to {apart}", falls=say_number(expected), apart=", ".join(apart))
+
+
+def say_people(expected: float | None, occupants: int | None, not_known: int | None) -> str:
+    """Return the expected people on blocked routes of those on routes that are known; the others beside them.
+
+    A dash where no people are filled in.
+    """
+    if not occupants:
+        return words.DASH
+    missing = not_known or 0
+    if missing >= occupants:
+        return _("not known: {people} on routes not known", people=say_whole(missing))
+    said = _("{people} of {occupants}", people=say_number(expected), occupants=say_whole(occupants - missing))
+    return said + (_("; {people} on routes not known", people=say_whole(missing)) if missing else "")
+
+
+def say_blocked(routes: int | None, blocked: int | None, not_known: int | None) -> str:
+    """Return how many routes are blocked, those not known beside them; a dash where there are no routes."""
+    if not routes:
+        return words.DASH
+    missing = not_known or 0
+    if missing >= routes:
+        return _("not known")
+    return say_whole(blocked) + (_("; {routes} not known", routes=say_whole(missing)) if missing else "")
+
+
+def mark_own_motions(text: str, floors: int | None) -> str:
+    """Return a text with the mark of a building of which floors keep motions that may not be of this earthquake."""
+    return _("{text} (floors with motions of their own)", text=text) if floors else text
+
+
+def name_skipped(building: str | None, path: str) -> str:
+    """Return the name of a building that was skipped, with its file where this differs; else its file alone."""
+    return path if not building or building == path else f"{building} ({path})"

@@ -14,10 +14,17 @@ from assess.i18n import gettext as _
 from assess.portfolio import city_method as made
 from assess.portfolio import city_words as say
 from assess.portfolio.building_signs import Row, find_share, say_sign, sign_of_class
-from assess.portfolio.building_words import say_blocked
 from assess.portfolio.city_content import CityContent, build_content
 from assess.portfolio.city_totals import BUILDING_RULE, TYPE_RULE, CityView
-from assess.portfolio.piece_words import label_piece, label_state, say_kind, say_severity, say_size, say_spot
+from assess.portfolio.piece_words import (
+    label_piece,
+    label_state,
+    say_blocked,
+    say_kind,
+    say_severity,
+    say_size,
+    say_spot,
+)
 from assess.portfolio.ranking_sums import LINES, SUM
 from assess.progress import SILENT, Progress
 from assess.report import words

@@ -11,7 +11,7 @@ from assess.errors import Problem
 from assess.i18n import gettext as _
 from assess.i18n import number
 from assess.report import statements, words
-from assess.report.counts import Bars, CannotRock, Counts, build_bars, count, count_cannot_rock, count_rooms
+from assess.report.counts import Bars, Counts, build_bars, count, count_rooms
 from assess.report.findings import cautions, motions, trials
 from assess.report.findings.annual_chances import AnnualChances, build_annual
 from assess.report.findings.apart import list_apart, list_parts
@@ -182,11 +182,6 @@ class Content(ByBasis):
         if len(there) <= most:
             return there
         return sorted(there, key=lambda one: (-one.risky, -one.expected, -one.unconfirmed))[:most]
-
-    @cached_property
-    def cannot_rock(self) -> CannotRock:
-        """Pieces of high and very high class by formula that cannot start to rock, or are too stocky to."""
-        return count_cannot_rock(self.results, self.methods)
 
     @property
     def references(self) -> Sequence[str]:

@@ -1,18 +1,17 @@
 """Pieces counted by class: of the building, a floor or a room, and drawn as bars."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
 from assess.natural import natural_key
 from assess.report import words
-from assess.results import ItemResult
-from assess.risk import RiskClass
+from assess.results import ItemResult, sum_falls
+from assess.risk import RiskClass, find_ends
 
-if TYPE_CHECKING:
-    from assess.methods import MethodInfo
+Span = tuple[int, int]
+"""The least and the largest number of something."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,8 +20,10 @@ class Counts:
 
     Classes never mix bases: `by_class` are the simulated pieces, or those by formula in a run that simulated nothing.
     `unconfirmed` and `by_formula` (not simulated in a run that simulated others) are counted apart. Of those with a
-    class, `lowered` were lowered by simulation, and `may_be` could be of a higher one. `expected` is the expected
-    number of them that fall.
+    class, `lowered` were lowered by simulation, `may_be` could be of a higher one, and `cannot_rock` are low as they
+    cannot rock. `spans` tells of each class how many are of it whatever the sampling intervals, and how many could be,
+    `risky_span` of high and very high together. `expected` is the expected number of them that fall, `falls_low` and
+    `falls_high` what 5 and 95 % of the draws do not exceed, None without draws.
     """
 
     label: str
@@ -32,7 +33,12 @@ class Counts:
     by_formula: int = 0
     lowered: int = 0
     may_be: int = 0
+    cannot_rock: int = 0
     expected: float = 0.0
+    falls_low: float | None = None
+    falls_high: float | None = None
+    spans: Mapping[RiskClass, Span] = field(default_factory=dict)
+    risky_span: Span = (0, 0)
 
     @property
     def free(self) -> int:
@@ -49,6 +55,17 @@ class Counts:
         """Pieces of high and very high class."""
         return self.by_class[RiskClass.HIGH] + self.by_class[RiskClass.VERY_HIGH]
 
+    @property
+    def say_cannot_rock(self) -> str:
+        """How many are low as they cannot rock, in one sentence."""
+        return ngettext(
+            "{n:,} piece cannot rock: it is too stocky, or not even the strongest motion that may be drawn can start "
+            "it. Its class is low, whatever a formula says.",
+            "{n:,} pieces cannot rock: they are too stocky, or not even the strongest motion that may be drawn can "
+            "start them. Their class is low, whatever a formula says.",
+            self.cannot_rock,
+        )
+
     def share(self, risk: RiskClass) -> str:
         """Share of a class among the pieces that have one."""
         return f"{number(100 * self.by_class[risk] / self.free, '.0f')} %" if self.free else words.DASH
@@ -57,9 +74,19 @@ class Counts:
     def falls(self) -> str:
         """The expected falls, and up to how many unconfirmed pieces besides."""
         expected = words.fixed(self.expected, 1)
+        if self.falls_low is not None and self.falls_high is not None:
+            expected = f"{expected} ({words.say_span((round(self.falls_low), round(self.falls_high)))})"
         if not self.unconfirmed:
             return expected
         return _("{expected} and up to {n:,}", expected=expected, n=self.unconfirmed)
+
+    def say(self, risk: RiskClass) -> str:
+        """Return the number of a class for a table, as a range where intervals span a limit: ``7–12``."""
+        return "–".join(number(one, ",.0f") for one in dict.fromkeys(self.span(risk)))
+
+    def span(self, risk: RiskClass) -> Span:
+        """Return how many are of a class whatever the sampling intervals, and how many could be."""
+        return self.spans.get(risk, (self.by_class[risk],) * 2)
 
 
 def count_pieces(results: Iterable[ItemResult]) -> tuple[dict[RiskClass, int], int]:
@@ -85,15 +112,31 @@ def count(label: str, results: Sequence[ItemResult]) -> Counts:
     """Count pieces by class, those that stand apart, and those whose class was lowered, or could be higher."""
     free = [one for one in results if not one.is_anchored]
     main = [one for one in free if not one.apart]
+    low, high = find_ends(sum_falls(main))
     return Counts(
         label,
         *count_pieces(results),
         unconfirmed=count_apart(results, "unconfirmed"),
         by_formula=count_apart(results, "formula"),
         lowered=sum(one.item.quantity for one in main if one.adopted.lowered_from is not None),
-        may_be=sum(one.item.quantity for one in main if one.adopted.upper != one.adopted.risk),
+        may_be=sum(one.item.quantity for one in main if words.find_highest(one) != one.adopted.risk),
+        cannot_rock=sum(one.item.quantity for one in main if not one.adopted.can_rock),
         expected=sum(one.adopted.probability * one.item.quantity for one in main),
+        falls_low=low,
+        falls_high=high,
+        spans={risk: _find_span(main, risk, risk) for risk in RiskClass},
+        risky_span=_find_span(main, RiskClass.HIGH, RiskClass.VERY_HIGH),
     )
+
+
+def _find_span(results: Iterable[ItemResult], first: RiskClass, last: RiskClass) -> Span:
+    """Return how many pieces are of the classes from `first` to `last` with their whole intervals, and in part."""
+    surely = possibly = 0
+    for one in results:
+        lower, upper = one.adopted.lower, one.adopted.upper
+        surely += one.item.quantity * (first <= lower and upper <= last)
+        possibly += one.item.quantity * (lower <= last and upper >= first)
+    return surely, possibly
 
 
 def count_rooms(results: Sequence[ItemResult]) -> list[Counts]:
@@ -106,58 +149,6 @@ def count_rooms(results: Sequence[ItemResult]) -> list[Counts]:
     return sorted(counts, key=lambda one: -one.risky)
 
 
-@dataclass(frozen=True, slots=True)
-class CannotRock:
-    """Free-standing pieces whose class is by formula, and higher than their rocking allows.
-
-    `risky` are all of high and very high class by formula that were not simulated. Of these, `still` cannot start to
-    rock by the criterion for it. `stocky` others are too stocky to rock.
-    """
-
-    risky: int
-    still: int
-    stocky: int
-
-    @property
-    def is_any(self) -> bool:
-        """Whether there are such pieces."""
-        return bool(self.still or self.stocky)
-
-    @property
-    def sentence(self) -> str:
-        """Their number in words, without a full stop."""
-        which = ngettext(
-            "Of {n:,} piece of high or very high class by formula",
-            "Of {n:,} pieces of high or very high class by formula",
-            self.risky,
-        )
-        still = ngettext(
-            "{n:,} cannot even start to rock under this motion",
-            "{n:,} cannot even start to rock under their motions",
-            self.still,
-        )
-        stocky = ngettext("{n:,} is too stocky to rock", "{n:,} are too stocky to rock", self.stocky)
-        if self.still and self.stocky:
-            return _("{which}, {still} and {stocky}", which=which, still=still, stocky=stocky)
-        return f"{which}, {still if self.still else stocky}"
-
-
-def count_cannot_rock(results: Sequence[ItemResult], methods: "Sequence[MethodInfo]") -> CannotRock:
-    """Count the pieces of high and very high class by formula that cannot rock, or not under their motion."""
-    criterion = next((one.key for one in methods if one.tells_rocking), None)
-    risky = [
-        one
-        for one in results
-        if not one.is_anchored and one.adopted.risk >= RiskClass.HIGH and one.adopted.basis == "formula"
-    ]
-    stocky = [one for one in risky if one.does_not_rock]
-    rocking = [one for one in risky if not one.does_not_rock and one.item.centre_of_gravity <= UNIFORM]
-    still = [one for one in rocking if criterion and one.governing.methods[criterion].value == 0]
-    return CannotRock(*(sum(one.item.quantity for one in ones) for ones in (risky, still, stocky)))
-
-
-UNIFORM = 0.5
-"""Centre of gravity of a uniform block as a share of its height [-]; a more top-heavy one starts to rock sooner."""
 MOST_BARS = 30
 """Bars that one picture shows."""
 _LABEL, _WIDTH, _ROW, _BAR = 150.0, 480.0, 17.0, 13.0

@@ -51,7 +51,7 @@ def say_step(step: RouteStep) -> str:
     Where pieces that fall together must all be fixed before there is any effect, it is that of all steps.
     """
     route, before, after = words.cut(step.route, 30), _say_left(step, step.before), _say_left(step, step.after)
-    if before != after:
+    if before != after or step.steps == 1:
         return _("route {route}: {before} → {after} (step {place:,} of {steps:,})",
                  route=route, before=before, after=after, place=step.place, steps=step.steps)  # fmt: skip
     return _("route {route}: {before} → {after} (with all {steps:,} steps)",

@@ -109,11 +109,11 @@ def _or_null(schema: Schema) -> Schema:
 _KINDS: Mapping[str, Schema] = {
     "text": TEXT, "number": {"type": "number"}, "count": COUNT, "share": SHARE, "flag": {"type": "boolean"},
     "class": {"enum": [risk.word for risk in RiskClass]}, "list": _list(TEXT),
-    "signs": _list({"enum": [1, -1]}),
+    "signs": _list({"enum": [1, -1]}), "factors": _list({"type": "number"}),
 }  # fmt: skip
 _GROUPS_OR_NULL = {
-    ("verification",), ("verification", "record"), ("ensemble",), ("sliding",), ("ensemble", "fit"), ("annual",),
-    ("anchor",),
+    ("verification",), ("verification", "record"), ("verification", "ideal"), ("ensemble",), ("sliding",),
+    ("ensemble", "fit"), ("annual",), ("anchor",),
 }  # fmt: skip
 
 

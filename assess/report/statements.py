@@ -48,7 +48,7 @@ def list_flags(results: Results) -> dict[str, str]:
 def list_assumptions(results: Results) -> Lines:
     """Return what was assumed, and for how many rows or where."""
     lines = [*assumed_intensity.list_assumptions(results), *ground_source.list_assumptions(results)]
-    lines += motions.list_assumptions(results)
+    lines += [*motions.list_assumptions(results), *motions.list_drawn_assumptions(results)]
     items = results.item_rows
     counted = Counter(name for item in items for name in item.assumed)
     for name, text in _assumed().items():
@@ -196,8 +196,8 @@ def list_limits(results: Results) -> Sequence[str]:
 def _limits_of_simulation(results: Results) -> tuple[str, ...]:
     return (
         _(
-            "A simulated chance is that of the rigid block under motions that match the floor's spectrum and peak. Its "
-            "sampling interval covers the number of draws only."
+            "A simulated chance is that of the rigid block under motions that match the floor's record, or that are "
+            "drawn where it has none. Its sampling interval covers the number of draws only."
         ),
         _(
             "How much stronger or weaker an earthquake like this one could be, and how much pieces differ from their "

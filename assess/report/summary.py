@@ -10,7 +10,7 @@ from assess.report import words
 from assess.report.counts import Counts
 from assess.report.findings.apart import say_apart
 from assess.report.findings.at_risk import RouteAtRisk, list_routes_at_risk, say_routes
-from assess.report.findings.ground_source import say_ground_source_shortly
+from assess.report.findings.ground_source import say_ground
 from assess.report.findings.schedule_words import Entry, list_entries, say_doubtful_brackets
 from assess.results import ItemResult, Results
 from assess.risk import RiskClass
@@ -44,11 +44,10 @@ class Summary:
 def build_summary(results: Results, rows: Sequence[ItemResult], total: Counts) -> Summary:
     """Gather the summary."""
     worst, fixes = list_worst(rows), list_entries(results, rows)
-    could_be = sum(one.item.quantity for one in list_risky(rows) if one.adopted.risk < RiskClass.HIGH)
     return Summary(
-        plainly=say_plainly(total, could_be, worst, fixes, rows),
+        plainly=say_plainly(total, worst, fixes, rows),
         apart=say_apart(rows),
-        shaking=[text for text in (say_ground_source_shortly(results),) if text],
+        shaking=[text for text in (say_ground(results, shortly=True),) if text],
         worst=worst,
         fixes=fixes,
         routes=list_routes_at_risk(results),
@@ -75,17 +74,13 @@ def _worst_first(one: ItemResult) -> tuple[object, ...]:
 
 
 def say_plainly(
-    total: Counts, could_be: int, worst: Sequence[ItemResult], fixes: Sequence[Entry], rows: Sequence[ItemResult] = ()
+    total: Counts, worst: Sequence[ItemResult], fixes: Sequence[Entry], rows: Sequence[ItemResult] = ()
 ) -> list[str]:
-    """Return the first paragraph of the summary; `could_be` pieces reach high by the upper estimate only.
+    """Return the first paragraph of the summary.
 
     `rows` are all pieces, of which the anchored ones are named whose brackets may fail.
     """
     texts = [_say_counts(total)]
-    if could_be and total.risky:
-        texts.append(ngettext("{n:,} more could be either.", "{n:,} more could be either.", could_be))
-    elif could_be:
-        texts.append(ngettext("{n:,} could be high or very high.", "{n:,} could be high or very high.", could_be))
     if total.anchored:
         texts.append(ngettext("{n:,} further piece is anchored and not classified: it depends on its anchors.",
                               "{n:,} further pieces are anchored and not classified: they depend on their anchors.",
@@ -104,7 +99,7 @@ def _say_falls(total: Counts, fixes: Sequence[Entry]) -> list[str]:
     texts = []
     if total.expected >= 0.05 or total.unconfirmed:
         expected = _("About {expected:.1f} pieces are expected to fall", expected=total.expected)
-        texts.append(f"{expected}{_say_up_to(total.unconfirmed)}.")
+        texts.append(f"{expected}{_say_up_to(total.unconfirmed)}{_say_range(total)}.")
     first = [one for one in fixes[:FIXES] if one.together is not None]
     if total.expected >= 0.05 and first:
         texts.append(ngettext(
@@ -113,6 +108,13 @@ def _say_falls(total: Counts, fixes: Sequence[Entry]) -> list[str]:
             len(first), share=100 * (first[-1].together or 0.0),
         ))  # fmt: skip
     return texts
+
+
+def _say_range(total: Counts) -> str:
+    if total.falls_low is None or total.falls_high is None:
+        return ""
+    range_ = words.say_span((round(total.falls_low), round(total.falls_high)))
+    return "; " + _("{range} in 90 % of such earthquakes", range=range_)
 
 
 def _say_up_to(unconfirmed: int) -> str:
@@ -128,40 +130,44 @@ def _say_counts(total: Counts) -> str:
         return _("There are no free-standing pieces.")
     if total.unconfirmed or total.by_formula:
         return _say_simulated(total)
-    if not total.risky:
+    if not total.risky_span[1]:
         return ngettext(
             "The {n:,} free-standing piece has no high or very high chance of overturning in this scenario.",
             "None of {n:,} free-standing pieces has a high or very high chance of overturning in this scenario.",
             total.free,
         )
-    if total.free == 1:
+    if total.free == 1 and total.risky_span[0]:
         return (
             _("The one free-standing piece has a very high chance of overturning in this scenario.")
             if total.by_class[RiskClass.VERY_HIGH]
             else _("The one free-standing piece has a high chance of overturning in this scenario.")
         )
-    return _(
-        "Of {free:,} free-standing pieces, the chance of overturning in this scenario is very high for {very_high:,} "
-        "and high for {high:,}.",
-        free=total.free, very_high=total.by_class[RiskClass.VERY_HIGH], high=total.by_class[RiskClass.HIGH],
+    return ngettext(
+        "The {n:,} free-standing piece may have a high or very high chance of overturning: the limit lies within the "
+        "interval of its chance.",
+        "Of {n:,} free-standing pieces, {risky} have a high or very high chance of overturning, {very_high} a very "
+        "high one.",
+        total.free, risky=words.say_span(total.risky_span), very_high=words.say_span(total.span(RiskClass.VERY_HIGH)),
     )  # fmt: skip
 
 
 def _say_simulated(total: Counts) -> str:
     """Say the counts of the simulated pieces where others are counted apart."""
-    if not total.risky:
+    if not total.risky_span[1]:
         return ngettext(
             "The {n:,} simulated free-standing piece has no high or very high chance of overturning in this scenario.",
             "None of {n:,} simulated free-standing pieces has a high or very high chance of overturning in this "
             "scenario.",
             total.free,
         )
+    if total.free == 1 and total.risky_span[0]:
+        return _("The one simulated free-standing piece has a high or very high chance of overturning.")
     return ngettext(
-        "Of {n:,} simulated free-standing piece, the chance of overturning in this scenario is very high for "
-        "{very_high:,} and high for {high:,}.",
-        "Of {n:,} simulated free-standing pieces, the chance of overturning in this scenario is very high for "
-        "{very_high:,} and high for {high:,}.",
-        total.free, very_high=total.by_class[RiskClass.VERY_HIGH], high=total.by_class[RiskClass.HIGH],
+        "The {n:,} simulated free-standing piece may have a high or very high chance of overturning: the limit lies "
+        "within the interval of its chance.",
+        "Of {n:,} simulated free-standing pieces, {risky} have a high or very high chance of overturning, {very_high} "
+        "a very high one.",
+        total.free, risky=words.say_span(total.risky_span), very_high=words.say_span(total.span(RiskClass.VERY_HIGH)),
     )  # fmt: skip
 
 

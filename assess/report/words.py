@@ -94,6 +94,12 @@ def percents(values: Sequence[float]) -> str:
     return _("{range} %", range=low if low == high else _("{low} to {high}", low=low, high=high))
 
 
+def say_span(span: tuple[int, int]) -> str:
+    """Return the least and the largest number of something: ``7 to 12``, or the number where they are the same."""
+    low, high = (number(one, ",.0f") for one in span)
+    return low if low == high else _("{low} to {high}", low=low, high=high)
+
+
 def deviation(value: float) -> str:
     """Return a share that is no probability as a percentage with one decimal."""
     return f"{number(100 * value, '.1f')} %"
@@ -149,11 +155,41 @@ def plural(count: int, noun: str) -> str:
 
 
 def chance(one: ItemResult) -> str:
-    """Return the adopted chance, with its interval where it was simulated: ``3.0 % (1.0 to 8.5 %)``."""
-    adopted = one.adopted
-    if adopted.low is None or adopted.high is None:
-        return percent(adopted.probability)
-    return _with_interval(adopted.probability, adopted.low, adopted.high)
+    """Return the adopted chance, with its range where it was simulated: ``3.0 % (1.0 to 8.5 %)``."""
+    if not one.adopted.can_rock:
+        return _("cannot rock")
+    found = find_range(one)
+    return percent(one.adopted.probability) if found is None else _with_interval(one.adopted.probability, *found)
+
+
+def find_range(one: ItemResult) -> tuple[float, float] | None:
+    """Return the range of a simulated chance, as shown [-]; None by formula.
+
+    It is the sampling interval; on assumed motion it is what is not known, see `find_thirds`.
+    """
+    low, high = one.adopted.low, one.adopted.high
+    if one.adopted.has_simulated and (thirds := find_thirds(one)) is not None:
+        return thirds
+    return None if low is None or high is None else (low, high)
+
+
+def find_thirds(one: ItemResult) -> tuple[float, float] | None:
+    """Return its chances in the slower and the faster third of the draws, the lower first [-]; None with a record.
+
+    They reach to the chance of all draws, which the middle third may take beyond them by the error of drawing.
+    """
+    found = one.governing.simulation
+    if found is None or found.if_slower is None or found.if_faster is None:
+        return None
+    ends = found.if_slower, found.if_faster, one.adopted.probability
+    return min(ends), max(ends)
+
+
+def find_highest(one: ItemResult) -> RiskClass:
+    """Return the highest class that it could be of: by its sampling interval, and by the faster third of the draws."""
+    thirds = None if one.apart or not one.adopted.can_rock else find_thirds(one)
+    faster = None if thirds is None else classify(thirds[1])
+    return one.adopted.upper if faster is None else max(one.adopted.upper, faster)
 
 
 def _with_interval(probability: float, low: float, high: float) -> str:
@@ -164,7 +200,7 @@ def _with_interval(probability: float, low: float, high: float) -> str:
 def ideal_chance(one: ItemResult) -> str:
     """Return the chance if exactly its governing motion recurred and it were exactly as given, with its interval."""
     found = one.governing.simulation
-    if found is None:
+    if found is None or found.ideal is None:
         return DASH
     return _with_interval(found.ideal.probability, found.ideal.low, found.ideal.high)
 
@@ -260,27 +296,32 @@ def risk_words(one: ItemResult) -> str:
 def apart_words(one: ItemResult) -> str:
     """Return the class in words of a piece that stands apart from the simulated ones, "" for all others."""
     if one.apart == "unconfirmed":
-        return _("unconfirmed (formula: {risk})", risk=risk_word(one.adopted.risk))
+        risk = risk_word(one.adopted.risk)
+        if one.adopted.has_simulated:
+            return _("unconfirmed ({risk})", risk=risk)
+        return _("unconfirmed (formula: {risk})", risk=risk)
     return _("{risk} by formula only", risk=risk_word(one.adopted.risk)) if one.apart else ""
 
 
 def apart_note(one: ItemResult) -> str:
     """Return what stands beside the sign of a piece that stands apart."""
     if one.apart == "unconfirmed":
-        return _("formula: {risk}", risk=risk_word(one.adopted.risk))
+        risk = risk_word(one.adopted.risk)
+        return risk if one.adopted.has_simulated else _("formula: {risk}", risk=risk)
     return _("by formula only")
 
 
 def risk_notes(one: ItemResult) -> list[str]:
     """Return the notes on a class: that it could be higher, was lowered, or is not that of the chance."""
     adopted, notes = one.adopted, []
-    if classify(adopted.probability) != adopted.risk:
+    if classify(adopted.probability) != adopted.risk and one.fell_in_record:
         notes.append(_("as it overturns under the record itself"))
     ideal = _ideal_class(one)
     if ideal is not None:
         notes.append(_("{risk} if exactly this motion recurred", risk=risk_word(ideal)))
-    if adopted.upper != adopted.risk and adopted.upper != ideal:
-        notes.append(could_be(risk_word(adopted.upper)))
+    highest = find_highest(one)
+    if highest != adopted.risk and highest != ideal:
+        notes.append(could_be(risk_word(highest)))
     if adopted.lowered_from is not None and not one.apart:
         notes.append(was_lowered(risk_word(adopted.lowered_from)))
     return notes
@@ -290,7 +331,8 @@ def _ideal_class(one: ItemResult) -> RiskClass | None:
     """Return the class of the piece as given under exactly its motions, None where that is no higher."""
     if "ideal_higher" not in one.adopted.flags:
         return None
-    classes = (classify(case.simulation.ideal.probability) for case in one.cases if case.simulation is not None)
+    exact = [case.simulation.ideal for case in one.cases if case.simulation is not None]
+    classes = (classify(one.probability) for one in exact if one is not None)
     ideal = max((risk for risk in classes if risk is not None), default=RiskClass.LOW)
     return ideal if ideal > one.adopted.risk else None
 
@@ -326,7 +368,7 @@ def apart_legend() -> str:
 
 def class_marks(one: ItemResult) -> str:
     """Return the marks that stand beside the symbol of a class."""
-    could_be = COULD_BE if one.adopted.upper != one.adopted.risk else ""
+    could_be = COULD_BE if find_highest(one) != one.adopted.risk else ""
     return could_be + (LOWERED if one.adopted.lowered_from is not None and not one.apart else "")
 
 

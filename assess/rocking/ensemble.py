@@ -29,16 +29,10 @@ TILE = 8_000_000
 class Rocking:
     """What m blocks did under k motions.
 
-    Parameters
-    ----------
-    overturned : (m, k) boolean array
-        Whether a block turned by pi/2.
-    rotation : (m, k) array
-        Largest |theta| over the critical angle [-]; (pi/2) / alpha where it overturned.
-    fall_time : (m, k) array
-        When it had overturned, from the first sample [s]; NaN where it did not.
-    impacts : (m, k) integer array
-        Impacts until it was decided.
+    * `overturned` (m, k): whether a block turned by pi/2.
+    * `rotation` (m, k): largest |theta| over the critical angle [-]; (pi/2) / alpha where it overturned.
+    * `fall_time` (m, k): when it had overturned, from the first sample [s]; NaN where it did not.
+    * `impacts` (m, k): impacts until it was decided.
     """
 
     overturned: NDArray[np.bool_]
@@ -51,16 +45,10 @@ class Rocking:
 class Bodies:
     """m bodies, each one and the same (m, 1) or one a motion (m, k), as arrays of one shape.
 
-    Parameters
-    ----------
-    breadth, height : arrays
-        Sizes [m]; breadth is the side parallel to the motion.
-    centre : array
-        Height of the centre of gravity as a share of the body's [-].
-    restitution : array
-        Angular velocity after an impact over that before it [-].
-    scale : array
-        Factor on the motion [-].
+    * `breadth`, `height`: sizes [m]; breadth is the side parallel to the motion.
+    * `centre`: height of the centre of gravity as a share of the body's [-].
+    * `restitution`: angular velocity after an impact over that before it [-].
+    * `scale`: factor on the motion [-].
     """
 
     breadth: FloatArray

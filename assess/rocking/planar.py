@@ -40,17 +40,11 @@ MOST_TRACED = 10_000_000
 class Body:
     """A rigid body as it rocks; each field a number or an array, which broadcast.
 
-    Parameters
-    ----------
-    critical_angle : array
-        Angle alpha between the side and the line from an edge to the centre of gravity [rad]: tan(alpha) = b/z_c is the
-        acceleration [g] that lifts an edge.
-    frequency_parameter : array
-        p [rad/s]: p2 = m g R/I_0.
-    restitution : array
-        Angular velocity after an impact on the floor over that before it [-], 0 to 1.
-    rebound : array
-        Angular velocity after an impact on a wall over that before it, in the other direction [-], 0 to 1.
+    * `critical_angle`: angle alpha between the side and the line from an edge to the centre of gravity [rad]:
+      tan(alpha) = b/z_c is the acceleration [g] that lifts an edge.
+    * `frequency_parameter`: p [rad/s]: p2 = m g R/I_0.
+    * `restitution`: angular velocity after an impact on the floor over that before it [-], 0 to 1.
+    * `rebound`: angular velocity after an impact on a wall over that before it, in the other direction [-], 0 to 1.
     """
 
     critical_angle: FloatArray

@@ -20,19 +20,13 @@ MOST_TRACED = 10_000_000
 class Response:
     """What one block did under one motion.
 
-    Parameters
-    ----------
-    critical_angle, frequency_parameter, restitution : float
-        The block's alpha [rad], p [rad/s] and eta [-].
-    overturned, rotation, fall_time, impacts
-        As of `assess.rocking.ensemble.Rocking`, for one pair.
-    times, theta : (t,) arrays
-        Path of the rotation [s, rad], whose points are unevenly spaced: the ends of steps, impacts, and both ends of
-        each rest. It ends where the block has overturned, at pi/2; else with the motion, or, where the block is still
-        rocking then, up to a step before it is known that it can no longer fall. Peaks lie between points, so that the
-        largest of `theta` may be below `rotation`.
-    impact_times : (impacts,) array
-        [s]; an impact after which the block rests is put at the next sample.
+    * `critical_angle`, `frequency_parameter`, `restitution`: the block's alpha [rad], p [rad/s] and eta [-].
+    * `overturned`, `rotation`, `fall_time`, `impacts`: as of `assess.rocking.ensemble.Rocking`, for one pair.
+    * `times`, `theta` (t,): path of the rotation [s, rad], whose points are unevenly spaced: the ends of steps,
+      impacts, and both ends of each rest. It ends where the block has overturned, at pi/2; else with the motion, or,
+      where the block is still rocking then, up to a step before it is known that it can no longer fall. Peaks lie
+      between points, so that the largest of `theta` may be below `rotation`.
+    * `impact_times` (impacts,): [s]; an impact after which the block rests is put at the next sample.
     """
 
     critical_angle: float

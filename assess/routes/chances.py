@@ -42,23 +42,16 @@ NONE, EVERY = 0b01, 0b10
 class Falls:
     """How the n pieces of an inventory fall, each under its governing motion.
 
-    Parameters
-    ----------
-    probability : (n,) array
-        Adopted chance of overturning [-].
-    high : (n,) array
-        The upper end of its interval; the chance itself where there is none [-].
-    fell : mapping of int to (k,) boolean array
-        For a simulated piece (by its index) whether it overturned, draw by draw.
-    unconfirmed : mapping of int to tuple of str
-        For a piece whose adopted chance is the formula's, as a lower one was simulated that cannot be relied on: why,
-        as keys of `assess.route_results.FLAGS`. It is not in `fell`.
-    in_record : (n,) array
-        1 where it overturns under the recorded motion itself, 0 where it does not, NaN where that is not known.
-    anchored : (n,) boolean array
-        Pieces whose fall depends on an anchor; their outcomes are those of a free-standing piece.
-    quantity : (n,) integer array
-        Pieces in the row.
+    * `probability` (n,): adopted chance of overturning [-].
+    * `high` (n,): the upper end of its interval; the chance itself where there is none [-].
+    * `fell`: for a simulated piece (by its index) whether it overturned, draw by draw.
+    * `unconfirmed`: for a piece whose adopted chance is the formula's, as a lower one was simulated that cannot be
+      relied on: why, as keys of `assess.route_results.FLAGS`. It is not in `fell`.
+    * `in_record` (n,): 1 where it overturns under the recorded motion itself, 0 where it does not, NaN where that is
+      not known.
+    * `stands` (n,): pieces that cannot rock: they block nothing.
+    * `anchored` (n,): pieces whose fall depends on an anchor; their outcomes are those of a free-standing piece.
+    * `quantity` (n,): pieces in the row.
     """
 
     probability: FloatArray
@@ -66,6 +59,7 @@ class Falls:
     fell: Mapping[int, BoolArray]
     unconfirmed: Mapping[int, tuple[str, ...]]
     in_record: FloatArray
+    stands: BoolArray
     anchored: BoolArray
     quantity: NDArray[np.intp]
 

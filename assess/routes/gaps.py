@@ -26,20 +26,12 @@ SIDES: tuple[Literal["left", "right"], ...] = ("left", "right")
 class Obstacle:
     """Something that lies in a segment: a piece on the plan, or one that takes `depth` from a side.
 
-    Parameters
-    ----------
-    item : int
-        Index of the piece in the inventory.
-    number : int
-        0, or 1 for a second piece of the same row.
-    falls : bool
-        Whether the piece has to fall for it to be there; else it stands there anyway.
-    left, right : float
-        Gaps to the two walls [m].
-    shape : shapely geometry, optional
-        What it covers, in the band's own coordinates; None where its place along the segment is not known.
-    side : "left" or "right", optional
-        From which wall it reaches in, where its place is not known.
+    * `item`: index of the piece in the inventory.
+    * `number`: 0, or 1 for a second piece of the same row.
+    * `falls`: whether the piece has to fall for it to be there; else it stands there anyway.
+    * `left`, `right`: gaps to the two walls [m].
+    * `shape`: what it covers, in the band's own coordinates; None where its place along the segment is not known.
+    * `side`: from which wall it reaches in, where its place is not known.
     """
 
     item: int
@@ -60,21 +52,13 @@ class Obstacle:
 class Gaps:
     """All obstacles of a segment.
 
-    Parameters
-    ----------
-    keys : tuple of n keys
-        The pieces that may fall.
-    column : (m,) integer array
-        Which of `keys` each obstacle needs; -1 where it stands there anyway.
-    left, right : (m,) arrays
-        Gaps to the walls [m].
-    between : (m, m) array
-        Gaps between two obstacles [m]; inf where the two cannot be there together.
-    sided : (m,) integer array
-        Number of the piece, from 1, of an obstacle that reaches in from the left, and its negative from the right; 0
-        for one on the plan.
-    clear : float
-        Width with no obstacle [m].
+    * `keys`: the pieces that may fall.
+    * `column` (m,): which of `keys` each obstacle needs; -1 where it stands there anyway.
+    * `left`, `right` (m,): gaps to the walls [m].
+    * `between` (m, m): gaps between two obstacles [m]; inf where the two cannot be there together.
+    * `sided` (m,): number of the piece, from 1, of an obstacle that reaches in from the left, and its negative from the
+      right; 0 for one on the plan.
+    * `clear`: width with no obstacle [m].
     """
 
     keys: tuple[Key, ...]

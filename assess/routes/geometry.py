@@ -126,14 +126,9 @@ def _turns(item: Item) -> Iterator[float]:
 class Band:
     """A segment on the plan: straight, as wide as it is clear.
 
-    Parameters
-    ----------
-    start, end : (2,) floats
-        Where its centre line begins and ends [m].
-    extends_start, extends_end : float
-        How far it goes on beyond them, round a bend [m].
-    width : float
-        [m]
+    * `start`, `end` (2,): where its centre line begins and ends [m].
+    * `extends_start`, `extends_end`: how far it goes on beyond them, round a bend [m].
+    * `width`: [m]
     """
 
     start: Point

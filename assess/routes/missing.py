@@ -71,7 +71,8 @@ def list_left_out(one: Obstructions, inventory: Inventory, falls: Falls) -> Iter
 
 def _could_fall(falls: Falls, at: int) -> bool:
     """Tell whether a piece may fall, or did under the recorded motion, and is not anchored."""
-    return not falls.anchored[at] and bool(falls.high[at] > 0 or falls.in_record[at] == 1)
+    is_free = not (falls.anchored[at] or falls.stands[at])
+    return is_free and bool(falls.high[at] > 0 or falls.in_record[at] == 1)
 
 
 def find_any_falls(falls: Falls, items: Collection[int], z: float) -> tuple[float, float]:

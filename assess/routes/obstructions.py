@@ -292,7 +292,17 @@ def find_route_problems(inventory: Inventory, obstructions: Sequence[Obstruction
                 if flag in one.flags and (flag, one.item_index) not in seen:
                     seen.add((flag, one.item_index))
                     yield describe(inventory, segment.segment, one)
-    yield from _out_of_reach(inventory, obstructions)
+    reaching = {(segment.segment.route, one.item_index) for segment in obstructions for one in segment.pieces}
+    lost = [item for at, item in enumerate(inventory.items) if item.route and (item.route, at) not in reaching]
+    if lost:
+        names = ", ".join(item.item for item in lost[:MOST_NAMED]) + (", ..." if len(lost) > MOST_NAMED else "")
+        message = nfill(
+            "{n:,} row names a route that its pieces cannot reach when they fall: {names}.",
+            "{n:,} rows name a route that their pieces cannot reach when they fall: {names}.",
+            len(lost),
+            names=names,
+        )
+        yield Problem("note", "Items", _cell(inventory, lost[0].row, "route"), message)
 
 
 def _contradiction(inventory: Inventory, _segment: Segment, one: BesideRow) -> Problem:
@@ -318,21 +328,6 @@ def _inside(inventory: Inventory, segment: Segment, one: BesideRow) -> Problem:
     )
     fix = fill("Move it, or correct its position or the Clear width.")
     return Problem("warning", "Items", _cell(inventory, one.row, "x" if one.by_plan else "edge_distance"), message, fix)
-
-
-def _out_of_reach(inventory: Inventory, obstructions: Sequence[Obstructions]) -> Iterator[Problem]:
-    """Report pieces that name a route that they cannot reach: their distance or the plan may be wrong."""
-    reaching = {(segment.segment.route, one.item_index) for segment in obstructions for one in segment.pieces}
-    lost = [item for at, item in enumerate(inventory.items) if item.route and (item.route, at) not in reaching]
-    if lost:
-        names = ", ".join(item.item for item in lost[:MOST_NAMED]) + (", ..." if len(lost) > MOST_NAMED else "")
-        message = nfill(
-            "{n:,} row names a route that its pieces cannot reach when they fall: {names}.",
-            "{n:,} rows name a route that their pieces cannot reach when they fall: {names}.",
-            len(lost),
-            names=names,
-        )
-        yield Problem("note", "Items", _cell(inventory, lost[0].row, "route"), message)
 
 
 def _cell(inventory: Inventory, row: int, field: str) -> str:

@@ -114,9 +114,10 @@ class Scene:
         return PieceRef(item=self.inventory.items[item].item, row=self.inventory.items[item].row, item_index=item)
 
     def keys(self, segments: Iterable[int], *, anchors_fail: bool = False) -> tuple[Key, ...]:
-        """Return the pieces that reach any of some segments: the free-standing ones, or all of them."""
+        """Return the pieces that reach any of some segments and can rock: the free-standing ones, or all of them."""
+        out = self.falls.stands if anchors_fail else self.falls.stands | self.falls.anchored
         found = {key for at in segments for key in self.obstructions[at].keys}
-        return tuple(sorted(key for key in found if anchors_fail or not self.falls.anchored[key[0]]))
+        return tuple(sorted(key for key in found if not out[key[0]]))
 
     def find_doubts(self, segments: Iterable[int]) -> tuple[str, ...]:
         """Return why pieces that reach some segments, and are not anchored, are unconfirmed, as keys of `FLAGS`."""

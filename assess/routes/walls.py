@@ -45,12 +45,9 @@ REASONS: Mapping[int, Text] = {
 class Wall:
     """The wall at the back of a piece.
 
-    Parameters
-    ----------
-    falls_toward : float, optional
-        Direction in which the piece falls, anticlockwise from X [deg]; None where the side of the wall is not known.
-    reason : int, optional
-        Why it is not known.
+    * `falls_toward`: direction in which the piece falls, anticlockwise from X [deg]; None where the side of the wall is
+      not known.
+    * `reason`: why it is not known.
     """
 
     falls_toward: float | None

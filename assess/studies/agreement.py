@@ -17,19 +17,13 @@ from assess.studies.study import Options
 class Agreement:
     """How n chances by a formula agree with those by direct integration.
 
-    Parameters
-    ----------
-    cases : int
-        n.
-    bias, scatter : float
-        Mean and standard deviation of formula less integration [-].
-    rank_correlation : float
-        Spearman's [-]; NaN where either is constant.
-    same_class, within_one_class, class_too_low, class_too_high : float
-        Shares of the cases [-]: in the class of the integration; at most one apart; in a lower class; in a higher.
-    beyond_too_low, beyond_too_high : float
-        The same for the class of the nearer end of the 95 % interval of each case, so that differences within the
-        sampling error of the motions are not counted.
+    * `cases`: n.
+    * `bias`, `scatter`: mean and standard deviation of formula less integration [-].
+    * `rank_correlation`: Spearman's [-]; NaN where either is constant.
+    * `same_class`, `within_one_class`, `class_too_low`, `class_too_high`: shares of the cases [-]: in the class of the
+      integration; at most one apart; in a lower class; in a higher.
+    * `beyond_too_low`, `beyond_too_high`: the same for the class of the nearer end of the 95 % interval of each case,
+      so that differences within the sampling error of the motions are not counted.
     """
 
     cases: int

@@ -133,25 +133,15 @@ def find_levels(building: Building) -> dict[Channel, list[float]]:
 class Trials:
     """The response of the blocks to the motions of one channel.
 
-    Parameters
-    ----------
-    channel : Channel
-        The motions were generated for its record.
-    pfa, pfv : (a,) arrays
-        Peaks of the record as scaled [m/s2], [m/s].
-    breadth, height : (b,) arrays
-        The blocks [m].
-    fallen : (a, b) integer array
-        Number of motions, of `runs`, under which each block overturned.
-    fallen_uncertain : (a, b) integer array
-        The same where the amplitude of each motion and the piece are drawn (`assess.rocking.draws.Uncertainty`): as in
-        the chances that `assess run` adopts.
-    fell_in_record : (a, b) boolean array
-        Whether it overturned under the record itself, as scaled.
-    runs : int
-        Number of motions.
-    mean_pfa, mean_pfv : float
-        Mean peaks of the motions over those of the record [-].
+    * `channel`: the motions were generated for its record.
+    * `pfa`, `pfv` (a,): peaks of the record as scaled [m/s2], [m/s].
+    * `breadth`, `height` (b,): the blocks [m].
+    * `fallen` (a, b): number of motions, of `runs`, under which each block overturned.
+    * `fallen_uncertain` (a, b): the same where the amplitude of each motion and the piece are drawn
+      (`assess.rocking.draws.Uncertainty`): as in the chances that `assess run` adopts.
+    * `fell_in_record` (a, b): whether it overturned under the record itself, as scaled.
+    * `runs`: number of motions.
+    * `mean_pfa`, `mean_pfv`: mean peaks of the motions over those of the record [-].
     """
 
     channel: Channel

@@ -26,8 +26,7 @@ from assess.studies.studied_methods import (
     FloatArray,
     evaluate_formulas,
 )
-from assess.studies.study import Finding, Options, Row, Study, Table
-from assess.studies.study_pages import write_finding
+from assess.studies.study import Finding, Options, Row, Study, Table, write_finding
 from assess.units import GRAVITY, LENGTH
 
 HEIGHT = 1.8

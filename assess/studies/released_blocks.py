@@ -27,12 +27,8 @@ FADED = 0.1
 class Rocker:
     """A body that rocks on a base which may be narrower than its plan.
 
-    Parameters
-    ----------
-    half_base, centre : float
-        Half the base on which it rocks, and the height of its centre of gravity [m].
-    inertia : float
-        Moment of inertia about the centre of gravity over the mass [m2].
+    * `half_base`, `centre`: half the base on which it rocks, and the height of its centre of gravity [m].
+    * `inertia`: moment of inertia about the centre of gravity over the mass [m2].
     """
 
     half_base: float

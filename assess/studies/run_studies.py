@@ -8,9 +8,8 @@ from dataclasses import replace
 from assess.progress import SILENT, Progress
 from assess.risk import LIMITS, RiskClass
 from assess.studies.released_blocks import describe_released
-from assess.studies.study import Finding, Options, Study, Table
+from assess.studies.study import Finding, Options, Study, Table, render_page
 from assess.studies.study_files import write_files
-from assess.studies.study_pages import render_page
 from assess.version import __version__
 
 PAGE = "validation.md"
@@ -26,7 +25,7 @@ def run_study(study: Study, options: Options, progress: Progress = SILENT) -> Fi
     with progress.stage(study.name, study.title) as stage:
         finding = study.run(replace(options, report_share=stage.at))
         texts = {f"{name}.csv": _to_csv(table) for name, table in finding.tables.items()} | dict(finding.files)
-        texts[f"{study.name}.md"] = build_own_page(study, finding)
+        texts[f"{study.name}.md"] = render_page("study", study=study, finding=finding, describe=describe)
         write_files(options.out, {name: text.encode() for name, text in texts.items()} | dict(finding.figures))
     return finding
 
@@ -44,11 +43,6 @@ def describe(study: Study, finding: Finding, folder: str) -> Iterator[str]:
     yield from (f"`assess study {study.name}`, {place}.", "", *finding.page)
     for name in finding.figures:
         yield from ("", f"![{study.title}]({folder}{name})")
-
-
-def build_own_page(study: Study, finding: Finding) -> str:
-    """Return the page of one study, its results first."""
-    return render_page("study", study=study, finding=finding, describe=describe)
 
 
 def build_page(studies: Sequence[Study], findings: Mapping[str, Finding], options: Options, folder: str = "") -> str:

@@ -17,8 +17,7 @@ from assess.report.figures.draw import draw
 from assess.risk import RiskClass, classify
 from assess.studies.agreement import correlate_ranks
 from assess.studies.studied_methods import KANEKO, METHODS, OR, STATIC, Cases, FloatArray
-from assess.studies.study import Finding, Options, Row, Study, Table, read_facts
-from assess.studies.study_pages import write_finding
+from assess.studies.study import Finding, Options, Row, Study, Table, read_facts, write_finding
 from assess.units import GRAVITY
 
 CASES = ("min", "mean", "max")
@@ -158,10 +157,21 @@ def run(options: Options) -> Finding:
         "printed": check_printed(blocks, options), "early": [one.name for one in blocks if one.pga["min"] < one.ratio],
         "classes": {case: count_printed_classes(blocks, case) for case in CASES},
     }  # fmt: skip
+    columns = (
+        "sample", "breadth_to_height", "method", *(f"pga_{case}_g" for case in CASES), "median_pfa_g",
+        "median_over_mean", *(f"chance_at_{case}" for case in CASES),
+    )  # fmt: skip
+    methods = ("method", "mean_ln_median_over_mean", "scatter_ln", "rank_correlation")
+    printed = ("sample", "breadth_to_height", "case", "pga_g", "or_printed", "or_equation_9", "or_as_used")
+    summary = [(name, one.bias, one.scatter, one.rank_correlation) for name, one in judged.items()]
     return write_finding(
         "table3",
         values,
-        tables=_build_tables(blocks, judged),
+        tables={
+            "table3": Table(columns=columns, rows=list(_block_rows(blocks, judged))),
+            "table3-methods": Table(columns=methods, rows=summary),
+            "table3-printed": Table(columns=printed, rows=list(_printed_rows(blocks, judged))),
+        },
         figures={"table3.svg": draw(7, 2.7, partial(_paint, blocks, judged))},
     )
 
@@ -170,21 +180,6 @@ def count_printed_classes(blocks: Sequence[Block], case: str) -> str:
     """Return how many of the printed values of a case are in which class, in words."""
     found = Counter(classify(one.printed[case]) for one in blocks)
     return ", ".join(f"{found[risk]} {risk.word}" for risk in reversed(RiskClass) if found[risk])
-
-
-def _build_tables(blocks: Sequence[Block], judged: Mapping[str, Judgement]) -> dict[str, Table]:
-    columns = (
-        "sample", "breadth_to_height", "method", *(f"pga_{case}_g" for case in CASES), "median_pfa_g",
-        "median_over_mean", *(f"chance_at_{case}" for case in CASES),
-    )  # fmt: skip
-    methods = ("method", "mean_ln_median_over_mean", "scatter_ln", "rank_correlation")
-    printed = ("sample", "breadth_to_height", "case", "pga_g", "or_printed", "or_equation_9", "or_as_used")
-    summary = [(name, one.bias, one.scatter, one.rank_correlation) for name, one in judged.items()]
-    return {
-        "table3": Table(columns=columns, rows=list(_block_rows(blocks, judged))),
-        "table3-methods": Table(columns=methods, rows=summary),
-        "table3-printed": Table(columns=printed, rows=list(_printed_rows(blocks, judged))),
-    }
 
 
 def _block_rows(blocks: Sequence[Block], judged: Mapping[str, Judgement]) -> Iterator[Row]:

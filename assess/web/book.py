@@ -13,10 +13,9 @@ from typing import Any, Literal, Self
 
 from assess.errors import AssessError, InputError, OutputError, WorkbookError
 from assess.i18n import fill
-from assess.web.cell_edits import EditsRefused, Locks, say, take_edits
+from assess.web.cell_edits import CellPlace, Contents, EditsRefused, History, Locks, Step, say, take_edits
 from assess.web.columns import PageSheet, find_sheets, find_units, show
 from assess.web.disk_file import ChangedOutsideError, DiskFile, find_hash
-from assess.web.history import CellPlace, Contents, History, Step
 from assess.web.named_files import FILES, add_file, list_missing
 from assess.web.snapshot import Snapshot
 from assess.web.stored_values import LiveRows, find_live, write_changes
@@ -58,15 +57,11 @@ class Book:
     def hold(cls, name: str, data: bytes, folder: Path) -> Self:
         """Open the bytes of a workbook; files that it names are looked for in a folder of its own.
 
-        Raises
-        ------
-        WorkbookError
-            If they are no workbook.
+        Raises WorkbookError if they are no workbook.
         """
         return cls(name, data, folder, None)
 
     def _take_in(self, data: bytes) -> None:
-        """Begin with the bytes of a workbook, and nothing edited."""
         held = hold_sheets(data, self.name)
         if not held.cells:
             raise WorkbookError(held.problems)
@@ -142,6 +137,11 @@ class Book:
     def edit(self, version: int, edits: object, label: str) -> dict[str, Any]:
         """Change cells, all of them or none.
 
+        Returns CHANGE: every cell that was edited, as it is now.
+
+        Raises VersionError if the book has another version; EditsRefused if any cell cannot be changed so; InputError
+        if `edits` is no list of edits.
+
         Parameters
         ----------
         version : int
@@ -150,20 +150,6 @@ class Book:
             A list of ``[sheet, row, at, value]``.
         label : str
             What the step is, in a word.
-
-        Returns
-        -------
-        dict
-            CHANGE: every cell that was edited, as it is now.
-
-        Raises
-        ------
-        VersionError
-            If the book has another version.
-        EditsRefused
-            If any cell cannot be changed so.
-        InputError
-            If `edits` is no list of edits.
         """
         with self._lock:
             self._check_version(version)
@@ -211,7 +197,6 @@ class Book:
             self._missing = None
 
     def _compare(self, places: Contents | set[CellPlace]) -> None:
-        """Note of some cells whether they differ from the base."""
         now, base = self._now.cells.cells, self._base.cells.cells
         for place in places:
             sheet, *cell = place
@@ -237,15 +222,11 @@ class Book:
     def write(self) -> bytes:
         """Return the workbook with all changes and the live values that follow; its very bytes where nothing differs.
 
-        Raises
-        ------
-        WorkbookError
-            If something in it cannot be changed with certainty.
+        Raises WorkbookError if something in it cannot be changed with certainty.
         """
         return self._write()[1]
 
     def _write(self) -> tuple[Snapshot, bytes, list[CellPlace]]:
-        """Return the book as it is now, its bytes, and the cells that differ from the base."""
         with self._saving:
             with self._lock:
                 now, base, data, live = self._now, self._base, self._data, self._base_live
@@ -286,7 +267,6 @@ class Book:
                 self._save_error = error.message
 
     def _replace(self, file: DiskFile, now: Snapshot, data: bytes, different: list[CellPlace]) -> None:
-        """Replace the file, and take what was saved for the base."""
         if different:
             file.replace(data)
         with self._lock:
@@ -318,10 +298,7 @@ class Book:
     def reload(self) -> None:
         """Read the file again; what was not saved, and the history, are dropped.
 
-        Raises
-        ------
-        WorkbookError
-            If it is no longer a workbook; the book stays as it is.
+        Raises WorkbookError if it is no longer a workbook; the book stays as it is.
         """
         if self._file is None:
             return
@@ -348,12 +325,7 @@ class Book:
     def add_file(self, name: str, data: bytes) -> None:
         """Write a file that it names and that is missing; the book gets a new version.
 
-        Raises
-        ------
-        InputError
-            If it names no such file, or the file is there.
-        OutputError
-            If it cannot be written.
+        Raises InputError if it names no such file, or the file is there; OutputError if it cannot be written.
         """
         with self._lock:
             add_file(name, data, self._find_missing(anew=True), self.folder)

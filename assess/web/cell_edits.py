@@ -1,4 +1,4 @@
-"""Edits of cells as they come from outside: each is taken as its column asks, or refused with the reason."""
+"""Edits of cells as they come from outside: each is taken as its column asks, or refused; steps to undo and redo."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -7,7 +7,6 @@ from typing import Any
 from assess.errors import InputError, WorkbookError
 from assess.i18n import Text, fill, gettext, nfill
 from assess.web.columns import PageColumn, PageSheet
-from assess.web.history import CellPlace
 from assess.workbook.habits import CellError
 from assess.workbook.held import HeldCells, HeldSheets
 from assess.workbook.open import MAX_COLUMNS, MAX_ROWS
@@ -15,6 +14,54 @@ from assess.workbook.patch import LARGEST_NUMBER, LONGEST_TEXT, Area, Value, fin
 from assess.workbook.places import split_range
 from assess.workbook.typed import is_converted, is_free, understand
 from assess.workbook.values import is_blank, shorten
+
+MOST_STEPS, MOST_CELLS = 200, 1_000_000
+"""Steps, and cells of all of them together, that are kept; the oldest are forgotten first."""
+
+CellPlace = tuple[str, int, int]
+"""English name of the sheet, row from 1, column from 0."""
+Contents = Mapping[CellPlace, Any]
+"""What reading finds in cells."""
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One edit: the cells that it changed, before and after."""
+
+    label: str
+    before: Contents
+    after: Contents
+
+
+@dataclass(slots=True)
+class History:
+    """The steps up to `at` have been done, those behind it undone."""
+
+    steps: list[Step] = field(default_factory=list)
+    at: int = 0
+
+    def add(self, step: Step) -> None:
+        """Take in a step that has been done; those that were undone are forgotten."""
+        self.steps[self.at :] = [step]
+        cells = sum(len(one.after) for one in self.steps)
+        while len(self.steps) > MOST_STEPS or (cells > MOST_CELLS and len(self.steps) > 1):
+            cells -= len(self.steps.pop(0).after)
+        self.at = len(self.steps)
+
+    def back(self) -> Step | None:
+        """Return the step to undo, None where there is none; it counts as undone."""
+        if self.at == 0:
+            return None
+        self.at -= 1
+        return self.steps[self.at]
+
+    def forward(self) -> Step | None:
+        """Return the step to do again, None where there is none; it counts as done."""
+        if self.at == len(self.steps):
+            return None
+        self.at += 1
+        return self.steps[self.at - 1]
+
 
 MOST_EDITS = 500_000
 """Cells of one edit."""
@@ -62,7 +109,6 @@ class Locks:
         return next(inside, "")
 
     def _read(self, cells: HeldCells) -> Sequence[tuple[Area, Text]]:
-        """Return the areas of a sheet that cannot be changed."""
         title = cells.title
         if title not in self._areas:
             self._areas[title] = [*cells.marks.locked, *_list_covered(cells.merged)]
@@ -74,7 +120,6 @@ class Locks:
 
 
 def _list_covered(merged: Iterable[str]) -> Iterable[tuple[Area, Text]]:
-    """Yield the cells that merges cover: all of them but the first."""
     why = fill("it is covered by merged cells.")
     for reference in merged:
         if (span := split_range(reference)) is not None:
@@ -88,23 +133,10 @@ def take_edits(
 ) -> dict[CellPlace, Value]:
     """Return the values to write by their cells; of several for one cell the last.
 
-    Parameters
-    ----------
-    edits : object
-        A list of ``[sheet, row, at, value]``, as it came from outside.
-    sheets : mapping of str to PageSheet
-        The sheets by their English names.
-    held : HeldSheets
-        Their cells.
-    locks : Locks
-        What cannot be changed.
+    `edits`: a list of ``[sheet, row, at, value]``, as it came from outside.
+    `locks`: what cannot be changed.
 
-    Raises
-    ------
-    InputError
-        If it is no such list.
-    EditsRefused
-        If any cell cannot be changed so.
+    Raises InputError if it is no such list; EditsRefused if any cell cannot be changed so.
     """
     if not isinstance(edits, list) or len(edits) > MOST_EDITS:
         raise InputError(fill("edits have to be a list of at most {most:,} cells.", most=MOST_EDITS))
@@ -132,7 +164,6 @@ def say(text: str) -> str:
 
 
 def _take_apart(edit: object) -> tuple[str, int, int, Value]:
-    """Return the four parts of an edit; raises InputError where it has others."""
     if isinstance(edit, list) and len(edit) == 4:
         sheet, row, at, value = edit
         are_numbers = type(row) is int and type(at) is int
@@ -166,7 +197,6 @@ def _too_long() -> Text:
 
 
 def _refuse_value(value: Value) -> str:
-    """Return why no cell can hold a value, "" where one can."""
     if isinstance(value, str):
         return _too_long() if len(value) > LONGEST_TEXT else ""
     is_number = value is None or abs(value) <= LARGEST_NUMBER

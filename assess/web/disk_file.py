@@ -67,12 +67,8 @@ class DiskFile:
     def replace(self, data: bytes) -> None:
         """Replace it by other bytes, whole or not at all; its access rights stay.
 
-        Raises
-        ------
-        ChangedOutsideError
-            If it holds other bytes than those last read or saved.
-        OutputError
-            If it cannot be written, with the reason.
+        Raises ChangedOutsideError if it holds other bytes than those last read or saved; OutputError if it cannot be
+        written, with the reason.
         """
         try:
             target = self.path.resolve(strict=True)

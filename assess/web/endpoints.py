@@ -24,8 +24,7 @@ from assess.web import answers
 from assess.web.answers import Answer, Asked, Content
 from assess.web.guard import MODELS, MOST_MODEL, SESSION
 from assess.web.importing import SOURCE
-from assess.web.problem_answers import describe_fault
-from assess.web.request_errors import NOT_FOUND, RequestError
+from assess.web.request_errors import NOT_FOUND, RequestError, describe_fault
 from assess.web.sessions import Session, check_share
 from assess.web.texts import COOKIE, choose_language
 from assess.web.uploads import check_size, parse_body, read_body, save_body, skip_body
@@ -145,8 +144,6 @@ async def _save(session: Session, request: Request, path: Path, room: int) -> No
 
 
 def _fail(error: RequestError | OSError) -> Handler:
-    """Return a handler that refuses, so that it is said in the language of the page."""
-
     def refuse(_asked: Asked) -> Answer:
         raise error
 
@@ -171,7 +168,6 @@ def _ask(request: Request, note_edit: NoteEdit) -> Asked:
 
 
 def _carry_out(handler: Handler, asked: Asked) -> Response:
-    """Return the answer of a handler, in the language of the page; what went wrong as the answer to that."""
     with speaking(load_catalogue(asked.language)):
         try:
             return _respond(handler(asked))

@@ -51,17 +51,10 @@ class Evaluation:
 def evaluate(inventory: Inventory, settings: Settings, progress: Progress = SILENT) -> Evaluation:
     """Assess the pieces of all floors whose motion is known.
 
-    Parameters
-    ----------
-    inventory : Inventory
-        As read with ``strict=False``.
-    settings : Settings
-        Nothing is simulated if `verify` is "none".
-
-    Raises
-    ------
-    InputError
-        If a setting does not fit the inventory, as an unknown piece that is to be anchored, or a record is gone.
+    `inventory`: as read with ``strict=False``.
+    `settings`: nothing is simulated if `verify` is "none".
+    Raises InputError if a setting does not fit the inventory, as an unknown piece that is to be anchored, or a record
+    is gone.
     """
     kind = settings.scenario or inventory.building.scenario_kind or SCENARIOS[0]
     reduction = settings.ductility_reduction
@@ -157,7 +150,6 @@ def _keep_floors(inventory: Inventory, floors: set[str]) -> Inventory:
 
 
 def _keep_anchors(inventory: Inventory, settings: Settings, floors: set[str]) -> Settings:
-    """Return settings in which the pieces of some floors alone are anchored."""
     if not isinstance(settings.anchor, tuple):
         return settings
     on = {one.item: one.floor for one in inventory.items}

@@ -10,7 +10,7 @@ from assess.report.figures.underlay import find_edge, list_rooms, widen
 from assess.routes.geometry import Band, build_bands
 from assess.web.evaluation import list_floors
 from assess.web.floor_picture import FloorPicture, find_floor_picture
-from assess.web.floor_pieces import DECIMALS, PlacedPiece, cut_all, find_away, place_pieces, round_points
+from assess.web.floor_pieces import DECIMALS, cut_all, find_away, place_pieces, round_points
 from assess.workbook.names import key
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.resolve import build_catalogue, places_by_name
@@ -63,9 +63,15 @@ def find_floor(floors: Sequence[Row], name: str | None) -> Row | None:
 
 
 def _draw(tables: Tables, inventory: Inventory, floor: str, picture: FloorPicture | None) -> dict[str, Any]:
-    """Return everything on a floor, whatever errors its rows have."""
     items, places = list_on_floor(tables["Items"], floor), list_on_floor(tables["Places"], floor)
-    pieces = _cut(_place_pieces(tables, inventory, items, floor), inventory, floor, picture)
+    types = {key(one.type): one for one in build_catalogue(tables["Catalogue"])}
+    rooms = list_rooms([one for one in inventory.places if one.floor == floor])
+    placed = [(one.x, one.y) for one in inventory.items if one.floor == floor]
+    stand = [(x, y) for x, y in placed if x is not None and y is not None]
+    edge = find_edge(rooms, picture.corners if picture else (), stand)
+    pieces = cut_all(
+        place_pieces(tables["Items"], items, types, find_away(inventory, floor)), None if edge is None else edge[0]
+    )
     segments = list(_describe_segments(tables, inventory, floor))
     outlines = [round_points(row.get("outline")) for row in places if row.get("outline")]
     drawn: list[Iterable[Sequence[float]]] = [ring for one in pieces for ring in (one.corners, *one.falls)]
@@ -91,31 +97,9 @@ def _is_placed(row: Row) -> bool:
     return row.get("x") is not None and row.get("y") is not None
 
 
-# ---------------------------------------------------------------- pieces
-
-
-def _place_pieces(tables: Tables, inventory: Inventory, items: Iterable[Row], floor: str) -> list[PlacedPiece]:
-    types = {key(one.type): one for one in build_catalogue(tables["Catalogue"])}
-    return place_pieces(tables["Items"], items, types, find_away(inventory, floor))
-
-
-def _cut(
-    pieces: Sequence[PlacedPiece], inventory: Inventory, floor: str, picture: FloorPicture | None
-) -> list[PlacedPiece]:
-    """Return pieces with what they may cover cut at the building's edge, as reports draw it."""
-    rooms = list_rooms([one for one in inventory.places if one.floor == floor])
-    placed = [(one.x, one.y) for one in inventory.items if one.floor == floor]
-    stand = [(x, y) for x, y in placed if x is not None and y is not None]
-    edge = find_edge(rooms, picture.corners if picture else (), stand)
-    return cut_all(pieces, None if edge is None else edge[0])
-
-
 def _describe_unplaced(row: Row) -> dict[str, Any]:
     described = row.get("description") or row.get("type") or ""
     return {"row": row.number, "item": row.get("item") or "", "description": described}
-
-
-# ---------------------------------------------------------------- places and segments
 
 
 def _describe_place(row: Row) -> dict[str, Any]:
@@ -131,7 +115,6 @@ def _describe_place(row: Row) -> dict[str, Any]:
 
 
 def _describe_segments(tables: Tables, inventory: Inventory, floor: str) -> Iterator[dict[str, Any]]:
-    """Yield the segments that name a floor, or both of whose places lie on it."""
     places = places_by_name(tables["Places"])
     bands = _list_bands(inventory)
     for row in tables["Routes"].rows:
@@ -154,7 +137,6 @@ def _describe_segments(tables: Tables, inventory: Inventory, floor: str) -> Iter
 
 
 def _list_bands(inventory: Inventory) -> dict[int, Band]:
-    """Return the bands of all segments by their rows."""
     clear = [one.clear_width or one.required_width or DEFAULT_WIDTH for one in inventory.routes]
     return {inventory.routes[at].row: band for at, band in build_bands(inventory, clear).items() if band.length > 0}
 
@@ -168,11 +150,7 @@ def outline_band(band: Band) -> list[Point]:
     return [(x + u * cos - v * sin, y + u * sin + v * cos) for u, v in local]
 
 
-# ---------------------------------------------------------------- the frame
-
-
 def _frame(points: Sequence[Point], picture: FloorPicture | None) -> list[float]:
-    """Return the box round what is drawn, with room round it."""
     corners = picture.corners if picture else []
     box = _find_box(points) or _find_box(corners) or _empty_box(picture)
     if corners:
@@ -189,7 +167,6 @@ def _find_box(points: Sequence[Point]) -> Bounds | None:
 
 
 def _empty_box(picture: FloorPicture | None) -> Bounds:
-    """Return the box of a floor on which there is nothing but a picture that has not been placed, if that."""
     if picture is None:
         return 0.0, 0.0, *EMPTY
     width = picture.width or UNPLACED

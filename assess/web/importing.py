@@ -8,7 +8,7 @@ import secrets
 import shutil
 import threading
 import time
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextvars import copy_context
 from dataclasses import dataclass, replace
 from itertools import count
@@ -19,8 +19,7 @@ from assess.errors import AssessError, CancelledError
 from assess.i18n import Text, fill, gettext
 from assess.progress import Progress, Report
 from assess.web.jobs import STAGES, Slots
-from assess.web.problem_answers import describe_fault
-from assess.web.request_errors import CONFLICT, NOT_FOUND, UNUSABLE, RequestError
+from assess.web.request_errors import CONFLICT, NOT_FOUND, UNUSABLE, RequestError, describe_fault
 from assess.web.safe_names import ENDINGS, make_safe
 from assess.web.starting import Made
 
@@ -141,7 +140,7 @@ class _Asked(threading.Event):
 
 
 class Import:
-    """One file that is read.
+    """One file that is read; raises RequestError if there is no place, and then removes the folder.
 
     Parameters
     ----------
@@ -153,11 +152,6 @@ class Import:
         Whether routes are drafted.
     slots : Slots
         Places of all sessions.
-
-    Raises
-    ------
-    RequestError
-        If there is no place; the folder is removed then, too.
     """
 
     def __init__(self, folder: Path, name: str, routes: Routes, slots: Slots) -> None:
@@ -183,7 +177,6 @@ class Import:
         return self.state == "running"
 
     def _run(self) -> None:
-        """Read the file to its end, and remove it."""
         state, found, error = "done", None, None
         try:
             found = read(self._folder / SOURCE, self.name, Progress(self._listen, self._asked), self._routes)
@@ -246,10 +239,7 @@ class Import:
     def build(self, folder: Path, shaking: str) -> Made:
         """Return the new workbook, in the language in use, under names that the folder does not have yet.
 
-        Raises
-        ------
-        RequestError
-            If nothing was read, or its workbook was made already.
+        Raises RequestError if nothing was read, or its workbook was made already.
         """
         from assess.bim.import_workbook import build_workbook
 
@@ -297,18 +287,13 @@ def _rename_files(found: "ImportedBuilding", folder: Path) -> "ImportedBuilding"
     names: dict[str, str] = {}
     for name, data in found.files.items():
         others = {one.casefold() for one in (*found.files, *names.values()) if one != name}
-        names[name] = _find_name(name, data, folder, others)
+        names[name] = next(
+            one
+            for one in _number(PurePosixPath(name))
+            if one.casefold() not in others and (not _is_there(folder / one) or _holds(folder / one, data))
+        )
     floors = [_rename(row, names) for row in found.floors]
     return replace(found, floors=floors, files={names[name]: data for name, data in found.files.items()})
-
-
-def _find_name(name: str, data: bytes, folder: Path, others: Collection[str]) -> str:
-    """Return the first name that no file of the folder has, or that very file, and that is none of `others`."""
-    return next(
-        one
-        for one in _number(PurePosixPath(name))
-        if one.casefold() not in others and (not _is_there(folder / one) or _holds(folder / one, data))
-    )
 
 
 def _holds(path: Path, data: bytes) -> bool:

@@ -29,8 +29,8 @@ ITEM_INPUTS = (
 )  # fmt: skip
 """Fields of a piece by which its simulated chance, whether it counts as anchored, or how many it is, is found."""
 BUILDING_INPUTS = (
-    "storeys", "height", "period", "azimuth_deg", "scenario_kind", "ground_pga", "ground_pgv", "sds", "shaking",
-    "friction", "restitution", "motion_uncertainty", "piece_uncertainty",
+    "storeys", "height", "period", "structure", "azimuth_deg", "scenario_kind", "class_by", "ground_pga", "ground_pgv",
+    "sds", "shaking", "friction", "restitution", "motion_uncertainty", "piece_uncertainty",
 )  # fmt: skip
 """Fields of the building by which the chances of all pieces are found."""
 FLOOR_INPUTS = ("floor", "elevation", "pfa", "pfv", "records")
@@ -51,10 +51,7 @@ def read_changes(body: Mapping[str, Any]) -> dict[str, Any]:
 def read_formats(body: Mapping[str, Any], folder: Path) -> list[str]:
     """Return the formats of a request.
 
-    Raises
-    ------
-    InputError
-        If one is unknown, or needs a package that is not installed.
+    Raises InputError if one is unknown, or needs a package that is not installed.
     """
     from assess.report import check_folder
 
@@ -72,17 +69,15 @@ def read_formats(body: Mapping[str, Any], folder: Path) -> list[str]:
 def prepare(book: "Book", body: Mapping[str, Any], folder: Path) -> tuple[dict[str, Any], Inventory]:
     """Write the order of a job and a copy of the workbook with the files that it names.
 
+    Raises InputError if an option cannot be used, or the workbook has errors: as `assess run`, which works with whole
+    workbooks only.
+
     Returns
     -------
     order : dict
         What the process is told, with the version of the workbook.
     inventory : Inventory
         What the workbook holds.
-
-    Raises
-    ------
-    InputError
-        If an option cannot be used, or the workbook has errors: as `assess run`, which works with whole workbooks only.
     """
     changes, formats = read_changes(body), read_formats(body, folder / OUT)
     snapshot, data = _read(book)
@@ -101,14 +96,10 @@ def prepare(book: "Book", body: Mapping[str, Any], folder: Path) -> tuple[dict[s
 
 
 def _read(book: "Book") -> "tuple[Snapshot, bytes]":
-    """Return what a workbook holds and its bytes, of one version."""
     while True:
         snapshot, data = book.snapshot(), book.write()
         if book.version == snapshot.version:
             return snapshot, data
-
-
-# ---------------------------------------------------------------- what has changed since
 
 
 def list_stale(before: Inventory, now: Inventory) -> list[int]:

@@ -75,10 +75,7 @@ def _end_with_server(folder: Path) -> None:
 def assess_workbook(folder: Path, order: dict[str, Any], tell: Tell) -> dict[str, Any]:
     """Assess the workbook, write its reports and the summary, and return what is to be said of them.
 
-    Raises
-    ------
-    AssessError
-        As `assess run`.
+    Raises AssessError as `assess run`.
     """
     from assess.pipeline.run import run
     from assess.report import write_reports
@@ -124,11 +121,10 @@ def _describe(problem: Any) -> dict[str, str]:
     return {"severity": problem.severity, "sheet": problem.sheet, "cell": problem.cell, **words}
 
 
-# ---------------------------------------------------------------- what the page shows of the results
-
-
 def summarise(results: Results) -> dict[str, Any]:
     """Return the rows of the furniture with their classes, and what is to be expected before and after."""
+    from assess.report.words import find_range
+
     rows = list(results)
     items = {
         "row": [one.item.row for one in rows],
@@ -136,9 +132,9 @@ def summarise(results: Results) -> dict[str, Any]:
         "class": ["" if one.is_anchored else key(one.adopted.risk) for one in rows],
         "formula": ["" if one.is_anchored else key(one.formula_class) for one in rows],
         "chance": [one.adopted.probability for one in rows],
-        "low": [one.adopted.low for one in rows],
-        "high": [one.adopted.high for one in rows],
-        "simulated": [one.adopted.is_simulated for one in rows],
+        "low": [found and found[0] for found in map(find_range, rows)],
+        "high": [found and found[1] for found in map(find_range, rows)],
+        "simulated": [one.adopted.is_simulated or not one.adopted.can_rock for one in rows],
     }
     schedule, anchor = results.schedule, results.settings.anchor
     sums = {"before": _sum(schedule.before), "after": _sum(schedule.after), "cost": schedule.cost}
@@ -155,6 +151,8 @@ def _sum(state: State) -> dict[str, Any]:
     return {
         "counts": {key(risk): state.count(risk) for risk in RiskClass},
         "falls": state.falls,
+        "falls_low": state.falls_low,
+        "falls_high": state.falls_high,
         "anchored": state.anchored,
         "apart": state.apart,
         "blocked_routes": state.blocked_routes,

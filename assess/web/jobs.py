@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from contextvars import copy_context
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any
 
 from assess.i18n import Text, fill, gettext
 from assess.web.job_inputs import list_stale, prepare
@@ -71,8 +71,6 @@ class Slots:
 
 @dataclass(slots=True)
 class _Progress:
-    """What is known of a job: its state, and what its process said last."""
-
     state: str = "running"
     stage: str = ""
     detail: str = ""
@@ -91,6 +89,8 @@ class _Progress:
 class Job:
     """One simulation of one version of a workbook.
 
+    Raises InputError if an option cannot be used, the workbook has errors, or there is no place.
+
     Parameters
     ----------
     book : Book
@@ -101,11 +101,6 @@ class Job:
         The folder of the session, in which the job gets one of its own.
     slots : Slots
         Places of all sessions.
-
-    Raises
-    ------
-    InputError
-        If an option cannot be used, the workbook has errors, or there is no place.
     """
 
     def __init__(self, book: "Book", body: Mapping[str, Any], parent: Path, slots: Slots) -> None:
@@ -132,17 +127,20 @@ class Job:
     # ------------------------------------------------------------ its course
 
     def _listen(self) -> None:
-        """Follow the process until it ends."""
         lost = fill("The simulation ended unexpectedly; memory may have run out. Nothing was written.")
         last: dict[str, Any] = {"state": "failed", "message": gettext(lost)}
-        for line in _output(self._process):
+        if self._process.stdout is None:
+            raise RuntimeError("the process has no output")
+        for line in self._process.stdout:
             said = json.loads(line)
             if "state" in said:
                 last = said
             elif self.is_running:
                 self._progress.take(said)
         self._process.wait()
-        _close(self._process)
+        for stream in (self._process.stdin, self._process.stdout):
+            if stream is not None:
+                stream.close()
         self._slots.leave(self)
         with self._lock:
             if self.is_running:
@@ -168,21 +166,18 @@ class Job:
             if not self.is_running:
                 return
             self._progress.state = "cancelled"
-        self._stop()
-
-    def close(self) -> None:
-        """End it, and remove its results as well."""
-        self.cancel()
-        self._reader.join(timeout=2 * PATIENCE)
-        shutil.rmtree(self._folder, ignore_errors=True)
-
-    def _stop(self) -> None:
         self._process.terminate()
         try:
             self._process.wait(PATIENCE)
         except subprocess.TimeoutExpired:
             self._process.kill()
         self._reader.join(timeout=2 * PATIENCE)
+
+    def close(self) -> None:
+        """End it, and remove its results as well."""
+        self.cancel()
+        self._reader.join(timeout=2 * PATIENCE)
+        shutil.rmtree(self._folder, ignore_errors=True)
 
     # ------------------------------------------------------------ what the page is told
 
@@ -234,7 +229,11 @@ class Job:
         with self._lock:
             paths = {path.name: path for path in self._list_paths()}
             if name == ARCHIVE and paths:
-                return _pack(list(paths.values()))
+                stream = io.BytesIO()
+                with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
+                    for path in paths.values():
+                        archive.write(path, path.name)
+                return stream.getvalue()
         if name not in paths:
             raise RequestError(fill("The simulation has no file of this name."), NOT_FOUND)
         return paths[name]
@@ -276,23 +275,3 @@ def _start(folder: Path) -> "subprocess.Popen[bytes]":
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=errors, cwd=folder, creationflags=_OWN_GROUP,
             env={**os.environ, **{name: str(value) for name, value in variables.items()}}, start_new_session=True,
         )  # fmt: skip
-
-
-def _output(process: "subprocess.Popen[bytes]") -> IO[bytes]:
-    if process.stdout is None:
-        raise RuntimeError("the process has no output")
-    return process.stdout
-
-
-def _close(process: "subprocess.Popen[bytes]") -> None:
-    for stream in (process.stdin, process.stdout):
-        if stream is not None:
-            stream.close()
-
-
-def _pack(paths: Sequence[Path]) -> bytes:
-    stream = io.BytesIO()
-    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
-        for path in paths:
-            archive.write(path, path.name)
-    return stream.getvalue()

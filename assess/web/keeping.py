@@ -67,7 +67,6 @@ class Keeper:
                 self._keys.expire(time.monotonic())
 
     def _wait(self) -> list[Session] | None:
-        """Return the sessions to save, once there is something to do; None at the end."""
         with self._woken:
             while not self._is_ended:
                 now = time.monotonic()

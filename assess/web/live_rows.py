@@ -5,12 +5,13 @@ from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from assess.i18n import LANGUAGES, gettext, load_catalogue
-from assess.methods import adopted_formula
+from assess.methods import Method, adopted_formula, paper_formula
 from assess.model import Inventory
 from assess.pipeline.assessment import Assessment
-from assess.risk import RiskClass
+from assess.risk import RiskClass, classify_all
 from assess.units import GRAVITY, LENGTH, VELOCITY
 from assess.web.columns import PageSheet
 from assess.web.evaluation import Evaluation
@@ -20,7 +21,7 @@ from assess.workbook.live_row import IS_ANCHORED, NO_AXIS, NO_FLOOR
 from assess.workbook.names import key, plain, split_header
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.resolve import build_catalogue, defined, filled_sizes
-from assess.workbook.schema import CLASS, LIVE, NO, WORKINGS, YES
+from assess.workbook.schema import CLASS, CLASS_OR, LIVE, NO, WORKINGS, YES
 
 CLASSES = tuple(one.name.lower() for one in RiskClass)
 """How the page calls the classes, in rising order."""
@@ -88,11 +89,11 @@ def list_quantities(table: Table) -> dict[int, int]:
 
 def _list_assessed(assessment: Assessment, labels: Sequence[str]) -> dict[int, LiveRow]:
     at, adoption = assessment.governing, assessment.adoption
-    outside = assessment.outcomes[adopted_formula().key].flags["extrapolated"][at].tolist()
+    outside = _find_outside(assessment, adopted_formula(assessment.settings.class_by))
     words = {risk: say_class(risk) for risk in RiskClass}
     anchored, texts = gettext(IS_ANCHORED), []
     found = zip(
-        assessment.inventory.items, adoption.risk[at].tolist(), adoption.probability[at].tolist(), outside,
+        assessment.inventory.items, adoption.risk[at].tolist(), adoption.probability[at].tolist(), outside.tolist(),
         assessment.anchors.held.tolist(), strict=True,
     )  # fmt: skip
     rows: list[tuple[int, str, str, float | None, bool]] = []
@@ -107,6 +108,22 @@ def _list_assessed(assessment: Assessment, labels: Sequence[str]) -> dict[int, L
     return {one[0]: LiveRow(*one[1:], shown) for one, shown in zip(rows, values, strict=True)}
 
 
+def _find_outside(assessment: Assessment, method: Method) -> NDArray[np.bool_]:
+    """Return which pieces lie outside the range in which a method was checked, and can rock."""
+    found = assessment.outcomes[method.key].flags["extrapolated"] & assessment.adoption.can_rock
+    return np.asarray(found[assessment.governing])
+
+
+def _say_paper_classes(assessment: Assessment) -> list[str]:
+    """Return the class of each piece by the paper's formula, which is low where it cannot rock."""
+    at, method = assessment.governing, paper_formula()
+    classes = np.where(assessment.adoption.can_rock, classify_all(assessment.outcomes[method.key].value), RiskClass.LOW)
+    words = [say_class(RiskClass(one)) for one in classes[at].tolist()]
+    outside = _find_outside(assessment, method).tolist()
+    return [gettext(IS_ANCHORED) if held else word + OUTSIDE * marked
+            for word, marked, held in zip(words, outside, assessment.anchors.held.tolist(), strict=True)]  # fmt: skip
+
+
 def _list_values(assessment: Assessment, labels: Sequence[str], classes: Sequence[str]) -> Iterator[Values]:
     """Yield what the columns show of each piece under the motion that governs it."""
     columns = _columns(assessment, classes)
@@ -119,7 +136,7 @@ def _list_values(assessment: Assessment, labels: Sequence[str], classes: Sequenc
 def _columns(assessment: Assessment, classes: Sequence[str]) -> dict[str, Sequence[Any]]:
     at, cases = assessment.governing, assessment.cases
     yes, no = gettext(YES), gettext(NO)
-    ratio, pfa, *methods, risk, can_rock = LIVE
+    ratio, pfa, *methods, risk, by_paper, can_rock = LIVE
     axis, pfv, breadth, height = SHOWN_WORKINGS
     outcomes = (assessment.outcomes[method.key].value[at] for method in LIVE_METHODS)
     return {
@@ -127,6 +144,7 @@ def _columns(assessment: Assessment, classes: Sequence[str]) -> dict[str, Sequen
         pfa: _plain_numbers(cases.pfa[at] / GRAVITY),
         **dict(zip(methods, map(_plain_numbers, outcomes), strict=True)),
         risk: classes,
+        by_paper: _say_paper_classes(assessment),
         can_rock: [yes if one else no for one in assessment.adoption.can_rock[at].tolist()],
         axis: [assessment.case_demand[case].axis for case in at.tolist()],
         pfv: _plain_numbers(cases.pfv[at] / VELOCITY["cm/s"]),
@@ -162,7 +180,7 @@ class _Words:
             shown[LIVE[0]] = round(sizes["breadth"] / sizes["height"], DECIMALS)
             if (anchored or row.get("anchored")) == YES:
                 is_known = row.get("bracket_capacity") is not None and row.get("anchored") == YES
-                word = shown[CLASS] = gettext(RUN_ASSESS if is_known else IS_ANCHORED)
+                word = shown[CLASS] = shown[CLASS_OR] = gettext(RUN_ASSESS if is_known else IS_ANCHORED)
         return LiveRow("", word, None, False, tuple(shown.get(label) for label in labels))
 
     def explain(self, row: Row) -> str:

@@ -81,12 +81,7 @@ def _is_missing(name: str, folder: Path) -> bool:
 def add_file(name: str, data: bytes, missing: list[dict[str, Any]], folder: Path) -> None:
     """Write a file that a workbook names into its folder.
 
-    Raises
-    ------
-    InputError
-        If the workbook does not name it, or it is there already.
-    OutputError
-        If it cannot be written.
+    Raises InputError if the workbook does not name it, or it is there already; OutputError if it cannot be written.
     """
     if name not in {one["name"] for one in missing}:
         raise InputError(fill("the workbook names no missing file of this name: {name}.", name=repr(name[:100])))

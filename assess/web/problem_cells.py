@@ -1,7 +1,7 @@
 """The problems of a workbook as the page lists them: in the language in use, those of one habit as one, with cells."""
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from assess.errors import Gap, Problem
@@ -57,12 +57,8 @@ def list_cells(sheet: str, address: str) -> list[Cell]:
     rows = range(int(top), int(bottom or top) + 1)
     if sheet in _FORMS:
         return list(dict.fromkeys((row, 1) for row in rows[:MOST_OF_RANGE]))
-    return list(_first_cells(rows, columns))
-
-
-def _first_cells(rows: range, columns: range) -> Iterator[Cell]:
     every = ((row, at) for row in rows for at in columns)
-    return (cell for _, cell in zip(range(MOST_OF_RANGE), every, strict=False))
+    return [cell for _, cell in zip(range(MOST_OF_RANGE), every, strict=False)]
 
 
 def find_column(letters: str) -> int:

@@ -1,12 +1,15 @@
-"""A request that is not carried out: its status, why, and how to fix it."""
+"""A request that is not carried out: its status, a message, how to fix it, and the problems of a workbook."""
 
 from typing import Any
 
-from assess.errors import InputError
-from assess.i18n import Text
+from assess.errors import AssessError, CancelledError, InputError, OutputError, Problem, WorkbookError
+from assess.i18n import Text, fill, gettext
 
 BAD_REQUEST, NO_SESSION, FORBIDDEN, NOT_FOUND, WRONG_METHOD = 400, 401, 403, 404, 405
 CONFLICT, TOO_LARGE, WRONG_HOST, UNUSABLE, TOO_MANY = 409, 413, 421, 422, 429
+BROKEN = 500
+MOST = 200
+"""Problems in one answer."""
 
 
 class RequestError(InputError):
@@ -27,3 +30,49 @@ class RequestError(InputError):
     def __init__(self, message: Text, status: int, fix: Text | str = "", more: dict[str, Any] | None = None) -> None:
         super().__init__(message)
         self.status, self.fix, self.more = status, fix, more or {}
+
+
+def describe_fault(error: Exception) -> tuple[int, dict[str, Any]]:
+    """Return the status and the body of the answer to a request that went wrong, in the language in use."""
+    if isinstance(error, RequestError):
+        return error.status, {**_say(error.message, error.fix), **error.more}
+    if isinstance(error, WorkbookError):
+        message = fill("The workbook cannot be used.")
+        return UNUSABLE, {**_say(message), "problems": [describe_problem(one) for one in error.problems[:MOST]]}
+    found = _find_book_error(error)
+    if found is not None:
+        return found
+    if isinstance(error, OutputError | CancelledError):
+        return CONFLICT, _say(error.message)
+    if isinstance(error, AssessError):
+        return UNUSABLE, _say(error.message)
+    if isinstance(error, OSError) and error.strerror:
+        return CONFLICT, _say(fill("A file cannot be used: {why}.", why=error.strerror))
+    return BROKEN, _say(fill("Something went wrong here; nothing was changed. The window of assess shows more."))
+
+
+def _find_book_error(error: Exception) -> tuple[int, dict[str, Any]] | None:
+    from assess.web.book import ChangedOutsideError, EditsRefused, VersionError
+
+    if isinstance(error, EditsRefused):
+        return UNUSABLE, {**_say(error.message), "refused": error.refused}
+    if isinstance(error, VersionError):
+        return CONFLICT, {**_say(fill("The workbook was changed elsewhere.")), "state": error.state}
+    if isinstance(error, ChangedOutsideError):
+        return CONFLICT, _say(error.message)
+    return None
+
+
+def _say(message: str, fix: str = "") -> dict[str, Any]:
+    return {"message": gettext(message), "fix": gettext(fix), "problems": []}
+
+
+def describe_problem(problem: Problem) -> dict[str, Any]:
+    """Return a problem as the page lists it."""
+    return {
+        "severity": problem.severity,
+        "sheet": problem.sheet,
+        "cell": problem.cell,
+        "message": gettext(problem.message),
+        "fix": gettext(problem.fix),
+    }

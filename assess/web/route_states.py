@@ -49,7 +49,6 @@ def describe_routes(snapshot: "Snapshot") -> dict[str, Any]:
 
 
 def _list_problems(inventory: Inventory, assessment: Assessment) -> Iterable[dict[str, Any]]:
-    """Return the problems that only the evaluation of routes finds."""
     found = map(inventory.place, find_route_problems(assessment.inventory, assessment.obstructions))
     return describe_problems(found, inventory.sheets)
 
@@ -63,7 +62,7 @@ def describe_states(tables: Tables, inventory: Inventory, found: Evaluation) -> 
     crossed = _find_crossed(tables, found.unserved)
     if tables["Routes"].rows and (found.assessment is None or crossed):
         text = gettext("Routes are not evaluated, as it is not known how these floors shake: {floors}.",
-                       floors=name_few(crossed or _list_floors(tables)))  # fmt: skip
+                       floors=name_few(crossed or [row.get("floor") for row in list_floors(tables)]))  # fmt: skip
         return describe_unknown(tables, text)
     left_out = _find_left_out(tables, inventory)
     routes = RouteTables(risk=0.0)
@@ -98,7 +97,6 @@ def describe_unknown(tables: Tables, why: str) -> dict[str, Any]:
 
 
 def _find_crossed(tables: Tables, unserved: Collection[str]) -> list[str]:
-    """Return the floors of segments, and of their places, whose motion is not known."""
     places, found = places_by_name(tables["Places"]), dict[str, str]()
     for row in tables["Routes"].rows:
         ends = [places.get(key(row.get(name) or "")) for name in ("start", "end")]
@@ -106,13 +104,6 @@ def _find_crossed(tables: Tables, unserved: Collection[str]) -> list[str]:
             if name and key(name) in unserved:
                 found.setdefault(key(name), name)
     return list(found.values())
-
-
-def _list_floors(tables: Tables) -> list[str]:
-    return [row.get("floor") for row in list_floors(tables)]
-
-
-# ---------------------------------------------------------------- states
 
 
 def _unknown(detail: str) -> dict[str, Any]:
@@ -148,7 +139,6 @@ def _describe_segment(one: SegmentRow, risk: float) -> dict[str, Any]:
 
 
 def _explain(one: SegmentRow | RouteRow) -> str:
-    """Return the chance of a blockage, and which piece is likeliest or what to fill in where it is not open."""
     return "; ".join([say_blocked(one), *_name_reason(one)])
 
 
@@ -175,9 +165,6 @@ def _describe_unjoined(routes: RouteTables, inventory: Inventory) -> Iterator[di
         yield {"room": name, "floor": places[name].floor, "place_row": places[name].row, **_unknown(detail)}
 
 
-# ---------------------------------------------------------------- rows that were left out
-
-
 def _find_left_out(tables: Tables, inventory: Inventory) -> dict[str, list[int]]:
     """Return the rows of segments that were left out for an error, by the name of the route as names are compared."""
     known = {one.row for one in inventory.routes}
@@ -189,7 +176,6 @@ def _find_left_out(tables: Tables, inventory: Inventory) -> dict[str, list[int]]
 
 
 def _describe_lost(routes: RouteTables, left_out: Mapping[str, Sequence[int]]) -> Iterator[dict[str, Any]]:
-    """Yield the routes of which every segment was left out."""
     known = {key(one.route) for one in routes.routes}
     for name, rows in left_out.items():
         if name and name not in known:
@@ -207,7 +193,6 @@ def _say_left_out(rows: Sequence[int]) -> str:
 def _list_remarks(
     tables: Tables, inventory: Inventory, routes: RouteTables, left_out: Mapping[str, Sequence[int]]
 ) -> Iterator[str]:
-    """Yield the report's sentences on routes, and what was left out for errors."""
     lost = len(tables["Items"].rows) - len(inventory.items)
     if lost and (routes.routes or left_out):
         yield ngettext(

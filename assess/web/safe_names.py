@@ -36,10 +36,7 @@ def _take_last(name: str) -> str:
 def check_name(name: object) -> str:
     """Return the name of a new workbook.
 
-    Raises
-    ------
-    RequestError
-        If it is no name of an .xlsx file alone, such as one with a folder.
+    Raises RequestError if it is no name of an .xlsx file alone, such as one with a folder.
     """
     text = name.strip() if isinstance(name, str) else ""
     if text and not text.lower().endswith(ENDINGS[0]):
@@ -50,7 +47,6 @@ def check_name(name: object) -> str:
 
 
 def _find_fault(text: str) -> str:
-    """Return what of a name is not accepted, and how to fix it; "" where nothing is wrong."""
     stem = text[: -len(ENDINGS[0])]
     if not stem.strip(". "):
         return fill("Choose a name, such as office.xlsx.")

@@ -7,25 +7,28 @@ import signal
 import socket
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
+from itertools import count, islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import uvicorn
 
-from assess.errors import InputError
+from assess.delivery.deliver import saving
+from assess.errors import AssessError, InputError
 from assess.i18n import fill
 from assess.web.endpoints import build_application
 from assess.web.guard import Guard
 from assess.web.jobs import READING, Slots
 from assess.web.keeping import Keeper
-from assess.web.rescue import keep_changes
 from assess.web.sessions import ENTRANCE, HOSTED, HostedKeys, Keys, Limits, LocalKeys, Session
 
 if TYPE_CHECKING:
     from assess.web.book import Book
 
+MOST_NAMES = 1000
+"""Names that are tried for a file of changes that could not be saved."""
 LOOPBACK = "127.0.0.1"
 HTTP = 80
 GRACE = 2
@@ -90,10 +93,7 @@ def is_loopback(host: str) -> bool:
 def bind(place: Place) -> socket.socket:
     """Return a socket that listens.
 
-    Raises
-    ------
-    InputError
-        If the port is taken, or the address is not one of this machine.
+    Raises InputError if the port is taken, or the address is not one of this machine.
     """
     family = socket.AF_INET6 if ":" in place.host else socket.AF_INET
     listening = socket.socket(family, socket.SOCK_STREAM)
@@ -223,3 +223,30 @@ def _stopped_by(signals: Sequence[int], server: uvicorn.Server) -> Iterator[None
     finally:
         for number, handler in taken.items():
             signal.signal(number, handler)
+
+
+def keep_changes(session: Session) -> Path | None:
+    """Write the workbook of a session, with its changes, under a new name: next to its file, else where one may.
+
+    Returns the new file; None where none can be written.
+    """
+    book = session.book
+    if book is None:
+        return None
+    folders = [book.path.parent] if book.path else []
+    folders += [session.home] if session.home else []
+    with suppress(AssessError):
+        data = book.write()
+        for folder in (*folders, Path.home()):
+            with suppress(OSError):
+                path = next(one for one in _list_names(folder, book.name) if not one.exists())
+                with saving(path) as part:
+                    part.write_bytes(data)
+                return path
+    return None
+
+
+def _list_names(folder: Path, name: str) -> Iterator[Path]:
+    stem, suffix = Path(name).stem, Path(name).suffix
+    yield folder / f"{stem}-changes{suffix}"
+    yield from (folder / f"{stem}-changes-{number}{suffix}" for number in islice(count(2), MOST_NAMES))

@@ -276,10 +276,7 @@ class Keys(Protocol):
     def admit(self, visit: Visit) -> Session | None:
         """Return the session of a request that comes in for the first time and may; None: it may not.
 
-        Raises
-        ------
-        RequestError
-            If there is no room for another session.
+        Raises RequestError if there is no room for another session.
         """
 
     def sessions(self) -> Sequence[Session]:

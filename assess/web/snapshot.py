@@ -60,12 +60,8 @@ class Snapshot:
     def find_drawing(self, text: str, width: float | None) -> Drawing | None:
         """Return what is drawn of the plan of a floor, placed or not; None where its file cannot be used.
 
-        Parameters
-        ----------
-        text : str
-            The file as the floor names it.
-        width : float, optional
-            Width of the whole plan [m], where it is filled in.
+        `text`: the file as the floor names it.
+        `width`: width of the whole plan [m], where it is filled in.
         """
         with self._kept.more():
             return PictureReader(self.files, SILENT, self._kept).find_drawing(text, width)

@@ -33,12 +33,9 @@ ROOMS: Mapping[str, tuple[Text, ...]] = {
 }
 """Names that are offered for the first room, by use."""
 GROUND = ("1", "0", "g", "gf", "t", "pt", "ground", "ground floor", "piano terra")
-"""Names of a floor that lies on the ground; of any other its elevation is asked for."""
+"""Names of a floor that lies on the ground; of any other the height is not known until one fills it in."""
 
 Units = Literal["si", "imperial"]
-
-
-# ---------------------------------------------------------------- what there is to choose
 
 
 def describe_start(home: Path | None) -> dict[str, Any]:
@@ -61,9 +58,6 @@ def _list_types(use: str) -> Iterator[dict[str, Any]]:
     for row in read_catalogue("si", use):
         sizes = {name: row[name] / CENTIMETRES if name in row else None for name in ("breadth", "width", "height")}
         yield {"type": row["type"], **sizes}
-
-
-# ---------------------------------------------------------------- what is asked for
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,13 +87,7 @@ class Made:
 
 
 def build_workbook(request: Mapping[str, Any]) -> Made:
-    """Return a new workbook.
-
-    Raises
-    ------
-    RequestError
-        If the request asks for something that there is not.
-    """
+    """Return a new workbook; raises RequestError if the request asks for something that there is not."""
     wanted = _read(request)
     if wanted.kind == "example":
         return _take_example(wanted.name)
@@ -145,7 +133,6 @@ def _text(request: Mapping[str, Any], name: str) -> str:
 
 
 def _choose(request: Mapping[str, Any], name: str, choices: tuple[str, ...]) -> str:
-    """Return one of `choices`, the first where nothing was chosen."""
     value = _text(request, name) or choices[0]
     if value not in choices:
         known = ", ".join(filter(None, choices))
@@ -155,7 +142,6 @@ def _choose(request: Mapping[str, Any], name: str, choices: tuple[str, ...]) -> 
 
 
 def _list_pieces(pieces: object) -> Iterator[str]:
-    """Yield the English name of the type of every piece."""
     listed = pieces if isinstance(pieces, list) else [None]
     total = 0
     for piece in listed:
@@ -171,18 +157,13 @@ def _list_pieces(pieces: object) -> Iterator[str]:
 
 @cache
 def _types() -> Mapping[str, str]:
-    """Return the English names of the types by their names in any language."""
     from assess.workbook.catalogue import catalogue_rows
 
     names = [line["type"] for line in catalogue_rows()]
     return {key(load_catalogue(code).find(name)): name for code in LANGUAGES for name in names}
 
 
-# ---------------------------------------------------------------- what it holds
-
-
 def _fill(wanted: Wanted) -> Any:
-    """Return the rows of a new workbook, in the language in use."""
     from assess.pipeline.new_content import store_live
     from assess.workbook.catalogue import read_catalogue
     from assess.workbook.template import Content
@@ -214,18 +195,10 @@ def _take_example(name: str) -> Made:
     return Made(name, data, {one: resources.example_file(one) for one in sorted(names)})
 
 
-# ---------------------------------------------------------------- where it goes
-
-
 def place_workbook(made: Made, folder: Path) -> Path:
     """Write a new workbook and the files that it names into a folder, never over a file; return its path.
 
-    Raises
-    ------
-    RequestError
-        If there is a file of its name.
-    OutputError
-        If it cannot be written.
+    Raises RequestError if there is a file of its name; OutputError if it cannot be written.
     """
     path = folder / made.name
     if path.exists() or path.is_symlink():

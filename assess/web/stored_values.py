@@ -9,8 +9,8 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 
 from assess.pipeline.corrected import find_live_rows, is_lists
+from assess.web.cell_edits import CellPlace
 from assess.web.columns import PageSheet
-from assess.web.history import CellPlace
 from assess.web.snapshot import Snapshot
 from assess.workbook.open import UNSAVED, Book
 from assess.workbook.patch import Value, list_formulas, patch_workbook
@@ -50,6 +50,8 @@ def write_changes(data: bytes, base: Snapshot, now: Snapshot, different: Iterabl
 
     Rows of Items below the last one that has live formulas get none: the program reads them all the same.
 
+    Raises WorkbookError if a cell cannot be changed.
+
     Parameters
     ----------
     data : bytes
@@ -60,11 +62,6 @@ def write_changes(data: bytes, base: Snapshot, now: Snapshot, different: Iterabl
         The cells that differ.
     was : mapping of int to list
         What `find_live` returned before.
-
-    Raises
-    ------
-    WorkbookError
-        If a cell cannot be changed.
     """
     cells = list(different)
     changes: dict[str, dict[str, Value]] = {}
@@ -82,7 +79,6 @@ def _address(row: int, at: int) -> str:
 def _find_results(
     data: bytes, base: Snapshot, now: Snapshot, cells: list[CellPlace], was: LiveRows
 ) -> Iterator[tuple[str, dict[str, Value]]]:
-    """Yield the stored results that follow the edits, by the workbook's own names of the sheets."""
     is_wide = not _WIDE.isdisjoint(sheet for sheet, *_ in cells)
     name = base.cells.name
     if is_wide:

@@ -53,7 +53,6 @@ def _scan(path: Path) -> Iterator[tuple[str, str, str]]:
 
 
 def _evaluate(source: str) -> str:
-    """Return the text of literals of JavaScript that are added up."""
     return "".join(_unquote(literal) for literal in re.findall(_STRING, source))
 
 

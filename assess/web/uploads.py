@@ -80,10 +80,8 @@ def check_size(size: int, most: int) -> None:
 def parse_body(data: bytes) -> dict[str, Any]:
     """Return a JSON body, {} for an empty one.
 
-    Raises
-    ------
-    RequestError
-        If it is no JSON object, or holds what no workbook can: numbers that are not finite, halves of characters.
+    Raises RequestError if it is no JSON object, or holds what no workbook can: numbers that are not finite, halves of
+    characters.
     """
     if not data:
         return {}

@@ -43,28 +43,24 @@ class Wanted:
 def try_out(snapshot: "Snapshot", request: object) -> dict[str, Any]:
     """Return the answer of `POST /api/what-if`.
 
-    Parameters
-    ----------
-    snapshot : Snapshot
-        The workbook as it is.
-    request : object
-        A mapping with any of "scale", "scenario", "anchor" (names of pieces) and "first" (a number of fixes).
-
-    Raises
-    ------
-    InputError
-        If the request is none of these, or names a piece that is not assessed.
+    `request`: a mapping with any of "scale", "scenario", "anchor" (names of pieces) and "first" (a number of fixes).
+    Raises InputError if the request is none of these, or names a piece that is not assessed.
     """
     inventory = snapshot.inventory
     with speaking(load_catalogue(inventory.language)):
         wanted = read_request(inventory, snapshot.tables, request)
         before = keep(snapshot, "before", lambda: describe_present(snapshot))
-        present = keep(snapshot, "entries", lambda: list_present_entries(snapshot))
-        entries = present if wanted.settings == BY_FORMULAS or not wanted.first else _list_entries(snapshot, wanted)
+        present = keep(snapshot, "entries", lambda: _name_entries(evaluate_once(snapshot, BY_FORMULAS, routes=True)))
+        entries = (
+            present
+            if wanted.settings == BY_FORMULAS or not wanted.first
+            else _name_entries(evaluate_other(snapshot, wanted.settings))
+        )
         first = entries[: wanted.first]
         settings = replace(wanted.settings, anchor=_join_names(wanted.settings, first))
         after = before if settings == BY_FORMULAS else describe_side(snapshot, settings)
         scenarios = _list_scenarios(inventory)
+    named = set(settings.anchor if isinstance(settings.anchor, tuple) else ())
     return {
         "version": snapshot.version,
         "scenarios": scenarios,
@@ -73,12 +69,9 @@ def try_out(snapshot: "Snapshot", request: object) -> dict[str, Any]:
         "first": len(first),
         "before": before["side"],
         "after": after["side"],
-        "anchored": _list_anchored(inventory, settings),
+        "anchored": [one.row for one in inventory.items if one.item in named],
         "error": after["error"],
     }
-
-
-# ---------------------------------------------------------------- what is asked for
 
 
 def read_request(inventory: Inventory, tables: Tables, request: object) -> Wanted:
@@ -98,7 +91,6 @@ def read_request(inventory: Inventory, tables: Tables, request: object) -> Wante
 
 
 def _read_scale(value: Any) -> float:
-    """Return the factor on all motions; what its range is, the settings check."""
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
     if not is_number or not abs(value) < FAR:  # NaN among them
         raise InputError(fill("scale is {value}, expected a number.", value=_show(value)))
@@ -120,7 +112,6 @@ def _read_names(value: object) -> tuple[str, ...]:
 
 
 def _check_left_out(inventory: Inventory, tables: Tables, names: Iterable[str]) -> None:
-    """Raise InputError for a piece whose row was left out for an error."""
     known = {key(one.item) for one in inventory.items}
     rows = {key(row.get("item")): row.number for row in tables["Items"].with_all("item")}
     for name in names:
@@ -135,18 +126,6 @@ def _show(value: object) -> str:
     return shown if len(shown) <= LONGEST else f"{shown[:LONGEST]}..."
 
 
-# ---------------------------------------------------------------- the list of what to fix
-
-
-def list_present_entries(snapshot: "Snapshot") -> list[list[str]]:
-    """Return the names of the pieces of each entry of the list of what to fix, as the workbook is."""
-    return _name_entries(evaluate_once(snapshot, BY_FORMULAS, routes=True))
-
-
-def _list_entries(snapshot: "Snapshot", wanted: Wanted) -> list[list[str]]:
-    return _name_entries(evaluate_other(snapshot, wanted.settings))
-
-
 def _name_entries(found: Evaluation) -> list[list[str]]:
     if found.assessment is None:
         return []
@@ -155,12 +134,8 @@ def _name_entries(found: Evaluation) -> list[list[str]]:
 
 
 def _join_names(settings: Settings, entries: Iterable[Iterable[str]]) -> tuple[str, ...]:
-    """Return the names of pieces that are anchored: those named, and those of some entries."""
     named = settings.anchor if isinstance(settings.anchor, tuple) else ()
     return tuple(dict.fromkeys((*named, *(name for entry in entries for name in entry))))
-
-
-# ---------------------------------------------------------------- sides
 
 
 def describe_present(snapshot: "Snapshot") -> dict[str, Any]:
@@ -192,13 +167,7 @@ def _describe_side(snapshot: "Snapshot", inventory: Inventory, found: Evaluation
     return {"side": side, "error": say_fault(snapshot.problems, found) or routes["error"]}
 
 
-def _list_anchored(inventory: Inventory, settings: Settings) -> list[int]:
-    named = set(settings.anchor if isinstance(settings.anchor, tuple) else ())
-    return [one.row for one in inventory.items if one.item in named]
-
-
 def _list_scenarios(inventory: Inventory) -> list[list[str]]:
-    """Return the scenarios with their names; that of the workbook is said to be its own."""
     own = inventory.building.scenario_kind or SCENARIOS[0]
     found = []
     for one in SCENARIOS:

@@ -47,12 +47,8 @@ def read_table(name: str) -> list[dict[str, str]]:
 def read_catalogue(units: "Units" = "si", use: str = "") -> list[dict[str, Any]]:
     """Return the built-in types of furniture in the language in use, by name: the drop-down keeps this order.
 
-    Parameters
-    ----------
-    units : "si" or "imperial"
-        Of the headers that the values belong to.
-    use : str
-        One of `assess.workbook.schema.USES`: the types of this use alone. Blank: every type.
+    `units`: of the headers that the values belong to.
+    `use`: one of `assess.workbook.schema.USES`: the types of this use alone. Blank: every type.
     """
     wanted = (line for line in catalogue_rows() if not use or use.lower() in line["uses"].split())
     return sorted((_read_type(line, units) for line in wanted), key=lambda row: _by_number(row["type"]))
@@ -96,15 +92,13 @@ def _read_type(line: dict[str, str], units: "Units") -> dict[str, Any]:
     row: dict[str, Any] = {"type": gettext(kind)}
     for name, header in _NUMBERS.items():
         if line[header]:
-            row[name] = round(float(line[header]) * _scale(name, units), _DECIMALS)
+            column = CATALOGUE.column(name)
+            factors = QUANTITIES[column.quantity]
+            row[name] = round(
+                float(line[header]) * (1.0 if units == "si" else factors[column.unit] / factors[column.imperial]),
+                _DECIMALS,
+            )
     return {**row, "source": gettext(source) if source.startswith(ASSUMED) else source}
-
-
-def _scale(name: str, units: "Units") -> float:
-    """Return the factor from the unit of the file to that of the header."""
-    column = CATALOGUE.column(name)
-    factors = QUANTITIES[column.quantity]
-    return 1.0 if units == "si" else factors[column.unit] / factors[column.imperial]
 
 
 def _by_number(name: str) -> list[tuple[int, int | str]]:

@@ -7,15 +7,16 @@ and notes the cells of errors, so that what has been reported once is not report
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from assess.details import AT_BASE, AT_WALL, DETAILS, find_detail
-from assess.errors import ElevationGap, Gap, Problem
+from assess.errors import Gap, Problem
 from assess.i18n import Text, fill, join, nfill
 from assess.model import AXES, MEASURED
-from assess.motion.storeys import find_storey
+from assess.motion.assumed import find_storey
 from assess.units import ROUNDING
 from assess.workbook.ground_files import SHAKEN
 from assess.workbook.names import find_near_name, key
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.resolve import build_catalogue, defined, filled_sizes, turned_axis
+from assess.workbook.values import shorten
 
 Check = Callable[[Tables], Iterable[Problem]]
 
@@ -178,47 +179,54 @@ def check_floors(tables: Tables, *, is_shaken: bool = False) -> Iterator[Problem
     yield from check_wildcards(table)
     building = tables["Building"]  # what is filled in there counts, be it usable or not
     has_ground = is_shaken or any(building.says(row, *SHAKEN) for row in building.rows)
-    has_storeys = any(building.says(row, "height") and building.says(row, "storeys") for row in building.rows)
-    has_storeys = has_storeys and not any(table.says(row, "elevation") for row in table.rows)
-    yield from _check_demands(table, has_ground=has_ground, has_storeys=has_storeys)
+    if not has_ground:
+        yield from _check_demands(table, has_storeys=any(building.says(row, "storeys") for row in building.rows))
 
 
-def _check_demands(table: Table, *, has_ground: bool, has_storeys: bool) -> Iterator[Problem]:
-    """Report floors that nothing can serve; what cannot be read has been reported."""
+def _check_demands(table: Table, *, has_storeys: bool) -> Iterator[Problem]:
+    """Report floors that nothing can serve; what cannot be read has been reported.
+
+    A motion at grade serves every floor, one above those of which the height is known.
+    """
     rows = table.with_all("floor")
+    is_numbered = has_storeys and not any(table.says(row, "elevation") for row in rows)
+
+    def find_level(row: Row) -> float | None:
+        return find_storey(row.get("floor")) if is_numbered else row.get("elevation")
+
     known = [row for row in rows if table.says(row, "pfa_x", "pfa_y", "record_x", "record_y")]
-    heights = [level for row in known if (level := row.get("elevation")) is not None]
+    heights = [level for row in known if (level := find_level(row)) is not None]
     is_sure = not any(table.spoilt("elevation", row) for row in known)
+    if min(heights, default=1.0) <= 0 or not is_sure:
+        return
     for row in rows:
-        level = row.get("elevation")
+        level = find_level(row)
         if row in known or (level is None and table.spoilt("elevation", row)):
             continue
-        if level is None and has_ground and has_storeys and find_storey(row.get("floor")) is not None:
-            continue
-        has_neighbours = level is not None and bool(heights) and min(heights) <= level <= max(heights)
-        if level is None or not (has_ground or has_neighbours or not is_sure):
+        if level is None or not heights:
             message, fix = describe_unserved(row.quote("floor"), has_elevation=level is not None)
-            where, kind = ("elevation", ElevationGap) if has_ground else ("pfa_x", Gap)
-            found = table.problem(where if where in table.places else "floor", row, message, fix)
-            yield kind(found.severity, found.sheet, found.cell, found.message, found.fix)
+            found = table.problem("pfa_x" if "pfa_x" in table.places else "floor", row, message, fix)
+            yield Gap(found.severity, found.sheet, found.cell, found.message, found.fix)
 
 
 def describe_unserved(floor: str, *, has_elevation: bool) -> tuple[Text, Text]:
     """Say of a floor, its name in quotes, that its motion is not known, and what would give it."""
     if has_elevation:
         message = fill(
-            "floor {floor} has neither a record nor a PFA, lies between no two floors that have one and an Elevation, "
-            "and Building gives neither Ground PGA nor SDS nor a ShakeMap file nor Shaking.",
+            "floor {floor} has neither a record nor a PFA, no other floor has one and an Elevation, and Building gives "
+            "neither Ground PGA nor Ground PGV nor SDS nor a ShakeMap file nor Shaking.",
             floor=floor,
         )
-        fix = fill("Fill in PFA X or PFA Y, or name a record; or fill in Ground PGA, or choose Shaking, in Building.")
-        return message, fix
+        return message, _FILL_IN
     message = fill(
-        "floor {floor} has neither a record nor a PFA, and no Elevation from which its motion could be derived.",
+        "floor {floor} has neither a record nor a PFA, no Elevation by which its motion follows from other floors, "
+        "and Building gives neither Ground PGA nor Ground PGV nor SDS nor a ShakeMap file nor Shaking.",
         floor=floor,
     )
-    fix = fill("Fill in PFA X or PFA Y, or name a record; or fill in Elevation, and Ground PGA or Shaking in Building.")
-    return message, fix
+    return message, _FILL_IN
+
+
+_FILL_IN = fill("Fill in PFA X or PFA Y, or name a record; or fill in Ground PGA, or choose Shaking, in Building.")
 
 
 def check_velocities(tables: Tables) -> Iterator[Problem]:
@@ -290,7 +298,6 @@ def _check_reach(table: Table, row: Row) -> Iterator[Problem]:
 
 
 def _check_bracket(table: Table, row: Row, height: float | None) -> Iterator[Problem]:
-    """Report a bracket above the piece that it holds, and one of a piece that is said to have none."""
     at, label = row.get("bracket_height"), table.label("bracket_height")
     if at is not None and height is not None and at > height * (1 + ROUNDING):
         message = fill(
@@ -317,7 +324,6 @@ def _describe_no_column(table: Table, name: str, rows: Sequence[Row]) -> Problem
 
 
 def _check_plan_sides(table: Table, row: Row, breadth: float | None, width: float | None) -> Iterator[Problem]:
-    """Report a Breadth that is greater than the Width: Breadth is the shorter plan side."""
     if breadth is not None and width is not None and breadth > width * (1 + ROUNDING):
         label = table.label("breadth")
         message = fill(
@@ -356,3 +362,17 @@ def _check_axis(table: Table, row: Row) -> Iterator[Problem]:
         values = {"axis": axis, "angle": row.get("angle_deg"), "turned": turned}
         message = fill("Axis is {axis}, but an Angle of {angle:g} deg lies along {turned}; {axis} is used.", **values)
         yield table.habit("axis", row, message, fill("Correct one of the two."), "warning")
+
+
+def check_source_ids(tables: Tables) -> Iterator[Problem]:
+    """Warn of pieces that have the Source ID of another: of a row that was copied."""
+    table = tables["Items"]
+    first: dict[str, Row] = {}
+    for row in table.with_all("source_id"):
+        own = row.get("source_id").strip()
+        other = first.setdefault(own, row)
+        if other is not row:
+            message = fill("{label} {id} is that of row {row}, too.", label=table.label("source_id"), id=shorten(own),
+                           row=other.number)  # fmt: skip
+            fix = fill("Clear it where the row was copied: which of the two is in the model is not known.")
+            yield table.habit("source_id", row, message, fix, "warning")

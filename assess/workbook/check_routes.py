@@ -50,7 +50,11 @@ def check_segments(tables: Tables) -> Iterator[Problem]:
     yield from _check_clear_width(table, places)
     yield from _check_twice_joined(table)
     for row in table.rows:
-        yield from _check_joined(table, row)
+        lone_start = fill("From is filled in without To: the segment is evaluated, but joins nothing in the network.")
+        lone_end = fill("To is filled in without From: the segment is evaluated, but joins nothing in the network.")
+        for given, blank, message in (("start", "end", lone_start), ("end", "start", lone_end)):
+            if table.lacks(row, blank) and row.get(given) is not None:
+                yield table.problem(blank, row, message, fill("Fill in the other, or clear both."), "warning")
         yield from _check_widths(table, row)
         start, end = (known.get(key(table.sound(name, row) or "")) for name in ("start", "end"))
         if start and end:
@@ -81,14 +85,12 @@ def _check_clear_width(table: Table, places: Table) -> Iterator[Problem]:
 
 
 def _is_stair(table: Table, row: Row, known: Mapping[str, Row], places: Table) -> bool:
-    """Tell whether a segment joins places of different floors and names none."""
     ends = [known.get(key(table.sound(name, row) or "")) for name in ("start", "end")]
     floors = {places.sound("floor", one) for one in ends if one is not None}
     return table.lacks(row, "floor") and len(floors) > 1
 
 
 def _check_twice_joined(table: Table) -> Iterator[Problem]:
-    """Warn of a segment without a Clear width between two places that one of another route joins with a width."""
     if "clear_width" not in table.places:
         return
     wide: dict[frozenset[str], list[Row]] = {}
@@ -110,17 +112,7 @@ def _ends_of(row: Row) -> frozenset[str]:
     return frozenset(key(row.get(name)) for name in ("start", "end"))
 
 
-def _check_joined(table: Table, row: Row) -> Iterator[Problem]:
-    """Warn of a segment that has one end alone."""
-    lone_start = fill("From is filled in without To: the segment is evaluated, but joins nothing in the network.")
-    lone_end = fill("To is filled in without From: the segment is evaluated, but joins nothing in the network.")
-    for given, blank, message in (("start", "end", lone_start), ("end", "start", lone_end)):
-        if table.lacks(row, blank) and row.get(given) is not None:
-            yield table.problem(blank, row, message, fill("Fill in the other, or clear both."), "warning")
-
-
 def _check_widths(table: Table, row: Row) -> Iterator[Problem]:
-    """Warn of a segment that is narrower than it must be with nothing fallen."""
     clear, required = row.get("clear_width"), row.get("required_width")
     if clear is None or table.spoilt("required_width", row) or (required or DEFAULT_WIDTH) <= clear + SAME_WIDTH:
         return
@@ -137,7 +129,6 @@ def _check_widths(table: Table, row: Row) -> Iterator[Problem]:
 
 
 def _check_length(table: Table, row: Row, start: Row, end: Row) -> Iterator[Problem]:
-    """Report a segment that begins where it ends."""
     labels = {"one": table.label("start"), "other": table.label("end")}
     if start is end:
         message = fill("{one} and {other} are the same place: the segment has no length.", **labels)
@@ -155,7 +146,6 @@ def _apart(start: Row, end: Row) -> Iterator[float]:
 
 
 def _check_floor(table: Table, row: Row, floors: Sequence[str | None]) -> Iterator[Problem]:
-    """Report a floor that neither place lies on."""
     own = table.sound("floor", row)
     if None in floors or own is None or own in floors:
         return
@@ -241,7 +231,6 @@ def _check_segment(items: Table, row: Row, routes: Table, segments: Segments) ->
 
 
 def _has_unnamed(routes: Table, route: str) -> bool:
-    """Tell whether a route has a segment whose name is wrong or blank, which has been reported: it may be the one."""
     own = (row for row in routes.with_all("route") if key(row.get("route")) == key(route))
     return any(row.get("segment") is None for row in own)
 
@@ -305,12 +294,10 @@ def _is_placed(table: Table, row: Row) -> bool:
 
 
 def _says_all(table: Table, row: Row) -> bool:
-    """Tell whether a position is filled in, be it right or wrong."""
     return table.says(row, "x") and table.says(row, "y")
 
 
 def _count_pieces(rows: Iterable[Row]) -> int:
-    """Return how many pieces rows of Items stand for; one each where the quantity is blank or wrong."""
     return sum(row.get("quantity") or 1 for row in rows)
 
 
@@ -342,7 +329,6 @@ def _warn_no_plan(items: Table, floor: str, lost: Sequence[Row]) -> Iterator[Pro
 
 
 def _note_undrawn(tables: Tables, segments: Sequence[_OnPlan]) -> Iterator[Problem]:
-    """Note the segments that cannot be drawn, on floors where furniture can."""
     items, routes, places = (tables[name] for name in ("Items", "Routes", "Places"))
     drawn = {items.sound("floor", row) for row in items.rows if _is_placed(items, row)}
     for one in segments:

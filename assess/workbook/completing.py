@@ -30,11 +30,6 @@ ASSUME = fill(
     "Storeys in Building. The reports then say that the shaking is assumed."
 )
 
-PLACE = fill(
-    "Elevation: in Floors, fill in how high each floor lies above the ground. Where no floor has an Elevation and all "
-    "are called by their number, Height and Storeys in Building will do."
-)
-
 LIST = fill(
     "Furniture: in Items, write one row for each piece. Give it a name, its floor, and a Type of the Catalogue, or its "
     "Breadth and Height."
@@ -42,8 +37,7 @@ LIST = fill(
 
 
 def list_ways(problems: Sequence[Problem]) -> tuple[Text, ...]:
-    """Return the ways to complete a workbook, from its problems: shaking, elevations, furniture, or none."""
+    """Return the ways to complete a workbook, from its problems: shaking, furniture, or none."""
     gaps = [one for one in problems if isinstance(one, Gap)]
     shaking = (*BETTER, ASSUME) if any(one.lacks == "shaking" for one in gaps) else ()
-    place = (PLACE,) if any(one.lacks == "elevation" for one in gaps) else ()
-    return (*shaking, *place, *((LIST,) if any(one.lacks == "furniture" for one in gaps) else ()))
+    return (*shaking, *((LIST,) if any(one.lacks == "furniture" for one in gaps) else ()))

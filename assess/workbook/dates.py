@@ -26,19 +26,9 @@ def read_date(label: str, text: str, shown: str) -> str | None:
 
     Understood are 2026-12-31, 31/12/2026, 12.31.2026, 31 Dec 2026, December 31, 2026 and 31 dicembre 2026.
 
-    Parameters
-    ----------
-    label : str
-        Of the column.
-    text : str
-        With plain spaces and signs.
-    shown : str
-        The text as messages quote it.
-
-    Raises
-    ------
-    CellError
-        If there is no such day, or the order of day and month cannot be known.
+    `text`: with plain spaces and signs.
+    `shown`: the text as messages quote it.
+    Raises CellError if there is no such day, or the order of day and month cannot be known.
     """
     if _SHORT_YEAR.fullmatch(text):
         message = fill("{label} is {text}: the year has two digits.", label=label, text=shown)
@@ -69,7 +59,6 @@ def is_month(text: str) -> bool:
 
 
 def _list_readings(text: str) -> Iterator[tuple[int, int, int]]:
-    """Yield year, month and day of every way to read a text; the likelier first."""
     if match := _ISO.fullmatch(text):
         yield int(match[1]), int(match[3]), int(match[4])
     elif match := _NUMBERS.fullmatch(text):
@@ -82,13 +71,11 @@ def _list_readings(text: str) -> Iterator[tuple[int, int, int]]:
 
 
 def _find_month(word: str) -> int:
-    """Return the number of a month by its name or the first three letters or more of it, 0 for none."""
     typed = word.casefold()
     return next((at for at, names in enumerate(_MONTHS, 1) if any(one.startswith(typed) for one in names)), 0)
 
 
 def _build(year: int, month: int, day: int) -> datetime.date | Text:
-    """Return a date, or why there is none."""
     try:
         return datetime.date(year, month, day)
     except ValueError:

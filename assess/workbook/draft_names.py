@@ -39,7 +39,6 @@ def is_draft(name: str) -> bool:
 
 
 def _find_mark(name: str) -> str:
-    """Return the mark of a drafted route's name as it stands there."""
     return name[name.rindex("(") :].strip()
 
 
@@ -69,7 +68,6 @@ def check_drafts(tables: Tables) -> Iterator[Problem]:
 
 
 def _check_widths(table: Table) -> Iterator[Problem]:
-    """Warn of drafted segments that ask for less than the usual width: as much as their doors and passages have."""
     own = [row for row in table.with_all("route", "required_width") if is_draft(row.get("route"))]
     narrow = [row for row in own if row.get("required_width") < DEFAULT_WIDTH]
     if narrow:

@@ -9,17 +9,19 @@ from collections.abc import Mapping
 from typing import Any
 
 from assess.i18n import gettext
-from assess.methods import LiveCells, Method, Range, adopted_formula, all_methods
+from assess.methods import LiveCells, Method, MethodInfo, Range, all_methods
 from assess.methods._expression import EXCEL, Expression
 from assess.methods._method import ALIKE
 from assess.risk import LIMITS, RiskClass
+from assess.rocking.block import STOCKY
 from assess.units import ROUNDING
+from assess.workbook.schema import Column
 
 LIVE_METHODS = tuple(one for one in all_methods() if one.is_live)
-"""The methods that have a column in the workbook; the adopted formula is one of them."""
+"""The methods that have a column in the workbook; those that give a class are among them."""
 
 OUTSIDE = "*"
-"""Mark behind a class: outside the range in which the adopted formula was checked by tests."""
+"""Mark behind a class: outside the range in which its formula was checked."""
 
 
 def write_plainly(page: Any) -> None:
@@ -50,14 +52,26 @@ def write_live(method: Method, cells: Mapping[str, str], parameters: Mapping[str
     return {name: str(one) for name, one in method.live(LiveCells(parameters=own, **operands)).items()}
 
 
-def risk_class(probability: str, ratio: str, pfa: str, limits: tuple[str, str, str] | None = None) -> str:
-    """Return the class in the language in use, with `OUTSIDE` behind it where the formula was not checked."""
+def is_slender(ratio: str, centre: str) -> str:
+    """Expression for whether a piece is not too stocky to rock, by B/H and the height of its centre of gravity [-]."""
+    return f"{ratio}<{STOCKY!r}*SQRT(0.25+3*({centre})^2)"
+
+
+def is_stocky(ratio: str) -> str:
+    """Expression for whether a piece of uniform weight is too stocky to rock, by B/H."""
+    return f"{ratio}>={STOCKY!r}"
+
+
+def risk_class(
+    method: MethodInfo, probability: str, ratio: str, pfa: str, limits: tuple[str, str, str] | None = None
+) -> str:
+    """Return the class in the language in use, with `OUTSIDE` behind it where its method was not checked."""
     medium, high, very_high = limits or tuple(repr(limit) for limit in LIMITS)
     words, *labels = (f'"{say_class(risk)}"' for risk in RiskClass)
     for limit, label in zip((medium, high, very_high), labels, strict=True):
         words = f"IF({probability}>={limit},{label},{words})"
-    checked = adopted_formula().valid
-    inside = ",".join((_between(ratio, checked["breadth_to_height"]), _between(pfa, checked["pfa"])))
+    cells = {"breadth_to_height": ratio, "pfa": pfa}
+    inside = ",".join(_between(cells[quantity], checked) for quantity, checked in method.valid.items())
     return f'{words}&IF(AND({inside}),"","{OUTSIDE}")'
 
 
@@ -66,8 +80,15 @@ def say_class(risk: RiskClass) -> str:
     return f"{risk.symbol} {gettext(risk.word)}"
 
 
+def between(number: str, column: Column, scale: float = 1.0) -> str:
+    """Return an expression for whether a number, in SI times `scale`, lies in the range of a column."""
+    low, high = ((limit or 0) * column.factor * scale for limit in (column.low, column.high))
+    least, most = (min(one * (1 - ROUNDING), one * (1 + ROUNDING)) for one in (low, -high))
+    return f"AND({number}>={least:.12g},{number}<={-most:.12g})"
+
+
 def worse_axis(x: str, y: str) -> str:
-    """Return the axis of the larger PFA [g], X where they are alike to `ALIKE` decimals, as conversions leave them."""
+    """Return the axis of the larger peak, X where they are alike to `ALIKE` decimals, as conversions leave them."""
     return f'IF(ROUND({x},{ALIKE})>=ROUND({y},{ALIKE}),"X","Y")'
 
 

@@ -15,7 +15,7 @@ STRONGER = ("ground_pga", "sds")
 """Fields of Building that come before its ShakeMap."""
 REPLACED = ("ground_pga", "sds", "ground_pgv", "shakemap", "shaking")
 """Fields of Building whose place a ground motion of the run takes."""
-SHAKEN = ("ground_pga", "sds", "shakemap", "shaking")
+SHAKEN = ("ground_pga", "ground_pgv", "sds", "shakemap", "shaking")
 """Fields of Building that tell how the ground shakes; any one will do."""
 
 
@@ -24,12 +24,8 @@ def fill_building(
 ) -> tuple[Tables, list[Problem]]:
     """Return the tables with the blanks of Building filled in, and all problems.
 
-    Parameters
-    ----------
-    tables, problems
-        As read from the workbook.
-    given : mapping of str to Any, optional
-        Values by field or header, as in rows in code. Those of lines that the workbook fills in are not used.
+    `tables` and `problems`: as read from the workbook.
+    `given`: values by field or header, as in rows in code. Those of lines that the workbook fills in are not used.
     """
     if not given:
         return tables, problems
@@ -82,12 +78,7 @@ def replace_ground(tables: Tables, ground: GroundField) -> tuple[Tables, list[Pr
 class GroundReader:
     """Finds how the ground shakes at the building, and checks it as the functions of `check` do.
 
-    Parameters
-    ----------
-    ground : GroundField
-        The ground motion.
-    name : str
-        The field of Building that asks for it; "" where the run does.
+    `name`: the field of Building that asks for it; "" where the run does.
     """
 
     def __init__(self, ground: GroundField, name: str = "") -> None:

@@ -129,9 +129,6 @@ def note(habit: str, column: Text | str, text: str, value: object, corrected: fl
     return Remark(message, "", "note", habit, corrected, why)
 
 
-# ---------------------------------------------------------------- one message for one habit
-
-
 def group_problems(problems: Iterable[Problem]) -> list[Problem]:
     """Return problems as they are shown: those of one kind, in one column of a sheet, as one.
 
@@ -160,7 +157,6 @@ def _kind(problem: Problem) -> tuple[object, ...]:
 
 
 def _merge(alike: Sequence[Problem]) -> Problem:
-    """Return one problem for several of one kind."""
     first, cells = alike[0], _list_cells(alike)
     message = first.message
     if isinstance(message, Text) and "cells" in message.values:
@@ -172,7 +168,6 @@ def _merge(alike: Sequence[Problem]) -> Problem:
 
 
 def _list_cells(alike: Sequence[Problem]) -> str:
-    """Return the first cells of a group, with what each holds where that differs and is known."""
     shown = alike[:SHOWN_CELLS]
     held = [_held(one) for one in shown]
     is_told = len(set(held)) > 1 and all(held)

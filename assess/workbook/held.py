@@ -154,16 +154,12 @@ class HeldCells:
                 rows[row].pop(at, None)
             else:
                 rows[row][at] = value
-        cells = dict(self.cells) | {row: _in_order(found) for row, found in rows.items() if found}
+        cells = dict(self.cells) | {row: dict(sorted(found.items())) for row, found in rows.items() if found}
         for row in (row for row, found in rows.items() if not found):
             cells.pop(row, None)
         if any(row not in self.cells for row in rows):
             cells = dict(sorted(cells.items()))
         return replace(self, cells=cells)
-
-
-def _in_order(cells: Cells) -> Cells:
-    return dict(sorted(cells.items()))
 
 
 @dataclass(frozen=True, slots=True)

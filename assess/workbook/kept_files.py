@@ -49,10 +49,7 @@ class KeptFiles:
 
         `key` is what `find_key` returned, with what the result depends on besides; None for a file that is not kept.
 
-        Raises
-        ------
-        CellError
-            If a workbook may not name so much.
+        Raises CellError if a workbook may not name so much.
         """
         if key is None:
             return make()

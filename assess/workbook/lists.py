@@ -14,15 +14,13 @@ from xlsxwriter.utility import xl_col_to_name
 
 from assess.i18n import gettext
 from assess.model import ANCHORED, SCANNED, SIZES_FROM
-from assess.motion.scenario import HIGHEST_FLOOR_FREQUENCY, cap_pfv
 from assess.rocking.block import MIDDLE
-from assess.rocking.draws import CUT, Uncertainty
 from assess.units import ALIASES, GRAVITY, QUANTITIES, ROUNDING
 from assess.workbook import formulas as live
-from assess.workbook import live_shaking
+from assess.workbook import live_ground
 from assess.workbook.cell_texts import list_words, trim
 from assess.workbook.layout import LETTERS
-from assess.workbook.schema import BUILDING, CATALOGUE, FLOORS, LISTS, SHEETS, YES, Column
+from assess.workbook.schema import BUILDING, CATALOGUE, FLOORS, LISTS, SHEETS, YES
 
 Units = Literal["si", "imperial"]
 
@@ -50,12 +48,10 @@ LISTED = ("length", "acceleration", "velocity", "time", "share")
 _NEEDED_FACTORS = (
     ("Items", "breadth"), ("Items", "height"), ("Catalogue", "breadth"), ("Catalogue", "height"),
     ("Floors", "pfa_x"), ("Floors", "pfa_y"), ("Floors", "pfv_x"), ("Floors", "pfv_y"), ("Building", "period"),
-    ("Building", "ground_pgv"), ("Building", "height"), ("Floors", "elevation"),
+    ("Building", "ground_pga"), ("Building", "ground_pgv"), ("Building", "sds"), ("Building", "height"),
+    ("Floors", "elevation"),
     ("Items", "centre_of_gravity"), ("Catalogue", "centre_of_gravity"),
 )  # fmt: skip
-
-_NO_CAP = 1_000_000
-"""Largest PFV that is estimated [cm/s] where Ground PGV does not limit it."""
 
 _OWN_SCENARIOS = {"asfilled": "as filled", "recorded": "recorded", "given": "given"}
 """Scenarios that floors' own values serve, by how choices are compared."""
@@ -77,11 +73,11 @@ _WriteRow = Callable[[int, Mapping[str, str]], Iterator[str]]
 """Gives the formulas of one row by its number and the cells that they are written to."""
 
 _FLOOR_HELPERS = (
-    "key", "own_pfa_x", "own_pfa_y", "own_pfv_x", "own_pfv_y", *live_shaking.HELPERS, "hint",
+    "key", "own_pfa_x", "own_pfa_y", "own_pfv_x", "own_pfv_y", *live_ground.HELPERS, *live_ground.SERVED, "hint",
     "pfa_x", "pfa_y", "pfv_x", "pfv_y", "best",
 )  # fmt: skip
-"""Columns of the sheet for a row of Floors: its name, its own motion by axis, that of an assumed shaking, what
-it shows if it has neither, and what serves each axis."""
+"""Columns of the sheet for a row of Floors: its name, its own motion by axis, what follows from the ground, what it
+shows if it has neither, and what serves each axis."""
 
 _TYPE_HELPERS = ("key", *_TYPE_SIZES, CENTRE)
 """Columns of the sheet for a row of the Catalogue: its name, its sizes [cm], and its centre of gravity [-]."""
@@ -100,20 +96,20 @@ class ListsWriter:
     def write(self) -> None:
         """Write everything, one block beside the other."""
         self.page.write_string(0, 0, gettext(LISTS_NOTE), self.title)
-        at = live_shaking.write_shakings(self.book, self.page, self._write_choices() + 1)
+        at = live_ground.write_shakings(self.book, self.page, self._write_choices() + 1)
+        at = live_ground.write_table(self.book, self.page, at + 1)
         at = self._write_units(at + 1)
         at = self._write_factors(at + 1)
+        at = self._write_nodes(at + 1)
         at = self._write_rows(at + 1, "Floors", _FLOOR_HELPERS, self._of_floor)
         self._write_rows(at + 1, "Catalogue", _TYPE_HELPERS, self._of_type)
         for name in ("Floors", "Catalogue", "Places", "Routes"):
             self._name(f"list_{name.lower()}", name, "A", 2, self.last[name])
-        self.book.define_name("period", f"={gettext(BUILDING.name)}!$B${_line('period')}")
 
     def _name(self, name: str, sheet: str, column: str, first: int, last: int) -> None:
         self.book.define_name(name, f"={gettext(sheet)}!${column}${first}:${column}${last}")
 
     def _define(self, name: str, at: int, row: int, label: str, formula: str, value: Any) -> None:
-        """Write a label and next to it a formula with its value, and define a name for the latter."""
         self.page.write_string(row - 1, at, label)
         self.page.write_formula(row - 1, at + 1, formula, None, value)
         self.book.define_name(name, f"={gettext(LISTS)}!${xl_col_to_name(at + 1)}${row}")
@@ -154,37 +150,32 @@ class ListsWriter:
         sizes = (f"unit_{sheet}_{name}" for sheet in ("items", "catalogue") for name in ("breadth", "height"))
         formula = f'=IF(OR({",".join(f"ISTEXT({size})" for size in sizes)}),"{gettext(NO_UNIT)}","")'
         self._define("sizes_unit", at, row, gettext("unknown unit of a size"), formula, "")
-        self._write_strongest(row + 1, at)
-        self._write_largest_estimate(row + 2, at)
-        self._write_words(row + 3, at)
-        self._write_scenario(row + 5, at)
-        self._write_shaking(row + 5 + len(_SCENARIO_NAMES), at)
+        self._write_words(row + 1, at)
+        self._write_scenario(row + 3, at)
+        self._write_ground(row + 3 + len(_SCENARIO_NAMES), at)
         return at + 2
 
+    def _write_nodes(self, at: int) -> int:
+        """Write what a floor has of the ground's PFA and PFV at each z/h of the table, by axis."""
+        for axis in "xy":
+            every = list(live_ground.list_nodes(axis))
+            half = len(every) // 2
+            for peak, formulas in (("a", every[:half]), ("v", every[half:])):
+                name, letter = f"nodes_{axis}_{peak}", xl_col_to_name(at)
+                self.page.write_string(2, at, name)
+                for row, formula in enumerate(formulas, 3):
+                    self.page.write_formula(row, at, f"={formula}", None, "")
+                self.book.define_name(name, f"={gettext(LISTS)}!${letter}$4:${letter}${3 + half}")
+                at += 1
+        return at
+
     def _write_words(self, row: int, at: int) -> None:
-        """Write how a piece can be said to be anchored, and its sizes to be by a scan."""
         lists = ("anchored_words", gettext("words for anchored"), ANCHORED, YES), (
             "scanned_words", gettext("words for sizes by a scan"), SIZES_FROM, SCANNED
         )  # fmt: skip
         for number, (name, label, choices, choice) in enumerate(lists):
             words = list_words(choices, choice)
             self._define(name, at, row + number, label, f'="{words}"', words)
-
-    def _write_strongest(self, row: int, at: int) -> None:
-        """Write the factor on a floor's motion that no drawn earthquake exceeds."""
-        default = Uncertainty()
-        uncertainty = f"{gettext(BUILDING.name)}!$B${_line('motion_uncertainty')}"
-        factor = f"EXP({CUT!r}*MAX(shaking_scatter,{uncertainty}))"
-        given = f'IF(AND(ISNUMBER({uncertainty}),{uncertainty}>=0),{factor},"{gettext(WRONG)}")'
-        assumed = f"EXP({CUT!r}*MAX(shaking_scatter,{default.motion!r}))"
-        formula = f'=IF(shakemap_serves,"{gettext(RUN_ASSESS)}",IF(TRIM({uncertainty})="",{assumed},{given}))'
-        self._define("strongest", at, row, gettext("largest factor on the motion"), formula, default.largest)
-
-    def _write_largest_estimate(self, row: int, at: int) -> None:
-        """Write the PFV [cm/s] that no estimate exceeds, if Ground PGV is a number with a known unit."""
-        pgv = f"{gettext(BUILDING.name)}!$B${_line('ground_pgv')}"
-        formula = f"=IF(ISNUMBER({pgv}),IFERROR({pgv}*unit_building_ground_pgv*{cap_pfv(100)!r},{_NO_CAP}),{_NO_CAP})"
-        self._define("largest_estimate", at, row, gettext("largest PFV that is estimated"), formula, _NO_CAP)
 
     def _write_scenario(self, row: int, at: int) -> None:
         """Write the kind of scenario as choices are compared, and whether floors' own values serve it."""
@@ -197,14 +188,14 @@ class ListsWriter:
         for line, (label, formula) in enumerate(zip(_SCENARIO_NAMES, formulas, strict=True), row):
             self._define(label, at, line, label, f"={formula}", 1 if formula is formulas[-1] else "")
 
-    def _write_shaking(self, row: int, at: int) -> None:
-        """Write what follows from an assumed intensity."""
-        fields = ("ground_pga", "ground_pgv", "sds", "shakemap", "shaking", "height", "storeys")
+    def _write_ground(self, row: int, at: int) -> None:
+        fields = (
+            "ground_pga", "ground_pgv", "sds", "shakemap", "shaking", "height", "storeys", "period", "structure",
+            "motion_uncertainty", "class_by",
+        )  # fmt: skip
         building = {name: f"{gettext(BUILDING.name)}!$B${_line(name)}" for name in fields}
-        letter, last = LETTERS["Floors", "elevation"], self.last["Floors"]
-        floors = gettext("Floors")
-        elevations = f"{floors}!${letter}$2:${letter}${last}"
-        for line, (name, formula) in enumerate(live_shaking.list_names(building, elevations), row):
+        words = (f'"{gettext(one)}"' for one in (RUN_ASSESS, WRONG))
+        for line, (name, formula) in enumerate(live_ground.list_names(building, *words), row):
             self._define(name, at, line, name, f"={formula}", "")
 
     # ------------------------------------------------------------------ rows of Floors and of the Catalogue
@@ -230,15 +221,19 @@ class ListsWriter:
 
     def _of_floor(self, row: int, cells: Mapping[str, str]) -> Iterator[str]:
         yield _key(_typed("floor", row))
-        yield from self._own_pfa(row)
+        yield from self._own_pfa(row, cells["key"])
         yield from self._own_pfv(row, cells)
-        yield from live_shaking.list_formulas(_typed("elevation", row), cells)
-        could_serve = live_shaking.could_serve(_typed("elevation", row))
+        words = (f'"{gettext(one)}"' for one in (RUN_ASSESS, WRONG))
+        yield from live_ground.list_places(_typed("elevation", row), cells, *words)
+        yield from live_ground.list_served(cells)
+        could_serve = live_ground.could_serve(cells["z"])
         yield f'IF({could_serve},"{gettext(RUN_ASSESS)}","{gettext(NO_SHAKING)}")'
         yield from _serving(cells)
-        yield _best(cells)
+        (x, y), speeds = ([cells[f"{peak}_{axis}"] for axis in "xy"] for peak in ("pfa", "pfv"))
+        worse = f"IF(class_by=2,{live.worse_axis(x, y)},{live.worse_axis(*speeds)})"
+        yield f'IF(ISNUMBER({x}),IF(ISNUMBER({y}),{worse},"Y"),"X")'
 
-    def _own_pfa(self, row: int) -> Iterator[str]:
+    def _own_pfa(self, row: int, key: str) -> Iterator[str]:
         for axis in "xy":
             pfa, record = (_typed(f"{what}_{axis}", row) for what in ("pfa", "record"))
             unit, wrong = f"unit_floors_pfa_{axis}", gettext(WRONG)
@@ -246,16 +241,14 @@ class ListsWriter:
             number = f'IFERROR(IF({in_g}<{least:.12g},"{wrong}",{in_g}),{unit})'
             given = f'IF(scenario_kind="recorded","",{_if_number(pfa, number)})'
             aside = f'AND(TRIM({record})<>"",scenario_kind<>"given")'
-            yield f'IF(scenario_is_own=0,"",IF({aside},"{gettext(RUN_ASSESS)}",{given}))'
+            yield f'IF(OR({key}=0,scenario_is_own=0),"",IF({aside},"{gettext(RUN_ASSESS)}",{given}))'
 
     def _own_pfv(self, row: int, cells: Mapping[str, str]) -> Iterator[str]:
-        frequency = f"MIN(1/(period*unit_building_period),{HIGHEST_FLOOR_FREQUENCY!r})"
         for axis in "xy":
             pfa, unit = cells[f"own_pfa_{axis}"], f"unit_floors_pfv_{axis}"
-            by_period = f"{pfa}*{GRAVITY * 100!r}/(2*PI()*{frequency})"
-            estimate = f'IF(ISNUMBER(period),MIN({by_period},largest_estimate),"")'
             pfv = _typed(f"pfv_{axis}", row)
-            given = _if_number(pfv, f"IFERROR({pfv}*{unit}*100,{unit})", estimate)
+            inside = live.between(f"{pfv}*{unit}", FLOORS.column(f"pfv_{axis}"))
+            given = _if_number(pfv, f'IFERROR(IF({inside},{pfv}*{unit}*100,"{gettext(WRONG)}"),{unit})')
             yield f'IF(ISNUMBER({pfa}),{given},"")'
 
     def _of_type(self, row: int, cells: Mapping[str, str]) -> Iterator[str]:
@@ -263,14 +256,8 @@ class ListsWriter:
         for name in _TYPE_SIZES:
             yield _if_number(_typed(name, row), f"IFERROR({_typed(name, row)}*unit_catalogue_{name}*100,sizes_unit)")
         centre, unit = _typed(CENTRE, row), f"unit_catalogue_{CENTRE}"
-        share = f'IF({between(f"{centre}*{unit}", CATALOGUE.column(CENTRE))},{centre}*{unit},"{gettext(WRONG)}")'
+        share = f'IF({live.between(f"{centre}*{unit}", CATALOGUE.column(CENTRE))},{centre}*{unit},"{gettext(WRONG)}")'
         yield _if_number(centre, f"IFERROR({share},{unit})", repr(MIDDLE))
-
-
-def between(number: str, column: Column, scale: float = 1.0) -> str:
-    """Return an expression for whether a number, in SI times `scale`, lies in the range of a column."""
-    low, high = ((limit or 0) * column.factor * scale for limit in (column.low, column.high))
-    return f"AND({number}>={low * (1 - ROUNDING):.12g},{number}<={high * (1 + ROUNDING):.12g})"
 
 
 def _typed(name: str, row: int) -> str:
@@ -303,25 +290,22 @@ def _in_english(typed: str) -> str:
 
 
 def _bracket(cell: str) -> str:
-    """Expression for the unit in a header's brackets, spelt as in the lists of units."""
     start = f'FIND("[",{cell})'
     return f'LOWER(SUBSTITUTE(MID({cell},{start}+1,FIND("]",{cell})-{start}-1)," ",""))'
 
 
 def _serving(cells: Mapping[str, str]) -> list[str]:
-    """Expressions for PFA and PFV on X and Y: where one axis alone is known, it serves both."""
-    x, y = cells["own_pfa_x"], cells["own_pfa_y"]
-    nothing = {"pfa": f'AND({x}="",{y}="")', "pfv": "FALSE"}
-    return [
-        f"IF(ISNUMBER({cells['assumed_pfa']}),{cells[f'assumed_{what}']},"
-        f"IF({nothing[what]},{cells['hint']},"
-        f'IF({cells[f"own_pfa_{axis}"]}="",{cells[f"own_{what}_{other}"]},{cells[f"own_{what}_{axis}"]})))'
-        for what in ("pfa", "pfv")
-        for axis, other in ("xy", "yx")
-    ]
+    """Expressions for PFA and PFV on X and Y: where one axis alone is known, it serves both.
 
-
-def _best(cells: Mapping[str, str]) -> str:
-    """Expression for the axis that governs a piece which may topple along both: one without a number comes first."""
-    x, y = cells["pfa_x"], cells["pfa_y"]
-    return f'IF(ISNUMBER({x}),IF(ISNUMBER({y}),{live.worse_axis(x, y)},"Y"),"X")'
+    Where PFV is not known, the floor is not.
+    """
+    found = []
+    for what in ("pfa", "pfv"):
+        for axis, other in ("xy", "yx"):
+            own, others, pfv = (cells[name] for name in (f"own_pfa_{axis}", f"own_pfa_{other}", f"pfv_own_{axis}"))
+            pfa = f'IF({own}="",{others},{own})'
+            number = f"IF(ISNUMBER({pfv}),{pfa},{pfv})" if what == "pfa" else pfv
+            beam, hint = cells[f"beam_{what}"], cells["hint"] if what == "pfa" else '""'
+            nothing = f'IF({beam}="",{hint},{beam})'
+            found.append(f'IF(AND({own}="",{others}=""),{nothing},IF(ISNUMBER({pfa}),{number},{pfa}))')
+    return found

@@ -4,16 +4,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from assess.i18n import gettext
-from assess.methods import Method, adopted_formula
+from assess.methods import Method, adopted_formula, paper_formula
 from assess.model import NEAR_AXIS
+from assess.risk import RiskClass
 from assess.rocking.block import MIDDLE
-from assess.rocking.draws import STILL, STILL_SCANNED
+from assess.rocking.draws import BASE, CENTRE, CUT, HEIGHT, MARGIN, SCANNED_BASE, SCANNED_HEIGHT
 from assess.settings import Settings
 from assess.workbook import formulas as live
 from assess.workbook.cell_texts import find_row, is_among, trim
 from assess.workbook.layout import LETTERS
-from assess.workbook.lists import NO_SHAKING, NO_UNIT, RUN_ASSESS, WRONG, between
-from assess.workbook.schema import ITEMS, LIVE, NO, WORKINGS, YES
+from assess.workbook.lists import NO_SHAKING, NO_UNIT, RUN_ASSESS, WRONG
+from assess.workbook.schema import CLASS_OR, ITEMS, LIVE, NO, WORKINGS, YES
 
 ROW = "\x00"
 """Stands for the number of the row in the formulas of `LiveRow`, which are the same for every row."""
@@ -32,16 +33,16 @@ class LiveRow:
     def formulas(self) -> dict[str, str]:
         """Return a formula for each of `schema.LIVE` and `schema.WORKINGS`, with `ROW` for the number of the row."""
         cells = {label: f"${LETTERS[ITEMS.name, label]}{ROW}" for label in (*LIVE, *WORKINGS)}
-        ratio, pfa, *risks, _, _ = (cells[label] for label in LIVE)
+        ratio, pfa, *_ = (cells[label] for label in LIVE)
         floor, kind, axis, pfv, breadth, height = (cells[label] for label in WORKINGS)
         references = {"breadth_to_height": ratio, "height_cm": height, "pfa_g": pfa, "pfv_cm_s": pfv}
-        risk = risks[live.LIVE_METHODS.index(adopted_formula())]
         return dict(zip((*LIVE, *WORKINGS), (
             _divide(breadth, height),
             self._unless_blank(_served(floor, axis, "pfa", f'IF({axis}={_say(WRONG)},{axis},{_say(NO_AXIS)})')),
             *(_ready(ratio, pfa, _write(method, references)) for method in live.LIVE_METHODS),
-            self._class(risk, live.risk_class(risk, ratio, pfa)),
-            _ready(ratio, pfa, self._can_rock(ratio, pfa, kind)),
+            self._class(cells),
+            self._paper_class(cells),
+            _ready(ratio, pfa, self._can_rock(ratio, pfa, kind, floor)),
             self._unless_blank(f"IFERROR({find_row(trim(self._own('floor')), 'floor_key')},{_say(NO_FLOOR)})"),
             self._unless_blank(f'IFERROR({find_row(trim(self._own("type")), "type_key")},"")'),
             self._unless_blank(f"IF(ISNUMBER({floor}),{self._axis(floor)},{floor})"),
@@ -55,14 +56,24 @@ class LiveRow:
     def _unless_blank(self, formula: str) -> str:
         return f'=IF({self._own("item")}="","",{formula})'
 
-    def _class(self, risk: str, found: str) -> str:
-        """Return the formula for the class; a piece that is anchored has none, whatever its motion.
+    def _class(self, cells: Mapping[str, str]) -> str:
+        """Return the formula for the class by the formula that Building chooses; words in its place are those of OR."""
+        by_paper, risk = cells[CLASS_OR], cells[adopted_formula().short_title]
+        is_held = ",".join(f"{by_paper}={_say(word)}" for word in (IS_ANCHORED, RUN_ASSESS))
+        is_none = f'AND(ISNUMBER({cells[LIVE[0]]}),{live.is_stocky(cells[LIVE[0]])},{risk}="")'
+        is_known = f"OR(ISNUMBER({risk}),{is_none})"
+        found = f"IF(OR({is_held},NOT({is_known})),{by_paper},{_find_class(adopted_formula(), cells)})"
+        return f"=IF(class_by=2,{by_paper},{found})"
+
+    def _paper_class(self, cells: Mapping[str, str]) -> str:
+        """Return the formula for the class by OR; a piece that is anchored has none, whatever its motion.
 
         Whether a bracket of known capacity holds is for the program to say.
         """
+        risk = cells[paper_formula().short_title]
         is_anchored, is_known = is_among(self._own("anchored"), "anchored_words"), self._own("bracket_capacity")
         held = f'IF(TRIM({is_known})="",{_say(IS_ANCHORED)},{_say(RUN_ASSESS)})'
-        either = f"IF({is_anchored},{held},IF(ISNUMBER({risk}),{found},{risk}))"
+        either = f"IF({is_anchored},{held},IF(ISNUMBER({risk}),{_find_class(paper_formula(), cells)},{risk}))"
         is_ready = f"OR(ISNUMBER({risk}),{risk}={_say(RUN_ASSESS)},{risk}={_say(NO_SHAKING)})"
         return f"=IF({is_ready},{either},{risk})"
 
@@ -72,24 +83,37 @@ class LiveRow:
         number = f"IF(ISNUMBER({own}),{own}*unit_items_{name}*100,{_say(WRONG)})"
         return f'IF(sizes_unit<>"",sizes_unit,IF(TRIM({own})="",{listed},{number}))'
 
-    def _can_rock(self, ratio: str, pfa: str, kind: str) -> str:
-        """Expression for whether the strongest motion that may be drawn can start it: PFA e^(3 beta) >= 0.85 g b/z.
+    def _can_rock(self, ratio: str, pfa: str, kind: str, floor: str) -> str:
+        """Expression for whether the strongest motion that may be drawn can start it: PFA e^(3 s) >= 0.65 g b/z.
 
-        Where its sizes are by a scan the share is 0.64: it may be more slender.
+        s is as in `assess.pipeline.adopt.find_can_rock`. One that is too stocky never rocks. Where either axis serves
+        the larger PFA counts, though the motion of the larger PFV governs: a row is then never lower than in a run.
         """
-        still = f"IF({is_among(self._own('sizes_from'), 'scanned_words')},{STILL_SCANNED!r},{STILL!r})"
+        sizes = (SCANNED_BASE[1], SCANNED_HEIGHT), (BASE[1], HEIGHT)
+        by_scan, usual = (f"{base**2 + height**2:.6g}" for base, height in sizes)
+        fixed = f"IF({is_among(self._own('sizes_from'), 'scanned_words')},{by_scan},{usual})"
         units = [f"unit_{sheet}_centre_of_gravity" for sheet in ("items", "catalogue")]
-        starts = f"{pfa}*strongest>={still}*{ratio}/(2*{self._centre(units[0], kind)})"
+        centre = self._centre(units[0], kind)
+        spread = f"SQRT(INDEX(floor_spread,{floor})+{fixed}+({CENTRE!r}/({centre}))^2)"
+        strongest = f"MAX(INDEX(floor_pfa_x,{floor}),INDEX(floor_pfa_y,{floor}))"
+        pfa = f"IF({self._is_free()},{strongest},{pfa})"
+        starts = f"AND({pfa}*EXP({CUT:g}*{spread})>={MARGIN / 2!r}*{ratio}/({centre}),{live.is_slender(ratio, centre)})"
         unread = f"OR({','.join(f'ISTEXT({unit})' for unit in units)})"
-        fault = f"IF({unread},{_say(NO_UNIT)},IF(ISTEXT(strongest),strongest,{_say(WRONG)}))"
+        fault = f"IF({unread},{_say(NO_UNIT)},{_say(WRONG)})"
         return f"IFERROR(IF({starts},{_say(YES)},{_say(NO)}),{fault})"
 
     def _centre(self, unit: str, kind: str) -> str:
         """Expression for the height of the centre of gravity [-]: the row's own, else its type's, else the middle."""
         own = self._own("centre_of_gravity")
-        inside = between(f"{own}*{unit}", ITEMS.column("centre_of_gravity"))
+        inside = live.between(f"{own}*{unit}", ITEMS.column("centre_of_gravity"))
         number = f"IF(ISNUMBER({own}),IF({inside},{own}*{unit},{_say(WRONG)}),{_say(WRONG)})"
         return f'IF(TRIM({own})="",IF(ISNUMBER({kind}),INDEX(type_centre_of_gravity,{kind}),{MIDDLE!r}),{number})'
+
+    def _is_free(self) -> str:
+        """Expression for whether a piece may topple along either axis."""
+        angle = self._own("angle_deg")
+        turned = f"IF(ISNUMBER({angle}),ABS(MOD({angle},90)-45)<{45 - NEAR_AXIS:g},TRUE)"
+        return f'IF(TRIM({self._own("axis")})="",{turned},FALSE)'
 
     def _axis(self, floor: str) -> str:
         """Expression for the axis that governs: the row's own, else its angle's, else the worse of the floor's."""
@@ -100,6 +124,13 @@ class LiveRow:
         return f'IF(TRIM({self._own("axis")})="",{by_angle},{axis})'
 
 
+def _find_class(method: Method, cells: Mapping[str, str]) -> str:
+    """Expression for the class by the chance of a method: low where the piece cannot rock."""
+    ratio, pfa, *_, rocks = (cells[label] for label in LIVE)
+    found = live.risk_class(method, f"SUM({cells[method.short_title]})", ratio, pfa)  # of a text: 0
+    return f'IF({rocks}={_say(NO)},"{live.say_class(RiskClass.LOW)}",{found})'
+
+
 def _say(hint: str) -> str:
     """Literal for a word in the language in use."""
     return f'"{gettext(hint)}"'
@@ -108,7 +139,7 @@ def _say(hint: str) -> str:
 def _divide(breadth: str, height: str) -> str:
     """Return the formula for B/H; where one of them is no size what is shown in its place, a wrong one first."""
     size = ITEMS.column("breadth")
-    inside = f"AND({between(breadth, size, 100)},{between(height, size, 100)})"
+    inside = f"AND({live.between(breadth, size, 100)},{live.between(height, size, 100)})"
     ratio = f"IF({inside},{breadth}/{height},{_say(WRONG)})"
     other = f"IF({height}={_say(WRONG)},{height},IF(ISNUMBER({breadth}),{height},{breadth}))"
     return f"=IF(COUNT({breadth},{height})=2,{ratio},{other})"

@@ -27,9 +27,6 @@ MOST_NEAR = 10
 _BRACKET = re.compile(r"^(?P<label>.*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?\s*$", re.DOTALL)
 
 
-# ---------------------------------------------------------------- how names are compared
-
-
 @lru_cache(maxsize=4096)
 def split_header(header: str) -> tuple[str, str | None]:
     """Split ``Height [cm]`` into label and unit; the unit is None where there is no bracket."""
@@ -87,9 +84,6 @@ def _could_be(name: str, other: str) -> bool:
     return all(difflib.SequenceMatcher(None, one, two).ratio() >= NEAR_WORD for one, two in pairs)
 
 
-# ---------------------------------------------------------------- sheets and headers
-
-
 @cache
 def translate(sheet: Sheet, code: str) -> Sheet:
     """Return a sheet with its name and labels in a language; all else, choices too, stays as it is."""
@@ -116,7 +110,6 @@ def find_column(sheet: Sheet, label: str) -> Column | None:
 
 @cache
 def _columns_by_label(sheet: Sheet, code: str) -> dict[str, Column]:
-    """Return the columns by their labels in a language; of those of one label the first."""
     pairs = [(plain(label), one) for one in translate(sheet, code).columns for label in one.labels]
     return dict(reversed(pairs))
 
@@ -142,7 +135,6 @@ def find_near_column(sheet: Sheet, own: Sheet, header: str, labels: Collection[s
 
 
 def _has_bare_unit(folded: str, known: str, column: Column) -> bool:
-    """Tell whether a header gives its unit without brackets: ``Height (cm)``, ``Height, cm``."""
     rest = folded.removeprefix(known).strip("()_,;:-/.")
     return folded.startswith(known) and read_unit(rest) in QUANTITIES.get(column.quantity, {})
 
@@ -178,9 +170,6 @@ def is_live(sheet: Sheet, label: str) -> bool:
 def _live_labels(code: str) -> frozenset[str]:
     labels = [split_header(label)[0] for label in (*LIVE, *WORKINGS)]
     return frozenset(plain(label if code == ENGLISH else load_catalogue(code).find(label)) for label in labels)
-
-
-# ---------------------------------------------------------------- choices
 
 
 @lru_cache(maxsize=4096)  # the same choices stand in row after row

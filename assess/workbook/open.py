@@ -71,7 +71,6 @@ def damaged(message: str) -> WorkbookError:
 
 
 def _describe(error: BaseException) -> Text:
-    """Return in words what kind of damage an error of `DAMAGE` is of."""
     if isinstance(error, expat.ExpatError):
         return fill("its XML is broken")
     if isinstance(error, (zipfile.BadZipFile, zlib.error, EOFError, OSError)):
@@ -261,8 +260,6 @@ class Tree(Part):
 
 
 class _Strings(Part):
-    """The texts that cells share."""
-
     limits = _STRINGS
 
     def __init__(self, *args: Any) -> None:
@@ -429,7 +426,6 @@ class SheetCells(Part):
         self._texts, self._tags = [], set()
 
     def _take_plain(self, cells: str, is_empty: bool) -> None:
-        """Take in the cells of a plain row, as the handlers of their tags would."""
         if self.marks_cells:
             self._close_cells(list_cells(cells))
         elif not is_empty:
@@ -488,7 +484,6 @@ class SheetCells(Part):
         return read_number(number, self._format(self._style), is_1904=self.shared.is_1904)
 
     def _format(self, style: str) -> str | None:
-        """Return the format of a style that shows a number otherwise, else None."""
         number = int(style) if style.isdigit() else 0
         return self.shared.styles[number] if number < len(self.shared.styles) else None
 
@@ -505,7 +500,6 @@ def _check_kind(types: Tree, book: Tree) -> None:
 
 
 def _list_formats(styles: Tree) -> list[str | None]:
-    """Return, by the number of a style, the format of one that shows a number otherwise, else None."""
     codes = {one.get("numFmtId", ""): one.get("formatCode", "") for one in styles.find("numFmt")}
     return [find_format(one.get("numFmtId", "0"), codes) for one in styles.find("xf", "cellXfs")]
 
@@ -520,15 +514,6 @@ class Book:
     the parts that the workbook refers to, such as its calcChain, by kind. `archive` is the zip.
 
     `hidden` holds the names of those that are not shown.
-
-    Parameters
-    ----------
-    data : bytes
-        The file.
-    name : str
-        How messages call it.
-    progress : Progress
-        Checked while the parts are read.
 
     Raises
     ------
@@ -559,7 +544,6 @@ class Book:
             )
 
     def _links(self) -> dict[str, tuple[str, str]]:
-        """Return kind and path of the parts that the workbook refers to, by the name of the reference."""
         present, found = set(self.archive.namelist()), {}
         for one in self.read(Tree, RELATIONS).find("Relationship"):
             path = posixpath.normpath(posixpath.join("/xl", one.get("Target", ""))).lstrip("/")

@@ -33,18 +33,10 @@ class OutlineError(Exception):
 def parse_outline(text: str, factor: float) -> Outline:
     """Return the corners of an outline [m]; its last corner may repeat the first.
 
-    Parameters
-    ----------
-    text : str
-        ``x y; x y; x y``; the comma of ``6,5 0`` is a decimal one
-    factor : float
-        From its unit to m.
-
-    Raises
-    ------
-    OutlineError
-        If a corner is not two numbers or can be read in two ways (``1,500 0``), two that follow each other are the
-        same, there are fewer than three or more than 200, or its sides cross or touch each other.
+    `text`: ``x y; x y; x y``; the comma of ``6,5 0`` is a decimal one.
+    `factor`: from its unit to m.
+    Raises OutlineError if a corner is not two numbers or can be read in two ways (``1,500 0``), two that follow each
+    other are the same, there are fewer than three or more than 200, or its sides cross or touch each other.
     """
     parts = [part.split() for part in text.replace("\n", ";").split(";") if part.strip()]
     corners = [_read_corner(at, part, factor) for at, part in enumerate(parts, 1)]
@@ -79,7 +71,6 @@ def _read_corner(number: int, part: list[str], factor: float) -> Corner:
 
 
 def _take_commas(number: int, part: list[str]) -> list[str]:
-    """Return the numbers of a corner with points for decimal commas."""
     if len(part) != 2 or not all(_NUMBER.fullmatch(one) or _DECIMAL_COMMA.fullmatch(one) for one in part):
         return part
     if any(_MAYBE_THOUSANDS.fullmatch(one) for one in part):
@@ -107,7 +98,6 @@ def _check_sides(corners: list[Corner]) -> None:
 
 
 def _fold_back(sides: list[tuple[Corner, Corner]], one: int, other: int) -> bool:
-    """Tell whether two sides that share a corner lie on each other."""
     first, last = (one, other) if other - one == 1 else (other, one)
     (a, b), (_, c) = sides[first], sides[last]
     back, on = (a[0] - b[0], a[1] - b[1]), (c[0] - b[0], c[1] - b[1])
@@ -117,7 +107,6 @@ def _fold_back(sides: list[tuple[Corner, Corner]], one: int, other: int) -> bool
 
 
 def _meet(a: Corner, b: Corner, c: Corner, d: Corner) -> bool:
-    """Tell whether the sides a to b and c to d have a point in common."""
     turns = _turn(a, b, c), _turn(a, b, d), _turn(c, d, a), _turn(c, d, b)
     if turns[0] * turns[1] < 0 and turns[2] * turns[3] < 0:
         return True

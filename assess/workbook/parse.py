@@ -75,7 +75,6 @@ class CodeCells:
 
 
 def _native(value: Any) -> Any:
-    """Return a value of numpy or pandas as Python has it; NaN is blank."""
     value = value.item() if hasattr(value, "item") else value
     return None if isinstance(value, float) and value != value else value
 
@@ -267,8 +266,6 @@ def _describe_far(source: Source) -> tuple[str, Text, Text]:
 
 
 class _Parser:
-    """Reads one sheet; holds what every step needs."""
-
     def __init__(self, english: Sheet, own: Sheet, source: Source) -> None:
         self.english, self.own, self.source = english, own, source
         self.problems: list[Problem] = []
@@ -359,7 +356,6 @@ class _Parser:
         return found
 
     def _check_merged(self, rows: Sequence[int]) -> None:
-        """Report merged cells in the header row and in entries; in headings between those they do no harm."""
         for reference in self.source.merged:
             merged = row_numbers(reference)
             at = bisect_left(rows, merged.start)
@@ -380,7 +376,6 @@ class _Parser:
         self.covered += [self.source.address(*one) for one in cells if one != (top, left - 1)]
 
     def _note_hidden(self, found: Sequence[Row]) -> None:
-        """Note the hidden rows and columns that are read."""
         hidden = set(self.source.hidden_rows)
         rows = [row.number for row in found if row.number in hidden] if hidden else []
         if rows:
@@ -394,7 +389,6 @@ class _Parser:
             self.report(f"{column_letters(filled[0])}1", message, severity="note")
 
     def _best_row(self, top: Sequence[tuple[int, Cells]]) -> tuple[int, Cells] | None:
-        """Return the first row that names most columns; other languages count where English falls short."""
         rows = [[plain(split_header(str(value))[0]) for value in cells.values()] for _, cells in top]
         known: set[str] = set()
         best = None
@@ -432,12 +426,10 @@ class _Parser:
             self.report(self.source.address(number), message, fill("Add it to the header row."))
 
     def _missing(self) -> list[Column]:
-        """Return the required columns that no header names."""
         found = {column.name for column in self.headers.values()}
         return [column for column in self.own.columns if column.required and column.name not in found]
 
     def _match(self, header: str, cell: str, labels: set[str] | None = None) -> tuple[Column | None, bool]:
-        """Return the column that a header names, and whether the header was reported as wrong."""
         is_line = self.own.layout == "form"
         label, unit = split_header(header)
         column = find_column(self.english, label)

@@ -125,10 +125,7 @@ def patch_workbook(
 def list_formulas(data: bytes, sheet: str, *, name: str = "workbook.xlsx") -> dict[str, bool]:
     """Return whether each formula of a sheet has stored a result that is not blank, by its address.
 
-    Raises
-    ------
-    WorkbookError
-        If the workbook cannot be opened.
+    Raises WorkbookError if the workbook cannot be opened.
     """
     with Book(data, name) as book:
         return book.read(SheetFormulas, book.sheets[sheet]).found
@@ -165,8 +162,6 @@ def _check_names(book: Book, names: Sequence[str]) -> None:
 
 @dataclass(slots=True)
 class _SheetPatch:
-    """The changes of one sheet."""
-
     book: Book
     sheet: str
     changes: Values
@@ -187,7 +182,12 @@ class _SheetPatch:
         for number in sorted(wanted):
             values = changes.get(number, {})
             for column in values:
-                self._check_place(places, headings, column, number)
+                address = f"{column_letters(column - 1)}{number}"
+                for (left, right, top, bottom), kind in places.locked:
+                    if left <= column <= right and top <= number <= bottom:
+                        self._refuse(address, LOCKED[kind])
+                if any(left <= column <= right and number == top for left, right, top in headings):
+                    self._refuse(address, _HEADER)
             row = places.rows.get(number)
             one = _RowPatch(places, number, row, values, results.get(number, {}))
             if row is None:
@@ -202,7 +202,6 @@ class _SheetPatch:
         return apply_edits(places.data, edits)
 
     def _by_row(self, values: Values) -> dict[int, dict[int, Value]]:
-        """Return the values by row and column, both from 1."""
         found: dict[int, dict[int, Value]] = {}
         for address, value in values.items():
             place = split_address(address)
@@ -218,17 +217,6 @@ class _SheetPatch:
                 found.setdefault(place[1], {})[place[0]] = value
         return found
 
-    def _check_place(
-        self, places: SheetPlaces, headings: Sequence[tuple[int, int, int]], column: int, number: int
-    ) -> None:
-        """Refuse a cell that cannot be changed by itself."""
-        address = f"{column_letters(column - 1)}{number}"
-        for (left, right, top, bottom), kind in places.locked:
-            if left <= column <= right and top <= number <= bottom:
-                self._refuse(address, LOCKED[kind])
-        if any(left <= column <= right and number == top for left, right, top in headings):
-            self._refuse(address, _HEADER)
-
     def _refuse_all(self, row: "_RowPatch") -> None:
         for column, why in row.refused:
             self._refuse(f"{column_letters(column - 1)}{row.number}", why)
@@ -240,8 +228,6 @@ class _SheetPatch:
 
 @dataclass(slots=True)
 class _RowPatch:
-    """The changes of one row, by column."""
-
     places: SheetPlaces
     number: int
     row: RowPlace | None
@@ -280,7 +266,6 @@ class _RowPatch:
         return edits + self._insert(row, new)
 
     def _insert(self, row: RowPlace, new: Sequence[tuple[int, bytes]]) -> list[Edit]:
-        """Return the edits that add cells; the row's tag is opened, and loses a hint that would be wrong."""
         if not new:
             return []
         one, data = row.element, self.places.data
@@ -295,7 +280,6 @@ class _RowPatch:
         return [(one.start, one.head, changed), *((at, at, text) for at, text in new)]
 
     def _place_after(self, row: RowPlace, column: int) -> int:
-        """Return where the first cell right of a missing one begins, else the end of the row."""
         return next((start for at, start in row.starts if at > column), row.element.foot)
 
     def _new_cell(self, column: int) -> bytes:
@@ -314,7 +298,6 @@ class _RowPatch:
         return next((style for style in found if style.isdigit() and int(style)), "")
 
     def _changed_cell(self, cell: CellPlace, value: Value) -> bytes:
-        """Return a cell with a value in place of its content."""
         formula = cell.part("f")
         if formula is not None:
             self.formulas.append(f"{column_letters(cell.column - 1)}{self.number}")
@@ -323,7 +306,6 @@ class _RowPatch:
         return _write_cell(self.places.prefix, self._tag(cell), value)
 
     def _tag(self, cell: CellPlace, *, keeps: bool = False) -> bytes:
-        """Return the start tag of a cell without what its content was."""
         known = {f"{self.places.prefix.decode()}{name}" for name in _CONTENT}
         unknown = [one.name for one in cell.parts if one.name not in known]
         if unknown:
@@ -333,12 +315,11 @@ class _RowPatch:
 
 
 def _write_cell(prefix: bytes, tag: bytes, value: Value, formula: bytes = b"") -> bytes:
-    """Return a cell by its start tag: its value, or a formula and the result that is stored for it."""
     p, close = prefix, b"</%bc>" % prefix
     if value is None:
         return tag + formula + close if formula else tag[:-1].rstrip() + b"/>"
     if isinstance(value, str):
-        text = _write_text(value)
+        text = escape(_code(value), {"\r": "&#13;"}).encode()
         if formula:
             return add_attribute(tag, b't="str"') + formula + b"<%bv>%b</%bv>" % (p, text, p) + close
         inline = b'<%bis><%bt xml:space="preserve">%b</%bt></%bis>' % (p, p, text, p, p)
@@ -351,11 +332,6 @@ def _write_cell(prefix: bytes, tag: bytes, value: Value, formula: bytes = b"") -
 def _write_number(value: float) -> str:
     number = float(value)
     return str(int(number)) if number.is_integer() and abs(number) < 1e15 else repr(number)
-
-
-def _write_text(value: str) -> bytes:
-    """Return a text as XML; characters that XML lacks by their codes, as spreadsheet programs write them."""
-    return escape(_code(value), {"\r": "&#13;"}).encode()
 
 
 def _code(value: str) -> str:
@@ -373,7 +349,6 @@ def read_back(value: Value) -> Value:
 
 
 def _insert_rows(places: SheetPlaces, rows: Sequence[tuple[int, bytes]]) -> list[Edit]:
-    """Return the edits that add rows in their order."""
     one = places.sheet_data
     tag = places.data[one.start : one.head]
     if rows and tag.endswith(b"/>"):
@@ -384,7 +359,6 @@ def _insert_rows(places: SheetPlaces, rows: Sequence[tuple[int, bytes]]) -> list
 
 
 def _widen(places: SheetPlaces, added: Sequence[tuple[int, int]]) -> list[Edit]:
-    """Return the edit of what the sheet says how far its cells reach, if it is less than new cells do."""
     one = places.dimension
     span = split_range(one.attributes.get("ref", "")) if one is not None else None
     if one is None or span is None or not added:
@@ -410,14 +384,9 @@ def _pack(book: Book, parts: Mapping[str, bytes | None]) -> bytes:
             book.progress.check()
             content = parts.get(info.filename, b"") if info.filename in parts else book.archive.read(info)
             if content is not None:
-                out.writestr(_copy_info(info), content, compresslevel=_LEVEL)
+                found = zipfile.ZipInfo(info.filename, info.date_time)
+                for name in ("compress_type", "comment", "extra", "create_system", "create_version", "extract_version",
+                             "internal_attr", "external_attr"):  # fmt: skip
+                    setattr(found, name, getattr(info, name))
+                out.writestr(found, content, compresslevel=_LEVEL)
     return packed.getvalue()
-
-
-def _copy_info(info: zipfile.ZipInfo) -> zipfile.ZipInfo:
-    """Return what the zip says of a part, for another zip."""
-    found = zipfile.ZipInfo(info.filename, info.date_time)
-    for name in ("compress_type", "comment", "extra", "create_system", "create_version", "extract_version",
-                 "internal_attr", "external_attr"):  # fmt: skip
-        setattr(found, name, getattr(info, name))
-    return found

@@ -48,7 +48,6 @@ def drop_from_chain(book: Book, formulas: Sequence[tuple[str, str]]) -> dict[str
 
 
 def _edit_chain(part: SmallPart, gone: Collection[tuple[str, str]]) -> tuple[list[Edit], int]:
-    """Return the edits of a chain, and how many entries stay."""
     edits: list[Edit] = []
     sheet = written = "0"
     kept = 0
@@ -66,7 +65,6 @@ def _edit_chain(part: SmallPart, gone: Collection[tuple[str, str]]) -> tuple[lis
 
 
 def _drop_references(book: Book, path: str) -> Mapping[str, bytes]:
-    """Return the list of content types and the workbook's relationships without a part."""
     changed = {}
     for name, tag, attribute in ((TYPES, "Override", "PartName"), (RELATIONS, "Relationship", "Target")):
         part = book.read(SmallPart, name)
@@ -77,7 +75,6 @@ def _drop_references(book: Book, path: str) -> Mapping[str, bytes]:
 
 
 def _resolve(folder: str, target: str) -> str:
-    """Return the part that a relationship of a part in a folder refers to."""
     return posixpath.normpath(posixpath.join("/", folder, target)).lstrip("/")
 
 

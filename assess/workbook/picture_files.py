@@ -35,14 +35,8 @@ Taken = TypeVar("Taken")
 class PictureReader:
     """Reads the pictures that a workbook names, each once, and checks them as the functions of `check` do.
 
-    Parameters
-    ----------
-    folder : Path, optional
-        Where they are; None where the workbook was read without one.
-    progress : Progress
-        Checked before every picture.
-    kept : KeptFiles, optional
-        What earlier readings of the workbook made of its files.
+    `folder`: where they are; None where the workbook was read without one.
+    `kept`: what earlier readings of the workbook made of its files.
 
     Attributes
     ----------
@@ -76,8 +70,6 @@ class PictureReader:
         self._allowance.take_pixels(count_pixels(data))
         check_picture(data)
 
-    # ------------------------------------------------------------ photos
-
     def check_photos(self, tables: Tables) -> Iterator[Problem]:
         """Read the photos of the pieces, or report what is wrong with them."""
         table = tables["Items"]
@@ -97,8 +89,6 @@ class PictureReader:
         photo = prepare_photo(data)
         self._allowance.take_photo(len(photo))
         return photo
-
-    # ------------------------------------------------------------ plans
 
     def check_plans(self, tables: Tables) -> Iterator[Problem]:
         """Read the plans of the floors, or report what is wrong with them, their numbers or where they lie."""
@@ -136,10 +126,6 @@ class PictureReader:
         return None if isinstance(found, CellError) else found[1]
 
     def _draw(self, text: str, width: float | None) -> tuple[Path, Drawing] | CellError:
-        """Return where a plan is and what is drawn of it, once for all floors that name it.
-
-        A picture is read once for each width, by which its pixels are chosen.
-        """
         found = self._plans.get(text) or self._plans.get((text, width))
         if found is None:
             try:
@@ -157,15 +143,10 @@ class PictureReader:
             self._allowance.take_drawing(len(data))
         return read_plan(data, width)
 
-    # ------------------------------------------------------------ files
-
     def _read(self, text: str, take: Callable[[bytes], Taken], purpose: str, side: int = 0) -> tuple[Path, Taken]:
         """Return where a picture is, and what `take` makes of its bytes for a purpose; `side` counts for pixels alone.
 
-        Raises
-        ------
-        CellError
-            As `find_file`; or if it cannot be opened, or `take` cannot use it.
+        Raises CellError as `find_file`; or if it cannot be opened, or `take` cannot use it.
         """
         name = shorten(text)
         if self.folder is None:
@@ -189,7 +170,6 @@ def _is_of_pixels(path: Path) -> bool:
 
 
 def _make(path: Path, name: str, take: Callable[[bytes], Taken]) -> Taken | PictureError:
-    """Return what `take` makes of a file, or why it cannot be used; CellError where it cannot be opened."""
     try:
         with path.open("rb") as file:
             data = file.read(MOST_FILE + 1)
@@ -203,7 +183,6 @@ def _make(path: Path, name: str, take: Callable[[bytes], Taken]) -> Taken | Pict
 
 
 def _place_plan(row: Row, path: Path, drawing: Drawing) -> FloorPlan | None:
-    """Return the plan where its numbers put it; None where one of them is blank."""
     left, bottom, width = row.get("plan_left"), row.get("plan_bottom"), row.get("plan_width") or drawing.width
     if left is None or bottom is None or width is None:
         return None
@@ -231,18 +210,13 @@ def _describe_unplaced(table: Table, row: Row, drawing: Drawing) -> Problem:
 
 
 def _check_numbers_alone(table: Table, row: Row) -> Iterator[Problem]:
-    """Warn of numbers that place a plan where there is none."""
     given = [name for name in (*PLACED, "plan_turn") if row.get(name) is not None]
     if given:
         message = fill("{label} is filled in without {other}.", label=table.label(given[0]), other=table.label("plan"))
         yield table.problem(given[0], row, message, fill("Name the file of the plan, or clear it."), "warning")
 
 
-# ---------------------------------------------------------------- where a plan lies
-
-
 def _check_place(table: Table, row: Row, plan: FloorPlan, items: Table, places: Table) -> Iterator[Problem]:
-    """Warn of a plan that pieces of its floor lie outside of, or that is far larger than all that is placed on it."""
     own = [one for one in items.with_all("floor", "x", "y") if one.get("floor") == row.get("floor")]
     if not own:
         return

@@ -11,7 +11,6 @@ _MOST_READINGS = 2
 
 
 def _scale(column: Column, unit: str) -> float:
-    """Factor from a unit to the unit in which the column's ranges are written."""
     if unit == _PERCENT_OF_G:
         return 0.01 * GRAVITY / column.factor
     return QUANTITIES[column.quantity][unit] / column.factor if column.quantity else 1.0

@@ -12,7 +12,7 @@ from assess.i18n import fill
 from assess.model import Cost, Inventory, Place, Segment
 from assess.motion.site_ground import GroundField
 from assess.progress import SILENT, Progress, Stage
-from assess.workbook import check, check_routes, draft_names, source_ids
+from assess.workbook import check, check_routes, draft_names
 from assess.workbook.check import Check
 from assess.workbook.ground_files import fill_building, replace_ground
 from assess.workbook.held import HeldSheets, hold_cells
@@ -28,11 +28,11 @@ from assess.workbook.resolve import (
     build_floors,
     build_items,
     build_rows,
+    correct_names,
     leave_out,
     resolve,
 )
 from assess.workbook.schema import SHEETS, Sheet
-from assess.workbook.spelling import correct_names
 
 IN_CODE = "inventory.xlsx"
 """What an inventory without a file is called in reports."""
@@ -126,22 +126,7 @@ def _make(
 
 
 def read_tables(data: bytes, name: str, progress: Progress = SILENT) -> tuple[Tables, list[Problem]]:
-    """Read every sheet of a workbook.
-
-    Parameters
-    ----------
-    data : bytes
-        The file.
-    name : str
-        How messages call it.
-    progress : Progress
-        Checked while it is read.
-
-    Raises
-    ------
-    WorkbookError
-        If the file cannot be opened as a workbook at all.
-    """
+    """Read every sheet of a workbook; raises WorkbookError if the file cannot be opened as a workbook at all."""
     with Book(data, name, progress) as book:
         found, language, problems = _find_sheets(list(book.sheets), book.hidden)
         return _parse({name: (book.cells(own), code) for name, (own, code) in found.items()}, language, problems)
@@ -150,10 +135,7 @@ def read_tables(data: bytes, name: str, progress: Progress = SILENT) -> tuple[Ta
 def hold_sheets(data: bytes, name: str, progress: Progress = SILENT) -> HeldSheets:
     """Read the cells of every sheet of a workbook and hold them in memory, for `parse_held`.
 
-    Raises
-    ------
-    WorkbookError
-        If the file cannot be opened as a workbook at all.
+    Raises WorkbookError if the file cannot be opened as a workbook at all.
     """
     with Book(data, name, progress) as book:
         found, language, problems = _find_sheets(list(book.sheets), book.hidden)
@@ -204,7 +186,6 @@ def build_held(
 def _parse(
     found: Mapping[str, tuple[Source, str]], language: str, problems: Sequence[Problem]
 ) -> tuple[Tables, list[Problem]]:
-    """Return a table for every sheet: those that are `found` by their cells and language; and all problems."""
     tables, listed = {}, [*problems]
     for sheet in SHEETS:
         if sheet.name in found:
@@ -219,7 +200,6 @@ def _parse(
 def _find_sheets(
     present: Sequence[str], hidden: Collection[str]
 ) -> tuple[dict[str, tuple[str, str]], str, list[Problem]]:
-    """Return name and language of each sheet by its English name, the workbook's language, and what is wrong."""
     if is_cobie_list(present):
         fault = fill("this is a COBie handover file, not an inventory workbook.")
         fix = fill("Make an inventory workbook of it with `assess import`, and use that.")
@@ -246,7 +226,6 @@ def find_language(codes: Sequence[str]) -> str:
 
 
 def _note_hidden(found: Mapping[str, tuple[str, str]], hidden: Collection[str]) -> Iterator[Problem]:
-    """Note every sheet that is read although it is hidden."""
     for own, code in ((own, code) for own, code in found.values() if own in hidden):
         name = next(said.name for sheet in SHEETS if plain((said := translate(sheet, code)).name) == plain(own))
         yield Problem("note", name, "", fill("the sheet is hidden; it is read as well."))
@@ -262,7 +241,6 @@ def _describe_twice(sheet: str, names: Sequence[str]) -> Problem:
 
 
 def _describe_missing(sheet: Sheet, language: str, unknown: Sequence[str]) -> Iterable[Problem]:
-    """Report a sheet that is missing, or that is there under a name that is nearly its own."""
     by_name = {plain(name): name for name in reversed(unknown)}
     for name in (said.name for said in versions(sheet)) if unknown else ():
         if near := find_near(plain(name), by_name):
@@ -275,13 +253,7 @@ def _describe_missing(sheet: Sheet, language: str, unknown: Sequence[str]) -> It
 
 
 def _tables_in_code(rows: Rows) -> tuple[Tables, list[Problem]]:
-    """Read rows that are given in code.
-
-    Raises
-    ------
-    InputError
-        If a sheet is not known, or its rows are no rows.
-    """
+    """Read rows that are given in code; raises InputError if a sheet is not known, or its rows are no rows."""
     given: dict[str, tuple[Source, str]] = {}
     for name, content in rows.items():
         found = find_sheet(name)
@@ -301,7 +273,6 @@ def _tables_in_code(rows: Rows) -> tuple[Tables, list[Problem]]:
 
 
 def _checks(files: FileReader, pictures: PictureReader) -> tuple[Check, ...]:
-    """Return all checks in the order in which their problems are listed."""
     return (
         pictures.check_logo,
         files.check_hazard,
@@ -318,7 +289,7 @@ def _checks(files: FileReader, pictures: PictureReader) -> tuple[Check, ...]:
         check_routes.check_segment_rooms,
         check_routes.check_network,
         draft_names.check_drafts,
-        source_ids.check_source_ids,
+        check.check_source_ids,
         check.check_item_names,
         check_routes.check_next_to_routes,
         check_routes.check_positions,
@@ -333,10 +304,7 @@ def _check(
 ) -> tuple[Tables, list[Problem]]:
     """Return the tables with names resolved, and without what is faulty, and all problems.
 
-    Raises
-    ------
-    WorkbookError
-        If `strict` and there is an error.
+    Raises WorkbookError if `strict` and there is an error.
     """
     tables, notes = correct_names(tables)
     tables, more = check.run_checks(resolve(tables), checks)
@@ -357,7 +325,6 @@ def _language(tables: Tables) -> str:
 
 
 def _build(tables: Tables, files: FileReader, pictures: PictureReader) -> dict[str, Any]:
-    """Return the parts of the inventory."""
     catalogue = build_catalogue(tables["Catalogue"])
     return {
         "building": build_building(tables["Building"], pictures.logo),

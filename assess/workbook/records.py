@@ -168,7 +168,6 @@ class FileReader:
                 yield from self._check_cell(table, row, axis, along)
 
     def _check_cell(self, table: Table, row: Row, axis: Axis, along: float | None) -> Iterator[Problem]:
-        """Read the records that a cell names, split by semicolons."""
         name, found = f"record_{axis.lower()}", []
         text = row.get(name)
         names = split_names(text)
@@ -187,7 +186,6 @@ class FileReader:
             self.records[row.number, axis] = tuple(found)
 
     def _record(self, text: str) -> FloorRecord:
-        """Return the record that ``file`` or ``file#channel`` names."""
         file, _, channel = (part.strip() for part in text.partition("#"))
         known, digest = self._records(file)
         if isinstance(known, CellError):
@@ -212,7 +210,6 @@ class FileReader:
         return self._read[address]
 
     def _take(self, content: bytes | Path, address: str) -> tuple[tuple[Record, ...] | CellError, str]:
-        """Return the records of a file and the hash of its bytes; what is wrong where it cannot be read."""
         allowance, key = self._allowance, find_key(content, "record")
         try:
             found: tuple[tuple[Record, ...] | CellError, str] = self.kept.take(
@@ -223,7 +220,6 @@ class FileReader:
         return found
 
     def _find(self, file: str) -> tuple[bytes | Path, str]:
-        """Return the bytes of a file, or where it is, and its address."""
         if self.folder is not None:
             path = find_file(file, self.folder)
             return path, str(path)
@@ -237,13 +233,6 @@ class FileReader:
 def _parse(
     data: bytes | Path, address: str, allowance: Allowance, progress: Progress
 ) -> tuple[tuple[Record, ...] | CellError, str]:
-    """Return the records of a file and the hash of its bytes; what is wrong where it cannot be read.
-
-    Raises
-    ------
-    CellError
-        If it is more than a workbook may name.
-    """
     try:
         read = data if isinstance(data, bytes) else read_bytes(data)
         allowance.take_record(len(read), is_archive=is_archive(read))
@@ -257,7 +246,6 @@ def _parse(
 def _parse_hazard(
     content: bytes | Path, address: str, latitude: float | None, longitude: float | None
 ) -> tuple[HazardCurve, str] | CellError:
-    """Return the curve of a file and the hash of its bytes; what is wrong where it cannot be used."""
     try:
         data = content if isinstance(content, bytes) else read_hazard_bytes(content)
         name = PurePosixPath(_posix(address)).name
@@ -271,7 +259,6 @@ def _parse_hazard(
 def _parse_shakemap(
     content: bytes | Path, address: str, beside: bytes | Path | None, beside_name: str
 ) -> ShakeMap | CellError:
-    """Return the map of a file and of that of uncertainties beside it; what is wrong where it cannot be used."""
     try:
         data, more = (read_grid_file(one) if isinstance(one, Path) else one for one in (content, beside))
         name, other = (PurePosixPath(_posix(one)).name for one in (address, beside_name))
@@ -303,10 +290,7 @@ def _check_direction(
 def find_file(text: str, folder: Path) -> Path:
     """Return the file that `text` names inside `folder`.
 
-    Raises
-    ------
-    CellError
-        If the name leads outside the folder, or no such file is there.
+    Raises CellError if the name leads outside the folder, or no such file is there.
     """
     path = find_place(text, folder)
     if not path.is_file():
@@ -318,10 +302,7 @@ def find_file(text: str, folder: Path) -> Path:
 def find_place(text: str, folder: Path) -> Path:
     """Return where the file that `text` names inside `folder` belongs, be it there or not.
 
-    Raises
-    ------
-    CellError
-        If the name leads outside the folder, or can be that of no file.
+    Raises CellError if the name leads outside the folder, or can be that of no file.
     """
     name = shorten(text)
     if not _is_inside(text):

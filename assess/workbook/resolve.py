@@ -9,7 +9,7 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
-from assess.errors import Problem
+from assess.errors import Correction, Problem
 from assess.i18n import fill, nfill
 from assess.model import (
     AXES,
@@ -25,9 +25,10 @@ from assess.model import (
     Segment,
     axis_of,
 )
+from assess.workbook.habits import note
 from assess.workbook.names import key
 from assess.workbook.parse import Row, Table, Tables, row_numbers
-from assess.workbook.schema import PICTURE_FIELDS, SHEETS
+from assess.workbook.schema import PICTURE_FIELDS, SHEETS, Column
 from assess.workbook.values import shorten
 
 _ITEM_FIELDS = frozenset(field.name for field in fields(Item))
@@ -269,3 +270,35 @@ def _warn_left_out(table: Table, name: str, rows: Iterable[Row]) -> Iterable[Pro
             len(own), label=table.label(name), name=shorten(text),
         )  # fmt: skip
         yield table.problem(name, own[0], message, fill("Correct that row."), "warning")
+
+
+def correct_names(tables: Tables) -> tuple[Tables, list[Problem]]:
+    """Return the tables with corrections of names of other sheets, and the notes on them.
+
+    Letter case alone is no difference: a spreadsheet's look-ups ignore it, too.
+    """
+    found: dict[str, Table] = {}
+    notes: list[Problem] = []
+    for sheet, table in tables.items():
+        corrections: list[Correction] = []
+        for column in table.sheet.columns:
+            if column.source and column.name in table.places:
+                _correct_column(table, column, defined(tables[column.source]), notes, corrections)
+        found[sheet] = replace(table, corrections=(*table.corrections, *corrections)) if corrections else table
+    return found, notes
+
+
+def _correct_column(
+    table: Table, column: Column, known: dict[str, str], notes: list[Problem], corrections: list[Correction]
+) -> None:
+    spellings = {None, *known.values()}
+    for row in (row for row in table.rows if row.values[column.name] not in spellings):
+        typed = row.get(column.name)
+        spelt = known.get(key(typed), typed)
+        if spelt.casefold() == typed.casefold():
+            continue
+        remark = note("signs", fill(table.label(column.name)), shorten(typed), shorten(spelt), spelt)
+        problem = table.problem(column.name, row, remark.message, severity=remark.severity)
+        notes.append(replace(problem, group=f"{column.name}: {remark.habit}"))
+        if table.source is not None and table.source.title:
+            corrections.append(Correction(table.source.title, problem.cell, typed, spelt, remark.why))

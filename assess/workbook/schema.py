@@ -10,8 +10,8 @@ from typing import Any, Literal
 
 from assess.details import DETAILS
 from assess.intensity import SHAKINGS
-from assess.model import ANCHORED, AXES, IMPORTANCE, SIZES_FROM
-from assess.settings import SCENARIOS
+from assess.model import ANCHORED, AXES, IMPORTANCE, SIZES_FROM, STRUCTURES
+from assess.settings import CLASS_BY, SCENARIOS
 from assess.units import QUANTITIES
 
 Kind = Literal["text", "number", "count", "choice", "flag", "language", "date", "file", "records", "outline"]
@@ -135,9 +135,9 @@ _ACCELERATION: dict[str, Any] = {
 }  # fmt: skip
 _VELOCITY: dict[str, Any] = {
     "quantity": "velocity", "unit": "cm/s", "imperial": "in/s", "low": 0.01, "high": 1000, "usual_low": 1,
-    "usual_high": 300, "default": "estimated from T1, else bounded",
+    "usual_high": 300, "default": "follows from PFA by the building's period",
 }  # fmt: skip
-_GROUND_VELOCITY = _VELOCITY | {"default": ""}
+_GROUND_VELOCITY = _VELOCITY | {"default": "drawn, 105 cm/s for each g of Ground PGA"}
 _CENTRE: dict[str, Any] = {"quantity": "share", "unit": "%", "imperial": "%", "low": 5, "high": 95}
 _WEIGHT: dict[str, Any] = {"quantity": "mass", "unit": "kg", "imperial": "lb", "low": 0.1, "high": 20000}
 _DEGREES: dict[str, Any] = {"quantity": "angle", "unit": "deg", "imperial": "deg", "low": -360, "high": 360}
@@ -155,10 +155,12 @@ BUILDING = Sheet(
                offered=USES),
         Column("client", "Client", "text", "For whom the report is made: for its cover."),
         Column("storeys", "Storeys", "count", "Storeys above ground.", low=1, high=300),
-        Column("height", "Height", "number", "Height of the roof above the ground, for floors whose motion follows "
-               "from Ground PGA.", **_LENGTH, low=2, high=1000, default="the highest Elevation in Floors"),
-        Column("period", "Period T1", "number", "First period of vibration: gives the PFV where a floor has none; "
-               "ASCE 7-22 uses it, too.", quantity="time", unit="s", imperial="s", low=0.02, high=20),
+        Column("height", "Height", "number", "Height of the roof above the ground: gives T1, and how much more upper "
+               "floors move.", **_LENGTH, low=2, high=1000, default="3 m a storey, at least the highest Elevation"),
+        Column("period", "Period T1", "number", "First period of vibration: how much more upper floors without a record "
+               "move than the ground.", quantity="time", unit="s", imperial="s", low=0.02, high=20, default="by Height"),
+        Column("structure", "Structure", "choice", "What carries the building sideways: it tells how its floors move. "
+               "May stay blank.", choices=STRUCTURES, default="unknown"),
         Column("azimuth_deg", "Azimuth of X", "number", "Compass direction of the building's X axis, clockwise from "
                "north. Y is at a right angle.", **_DEGREES, default="directions of records are not checked"),
         Column("prepared_by", "Prepared by", "text", "Who answers for the report."),
@@ -170,13 +172,11 @@ BUILDING = Sheet(
         Column("logo", "Logo file", "file", "PNG or JPEG file beside the workbook, for the cover."),
         Column("scenario", "Scenario", "text", "The earthquake, in words: for the cover."),
         Column("scenario_kind", "Scenario kind", "choice", "as filled: each floor's record, else PFA, else between "
-               "its neighbours, else ASCE 7-22. A code: every floor.", choices=SCENARIOS, default="as filled"),
-        Column("ground_pga", "Ground PGA", "number", "Peak ground acceleration (0.4 SDS in ASCE 7, α S in EN 1998-1 "
-               "and NTC): gives the motion of floors without record or PFA, and the level to which annual chances "
-               "refer.", **_ACCELERATION),
-        Column("ground_pgv", "Ground PGV", "number", "Peak ground velocity of the same earthquake: a PFV "
-               "that is estimated from T1 is at most 3.93 times it.",
-               **_GROUND_VELOCITY),
+               "its neighbours, else from the ground. A code: every floor.", choices=SCENARIOS, default="as filled"),
+        Column("ground_pga", "Ground PGA", "number", "Peak ground acceleration: gives the motion of floors without "
+               "record or PFA, and the level to which annual chances refer.", **_ACCELERATION),
+        Column("ground_pgv", "Ground PGV", "number", "Peak ground velocity of the same earthquake: chances on floors "
+               "without a record depend on it most.", **_GROUND_VELOCITY),
         Column("sds", "SDS", "number", "Design spectral acceleration at short periods: 0.4 SDS stands in for a blank "
                "Ground PGA.", **_ACCELERATION),
         Column("shakemap", "ShakeMap file", "file", "grid.xml of a ShakeMap (USGS) beside the workbook, with its "
@@ -194,10 +194,13 @@ BUILDING = Sheet(
                "direct integration.", low=0.01, high=1, default="Housner's"),
         Column("motion_uncertainty", "Motion uncertainty", "number", "How much stronger or weaker an earthquake "
                "like this one could be: standard deviation of ln amplitude, common to all floors. 0: exactly this one.",
-               low=0, high=1.5, default="0.4, assumed; guidelines for loss assessment use the order of 0.4 to 0.6"),
+               low=0, high=1.5, default="0.4, assumed, with records; else what the source of the ground motion has"),
         Column("piece_uncertainty", "Piece uncertainty", "flag", "yes: base, height, centre of gravity and "
                "restitution of each piece differ a little from what is filled in, in each simulated motion. no: exactly "
                "as filled in.", choices=(YES, NO), default=YES),
+        Column("class_by", "Class by", "choice", "Which formula gives the class of a piece that is not simulated: the one "
+               "that agrees best with simulation, or the OR of the paper, which depends on B/H and PFA alone.",
+               choices=CLASS_BY, default=CLASS_BY[0]),
         Column("language", "Report language", "language", "Language of the report.", choices=LANGUAGES,
                default="the workbook's"),
     ),
@@ -209,7 +212,7 @@ FLOORS = Sheet(
     (
         Column("floor", "Floor", "text", "Short name, used in Items.", required=True, width=9),
         Column("name", "Name", "text", "Longer name for the report.", width=18),
-        Column("elevation", "Elevation", "number", "Height of the floor above the ground. Needed where it has no "
+        Column("elevation", "Elevation", "number", "Height of the floor above the ground. Worth most where it has no "
                "record and no PFA; where no floor has one, floors called by their number are placed by Height and Storeys.", **_LENGTH, low=-200, high=1000),
         Column("pfa_x", "PFA X", "number", "Peak floor acceleration along X.", **_ACCELERATION),
         Column("pfa_y", "PFA Y", "number", "Peak floor acceleration along Y. One axis alone serves both.",
@@ -365,9 +368,10 @@ PICTURE_FIELDS = frozenset({"photo", "plan", "plan_left", "plan_bottom", "plan_w
 HELP, LISTS = "Help", "Lists"
 """Sheets of the empty workbook that hold no data; reading leaves them out."""
 
-CLASS = "Class (formula)"
+CLASS, CLASS_OR = "Class (formula)", "Class (OR)"
+"""By the formula that the sheet Building chooses, and by the paper's."""
 
-LIVE = ("B/H", "PFA used [g]", "OR", "Kaneko-Hayashi", CLASS, "Can rock")
+LIVE = ("B/H", "PFA used [g]", "FEMA P-58", "OR", "Kaneko-Hayashi", CLASS, CLASS_OR, "Can rock")
 """Columns of Items that Excel computes: the class next to the item, the others at the right; reading leaves them out."""
 
 WORKINGS = (

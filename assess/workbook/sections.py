@@ -56,12 +56,8 @@ def describe_repeated() -> Text:
 def describe_hidden_rows(numbers: Sequence[int], *, is_furniture: bool) -> Text:
     """Say which hidden rows are read.
 
-    Parameters
-    ----------
-    numbers : sequence of int
-        Of the rows, in their order.
-    is_furniture : bool
-        Whether they are rows of furniture, which are assessed.
+    `numbers`: of the rows, in their order.
+    `is_furniture`: whether they are rows of furniture, which are assessed.
     """
     rows = list_ranges(numbers)
     if is_furniture:

@@ -19,12 +19,11 @@ from assess.i18n import gettext
 from assess.risk import RiskClass
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, write_plainly
-from assess.workbook.headings import LINE, count_heading_lines, count_text_lines, fit_width
 from assess.workbook.layout import FROZEN, LETTERS, PLACES
 from assess.workbook.lists import ROWS, ListsWriter, Units
 from assess.workbook.live_row import ROW, LiveRow
 from assess.workbook.names import say_live
-from assess.workbook.schema import CATALOGUE, CLASS, HELP, ITEMS, LISTS, LIVE, SHEETS, WORKINGS, Column, Sheet
+from assess.workbook.schema import CATALOGUE, CLASS, CLASS_OR, HELP, ITEMS, LISTS, LIVE, SHEETS, WORKINGS, Column, Sheet
 from assess.workbook.writer import write_book
 
 __all__ = ["ROWS", "Content", "Rows", "Units", "describe", "write_workbook"]
@@ -63,9 +62,10 @@ FIRST_LINES = (
 )
 
 CLASS_NOTE = (
-    "Computed by Excel from this row. {mark} behind a class: outside the range in which the formula was checked "
-    "by tests. shaking?: nothing tells how the floor shakes. run assess: only assess run can tell. check: a cell holds "
-    "a text, or a number out of range; assess check tells which, and may take it all the same."
+    "Computed by Excel from this row, by the formula that Class by in Building chooses. {mark} behind a class: outside "
+    "the range in which the formula was checked. shaking?: nothing tells how the floor shakes. run assess: only assess "
+    "run can tell. check: a cell holds a text, or a number out of range; assess check tells which, and may take it "
+    "all the same."
 )
 
 ROCK_NOTE = (
@@ -93,7 +93,7 @@ _LIVE_FORMATS = {
 }  # fmt: skip
 """Number formats of the columns that Excel computes, where they hold numbers."""
 
-_LIVE_WIDTHS, _HELP_WIDTH = {CLASS: 17}, 90
+_LIVE_WIDTHS, _HELP_WIDTH = {CLASS: 17, CLASS_OR: 17}, 90
 
 MOST_NAMED = 8
 """Choices that a help names; of more, the drop-down shows them all, and a spreadsheet cuts long helps."""
@@ -119,6 +119,8 @@ def write_workbook(
 ) -> None:
     """Write a workbook to fill in, or one that is filled in already, in the language in use.
 
+    Raises OSError if it cannot be written.
+
     Parameters
     ----------
     path : Path
@@ -129,11 +131,6 @@ def write_workbook(
         Of the headers.
     spare : int, optional
         Rows of each sheet that are prepared beyond those filled in, for many small workbooks; None prepares `ROWS`.
-
-    Raises
-    ------
-    OSError
-        If it cannot be written.
     """
     filled = content or Content()
 
@@ -146,8 +143,6 @@ def write_workbook(
 
 
 class _Writer:
-    """Writes the sheets of one workbook; holds its formats and names."""
-
     def __init__(self, book: Any, content: Content, units: Units, spare: int | None) -> None:
         self.book, self.content, self.units = book, content, units
         self.head = book.add_format({"bold": True, "bg_color": "#1f3a4d", "font_color": "#ffffff", "text_wrap": True,
@@ -219,7 +214,6 @@ class _Writer:
         page.set_footer(gettext(FOOTER))
 
     def _write_head(self, page: Any, at: int, heading: str, width: float, style: Any, *, is_live: bool = False) -> None:
-        """Write the heading of a column and set its width, and the height of the row for the longest so far."""
         width = fit_width(heading, width)
         page.set_column(at, at, width + bool(style), style)
         page.write_string(0, at, heading, self.live_head if is_live else self.head)
@@ -240,7 +234,6 @@ class _Writer:
             page.write_number(row, at, value, style)
 
     def _validate(self, page: Any, column: Column, row: int, at: int, last: int) -> None:
-        """Attach the drop-down or the check of a number, and the input message."""
         text = describe(column)
         options: dict[str, Any] = {
             "input_title": gettext(column.label)[:32],
@@ -287,14 +280,12 @@ class _Writer:
         self._colour(page, max(self.last[ITEMS.name], CHECKED[ITEMS.name] + 1))
 
     def _colour(self, page: Any, last: int) -> None:
-        """Colour the classes, and what is plainly wrong: an item twice, without a floor, or without formulas."""
-        item, column, floor = (LETTERS[ITEMS.name, name] for name in ("item", CLASS, "floor"))
+        item, column, by_paper, floor = (LETTERS[ITEMS.name, name] for name in ("item", CLASS, CLASS_OR, "floor"))
         for risk in reversed(RiskClass):
             form = self.book.add_format({"bg_color": risk.fill, "font_color": risk.ink, "bold": risk >= RiskClass.HIGH})
-            page.conditional_format(
-                f"{column}2:{column}{last}",
-                {"type": "text", "criteria": "begins with", "value": risk.symbol, "format": form, "stop_if_true": True},
-            )
+            shown = {"type": "text", "criteria": "begins with", "value": risk.symbol, "format": form}
+            for letter in (column, by_paper):
+                page.conditional_format(f"{letter}2:{letter}{last}", shown | {"stop_if_true": True})
         wrong = self.book.add_format({"bg_color": "#ffc7ce"})
         page.conditional_format(f"{item}2:{item}{last}", {"type": "duplicate", "format": wrong})
         blank = {"type": "formula", "criteria": f'=AND(${item}2<>"",${floor}2="")', "format": wrong}
@@ -341,3 +332,43 @@ def describe(column: Column) -> str:
     if column.default:
         parts.append(gettext("Blank: {default}.", default=gettext(column.default)))
     return " ".join(parts)
+
+
+LINE = 15
+"""Height of one line [points]."""
+
+_BOLD = 1.15
+"""Width of a bold letter, of the wider fonts that stand in where the workbook's is missing."""
+
+_REGULAR = 0.95
+"""Likewise of a letter that is not bold."""
+
+_EDGE, _BUTTON = 1, 3
+"""Left free at the edges, and for the button of a filter, which covers the end of the last line."""
+
+
+def fit_width(heading: str, width: float) -> float:
+    """Return the width at which no word of a heading is broken, at least `width` [characters of the sheet's font]."""
+    words = heading.split()
+    return max(width, *(_BOLD * len(word) + _EDGE for word in words), _BOLD * len(words[-1]) + _EDGE + _BUTTON)
+
+
+def count_heading_lines(heading: str, width: float) -> int:
+    """Return the lines that a bold heading takes in a column of a filter, one for its button where that needs it."""
+    room = (width - _EDGE) / _BOLD
+    lines, used = _wrap(heading, room)
+    return lines + (used > room - _BUTTON / _BOLD)
+
+
+def count_text_lines(text: str, width: float) -> int:
+    """Return the lines that a text which is not bold takes in a column."""
+    return _wrap(text, (width - _EDGE) / _REGULAR)[0]
+
+
+def _wrap(text: str, room: float) -> tuple[int, int]:
+    """Return the lines of a text that is broken at its spaces, and the letters in the last."""
+    lines, used = 1, 0
+    for word in text.split():
+        needed = used + bool(used) + len(word)
+        lines, used = (lines, needed) if needed <= room or not used else (lines + 1, len(word))
+    return lines, used

@@ -60,6 +60,8 @@ def is_free(column: Column) -> bool:
 def understand(column: Column, value: object, unit: str, quote: Quote) -> tuple[object, Remark | None]:
     """Return what belongs into a cell, and the note on that where it is not what the cell holds.
 
+    Raises CellError if the cell can be read in two ways, or holds a day that does not exist.
+
     Parameters
     ----------
     column : Column
@@ -77,11 +79,6 @@ def understand(column: Column, value: object, unit: str, quote: Quote) -> tuple[
         A number, a choice, a date or a name; `value` itself where nothing else can be meant.
     remark : Remark, optional
         The note.
-
-    Raises
-    ------
-    CellError
-        If the cell can be read in two ways, or holds a day that does not exist.
     """
     take = _TAKERS.get(column.kind)
     return take(column, value, unit, quote) if take else (value, None)
@@ -127,7 +124,6 @@ def is_converted(column: Column, value: object, unit: str) -> bool:
 
 
 def _read_feet(column: Column, value: str, unit: str) -> float | None:
-    """Return a length in feet and inches, with their signs, in the header's unit; None for any other text."""
     if column.quantity != "length":
         return None
     match = _FEET.fullmatch(straighten(value.translate(_PRIMES)))
@@ -169,7 +165,6 @@ def _convert(match: re.Match[str], digits: float, factor: float) -> float:
 
 
 def _find_factor(typed: str, column: Column, unit: str) -> float | None:
-    """Return the factor from the unit in a cell to that of the header, None for a unit of something else."""
     if not typed:
         return 1.0
     spelt, known = read_unit(typed.rstrip(".")), QUANTITIES.get(column.quantity, {})
@@ -183,7 +178,6 @@ def _find_factor(typed: str, column: Column, unit: str) -> float | None:
 
 
 def _find_habit(column: Column, value: str, match: re.Match[str]) -> str:
-    """Return the habit that a typed number shows; of several the one that matters most."""
     if unit := match["unit"].strip():
         return "percent" if unit.startswith("%") and column.quantity != "share" else "unit"
     digits = match["digits"].rstrip()

@@ -71,10 +71,7 @@ def read_cell(column: Column, value: object, unit: str) -> tuple[object, tuple[R
 
     `unit` is that of the column's header. The value of a blank cell is None, as of a text of unseen marks alone.
 
-    Raises
-    ------
-    CellError
-        If the cell does not hold what the column needs.
+    Raises CellError if the cell does not hold what the column needs.
     """
     is_rare = (isinstance(value, str) and len(value) > _SHOWN) or value == 0  # 0 and -0 are equal, and not the same
     return (_read_cell if is_rare else _read_known)(column, value, unit)
@@ -85,7 +82,13 @@ def _read_cell(column: Column, value: object, unit: str) -> tuple[object, tuple[
     if not (type(value) is float or type(value) is int):
         if is_blank(value):
             return None, ()
-        _refuse_formulas(column, value)
+        if value is UNSAVED:
+            raise CellError(fill("the formula has no saved value."), fill("Open the workbook in Excel and save it."))
+        if column.kind not in ("number", "count") and isinstance(value, str) and value.strip() in ERRORS:
+            raise CellError(
+                fill("{label} holds the error {error}.", label=column.label, error=value.strip()),
+                fill("Correct the formula in the cell."),
+            )
         if not is_free(column):
             meant, remark = understand(column, value, unit, shorten)
     found, more = READERS[column.kind](column, meant, unit), _remark_on(column, value, meant, unit)
@@ -95,19 +98,7 @@ def _read_cell(column: Column, value: object, unit: str) -> tuple[object, tuple[
 _read_known = lru_cache(maxsize=8192, typed=True)(_read_cell)  # the same stands in row after row, book after book
 
 
-def _refuse_formulas(column: Column, value: object) -> None:
-    """Raise CellError for a formula that has no result, or whose result is an error in a column of texts."""
-    if value is UNSAVED:
-        raise CellError(fill("the formula has no saved value."), fill("Open the workbook in Excel and save it."))
-    if column.kind not in ("number", "count") and isinstance(value, str) and value.strip() in ERRORS:
-        raise CellError(
-            fill("{label} holds the error {error}.", label=column.label, error=value.strip()),
-            fill("Correct the formula in the cell."),
-        )
-
-
 def _remark_on(column: Column, typed: object, value: object, unit: str) -> Remark | None:
-    """Return a remark on an unusual number, or on characters of what was typed that are left out."""
     if column.kind == "number" and isinstance(value, int | float) and is_unusual(column, float(value), unit):
         usual = span(column.usual_low, column.usual_high, column, unit)
         message = fill(
@@ -141,7 +132,6 @@ def _read_number(column: Column, value: object, unit: str) -> float:
 
 
 def _read_typed(label: str, value: object, unit: str) -> float:
-    """Return the number of a cell in `unit`."""
     if isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value):
         return float(value)
     named = {"label": label, "text": shorten(value), "unit": f" [{unit}]" if unit else ""}
@@ -189,13 +179,7 @@ def _read_choice(column: Column, value: object, unit: str) -> str:
     )  # fmt: skip
 
 
-def _read_flag(column: Column, value: object, unit: str) -> bool:
-    """Return whether a cell says yes; a spreadsheet's own TRUE and FALSE count as well."""
-    return value if isinstance(value, bool) else _read_choice(column, value, unit) == YES
-
-
 def _read_language(column: Column, value: object, unit: str) -> str:
-    """Return the language that was meant by any of its names, or its code."""
     try:
         code = find_language(read_text(value))
     except InputError:
@@ -203,13 +187,7 @@ def _read_language(column: Column, value: object, unit: str) -> str:
     return next(choice for choice in column.choices if find_language(choice) == code)
 
 
-def _read_date(column: Column, value: object, unit: str) -> str:
-    """Return a date as text: an ISO date, or as it was typed."""
-    return read_text(value.date() if isinstance(value, datetime.datetime) else value)
-
-
 def _read_outline(column: Column, value: object, unit: str) -> Outline:
-    """Return the corners of an outline [m]."""
     try:
         return parse_outline(read_text(value), QUANTITIES[column.quantity][unit])
     except OutlineError as error:
@@ -224,8 +202,8 @@ READERS: Mapping[str, Callable[[Column, object, str], object]] = {
     "number": _read_number,
     "count": _read_count,
     "choice": _read_choice,
-    "flag": _read_flag,
+    "flag": lambda column, value, unit: value if isinstance(value, bool) else _read_choice(column, value, unit) == YES,
     "language": _read_language,
-    "date": _read_date,
+    "date": lambda column, value, unit: read_text(value.date() if isinstance(value, datetime.datetime) else value),
     "outline": _read_outline,
 }

@@ -37,23 +37,10 @@ def write_book(
 ) -> None:
     """Write a workbook.
 
-    Parameters
-    ----------
-    path : Path
-        Where to; overwritten.
-    fill : callable
-        Adds the sheets to the open workbook.
-    by_row : bool
-        Whether the sheets are written row by row, in little memory.
-    progress : Progress
-        Checked while they are packed.
+    `fill`: adds the sheets to the open workbook.
+    `by_row`: whether the sheets are written row by row, in little memory.
 
-    Raises
-    ------
-    OSError
-        If it cannot be written.
-    CancelledError
-        If the work was cancelled; no file is left.
+    Raises OSError if it cannot be written; CancelledError if the work was cancelled (no file is left).
     """
     packed = _Packed(progress)
     with tempfile.TemporaryDirectory(prefix=".assess-sheets-", dir=path.parent) as parts:

@@ -25,7 +25,7 @@ def rows() -> Iterator[str]:
         build_generator(target, grid, seed=1, axis="X").realise(0, MOTIONS)
 
     def make_afresh() -> None:
-        noise.forget()
+        noise.KEPT.forget()
         make()
 
     values = np.random.default_rng(1).standard_normal((2 * MOTIONS, SAMPLES // 2 + 1)).astype(np.complex64)

@@ -21,6 +21,7 @@ from assess.motion.generate import build_generator
 from assess.motion.spectrum import build_periods, response_spectrum
 from assess.motion.target import Grid, recorded_target
 from tests.benchmarks import (
+    beam_floors,
     cancel,
     generating,
     live_answers,
@@ -92,7 +93,7 @@ def main() -> None:
     print(_spectrum())
     print(_ensemble())
     print()
-    for row in (*generating.rows(), "", *rocking.rows()):
+    for row in (*generating.rows(), "", *beam_floors.rows(), "", *rocking.rows()):
         print(row)
 
 

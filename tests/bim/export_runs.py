@@ -38,13 +38,14 @@ CUPBOARDS = [
     piece("Held", "2", HELD, 5.08, -11.41, room="A203", anchored="yes"),
     piece("Sofa", "1", SOFA, 7.98, -2.30, room="B102", breadth=66.0, width=183.0, height=81.0, angle_deg=0.0),
 ]
-"""Of Duplex: two that surely fall, one that is anchored, and one that only the formula has at medium."""
+"""Of Duplex: two that surely fall, one that is anchored, and one that is unconfirmed."""
 FLOORS = [
-    {"floor": "1", "elevation": 0.0, "pfa_x": 0.3, "pfa_y": 0.3},
-    {"floor": "2", "elevation": 3.1, "pfa_x": 1.2, "pfa_y": 1.2},
+    {"floor": "1", "pfa_x": 0.8, "pfa_y": 0.8},
+    {"floor": "2", "elevation": 0.0, "pfa_x": 1.2, "pfa_y": 1.2, "pfv_x": 400.0, "pfv_y": 400.0},
 ]
+"""Of floor 1 nothing tells how high it lies, nor how high the building is: its class stands unconfirmed."""
 BUILDING = {"building": "Palazzo Duè", "revision": "B", "report_date": "2026-05-04", "prepared_by": "Ing. Rossi",
-            "scenario": "Forte – 475 anni 🏢"}  # fmt: skip
+            "scenario": "Forte – 475 anni 🏢", "motion_uncertainty": 0.4}  # fmt: skip
 PLACES = [
     {"place": "B202", "floor": "2", "x": 3.3, "y": -13.5, "kind": "room"},
     {"place": "door", "floor": "2", "x": 1.85, "y": -11.55, "kind": "door"},
@@ -87,7 +88,7 @@ def import_results(folder: Path, model: Path) -> Path:
     book, out = folder / "building.xlsx", folder / "results.json"
     book.write_bytes(build_workbook(imported))
     inventory = assess.read_inventory(book, building={"ground_pga": 0.5, "height": 6.0})
-    write_json(assess.run(inventory, FORMULA), out)
+    write_json(assess.run(inventory, FORMULA, class_by="proposed OR"), out)
     return out
 
 

@@ -191,6 +191,7 @@ def test_elevations_from_another_datum_are_kept_and_warned_of(tmp_path: Path) ->
     assert found.building["height"] == 108.0
     (warning,) = found.warnings
     assert warning.startswith("The lowest floor, Ground, is at 100 m in the file. If it lies at the ground, subtract")
+    assert warning.endswith("else it shakes as the top of a taller building.")
 
 
 def test_basements_are_kept_below_the_ground_and_warned_of(tmp_path: Path) -> None:

@@ -63,8 +63,8 @@ def wardrobe(x, y, *, room=None, faces=270.0):
         risk=RiskClass.HIGH, chance=PastChance(0.5), inputs={},
     )  # fmt: skip
     piece = ExportPiece(
-        past=past, source_id="", upper=RiskClass.HIGH, importance="", pfa_source="", place=(x, y), faces=faces,
-        falls_one_way=True,
+        past=past, source_id="", upper=RiskClass.HIGH, has_simulated=False, importance="", pfa_source="",
+        place=(x, y), faces=faces, falls_one_way=True,
     )  # fmt: skip
     low, high = (x - 0.4, y - 0.3, 0.0), (x + 0.4, y + 0.3, 2.0)
     return piece, ModelElement("", 1, 0, "IfcFurniture", "", False, low, high, room)

@@ -163,7 +163,7 @@ def test_a_coordinator_reads_what_is_to_be_done(bcf):
 
 def test_an_unconfirmed_piece_is_no_class_in_its_title(bcf):
     topic = find(bcf, SOFA)
-    assert topic.text("Title").startswith("unconfirmed (formula: medium)")
+    assert topic.text("Title").startswith("unconfirmed (high): ")
     assert "unconfirmed" in topic.labels
     assert "may overturn" in topic.text("Title")
     assert "block" not in topic.text("Title")
@@ -260,7 +260,7 @@ def test_pieces_with_one_source_id_have_topics_of_their_own(tmp_path):
 def write_pair(folder: Path) -> Path:
     """Each cupboard blocks the way out by itself, and both surely fall: only fixing both opens it."""
     items = [CUPBOARDS[0] | {"description": "Armadio"}, CUPBOARDS[1] | {"description": "Libreria"}]
-    floors = [{"floor": "2", "elevation": 3.1, "pfa_x": 2.5, "pfa_y": 2.5}]
+    floors = [{"floor": "2", "elevation": 3.1, "pfa_x": 2.5, "pfa_y": 2.5, "pfv_x": 400.0, "pfv_y": 400.0}]
     return write_results(folder, items, floors, SIMULATED, places=PLACES, routes=ROUTES)
 
 

@@ -403,7 +403,7 @@ def test_only_blank_lines_of_the_building_are_filled(book: bytes) -> None:
     found = update(data)
     assert texts(found) == [
         "Building B3 Latitude [deg]: blank -> 45.5",
-        "Building B10 Azimuth of X [deg] stays 28; the model has 30",
+        "Building B11 Azimuth of X [deg] stays 28; the model has 30",
     ]
     assert row(found.data, sheet="Building").get("building") == "Town hall"
 

@@ -72,10 +72,9 @@ def test_the_document(made):
     assert "each by its Quantity" in document["meaning"]
     assert document["too_stocky"] == ["stout"]
     assert document["cautions"] == [
-        "Only peaks are known for floor '2': the motions follow a generic spectrum.",
-        "The motions of floor '2' may be too weak, as neither T1 nor the building's height is known: pieces may "
-        "overturn at lower levels than curves that rest on them say. Enter the Period T1 or the Height in the sheet "
-        "Building.",
+        "No record is known for floor '2': ground motion and building are drawn.",
+        "The motions of floor '2' may be too weak, as nothing is known of the building: pieces may overturn at lower "
+        "levels than curves that rest on them say. Enter Storeys or the Period T1 in the sheet Building.",
         "Left out: 1 piece too stocky to rock.",
     ]
     shelf, sized = document["curves"]
@@ -198,7 +197,7 @@ def curves_of(*shares: list[float], weak: bool = False) -> Curves:
     """Curves over 0.1, 0.2, ... g with these shares of 100 draws."""
     motions = FloorMotions(
         floor="1", axis="X", source="given", pfa=3.0, pfv=0.4, mean_pfa=3.0, mean_pfv=0.45,
-        spectrum=cast("Any", "generic"), is_generic=True, is_unshaped=weak, is_weak=False,
+        spectrum=cast("Any", "drawn"), is_assumed=True, is_unknown=weak, is_weak=False,
     )  # fmt: skip
     every = []
     for number, one in enumerate(shares):
@@ -299,13 +298,15 @@ def test_bad_options_are_named(tmp_path, monkeypatch, words, message):
     assert sorted(one.name for one in tmp_path.iterdir()) == ["slow.csv", "w.xlsx"]
 
 
-def test_floors_without_pfv_are_named_by_their_cells(tmp_path, monkeypatch):
+def test_against_pfv_a_floor_without_one_takes_that_which_follows_its_pfa(tmp_path):
     path = write(tmp_path, Floors=[FLOORS[0], {"floor": "2", "pfa_x": 0.5}])
-    monkeypatch.chdir(tmp_path)
-    text = error(run("fragility", path, "--im", "pfv", "--json"))
-    assert "Floors!F3: the PFV of floor '2' along X is not known: no fragility against PFV can be given." in text
-    assert "Fill in its PFA and PFV, or a record, or take PFA as the measure." in text
-    assert "1 error; nothing was written." in text
+    done = run("fragility", path, "--im", "pfv", "--levels", "20:80:20", "--runs", "20", "--json")
+    assert (done.exit_code, done.exception) == (0, None)
+    (own,) = (one for one in json.loads(done.stdout)["motions"] if one["floor"] == "2")
+    inventory = assess.read_inventory(path)
+    (used,) = compute(inventory, assess.Settings(verify="none")).demands["2", "X"]
+    assert (own["pfa_g"], own["pfv_cm_s"]) == (0.5, pytest.approx(100 * used.pfv))
+    assert own["pfv_cm_s"] > 0
 
 
 def test_a_workbook_in_which_nothing_can_rock(tmp_path):
@@ -381,7 +382,7 @@ def test_files_for_pelicun_and_openquake(tmp_path):
 
 
 def test_every_curve_in_the_file_is_success(tmp_path):
-    done = run("fragility", write(tmp_path, Items=ITEMS[1:2]), *TYPES, "--formats", "pelicun", "--out", tmp_path)
+    done = run("fragility", write(tmp_path, Items=ITEMS[:1]), *TYPES, "--formats", "pelicun", "--out", tmp_path)
     assert (done.exit_code, "left out" in done.stderr) == (0, False)
 
 

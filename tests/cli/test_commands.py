@@ -256,7 +256,7 @@ def test_a_profile_without_ground_motion_names_the_cell_and_every_floor_without_
     done = run(app, [*RUN, str(write(tmp_path / "w.xlsx")), "--out", str(tmp_path / "out"), "--scenario", "NTC 2018"])
     assert done.exit_code == 2
     assert (
-        "Building!B20: Ground PGA, SDS, ShakeMap file and Shaking are blank; the scenario 'NTC 2018' needs one"
+        "Building!B21: Ground PGA, SDS, ShakeMap file and Shaking are blank; the scenario 'NTC 2018' needs one"
         in done.stderr
     )
     for cell in ("C2", "C3"):

@@ -57,7 +57,7 @@ def test_a_run_against_itself_is_unchanged(source, routed):
 def test_pieces_go_worse_and_better_by_class_chance_and_anchor(source, tmp_path):
     def edit(record):
         _adopt(record, "A1", **{"class": "low", "probability": 0.01})
-        _adopt(record, "A2", probability=0.31)
+        _adopt(record, "A2", probability=0.21)
         _adopt(record, "A5", **{"class": "high", "probability": 0.5})
         item(record, "A4")["anchor"]["counts_as_anchored"] = False
 
@@ -108,7 +108,7 @@ def test_rows_and_columns_of_the_matrix_add_up_to_the_counts(source, tmp_path):
         for standing, total in zip(matrix.columns, sums, strict=True):
             quantity = sum(one.quantity for one in run.pieces if run.standing(one) == standing)
             assert total == (quantity if standing else total)
-    assert found.moves[("", "very high")] == 2
+    assert found.moves[("", "high")] == 2
     assert (found.count(Direction.ADDED), found.count(Direction.REMOVED)) == (3, 1)
     assert _directions(found)["new"] == "added"
     assert _directions(found)["A2"] == "removed"
@@ -229,15 +229,15 @@ def test_states_of_routes_have_an_order_and_unknown_ones_have_none(routed, tmp_p
 def test_rooms_whose_way_out_gets_worse_are_named(tmp_path):
     before = read_run(write_routed_run(tmp_path / "a", Settings(verify="none", scale=0.05), Items=ITEMS[:3]))
     after = read_run(write_routed_run(tmp_path / "b", UNVERIFIED, Items=ITEMS[:3]))
-    assert {one.name: one.state for one in before.rooms} == {"Office": "doubtful", "Archive": "open"}
+    assert {one.name: one.state for one in before.rooms} == {"Office": "open", "Archive": "open"}, "nothing can rock"
     assert {one.name: one.state for one in after.rooms} == {"Office": "blocked", "Archive": "doubtful"}
     view = View(compare(before, after))
     assert view.list_worse()[-1] == (
-        "The best ways from 2 rooms to the street get worse: Archive (open → doubtful); Office (doubtful → blocked)."
+        "The best ways from 2 rooms to the street get worse: Archive (open → doubtful); Office (open → blocked)."
     )
     lines = {line.label: line.texts for line in view.list_route_counts()}
     assert lines["rooms: blocked"] == ("0", "1", "+1")
-    assert lines["rooms: open"] == ("1", "0", "−1")
+    assert lines["rooms: open"] == ("2", "0", "−2")
 
 
 def test_a_room_whose_way_out_is_not_known_is_not_safe(routed, tmp_path):
@@ -256,9 +256,8 @@ def test_a_room_whose_way_out_is_not_known_is_not_safe(routed, tmp_path):
     assert "1 room cannot be compared: Archive (not known → open)." in View(found).list_others()
     assert describe(found)["counts"]["rooms"] == {
         "blocked": {"before": 1, "after": 0},
-        "doubtful": {"before": 0, "after": 1},
         "not known": {"before": 1, "after": 0},
-        "open": {"before": 0, "after": 1},
+        "open": {"before": 0, "after": 2},
     }
 
 

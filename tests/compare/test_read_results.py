@@ -23,7 +23,7 @@ def test_a_run_is_read_back(source):
     run = read_run(source)
     assert run == read_run(source / "results.json")
     assert [one.item for one in run.pieces] == [one["item"] for one in ITEMS]
-    assert [run.standing(one) for one in run.pieces] == ["very high", "high", "very high", "anchored", "very high"]
+    assert [run.standing(one) for one in run.pieces] == ["very high", "medium", "high", "anchored", "very high"]
     assert (run.name, run.main_basis) == ("Town hall", "formula")
     assert (run.settings["scale"], run.settings["anchor"]) == (1.0, "")
     record = json.loads((source / "results.json").read_text(encoding="utf-8"))

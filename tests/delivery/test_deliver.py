@@ -12,8 +12,7 @@ import pytest
 
 from assess.delivery import deliver as delivering
 from assess.delivery import folder_lock
-from assess.delivery.deliver import check_moves, deliver, save, saving, stage_for
-from assess.delivery.exchange import exchange
+from assess.delivery.deliver import check_moves, deliver, exchange, save, saving, stage_for
 from assess.delivery.folder_lock import FolderLock
 from assess.delivery.stages import JOURNALS, NEW, PREFIX, staging, sweep
 from assess.errors import CancelledError, InputError, OutputError

@@ -25,13 +25,14 @@ class MadeUp:
     """An ensemble, which is its own open motions as well; `asked` lists what was asked for: (first, count)."""
 
     seed: int
-    is_generic: bool = False
-    is_unshaped: bool = False
+    is_assumed: bool = False
+    is_unknown: bool = False
     is_weak: bool = False
     has_record: bool = False
     signs: tuple[int, ...] | None = None
     fit: Fit | None = None
     spectra: Spectra | None = None
+    bands: tuple[float, float] | None = None
     asked: list[tuple[int, int]] = field(default_factory=list)
     opened: list[int] = field(default_factory=list)
 

@@ -39,16 +39,10 @@ def test_acceleration_does_not_enter():
 
 
 def test_unknown_velocity():
-    outcome = evaluate(pfa=3.0, pfv_estimated=True)
+    outcome = evaluate(pfa=3.0)
     assert math.isnan(outcome.value[0])
     assert raised(outcome) == {"pfv_unknown"}
     assert outcome.detail["median_pfv_cm_s"][0] == pytest.approx(MEDIAN * 100)
-
-
-def test_estimated_velocity():
-    assert raised(evaluate(pfv=0.5, pfv_estimated=True)) == {"pfv_estimated", "rests_on_estimated_pfv"}
-    assert raised(evaluate(pfv=0.05, pfv_estimated=True)) == {"pfv_estimated"}, "low all the same"
-    assert not raised(evaluate(pfv=0.5))
 
 
 def test_a_stocky_piece_does_not_rock():

@@ -58,7 +58,7 @@ class TestRun:
         results = json.loads((out / "results.json").read_text(encoding="utf-8"))
         jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(results)
         assert set(results["assess"]["fitted_models"]) == {"fitted_surface", "fitted_probit"}
-        assert {item["adopted"]["method"] for item in results["items"]} == {"proposed_or"}
+        assert {item["adopted"]["method"] for item in results["items"]} == {"fema_p58"}
         heads = next(csv.reader((out / "items.csv").read_text(encoding="utf-8-sig").splitlines()))
         for model in (odd, PROBIT):
             assert all({"value", "raw", "flags"} == set(item["methods"][model.key]) for item in results["items"])

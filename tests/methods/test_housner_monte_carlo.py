@@ -32,12 +32,13 @@ class Pushes:
     """Motion k is a long push by which pieces overturn, or rest: `levels[k % len(levels)]` [m/s2]."""
 
     levels: tuple[float, ...]
-    is_generic: bool = False
-    is_unshaped: bool = False
+    is_assumed: bool = False
+    is_unknown: bool = False
     is_weak: bool = False
     record: tuple[FloatArray, float] | None = None
     fit: Fit | None = None
     spectra: Spectra | None = None
+    bands: tuple[float, float] | None = None
     asked: list[tuple[int, int]] = field(default_factory=list)
 
     def open(self, threads: int, progress: Progress = SILENT) -> "Pushes":
@@ -151,13 +152,13 @@ def test_without_a_record_nothing_is_known_of_it() -> None:
 
 
 def test_flags_and_pieces_without_motions_or_too_stocky() -> None:
-    ensembles = (MadeUp(0), MadeUp(1, is_generic=True, is_unshaped=True, is_weak=True))
+    ensembles = (MadeUp(0), MadeUp(1, is_assumed=True, is_unknown=True, is_weak=True))
     cases = _cases([0, 1, -1, 1, 0], *ensembles, breadth=[0.3, 0.3, 0.3, 1.41, 1.409], height=[1.8, 1.8, 1.8, 1.0, 1.0])
     outcome = evaluate(cases, Settings(runs=5))
     assert np.isnan(outcome.value).tolist() == [False, False, True, True, False]
     for name in ("runs", "overturned", "low", "high"):
         assert np.isnan(outcome.detail[name]).tolist() == [False, False, True, True, False], name
-    for name in ("generic_spectrum", "unknown_period", "weak_motions"):
+    for name in ("assumed_motion", "unknown_building", "weak_motions"):
         assert outcome.flags[name].tolist() == [False, True, False, False, False], name
     assert outcome.flags["does_not_rock"].tolist() == [False, False, False, True, False]
     assert not outcome.flags["undecided"].any(), "a fixed number is not a question"
@@ -173,19 +174,20 @@ def test_an_ensemble_without_pieces_that_rock_is_not_opened() -> None:
 
 
 def test_draws_scale_the_motion_and_change_the_piece() -> None:
-    """Draw k is motion k, scaled by the earthquake's factor, on the body of that draw."""
-    cases = dataclasses.replace(_grid(1), uncertainty=Uncertainty(), name=np.arange(24) // 2)
+    """Draw k is motion k, scaled by the earthquake's factor at the floor's dispersion, on the body of that draw."""
+    own = np.repeat(np.linspace(0.0, 0.6, 12), 2)
+    cases = dataclasses.replace(_grid(1), uncertainty=Uncertainty(), name=np.arange(24) // 2, dispersion=own)
     outcome = evaluate(cases, Settings(runs=40, seed=7))
     motions = np.stack([make_motion(0, number) for number in range(40)])
     drawn = draw_bodies(
         cases.breadth, cases.height, cases.centre, cases.restitution, cases.name, seed=7, first=0, count=40
     )
-    for dispersion in (MOTION, *TRIED):
-        scale = np.exp(dispersion * draw_earthquakes(7, 0, 40))[None]
+    for dispersion in (own[:, None], *TRIED):
+        scale = np.exp(dispersion * draw_earthquakes(7, 0, 40)[None])
         found = rock_blocks(
             drawn.breadth, drawn.height, motions, STEP, restitution=drawn.restitution, centre=drawn.centre, scale=scale
         )
-        share = outcome.value if dispersion == MOTION else outcome.detail[f"dispersion_{dispersion:g}"]
+        share = outcome.detail[f"dispersion_{dispersion:g}"] if isinstance(dispersion, float) else outcome.value
         np.testing.assert_array_equal(share, found.overturned.mean(axis=1))
     assert (outcome.value != outcome.detail["ideal"]).any()
 
@@ -198,6 +200,26 @@ def test_ideal_is_the_piece_as_given_under_the_motions_themselves() -> None:
     for name in ("overturned", "low", "high"):
         np.testing.assert_array_equal(one.detail[name], other.detail[f"ideal_{name}"])
     np.testing.assert_array_equal(one.joints[0].ideal, other.joints[0].ideal)
+
+
+@pytest.mark.parametrize("ideal", [False, True])
+def test_of_drawn_motions_none_recurs_and_the_thirds_by_velocity_are_told_apart(ideal: bool) -> None:
+    settings = Settings(runs=30, ideal=ideal)
+    drawn = evaluate(_cases(0, MadeUp(0, is_assumed=True)), settings)
+    recorded = evaluate(_cases(0, MadeUp(0)), settings)
+    assert drawn.value == recorded.value
+    assert np.isnan(drawn.detail["ideal"][0]) == (not ideal)
+    for name in (f"dispersion_{one:g}" for one in TRIED):
+        assert np.isnan(drawn.detail[name][0])
+        assert not np.isnan(recorded.detail[name][0])
+    motions = np.stack([make_motion(0, number) for number in range(30)])
+    speed = np.cumsum((motions[:, 1:] + motions[:, :-1]) * STEP / 2, axis=1)
+    order = np.argsort(np.abs(speed).max(axis=1) / np.abs(motions).max(axis=1))
+    fell = rock_blocks(np.array([0.3]), np.array([1.8]), motions, STEP).overturned[0]
+    expected = fell[order[:10]].mean(), fell[order[-10:]].mean()
+    assert (drawn.detail["if_slower"][0], drawn.detail["if_faster"][0]) == expected
+    assert expected[0] < expected[1]
+    assert np.isnan([recorded.detail["if_slower"][0], recorded.detail["if_faster"][0]]).all()
 
 
 def test_a_draw_of_a_piece_is_its_own() -> None:

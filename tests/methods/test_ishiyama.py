@@ -45,13 +45,9 @@ def test_not_evaluated_where_only_the_unknown_velocity_would_tell():
 
 
 def test_answered_without_the_velocity_where_the_acceleration_is_too_low():
-    outcome = evaluate(pfa=0.24 * GRAVITY, pfv_estimated=True)
+    outcome = evaluate(pfa=0.24 * GRAVITY)
     assert outcome.value[0] == 0
     assert raised(outcome) == set()
-
-
-def test_an_estimated_velocity_is_flagged():
-    assert raised(evaluate(pfa=3.0, pfv=0.4, pfv_estimated=True)) == {"pfv_estimated"}
 
 
 @pytest.mark.parametrize("breadth_to_height", [0.05, 0.1, 0.15, 0.2])

@@ -63,7 +63,7 @@ class TestBranches:
 
     @pytest.mark.parametrize("unknown", ["breadth", "height", "pfa"])
     def test_unknown_input_raises_no_flag(self, unknown):
-        outcome = evaluate(**{"pfa": 3.0, "friction": 0.1, "pfv_estimated": True, unknown: math.nan})
+        outcome = evaluate(**{"pfa": 3.0, "friction": 0.1, unknown: math.nan})
         assert math.isnan(outcome.value[0])
         assert outcome.detail["branch"][0] == ""
         assert raised(outcome) == set()
@@ -119,23 +119,6 @@ class TestUnknownVelocity:
         assert bound.detail["branch"][0] == "bound"
         assert bound.value[0] == pytest.approx(every.value.max(), abs=0.002)
         assert every.value.max() <= bound.value[0] + 5e-4  # 15.6 is rounded: both medians differ by 0.05 %
-
-    def test_an_estimated_velocity_is_flagged_and_an_unknown_one_is_not_estimated(self):
-        assert evaluate(**at_frequency(0.5, 1.0), pfv_estimated=True).flags["pfv_estimated"][0]
-        assert raised(evaluate(pfa=3.0, pfv_estimated=True)) == {"pfv_unknown_upper_bound"}
-
-    def test_a_class_that_an_estimated_velocity_raises_is_flagged(self):
-        """Φ(ln 0.6/0.2) = 0.005 by acceleration, low; by velocity Φ(ln 0.5/0.5) = 0.08, medium, or 0.008, low."""
-        given = {"pfa": 0.6 * MEDIAN_PFA, "pfv_estimated": True}
-        higher, alike = evaluate(**given, pfv=0.5 * MEDIAN_PFV), evaluate(**given, pfv=0.3 * MEDIAN_PFV)
-        assert [one.detail["branch"][0] for one in (higher, alike)] == ["pfv", "pfv"]
-        assert raised(higher) == {"pfv_estimated", "rests_on_estimated_pfv"}
-        assert raised(alike) == {"pfv_estimated"}
-        assert raised(evaluate(pfa=0.6 * MEDIAN_PFA, pfv=0.5 * MEDIAN_PFV)) == set()
-
-    def test_a_class_by_the_acceleration_line_rests_on_no_estimate(self):
-        slow = evaluate(**at_frequency(0.5, 1.5), pfv_estimated=True)
-        assert (slow.detail["branch"][0], raised(slow)) == ("pfa", {"pfv_estimated"})
 
 
 class TestSettings:

@@ -50,7 +50,7 @@ def examples(settings: Settings = SETTINGS, **sizes: object) -> list[tuple[Metho
     b, h, pfa, pfv = np.broadcast_arrays(*(np.asarray(sizes[name], float) for name in ("B", "H", "PFA", "PFV")))
     cases = Cases.of(
         breadth=b / 100, height=h / 100, pfa=pfa * GRAVITY, pfv=pfv / 100, restitution=sizes.get("eta", math.nan),
-        pfv_estimated=sizes.get("estimated", False), ensemble=0, ensembles=[MadeUp(0, has_record=True)],
+        ensemble=0, ensembles=[MadeUp(0, has_record=not sizes.get("assumed"), is_assumed=bool(sizes.get("assumed")))],
     )  # fmt: skip
     found = []
     for method in all_methods():
@@ -125,12 +125,10 @@ def test_kaneko_hayashi_names_its_branch() -> None:
     assert "fema_p58" not in bound
 
 
-def test_settings_restitution_and_estimates_are_those_of_the_run() -> None:
+def test_settings_and_restitution_are_those_of_the_run() -> None:
     settings = Settings(runs=20, slide_coefficient=0.5, zeta_acceleration=0.3)
-    steps = steps_of(settings, B=40, H=200, PFA=0.3, PFV=60, eta=0.9, estimated=True)
+    steps = steps_of(settings, B=40, H=200, PFA=0.3, PFV=60, eta=0.9)
     assert any("= 0.5·Φ(" in step for step in steps["kaneko_hayashi"])
-    for key in ("kaneko_hayashi", "fema_p58"):
-        assert any("is an estimate from PFA, the building's period T1 and" in step for step in steps[key])
     simulated = steps[simulation().key]
     assert "η = 0.9, as set for the building." in simulated
     (counted,) = [step for step in simulated if step.startswith("It overturned in")]
@@ -139,6 +137,14 @@ def test_settings_restitution_and_estimates_are_those_of_the_run() -> None:
     assert last(simulated, "R_low") == pytest.approx(float(low), abs=6e-5)
     assert last(simulated, "R_high") == pytest.approx(float(high), abs=6e-5)
     assert simulated[-1].startswith("Under the recorded motion itself it ")
+
+
+def test_of_drawn_motions_nothing_is_said_of_one_that_recurs() -> None:
+    ideal = "If exactly this motion recurred"
+    drawn, recorded = (steps_of(B=40, H=200, PFA=0.3, PFV=60, assumed=one)[simulation().key] for one in (True, False))
+    assert any(step.startswith(ideal) for step in recorded)
+    assert not any(step.startswith(ideal) for step in drawn)
+    assert len(drawn) < len(recorded)
 
 
 def test_without_a_record_nothing_is_said_of_one() -> None:

@@ -1,17 +1,10 @@
-"""Envelopes of recorded floors and of others, and the octaves that they are of."""
+"""Envelopes of recorded floors, and the octaves that they are of."""
 
 import numpy as np
 import pytest
 
-from assess.motion.envelope import (
-    Envelopes,
-    hold_envelopes,
-    hold_times,
-    husid_envelopes,
-    octaves,
-    split,
-)
 from assess.motion.record import FloatArray
+from assess.motion.target import husid_envelopes, octaves, split
 from tests.motion.motions import read_motion
 
 STEP = 0.005
@@ -44,54 +37,6 @@ def test_the_first_and_last_reach_to_the_ends() -> None:
 
 def test_a_single_octave_takes_all() -> None:
     np.testing.assert_array_equal(split(np.array([0.0, 1.0, 100.0]), np.array([0.1])), np.ones((1, 3)))
-
-
-# --- floors without a record ---
-
-
-def test_hold_times_by_hand() -> None:
-    assert hold_times(None) == (5.0, 15.0, 10.0)
-    assert hold_times(2.0) == (5.0, 15.0, 10.0)
-    assert hold_times(6.0) == (5.0, 30.0, 10.0)
-
-
-def value_at(envelopes: Envelopes, seconds: float) -> float:
-    return float(envelopes.values[0, round(seconds / STEP)])
-
-
-def test_the_hold_and_its_corners() -> None:
-    envelopes = hold_envelopes(6001, STEP, None)
-    corners = [(0, 0.0), (2.5, 0.5), (5, 1.0), (12, 1.0), (20, 1.0), (25, 0.5), (30, 0.0)]
-    for seconds, value in corners:
-        assert value_at(envelopes, seconds) == pytest.approx(value, abs=1e-9)
-    assert envelopes.half_time == 12.5
-    assert envelopes.values.shape == (1, 6001)
-
-
-def test_a_long_first_period_lengthens_the_hold() -> None:
-    envelopes = hold_envelopes(9001, STEP, 6.0)
-    assert value_at(envelopes, 34.9) == 1.0
-    assert value_at(envelopes, 40) == pytest.approx(0.5)
-
-
-def test_a_longer_grid_ends_at_rest() -> None:
-    envelopes = hold_envelopes(9001, STEP, None)
-    assert value_at(envelopes, 25) == pytest.approx(0.5)
-    assert value_at(envelopes, 31) == 0.0
-
-
-def test_a_short_grid_cuts_the_hold() -> None:
-    envelopes = hold_envelopes(4001, STEP, 6.0)
-    for seconds, value in [(5, 1.0), (10, 1.0), (15, 0.5), (20, 0.0)]:
-        assert value_at(envelopes, seconds) == pytest.approx(value, abs=1e-9)
-    assert envelopes.half_time == 7.5
-
-
-def test_a_very_short_grid_cuts_the_decay() -> None:
-    envelopes = hold_envelopes(1601, STEP, None)
-    for seconds, value in [(2.5, 0.5), (5, 1.0), (8, 0.7)]:
-        assert value_at(envelopes, seconds) == pytest.approx(value)
-    assert envelopes.half_time == 5.0
 
 
 # --- recorded floors ---

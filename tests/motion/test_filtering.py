@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from assess.motion.filtering import choose_periods, gains_of, guess_power, improve, response_matrix, roll_off
-from assess.motion.target import Grid, generic_target, recorded_target
+from assess.motion.calibrate import choose_periods, gains_of, guess_power, improve, response_matrix, roll_off
+from assess.motion.drawn_ground import find_shape
+from assess.motion.target import Grid, recorded_target
 from tests.motion.motions import read_motion
 
 STEP = 0.005
@@ -37,13 +38,12 @@ def test_the_variance_of_a_response_to_white_noise() -> None:
 
 
 def test_the_first_guess_gives_the_variances_that_are_wanted() -> None:
-    wanted = generic_target(2.0, GRID, period=0.8).pseudo[::2]
-    periods = generic_target(2.0, GRID).periods[::2]
-    matrix = response_matrix(periods, STEP)
-    power = guess_power(matrix, periods, wanted)
-    factor = np.sqrt(2 * np.log(2.8 * np.maximum(20.0 / periods, 1)))
+    wanted = 2.0 * find_shape(PERIODS, 0.1)
+    matrix = response_matrix(PERIODS, STEP)
+    power = guess_power(matrix, PERIODS, wanted)
+    factor = np.sqrt(2 * np.log(2.8 * np.maximum(20.0 / PERIODS, 1)))
     got = factor * np.sqrt((matrix * power).sum(axis=1))
-    near = (periods > 0.06) & (periods < 5)
+    near = (PERIODS > 0.06) & (PERIODS < 5)
     np.testing.assert_allclose(got[near], wanted[near], rtol=0.15)
 
 

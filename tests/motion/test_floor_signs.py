@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from assess.motion.envelope import octaves
 from assess.motion.floor_signs import find_coherence, find_levels, find_signs, turn_phases
-from assess.motion.target import build_grid, put_on_grid
+from assess.motion.target import build_grid, octaves, put_on_grid
 from tests.motion.motions import read_motion
 
 STEP = 0.005

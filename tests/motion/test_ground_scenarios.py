@@ -37,13 +37,21 @@ def test_the_nearest_site_gives_median_dispersion_and_scenarios(tmp_path, name):
 
 
 def test_the_order_of_rows_and_columns_does_not_matter(tmp_path):
-    values = "gmv_SA(1.0),event_id,gmv_PGA,gmv_PGV,site_id\n.1,2,.4,20,0\n.1,0,.3,20,1\n.1,1,.2,20,0\n.2,1,.3,20,1\n"
-    values += ".4,0,.1,20,0\n.1,2,.3,20,1\n"
+    values = "gmv_SA(1.0),event_id,gmv_PGA,gmv_PGV,site_id\n.1,2,.4,40,0\n.1,0,.3,20,1\n.1,1,.2,20,0\n.2,1,.3,20,1\n"
+    values += ".4,0,.1,10,0\n.1,2,.3,20,1\n"
     site = read_scenarios(_write(tmp_path, values)).at(37.8, -122.4)
     assert site.scenarios == pytest.approx((-(1.5**0.5), 0, 1.5**0.5))
     assert site.pgv == pytest.approx(0.2)
     ((period, value),) = site.psa
     assert (period, value) == pytest.approx((1.0, (0.1 * 0.1 * 0.4) ** (1 / 3) * GRAVITY))
+
+
+def test_pgv_decides_which_scenario_is_a_strong_one(tmp_path):
+    values = "site_id,event_id,gmv_PGA,gmv_PGV\n0,0,.1,40\n0,1,.2,20\n0,2,.4,10\n"
+    site = read_scenarios(_write(tmp_path, values)).at(37.8, -122.4)
+    assert site.measure == "PGV"
+    assert site.scenarios == pytest.approx((1.5**0.5, 0, -(1.5**0.5)))
+    assert (site.pga, site.pgv) == pytest.approx((0.2 * GRAVITY, 0.2))
 
 
 def test_sites_may_be_named_by_texts(tmp_path):

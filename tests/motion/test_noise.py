@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from assess.motion import noise
-from assess.motion.envelope import STRETCH, Envelopes, hold_envelopes, octaves
+from assess.motion.kept import Kept
 from assess.motion.noise import draw_bands, draw_noise, find_rates
 from assess.motion.record import FloatArray
 from assess.motion.rows import GROUP
-from assess.motion.target import Grid
+from assess.motion.target import STRETCH, Envelopes, Grid, octaves
 from assess.progress import SILENT
 
 STEP = 0.005
@@ -25,7 +25,7 @@ def draw(envelopes: Envelopes, *, seed: int = 1, axis: str = "X", groups: int = 
 
 @pytest.fixture
 def nothing_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(noise, "_STORE", noise._Store())
+    monkeypatch.setattr(noise, "KEPT", Kept(noise.KEPT.most))
 
 
 # --- rates ---
@@ -75,7 +75,8 @@ def test_floors_share_their_phases() -> None:
 
 
 def test_an_envelope_shapes_the_noise() -> None:
-    made = draw(hold_envelopes(2000, STEP, None), groups=2)[:, :2000]
+    values = np.interp(np.arange(2000) * STEP, [0.0, 5.0, 8.0, 10.0], [0.0, 1.0, 1.0, 0.0])
+    made = draw(Envelopes(np.array([0.1]), values[None], 5.0), groups=2)[:, :2000]
     level = np.sqrt((made**2).mean(axis=0))
     near = [level[round(seconds / STEP) - 40 : round(seconds / STEP) + 40].mean() for seconds in (0.3, 4.5, 9.5)]
     assert near[0] < 0.2 * near[1]
@@ -101,10 +102,26 @@ def test_durations_scatter() -> None:
     values = np.zeros((9, 4000))
     values[8, 1000:3000] = 1.0  # the highest octave has sharp edges
     made = draw(Envelopes(octaves(), values, 10.0), groups=10)[:, :4000]
-    inside = np.abs(made) > 1e-3 * np.abs(made).max()
-    lengths = np.log((4000 - inside[:, ::-1].argmax(axis=1) - inside.argmax(axis=1)) / 2000)
+    lengths = np.log(measure_lengths(made) / 2000)
     assert lengths.std() == pytest.approx(STRETCH, rel=0.2)
     assert lengths.mean() == pytest.approx(0.0, abs=0.06)
+
+
+def measure_lengths(made: FloatArray) -> FloatArray:
+    """Return the samples from the first to the last that is not silent, (k,)."""
+    inside = np.abs(made) > 1e-3 * np.abs(made).max()
+    return np.asarray(made.shape[1] - inside[:, ::-1].argmax(axis=1) - inside.argmax(axis=1), np.float64)
+
+
+def test_given_stretches_take_the_place_of_drawn_ones() -> None:
+    values = np.zeros((9, 4000))
+    values[8, 1000:3000] = 1.0
+    stretches, grid = np.linspace(0.5, 1.5, GROUP), Grid(STEP, 4000)
+    made = draw_noise(
+        Envelopes(octaves(), values, 10.0), grid, seed=1, axis="X", group=0, progress=SILENT, stretches=stretches
+    )
+    lengths = measure_lengths(np.fft.irfft(made, find_rates(grid).length, axis=1)[:, :4000])
+    np.testing.assert_allclose(lengths, 2000 * stretches, rtol=0.05)
 
 
 # --- what is kept ---
@@ -123,10 +140,10 @@ def test_noise_is_drawn_once_for_all_floors() -> None:
 @pytest.mark.usefixtures("nothing_kept")
 def test_what_is_kept_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     first = draw_bands(GRID, 1, "X", 0, SILENT)
-    monkeypatch.setattr(noise, "KEPT", 2 * first.size)
+    monkeypatch.setattr(noise.KEPT, "most", 2 * first.nbytes)
     for group in (1, 2, 3):
         draw_bands(GRID, 1, "X", group, SILENT)
-        assert sum(one.size for one in noise._STORE.held.values()) <= 2 * first.size
+        assert noise.KEPT.nbytes <= 2 * first.nbytes
     again = draw_bands(GRID, 1, "X", 0, SILENT)
     assert again is not first
     for one, other in zip(again.octaves, first.octaves, strict=True):

@@ -276,7 +276,7 @@ def test_the_filter_is_scipys(time_step: float) -> None:
 def test_filtering_a_long_record_can_be_cancelled(monkeypatch: pytest.MonkeyPatch) -> None:
     samples = sine(1.0, 30)
     whole = treat(make_record(samples)).acceleration
-    monkeypatch.setattr("assess.motion.highpass.SLICE", 1000)
+    monkeypatch.setattr("assess.motion.record.SLICE", 1000)
     np.testing.assert_array_equal(treat(make_record(samples)).acceleration, whole)
     cancel = Event()
     cancel.set()

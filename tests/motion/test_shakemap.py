@@ -40,11 +40,11 @@ def test_loma_prieta_at_575_market_street():
 
 
 def test_uncertainty_beside_gives_the_share_of_all_places():
-    """At a point of the grid: inter 0.26, intra 0.48; sigma is that of the grid, which has its own."""
+    """At a point of the grid: inter 0.24, intra 0.50 of PGV, whose sigma the grid does not have."""
     site = read_shakemap(EPICENTRE).at(37.2, -122.25)
-    assert site.shared == pytest.approx(0.26**2 / (0.26**2 + 0.48**2))
-    assert site.dispersion == pytest.approx(0.3245)
-    assert site.dispersion_source == "STDPGA of grid.xml"
+    assert site.shared == pytest.approx(0.24**2 / (0.24**2 + 0.50**2))
+    assert site.dispersion == pytest.approx(0.3446)
+    assert site.dispersion_source == "STDPGV of uncertainty.xml"
     assert "File of uncertainties" in dict(site.facts)
 
 
@@ -132,6 +132,44 @@ def test_sigma_is_interpolated_linearly():
     )
 
 
+@pytest.mark.parametrize(
+    ("fields", "beside", "found"),
+    [
+        ({"STDPGA": 0.3, "STDPGV": 0.4}, {}, (0.4, "STDPGV of grid.xml")),
+        ({"STDPGA": 0.3}, {"STDPGA": 0.2, "STDPGV": 0.5}, (0.5, "STDPGV of uncertainty.xml")),
+        ({"STDPGA": 0.3}, {}, (0.3, "STDPGA of grid.xml")),
+        ({"STDPGA": 0.3, "STDPGV": 0.0}, {}, (0.3, "STDPGA of grid.xml")),
+        ({}, {"STDPGA": 0.2}, (0.2, "STDPGA of uncertainty.xml")),
+    ],
+)
+def test_where_the_map_has_pgv_its_sigma_rules(fields, beside, found):
+    named = {name: ("", (value,) * 6) for name, value in fields.items()}
+    data = build_grid(PLAIN | {"PGV": ("cms", (20.0,) * 6)} | named)
+    grid = build_grid({name: ("", (value,) * 6) for name, value in beside.items()}) if beside else None
+    site = _at(data, uncertainty=grid, uncertainty_name="uncertainty.xml")
+    assert (site.measure, site.dispersion, site.dispersion_source) == ("PGV", *found)
+
+
+def test_assumed_sigma_and_share_are_those_of_pgv_where_the_map_has_it():
+    """Boore et al. (2014): tau 0.346 and phi 0.552 from magnitude 5.5 on."""
+    site = _at(build_grid(PLAIN | {"PGV": ("cms", (20.0,) * 6)}))
+    assert site.dispersion == pytest.approx(0.651, abs=5e-4)
+    assert site.shared == pytest.approx(0.346**2 / (0.346**2 + 0.552**2))
+
+
+@pytest.mark.parametrize(("measures", "shared"), [(("PGA", "PGV"), 0.2), (("PGA",), 0.5)])
+def test_the_share_is_that_of_pgv_and_of_pga_where_the_file_has_no_other(measures, shared):
+    parts = {"PGA": (0.3, 0.3), "PGV": (0.2, 0.4)}
+    fields = {
+        f"GMPE_{part}_STD{name}": ("", (value,) * 6)
+        for name in measures
+        for part, value in zip(("INTER", "INTRA"), parts[name], strict=True)
+    }
+    data = build_grid(PLAIN | {"PGV": ("cms", (20.0,) * 6), "STDPGA": ("", (0.3,) * 6)})
+    site = _at(data, uncertainty=build_grid(fields), uncertainty_name="uncertainty.xml")
+    assert site.shared == pytest.approx(shared)
+
+
 def test_a_sigma_of_0_everywhere_is_none_and_at_some_points_is_kept():
     """An instrument leaves no doubt at its own point; a map without any doubt has a field that was not filled in."""
     zero = build_grid(PLAIN | {"STDPGA": ("ln(pctg)", (0.0,) * 6)})
@@ -174,7 +212,8 @@ def test_a_file_beside_that_is_cut_off_is_named_with_its_folder_and_the_way_out(
     (tmp_path / "grid.xml").write_bytes(build_grid(PLAIN))
     (tmp_path / "uncertainty.xml").write_bytes(build_grid({"STDPGA": ("", (0.25,) * 6)})[:-60])
     fault = r"uncertainty\.xml: line \d+: the XML is damaged or cut off\. Download it again"
-    way = r"You can remove the file: the STDPGA of grid\.xml is then used, or an assumed one where it has none"
+    way = r"You can remove the file: the STDPGV or STDPGA of grid\.xml is then used, or an assumed one where it has "
+    way += "none"
     with pytest.raises(InputError, match=rf"^{re.escape(str(tmp_path))}.{fault}\. {way}$"):
         read_shakemap(tmp_path / "grid.xml")
 

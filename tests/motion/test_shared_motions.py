@@ -10,19 +10,21 @@ import pytest
 from assess.errors import CancelledError
 from assess.motion import shared_motions
 from assess.motion.generate import CALIBRATED, build_generator
+from assess.motion.kept import Kept
 from assess.motion.shared_motions import SharedMotions, share_motions
 from assess.motion.sweep import Single
-from assess.motion.target import Grid, Target, generic_target
+from assess.motion.target import Grid, Target, recorded_target
 from assess.progress import Progress
+from tests.motion.motions import cut
 
 GRID = Grid(0.005, 1601)
-TARGET = generic_target(1.0, GRID, period=0.5)
+TARGET = recorded_target(cut("b", 8, 16), GRID)
 
 
 @pytest.fixture(autouse=True)
 def nothing_kept(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Start from an empty store; return the list that grows with every generator that is built."""
-    monkeypatch.setattr(shared_motions, "_STORE", shared_motions._Store())
+    monkeypatch.setattr(shared_motions, "KEPT", Kept(shared_motions.KEPT.most))
     built: list[int] = []
 
     def count(*given, **named):
@@ -54,7 +56,7 @@ def test_shared_motions_are_those_made_alone(nothing_kept: list[int]) -> None:
 
 def test_the_order_in_which_floors_come_changes_nothing() -> None:
     late = share(factor=0.3).realise(120, 20), share(factor=4.0).realise(0, 140)
-    shared_motions.forget()
+    shared_motions.KEPT.forget()
     early = share(factor=4.0).realise(0, 140), share(factor=0.3).realise(120, 20)
     np.testing.assert_array_equal(late[0], early[1])
     np.testing.assert_array_equal(late[1], early[0])
@@ -71,14 +73,13 @@ def test_what_is_handed_out_may_be_changed() -> None:
 @pytest.mark.parametrize(
     "other",
     [
-        generic_target(1.0, GRID, period=0.500001),
-        generic_target(1.0, GRID, height=10.0),
-        generic_target(1.0, GRID, period=0.5, pfv=0.1),
-        Target(periods=TARGET.periods, pseudo=TARGET.pseudo, velocity_level=TARGET.velocity_level, pfa=1.0,
-               pfv=TARGET.pfv, envelopes=replace(TARGET.envelopes, values=TARGET.envelopes.values**2)),
+        replace(TARGET, pseudo=TARGET.pseudo * 1.0001),
+        replace(TARGET, pfa=TARGET.pfa * 1.0001),
+        replace(TARGET, pfv=TARGET.pfv * 1.0001),
+        replace(TARGET, envelopes=replace(TARGET.envelopes, values=TARGET.envelopes.values**2)),
     ],
-    ids=["period", "height", "pfv", "envelope"],
-)  # fmt: skip
+    ids=["spectrum", "pfa", "pfv", "envelope"],
+)
 def test_targets_that_differ_at_all_share_nothing(other: Target, nothing_kept: list[int]) -> None:
     first = share().realise(0, 2)
     assert not np.array_equal(share(other).realise(0, 2), first)
@@ -132,24 +133,24 @@ def test_a_failure_is_not_kept(nothing_kept: list[int]) -> None:
 
 def test_no_more_is_kept_than_allowed(monkeypatch: pytest.MonkeyPatch, nothing_kept: list[int]) -> None:
     size = 2_000_000  # room for the first 100 motions of two targets, not of three
-    monkeypatch.setattr(shared_motions, "KEPT", size)
+    monkeypatch.setattr(shared_motions.KEPT, "most", size)
     first = share().realise(0, 140)
-    for period in (0.6, 0.7, 0.8):
-        share(generic_target(1.0, GRID, period=period)).realise(0, 140)
-        assert 0 < shared_motions.count_kept() <= size
+    for by in (1.1, 1.2, 1.3):
+        share(replace(TARGET, pfa=TARGET.pfa * by)).realise(0, 140)
+        assert 0 < shared_motions.KEPT.nbytes <= size
     built = len(nothing_kept)
     np.testing.assert_array_equal(share().realise(0, 140), first)
     assert len(nothing_kept) == built + 1
 
 
 def test_what_exceeds_the_room_alone_is_made_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(shared_motions, "KEPT", 1000)
+    monkeypatch.setattr(shared_motions.KEPT, "most", 1000)
     np.testing.assert_array_equal(share().realise(0, 120), alone(0, 120))
-    assert shared_motions.count_kept() == 0
+    assert shared_motions.KEPT.nbytes == 0
 
 
 def test_only_the_first_motions_of_many_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shared_motions, "MOST_GROUPS", 6)
     found = share().realise(0, 180)
-    assert shared_motions.count_kept() < 140 * GRID.count * 4
+    assert shared_motions.KEPT.nbytes < 140 * GRID.count * 4
     np.testing.assert_array_equal(share().realise(100, 80), found[100:])

@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from assess.motion.spatial_field import EARTH, RANGE, WAVES, correlate, draw_field
+from assess.motion.spatial_field import EARTH, SCATTERS, WAVES, correlate, draw_field
 
 DRAWS = 16_384
 """As many as are kept ready at once."""
@@ -21,16 +21,20 @@ def east_of(place, distance):
     return latitude, longitude + math.degrees(angle)
 
 
-def test_correlation_of_pga_is_that_of_jayaram_and_baker():
-    """Their eq. 20 with b = 40.7 km, of clustered soil conditions."""
-    assert RANGE == 40.7
-    assert correlate(np.array([0.0, 40.7, 81.4])) == pytest.approx([1, math.exp(-3), math.exp(-6)])
+@pytest.mark.parametrize(("measure", "range_km"), [("PGA", 40.7), ("PGV", 22.0 + 3.7 * 1.0)])
+def test_correlation_is_that_of_jayaram_and_baker(measure, range_km):
+    """Their eq. 20: b of PGA where soil conditions are clustered; PGV as spectral acceleration at 1 s."""
+    assert SCATTERS[measure].range_km == pytest.approx(range_km)
+    found = correlate(range_km * np.arange(3), SCATTERS[measure].range_km)
+    assert found == pytest.approx([1, math.exp(-3), math.exp(-6)])
 
 
+@pytest.mark.parametrize("range_km", [40.7, 25.7])
 @pytest.mark.parametrize("distance", [1.0, 5.0, 15.0, 40.7, 150.0])
-def test_numbers_of_two_places_are_correlated_by_their_distance(distance):
-    one, other = draw_field(1, 0, DRAWS, *BAY), draw_field(1, 0, DRAWS, *east_of(BAY, distance))
-    wanted = math.exp(-3 * distance / 40.7)
+def test_numbers_of_two_places_are_correlated_by_their_distance(distance, range_km):
+    places = BAY, east_of(BAY, distance)
+    one, other = (draw_field(1, 0, DRAWS, place[0], place[1], range_km) for place in places)
+    wanted = math.exp(-3 * distance / range_km)
     error = (1 - wanted**2 + 0.02) / math.sqrt(DRAWS)  # the kurtosis adds little
     assert np.corrcoef(one, other)[0, 1] == pytest.approx(wanted, abs=4 * error)
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from assess.motion.storeys import assume_elevation, find_storey
+from assess.motion.assumed import assume_elevation, find_storey
 
 NAMES = {
     "0": 0, "G": 0, "Ground floor": 0, " pt ": 0, "Piano terra": 0, "B1": 0, "b 2": 0, "-2": 0, "Basement": 0,

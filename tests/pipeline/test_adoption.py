@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from assess.methods import Cases, Outcome, adopted_formula, all_methods, simulation
+from assess.methods import Cases, Outcome, adopted_formula, all_methods, paper_formula, simulation
 from assess.pipeline.adopt import Adoption, adopt, choose_items, find_governing
 from assess.results import BASES
 from assess.risk import RiskClass, classify, wilson_interval
@@ -19,6 +19,10 @@ LOW, MEDIUM, HIGH, VERY_HIGH = RiskClass
 FORMULA, SIMULATION = adopted_formula().key, simulation().key
 
 
+LARGEST = math.exp(3 * math.sqrt(0.4**2 + 0.25**2 + 0.05**2 + 0.02**2 + (0.05 / 0.5) ** 2))
+"""Of the earthquake, the peak of its motion, and the base, the height and the centre of gravity of the piece."""
+
+
 @dataclass(frozen=True)
 class Case:
     """One case: what the formula gives, how many of its motions overturned it, and what is in doubt."""
@@ -26,11 +30,12 @@ class Case:
     formula: float
     overturned: int = 0
     runs: int = 0
-    is_unshaped: bool = False
+    is_unknown: bool = False
     is_weak: bool = False
     fell: bool = False
     ideal: int | None = None
     pfa: float = 0.5
+    faster: float = 0.0
 
     @property
     def share(self) -> float:
@@ -42,24 +47,23 @@ class Case:
 
     @property
     def can_rock(self) -> bool:
-        """PFA times the largest factor that is drawn, against 0.85 B/H of a piece of 0.4 x 1.8 m."""
-        return self.pfa * math.exp(3 * 0.4) >= 0.85 * 0.4 / 1.8
-
-    @property
-    def is_doubtful(self) -> bool:
-        return (self.is_unshaped or self.is_weak) and self.can_rock
+        """PFA times the largest factor that is drawn, against 0.65 B/H of a piece of 0.4 x 1.8 m."""
+        return self.pfa * LARGEST >= 0.65 * 0.4 / 1.8
 
 
 def adopted(*given: Case, settings: Settings = Settings()) -> Adoption:  # noqa: B008
     ends = [wilson_interval(one.overturned, one.runs) if one.runs else (math.nan, math.nan) for one in given]
     low, high = (np.array([float(pair[at]) for pair in ends]) for at in (0, 1))
     flags = {
-        "unknown_period": np.array([one.is_unshaped for one in given], dtype=np.bool_),
+        "unknown_building": np.array([one.is_unknown for one in given], dtype=np.bool_),
         "weak_motions": np.array([one.is_weak for one in given], dtype=np.bool_),
         "fell_in_record": np.array([one.fell for one in given], dtype=np.bool_),
     }
     ideal = np.array([one.ideal_share for one in given])
-    detail = {"low": low, "high": high, "ideal": ideal, "ideal_low": 0.9 * ideal, "ideal_high": 0.9 * ideal + 0.1}
+    detail = {
+        "low": low, "high": high, "ideal": ideal, "ideal_low": 0.9 * ideal, "ideal_high": 0.9 * ideal + 0.1,
+        "if_faster": np.array([one.faster if one.runs else math.nan for one in given]),
+    }  # fmt: skip
     outcomes = {
         FORMULA: Outcome(np.array([one.formula for one in given])),
         SIMULATION: Outcome(np.array([one.share for one in given]), detail, flags),
@@ -97,21 +101,59 @@ def test_verification_lowers_and_raises(overturned, risk):
     assert (found.low[0], found.high[0]) == (low, high)
 
 
-@pytest.mark.parametrize("doubt", ["is_unshaped", "is_weak"])
-def test_in_doubt_a_class_is_raised_but_not_lowered(doubt):
-    assert one(Case(0.5, 20, 200, **{doubt: True})) == (0.5, HIGH, HIGH, False, True)
-    assert one(Case(0.5, 160, 200, **{doubt: True}))[:2] == (0.8, VERY_HIGH)
-    assert one(Case(0.5, 70, 200, **{doubt: True}))[:2] == (0.35, HIGH), "a lower number of the same class is taken"
-    found = adopted(Case(0.5, 20, 200, **{doubt: True}))
+def test_motions_that_are_too_weak_raise_a_class_but_do_not_lower_it():
+    assert one(Case(0.5, 20, 200, is_weak=True)) == (0.5, HIGH, HIGH, False, True)
+    assert one(Case(0.5, 160, 200, is_weak=True))[:2] == (0.8, VERY_HIGH)
+    assert one(Case(0.5, 70, 200, is_weak=True))[:2] == (0.35, HIGH), "a lower number of the same class is taken"
+    found = adopted(Case(0.5, 20, 200, is_weak=True))
     assert np.isnan([found.low[0], found.high[0]]).all(), "the interval is of a risk that was not adopted"
 
 
+def test_of_an_unknown_building_the_chance_is_simulated_and_the_class_unconfirmed():
+    """Draws of every building are no weaker than they should be: the formula's class does not stand in for theirs."""
+    assert one(Case(0.5, 20, 200, is_unknown=True))[:2] == (0.1, MEDIUM)
+    for overturned in (0, 20, 160):
+        assert one(Case(0.5, overturned, 200, is_unknown=True))[3:] == (False, True)
+
+
+def test_of_an_unknown_building_the_class_is_that_of_the_faster_third_where_it_is_higher():
+    assert one(Case(0.1, 20, 200, is_unknown=True, faster=0.8))[:3] == (0.1, VERY_HIGH, VERY_HIGH)
+    assert one(Case(0.1, 100, 200, is_unknown=True, faster=0.1))[:2] == (0.5, HIGH)
+    assert one(Case(0.1, 20, 200, faster=0.8))[:2] == (0.1, MEDIUM), "of a building that is known it decides nothing"
+
+
 def test_a_piece_that_cannot_start_to_rock_is_low_whatever_its_motions_are():
-    """0.4 x 1.8 m starts at 0.222 g; with 3.32 times 0.056 g it stays below 0.85 of that, with 0.057 g it does not."""
-    assert one(Case(0.5, 0, 200, is_unshaped=True, pfa=0.056))[1:] == (LOW, LOW, True, False)
-    assert one(Case(0.5, 0, 200, is_unshaped=True, pfa=0.057))[1:] == (HIGH, HIGH, False, True)
-    assert adopted(Case(0.5, 0, 200, pfa=0.18)).can_rock[0]
-    assert not adopted(Case(0.5, 0, 200, pfa=0.18), settings=Settings(ideal=True)).can_rock[0], "nothing is scaled"
+    """0.4 x 1.8 m starts at 0.222 g; with 4.28 times 0.033 g it stays below 0.65 of that, with 0.034 g it does not."""
+    for still in (Case(0.5, 0, 200, is_unknown=True, pfa=0.033), Case(0.5, pfa=0.033), Case(0.5, 0, 9, pfa=0.033)):
+        assert one(still) == (0.0, LOW, LOW, False, False), "simulated or not, and of however many draws"
+        found = adopted(still)
+        assert basis_of(found) == "cannot rock"
+        assert np.isnan([found.low[0], found.high[0]]).all()
+    assert one(Case(0.5, 0, 200, is_weak=True, pfa=0.034))[1:] == (HIGH, HIGH, False, True)
+    assert one(Case(0.5, pfa=0.034))[1:3] == (HIGH, HIGH)
+    assert adopted(Case(0.5, 0, 200, pfa=0.06)).can_rock[0]
+    ideal = adopted(Case(0.5, 0, 200, pfa=0.06), settings=Settings(ideal=True))
+    assert not ideal.can_rock[0], "only peaks of motions vary"
+
+
+def test_a_stocky_piece_is_low_whatever_the_motion():
+    outcomes = {FORMULA: Outcome(np.array([0.9])), SIMULATION: _not_simulated(1)}
+    cases = Cases.of(breadth=1.5, height=1.0, pfa=2 * GRAVITY)
+    found = adopt(outcomes, cases, Settings())
+    assert (basis_of(found), found.probability[0], found.upper[0]) == ("cannot rock", 0.0, LOW)
+    narrow = adopt(outcomes, Cases.of(breadth=1.4, height=1.0, pfa=2 * GRAVITY), Settings())
+    assert (basis_of(narrow), narrow.probability[0]) == ("formula", 0.9)
+
+
+def _not_simulated(count):
+    unknown, no = np.full(count, np.nan), np.zeros(count, dtype=np.bool_)
+    detail = dict.fromkeys(("low", "high", "ideal", "ideal_low", "ideal_high", "if_faster"), unknown)
+    return Outcome(unknown, detail, dict.fromkeys(("unknown_building", "weak_motions", "fell_in_record"), no))
+
+
+def test_what_fell_under_stronger_motions_of_the_users_own_can_rock():
+    assert one(Case(0.5, 20, 200, pfa=0.01))[:2] == (0.1, MEDIUM)
+    assert one(Case(0.0, 0, 200, fell=True, pfa=0.01))[1] is HIGH
 
 
 def test_ideal_adopts_what_happens_if_exactly_this_motion_recurs():
@@ -143,9 +185,9 @@ def test_the_upper_class_is_that_of_the_intervals_end():
 
 def test_where_the_formula_stands_the_interval_may_still_raise_the_upper_class():
     """The formula's medium stands; 5 of 20 may be as many as half."""
-    assert one(Case(0.299, 0, 20, is_unshaped=True))[1:] == (MEDIUM, MEDIUM, False, True)
-    assert one(Case(0.31, 5, 20, is_unshaped=True))[1:] == (HIGH, HIGH, False, True)
-    assert one(Case(0.1, 5, 20, is_unshaped=True))[1:3] == (MEDIUM, HIGH)
+    assert one(Case(0.299, 0, 20, is_weak=True))[1:] == (MEDIUM, MEDIUM, False, True)
+    assert one(Case(0.31, 5, 20, is_weak=True))[1:] == (HIGH, HIGH, False, True)
+    assert one(Case(0.1, 5, 20, is_weak=True))[1:3] == (MEDIUM, HIGH)
 
 
 probabilities = st.one_of(st.floats(0, 1), st.sampled_from([0.03, 0.3, 0.7]))
@@ -155,10 +197,11 @@ probabilities = st.one_of(st.floats(0, 1), st.sampled_from([0.03, 0.3, 0.7]))
 def any_case(draw):
     runs = draw(st.one_of(st.just(0), st.integers(1, 300)))
     overturned = draw(st.integers(0, runs))
-    doubts = {name: draw(st.booleans()) for name in ("is_unshaped", "is_weak")}
+    doubts = {name: draw(st.booleans()) for name in ("is_unknown", "is_weak")}
     ideal = draw(st.integers(0, runs)) if runs and draw(st.booleans()) else None
     fell, pfa = bool(runs) and draw(st.booleans()), draw(st.sampled_from([0.01, 0.05, 0.5]))
-    return Case(draw(probabilities), overturned, runs, fell=fell, ideal=ideal, pfa=pfa, **doubts)
+    faster = draw(probabilities)
+    return Case(draw(probabilities), overturned, runs, fell=fell, ideal=ideal, pfa=pfa, faster=faster, **doubts)
 
 
 @given(st.lists(any_case(), min_size=1, max_size=20))
@@ -168,18 +211,28 @@ def test_nothing_comes_out_lower_than_it_should(given):
         by_formula, risk, upper = classify(case.formula), found.risk[at], found.upper[at]
         assert upper >= risk >= classify(float(found.probability[at]))
         basis = basis_of(found, at)
-        assert found.probability[at] == (case.share if basis == "simulated" else case.formula)
+        if basis == "cannot rock":
+            assert not case.can_rock
+            assert (case.overturned, case.fell) == (0, False)
+            assert found.probability[at] == 0
+            continue
         if not case.runs:
+            assert found.probability[at] == case.formula
             assert (risk, basis) == (by_formula, "formula")
             continue
         assert basis != "formula"
         assert upper >= classify(case.ideal_share)
         assert found.ideal_higher[at] == (classify(case.ideal_share) > risk)
         assert upper >= classify(float(wilson_interval(case.overturned, case.runs)[1]))
-        if case.is_doubtful:
-            assert risk >= by_formula
-            assert risk >= classify(case.share), "in doubt the higher class of both"
+        assert found.probability[at] in (case.share, case.formula)
+        assert risk >= classify(case.share)
+        if case.is_weak:
+            assert risk >= by_formula, "where motions are too weak, the higher class of both"
         else:
+            assert found.probability[at] == case.share
+        if case.is_unknown:
+            assert (risk >= classify(case.faster), basis) == (True, "unconfirmed")
+        elif not case.is_weak:
             assert basis == "simulated"
         if case.fell:
             assert risk >= HIGH
@@ -197,11 +250,19 @@ def test_cases_do_not_touch_each_other(given):
 # --- which case governs ---
 
 
-def governing(*probabilities, items=None, pfa=None):
+def governing(*probabilities, items=None, pfa=None, basis=None):
     """Return which case governs, item by item."""
     item = np.zeros(len(probabilities), dtype=np.intp) if items is None else np.array(items)
     peaks = np.ones(len(probabilities)) if pfa is None else np.array(pfa)
-    return find_governing(np.array(probabilities, dtype=np.float64), item, peaks * GRAVITY).tolist()
+    return find_governing(_adoption(np.array(probabilities, dtype=np.float64), basis), item, peaks * GRAVITY).tolist()
+
+
+def _adoption(probability, basis=None):
+    """Return an adoption of which only the chance and the basis are told."""
+    unknown, no = np.full(probability.size, np.nan), np.zeros(probability.size, dtype=np.bool_)
+    classes = np.zeros(probability.size, dtype=np.int64)
+    given = np.array([BASES.index(one) for one in basis or ["simulated"] * probability.size], dtype=np.int8)
+    return Adoption(probability, unknown, unknown, classes, classes, given, no, no, no, unknown)
 
 
 def test_the_larger_probability_governs():
@@ -211,6 +272,10 @@ def test_the_larger_probability_governs():
 def test_then_the_larger_pfa_then_the_first():
     assert governing(0.2, 0.2, pfa=[1, 2]) == [1]
     assert governing(0.2, 0.2, pfa=[1, 1]) == [0]
+
+
+def test_of_no_chance_the_motion_under_which_it_can_rock_governs():
+    assert governing(0.0, 0.0, pfa=[2, 1], basis=["cannot rock", "simulated"]) == [1]
 
 
 def test_rounding_does_not_decide():
@@ -226,7 +291,7 @@ def test_each_item_has_its_own():
 
 
 SELECTING = [method for method in all_methods() if method.selects]
-(OTHER,) = (method.key for method in SELECTING if method.key != FORMULA)
+OTHER, PAPER = "kaneko_hayashi", paper_formula().key
 
 
 def chosen(verify, formula, kaneko_hayashi=None, extrapolated=None, items=None, routes=None):
@@ -236,6 +301,7 @@ def chosen(verify, formula, kaneko_hayashi=None, extrapolated=None, items=None, 
     outcomes = {
         FORMULA: Outcome(np.array(formula), flags=flags),
         OTHER: Outcome(np.array(kaneko_hayashi)),
+        PAPER: Outcome(np.zeros(count), flags={"extrapolated": np.zeros(count, dtype=np.bool_)}),
     }
     item = np.arange(count) if items is None else np.array(items)
     return choose_items(verify, SELECTING, outcomes, item, np.array(routes or [False] * (item[-1] + 1))).tolist()
@@ -276,8 +342,9 @@ def _nothing():
     return {
         FORMULA: Outcome(empty, flags={"extrapolated": empty.astype(np.bool_)}),
         OTHER: Outcome(empty),
+        PAPER: Outcome(empty, flags={"extrapolated": empty.astype(np.bool_)}),
     }
 
 
 def governing_of_nothing():
-    return find_governing(np.zeros(0), np.zeros(0, dtype=np.intp), np.zeros(0)).tolist()
+    return find_governing(_adoption(np.zeros(0)), np.zeros(0, dtype=np.intp), np.zeros(0)).tolist()

@@ -5,7 +5,7 @@ import json
 import pytest
 
 import assess
-from assess.pipeline.weights import DENSITIES, find_weight
+from assess.pipeline.anchors import DENSITIES, find_weight
 from assess.settings import Settings
 from tests.workbooks import write
 

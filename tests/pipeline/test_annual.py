@@ -24,7 +24,7 @@ from tests.shaking import write_records
 
 RUNS = 60
 SETTINGS = Settings(runs=RUNS, seed=3)
-BUILDING = {"period": 0.8, "ground_pga": 0.15, "hazard": "hazard.csv"}
+BUILDING = {"period": 0.8, "ground_pga": 0.15, "motion_uncertainty": 0.4, "hazard": "hazard.csv"}
 FLOORS = [{"floor": "1", "pfa_x": 0.3, "pfa_y": 0.3}]
 CABINET = {"item": "a", "floor": "1", "breadth": 40, "width": 90, "height": 180, "axis": "X"}
 CORRIDOR = {"route": "A", "segment": "corridor", "floor": "1", "start": "Room", "end": "Street", "clear_width": 1.5,
@@ -95,7 +95,7 @@ def test_at_the_scenarios_own_ground_pga_it_is_what_the_run_finds(several):
     cases, (joint,) = several.cases, several.joints.values()
     found = rock_levels(
         cases, several.case_item, several.case_demand, np.array([[0.5, 1.0]]), SETTINGS,
-        dispersion=cases.uncertainty.motion,
+        dispersion=cases.dispersion,
     )  # fmt: skip
     np.testing.assert_array_equal(found[0].own, joint.cases)
     np.testing.assert_array_equal(found[0].fell[1], joint.fell)
@@ -128,14 +128,24 @@ def test_ideal_changes_no_rate_and_a_factor_on_the_motion_hardly_any(tmp_path):
     assert rates[2] == pytest.approx(rates[0], rel=0.15)
 
 
-def test_the_dispersion_of_the_motion_is_always_in_it(tmp_path):
+def test_the_dispersion_of_a_record_is_always_in_it(tmp_path):
     """Also where the scenario is taken as exact; a rate without it is about 2.2 times too low (physics.md G)."""
-    without, given = (assessed(tmp_path, motion_uncertainty=beta, piece_uncertainty="no") for beta in (0, 0.4))
+    write_records(tmp_path, "slow")
+    exact = {"floors": [{"floor": "1", "record_x": "slow.csv"}], "piece_uncertainty": "no"}
+    without, given = (assessed(tmp_path, motion_uncertainty=beta, **exact) for beta in (0, 0.4))
     assert without.annual.tables.motion_dispersion == 0.4
     assert rows_of(without)[1] == rows_of(given)[1]
-    small = assessed(tmp_path, motion_uncertainty=0.01, piece_uncertainty="no")
+    small = assessed(tmp_path, motion_uncertainty=0.01, **exact)
     ratio = rows_of(given)[1][0].rate / rows_of(small)[1][0].rate
-    assert ratio == pytest.approx(np.exp(K**2 * (0.4**2 - 0.01**2) / 2), rel=0.05)
+    assert ratio == pytest.approx(np.exp(K**2 * (0.4**2 - 0.01**2) / 2), rel=0.15)
+
+
+def test_drawn_motions_scatter_by_themselves(tmp_path):
+    """They need no dispersion to differ; a typed one is averaged over, but for what a fitted lognormal changes."""
+    blank, given = (assessed(tmp_path, motion_uncertainty=beta, piece_uncertainty="no") for beta in (None, 0.4))
+    assert [one.annual.tables.motion_dispersion for one in (blank, given)] == [0, 0.4]
+    ratio = rows_of(given)[1][0].rate / rows_of(blank)[1][0].rate
+    assert ratio == pytest.approx(np.exp(K**2 * 0.4**2 / 2), rel=0.25)
 
 
 def test_a_square_piece_falls_along_either_axis(tmp_path):
@@ -158,11 +168,11 @@ def test_where_motions_serve_slip_alone_nothing_is_rocked(tmp_path):
 
 def test_no_level_cuts_off_motions_that_are_stronger_than_the_floor(tmp_path):
     """Where pieces fall at the lowest level, lower ones follow until none does."""
-    assessment = assessed(tmp_path)
+    assessment = assessed(tmp_path, motion_uncertainty=None)
     weak = replace(assessment.cases, pfa=assessment.cases.pfa / 5)
     shifted = evaluate_annual(replace(assessment, cases=weak), jobs=1, progress=SILENT)
     (row,) = rows_of(assessment)[1]
-    assert shifted.items[0].rate == pytest.approx(row.rate, rel=0.1), "the levels begin five times too high"
+    assert shifted.items[0].rate == pytest.approx(row.rate, rel=0.2), "the levels begin five times too high"
 
 
 def test_the_users_own_motions_have_to_be_scaled_to_the_floors(tmp_path):
@@ -194,7 +204,10 @@ def test_the_building_adds_up_its_free_standing_pieces(several):
     assert found.expected_falls == pytest.approx(rows[0].rate + rows[1].rate + 3 * rows[2].rate)
     assert found.expected_low < found.expected_falls < found.expected_high
     one, other = rows[0].rate, rows[1].rate
-    assert max(one, other) <= found.life_safety.rate < one + other, "the anchored one does not count"
+    alone = results.route_tables.routes[0].annual.rate
+    assert alone <= found.life_safety.rate < one + other, (
+        "of the first in its own draws; the anchored one does not count"
+    )
     assert rows[3].rate == pytest.approx(rows[2].rate, rel=0.2), "an anchored piece has that of a free-standing one"
     assert found.ground_pga_g == pytest.approx(0.15)
     assert np.diff(found.factors).min() > 0
@@ -225,8 +238,8 @@ def test_pieces_that_were_not_simulated_make_sums_lower_bounds(tmp_path):
 def test_a_route_and_a_room_are_lost_as_often_as_the_piece_that_blocks_them_falls(several):
     results, rows = rows_of(several)
     (route,), (room,) = results.route_tables.routes, results.route_tables.rooms
-    assert route.annual.rate == pytest.approx(rows[0].rate)
-    assert room.annual.high == pytest.approx(rows[0].high)
+    assert route.annual.rate == pytest.approx(rows[0].rate, rel=0.3), "in its own 60 draws; its chance is by all alike"
+    assert room.annual == route.annual
     assert route.annual_if_anchors_fail is None
 
 
@@ -240,7 +253,11 @@ def test_where_all_pieces_are_anchored_nothing_is_counted(tmp_path):
 
 
 def test_ground_pga_is_used_where_chances_a_year_rest_on_it(tmp_path):
-    used, unused = ([str(one) for one in assessed(tmp_path, hazard=name).problems] for name in ("hazard.csv", None))
+    write_records(tmp_path, "slow")
+    floors = [{"floor": "1", "record_x": "slow.csv"}]
+    used, unused = (
+        [str(one) for one in assessed(tmp_path, floors=floors, hazard=name).problems] for name in ("hazard.csv", None)
+    )
     text = "Ground PGA is used for the code's force on anchors only"
     assert not any(text in one for one in used)
     assert any(text in one for one in unused)
@@ -270,9 +287,7 @@ def test_what_cannot_fall_within_the_curve_has_a_rate_of_0(tmp_path):
     assert results.annual.expected_high is None
 
 
-@pytest.mark.parametrize(
-    ("first", "last", "word"), [(0.2, 3.0, "begins at 0.2 g"), (0.01, 0.3, "end of the hazard curve at 0.3 g")]
-)
+@pytest.mark.parametrize(("first", "last", "word"), [(0.2, 3.0, "begins at 0.2 g"), (0.01, 0.3, "ends at 0.3 g")])
 def test_it_is_remarked_on_where_the_ends_of_the_curve_matter(tmp_path, first, last, word):
     write_hazard(tmp_path, first, last)
     results, (row,) = rows_of(assessed(tmp_path))

@@ -4,9 +4,10 @@ import pytest
 
 import assess
 from assess.intensity import SHAKINGS
-from assess.motion.scenario import cap_pfv, estimate_pfv
+from assess.motion.floor_medians import find_medians
 from assess.pipeline.annual import evaluate_annual
-from assess.pipeline.demand import build_demands, find_ground, find_shaking
+from assess.pipeline.demand import build_demands, find_shaking
+from assess.pipeline.known_ground import find_ground
 from assess.pipeline.run import compute
 from assess.settings import Settings
 from assess.units import GRAVITY
@@ -23,14 +24,23 @@ def _read(folder, floors=FLOORS, **building):
     return assess.read_inventory(write(folder / "w.xlsx", items, floors, **{"shaking": CHOICE} | building))
 
 
-def test_every_floor_follows_the_profile_from_its_median_pga(tmp_path):
-    demands = build_demands(_read(tmp_path), "as filled")
+def test_every_floor_follows_a_beam_on_its_median_pga_and_pgv(tmp_path):
+    inventory = _read(tmp_path)
+    demands = build_demands(inventory, "as filled")
     ground, roof = demands["1", "X"][0], demands["2", "Y"][0]
-    assert ground.pfa == SEVEN.pga
-    assert roof.pfa == pytest.approx(3.5 * SEVEN.pga)
-    assert {one.label for parallel in demands.values() for one in parallel} == {"Shaking MMI VII, ASCE 7-22"}
-    assert roof.flags == ("code_profile", "assumed_shaking")
+    assert (ground.pfa, ground.pfv) == pytest.approx((SEVEN.pga, SEVEN.pgv))
+    by_pga, by_pgv = find_medians(find_ground(inventory).building.period, 1.0, "unknown", SEVEN.pgv / SEVEN.pga)
+    assert (roof.pfa, roof.pfv) == pytest.approx((by_pga * SEVEN.pga, by_pgv * SEVEN.pgv))
+    assert {one.label for parallel in demands.values() for one in parallel} == {"Shaking MMI VII, beam"}
+    assert roof.flags == ("drawn_building", "assumed_shaking")
     assert find_shaking(demands) is SEVEN
+
+
+def test_a_jma_class_gives_pgv_and_pga_is_drawn(tmp_path):
+    inventory = _read(tmp_path, shaking="JMA 5+, upper")
+    motion, shaking = find_ground(inventory).motion, SHAKINGS["JMA 5+, upper"]
+    assert (motion.pga, motion.pgv) == (None, shaking.pgv)
+    assert build_demands(inventory, "as filled")["1", "X"][0].pfa == pytest.approx(shaking.pga)
 
 
 def test_a_chosen_code_starts_from_it_too(tmp_path):
@@ -49,46 +59,47 @@ def test_what_is_known_of_the_ground_comes_first(tmp_path, known, pga):
     assert "assumed_shaking" not in demands["1", "X"][0].flags
 
 
-def test_its_pgv_caps_an_estimated_pfv_unless_a_ground_pgv_is_given(tmp_path):
-    own = build_demands(_read(tmp_path, period=3.0), "as filled")["2", "X"][0]
-    assert own.pfv == cap_pfv(SEVEN.pgv) < estimate_pfv(own.pfa, 3.0)
-    assert own.flags == ("code_profile", "assumed_shaking", "pfv_estimated", "pfv_capped")
-    given = build_demands(_read(tmp_path, period=3.0, ground_pgv=10), "as filled")["2", "X"][0]
-    assert given.pfv == pytest.approx(cap_pfv(0.1))
+def test_a_ground_pgv_comes_before_its_own(tmp_path):
+    ground = find_ground(_read(tmp_path, ground_pgv=10)).motion
+    assert (ground.pga, ground.pgv) == (SEVEN.pga, pytest.approx(0.1))
 
 
-def test_it_does_not_cap_floors_with_a_pfa_of_their_own(tmp_path):
-    floors = [{"floor": "1", "elevation": 0, "pfa_x": 1.5}, {"floor": "2", "elevation": 12}]
-    own = build_demands(_read(tmp_path, floors, period=3.0), "as filled")["1", "X"][0]
-    assert own.flags == ("pfv_estimated",)
-    assert own.pfv == estimate_pfv(1.5 * GRAVITY, 3.0) > cap_pfv(SEVEN.pgv)
+def test_floors_with_a_pfa_of_their_own_keep_it_and_do_not_scatter(tmp_path):
+    floors = [{"floor": "1", "elevation": 3, "pfa_x": 1.5}, {"floor": "2", "elevation": 12}]
+    demands = build_demands(_read(tmp_path, floors), "as filled")
+    own, other = demands["1", "X"][0], demands["2", "X"][0]
+    assert (own.pfa, own.flags, own.dispersion) == (1.5 * GRAVITY, (), 0)
+    assert (other.flags, other.dispersion) == (("drawn_building", "assumed_shaking"), 0.88)
 
 
 @pytest.mark.parametrize(
     ("given", "used"),
-    [({}, 0.81), ({"motion_uncertainty": 0.3}, 0.81), ({"motion_uncertainty": 0}, 0.81),
+    [({}, 0.88), ({"motion_uncertainty": 0.3}, 0.88), ({"motion_uncertainty": 0}, 0.88),
      ({"motion_uncertainty": 1.2}, 1.2)],
 )  # fmt: skip
-def test_the_motion_is_at_least_as_uncertain_as_pga_given_the_intensity(tmp_path, given, used):
-    """The published scatter stands in for a smaller value: sqrt(0.3^2 + 0.81^2) would be 0.86."""
-    assert compute(_read(tmp_path, **given), UNVERIFIED).cases.uncertainty.motion == used
+def test_the_motion_is_at_least_as_uncertain_as_pgv_given_the_intensity(tmp_path, given, used):
+    """The published scatter stands in for a smaller value: sqrt(0.3^2 + 0.88^2) would be 0.93."""
+    assert set(compute(_read(tmp_path, **given), UNVERIFIED).cases.dispersion.tolist()) == {used}
 
 
 @pytest.mark.parametrize(
     "unused", [{"ground_pga": 0.3}, {"floors": [{"floor": "1", "pfa_x": 0.3}, {"floor": "2", "pfa_x": 0.3}]}]
 )
 def test_where_it_serves_no_floor_it_changes_no_uncertainty(tmp_path, unused):
-    assert compute(_read(tmp_path, **unused), UNVERIFIED).cases.uncertainty.motion == 0.4
+    assert set(compute(_read(tmp_path, **unused), UNVERIFIED).cases.dispersion.tolist()) == {0}
+    given = compute(_read(tmp_path, motion_uncertainty=0.3, **unused), UNVERIFIED)
+    assert set(given.cases.dispersion.tolist()) == {0.3}
 
 
-def test_chances_a_year_leave_out_the_scatter_of_pga_given_an_intensity(tmp_path):
-    """A hazard curve is of PGA itself: its chances hold at a PGA, not at an intensity."""
+def test_chances_a_year_leave_out_the_scatter_of_pgv_given_an_intensity(tmp_path):
+    """A hazard curve is of PGA itself: its chances hold at a PGA, not at an intensity; drawn motions scatter alone."""
     hazard = write_hazard(tmp_path).name
     settings = Settings(runs=20)
     for known in ({}, {"ground_pga": SEVEN.pga / GRAVITY, "shaking": None}):
-        assessment = compute(_read(tmp_path, hazard=hazard, period=0.5, **known), settings)
-        annual = evaluate_annual(assessment, jobs=1, progress=assess.progress.SILENT)
-        assert annual.tables.motion_dispersion == 0.4
+        for given, used in ((None, 0.0), (0.3, 0.3)):
+            inventory = _read(tmp_path, hazard=hazard, period=0.5, motion_uncertainty=given, **known)
+            annual = evaluate_annual(compute(inventory, settings), jobs=1, progress=assess.progress.SILENT)
+            assert annual.tables.motion_dispersion == used
 
 
 def _notes(results):
@@ -97,7 +108,7 @@ def _notes(results):
 
 def test_a_smaller_motion_uncertainty_is_not_used_and_the_log_says_so(tmp_path):
     results = assessed(tmp_path / "w.xlsx", floors=FLOORS, shaking=CHOICE, motion_uncertainty=0.3)
-    wanted = "Motion uncertainty 0.3 is not used: 0.81, the scatter of ln PGA given the assumed intensity, is larger."
+    wanted = "Motion uncertainty 0.3 is not used: 0.88, the scatter of ln PGV given the assumed intensity, is larger."
     assert wanted in _notes(results)
     results = assessed(tmp_path / "w.xlsx", floors=FLOORS, shaking=CHOICE, motion_uncertainty=0.9)
     assert not [note for note in _notes(results) if note.startswith("Motion uncertainty")]
@@ -106,7 +117,7 @@ def test_a_smaller_motion_uncertainty_is_not_used_and_the_log_says_so(tmp_path):
 @pytest.mark.parametrize(
     ("unused", "why"),
     [({"ground_pga": 0.3}, "Ground PGA or SDS is filled in"),
-     ({"floors": [{"floor": "1", "pfa_x": 0.3}, {"floor": "2", "pfa_x": 0.3}]}, "no floor follows a profile")],
+     ({"floors": [{"floor": "1", "pfa_x": 0.3}, {"floor": "2", "pfa_x": 0.3}]}, "every floor has a motion of its own")],
 )  # fmt: skip
 def test_an_intensity_that_is_not_used_has_a_note(tmp_path, unused, why):
     results = assessed(tmp_path / "w.xlsx", **{"floors": FLOORS, "shaking": CHOICE} | unused)
@@ -127,13 +138,14 @@ NUMBERED = [{"floor": "G"}, {"floor": "1"}, {"floor": "3"}]
 
 
 def test_numbered_floors_need_no_elevation_where_height_and_storeys_are_known(tmp_path):
-    """The third floor of four lies at 9 of 12 m: H_f = 1 + 2.5 x 0.75."""
+    """The third floor of four lies at 9 of 12 m."""
     inventory = _read(tmp_path, NUMBERED, height=12, storeys=4)
     demands = build_demands(inventory, "as filled")
     ratios = [demands[floor["floor"], "X"][0].height_ratio for floor in NUMBERED]
     assert ratios == pytest.approx([0, 0.25, 0.75])
-    assert demands["3", "Y"][0].pfa == pytest.approx((1 + 2.5 * 0.75) * SEVEN.pga)
-    assert demands["3", "Y"][0].flags == ("code_profile", "assumed_shaking", "assumed_elevation")
+    placed = [{"floor": "3", "elevation": 9}]
+    assert demands["3", "Y"][0].pfa == build_demands(_read(tmp_path, placed, height=12), "as filled")["3", "Y"][0].pfa
+    assert demands["3", "Y"][0].flags == ("drawn_building", "assumed_shaking", "assumed_elevation")
     wanted = "3 floors have no Elevation (G, 1, 3); their numbers times Height over Storeys"
     results = assess.run(inventory, UNVERIFIED)
     (note,) = [note for note in _notes(results) if note.startswith(wanted)]
@@ -145,18 +157,26 @@ def test_with_a_ground_pga_too(tmp_path):
     assert demands["3", "X"][0].pfa == pytest.approx(0.2 * GRAVITY * (1 + 1.5 * 0.75))
 
 
+def test_storeys_alone_give_the_height(tmp_path):
+    """Three metres each."""
+    inventory = _read(tmp_path, NUMBERED, storeys=4)
+    assert find_ground(inventory).roof == 12
+    demands = build_demands(inventory, "as filled")
+    assert [demands[floor["floor"], "X"][0].height_ratio for floor in NUMBERED] == pytest.approx([0, 0.25, 0.75])
+
+
 @pytest.mark.parametrize(
     ("floors", "building"),
     [
-        (NUMBERED, {"height": 12}), (NUMBERED, {"storeys": 4}), ([{"floor": "Roof"}], {"height": 12, "storeys": 4}),
-        ([{"floor": "2", "elevation": 8}, {"floor": "3"}], {"height": 12, "storeys": 4}),
+        (NUMBERED[1:], {"height": 12}), ([{"floor": "Roof"}], {"height": 12, "storeys": 4}),
+        ([{"floor": "3"}, {"floor": "2", "elevation": 8}], {"height": 12, "storeys": 4}),
     ],
-    ids=["no storeys", "no height", "no number", "a floor with an elevation"],
+    ids=["no storeys", "no number", "a floor with an elevation"],
 )  # fmt: skip
-def test_else_elevation_stays_required(tmp_path, floors, building):
-    with pytest.raises(assess.WorkbookError, match=r"no Elevation from which its motion could be derived") as caught:
-        _read(tmp_path, floors, **building)
-    assert caught.value.is_incomplete
+def test_else_its_height_is_drawn(tmp_path, floors, building):
+    inventory = _read(tmp_path, floors, **building)
+    one = build_demands(inventory, "as filled")[floors[0]["floor"], "X"][0]
+    assert (one.height_ratio, one.flags) == (None, ("drawn_building", "assumed_shaking", "unknown_height"))
 
 
 def test_the_choices_of_shaking_hold_commas_and_are_told_apart(tmp_path):

@@ -10,11 +10,11 @@ from assess.errors import InputError
 from assess.i18n import fill
 from assess.motion.ground_scenarios import read_scenarios
 from assess.motion.site_ground import SiteGround
-from assess.motion.spatial_field import SHARED
+from assess.motion.spatial_field import SCATTERS
 from assess.pipeline.city_draws import check_draws, choose_runs, find_earthquakes, number_pieces
 from assess.pipeline.draw_sums import sum_draws
 from assess.pipeline.run import build_results, compute
-from assess.rocking.draws import Earthquakes, Uncertainty
+from assess.rocking.draws import Earthquakes
 from assess.settings import Settings
 from tests.workbooks import write
 
@@ -28,8 +28,6 @@ MAP = SiteGround(
     shared=0.2,
 )  # fmt: skip
 SCENARIOS = replace(MAP, kind="scenarios", file="gmf-data.csv", shared=None, scenarios=(-1.0, 0.0, 1.0))
-TOTAL = Uncertainty(motion=0.5)
-"""0.4 of the building's own and 0.3 of the ground."""
 
 
 def inventory(folder, ground=None, name="w.xlsx", **building):
@@ -46,42 +44,48 @@ def assessed(folder, settings=CITY, **building):
 
 
 def test_a_building_alone_takes_one_number_for_every_place(tmp_path):
-    found = find_earthquakes(inventory(tmp_path, **PLACE), Settings(), Uncertainty())
-    assert found == Earthquakes(place=None, shared=SHARED)
+    found = find_earthquakes(inventory(tmp_path, **PLACE), Settings())
+    assert found == Earthquakes(place=None, shared=SCATTERS["PGA"].shared)
 
 
 def test_a_building_of_a_city_draws_by_its_place(tmp_path):
-    found = find_earthquakes(inventory(tmp_path, **PLACE), CITY, Uncertainty())
+    found = find_earthquakes(inventory(tmp_path, **PLACE), CITY)
     assert found.place == (37.79, -122.40)
-    assert find_earthquakes(inventory(tmp_path), CITY, Uncertainty()).place is None
+    assert find_earthquakes(inventory(tmp_path), CITY).place is None
 
 
 def test_the_share_of_all_places_is_that_of_the_map_where_it_tells(tmp_path):
-    found = find_earthquakes(inventory(tmp_path, MAP, **PLACE), CITY, TOTAL)
+    found = find_earthquakes(inventory(tmp_path, MAP, **PLACE), CITY)
     assert found == Earthquakes(place=(37.79, -122.40), shared=0.2)
-    blank = find_earthquakes(inventory(tmp_path, replace(MAP, shared=None), **PLACE), CITY, TOTAL)
-    assert blank.shared == SHARED
+    blank = find_earthquakes(inventory(tmp_path, replace(MAP, shared=None), **PLACE), CITY)
+    assert blank.shared == SCATTERS["PGA"].shared
 
 
 @pytest.mark.parametrize("settings", [Settings(), CITY])
 def test_scenarios_carry_the_variance_of_the_ground_and_the_building_s_own_is_drawn(settings, tmp_path):
-    found = find_earthquakes(inventory(tmp_path, SCENARIOS, **PLACE), settings, TOTAL)
+    """Of a motion that scatters by the root of 0.4^2 of its own and 0.3^2 of the ground."""
+    found = find_earthquakes(inventory(tmp_path, SCENARIOS, motion_uncertainty=0.4, **PLACE), settings)
     assert found.given == (-1.0, 0.0, 1.0)
     assert found.given_share == pytest.approx(0.3**2 / (0.4**2 + 0.3**2))
 
 
-def test_scenarios_of_a_building_without_uncertainty_of_its_own_decide_alone(tmp_path):
-    found = find_earthquakes(
-        inventory(tmp_path, SCENARIOS, motion_uncertainty=0.0, **PLACE), CITY, Uncertainty(motion=0.3)
-    )
+@pytest.mark.parametrize("own", [{}, {"motion_uncertainty": 0.0}], ids=["blank", "none"])
+def test_scenarios_of_a_building_without_uncertainty_of_its_own_decide_alone(own, tmp_path):
+    found = find_earthquakes(inventory(tmp_path, SCENARIOS, **own, **PLACE), CITY)
     assert found.given_share == 1
     assert found.draw(1, 0, 4).tolist() == [-1, 0, 1, -1]
 
 
 def test_scenarios_that_serve_no_floor_decide_nothing(tmp_path):
-    """The motion is then as uncertain as the building's own says."""
-    found = find_earthquakes(inventory(tmp_path, SCENARIOS, **PLACE), CITY, Uncertainty())
-    assert (found.given, found.given_share) == ((), 0)
+    """Floor 1 has a PFA of its own: its motion scatters as the building's own does, by numbers of its own."""
+    own = {"motion_uncertainty": 0.4} | PLACE
+    without, beside = (
+        compute(inventory(tmp_path, ground, **own), Settings(verify="none", city=True)).cases
+        for ground in (None, SCENARIOS)
+    )
+    assert beside.earthquakes == without.earthquakes
+    assert beside.earthquakes.given == ()
+    assert beside.dispersion.tolist() == without.dispersion.tolist() == [0.4]
 
 
 # --- how many draws ---
@@ -154,7 +158,7 @@ def test_draw_k_takes_scenario_k_and_again_from_the_first(tmp_path):
     assessment = compute(assess.read_inventory(path, ground=read_scenarios(tmp_path)), Settings(runs=60))
     earthquakes = assessment.cases.earthquakes
     assert earthquakes.draw(1, 0, 6) == pytest.approx([-1.2247, 0, 1.2247] * 2, abs=1e-4)
-    assert assessment.cases.uncertainty.motion == pytest.approx(0.566, abs=0.001)
+    assert assessment.cases.dispersion == pytest.approx([0.566], abs=0.001)
     falls = sum_draws(assessment, build_results(assessment, figures=False)).falls
     assert falls is not None
     weak, median, strong = (falls[at::3].sum() for at in range(3))

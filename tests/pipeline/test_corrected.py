@@ -13,6 +13,7 @@ from assess.pipeline.live_values import live_values, with_live
 from assess.workbook.example import example_content
 from assess.workbook.patch import list_formulas, patch_workbook
 from assess.workbook.read import read_inventory
+from assess.workbook.schema import LIVE
 from assess.workbook.template import write_workbook
 from tests.recalculate import libreoffice, needs_libreoffice, stored_cells
 from tests.workbook.books import change_parts
@@ -71,11 +72,8 @@ def test_the_live_columns_store_what_they_show(tmp_path: Path) -> None:
     page = openpyxl.load_workbook(io.BytesIO(done.inventory.data or b""), data_only=True)["Items"]
     places = {cell.value: cell.column for cell in page[1]}
     expected = live_values(done.inventory)
-    found = [
-        [page.cell(item.row, places[head]).value for head in ("B/H", "PFA used [g]", "OR", "Kaneko-Hayashi")]
-        for item in done.inventory.items
-    ]
-    assert found == [row[:4] for row in expected]
+    found = [[page.cell(item.row, places[head]).value for head in LIVE[:5]] for item in done.inventory.items]
+    assert found == [row[:5] for row in expected]
     assert page.cell(2, places["B/H"]).value == 0.15
     assert page.cell(2, places["Class (formula)"]).value in expected[0]
     assert page.cell(2, places["Height used [cm]"]).value is None, "computed by every program on opening"

@@ -1,5 +1,3 @@
-import math
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,11 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import assess
-from assess.model import Building, Floor, FloorRecord, Inventory
+from assess.model import AXES, Building, Floor, FloorRecord, Inventory
 from assess.motion.formats import read_records
 from assess.motion.record import treat
-from assess.motion.scenario import ROOF_FACTOR
-from assess.pipeline.demand import Demand, build_demands, find_ground, scale_demands
+from assess.pipeline.demand import _interpolate, build_demands
+from assess.pipeline.floor_demand import Demand
+from assess.pipeline.known_ground import find_ground
 from tests.workbooks import RECORDS
 
 G = 9.80665
@@ -38,7 +37,7 @@ def _one(demands, floor, axis):
 
 
 def test_given_peaks_are_used_as_they_are(tmp_path):
-    floor = Floor(row=2, floor="1", pfa={"X": 3.0, "Y": 2.0}, pfv={"X": 0.4, "Y": 0.3})
+    floor = Floor(row=2, floor="1", elevation=3.0, pfa={"X": 3.0, "Y": 2.0}, pfv={"X": 0.4, "Y": 0.3})
     demands = build_demands(_inventory(tmp_path, floor), "as filled")
     assert [(_one(demands, "1", axis).pfa, _one(demands, "1", axis).pfv) for axis in "XY"] == [(3.0, 0.4), (2.0, 0.3)]
     assert _one(demands, "1", "X").flags == ()
@@ -61,76 +60,11 @@ def test_the_scenario_chooses_the_source(tmp_path, scenario, source):
 
 
 def test_one_axis_serves_both_and_says_so(tmp_path):
-    floor = Floor(row=2, floor="1", pfa={"Y": 2.0}, pfv={"Y": 0.3})
+    floor = Floor(row=2, floor="1", elevation=3.0, pfa={"Y": 2.0}, pfv={"Y": 0.3})
     demands = build_demands(_inventory(tmp_path, floor), "as filled")
     borrowed = _one(demands, "1", "X")
     assert (borrowed.axis, borrowed.pfa, borrowed.pfv, borrowed.flags) == ("X", 2.0, 0.3, ("one_axis_only",))
     assert _one(demands, "1", "Y").flags == ()
-
-
-@pytest.mark.parametrize(("period", "frequency"), [(2.0, 0.5), (1.0, 1.0), (1 / 1.3, 1.3), (0.3, 1.3)])
-def test_pfv_is_estimated_from_the_period(tmp_path, period, frequency):
-    """PFV = PFA/(2 pi f), f = min(1/T1, 1.3 Hz)."""
-    demands = build_demands(_inventory(tmp_path, Floor(row=2, floor="1", pfa={"X": 3.0}), period=period), "as filled")
-    demand = _one(demands, "1", "X")
-    assert demand.flags == ("pfv_estimated",)
-    assert demand.pfv == pytest.approx(3.0 / (2 * math.pi * frequency), rel=1e-12)
-
-
-def test_pfv_is_unknown_without_a_period(tmp_path):
-    demand = _one(build_demands(_inventory(tmp_path, Floor(row=2, floor="1", pfa={"X": 3.0})), "as filled"), "1", "X")
-    assert math.isnan(demand.pfv)
-    assert demand.flags == ()
-
-
-def test_an_estimate_is_capped_by_the_ground(tmp_path):
-    """575 Market Street: T1 6 s and 218.1 cm/s2 give 208 cm/s where 40.4 were recorded, 3.93 x 23.03 cm/s 90.5."""
-    floor, building = Floor(row=2, floor="42", pfa={"X": 2.181, "Y": 0.5}), {"period": 6.0, "ground_pgv": 0.2303}
-    bare = build_demands(_inventory(tmp_path, floor, period=6.0), "as filled")
-    capped = build_demands(_inventory(tmp_path, floor, **building), "as filled")
-    assert 100 * _one(bare, "42", "X").pfv == pytest.approx(208.3, abs=0.1)
-    assert 100 * _one(capped, "42", "X").pfv == pytest.approx(90.5, abs=0.05)
-    assert _one(capped, "42", "X").flags == ("pfv_estimated", "pfv_capped")
-    below = _one(capped, "42", "Y")
-    assert (below.pfv, below.flags) == (_one(bare, "42", "Y").pfv, ("pfv_estimated",))
-    for pga, flags in ((6.0, ("pfv_estimated", "pfv_capped")), (0.3, ("pfv_estimated",))):
-        profiled = build_demands(_inventory(tmp_path, ROOF, ground_pga=pga, **building), "as filled")
-        assert _one(profiled, "R", "X").flags == ("code_profile", *flags)
-        assert _one(profiled, "R", "X").pfv <= 3.93 * 0.2303
-
-
-def test_a_given_and_a_recorded_pfv_are_not_capped(tmp_path):
-    floors = (
-        Floor(row=2, floor="1", pfa={"X": 3.0}, pfv={"X": 0.4}),
-        Floor(row=3, floor="2", records={"X": (_record(SMC),)}),
-    )
-    for floor in floors:
-        bare, capped = (
-            build_demands(_inventory(tmp_path, floor, period=2.0, ground_pgv=pgv), "as filled") for pgv in (None, 0.01)
-        )
-        one, other = _one(bare, floor.floor, "X"), _one(capped, floor.floor, "X")
-        assert (one.pfv, one.flags) == (other.pfv, other.flags)
-
-
-def test_the_cap_scales_with_the_motion_and_is_carried_between_floors(tmp_path):
-    floors = [
-        Floor(row=at, floor=str(at), elevation=4.0 * at, pfa={"X": 3.0 + at} if at != 3 else {}) for at in (2, 3, 4)
-    ]
-    demands = build_demands(_inventory(tmp_path, *floors, period=6.0, ground_pgv=0.2), "as filled")
-    twice = scale_demands(demands, 2.0)
-    assert _one(demands, "3", "X").flags == ("interpolated", "pfv_estimated", "pfv_capped")
-    assert [_one(demands, at, "X").pfv for at in "234"] == pytest.approx([3.93 * 0.2] * 3, rel=1e-12)
-    assert [_one(twice, at, "X").pfv for at in "234"] == pytest.approx([3.93 * 0.4] * 3, rel=1e-12)
-
-
-@given(pfa=st.floats(0, 30), period=st.floats(0.02, 20), pgv=st.floats(1e-4, 10))
-def test_a_cap_never_raises_an_estimate(tmp_path_factory, pfa, period, pgv):
-    inventory = _inventory(tmp_path_factory.getbasetemp(), Floor(row=2, floor="1", pfa={"X": pfa}), period=period)
-    bare = _one(build_demands(inventory, "as filled"), "1", "X")
-    inventory = replace(inventory, building=replace(inventory.building, ground_pgv=pgv))
-    capped = _one(build_demands(inventory, "as filled"), "1", "X")
-    assert capped.pfv == min(bare.pfv, ROOF_FACTOR * pgv)
-    assert ("pfv_capped" in capped.flags) == (capped.pfv < bare.pfv)
 
 
 def test_parallel_records_all_stand(tmp_path):
@@ -156,8 +90,8 @@ def test_a_corrected_record_loses_nothing(tmp_path):
             r"Floors!A7: floor '1' has no record, which .*'recorded'",
         ),
         ("given", Floor(row=7, floor="1", records={}), r"Floors!A7: floor '1' has no PFA, which .*'given'"),
-        ("as filled", Floor(row=7, floor="1"), r"Floors!A7: floor '1' has neither a record nor a PFA, and no Elev"),
-        ("as filled", Floor(row=7, floor="1", elevation=3.0), r"lies between no two floors .* neither Ground PGA"),
+        ("as filled", Floor(row=7, floor="1"), r"Floors!A7: floor '1' has neither a record nor a PFA"),
+        ("as filled", Floor(row=7, floor="1", elevation=3.0), r"neither a record nor a PFA.* Ground PGA"),
         (
             "given",
             Floor(row=7, floor="1", elevation=3.0),
@@ -183,22 +117,27 @@ def test_a_floor_without_motion_is_named(tmp_path, scenario, floor, message):
 
 # ------------------------------------------------------------------ floors between known ones
 
-LOWER = Floor(row=2, floor="A", elevation=0.0, pfa={"X": 2.0, "Y": 1.0}, pfv={"X": 0.2, "Y": 0.3})
-UPPER = Floor(row=4, floor="C", elevation=10.0, pfa={"X": 4.0}, pfv={"X": 0.5})
+LOWER = Floor(row=2, floor="A", elevation=0.0, records={"X": (_record(SMC),), "Y": (_record(CORRECTED),)})
+UPPER = Floor(row=4, floor="C", elevation=10.0, records={"X": (_record(CORRECTED),)})
 BETWEEN = Floor(row=3, floor="B", elevation=4.0)
 
 
-@pytest.mark.parametrize("scenario", ["as filled", "given"])
-def test_a_floor_between_two_is_interpolated_over_elevation(tmp_path, scenario):
-    """X: 2 + 0.4 x (4 - 2) = 2.8 m/s2, 0.2 + 0.4 x 0.3 = 0.32 m/s. Y: the upper floor's X serves its Y:
-    1 + 0.4 x (4 - 1) = 2.2 m/s2, 0.3 + 0.4 x 0.2 = 0.38 m/s."""
+def _peaks(one):
+    return np.array([one.pfa, one.pfv])
+
+
+@pytest.mark.parametrize("scenario", ["as filled", "recorded"])
+def test_a_floor_between_two_records_is_interpolated_over_elevation(tmp_path, scenario):
+    """By 4 of 10 m; the upper floor's X serves its Y."""
     demands = build_demands(_inventory(tmp_path, LOWER, BETWEEN, UPPER, ground_pga=3.0), scenario)
     x, y = _one(demands, "B", "X"), _one(demands, "B", "Y")
     assert (x.source, x.between, x.flags) == ("interpolated", ("A", "C"), ("interpolated",))
-    assert (x.pfa, x.pfv) == pytest.approx((2.8, 0.32))
     assert y.flags == ("one_axis_only", "interpolated")
-    assert (y.pfa, y.pfv) == pytest.approx((2.2, 0.38))
+    for one in (x, y):
+        low, high = (_peaks(_one(demands, name, one.axis)) for name in "AC")
+        assert _peaks(one) == pytest.approx(low + 0.4 * (high - low))
     assert (x.label, y.is_borrowed) == ("interpolated between A and C", False)
+    assert (x.drawn.target.meets, x.dispersion) == ("peaks", 0.4), "met in every draw, which scatter as records do"
 
 
 def test_the_nearest_known_floors_serve_and_the_order_of_rows_does_not_matter(tmp_path):
@@ -209,24 +148,24 @@ def test_the_nearest_known_floors_serve_and_the_order_of_rows_does_not_matter(tm
 
 
 def test_of_floors_at_one_height_the_worse_serves(tmp_path):
-    """3.0 m/s2 at 0 m and 5.0 m/s2 at 10 m: 3 + 0.4 x 2 = 3.8 m/s2; a floor at their very height takes the larger."""
-    low, high = (
-        Floor(row=8, floor=name, elevation=z, pfa={"X": pfa}) for name, z, pfa in [("a", 0.0, 3.0), ("c", 10.0, 5.0)]
-    )
+    """A floor at the very height of others takes the larger of theirs, records or not."""
+    low = Floor(row=8, floor="a", elevation=0.0, records={"X": (_record(CORRECTED),)})
+    high = Floor(row=8, floor="c", elevation=10.0, pfa={"X": 50.0})
     beside = Floor(row=9, floor="c2", elevation=10.0)
-    demands = build_demands(_inventory(tmp_path, LOWER, low, BETWEEN, UPPER, high, beside), "as filled")
-    assert _one(demands, "B", "X").pfa == pytest.approx(3.8)
-    assert (_one(demands, "c2", "X").pfa, _one(demands, "c2", "X").between) == (5.0, ("c", "c"))
+    demands = build_demands(_inventory(tmp_path, LOWER, low, BETWEEN, UPPER, beside), "as filled")
+    worse = max((_one(demands, name, "X") for name in ("A", "a")), key=lambda one: one.pfa)
+    assert _one(demands, "B", "X").between == (worse.floor.floor, "C")
+    assert _one(demands, "c2", "X").between == ("C", "C")
+    demands = build_demands(_inventory(tmp_path, UPPER, high, beside), "as filled")
+    assert (_one(demands, "c2", "X").pfa, _one(demands, "c2", "X").between) == (50.0, ("c", "c"))
 
 
 def test_the_worst_of_parallel_records_is_interpolated(tmp_path):
     recorded = Floor(row=2, floor="A", elevation=0.0, records={"X": (_record(CORRECTED), _record(SMC))})
     demands = build_demands(_inventory(tmp_path, recorded, BETWEEN, UPPER), "as filled")
-    known = demands["A", "X"]
-    worst = max(one.pfa for one in known), max(one.pfv for one in known)
-    one = _one(demands, "B", "X")
-    assert one.pfa == pytest.approx(worst[0] + 0.4 * (4.0 - worst[0]))
-    assert one.pfv == pytest.approx(worst[1] + 0.4 * (0.5 - worst[1]))
+    worst = np.max([_peaks(one) for one in demands["A", "X"]], axis=0)
+    high = _peaks(_one(demands, "C", "X"))
+    assert _peaks(_one(demands, "B", "X")) == pytest.approx(worst + 0.4 * (high - worst))
 
 
 def test_recorded_interpolates_between_records_alone(tmp_path):
@@ -241,13 +180,10 @@ def test_recorded_interpolates_between_records_alone(tmp_path):
     assert one.pfa == pytest.approx(_one(demands, "a", "X").pfa)
 
 
-def test_an_unknown_pfv_stays_unknown_between_floors_and_an_estimate_is_carried(tmp_path):
-    bare = Floor(row=4, floor="C", elevation=10.0, pfa={"X": 4.0})
-    unknown = _one(build_demands(_inventory(tmp_path, LOWER, BETWEEN, bare), "as filled"), "B", "X")
-    assert math.isnan(unknown.pfv)
-    estimated = _one(build_demands(_inventory(tmp_path, LOWER, BETWEEN, bare, period=1.0), "as filled"), "B", "X")
-    assert estimated.flags == ("interpolated", "pfv_estimated")
-    assert estimated.pfv == pytest.approx(0.2 + 0.4 * (4.0 / (2 * math.pi) - 0.2))
+def test_beside_a_floor_of_peaks_alone_a_beam_serves(tmp_path):
+    upper = Floor(row=4, floor="C", elevation=10.0, pfa={"X": 4.0})
+    one = _one(build_demands(_inventory(tmp_path, LOWER, BETWEEN, upper), "as filled"), "B", "X")
+    assert (one.source, one.between, one.flags) == ("beam", (), ("drawn_building",))
 
 
 # ------------------------------------------------------------------ floors by a code's profile
@@ -257,9 +193,9 @@ ROOF = Floor(row=5, floor="R", elevation=40.0)
 
 @pytest.mark.parametrize(
     ("scenario", "amplification"),
-    [("as filled", 2.25), ("ASCE 7-22", 2.25), ("ASCE 7-16", 2.0), ("EN 1998-1", 1.75), ("NTC 2018", 1.5)],
+    [("ASCE 7-22", 2.25), ("ASCE 7-16", 2.0), ("EN 1998-1", 1.75), ("NTC 2018", 1.5)],
 )
-def test_a_floor_of_which_nothing_is_known_follows_from_the_ground(tmp_path, scenario, amplification):
+def test_by_a_code_a_floor_follows_from_the_ground(tmp_path, scenario, amplification):
     """z/h = 20/40 = 0.5: 1 + 2.5 x 0.5, 1 + 2 x 0.5, 1 + 1.5 x 0.5, 1 + 0.5."""
     floor = Floor(row=2, floor="5", elevation=20.0)
     demands = build_demands(_inventory(tmp_path, floor, height=40.0, ground_pga=3.0), scenario)
@@ -267,17 +203,27 @@ def test_a_floor_of_which_nothing_is_known_follows_from_the_ground(tmp_path, sce
         one = _one(demands, "5", axis)
         assert (one.source, one.axis, one.flags, one.height_ratio) == ("profile", axis, ("code_profile",), 0.5)
         assert (one.amplification, one.pfa) == pytest.approx((amplification, 3.0 * amplification))
-        assert math.isnan(one.pfv)
-        assert one.label == one.profile.key == (scenario if scenario != "as filled" else "ASCE 7-22")
+        assert one.label == one.profile.key == scenario
+        assert one.drawn.target.meets == "pfa", "in every draw, as a typed one"
 
 
-def test_a_known_period_changes_the_profile_and_gives_a_pfv(tmp_path):
-    """T1 = 1 s at the roof: H_f = 1 + 1 + 0.84 = 2.84; PFV = PFA/(2 pi x 1 Hz)."""
-    one = _one(build_demands(_inventory(tmp_path, ROOF, period=1.0, ground_pga=2.0), "as filled"), "R", "X")
-    assert one.pfa == pytest.approx(5.68)
-    assert one.pfv == pytest.approx(5.68 / (2 * math.pi))
-    assert one.flags == ("code_profile", "pfv_estimated")
-    assert one.clause == "13.3.1.1, Eq. 13.3-4"
+def test_a_given_period_changes_the_profile(tmp_path):
+    """T1 = 1 s at the roof: H_f = 1 + 1 + 0.84 = 2.84. T1 by height is not one that the code asks for."""
+    given, assumed = (
+        _one(build_demands(_inventory(tmp_path, ROOF, period=period, ground_pga=2.0), "ASCE 7-22"), "R", "X")
+        for period in (1.0, None)
+    )
+    assert (given.pfa, given.clause) == (pytest.approx(5.68), "13.3.1.1, Eq. 13.3-4")
+    assert assumed.pfa == pytest.approx(7.0)
+
+
+def test_by_a_code_pfv_is_pfa_times_the_beams_ratio_of_the_two(tmp_path):
+    ground = {"period": 1.0, "ground_pga": 2.0, "ground_pgv": 0.3}
+    by_code, by_beam = (
+        _one(build_demands(_inventory(tmp_path, ROOF, **ground), scenario), "R", "X")
+        for scenario in ("ASCE 7-22", "as filled")
+    )
+    assert by_code.pfv / by_code.pfa == pytest.approx(by_beam.pfv / by_beam.pfa)
 
 
 def test_a_profile_serves_every_floor(tmp_path):
@@ -285,11 +231,6 @@ def test_a_profile_serves_every_floor(tmp_path):
     demands = build_demands(_inventory(tmp_path, floor, ROOF, ground_pga=2.0), "ASCE 7-16")
     assert {one.source for ones in demands.values() for one in ones} == {"profile"}
     assert (_one(demands, "1", "X").pfa, _one(demands, "R", "Y").pfa) == pytest.approx((2.0, 6.0))
-
-
-def test_above_the_known_floors_a_profile_serves_not_an_extrapolation(tmp_path):
-    demands = build_demands(_inventory(tmp_path, LOWER, BETWEEN, UPPER, ROOF, ground_pga=2.0), "as filled")
-    assert [_one(demands, name, "X").source for name in "ABCR"] == ["given", "interpolated", "given", "profile"]
 
 
 @pytest.mark.parametrize(
@@ -330,10 +271,11 @@ def test_ductility_reduces_asce_7_22_alone(tmp_path):
 
 def test_every_floor_that_nothing_serves_is_named(tmp_path):
     floors = [Floor(row=row, floor=f"F{row}", cells={"pfa_x": f"D{row}", "elevation": f"C{row}"}) for row in (2, 3)]
+    assert build_demands(_inventory(tmp_path, *floors, ground_pga=1.0), "as filled")
     with pytest.raises(assess.WorkbookError, match=r"Floors!D2: floor 'F2'(.|\n)*Floors!D3: floor 'F3'"):
         build_demands(_inventory(tmp_path, *floors), "as filled")
     with pytest.raises(assess.WorkbookError, match=r"Floors!C2: floor 'F2'(.|\n)*Floors!C3: floor 'F3'"):
-        build_demands(_inventory(tmp_path, *floors, ground_pga=1.0), "as filled")
+        build_demands(_inventory(tmp_path, *floors, ground_pga=1.0), "NTC 2018")
 
 
 @given(
@@ -341,9 +283,9 @@ def test_every_floor_that_nothing_serves_is_named(tmp_path):
     pga=st.floats(0.1, 10),
     more=st.floats(1, 3),
     period=st.none() | st.floats(0.05, 10),
-    scenario=st.sampled_from(["as filled", "ASCE 7-22", "ASCE 7-16", "EN 1998-1", "NTC 2018"]),
+    scenario=st.sampled_from(["ASCE 7-22", "ASCE 7-16", "EN 1998-1", "NTC 2018"]),
 )
-def test_pfa_never_falls_with_height_nor_with_the_ground(heights, pga, more, period, scenario):
+def test_by_a_code_pfa_never_falls_with_height_nor_with_the_ground(heights, pga, more, period, scenario):
     floors = [Floor(row=row, floor=str(row), elevation=z) for row, z in enumerate(sorted(heights))]
 
     def peaks(ground):
@@ -357,11 +299,16 @@ def test_pfa_never_falls_with_height_nor_with_the_ground(heights, pga, more, per
     assert all(high >= low for low, high in zip(found, peaks(pga * more), strict=True))
 
 
-@given(st.floats(0, 10), st.floats(0, 10), st.floats(0, 1))
+@given(lower=st.floats(0.1, 10), upper=st.floats(0.1, 10), share=st.floats(0, 1))
 def test_an_interpolated_floor_lies_between_its_neighbours(lower, upper, share):
-    floors = [
-        Floor(row=row, floor=name, elevation=z, pfa=pfa)
-        for row, (name, z, pfa) in enumerate([("A", 0.0, {"X": lower}), ("B", 7 * share, {}), ("C", 7.0, {"X": upper})])
-    ]
-    found = _one(build_demands(_inventory(Path("/"), *floors), "as filled"), "B", "X").pfa
-    assert min(lower, upper) - 1e-12 <= found <= max(lower, upper) + 1e-12
+    places = (0.0, 7 * share, 7.0)
+    floors = [Floor(row=row, floor=name, elevation=z) for row, (name, z) in enumerate(zip("ABC", places, strict=True))]
+
+    def record(floor, axis, pfa):
+        return (Demand(floor=floor, axis=axis, source="record", pfa=pfa, pfv=pfa / 9),)
+
+    peaks = ((floors[0], lower), (floors[2], upper))
+    known = [{axis: record(floor, axis, pfa) for axis in AXES} for floor, pfa in peaks]
+    found = _interpolate(floors[1], known)["X"][0]
+    assert min(lower, upper) - 1e-12 <= found.pfa <= max(lower, upper) + 1e-12
+    assert found.pfv == pytest.approx(found.pfa / 9)

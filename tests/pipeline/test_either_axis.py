@@ -55,10 +55,23 @@ def test_it_falls_in_a_draw_if_it_falls_along_either_axis(done):
     assert done.governing[0] == cases_of(done, 0)[0], "of equal chances the larger PFA governs"
 
 
-def test_other_pieces_keep_what_they_have(done):
+def test_other_pieces_keep_what_they_and_those_alike_have(done):
+    """All four are of one size: along an axis they have one chance, from the draws of each."""
     for index in (1, 3):
         for case in cases_of(done, index):
-            assert done.adoption.probability[case] == verdicts(done, case).mean()
+            alike = np.flatnonzero(done.cases.alike == done.cases.alike[case])
+            assert len(alike) >= 3
+            shares = [verdicts(done, one).mean() for one in alike]
+            assert done.adoption.probability[case] == pytest.approx(np.mean(shares))
+
+
+def test_two_alike_have_one_chance_of_a_fall_along_either_axis(tmp_path):
+    found = compute(read(tmp_path, {"item": "a", "width": 35}, {"item": "b", "width": 35, "quantity": 3}), SETTINGS)
+    assert list(found.either_axis) == [0, 1]
+    shares = [found.either_axis[at].mean() for at in (0, 1)]
+    assert shares[0] != shares[1], "which of them fall together is each one's own"
+    chances = found.adoption.probability[found.governing]
+    assert chances == pytest.approx([np.average(shares, weights=[1, 3])] * 2)
 
 
 def test_without_any_uncertainty_it_is_nearly_the_product(tmp_path):
@@ -80,7 +93,9 @@ def test_an_unconfirmed_axis_is_not_united(done):
     adoption = done.adoption
     unconfirmed = np.array([2 if at == 0 else one for at, one in enumerate(adoption.basis)], dtype=np.int8)
     object.__setattr__(adoption, "basis", unconfirmed)
-    _, united = unite_axes(adoption, done.outcomes, done.inventory, done.case_item, done.case_demand, SETTINGS)
+    _, united = unite_axes(
+        adoption, done.outcomes, done.cases, done.inventory, done.case_item, done.case_demand, SETTINGS
+    )
     assert united == {}
 
 

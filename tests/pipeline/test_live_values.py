@@ -34,13 +34,13 @@ CONTENT = Content(
 def test_a_record_on_any_axis_of_a_piece_asks_for_a_run(tmp_path):
     (tmp_path / "x.csv").write_text(RECORD, encoding="utf-8")
     along_x, along_y, both, anchored, partly = with_live(CONTENT, folder=tmp_path).live
-    assert along_x[1:] == both[1:] == [RUN_ASSESS] * 5
+    assert along_x[1:] == both[1:] == [RUN_ASSESS] * 7
     assert along_x[0] == along_y[0] == pytest.approx(40 / 180)
     assert along_y[1] == pytest.approx(0.4)
-    assert along_y[4] == "■ very high"
-    assert anchored[4] == "anchored"
-    assert partly[4] == "◇ medium*", "outside the checked range, and classed as free-standing"
-    assert anchored[:4] == partly[:4]
+    assert along_y[5:7] == ["◇ medium", "■ very high"]
+    assert anchored[5:7] == ["anchored"] * 2
+    assert partly[6] == "◇ medium*", "outside the checked range, and classed as free-standing"
+    assert anchored[:5] == partly[:5]
 
 
 def test_the_temporary_workbook_leaves_nothing_behind(tmp_path):
@@ -66,8 +66,8 @@ def test_what_no_formula_knows_asks_for_a_run(tmp_path):
     content = Content({"Floors": floors, "Items": ITEMS, "Building": [{"ground_pga": 0.2}]})
     assert [row[1] for row in with_live(content).live] == [pytest.approx(0.4)] * 3 + [RUN_ASSESS] * 2
     by_code = replace(content, rows={**content.rows, "Building": [{"ground_pga": 0.2, "scenario_kind": "NTC 2018"}]})
-    unknown = [RUN_ASSESS] * 5
-    anchored = [*unknown[:3], "anchored", RUN_ASSESS]
+    unknown = [RUN_ASSESS] * 7
+    anchored = [*unknown[:4], "anchored", "anchored", RUN_ASSESS]
     assert [row[1:] for row in with_live(by_code).live] == [unknown, unknown, unknown, anchored, unknown]
 
 
@@ -79,7 +79,7 @@ def test_they_are_the_results_of_the_run(tmp_path):
     run = compute(inventory, Settings(verify="none"))
     for item, one, values in zip(inventory.items, run.governing, live_values(inventory), strict=True):
         assert values[1] == run.cases.pfa[one] / GRAVITY
-        assert values[2:-2] == [run.outcomes[method.key].value[one] for method in LIVE_METHODS]
+        assert values[2:-3] == [run.outcomes[method.key].value[one] for method in LIVE_METHODS]
         assert values[-1] == ("yes" if run.adoption.can_rock[one] else "no")
         risk = say_class(RiskClass(run.adoption.risk[one]))
-        assert values[-2].startswith("anchored" if item.anchored == "yes" else risk)
+        assert values[-3].startswith("anchored" if item.anchored == "yes" else risk)

@@ -9,15 +9,13 @@ import numpy as np
 import pytest
 
 import assess
-from assess.motion.envelope import octaves
 from assess.motion.floor_signs import find_coherence
 from assess.motion.generate import build_generator
 from assess.motion.noise import draw_bands
 from assess.motion.rows import GROUP
-from assess.motion.target import Grid, put_on_grid
+from assess.motion.target import Grid, octaves, put_on_grid
 from assess.pipeline.demand import build_demands, scale_demands
-from assess.pipeline.ensembles import build_ensembles
-from assess.pipeline.phase_signs import find_clock, find_phase_signs
+from assess.pipeline.ensembles import build_ensembles, find_clock, find_phase_signs
 from assess.progress import SILENT
 from assess.report.content import build_content
 from assess.report.findings.motions import say_signs
@@ -156,6 +154,22 @@ def test_channels_of_one_file_are_on_one_clock(tmp_path):
     assert signs["1", "X"][AT[0.8]] == -1
     assert (signs["0", "X"], signs["0", "Y"]) == (None, None)
     assert (signs["2", "Y"], signs["1", "Y"]) == (None, None), "no record along Y"
+
+
+@pytest.mark.parametrize("factor", [1.0, 2.0])
+def test_a_floor_on_the_record_of_the_ground_has_its_signs(tmp_path, factor):
+    """What shakes it is the motion of the ground floor itself, in every draw."""
+    write_table(tmp_path / "both.csv", AGAINST)
+    floors = [{"floor": "1", "record_x": "both.csv#top", "elevation": 8}, {"floor": "2", "elevation": 12},
+              {"floor": "0", "record_x": "both.csv#middle", "elevation": 0}]  # fmt: skip
+    items = [{"item": f"i{one['floor']}", "floor": one["floor"], "breadth": 30, "height": 200} for one in floors]
+    inventory = assess.read_inventory(write(tmp_path / "w.xlsx", items, floors, height=12))
+    demands = scale_demands(build_demands(inventory, "as filled"), factor)
+    chosen = [demands[floor, "X"][0] for floor in "02"]
+    ground, above = build_ensembles(chosen, demands, inventory.building, seed=1)
+    assert ground.signs is not None
+    assert ground.signs[AT[0.8]] == -1
+    assert above.signs == ground.signs
 
 
 def test_files_that_show_no_common_clock_have_no_sign(tmp_path):

@@ -64,9 +64,9 @@ def counts(assessment: Assessment, *pfa_g: float, **named: Any) -> list[list[flo
 def rocked(assessment: Assessment, pfa_g: float) -> list[np.ndarray[Any, Any]]:
     """Rock every case alone under the motions of its axis scaled to a PFA: in which draws it falls."""
     every = np.ones(len(assessment.case_item), dtype=np.bool_)
-    building, settings = assessment.inventory.building, assessment.settings
+    inventory, settings = assessment.inventory, assessment.settings
     cases = choose_motions(
-        assessment.cases, every, assessment.case_demand, assessment.demands, building, settings, None
+        assessment.cases, every, assessment.case_demand, assessment.demands, inventory, settings, None
     )
     verdicts = []
     for at, demand in enumerate(assessment.case_demand):
@@ -212,7 +212,7 @@ def test_the_ratio_of_the_motions(tmp_path):
     recorded, generic = (one.motions[0] for one in found(assessment, 0.3, 0.5).curves)
     every = np.ones(2, dtype=np.bool_)
     cases = choose_motions(
-        assessment.cases, every, assessment.case_demand, assessment.demands, assessment.inventory.building, SETTINGS,
+        assessment.cases, every, assessment.case_demand, assessment.demands, assessment.inventory, SETTINGS,
         None,
     )  # fmt: skip
     for one, ensemble in zip((recorded, generic), cases.ensembles, strict=True):
@@ -222,29 +222,18 @@ def test_the_ratio_of_the_motions(tmp_path):
         assert one.mean_pfv == pytest.approx(np.abs(velocity).max(axis=1).mean(), rel=1e-4)
         assert one.pfv_per_pfa == one.mean_pfv / one.mean_pfa
     assert (recorded.spectrum, recorded.source) == ("that of the record", "slow.csv")
-    assert generic.spectrum == "generic, shape of ICC-ES AC156, T1 and height unknown; long periods by the floor's PFV"
-    assert generic.mean_pfv == pytest.approx(0.5, rel=0.15)
-    assert [(one.is_generic, one.is_unshaped) for one in (recorded, generic)] == [(False, False), (True, True)]
+    assert generic.spectrum == "drawn, nothing known of the building"
+    assert (generic.mean_pfa, generic.mean_pfv) == pytest.approx((0.4 * GRAVITY, 0.5), rel=0.02), "in every draw"
+    assert [(one.is_assumed, one.is_unknown) for one in (recorded, generic)] == [(False, False), (True, True)]
 
 
-@pytest.mark.parametrize(
-    ("building", "text"),
-    [
-        ({}, "the PFV of floor '2' along X is not known: no fragility against PFV can be given"),
-        ({"period": 1.0}, "the PFV of floor '2' along X is estimated from T1, and its motions do not follow it"),
-    ],
-)
-def test_an_unknown_pfv_is_named(tmp_path, building, text):
-    floors = [{"floor": "1", **SLOW}, {"floor": "2", "pfa_x": 0.4}, {"floor": "3", "pfa_x": 0.4}]
-    items = [{**CABINET, "item": str(at), "floor": "2"} for at in range(3)]
-    stout = {**CABINET, "item": "stout", "floor": "3", "breadth": 150, "width": 150, "height": 90}
-    assessment = assessed(tmp_path, *items, CABINET, stout, floors=floors, building=building)
-    with pytest.raises(assess.WorkbookError) as caught:
-        found(assessment, im="pfv")
-    (problem,) = caught.value.problems
-    assert (problem.sheet, problem.cell) == ("Floors", assessment.inventory.floors[1].cell("pfv_x"))
-    assert problem.message.startswith(text)
-    assert problem.fix == "Fill in its PFA and PFV, or a record, or take PFA as the measure."
+def test_a_pfv_that_is_not_typed_is_the_beams(tmp_path):
+    """So every floor has levels of PFV."""
+    floors = [{"floor": "2", "pfa_x": 0.4, "elevation": 6}]
+    assessment = assessed(tmp_path, {**CABINET, "floor": "2"}, floors=floors, building={"period": 1.0, "height": 9})
+    (demand,) = assessment.demands["2", "X"]
+    (one,) = found(assessment, 0.5, 1.0, im="pfv").curves
+    assert one.motions[0].pfv == demand.pfv > 0
 
 
 # --- types ---
@@ -287,14 +276,12 @@ def test_a_type_is_the_sum_of_its_rows_by_quantity(tmp_path):
 def test_motions_that_may_be_too_weak_are_flagged(tmp_path):
     floors = [{"floor": "1", **SLOW}, {"floor": "2", "record_x": "pulse.csv"}, {"floor": "3", "pfa_x": 0.4}]
     items = [{**CABINET, "item": one, "floor": one} for one in "123"]
-    for building, unshaped in (({}, True), ({"height": 20}, False)):
+    for building, unknown in (({}, True), ({"height": 20}, False)):
         result = found(assessed(tmp_path, *items, floors=floors, building=building), 0.3, 0.6)
-        assert [one.may_be_too_low for one in result.curves] == [False, True, unshaped]
-        flags = [
-            (one.is_generic, one.is_unshaped, one.is_weak) for (one,) in (curve.motions for curve in result.curves)
-        ]
-        assert flags == [(False, False, False), (False, False, True), (True, unshaped, False)]
-    assert result.curves[2].motions[0].spectrum == "generic, for T1 by the building's height 20 m"
+        assert [one.may_be_too_low for one in result.curves] == [False, True, unknown]
+        flags = [(one.is_assumed, one.is_unknown, one.is_weak) for (one,) in (curve.motions for curve in result.curves)]
+        assert flags == [(False, False, False), (False, False, True), (True, unknown, False)]
+    assert result.curves[2].motions[0].spectrum == "drawn for T1 0.646 s", "1.4 x 0.0488 x 20^0.75"
 
 
 def test_stocky_pieces_are_left_out(tmp_path):

@@ -7,7 +7,7 @@ import pytest
 
 import assess
 from assess.pipeline.schedule import fix_first
-from assess.risk import RiskClass
+from assess.risk import RiskClass, classify
 from tests.workbooks import FLOORS, RECORDS, UNVERIFIED, assessed, write
 
 PIECE = {"floor": "1", "breadth": 40, "width": 90, "height": 180}
@@ -25,14 +25,30 @@ def test_the_larger_probability_governs_a_blank_axis(tmp_path):
     floors = [{"floor": "1", "pfa_x": 0.2, "pfa_y": 0.4}]
     one = assessed(tmp_path / "w.xlsx", [{"item": "a", **PIECE}], floors)["a"]
     assert one.governing.motion.axis == "Y"
-    assert one.adopted.probability == one.worst("proposed_or")
+    assert one.adopted.probability == one.worst("fema_p58")
+
+
+def test_the_larger_velocity_governs_a_blank_axis_and_by_the_papers_formula_the_larger_acceleration(tmp_path):
+    floors = [{"floor": "1", "pfa_x": 0.4, "pfv_x": 20, "pfa_y": 0.3, "pfv_y": 40}]
+    best = assessed(tmp_path / "w.xlsx", [{"item": "a", **PIECE}], floors)["a"]
+    paper = assessed(tmp_path / "w.xlsx", [{"item": "a", **PIECE}], floors, class_by="proposed OR")["a"]
+    assert (best.governing.motion.axis, best.adopted.method) == ("Y", "fema_p58")
+    assert (paper.governing.motion.axis, paper.adopted.method) == ("X", "proposed_or")
+    assert paper.formula_class is paper.paper_class is classify(paper.worst("proposed_or"))
+    assert best.paper_class is classify(best.governing.methods["proposed_or"].value)
+
+
+def test_the_option_comes_before_the_workbook(tmp_path):
+    path = write(tmp_path / "w.xlsx", [{"item": "a", **PIECE}], class_by="proposed OR")
+    assert assess.run(path, UNVERIFIED)["a"].adopted.method == "proposed_or"
+    assert assess.run(path, UNVERIFIED, class_by="best formula")["a"].adopted.method == "fema_p58"
 
 
 def test_at_equal_probability_the_larger_pfa_governs_then_x(tmp_path):
     """Both PFA lie past the peak of the formula, where its value is held: the probabilities are equal."""
     floors = [{"floor": "1", "pfa_x": 1.1, "pfa_y": 1.4}, {"floor": "2", "pfa_x": 1.2, "pfa_y": 1.2}]
     items = [{"item": "a", **PIECE}, {"item": "b", **PIECE, "floor": "2"}]
-    results = assessed(tmp_path / "w.xlsx", items, floors)
+    results = assessed(tmp_path / "w.xlsx", items, floors, class_by="proposed OR")
     assert results["a"].governing.motion.axis == "Y"
     assert results["b"].governing.motion.axis == "X"
     assert {case.methods["proposed_or"].value for case in results["a"].cases} == {results["a"].adopted.probability}
@@ -44,8 +60,9 @@ def test_the_worst_of_parallel_records_governs_and_all_are_kept(tmp_path):
     floors = [{"floor": "1", "record_x": "np01002p_4225a_a.smc; 0165a_u.smc"}]
     one = assessed(tmp_path / "w.xlsx", [{"item": "a", "axis": "X", **PIECE}], floors)["a"]
     assert [case.motion.record for case in one.cases] == ["np01002p_4225a_a.smc", "0165a_u.smc"]
-    assert one.governing.motion.pfa_g == max(case.motion.pfa_g for case in one.cases)
-    assert one.governing.motion.record == "0165a_u.smc"
+    assert one.governing.motion.pfv_cm_s == max(case.motion.pfv_cm_s or 0.0 for case in one.cases)
+    assert one.governing.motion.record == "np01002p_4225a_a.smc"
+    assert one.governing.motion.pfa_g < max(case.motion.pfa_g for case in one.cases)
 
 
 def test_treatment_that_takes_over_two_percent_of_the_peak_is_told(tmp_path):
@@ -76,10 +93,13 @@ def test_flags_of_piece_and_motion_reach_the_adopted_risk(tmp_path):
     ]
     results = assessed(tmp_path / "w.xlsx", items, floors, period=1.0)
     flags = {one.item.item: set(one.adopted.flags) for one in results}
-    assert flags["stocky"] >= {"does_not_rock", "one_axis_only", "pfv_estimated", "extrapolated"}
+    assert flags["stocky"] >= {"does_not_rock", "one_axis_only", "unknown_height"}
+    assert (results["stocky"].adopted.basis, results["stocky"].adopted.risk) == ("cannot rock", RiskClass.LOW)
     assert results["stocky"].governing.methods["fema_p58"].value is None
-    assert flags["slippery"] >= {"slides", "pfv_estimated", "extrapolated"}
-    assert flags["thin"] >= {"thin", "held", "extrapolated"}
+    assert flags["slippery"] >= {"slides", "unknown_height"}
+    assert "extrapolated" in flags["thin"]
+    by_paper = assessed(tmp_path / "w.xlsx", items, floors, period=1.0, class_by="proposed OR")
+    assert {"thin", "held", "extrapolated"} <= set(by_paper["thin"].adopted.flags)
 
 
 def test_what_to_fix_first(tmp_path):
@@ -99,7 +119,7 @@ def test_what_to_fix_first(tmp_path):
         {"item": "worst", "floor": "1", "breadth": 28, "height": 200, "importance": "life safety"},
         {"item": "mild", "floor": "1", "breadth": 70, "height": 180, "importance": "life safety"},
     ]
-    results = list(assessed(tmp_path / "w.xlsx", items, [{"floor": "1", "pfa_x": 0.25}]))
+    results = list(assessed(tmp_path / "w.xlsx", items, [{"floor": "1", "pfa_x": 0.25}], class_by="proposed OR"))
     assert [one.item.item for one in fix_first(iter(results))] == ["worst", "many", "few", "plain", "mild"]
     assert results[6].adopted.risk is RiskClass.MEDIUM  # no life safety puts it before what is likely to fall
     assert results[4].adopted.risk is RiskClass.LOW
@@ -107,7 +127,7 @@ def test_what_to_fix_first(tmp_path):
 
 def test_a_path_is_read_and_keywords_are_settings(tmp_path):
     results = assess.run(write(tmp_path / "w.xlsx"), verify="none", scenario="AS_filled")
-    assert results.settings == replace(UNVERIFIED, scenario="as filled")
+    assert results.settings == replace(UNVERIFIED, scenario="as filled", class_by="best formula")
     assert [one.item.item for one in results] == ["A1", "A2", "A3", "A4", "A5"]
     with pytest.raises(assess.InputError, match=r"verifi is an unknown setting\. Did you mean verify"):
         assess.run(write(tmp_path / "w.xlsx"), verifi="none")

@@ -7,8 +7,10 @@ import pytest
 
 import assess
 from assess.methods import simulation
-from assess.motion import shared_motions
+from assess.motion import beam_motions, shared_motions
+from assess.motion.beam import swing_modes
 from assess.motion.generate import build_generator
+from assess.motion.kept import Kept
 from assess.pipeline.run import compute
 from assess.settings import Settings
 from tests.motion.motions import MARKET
@@ -21,7 +23,7 @@ RUNS = 20
 @pytest.fixture
 def built(monkeypatch):
     """Start from nothing that is kept; return the list that grows with every generator."""
-    monkeypatch.setattr(shared_motions, "_STORE", shared_motions._Store())
+    monkeypatch.setattr(shared_motions, "KEPT", Kept(shared_motions.KEPT.most))
     found = []
 
     def count(*given, **named):
@@ -29,6 +31,20 @@ def built(monkeypatch):
         return build_generator(*given, **named)
 
     monkeypatch.setattr(shared_motions, "build_generator", count)
+    return found
+
+
+@pytest.fixture
+def swung(monkeypatch):
+    """Start from nothing that is kept; return the list that grows with every group of beams that swing."""
+    monkeypatch.setattr(beam_motions, "KEPT", Kept(beam_motions.KEPT.most))
+    found = []
+
+    def count(*given):
+        found.append(given)
+        return swing_modes(*given)
+
+    monkeypatch.setattr(beam_motions, "swing_modes", count)
     return found
 
 
@@ -46,39 +62,37 @@ def chances(inventory, **settings):
     return found.outcomes[simulation().key].value
 
 
-def test_floors_of_peaks_alone_share_and_each_is_as_alone(built, tmp_path):
-    lower, upper = ({"floor": name, "pfa_x": pfa} for name, pfa in (("1", 0.3), ("2", 0.55)))
-    alone = []
+def test_floors_without_a_record_share_their_beams_and_each_is_as_alone(swung, tmp_path):
+    lower, upper = ({"floor": name, "elevation": z, "pfa_x": pfa} for name, z, pfa in (("1", 3, 0.3), ("2", 9, 0.55)))
+    building = {"height": 9}
+    alone, made = [], []
     for floor in (lower, upper):
-        shared_motions.forget()
-        alone.append(chances(read(tmp_path, floor)))
-    built.clear()
-    shared_motions.forget()
-    both = chances(read(tmp_path, lower, upper))
-    assert sorted(built) == ["X", "Y"]
+        swung.clear()
+        beam_motions.KEPT.forget()
+        alone.append(chances(read(tmp_path, floor, **building)))
+        made.append(len(swung))
+    swung.clear()
+    beam_motions.KEPT.forget()
+    both = chances(read(tmp_path, lower, upper, **building))
+    assert len(swung) == made[0] == made[1] > 0
     np.testing.assert_array_equal(both, np.concatenate(alone))
     assert 0 < both.mean() < 1
 
 
-def test_another_building_before_changes_nothing(built, tmp_path):
+def test_another_building_before_changes_nothing(swung, tmp_path):
     first = chances(read(tmp_path, {"floor": "1", "pfa_x": 0.4}))
-    shared_motions.forget()
-    chances(read(tmp_path, {"floor": "9", "pfa_x": 0.8}))
+    beam_motions.KEPT.forget()
+    chances(read(tmp_path, {"floor": "9", "pfa_x": 0.8}, period=1.0))
     np.testing.assert_array_equal(chances(read(tmp_path, {"floor": "1", "pfa_x": 0.4})), first)
 
 
-def test_t1_and_height_are_not_rounded_into_one(built, tmp_path):
+def test_t1_is_not_rounded_into_one(swung, tmp_path):
     chances(read(tmp_path, {"floor": "1", "pfa_x": 0.4}))
+    once = len(swung)
+    chances(read(tmp_path, {"floor": "1", "pfa_x": 0.8}))
+    assert len(swung) == once
     chances(read(tmp_path, {"floor": "1", "pfa_x": 0.4}, period=0.5001))
-    assert len(built) == 4
-
-
-def test_pfv_shares_where_it_is_in_proportion(built, tmp_path):
-    floors = [{"floor": name, "pfa_x": 0.1 * at, "pfv_x": 7 * at} for at, name in enumerate("123", 1)]
-    chances(read(tmp_path, *floors))
-    assert sorted(built) == ["X", "Y"]
-    chances(read(tmp_path, {"floor": "1", "pfa_x": 0.1, "pfv_x": 8}))
-    assert len(built) == 4
+    assert len(swung) == 2 * once
 
 
 def test_a_scaled_record_has_the_motions_of_the_record(built, tmp_path):

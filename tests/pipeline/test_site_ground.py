@@ -6,14 +6,14 @@ import shutil
 import pytest
 
 import assess
+from assess.motion.floor_medians import find_medians
 from assess.motion.ground_scenarios import read_scenarios
-from assess.motion.scenario import cap_pfv, estimate_pfv
 from assess.motion.shakemap import parse_shakemap, read_shakemap
 from assess.pipeline.annual import evaluate_annual
-from assess.pipeline.demand import build_demands, find_ground, find_site
+from assess.pipeline.demand import build_demands, find_site
+from assess.pipeline.known_ground import find_ground
 from assess.pipeline.live_values import live_values
 from assess.pipeline.run import compute
-from assess.pipeline.verify import find_uncertainty
 from assess.settings import Settings
 from assess.units import GRAVITY
 from tests.hazards import write_hazard
@@ -37,13 +37,15 @@ def _messages(inventory, severity="note"):
     return [one.message for one in compute(inventory, UNVERIFIED).problems if one.severity == severity]
 
 
-def test_floors_follow_the_profile_from_the_median_of_the_map(tmp_path):
-    demands = build_demands(_read(tmp_path), "as filled")
+def test_floors_follow_a_beam_on_the_median_of_the_map(tmp_path):
+    inventory = _read(tmp_path)
+    demands = build_demands(inventory, "as filled")
     ground, roof = demands["1", "X"][0], demands["2", "Y"][0]
-    assert ground.pfa == pytest.approx(PGA, rel=1e-3)
-    assert roof.pfa == pytest.approx(3.5 * ground.pfa)
-    assert {one.label for parallel in demands.values() for one in parallel} == {"ShakeMap, ASCE 7-22"}
-    assert roof.flags == ("code_profile", "shakemap")
+    assert (ground.pfa, ground.pfv) == pytest.approx((PGA, 0.1964), rel=1e-3)
+    by_pga, by_pgv = find_medians(find_ground(inventory).building.period, 1.0, "unknown", ground.pfv / ground.pfa)
+    assert (roof.pfa, roof.pfv) == pytest.approx((by_pga * ground.pfa, by_pgv * ground.pfv))
+    assert {one.label for parallel in demands.values() for one in parallel} == {"ShakeMap, beam"}
+    assert roof.flags == ("drawn_building", "shakemap")
 
 
 def test_it_comes_after_sds_and_before_shaking(tmp_path):
@@ -54,45 +56,41 @@ def test_it_comes_after_sds_and_before_shaking(tmp_path):
     assert "Shaking is not used: a ShakeMap gives the ground motion." in _messages(with_both)
 
 
-def test_its_pgv_caps_an_estimated_pfv_unless_a_ground_pgv_is_given(tmp_path):
-    own = build_demands(_read(tmp_path, period=4.0), "as filled")["2", "X"][0]
-    assert own.pfv == pytest.approx(cap_pfv(0.1964), rel=1e-3)
-    assert own.pfv < estimate_pfv(own.pfa, 4.0)
-    given = build_demands(_read(tmp_path, period=4.0, ground_pgv=10), "as filled")["2", "X"][0]
-    assert given.pfv == pytest.approx(cap_pfv(0.1))
+def test_a_ground_pgv_comes_before_its_own(tmp_path):
+    ground = find_ground(_read(tmp_path, ground_pgv=10)).motion
+    assert (ground.pga, ground.pgv) == pytest.approx((PGA, 0.1), rel=1e-3)
 
 
-@pytest.mark.parametrize(("own", "expected"), [(None, 0.4), (0.0, 0.0), (0.3, 0.3)])
+@pytest.mark.parametrize(("own", "expected"), [(None, 0.0), (0.0, 0.0), (0.3, 0.3)])
 def test_its_scatter_adds_to_the_buildings_own(tmp_path, own, expected):
     inventory = _read(tmp_path, motion_uncertainty=own)
-    demands = build_demands(inventory, "as filled")
-    found = find_uncertainty(inventory.building, demands).motion
-    assert found == pytest.approx(math.sqrt(expected**2 + 0.0904**2), abs=1e-4)
-    assert compute(inventory, UNVERIFIED).cases.uncertainty.motion == found
+    one = build_demands(inventory, "as filled")["2", "X"][0]
+    assert one.dispersion == pytest.approx(math.hypot(expected, 0.0904), abs=1e-4)
+    assert one.own_dispersion == expected
+    assert set(compute(inventory, UNVERIFIED).cases.dispersion.tolist()) == {one.dispersion}
 
 
 def test_where_no_floor_follows_it_nothing_is_added_and_a_note_says_so(tmp_path):
     floors = [one | {"pfa_x": 0.4} for one in FLOORS]
-    inventory = _read(tmp_path, floors)
-    assert compute(inventory, UNVERIFIED).cases.uncertainty.motion == 0.4
-    assert "The ShakeMap grid.xml is not used: no floor follows a profile." in _messages(inventory)
+    inventory = _read(tmp_path, floors, motion_uncertainty=0.2)
+    assert set(compute(inventory, UNVERIFIED).cases.dispersion.tolist()) == {0.2}
+    assert "The ShakeMap grid.xml is not used: every floor has a motion of its own." in _messages(inventory)
 
 
 def test_floors_with_a_motion_of_their_own_keep_it(tmp_path):
-    inventory = _read(tmp_path, [FLOORS[0] | {"pfa_x": 0.4}, FLOORS[1]])
+    inventory = _read(tmp_path, [FLOORS[0] | {"elevation": 3, "pfa_x": 0.4}, FLOORS[1]])
     demands = build_demands(inventory, "as filled")
     assert demands["1", "X"][0].source == "given"
-    assert demands["2", "X"][0].flags == ("code_profile", "shakemap")
+    assert demands["2", "X"][0].flags == ("drawn_building", "shakemap")
     assert "floor 1 keeps its own motion, which could be that of another earthquake." in _messages(inventory)
 
 
 def test_what_is_used_is_told_with_its_scatter_and_where_it_comes_from(tmp_path):
-    text = next(one for one in _messages(_read(tmp_path)) if one.startswith("The ShakeMap grid.xml gives"))
-    assert (
-        "a PGA of 0.153 g at the building. The standard deviation of ln PGA there is 0.0904 (STDPGA of grid.xml)"
-        in text
-    )
-    assert "with 0.4 of the building's own motion the dispersion is 0.41, the root of the sum of their squares" in text
+    inventory = _read(tmp_path, motion_uncertainty=0.4)
+    text = next(one for one in _messages(inventory) if one.startswith("The ShakeMap grid.xml gives"))
+    assert "a PGA of 0.153 g and a PGV of 19.6 cm/s at the building. The standard deviation of ln PGV there is" in text
+    assert "0.0904 (STDPGA of grid.xml); " in text
+    assert "with 0.4, Motion uncertainty, the dispersion is 0.41, the root of the sum of their squares" in text
 
 
 def test_an_automatic_map_is_warned_of(tmp_path):
@@ -110,15 +108,18 @@ def test_annual_chances_go_by_the_pga_and_leave_its_scatter_out(tmp_path):
     found = evaluate_annual(compute(inventory, settings), jobs=1, progress=assess.progress.SILENT)
     assert found is not None
     assert found.tables.ground_pga_g == pytest.approx(0.1525, rel=1e-3)
-    assert found.tables.motion_dispersion == 0.4
+    assert found.tables.motion_dispersion == 0
 
 
 def test_live_columns_leave_it_to_the_program(tmp_path):
-    inventory = _read(tmp_path, [FLOORS[0] | {"pfa_x": 0.4}, FLOORS[1]])
-    one, two = live_values(inventory)
+    """A PFV that is not typed follows from the map, too."""
+    own = FLOORS[0] | {"pfa_x": 0.4}
+    one, two = live_values(_read(tmp_path, [own | {"pfv_x": 40}, FLOORS[1]]))
     assert one[1] == pytest.approx(0.4), "the floor's own PFA"
-    assert one[-1] == "run assess", "whether it can rock goes by the scatter of the map, too"
+    assert "run assess" not in one
     assert two[1:] == ["run assess"] * (len(two) - 1)
+    one, _ = live_values(_read(tmp_path, [own, FLOORS[1]]))
+    assert one[1:] == ["run assess"] * (len(one) - 1)
 
 
 def test_the_chances_of_a_simulation_hold_the_scatter(tmp_path):
@@ -142,12 +143,12 @@ def test_scenarios_carry_their_part_of_the_dispersion(tmp_path):
         "site_id,event_id,gmv_PGA\n" + "".join(f"0,{at},{value}\n" for at, value in enumerate((0.1, 0.2, 0.4))),
         encoding="utf-8",
     )
-    inventory = _read(tmp_path, ground=read_scenarios(tmp_path))
+    inventory = _read(tmp_path, ground=read_scenarios(tmp_path), motion_uncertainty=0.4)
     demands, sigma = build_demands(inventory, "as filled"), math.log(2) * math.sqrt(2 / 3)
     site = find_site(demands)
     assert site is not None
     assert site.dispersion == pytest.approx(sigma)
-    assert demands["1", "X"][0].label == "scenarios, ASCE 7-22"
+    assert demands["1", "X"][0].label == "scenarios, beam"
     earthquakes = compute(inventory, UNVERIFIED).cases.earthquakes
     assert earthquakes.given == pytest.approx((-(1.5**0.5), 0, 1.5**0.5))
     assert earthquakes.given_share == pytest.approx(sigma**2 / (sigma**2 + 0.16))

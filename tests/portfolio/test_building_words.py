@@ -2,7 +2,7 @@
 
 import pytest
 
-from assess.portfolio.building_words import mark_own_motions, name_skipped, say_blocked, say_falls, say_people
+from assess.portfolio.piece_words import label_piece, mark_own_motions, name_skipped, say_blocked, say_falls, say_people
 
 
 @pytest.mark.parametrize(
@@ -44,3 +44,9 @@ def test_motions_of_its_own_are_marked_and_a_skipped_building_is_named():
     assert mark_own_motions("School", 0) == "School"
     assert name_skipped("School", "s.xlsx") == "School (s.xlsx)"
     assert name_skipped(None, "s.xlsx") == name_skipped("s.xlsx", "s.xlsx") == "s.xlsx"
+
+
+def test_an_unconfirmed_class_is_not_said_to_be_that_of_the_formula():
+    """Where nothing is known of the building it is that of the simulation."""
+    row = {"risk_class": "high", "risk_class_upper": "very high", "is_held": False, "basis": "unconfirmed"}
+    assert label_piece(row, "simulated") == ("◌ unconfirmed (high)", "apart-unconfirmed")

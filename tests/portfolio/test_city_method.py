@@ -40,18 +40,21 @@ def test_states_of_routes_are_defined_by_the_limits_that_hold():
 def test_the_dispersion_is_told_where_it_was_drawn_alone():
     rows = [{"path": "a", "motion_uncertainty": 0.41}, {"path": "b", "motion_uncertainty": 0.725}]
     city = replace(view(rows, draws={"a": DRAWS, "b": DRAWS}), ground=GROUND)
-    assert "√(β² + σ²): β the Motion uncertainty of the workbook, 0.4 (assumed) where that is blank" in _method(city)
+    assert "√(β² + σ²): β the Motion uncertainty of the workbook, 0 where that is blank" in _method(city)
     assert "It is 0.41 to 0.73." in _method(city) or "It is 0.41 to 0.72." in _method(city)
     formula = [{"path": "a", "basis": "formula", "draws": 0}]
     assert "√(β² + σ²)" not in _method(replace(view(formula), ground=GROUND))
 
 
-def test_the_formula_is_named_and_cited_with_the_pieces_that_it_overestimates():
+def test_the_formula_is_named_and_cited_with_the_pieces_that_cannot_rock():
     city = view([{"path": "a", "basis": "formula", "draws": 0, "cannot_rock": 4}])
-    assert "chances by Proposed OR formula, under the median of the ground motion" in _method(city)
-    assert "Overturning Risk of Furniture" in list_references(city, build_totals(city))[0]
+    assert "chances by FEMA P-58 contents, under the median of the ground motion" in _method(city)
+    assert "FEMA P-58" in list_references(city, build_totals(city))[0]
+    asked = replace(city, settings=Settings(city=True, class_by="proposed OR"))
+    assert "chances by Proposed OR formula, under" in _method(asked)
+    assert "Overturning Risk of Furniture" in list_references(asked, build_totals(asked))[0]
     lines = list_group_lines(build_totals(city).groups[0])
-    assert any("4 of the pieces of class high or very high cannot start to rock" in one for one in lines)
+    assert any("4 of the pieces are low as they cannot rock" in one for one in lines)
     assert "leaves its uncertainty out" in lines[0]
 
 

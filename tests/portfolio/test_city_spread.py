@@ -7,11 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from assess.motion.spatial_field import EARTH, SHARED, correlate
+from assess.motion.spatial_field import EARTH, SCATTERS, correlate
 from assess.portfolio.city_spread import build_spread, find_sampling
 from assess.rocking.draws import Earthquakes
 from tests.portfolio.city_samples import frame
 
+SHARED = SCATTERS["PGA"].shared
 DRAWS = 2048
 DOCS = Path(__file__).parents[2] / "docs"
 

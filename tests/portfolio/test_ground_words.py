@@ -7,8 +7,7 @@ import pytest
 from assess.motion.ground_scenarios import read_scenarios
 from assess.portfolio.city_method import list_method
 from assess.portfolio.city_totals import RunGround, build_totals
-from assess.portfolio.city_words import list_cautions, list_group_lines
-from assess.portfolio.ground_words import list_ground_cautions
+from assess.portfolio.city_words import list_cautions, list_ground_cautions, list_group_lines
 from assess.portfolio.run_portfolio import run_portfolio
 from assess.settings import Settings
 from tests.portfolio.staged import StagedGround, write_city

@@ -104,7 +104,10 @@ def read_html(page: str) -> list[dict[str, tuple[str, float | None]]]:
     for style, row in rows:
         cells = re.findall(r"<td([^>]*)>(.*?)</td>", row, re.DOTALL)
         numbers = (re.search(r'data-value="([^"]*)"', marks) for marks, _ in cells)
-        values = [(_plain(text), float(one[1]) if one else None) for (_, text), one in zip(cells, numbers, strict=True)]
+        values = [
+            (_plain(text), float(one[1]) if one and one[1] else None)
+            for (_, text), one in zip(cells, numbers, strict=True)
+        ]
         found.append(dict(zip(heads, values, strict=True)) | {"style": (style, None)})
     return found
 

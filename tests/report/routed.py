@@ -32,18 +32,22 @@ ROUTES: list[dict[str, Any]] = [
 ITEMS: list[dict[str, Any]] = [
     {"item": "tall", "floor": "1", "description": "Bookcase", "breadth": 30, "width": 80, "height": 200, "x": 5.0,
      "y": 0.9, "axis": "Y", "angle_deg": 90, "anchored": "no"},
-    {"item": "calm", "floor": "1", "breadth": 80, "width": 80, "height": 110, "quantity": 2, "anchored": "no",
+    {"item": "calm", "floor": "1", "breadth": 50, "width": 80, "height": 110, "quantity": 2, "anchored": "no",
      "route": "Back", "edge_distance": 0.1},
     {"item": "held", "floor": "G", "breadth": 30, "width": 80, "height": 200, "anchored": "yes", "route": "Yard",
      "segment": "lane", "edge_distance": 0.0},
     {"item": "=apart", "floor": "1", "breadth": 28, "height": 210, "anchored": "no", "description": "=cmd()"},
 ]  # fmt: skip
 
-KNOWN: dict[str, Any] = {"Building": [{"building": "Routed hall", "period": 1.0}]}
-"""The same building with its period known, so that simulated classes are confirmed."""
-DOUBTED: dict[str, Any] = {"Floors": [FLOORS[0] | {"pfv_y": 8.0}, FLOORS[1]]}
-"""The same with a weaker motion of which neither T1 nor height tells the shape: no lower class is confirmed."""
+BUILDING: dict[str, Any] = {"building": "Routed hall", "motion_uncertainty": 0.4}
+KNOWN: dict[str, Any] = {"Building": [BUILDING | {"period": 1.0}]}
+"""The same building with its period known."""
+DOUBTED: dict[str, Any] = {
+    "Floors": [{name: value for name, value in one.items() if name != "elevation"} for one in FLOORS]
+}
+"""The same with neither T1 nor any height: nothing is known of the building, and no class is confirmed."""
 PARTLY: dict[str, list[dict[str, Any]]] = {
+    "Floors": [FLOORS[0], FLOORS[1] | {"pfv_x": 22.0, "pfv_y": 22.0}],
     "Places": [
         {"place": "Lab", "floor": "G", "x": 0.0, "y": 0.0, "kind": "room"},
         {"place": "Fork", "floor": "G", "x": 6.0, "y": 0.0, "kind": "door"},
@@ -78,7 +82,7 @@ PARTLY: dict[str, list[dict[str, Any]]] = {
 
 def write_routed(path: Path, **sheets: Any) -> Path:
     """Write the building; `sheets` take the place of its own by their names."""
-    rows = {"Building": [{"building": "Routed hall"}], "Floors": FLOORS, "Items": ITEMS, "Places": PLACES,
+    rows = {"Building": [BUILDING], "Floors": FLOORS, "Items": ITEMS, "Places": PLACES,
             "Routes": ROUTES}  # fmt: skip
     write_workbook(path, Content(rows=rows | sheets), "si")
     return path

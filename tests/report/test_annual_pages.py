@@ -8,8 +8,10 @@ import openpyxl
 import pytest
 
 import assess
+from assess.report.findings.ground_source import say_ground
 from assess.settings import Settings
-from tests.hazards import write_hazard
+from assess.units import GRAVITY
+from tests.hazards import K_0, K, write_hazard
 from tests.pipeline.test_annual import BLOCKS, CABINET, assessed
 
 SETTINGS = Settings(runs=60, seed=3)
@@ -39,6 +41,15 @@ def test_results_json_has_them(folder):
     assert found["routes"]["routes"][0]["annual"]["rate"] == pytest.approx(row.rate)
     assert found["routes"]["rooms"][0]["annual"]["rate"] == pytest.approx(row.rate)
     assert list(found["assess"]["inputs"]["records"]) == ["hazard.csv"]
+
+
+def test_how_rare_the_ground_motion_is_stands_in_the_summary(folder):
+    """The curve of the tests: K_0 times PGA to the power of -2.5."""
+    out, results = folder
+    years = 1 / (K_0 * (results.building.ground_pga / GRAVITY) ** -K)
+    text = f"Its PGA is exceeded about once in {years:,.0f} years, by the hazard curve."
+    assert text in say_ground(results)
+    assert text in (out / "report.html").read_text(encoding="utf-8")
 
 
 def test_items_csv_and_tables_have_them(folder):

@@ -15,37 +15,41 @@ from assess.report.content import build_content
 from assess.report.counts import build_bars, count
 from assess.report.figures.plan import build_plan
 from assess.report.findings.apart import list_parts, list_ways_to_settle
+from assess.report.words import risk_notes
 from assess.results import BASES
-from assess.risk import RiskClass
+from assess.risk import RiskClass, classify
 from assess.settings import Settings
 from tests.report.reading import read_text, render
 from tests.report.test_verified import _pulses
+from tests.shaking import RECORDS as SHAKING
+from tests.shaking import write_record
 from tests.workbooks import RECORDS, write
 
 FLOORS = [
     {"floor": "1", "record_x": "made-up-sweep.csv#north"},
-    {"floor": "2", "pfa_x": 0.2},
-    {"floor": "3", "pfa_x": 0.04},
+    {"floor": "2", "pfa_x": 0.2, "pfv_x": 45},
+    {"floor": "3", "record_x": "weak.csv"},
 ]
 SIZE = {"width": 110, "axis": "X"}
 ITEMS = [
-    SIZE | {"item": "wide", "floor": "2", "room": "Office", "breadth": 60, "height": 200, "quantity": 3},
+    SIZE | {"item": "wide", "floor": "2", "room": "Office", "breadth": 22, "height": 200, "quantity": 3},
     SIZE | {"item": "felled", "floor": "1", "room": "Hall", "breadth": 30, "height": 200, "x": 2, "y": 2},
     SIZE | {"item": "still", "floor": "3", "breadth": 45, "height": 200},
-    SIZE | {"item": "broad", "floor": "2", "breadth": 50, "height": 180, "x": 4, "y": 2},
-    SIZE | {"item": "cube", "floor": "2", "breadth": 90, "height": 60},
+    SIZE | {"item": "broad", "floor": "2", "breadth": 25, "height": 180, "x": 4, "y": 2},
+    SIZE | {"item": "calm", "floor": "2", "breadth": 78, "height": 200},
     SIZE | {"item": "fixed", "floor": "2", "breadth": 50, "height": 180, "anchored": "yes"},
 ]
-EXPECTED = {"wide": "unconfirmed", "felled": "simulated", "still": "simulated", "broad": "unconfirmed",
-            "cube": "formula", "fixed": "unconfirmed"}  # fmt: skip
-"""With neither T1 nor the building's height, a lower class under a generic spectrum is unconfirmed; the cube is too
-stocky to be simulated, and the still piece cannot rock, so that its low class needs no spectrum."""
+EXPECTED = {"wide": "unconfirmed", "felled": "simulated", "still": "cannot rock", "broad": "unconfirmed",
+            "calm": "formula", "fixed": "unconfirmed"}  # fmt: skip
+"""Where nothing is known of the building, the class of a floor without a record is unconfirmed; the calm piece is not
+chosen, and the still one cannot rock."""
 
 
 def _assess(folder, items=ITEMS, building=(), **settings):
     shutil.copy(RECORDS / "made-up-sweep.csv", folder)
+    write_record(folder / "weak.csv", 0.6 * SHAKING["still"])
     inventory = assess.read_inventory(write(folder / "w.xlsx", items, FLOORS, **dict(building)))
-    return assess.run(inventory, Settings(**{"runs": 20, **settings}), jobs=1)
+    return assess.run(inventory, Settings(**{"runs": 20, "verify": "high", **settings}), jobs=1)
 
 
 @pytest.fixture(scope="module")
@@ -70,7 +74,7 @@ def test_the_workbook_has_pieces_of_every_basis(mixed):
     assert {one.item.item: one.adopted.basis for one in mixed} == EXPECTED
     assert set(EXPECTED.values()) == set(BASES)
     assert {one.item.item: one.apart for one in mixed} == {
-        name: "" if basis == "simulated" else basis for name, basis in EXPECTED.items()
+        name: "" if basis in ("simulated", "cannot rock") else basis for name, basis in EXPECTED.items()
     }
 
 
@@ -78,17 +82,18 @@ def test_classes_count_simulated_pieces_alone(mixed):
     rows = list(mixed)
     counts = count("all", rows)
     assert (counts.free, counts.unconfirmed, counts.by_formula, counts.anchored, counts.total) == (2, 4, 1, 1, 8)
-    assert counts.expected == mixed["felled"].adopted.probability + mixed["still"].adopted.probability
-    assert counts.falls == f"{counts.expected:.1f} and up to 4"
-    assert mixed["wide"].adopted.risk >= RiskClass.HIGH, "by formula, which the counts leave out"
+    assert counts.expected == mixed["felled"].adopted.probability
+    assert counts.falls == f"{counts.expected:.1f} ({counts.falls_low:.0f} to 1) and up to 4"
+    assert mixed["wide"].adopted.risk >= RiskClass.HIGH, "which the counts leave out"
     assert counts.risky == 1
-    assert count("simulated", [mixed["felled"]]).falls == f"{mixed['felled'].adopted.probability:.1f}"
+    assert count("simulated", [mixed["felled"]]).falls == counts.falls.partition(" and")[0]
 
 
 def test_a_piece_that_cannot_rock_counts_as_low(mixed):
     still = mixed["still"]
-    assert still.formula_class > RiskClass.LOW
-    assert (still.adopted.risk, still.adopted.upper, still.apart) == (RiskClass.LOW, RiskClass.MEDIUM, "")
+    assert classify(still.governing.methods[mixed.paper_formula.key].value) > RiskClass.LOW
+    assert (still.formula_class, still.paper_class) == (RiskClass.LOW, RiskClass.LOW)
+    assert (still.adopted.risk, still.adopted.upper, still.apart) == (RiskClass.LOW, RiskClass.LOW, "")
     assert not still.adopted.can_rock
 
 
@@ -96,14 +101,14 @@ def test_lists_never_rank_what_stands_apart_among_simulated_pieces(mixed):
     content = build_content(mixed)
     assert [one.item.item for one in content.summary.worst] == ["felled", "still"]
     assert [one.item.item for one in content.risky] == ["felled"]
-    assert [one.item.item for one in content.unconfirmed] == ["broad", "wide"]
+    assert [one.item.item for one in content.unconfirmed] == ["wide", "broad"]
     fixes = content.summary.fixes
     assert [fix.result.apart for fix in fixes] == sorted((fix.result.apart for fix in fixes), key=bool)
-    assert [fix.result.item.item for fix in fixes if fix.together is None] == ["wide", "broad"]
+    assert [fix.result.item.item for fix in fixes if fix.together is None] == ["wide", "broad", "calm"]
     assert [fix.together for fix in fixes if not fix.result.apart][-1] == pytest.approx(1.0)
     parts = list_parts(content.results)
     assert [[one.item.item for one in own] for _heading, own in parts] == [
-        ["felled", "still"], ["wide", "broad", "fixed"], ["cube"],
+        ["felled", "still"], ["wide", "broad", "fixed"], ["calm"],
     ]  # fmt: skip
 
 
@@ -124,7 +129,8 @@ def test_by_the_formulas_alone_nothing_stands_apart(formulas):
     assert (content.total.free, content.total.unconfirmed, content.total.by_formula) == (7, 0, 0)
     assert content.summary.apart == []
     text = read_text(render(formulas))
-    assert "unconfirmed" not in text.partition("What the marks mean")[0]
+    for apart in ("unconfirmed and counted apart", "is unconfirmed", "are unconfirmed", "◌"):
+        assert apart not in text.partition("What the marks mean")[0]
     assert "by formula only" not in text
     assert "like this one" not in text.partition("Methods")[0]
 
@@ -134,11 +140,11 @@ def test_by_the_formulas_alone_nothing_stands_apart(formulas):
 
 def test_the_summary_names_them_and_what_settles_them(mixed, page):
     text = read_text(page)
-    assert "simulated free-standing pieces, the chance of overturning in this scenario is" in text
-    assert "and up to 4 unconfirmed pieces." in text
+    assert "simulated free-standing pieces, " in text
+    assert "and up to 4 unconfirmed pieces; " in text
     assert text.count("4 pieces are unconfirmed and counted apart") == 1
-    assert "(broad, wide). By the formula, 4 of them would be high or very high." in text
-    assert "To settle this, fill in Period T1 or Height in the sheet Building, or records of the floors." in text
+    assert "(wide, broad). 4 of them would be high or very high." in text
+    assert "To settle this, fill in Storeys or Period T1 in the sheet Building, or records of the floors." in text
     assert "1 piece was not simulated and is counted apart, by formula only." in text
     assert re.search(r"◌ unconfirmed</span><span class=\"tile-number\">4<", page)
     assert re.search(r"ƒ by formula only</span><span class=\"tile-number\">1<", page)
@@ -152,7 +158,7 @@ def test_a_class_of_the_table_of_all_pieces_never_mixes_bases(mixed, page):
     rows = list(mixed)
     for at, (body, listed) in enumerate(zip(bodies, found, strict=True)):
         bases = {rows[int(number) - 1].adopted.basis for number, _style in listed}
-        assert bases == {("simulated", "unconfirmed", "formula")[at]}
+        assert bases == ({"simulated", "cannot rock"}, {"unconfirmed"}, {"formula"})[at]
         assert ('<tr class="part">' in body) == (at > 0)
     styles = dict(pair for body in found for pair in body)
     assert {style for number, style in styles.items() if rows[int(number) - 1].apart} == {
@@ -173,11 +179,26 @@ def test_floors_have_columns_of_their_own_for_them(page):
 def test_the_command_ends_with_a_count_of_each(mixed, formulas):
     lines = list(describe_result(mixed))
     text = "\n".join(lines)
-    assert sum(int(line.split()[-2]) for line in lines[:4] if re.search(r"\d+ pieces?$", line)) == 2
-    assert re.search(r"^  unconfirmed +4, not counted above: .*fill in Period T1 or Height", text, re.MULTILINE)
+    assert sum(int(re.findall(r"(\d+) piece", line)[0]) for line in lines[:4]) == 2
+    assert "  cannot rock      1 of the low ones: too stocky, or no motion can start them" in lines
+    assert re.search(r"^  unconfirmed +4, not counted above: .*fill in Storeys or Period T1", text, re.MULTILINE)
     assert re.search(r"^  by formula +1, not counted above: not simulated$", text, re.MULTILINE)
     assert "with a dispersion of 0.4 (standard deviation of ln amplitude; assumed)." in lines[-1]
     assert "unconfirmed" not in " ".join(describe_result(formulas))
+
+
+def test_classes_are_said_to_stay_unconfirmed_only_where_pieces_were_simulated(mixed, formulas):
+    drawn = "neither T1, Height, Storeys nor an Elevation is known, so that buildings of every period and floors of"
+    for results, is_said in ((mixed, True), (formulas, False)):
+        (text,) = (one.message for one in results.problem_rows if drawn in one.message)
+        assert text.endswith("; classes stay unconfirmed.") == is_said
+
+
+def test_of_an_unconfirmed_piece_no_report_says_that_its_class_was_lowered(mixed, page):
+    assert any(one.adopted.risk < one.formula_class for one in mixed if one.apart == "unconfirmed")
+    assert {one.adopted.lowered_from for one in mixed if one.apart} == {None}
+    assert "lowered by simulation (" not in read_text(page)
+    assert "class lowered" not in " ".join(describe_result(mixed))
 
 
 def test_weak_motions_are_settled_by_stronger_ones(tmp_path):
@@ -208,13 +229,18 @@ def test_files_hold_the_basis_and_the_chance_if_exactly_this_motion_recurred(mix
             assert record["verification"] is None
             continue
         ideal, simulation = record["verification"]["ideal"], one.governing.simulation
+        if EXPECTED[name] == "unconfirmed":
+            assert (ideal, rows[name]["verification_ideal_probability"]) == (None, ""), "no motion that could recur"
+            thirds = [record["verification"][f"if_{one}"] for one in ("slower", "faster")]
+            assert thirds == [simulation.if_slower, simulation.if_faster]
+            continue
         assert ideal == {
             "runs": 20, "overturned": simulation.ideal.overturned, "probability": simulation.ideal.probability,
             "low": simulation.ideal.low, "high": simulation.ideal.high,
         }  # fmt: skip
         assert float(rows[name]["verification_ideal_probability"]) == ideal["overturned"] / 20
     motions = [one for floor in found["floors"] for one in floor["demands"] if one["ensemble"]]
-    assert {one["source"]: one["ensemble"]["unknown_period"] for one in motions} == {"record": False, "given": True}
+    assert {one["source"]: one["ensemble"]["unknown_building"] for one in motions} == {"record": False, "given": True}
 
 
 # ---------------------------------------------------------------- what was assumed
@@ -232,17 +258,17 @@ def _tried(results, **chances):
 
 def test_the_summary_says_what_was_varied_and_what_it_changes(mixed):
     text = read_text(render(_tried(mixed, **{"0.2": 0.0, "0.6": 1.0})))
-    assert "; the sampling interval covers the number of draws only; percentages without a range" in text
+    assert "; the sampling interval covers the number of draws only; on assumed motion the range is what is not" in text
     assert "with a dispersion of 0.4 (standard deviation of ln amplitude; assumed)." in text
     assert "Sizes, centre of gravity and restitution of each piece are varied." in text
     felled, still = mixed["felled"], mixed["still"]
     assert felled.fell_in_record, "so that it is high at least"
-    assert still.adopted.risk == RiskClass.LOW
+    assert not still.adopted.can_rock, "so that it is low at any of them"
     is_high = felled.adopted.risk == RiskClass.HIGH
     down = "no piece would change class" if is_high else "1 piece would be in a lower class"
     assert f"With a dispersion of 0.2, {down}." in text
-    up = "2 pieces" if is_high else "1 piece"
-    assert f"With a dispersion of 0.6, {up} would be in a higher class." in text
+    up = "1 piece would be in a higher class" if is_high else "no piece would change class"
+    assert f"With a dispersion of 0.6, {up}." in text
     assert "base × N(0.97, 0.05), its height × N(1, 0.02), its centre of gravity N(as given, 0.05)" in text
     assert "have the same random phases on all floors along an axis; the signs of modes from floor to floor are" in text
 
@@ -261,18 +287,30 @@ def test_a_row_says_that_exactly_this_motion_would_give_a_higher_class(mixed):
     table = mixed.cases_table
     outcome = table.outcomes[mixed.simulation.key]
     at = mixed["still"].governing.index
+    table = replace(
+        table, adopted=table.adopted | {"basis": np.where(np.arange(len(table)) == at, 1, table.adopted["basis"])}
+    )
+    basis = np.where(np.arange(len(table)) == at, BASES.index("simulated"), table.adopted["basis"])
     ideal = np.where(np.arange(len(table)) == at, 0.5, outcome.detail["ideal"])
     upper = np.where(np.arange(len(table)) == at, int(RiskClass.HIGH), table.adopted["upper"])
     higher = table.adopted["ideal_higher"] | (np.arange(len(table)) == at)
+    formula = table.outcomes[mixed.formula.key]
+    outcomes = {
+        mixed.simulation.key: replace(outcome, detail=outcome.detail | {"ideal": ideal}),
+        mixed.formula.key: replace(formula, value=np.where(np.arange(len(table)) == at, 0.1, formula.value)),
+    }
     changed = replace(
         table,
-        outcomes=table.outcomes | {mixed.simulation.key: replace(outcome, detail=outcome.detail | {"ideal": ideal})},
-        adopted=table.adopted | {"upper": upper, "ideal_higher": higher},
+        outcomes=table.outcomes | outcomes,
+        adopted=table.adopted | {"basis": basis, "upper": upper, "ideal_higher": higher},
     )
     results = replace(mixed, cases_table=changed)
     text = read_text(render(results))
     assert "○ low, high if exactly this motion recurred, lowered by simulation (formula: medium)" in text
-    assert "could be high" not in text
+    assert risk_notes(results["still"]) == [
+        "high if exactly this motion recurred",
+        "lowered by simulation (formula: medium)",
+    ]
     assert "Would be of a higher class if exactly this motion recurred and the piece were exactly as given" in text
 
 

@@ -20,13 +20,12 @@ FLOORS = [{"floor": "1", "elevation": 0}, {"floor": "2", "elevation": 6}]
 CHOICE = "MMI VII, very strong"
 PARAGRAPH = (
     "Assumed shaking: no motion of the ground is known for this building. MMI VII, very strong is assumed, with its "
-    "published median PGA of 0.215 g and PGV of 20.0 cm/s (Worden et al. 2012). PGA scatters about this median by "
-    "0.81 (standard deviation of ln PGA); Motion uncertainty is set to at least this value. Over the height the motion "
-    "follows the design profile of ASCE 7-22."
+    "median PGV of 20.0 cm/s and PGA of 0.215 g (Worden et al. 2012). PGV scatters about this median by 0.88 (standard "
+    "deviation of ln PGV), which is drawn."
 )
 SENTENCE = (
-    "Assumed shaking: MMI VII, very strong, by its published median PGA of 0.215 g and PGV of 20.0 cm/s, scatter of ln "
-    "PGA 0.81 (Worden et al. 2012), and the design profile of ASCE 7-22."
+    "Assumed shaking: MMI VII, very strong, by its median PGV of 20.0 cm/s and PGA of 0.215 g, scatter of ln PGV 0.88 "
+    "(Worden et al. 2012)."
 )
 
 
@@ -51,8 +50,8 @@ def test_the_cover_and_the_summary_of_the_html_report_say_so(written):
     summary = _section(html, '<section id="summary">', '<section id="routes"')
     assert PARAGRAPH in cover
     assert SENTENCE in summary
-    assert "With a dispersion of" not in summary, "less than the published scatter is not tried"
-    assert "for an earthquake like this one (dispersion 0.81, scatter of ln PGA given" in summary
+    assert "With a dispersion of" not in summary, "what is drawn scatters by itself"
+    assert "for an earthquake like this one (dispersion 0.88, scatter of ln PGV given" in summary
     assert '<p class="conditions" role="note">Assumed shaking: MMI VII, very strong</p>' in html
     assert "Worden CB, Gerstenberger MC" in _section(html, '<section id="references">', "</main>")
 
@@ -65,15 +64,15 @@ def test_the_excel_report_says_so(written):
     book.close()
 
 
-def test_the_json_names_intensity_source_medians_scatter_and_profile(written):
+def test_the_json_names_intensity_source_medians_and_scatter(written):
     found = json.loads((written / "results.json").read_text(encoding="utf-8"))
     shaking = found["assess"]["shaking"]
-    assert (shaking["choice"], shaking["profile"], shaking["scatter"]) == (CHOICE, "ASCE 7-22", 0.81)
+    assert (shaking["choice"], shaking["scatter"]) == (CHOICE, 0.88)
     assert (shaking["pga_g"], shaking["pgv_cm_s"]) == pytest.approx((0.2152, 19.98), rel=1e-3)
     assert shaking["references"] == [WORDEN]
-    assert found["assess"]["uncertainty"]["motion"] == 0.81
+    assert found["assess"]["uncertainty"]["motion"] == 0.88
     assert found["building"]["shaking"] == CHOICE
-    assert {one["pfa_source"] for one in found["items"]} == {"Shaking MMI VII, ASCE 7-22"}
+    assert {one["pfa_source"] for one in found["items"]} == {"Shaking MMI VII, beam"}
     assert all("assumed_shaking" in one["adopted"]["flags"] for one in found["items"])
 
 
@@ -101,9 +100,9 @@ def test_where_the_scatter_is_left_out_it_is_not_said_to_be_in(tmp_path, setting
     paragraph, sentence = say_shaking(results), say_shaking_shortly(results)
     assert wanted in paragraph
     assert dict(content.assumptions)["Shaking"] == paragraph
-    assert "by 0.81 (standard deviation of ln PGA)" in paragraph
-    assert "Motion uncertainty" not in paragraph
-    assert "0.81" not in sentence
+    assert "by 0.88 (standard deviation of ln PGV)" in paragraph
+    assert "which is drawn" not in paragraph
+    assert "0.88" not in sentence
     assert "scatter is not in the results" in sentence
     assert "times" not in paragraph
 
@@ -113,7 +112,7 @@ def test_a_factor_stands_next_to_the_medians(tmp_path, runs):
     settings = Settings(verify="none", scale=0.5) if runs is None else Settings(runs=runs, scale=0.5)
     results = assessed(tmp_path / "w.xlsx", floors=FLOORS, shaking=CHOICE, settings=settings)
     assert results.provenance.shaking.pga_g == pytest.approx(0.2152, rel=1e-3)
-    assert "(Worden et al. 2012). The results are for these medians times 0.5. PGA scatters" in say_shaking(results)
+    assert "(Worden et al. 2012). The results are for these medians times 0.5. PGV scatters" in say_shaking(results)
     assert say_shaking_shortly(results).endswith("The results are for these medians times 0.5.")
 
 
@@ -121,11 +120,12 @@ def test_a_derived_pga_and_an_open_class_are_among_the_assumptions(tmp_path):
     results = assessed(tmp_path / "w.xlsx", floors=FLOORS, shaking="JMA 7")
     content = build_content(results)
     assumed = dict(content.assumptions)
-    assert "by way of MMI" in assumed["PGA of the assumed shaking"]
+    assert assumed["PGA of the assumed shaking"].startswith("from PGV by the ratio that is drawn")
+    shaking = results.provenance.shaking
+    assert shaking.pgv_cm_s / shaking.pga_g == pytest.approx(105)
     assert "open above: taken as 7" in assumed["Class of the assumed shaking"]
-    assert "Midorikawa et al. 1999, Worden et al. 2012" in assumed["Shaking"]
-    assert "the median of JMA 7, as Ground PGA and SDS are blank" in assumed["Ground motion of the profile"]
-    assert {MIDORIKAWA, WORDEN} <= set(content.references)
+    assert "(Midorikawa et al. 1999)" in assumed["Shaking"]
+    assert MIDORIKAWA in content.references
 
 
 def test_a_larger_motion_uncertainty_is_the_workbooks(tmp_path):

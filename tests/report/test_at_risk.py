@@ -111,10 +111,10 @@ def test_a_piece_that_reaches_a_route_by_the_plan_is_urgent(routed):
 @pytest.fixture(scope="module")
 def many(tmp_path_factory):
     """Four pieces of low class that together bring a route over the risk, and one of medium class away from it."""
-    low = {"floor": "1", "breadth": 95, "height": 80, "anchored": "no", "route": "Back", "edge_distance": 0.0}
+    low = {"floor": "1", "breadth": 46, "height": 80, "anchored": "no", "route": "Back", "edge_distance": 0.0}
     items = [low | {"item": f"low {at}"} for at in range(4)]
-    items.append({"item": "far", "floor": "1", "breadth": 80, "height": 110, "anchored": "no"})
-    items.append({"item": "vital", "floor": "1", "breadth": 80, "height": 110, "anchored": "no",
+    items.append({"item": "far", "floor": "1", "breadth": 50, "height": 110, "anchored": "no"})
+    items.append({"item": "vital", "floor": "1", "breadth": 50, "height": 110, "anchored": "no",
                   "importance": "life safety"})  # fmt: skip
     return assess_routed(tmp_path_factory.mktemp("many") / "w.xlsx", Items=items)
 
@@ -199,11 +199,11 @@ def test_what_is_not_known_is_counted_apart_with_what_settles_it(unconfirmed):
     assert (back.route, others) == ("Back", [])
     assert "3 evacuation routes: 2 not known, 1 open." in text
     assert "Best way from each of 2 rooms to the street: 2 not known." in text
-    assert "enter the Period T1 or the Height in the sheet Building" in text
+    assert "enter Storeys or the Period T1 in the sheet Building" in text
     assert "Left out of these averages, as not known: routes 2, rooms 2." in text
     line = next(one for one in describe_result(unconfirmed) if "evacuation routes" in one)
     assert line.startswith("3 evacuation routes: 2 not known, 1 open.")
-    assert line.endswith("enter the Period T1 or the Height in the sheet Building.")
+    assert line.endswith("enter Storeys or the Period T1 in the sheet Building.")
 
 
 def test_steps_count_unconfirmed_pieces_as_fallen(unconfirmed):

@@ -61,11 +61,11 @@ def test_results_hold_what_was_assessed(results):
     assert [item["item"] for item in found["items"]] == [item["item"] for item in ITEMS]
     first = found["items"][0]
     assert (first["breadth_cm"], first["width_cm"], first["height_cm"]) == (30.0, 80.0, 200.0)
-    assert first["axis"] == "X"
+    assert first["axis"] == "Y", "of the larger PFV"
     assert first["axis_given"] is None
-    assert first["pfa_g"] == 0.3
+    assert (first["pfa_g"], first["pfv_cm_s"]) == (0.2, 45.0)
     assert {axis["axis"] for axis in first["axes"]} == {"X", "Y"}
-    assert first["adopted"]["probability"] == first["methods"]["proposed_or"]["value"]
+    assert first["adopted"]["probability"] == first["methods"]["fema_p58"]["value"]
     assert first["verification"] is None
     assert first["methods"]["housner_monte_carlo"]["value"] is None
     assert {demand["ensemble"] for floor in found["floors"] for demand in floor["demands"]} == {None}
@@ -77,6 +77,14 @@ def test_results_hold_what_was_assessed(results):
     assert found["assess"]["inputs"]["sha256"] == run.provenance.sha256
 
 
+def test_by_the_formula_of_the_paper_the_larger_pfa_governs(tmp_path):
+    run = assessed(tmp_path / "w.xlsx", class_by="proposed OR")
+    write_json(run, tmp_path / "r.json")
+    first = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))["items"][0]
+    assert (first["axis"], first["pfa_g"], first["pfv_cm_s"]) == ("X", 0.3, 30.0)
+    assert first["adopted"]["probability"] == first["methods"]["proposed_or"]["value"]
+
+
 def test_converted_sizes_carry_no_binary_noise(tmp_path):
     sizes = [29, 32.1, 47.2, 57, 58, 113.3]
     items = [{"item": str(at), "floor": "1", "breadth": size, "height": 206.4} for at, size in enumerate(sizes)]
@@ -84,15 +92,15 @@ def test_converted_sizes_carry_no_binary_noise(tmp_path):
     assert [one.item.breadth_cm for one in run] == sizes
 
 
-def test_unknown_pfv_is_null_not_nan(tmp_path):
+def test_a_pfv_that_is_not_given_is_a_number(tmp_path):
     run = assessed(tmp_path / "w.xlsx", ITEMS, [{"floor": "1", "pfa_x": 0.3}, {"floor": "2", "pfa_y": 0.3}])
     write_json(run, tmp_path / "r.json")
     found = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"), parse_constant=pytest.fail)
-    assert found["items"][0]["pfv_cm_s"] is None
-    assert found["items"][0]["methods"]["fema_p58"] == {
-        "value": None, "median_pfv_cm_s": found["items"][0]["methods"]["fema_p58"]["median_pfv_cm_s"],
-        "flags": ["pfv_unknown"],
-    }  # fmt: skip
+    demands = [one for floor in found["floors"] for one in floor["demands"]]
+    assert all(one["pfv_follows"] and one["pfv_cm_s"] > 0 for one in demands)
+    assert found["items"][0]["pfv_cm_s"] == demands[0]["pfv_cm_s"]
+    assert found["items"][0]["methods"]["fema_p58"]["value"] is not None
+    assert "pfv_unknown" not in found["items"][0]["methods"]["fema_p58"]["flags"]
 
 
 def test_csv_is_the_same_table(results, tmp_path):

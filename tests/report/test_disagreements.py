@@ -118,26 +118,12 @@ class TestKnownRows:
         assert f"it still gives {100 * row.highest.value:.1f} %." in reasons
         assert "(F_f 1.13 Hz, above F_b 0.83 Hz): PFV is 22.7 cm/s, its median for such pieces 59.0 cm/s." in reasons
 
-    def test_an_unknown_velocity_is_an_upper_bound(self, tmp_path):
-        row, reasons = one(tmp_path, 120, 90, 0.9, None)
-        assert (row.highest.method.role, row.lowest.title) == ("adopted formula", "Kaneko-Hayashi formula")
-        assert "PFV is unknown: the Kaneko-Hayashi formula shows" in reasons
-
-    def test_an_estimated_velocity_is_said_once(self, tmp_path):
-        _, reasons = one(tmp_path, 45.7, 182.9, 0.165, None, period=0.7)
-        assert reasons.count("cm/s was not given: it is an estimate from PFA, the building's period T1 and") == 1
-
-    def test_a_class_that_an_estimated_velocity_raises_says_so(self, tmp_path):
-        """FEMA P-58 goes by velocity alone: 0.3 g and T1 2 s give 93.6 cm/s."""
-        for pfv, words in ((None, ", rests on an estimated PFV"), (93.6, "")):
-            (group,) = found(run(tmp_path, [(30, 90, 0.3, pfv)], period=2.0)).groups
-            assert group.highest == f"FEMA P-58 contents: ■ very high, 88.5 %{words}"
-            assert group.lowest.startswith("Kaneko-Hayashi formula: ○ low, ")
-            assert "estimated" not in group.lowest
-
-    def test_rows_that_rest_on_an_estimate_and_others_are_not_one_group(self, tmp_path):
-        groups = found(run(tmp_path, [(30, 90, 0.3, None), (30, 90, 0.3, 93.6)], period=2.0)).groups
-        assert sorted("estimated" in one.highest for one in groups) == [False, True]
+    def test_a_velocity_that_is_not_given_follows_the_acceleration(self, tmp_path):
+        """T1 1 s on an unknown ground and height: PFV/PFA is 105 x 1.816/1.535 = 124 cm/s for each g."""
+        row, reasons = one(tmp_path, 45.7, 182.9, 0.165, None, period=1.0)
+        assert row.result.governing.motion.pfv_cm_s == pytest.approx(0.165 * 124.2, rel=1e-3)
+        assert "PFV is 20.5 cm/s, its median for such pieces 59.0 cm/s." in reasons
+        assert "PFV is unknown" not in reasons
 
     def test_methods_that_agree_are_left_out(self, tmp_path):
         assert found(run(tmp_path, [(30, 200, 0.8, 150)])).groups == ()
@@ -150,7 +136,7 @@ class TestKnownRows:
         simulated = row.result.governing.simulation
         assert (row.lowest.method.role, row.lowest.value) == ("simulation", simulated.probability)
         assert f"Draws that overturn it: {simulated.overturned} of 20." in reasons
-        assert "follow a generic spectrum" in reasons
+        assert "the integrated motions are those of drawn earthquakes in drawn buildings" in reasons
 
 
 class TestExampleBuilding:

@@ -20,7 +20,8 @@ JAYARAM, BOORE = "doi:10.1002/eqe.922", "doi:10.1193/070113EQS184M"
 @pytest.fixture(scope="module")
 def placed(tmp_path_factory):
     path = tmp_path_factory.mktemp("city") / "w.xlsx"
-    return assessed(path, ITEMS, FLOORS, settings=SETTINGS, period=0.8, latitude=37.79, longitude=-122.4)
+    return assessed(path, ITEMS, FLOORS, settings=SETTINGS, period=0.8, motion_uncertainty=0.4,
+                    latitude=37.79, longitude=-122.4)  # fmt: skip
 
 
 def changed(results, **changes):
@@ -37,6 +38,7 @@ def alone(results):
 def test_a_building_of_a_city_names_the_correlation_and_its_sources(placed):
     text = " ".join(build_content(placed).trials.paragraphs)
     assert "one normal number ε for the whole building" in text
+    assert "what is drawn, of ln PGA, has a part that is common to all places" in text
     assert "a share of 0.331 of its variance (Boore et al. 2014)" in text
     assert "exp(-3h/40.7 km) (Jayaram and Baker 2009)" in text
     assert "Motion k has the same random phases in every building" in text
@@ -104,7 +106,7 @@ def test_results_json_holds_how_earthquakes_were_drawn(placed):
     assert found["settings"]["city"] is True
     assert found["earthquakes"] == {
         "is_city": True, "is_placed": True, "shared": pytest.approx(0.3308, abs=1e-4), "is_shared_given": False,
-        "range_km": 40.7, "scenarios": 0, "scenario_share": 0.0,
+        "measure": "PGA", "range_km": 40.7, "scenarios": 0, "scenario_share": 0.0,
     }  # fmt: skip
     assert describe_run(alone(placed))["assess"]["earthquakes"] is None
     assert EarthquakeDraws(**found["earthquakes"]) == placed.provenance.earthquakes

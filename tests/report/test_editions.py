@@ -15,6 +15,7 @@ from assess.report.report_options import ReportOptions
 from tests.conftest import EXAMPLE
 from tests.pictures import picture
 from tests.report.reading import read_text, render
+from tests.shaking import write_records
 from tests.workbooks import ITEMS, assessed
 
 MOST_PAGES = 12
@@ -137,22 +138,26 @@ def test_a_ground_motion_that_is_not_used_says_what_is(tmp_path):
     items = [dict(ITEMS[0], floor="1")]
     results = assessed(tmp_path / "w.xlsx", items, floors, ground_pga=0.139, sds=0.4)
     said = build_content(results).building["ground_pga"][1]
-    assert said == (
-        "0.135 g on floor G, given PFA; 0.139 g of the workbook is not used: no floor follows a code's profile"
-    )
-    of_anchors = "used for the code's force on anchors only: no floor follows a code's profile"
-    assert build_content(results).building["sds"][1] == f"0.4 g, {of_anchors}"
+    reason = "the motion at grade is known"
+    assert said == f"0.135 g on floor G, given PFA; 0.139 g of the workbook is not used: {reason}"
+    of_anchors = "used for the code's force on anchors only"
+    assert build_content(results).building["sds"][1] == f"0.4 g, {of_anchors}: {reason}"
     alone = assessed(tmp_path / "w.xlsx", items, floors, ground_pga=0.139)
     said = build_content(alone).building["ground_pga"][1]
-    assert said == f"0.135 g on floor G, given PFA; 0.139 g of the workbook is {of_anchors}"
-    unused = assessed(tmp_path / "w.xlsx", items, floors[1:], ground_pga=0.139)
-    assert build_content(unused).building["ground_pga"][1] == f"0.139 g, {of_anchors}"
+    assert said == f"0.135 g on floor G, given PFA; 0.139 g of the workbook is {of_anchors}: {reason}"
     above = assessed(tmp_path / "w.xlsx", items, floors[1:], ground_pga=0.139, sds=0.4)
-    said = build_content(above).building["ground_pga"][1]
-    assert said == "0.139 g in the workbook, not used: no floor follows a code's profile"
-    profiled = assessed(tmp_path / "w.xlsx", items, [*floors[1:], {"floor": "2", "elevation": 8.0}], ground_pga=0.139)
-    assert any(one.source == "profile" for one in profiled.motions)
-    assert build_content(profiled).building["ground_pga"][1] == "0.139 g"
+    assert build_content(above).building["ground_pga"][1] == "0.139 g", "PFV follows from it"
+    assert build_content(above).building["sds"][1] == f"0.4 g, {of_anchors}: Ground PGA is given"
+    write_records(tmp_path, "slow")
+    recorded = [{"floor": "1", "elevation": 4.0, "record_x": "slow.csv"}]
+    unused = assessed(tmp_path / "w.xlsx", items, recorded, ground_pga=0.139)
+    assert build_content(unused).building["ground_pga"][1] == f"0.139 g, {of_anchors}: every floor has a record"
+    unused = assessed(tmp_path / "w.xlsx", items, recorded, ground_pga=0.139, sds=0.4)
+    said = build_content(unused).building["ground_pga"][1]
+    assert said == "0.139 g in the workbook, not used: every floor has a record"
+    drawn = assessed(tmp_path / "w.xlsx", items, [*floors[1:], {"floor": "2", "elevation": 8.0}], ground_pga=0.139)
+    assert any(one.source == "beam" for one in drawn.motions)
+    assert build_content(drawn).building["ground_pga"][1] == "0.139 g"
 
 
 # ---------------------------------------------------------------- alike pieces

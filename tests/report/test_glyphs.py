@@ -124,7 +124,7 @@ def test_a_machine_without_fonts_writes_the_same_report(tmp_path):
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (0, "")
     told = done.stdout.splitlines()
-    assert [line.split(":")[0] for line in told] == ["Building!B1", "Building!B18", "Items!E2"]
+    assert [line.split(":")[0] for line in told] == ["Building!B1", "Building!B19", "Items!E2"]
     assert "本 (U+672C), 棚 (U+68DA), 🪑 (U+1FA91), अ (U+0905), ल (U+0932) and " in told[2]
     for path in (plain, accessible):
         text = _read(path)

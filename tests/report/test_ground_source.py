@@ -8,8 +8,10 @@ from html import unescape
 import openpyxl
 import pytest
 
+import assess
 from assess.report import write_reports
-from assess.report.findings.ground_source import say_ground_source
+from assess.report.findings.ground_source import say_ground, say_ground_source
+from assess.report.findings.uncertain import say_source
 from assess.settings import Settings
 from tests.cli.calling import run
 from tests.motion.grids import BAY
@@ -19,10 +21,11 @@ FLOORS = [{"floor": "1", "elevation": 0}, {"floor": "2", "elevation": 6}]
 PLACE = {"latitude": 37.7893, "longitude": -122.4008}
 SENTENCE = (
     "Ground motion: ShakeMap grid.xml of the earthquake Loma Prieta, California, magnitude 6.9, with a median PGA of "
-    "0.153 g and PGV of 19.6 cm/s at the building."
+    "0.153 g and PGV of 19.6 cm/s at the building. By its PGV that is about MMI VII, very strong (Worden et al. "
+    "2012)."
 )
 SCATTER = (
-    "The standard deviation of ln PGA there is 0.0904 (STDPGA of grid.xml); with 0.4 of the building's own motion the "
+    "The standard deviation of ln PGV there is 0.0904 (STDPGA of grid.xml); with 0.4, Motion uncertainty, the "
     "dispersion of the motions is 0.41, the root of the sum of their squares."
 )
 
@@ -31,7 +34,7 @@ SCATTER = (
 def written(tmp_path_factory):
     """The reports of a run from the command line with a ShakeMap, of a workbook that lacks only shaking."""
     folder = tmp_path_factory.mktemp("shakemap")
-    path = write(folder / "w.xlsx", floors=FLOORS, period=0.4, **PLACE)
+    path = write(folder / "w.xlsx", floors=FLOORS, period=0.4, motion_uncertainty=0.4, **PLACE)
     done = run("run", path, "--out", folder / "out", "--formats", "json,html,xlsx", "--runs", "25", "--shakemap", BAY)
     assert done.exit_code == 0, done.stderr
     assert "Ground motion: ShakeMap grid.xml." in done.stdout
@@ -45,7 +48,7 @@ def _plain(html):
 def test_the_html_report_says_so_on_cover_summary_and_among_the_assumptions(written):
     html = (written / "report.html").read_text(encoding="utf-8")
     cover = _plain(html[html.index('<header class="cover">') : html.index("</header>")])
-    assert f"{SENTENCE} {SCATTER} Over the height" in cover
+    assert f"{SENTENCE} {SCATTER}" in cover
     assert html.count("Ground motion: ShakeMap grid.xml") > 1
     text = _plain(html)
     assert "dispersion of 0.41 (standard deviation of ln amplitude; the root of 0.4² + 0.0904²: Motion" in text
@@ -70,14 +73,14 @@ def test_the_excel_report_says_so(written):
 def test_the_json_holds_map_scatter_and_provenance(written):
     found = json.loads((written / "results.json").read_text(encoding="utf-8"))
     site = found["assess"]["site_ground"]
-    assert (site["kind"], site["file"], site["profile"], site["scenarios"]) == ("shakemap", "grid.xml", "ASCE 7-22", 0)
+    assert (site["kind"], site["file"], site["scenarios"]) == ("shakemap", "grid.xml", 0)
     assert (site["pga_g"], site["pgv_cm_s"], site["dispersion"], site["own_dispersion"]) == pytest.approx(
         (0.1525, 19.64, 0.0904, 0.4), rel=1e-3
     )
     assert [one["period_s"] for one in site["psa"]] == [0.3, 1.0, 3.0]
     assert {"label": "Status of the map", "value": "RELEASED"} in site["facts"]
     assert found["assess"]["uncertainty"]["motion"] == pytest.approx(0.41, abs=1e-3)
-    assert {one["pfa_source"] for one in found["items"]} == {"ShakeMap, ASCE 7-22"}
+    assert {one["pfa_source"] for one in found["items"]} == {"ShakeMap, beam"}
     assert all("shakemap" in one["adopted"]["flags"] for one in found["items"])
 
 
@@ -96,6 +99,42 @@ def test_where_the_scatter_is_not_in_the_results_they_say_so(tmp_path, settings,
     shutil.copy(BAY, tmp_path / "grid.xml")
     results = assessed(tmp_path / "w.xlsx", floors=FLOORS, shakemap="grid.xml", settings=settings, **PLACE)
     assert text in say_ground_source(results)
+
+
+def test_where_motion_uncertainty_is_blank_the_scatter_of_the_map_alone_is_drawn(tmp_path):
+    shutil.copy(BAY, tmp_path / "grid.xml")
+    results = assessed(
+        tmp_path / "w.xlsx", floors=FLOORS, shakemap="grid.xml", period=0.4, settings=Settings(runs=25), **PLACE
+    )
+    assert results.provenance.uncertainty.motion == pytest.approx(0.0904, rel=1e-3)
+    assert say_ground_source(results).endswith(
+        "The standard deviation of ln PGV there is 0.0904 (STDPGA of grid.xml), which is drawn."
+    )
+    assert say_source(results) == "the standard deviation of ln PGV at the building"
+
+
+@pytest.mark.parametrize(
+    ("building", "text"),
+    [
+        ({"ground_pga": 0.3}, "PGA 0.300 g as filled in, taken as from an earthquake of magnitude 6.5 to 7.5. By"),
+        ({"sds": 0.75}, "Ground motion: PGA 0.300 g as filled in"),
+        ({"ground_pga": 0.3, "ground_pgv": 12}, "PGV 12.0 cm/s as filled in. By its PGV that is about MMI VI, strong"),
+        ({"ground_pga": 0.005, "ground_pgv": 0.5}, "By its PGV that is weaker than MMI IV (Worden et al. 2012)."),
+    ],
+)  # fmt: skip
+def test_typed_peaks_of_the_ground_are_told_as_an_intensity(tmp_path, building, text):
+    results = assessed(tmp_path / "w.xlsx", floors=FLOORS, **building)
+    assert text in say_ground(results)
+    assert say_ground(results) == say_ground(results, shortly=True)
+    assert say_ground_source(results) == ""
+
+
+def test_a_record_of_the_ground_comes_first_and_nothing_is_assumed_beside_it():
+    results = assess.run("inventories/market-street.xlsx", Settings(verify="none"), figures=False)
+    assert say_ground(results) == (
+        "Ground motion: recorded, with a PGA of 0.135 g and a PGV of 23.0 cm/s. By its PGV that is about MMI VII, very "
+        "strong (Worden et al. 2012)."
+    )
 
 
 def test_options_that_contradict_or_cannot_be_used(tmp_path):

@@ -134,7 +134,7 @@ def test_without_the_ground_of_the_scenario_it_is_refused(building):
 def test_a_profile_starts_from_the_ground_of_sds():
     """Floors that follow the profile belong to 0.4 SDS."""
     assessment, found = assess_small({"Height [m]": 9, "SDS [g]": 1.0, "Scenario kind": "ASCE 7-22"}, floors=BARE)
-    description, chances = read(write_nrml(assessment, found))
+    description, chances = read(write_nrml(assessment, shape_curves(found, ("Shelf", RISING))))
     assert "Ground PGA 0.4 g" in description
     assert "Shelf|2" in chances
 

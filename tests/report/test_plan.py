@@ -207,7 +207,7 @@ def test_the_drawing_is_named_and_every_piece_says_what_it_is(html):
     assert title.get("id") == first.get("aria-labelledby")
     titles = [link.find(f"{SVG}title").text for link in _links(first, "piece")]
     assert len(titles) == 3
-    assert re.fullmatch(r"A1: high; chance \d+\.\d %", titles[0])
+    assert re.fullmatch(r"A1: very high; chance \d+\.\d %", titles[0])
     assert titles[1].startswith("A2: depends on its anchor")
     assert next(second.iter(f"{SVG}a")).find(f"{SVG}title").text.startswith("<b>B1 & co</b>, <script>:")
 
@@ -220,8 +220,8 @@ def test_names_with_markup_stay_text(html):
 def test_colours_are_those_of_the_classes_and_each_has_its_symbol(html):
     first, _second = _drawings(html)
     risky, anchored, low = _links(first, "piece")
-    assert risky.find(f"{SVG}path").get("fill") == assess.risk.RiskClass.HIGH.fill
-    assert risky.find(f"{SVG}text").text == "▲"
+    assert risky.find(f"{SVG}path").get("fill") == assess.risk.RiskClass.VERY_HIGH.fill
+    assert risky.find(f"{SVG}text").text == "■"
     assert anchored.find(f"{SVG}text").text == "⚓"
     assert low.find(f"{SVG}text").text == "○"
 
@@ -236,7 +236,7 @@ def test_the_pdf_draws_the_plan_without_links(assessment, tmp_path):
     (page,) = (document[at] for at, text in enumerate(texts) if "Stair <2>" in text and "X [m]" in text)
     colours = {colour for _count, colour in page.render(scale=2).to_pil().getcolors(1 << 20)}
     document.close()
-    fill = assess.risk.RiskClass.HIGH.fill
+    fill = assess.risk.RiskClass.VERY_HIGH.fill
     assert tuple(int(fill[at : at + 2], 16) for at in (1, 3, 5)) in colours
     assert (0xD0, 0xD0, 0xD0) in colours
 

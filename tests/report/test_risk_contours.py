@@ -1,5 +1,6 @@
 """The map of risk over breadth and PFA: what is chosen, what is computed, what is drawn."""
 
+import math
 import shutil
 import xml.etree.ElementTree as ET
 
@@ -8,6 +9,7 @@ import pytest
 
 from assess.i18n import Catalogue, speaking
 from assess.methods import Cases, all_methods
+from assess.pipeline import series
 from assess.report.figures.draw import draw
 from assess.report.figures.risk_contours import build_contours, draw_contours
 from assess.report.figures.risk_map import (
@@ -91,19 +93,17 @@ def test_what_stands_below(mixed):
     assert "pieces 200 cm high" in text
     assert "The symbols are the 3 free-standing pieces within 10 % of this height" in text
     assert "PFV grows with PFA, 120 cm/s for each g: the ratio of floor 1 X" in text
+    assert "Methods that depend on it: FEMA P-58 contents, Kaneko-Hayashi formula." in text
+    assert "jumps, which shows as a step: Kaneko-Hayashi formula." in text
     assert "200 cm" in mixed.alt
     assert "with 3 pieces" in mixed.alt
 
 
-def test_an_estimated_and_an_unknown_pfv(tmp_path):
-    items = [{"item": "a", "floor": "2", "axis": "X", **TALL}]
-    unknown = _build(tmp_path, items)[1]
-    assert "the largest chance that any PFV gives" in " ".join(unknown.caption)
-    assert "The symbol is the one free-standing piece" in " ".join(unknown.caption)
-    estimated = _build(tmp_path, items, period=2.0)[1]
-    ratio = 2.0 / (2 * np.pi) * GRAVITY * 100
-    assert f"{ratio:.0f} cm/s for each g: the ratio of floor 2 X" in " ".join(estimated.caption)
-    assert "This PFV is an estimate." in estimated.caption
+def test_a_pfv_that_is_not_given(tmp_path):
+    """T1 1 s on an unknown ground and height: PFV/PFA is 105 x 1.816/1.535 = 124 cm/s for each g."""
+    chosen = _build(tmp_path, [{"item": "a", "floor": "2", "axis": "X", **TALL}], period=1.0)[1]
+    assert "The symbol is the one free-standing piece" in " ".join(chosen.caption)
+    assert "124 cm/s for each g: the ratio of floor 2 X" in " ".join(chosen.caption)
 
 
 # --- what is computed ---
@@ -111,16 +111,35 @@ def test_an_estimated_and_an_unknown_pfv(tmp_path):
 
 @pytest.mark.parametrize("pfv", [60, None])
 def test_the_map_is_that_of_the_methods(tmp_path, pfv):
-    chosen = _build(tmp_path, _items(TALL), [{"floor": "1", "pfa_x": 0.5, "pfv_x": pfv}])[1]
-    assert [method.key for method, _risk in chosen.panels] == ["proposed_or", "kaneko_hayashi"]
+    results, chosen = _build(tmp_path, _items(TALL), [{"floor": "1", "pfa_x": 0.5, "pfv_x": pfv}])
+    known = results.motions_of("1", "X")[0].pfv_cm_s
+    assert pfv in (None, known)
+    assert [method.key for method, _risk in chosen.panels] == ["fema_p58", "proposed_or", "kaneko_hayashi"]
     for method, risk in chosen.panels:
         evaluate = next(one.evaluate for one in all_methods() if one.key == method.key)
         assert risk.shape == (chosen.pfa_g.size, chosen.breadth_cm.size)
         for row, column in ((0, 0), (3, 70), (60, 20), (120, 120)):
             pfa = chosen.pfa_g[row]
-            speed = np.nan if pfv is None else pfa / 0.5 * pfv / 100
+            speed = pfa / 0.5 * known / 100
             case = Cases.of(breadth=chosen.breadth_cm[column] / 100, height=2.0, pfa=pfa * GRAVITY, pfv=speed)
             assert risk[row, column] == pytest.approx(evaluate(case, SETTINGS).value[0], rel=1e-6)
+
+
+def test_pieces_too_stocky_to_rock_have_no_chance_on_the_map(tmp_path):
+    """FEMA P-58 gives them no value."""
+    chosen = _chosen(tmp_path, {"breadth": 300, "height": 100}, {"breadth": 20, "height": 100})
+    risk = next(risk for method, risk in chosen.panels if method.key == "fema_p58")
+    assert not risk[:, chosen.breadth_cm >= 141].any()
+    assert risk[:, chosen.breadth_cm < 141].all()
+    assert len(_ids(chosen, "lines")) == 3
+
+
+def test_without_a_pfv_that_goes_with_a_pfa_there_is_no_map_by_it(tmp_path, monkeypatch):
+    monkeypatch.setattr(series, "_velocity_ratio", lambda _worst: math.nan)
+    chosen = _chosen(tmp_path, TALL)
+    assert [method.key for method, _risk in chosen.panels] == ["proposed_or", "kaneko_hayashi"]
+    assert len(_ids(chosen, "piece")) == 2
+    assert "the panel Kaneko-Hayashi formula shows the largest chance that any PFV gives" in " ".join(chosen.caption)
 
 
 def test_the_map_holds_all_pieces(mixed):
@@ -132,20 +151,20 @@ def test_the_map_holds_all_pieces(mixed):
 # --- what is drawn ---
 
 
-def test_each_piece_is_drawn_in_both_panels(mixed):
-    assert len(_ids(mixed, "piece")) == 2 * 2
-    assert len(_ids(mixed, "name")) == 2 * 2
-    assert len(_ids(mixed, "checked")) == 1, "only the formula has a checked range"
-    assert 2 * 4 <= len(_ids(mixed, "chance")) <= 2 * len(LINES)
+def test_each_piece_is_drawn_in_every_panel(mixed):
+    assert len(_ids(mixed, "piece")) == 3 * 2
+    assert len(_ids(mixed, "name")) == 3 * 2
+    assert len(_ids(mixed, "checked")) == 2, "only FEMA P-58 and the formula of the paper have a checked range"
+    assert 3 * 4 <= len(_ids(mixed, "chance")) <= 3 * len(LINES)
 
 
 def test_one_piece_and_many(tmp_path):
     one = _chosen(tmp_path, TALL)
-    assert (len(_ids(one, "piece")), len(_ids(one, "name"))) == (2, 2)
+    assert (len(_ids(one, "piece")), len(_ids(one, "name"))) == (3, 3)
     many = _chosen(tmp_path, *[{"breadth": 20 + 3 * at, "height": 200} for at in range(24)], TALL, TALL)
     assert len(many.pieces) == 26
-    assert len(_ids(many, "piece")) == 2 * len({one.item.breadth_cm for one in many.pieces})
-    assert 2 <= len(_ids(many, "name")) <= 2 * MOST_NAMES
+    assert len(_ids(many, "piece")) == 3 * len({one.item.breadth_cm for one in many.pieces})
+    assert 3 <= len(_ids(many, "name")) <= 3 * MOST_NAMES
     assert len(draw_contours(many)) < 250_000
 
 
@@ -157,13 +176,13 @@ def test_recorded_and_verified(tmp_path):
     chosen = build_contours(run)
     motion = run.result(0).governing.motion
     assert f"{motion.pfv_cm_s / motion.pfa_g:.0f} cm/s for each g" in " ".join(chosen.caption)
-    assert len(_ids(chosen, "piece")) == 2
+    assert len(_ids(chosen, "piece")) == 3
 
 
 def test_a_strange_name_and_a_chance_that_is_everywhere_one(tmp_path):
     items = [{"item": "棚 $x$ \u0628", "floor": "1", "axis": "X", "breadth": 5, "height": 300}]
     chosen = _build(tmp_path, items, [{"floor": "1", "pfa_x": 4.0, "pfv_x": 900}])[1]
-    assert len(_ids(chosen, "piece")) == 2
+    assert len(_ids(chosen, "piece")) == 3
 
 
 def test_numbers_and_words_in_another_language(mixed):
@@ -217,4 +236,4 @@ def test_the_clearest_place_on_a_line():
 
 def test_every_method_drawn_needs_no_more_than_sizes_and_peaks(mixed):
     keys = {method.key for method, _risk in mixed.panels}
-    assert all(method.needs <= {"breadth", "height", "pfa"} for method in all_methods() if method.key in keys)
+    assert all(method.needs <= {"breadth", "height", "pfa", "pfv"} for method in all_methods() if method.key in keys)

@@ -72,7 +72,7 @@ def verified(tmp_path_factory):
 @pytest.fixture(scope="module")
 def unconfirmed(tmp_path_factory):
     """Neither T1 nor height is known: lower simulated classes are not confirmed."""
-    return _assess(tmp_path_factory.mktemp("routes") / "w.xlsx", assess.Settings(runs=20))
+    return _assess(tmp_path_factory.mktemp("routes") / "w.xlsx", assess.Settings(runs=20, seed=3))
 
 
 @pytest.fixture(scope="module")
@@ -162,14 +162,13 @@ def test_what_is_not_known_says_what_settles_it(unconfirmed):
     (row, *_more) = _rows(html, "routes")
     assert row[2:5] == ["? not known", "not known (0.0 to 100.0 %)", "–"]
     assert row[5] == (
-        "fill in X and Y of Foot, Street (Places!C6, Places!C7); "
-        "enter the Period T1 or the Height in the sheet Building"
+        "fill in X and Y of Foot, Street (Places!C6, Places!C7); enter Storeys or the Period T1 in the sheet Building"
     )
     assert row[7] == "–", "no piece of a known chance blocks it"
     text, unknown = _text(_section(html)), [one for one in unconfirmed.route_tables.routes if one.missing]
     assert f"4 evacuation routes: 1 blocked, {len(unknown)} not known" in text
     assert "count as fallen in these chances, which is on the safe side." in text
-    assert "A piece whose lower simulated class is not confirmed counts as standing and as fallen." in text
+    assert "A piece whose class is not confirmed counts as standing and as fallen." in text
     (office, *_rooms) = _rows(html, "rooms")
     assert unconfirmed.route_tables.rooms[0].is_known == ("not known" not in office[4])
     assert sum(one.unknown_routes for one in unconfirmed.route_tables.floors) >= 1

@@ -19,7 +19,7 @@ from tests.report.reading import write_html
 
 FLOORS = [
     {"floor": "2", "pfa_x": 0.5, "pfa_y": 0.5, "elevation": 4},
-    {"floor": "1", "pfa_x": 0.2, "pfa_y": 0.2, "elevation": 0},
+    {"floor": "1", "pfa_x": 0.2, "pfv_x": 32, "pfa_y": 0.2, "pfv_y": 32, "elevation": 0},
 ]
 TALL = {"floor": "2", "breadth": 30, "width": 90, "height": 190, "weight": 120, "bracket_height": 170}
 ITEMS = [
@@ -38,6 +38,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
 def assess_these(folder, items=ITEMS, costs=(), **building):
     path = folder / "w.xlsx"
+    building = {"motion_uncertainty": 0.4} | building
     rows = {"Building": [building], "Floors": FLOORS, "Items": items, "Costs": list(costs)}
     write_workbook(path, Content(rows=rows))
     return assess.run(assess.read_inventory(path), Settings(verify="none"))

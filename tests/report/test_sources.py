@@ -5,7 +5,7 @@ import re
 from assess.details import DETAILS
 from assess.methods import all_methods
 from assess.motion.scenario import PROFILES, UNVERIFIED
-from assess.pipeline.weights import DENSITIES
+from assess.pipeline.anchors import DENSITIES
 from assess.report.statements import list_assumptions
 from assess.routes.widths import RULES
 from tests.workbooks import assessed

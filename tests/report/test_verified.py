@@ -17,14 +17,15 @@ from assess.pipeline import ensembles
 from assess.report import words
 from assess.report.content import build_content
 from assess.report.findings.verified import describe_verification
-from assess.risk import RiskClass
+from assess.risk import RiskClass, classify
 from assess.settings import Settings
 from assess.units import GRAVITY
 from tests.report.reading import read_text, write_html
+from tests.shaking import write_records
 from tests.workbooks import RECORDS, UNVERIFIED, write
 
 SCRIPT = "<b>$x$</b>"
-FLOORS = [{"floor": "1", "pfa_x": 0.2, "pfv_x": 40}, {"floor": "2", "pfa_x": 0.1, "pfv_x": 20}]
+FLOORS = [{"floor": "1", "pfa_x": 0.2, "pfv_x": 40}, {"floor": "2", "pfa_x": 0.15, "pfv_x": 30}]
 ITEMS = [
     {"item": SCRIPT, "floor": "1", "breadth": 30, "width": 80, "height": 200, "x": 1, "y": 1, "axis": "X"},
     {"item": "twin", "floor": "1", "breadth": 30, "width": 80, "height": 200, "x": 1, "y": 3, "axis": "X",
@@ -34,6 +35,7 @@ ITEMS = [
     {"item": "cube", "floor": "2", "breadth": 90, "width": 90, "height": 60},
 ]  # fmt: skip
 
+GROUND = "a record of the ground on a floor of Elevation 0"
 CERTAIN = {"motion_uncertainty": 0, "piece_uncertainty": "no"}
 """Of the building: nothing is drawn, so that it is known which of the pulses overturn a piece."""
 
@@ -82,10 +84,19 @@ def some(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def generic(tmp_path_factory):
-    """One floor with peaks alone, with generated motions."""
-    path = write(tmp_path_factory.mktemp("generic") / "w.xlsx", ITEMS[:1], FLOORS[:1], restitution=0.9)
+def assumed(tmp_path_factory):
+    """One floor with peaks alone, of a building of which nothing is known."""
+    path = write(tmp_path_factory.mktemp("assumed") / "w.xlsx", ITEMS[:1], FLOORS[:1], restitution=0.9)
     return assess.run(assess.read_inventory(path), Settings(runs=20), jobs=1)
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory):
+    """One floor with a record, with generated motions."""
+    folder = tmp_path_factory.mktemp("recorded")
+    write_records(folder, "slow")
+    path = write(folder / "w.xlsx", ITEMS[:1], [{"floor": "1", "record_x": "slow.csv"}])
+    return assess.run(assess.read_inventory(path), Settings(verify="all", runs=20), jobs=1)
 
 
 @pytest.fixture(scope="module")
@@ -99,20 +110,23 @@ def page_of_some(some, tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def page_of_generic(generic, tmp_path_factory):
-    return write_html(generic, tmp_path_factory.mktemp("html"))
+def page_of_assumed(assumed, tmp_path_factory):
+    return write_html(assumed, tmp_path_factory.mktemp("html"))
 
 
 class TestExtent:
-    def test_a_report_without_simulation_says_so_everywhere(self, tmp_path):
-        results = assess.run(write(tmp_path / "w.xlsx", ITEMS, FLOORS), UNVERIFIED)
+    @pytest.mark.parametrize(
+        ("class_by", "title"), [("best formula", "FEMA P-58 contents"), ("proposed OR", "Proposed OR formula")]
+    )
+    def test_a_report_without_simulation_says_so_everywhere(self, tmp_path, class_by, title):
+        results = assess.run(write(tmp_path / "w.xlsx", ITEMS, FLOORS, class_by=class_by), UNVERIFIED)
         page = write_html(results, tmp_path)
         text = read_text(page)
         assert "Status Not simulated: classes come from a published formula; no rocking has been simulated" in text
         assert "there are no intervals, as no rocking has been simulated in this run." in text
-        assert "Adopted risk: Proposed OR formula. The other methods are shown for comparison." in text
+        assert f"Adopted risk: {title}. The other methods are shown for comparison." in text
         assert "Not simulated. The risks in this report come from published formulas." in text
-        assert "Chance: the adopted risk, here from the Proposed OR formula. Raw: as printed" in text
+        assert f"Chance: the adopted risk, here from: {title}. Raw: as printed" in text
         assert "Under the record" not in text
         assert 'data-status="Chance of overturning in this scenario, not per year. Not simulated."' in page
         assert _figures(page) == []
@@ -124,10 +138,12 @@ class TestExtent:
         apart = "the other rows have a class by a published formula, and are counted apart"
         assert text.count(f"{status}; {apart}") == 3
         assert "; percentages without a range come from the formula only." in text
-        assert "where a piece was simulated, otherwise Proposed OR formula, counted apart." in text
-        assert "Not simulated: chance and class come from the formula: 5 pieces in 2 rows." in text
+        assert "where a piece was simulated, otherwise FEMA P-58 contents, counted apart." in text
+        assert "Not simulated: chance and class come from the formula: 4 pieces in 1 row." in text
         assert "The rocking of 3 of 5 rows was integrated step by step" in text
-        assert "in which the Proposed OR formula was checked; and those on a route." in text
+        assert (
+            "in which one of these was checked: FEMA P-58 contents, Proposed OR formula; and those on a route." in text
+        )
         assert "no rocking has been simulated" not in text
 
     def test_a_simulated_report_has_chance_formula_and_record_side_by_side(self, some, page_of_some):
@@ -138,8 +154,10 @@ class TestExtent:
         one = some.result(0)
         assert one.adopted.probability == 0.25
         assert words.chance(one).replace(words.NO_BREAK, " ") == "25.0 % (14.2 to 40.2 %)"
-        assert f"{100 * one.formula.value:.1f} % ({one.formula.detail['raw']:.3f})" in text
-        assert "– 25.0 % (14.2 to 40.2 %) ◇ medium, could be high, lowered by simulation (formula: high)" in text
+        paper = one.governing.methods[some.paper_formula.key]
+        formulas = f"{100 * one.formula.value:.1f} % {100 * paper.value:.1f} % ({paper.detail['raw']:.3f}) "
+        assert formulas in text
+        assert "– 25.0 % (14.2 to 40.2 %) ◇ medium, could be high, lowered by simulation (formula: very high)" in text
         assert "All rows were chosen." in text
 
     @pytest.mark.slow
@@ -158,13 +176,14 @@ class TestChanges:
         text = read_text(page_of_lowered)
         rows = [one for one in lowered if one.adopted.lowered_from is not None]
         assert len(rows) == 3
-        note = "○ low, could be medium, lowered by simulation (formula: high)"
+        note = "○ low, could be medium, lowered by simulation (formula: very high)"
         assert text.count(note) == 2 * 2  # all pieces, classes lowered
         assert text.count("○ low ?↓") == 3 * 2  # on one line: the worst, what to fix first, what to fix
-        assert text.count("ƒ medium by formula only") == text.count("ƒ low by formula only") == 1  # not simulated
+        assert text.count("ƒ medium by formula only") == 1  # not simulated
+        assert text.count("cannot rock ○ low") == 1  # the cube, by its chance
         assert text.count("depends on its anchor (free-standing: low, could be medium, lowered by simulation") == 2
-        assert "Class lowered by simulation: 3 pieces in 3 rows (1 of them anchored): 3 from high." in text
-        assert "Could be of a higher class: the interval reaches into it: 3 pieces in 3 rows (1 of them" in text
+        assert "Class lowered by simulation: 3 pieces in 3 rows (1 of them anchored): 3 from very high." in text
+        assert "Could be of a higher class: the range reaches into it: 3 pieces in 3 rows (1 of them" in text
         assert "0.0 % (0.0 to 8.8 %)" in text.replace(words.NO_BREAK, " ")
         assert "Simulation lowered the class of 2 free-standing pieces on this floor" in text
         assert "class lowered: 3 pieces in 3 rows (1 of them anchored)" in describe_verification(lowered)
@@ -177,13 +196,18 @@ class TestChanges:
         assert re.findall(r'<text class="class-marks"[^>]*>([^<]*)<', page_of_lowered) == ["?↓", "?↓"]  # the plan
         assert [words.class_marks(one) for one in lowered][:2] == ["?↓", "?↓"]
 
-    def test_a_raised_class_is_reported_and_comes_first(self, tmp_path):
-        results = _assess(tmp_path, [2.0] * 30, verify="all")
+    @pytest.mark.parametrize(
+        ("class_by", "raised"),
+        [
+            ("best formula", "4 pieces in 1 row"),  # the others are very high by it
+            ("proposed OR", "7 pieces in 4 rows (1 of them anchored)"),
+        ],
+    )
+    def test_a_raised_class_is_reported_and_comes_first(self, tmp_path, class_by, raised):
+        results = _assess(tmp_path, [2.0] * 30, verify="all", class_by=class_by)
         content = build_content(results)
-        assert "Class raised by simulation: 7 pieces in 4 rows (1 of them anchored): 7 to very high." in (
-            content.verified.summary
-        )
-        assert "class raised: 7 pieces in 4 rows" in content.verified.sentence
+        assert f"Class raised by simulation: {raised}: {raised[0]} to very high." in content.verified.summary
+        assert f"class raised: {raised}" in content.verified.sentence
         assert {one.adopted.risk for one in content.trials.changed} == {RiskClass.VERY_HIGH}
         assert "1 row is too stocky to rock (B/H of 1.41 or more)." in " ".join(content.trials.paragraphs)
 
@@ -233,38 +257,86 @@ class TestChanges:
 
 
 class TestMotions:
-    def test_a_generic_floor_is_cautioned(self, generic, page_of_generic):
-        text, content = read_text(page_of_generic), build_content(generic)
-        never = "simulation may raise a class there, never lower it."
-        known = "and neither T1 nor the building's height is known"
-        assert text.count(f"Floor 1: the generated motions follow a generic spectrum, {known}; {never}") == 1
-        assert text.count(f"Floor 1: generic spectrum, T1 unknown; {never}") == 1
+    def test_an_assumed_motion_is_cautioned(self, assumed, page_of_assumed):
+        text, content = read_text(page_of_assumed), build_content(assumed)
+        unknown = "neither T1, Height, Storeys nor an Elevation is known; buildings of every period were drawn"
+        assert text.count(f"Floor 1: assumed motion, and {unknown}, and no class is confirmed.") == 1
+        assert text.count("Floor 1: assumed motion, nothing known of the building; no class is confirmed.") == 1
         assert "On each floor and axis 20 motions were generated (seed 1)." in text
+        assert "or of drawn earthquakes in drawn buildings where no record is known" in text
         assert "At each impact a piece keeps 0.9 of its angular velocity, as set in the workbook." in text
         assert "Wilson EB (1927)" in text
-        unconfirmed = [one for one in generic if one.adopted.is_unconfirmed]
-        assert ("1 row is unconfirmed: the formula's class, counted apart" in text) == bool(unconfirmed)
-        assert ("simulation gave a lower class that cannot be relied on" in text) == bool(unconfirmed)
         (motion,) = content.trials.motions
-        (fit,) = [one.ensemble.fit for one in generic.motions if one.ensemble]
-        assert (motion.kind, motion.motions, motion.rows) == ("generic spectrum, T1 unknown", "20", 1)
+        assert (motion.kind, motion.motions, motion.rows) == ("assumed motion, nothing known of the building", "20", 1)
+        assert (motion.spectrum, motion.pfa, motion.pfv) == ("–", "–", "–"), "they follow no target"
+        said = dict(content.assumptions)
+        assert said["Restitution (angular velocity after an impact over that before)"] == "0.9, the workbook's"
+        assert said["Motions of the simulation"].endswith("generated with seed 1")
+        assert said["Interval of a simulated chance"] == "Wilson's, z = 1.96: 95 %"
+
+    @pytest.mark.parametrize(
+        ("floors", "building", "ways"),
+        [
+            ([{"floor": "1", "elevation": 4}], {"ground_pga": 0.2}, f"{GROUND}, else Ground PGV"),
+            ([{"floor": "1", "elevation": 4}], {"ground_pga": 0.2, "ground_pgv": 20, "period": 0.5},
+             f"{GROUND}, else Structure"),
+            ([{"floor": "1", "pfa_x": 0.2}], {"height": 9}, f"{GROUND}, else Ground PGV"),
+            (FLOORS[:1], {"height": 9}, "records of the floors, else Period T1"),
+            ([{"floor": "0", "elevation": 0, "record_x": "slow.csv"}, {"floor": "1", "elevation": 4}], {},
+             "Storeys, else Period T1"),
+            ([{"floor": "0", "elevation": 0, "record_x": "slow.csv"}, {"floor": "1", "elevation": 4}],
+             {"period": 0.5, "structure": "frame"}, None),
+            ([{"floor": "1", "record_x": "slow.csv"}], {}, None),
+        ],
+    )  # fmt: skip
+    def test_what_would_narrow_an_assumed_motion_most_is_said_once(self, tmp_path, floors, building, ways):
+        write_records(tmp_path, "slow")
+        inventory = assess.read_inventory(write(tmp_path / "w.xlsx", ITEMS[:1], floors, **building))
+        results = assess.run(inventory, Settings(runs=25), jobs=1)
+        interval = build_content(results).verified.interval
+        assert interval.partition("; what would narrow it most: ")[2] == (ways or "")
+        (one,), texts = list(results), build_content(results).cautions
+        assert any(f"What would narrow it: {(ways or '').partition(',')[0]}" in text for text in texts) == bool(ways)
+        thirds = words.find_thirds(one)
+        if thirds is not None:
+            low, high = map(words.in_percent, thirds)
+            assert words.chance(one).replace(words.NO_BREAK, " ").endswith(f"({low} to {high} %)")
+            assert words.find_highest(one) == max(one.adopted.upper, classify(thirds[1]) or RiskClass.LOW)
+
+    def test_where_nothing_is_known_of_the_building_no_class_is_that_of_the_formula(self, assumed, page_of_assumed):
+        text, (one,) = read_text(page_of_assumed), list(assumed)
+        found = one.governing.simulation
+        assert (one.apart, one.adopted.method) == ("unconfirmed", assumed.simulation.key)
+        assert one.adopted.probability == found.probability
+        assert one.adopted.risk == classify(max(found.probability, found.if_faster))
+        assert (found.ideal, found.tried) == (None, {})
+        assert words.apart_words(one) == f"unconfirmed ({words.risk_word(one.adopted.risk)})"
+        low, high = map(words.in_percent, words.find_thirds(one))
+        assert f"({low} to {high} %)" in words.chance(one).replace(words.NO_BREAK, " ")
+        assert "1 row is unconfirmed and counted apart" in text
+        assert "the class is at least that of the faster third of the draws, unconfirmed." in text
+        assert "is that of Proposed OR formula, unconfirmed" not in text
+        assert "as it overturns under the record itself" not in text
+        assert words.ideal_chance(one) == "–"
+
+    def test_a_recorded_floor_is_said_to_meet_its_record(self, recorded):
+        (motion,) = build_content(recorded).trials.motions
+        (fit,) = [one.ensemble.fit for one in recorded.motions if one.ensemble]
+        assert (motion.kind, motion.motions, motion.rows) == ("recorded motion", "20", 1)
         assert motion.spectrum == (
             f"{100 * fit.mean_deviation:.1f} %; {100 * fit.worst_deviation:+.1f} % at {fit.worst_period_s:.2f} s"
         )
-        assumed = dict(content.assumptions)
-        assert assumed["Restitution (angular velocity after an impact over that before)"] == "0.9, the workbook's"
-        assert assumed["Motions of the simulation"].endswith("generated with seed 1")
-        assert assumed["Interval of a simulated chance"] == "Wilson's, z = 1.96: 95 %"
+        assert motion.pfv.startswith(f"{fit.pfv_ratio:.2f} ± ")
 
-    def test_a_large_misfit_is_reported(self, generic):
+    def test_a_large_misfit_is_reported(self, recorded):
         def worsen(motion):
             if motion.ensemble is None:
                 return motion
             fit = replace(motion.ensemble.fit, mean_deviation=0.15, worst_deviation=-0.4, worst_period_s=2.0)
             return replace(motion, ensemble=replace(motion.ensemble, fit=fit))
 
-        assert build_content(generic).trials.misfits == ()
-        (misfit,) = build_content(replace(generic, motions=tuple(map(worsen, generic.motions)))).trials.misfits
+        assert build_content(recorded).trials.misfits == ()
+        (misfit,) = build_content(replace(recorded, motions=tuple(map(worsen, recorded.motions)))).trials.misfits
         assert misfit == (
             "Floor 1 X: PFA and the spectrum cannot both be matched. PFA takes precedence; the mean spectrum deviates "
             "by 15.0 % on average, and by 40.0 % at 2.00 s, where it is worst."
@@ -311,11 +383,15 @@ class TestFigures:
         assert len(_ids(motions, "band")) == len(_ids(motions, "mean")) == 1
         assert _ids(motions, "wanted") == [], "neither a record nor a target"
 
-    def test_a_generic_target_is_drawn_dotted(self, page_of_generic):
-        motions = _figures(page_of_generic)[0]
-        (wanted,) = _ids(motions, "wanted")
-        assert "stroke-dasharray" in next(path.get("style") for path in wanted.iter() if path.get("d"))
-        assert _subpaths(motions, "spectra") == 20, "of the motions that were run, not of those made"
+    def test_assumed_motions_are_drawn_without_spectra(self, page_of_assumed):
+        motions = _figures(page_of_assumed)[0]
+        for name in ("wanted", "spectra", "band", "mean", "record"):
+            assert _ids(motions, name) == [], name
+        (panels,) = {len([one for one in motions.iter() if one.get("id", "").startswith("axes_")])}
+        assert panels == 3, "the first motions alone"
+        text = read_text(page_of_assumed)
+        assert "stands, the worst simulated piece. The first 3 of the motions." in text
+        assert 'alt="Acceleration against time of the motions of floor 1, X"' in page_of_assumed
 
     @pytest.mark.slow
     def test_the_record_is_the_target(self, tmp_path):
@@ -336,3 +412,17 @@ def _subpaths(figure, name):
     """Count the curves of a line: the pen is lifted between two."""
     (group,) = _ids(figure, name)
     return sum(path.get("d", "").count("M") for path in group.iter())
+
+
+def test_a_range_on_assumed_motion_holds_the_chance():
+    """The slower, the middle and the faster third of few draws may come in any order."""
+    floors = [{"floor": "0", "elevation": 0}, {"floor": "1", "elevation": 4}]
+    items = [
+        {"item": f"{floor}{b}", "floor": floor, "breadth": b, "height": 180} for floor in "01" for b in (28, 33, 40)
+    ]
+    building = {"building": "House", "storeys": 2, "ground_pga": 0.3}
+    inventory = assess.read_inventory({"Building": [building], "Floors": floors, "Items": items})
+    results = assess.run(inventory, verify="all", runs=12, figures=False)
+    ranges = [(one.adopted.probability, words.find_thirds(one)) for one in results if one.adopted.is_simulated]
+    assert ranges
+    assert all(found is not None and found[0] <= chance <= found[1] for chance, found in ranges)

@@ -8,6 +8,7 @@ from assess.i18n import load_catalogue, speaking
 from assess.report.content import build_content
 from assess.risk import classify
 from assess.settings import Settings
+from tests.shaking import write_records
 from tests.workbooks import ITEMS, assessed
 
 
@@ -39,7 +40,9 @@ def test_results_are_said_in_words(found):
 
 @pytest.mark.slow
 def test_the_simulation_is_worked_too(tmp_path):
-    content = build_content(assessed(tmp_path / "w.xlsx", ITEMS[:1], settings=Settings(verify="all", runs=20)))
+    write_records(tmp_path, "slow")
+    floors, settings = [{"floor": "1", "record_x": "slow.csv"}], Settings(verify="all", runs=20)
+    content = build_content(assessed(tmp_path / "w.xlsx", ITEMS[:1], floors, settings=settings))
     assert content.worked[-1].method.role == "simulation"
     found = content.example.governing.simulation
     assert f"R = {found.probability:.4f}, that is" in content.worked[-1].result
@@ -47,10 +50,22 @@ def test_the_simulation_is_worked_too(tmp_path):
     assert sum(step.endswith(ideal) for step in content.worked[-1].steps) == 1
 
 
+@pytest.mark.slow
+def test_a_simulation_on_assumed_motion_is_worked_without_what_would_recur(tmp_path):
+    settings = Settings(verify="all", runs=20)
+    content = build_content(assessed(tmp_path / "w.xlsx", ITEMS[:1], settings=settings, period=1.0))
+    found = content.example.governing.simulation
+    assert f"R = {found.probability:.4f}, that is" in content.worked[-1].result
+    assert found.ideal is None
+    assert not any("it would overturn under" in step for step in content.worked[-1].steps)
+
+
 def test_in_another_language_nothing_stays_english(found):
     with speaking(load_catalogue("it")):
         content = build_content(found)
-    assert "B/H = 32,1/180,3 = 0,17804" in content.worked[0].steps
+    worked = {one.method.role: one.steps for one in content.worked}
+    assert "α = atan(B/H) = atan(30/200) = 0,148890 rad" in worked["best formula"]
+    assert "B/H = 30/200 = 0,15" in " ".join(worked["proposed OR"])
     for one in content.worked:
         for text in (*one.steps, one.result):
             assert not re.search(r"\d\.\d", text), text

@@ -31,7 +31,7 @@ def _column(sheet, label):
 
 @pytest.fixture
 def report(tmp_path):
-    results = assessed(tmp_path / "w.xlsx", _items(), FLOORS, period=0.9)
+    results = assessed(tmp_path / "w.xlsx", _items(), FLOORS, period=0.9, motion_uncertainty=0.4)
     write_report(results, tmp_path / "report.xlsx")
     return results, tmp_path / "report.xlsx"
 
@@ -60,10 +60,10 @@ def test_items_agree_with_the_program(report):
     book = formualizer.load_workbook(str(path))
     book.evaluate_all()
     sheet = openpyxl.load_workbook(path)["Items"]
-    at = {
-        label: _column(sheet, label)
-        for label in ("B/H", "PFA used [g]", "OR as printed", "OR", "Kaneko-Hayashi", "Class (formula)")
-    }
+    labels = (
+        "B/H", "PFA used [g]", "OR as printed", "OR", "Kaneko-Hayashi", "FEMA P-58", "Class (formula)", "Class (OR)",
+    )  # fmt: skip
+    at = {label: _column(sheet, label) for label in labels}
     for row, one in enumerate(results, 2):
         methods = one.governing.methods
         found = {label: book.get_value("Items", row, column) for label, column in at.items()}
@@ -71,8 +71,11 @@ def test_items_agree_with_the_program(report):
         assert found["OR as printed"] == pytest.approx(methods["proposed_or"].detail["raw"], abs=1e-9)
         assert found["OR"] == pytest.approx(methods["proposed_or"].value, abs=1e-9)
         assert found["Kaneko-Hayashi"] == pytest.approx(methods["kaneko_hayashi"].value, abs=1e-9)
+        assert found["FEMA P-58"] == pytest.approx(methods["fema_p58"].value, abs=1e-9)
         assert found["Class (formula)"].rstrip("*") == one.adopted.risk.label
-        assert found["Class (formula)"].endswith("*") == ("extrapolated" in methods["proposed_or"].flags)
+        assert found["Class (formula)"].endswith("*") == ("extrapolated" in methods["fema_p58"].flags)
+        assert found["Class (OR)"].rstrip("*") == one.paper_class.label
+        assert found["Class (OR)"].endswith("*") == ("extrapolated" in methods["proposed_or"].flags)
 
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
@@ -81,7 +84,7 @@ def test_an_edit_recomputes_class_and_counts_as_a_run_would(report, tmp_path):
     floors = [FLOORS[0], {"floor": "2", "pfa_x": 1.1, "pfa_y": 0.62}, FLOORS[2]]
     items = _items()
     items[0]["breadth"], items[0]["height"] = 100, 150
-    again = assessed(tmp_path / "edited.xlsx", items, floors, period=0.9)
+    again = assessed(tmp_path / "edited.xlsx", items, floors, period=0.9, motion_uncertainty=0.4)
 
     book = formualizer.load_workbook(str(path))
     sheet = openpyxl.load_workbook(path)["Items"]
@@ -96,6 +99,8 @@ def test_an_edit_recomputes_class_and_counts_as_a_run_would(report, tmp_path):
         )
         found = book.get_value("Items", row, _column(sheet, "Kaneko-Hayashi"))
         assert found == pytest.approx(methods["kaneko_hayashi"].value, abs=1e-9)
+        found = book.get_value("Items", row, _column(sheet, "FEMA P-58"))
+        assert found == pytest.approx(methods["fema_p58"].value, abs=1e-9)
     summary = openpyxl.load_workbook(path)["Summary"]
     top = next(cell.row for row in summary.iter_rows(max_col=1) for cell in row if cell.value == "Floor")
     for row, floor in enumerate(floors, top + 1):

@@ -1,7 +1,6 @@
 """An edit of a PFA, a size or a class limit gives what a run of the edited workbook would, charts included."""
 
 import dataclasses
-import math
 import re
 import zipfile
 
@@ -164,20 +163,19 @@ def test_charts_have_the_colours_of_the_classes_and_patterns(path):
     assert text.count("<a:pattFill") >= 6
 
 
-GROUND = {"period": 6.0, "ground_pgv": 12.0}
-"""3.93 x 12 = 47.2 cm/s is the PFV that T1 gives of 0.0504 g: floors above it are capped, and those below are not."""
+GROUND = {"period": 1.0, "ground_pga": 0.2, "ground_pgv": 12.0}
 
 
 @pytest.fixture(scope="module")
-def capped(tmp_path_factory):
-    """A report whose floors have a PFA alone: two that are capped, one borrowed, one that is not; and its results."""
-    folder = tmp_path_factory.mktemp("capped")
-    results = _run_capped(folder, [0.3, 0.2, 0.03], 1.5)
+def following(tmp_path_factory):
+    """A report whose floors have a PFA alone, along one axis; and its results."""
+    folder = tmp_path_factory.mktemp("following")
+    results = _run_following(folder, [0.3, 0.2, 0.03], 1.5)
     write_report(results, folder / "r.xlsx")
     return results, folder / "r.xlsx"
 
 
-def _run_capped(folder, pfa, scale=1.0):
+def _run_following(folder, pfa, scale=1.0):
     floors = [{"floor": str(at), "pfa_x": one} for at, one in enumerate(pfa)]
     items = [
         {"item": f"{at}-{b}", "floor": str(at), "breadth": b, "width": 120, "height": 150, "axis": "X"}
@@ -195,51 +193,54 @@ def _edit_pfa(path, pfa, out):
     return out
 
 
-def _shown_capped(read, path):
+def _show_velocities(read, path):
     letters = {cell.value: cell.column_letter for cell in openpyxl.load_workbook(path)["Items"][1]}
     velocities = [read("Floors", f"{column}{row}") for column in "DG" for row in (2, 3, 4)]
     return velocities, [read("Items", f"{letters['Kaneko-Hayashi']}{row}") for row in range(2, 11)]
 
 
-def _expected_capped(results):
+def _expect_velocities(results):
     velocities = [results.motions_of(str(at), axis)[0].pfv_cm_s for axis in "XY" for at in range(3)]
     return velocities, [one.governing.methods["kaneko_hayashi"].value for one in results]
 
 
-def test_an_estimated_velocity_as_run_is_capped_and_scaled(capped):
-    results, path = capped
-    velocities, _chances = _expected_capped(results)
-    assert velocities == pytest.approx(2 * [1.5 * 47.16, 1.5 * 47.16, 1.5 * 28.094], rel=1e-3)
+def test_a_velocity_that_follows_is_scaled_with_the_acceleration(following):
+    """PGV/PGA 60 cm/s per g, T1 1 s, and an unknown height: PFV/PFA is 60 x 1.841/1.334 = 82.8 cm/s for each g."""
+    results, path = following
+    velocities, _chances = _expect_velocities(results)
+    assert velocities == pytest.approx(2 * [1.5 * pfa * 82.80 for pfa in (0.3, 0.2, 0.03)], rel=1e-3)
     cells = stored_cells(path)
-    assert _shown_capped(lambda sheet, cell: cells[sheet, cell], path) == tuple(
-        pytest.approx(one, abs=1e-9) for one in _expected_capped(results)
+    assert _show_velocities(lambda sheet, cell: cells[sheet, cell], path) == tuple(
+        pytest.approx(one, abs=1e-9) for one in _expect_velocities(results)
     )
 
 
 EDITED = [0.06, 0.6, 0.09]
-"""PFA to which the floors are edited: from capped to not and from not to capped, as scaled by 1.5."""
+"""PFA to which the floors are edited, as scaled by 1.5."""
 
 
 @pytest.mark.parametrize(
     "by", ["formualizer", pytest.param("libreoffice", marks=[pytest.mark.libreoffice, needs_libreoffice])]
 )
-def test_an_edited_acceleration_is_capped_as_in_a_run(capped, tmp_path, by):
-    edited = _edit_pfa(capped[1], EDITED, tmp_path / "edited.xlsx")
+def test_velocity_follows_an_edited_acceleration_as_in_a_run(following, tmp_path, by):
+    edited = _edit_pfa(following[1], EDITED, tmp_path / "edited.xlsx")
     if by == "libreoffice":
         cells = stored_cells(libreoffice(edited, tmp_path / "again.xlsx"))
-        found = _shown_capped(lambda sheet, cell: cells.get((sheet, cell)), edited)
+        found = _show_velocities(lambda sheet, cell: cells.get((sheet, cell)), edited)
     else:
         book = formualizer.load_workbook(str(edited))
         book.evaluate_all()
-        found = _shown_capped(lambda sheet, cell: book.get_value(sheet, *_split(cell)), edited)
-    expected = _expected_capped(_run_capped(tmp_path, [one / 1.5 for one in EDITED], 1.5))
-    assert expected[0][:3] == pytest.approx([56.19, 70.74, 70.74], rel=1e-3)
+        found = _show_velocities(lambda sheet, cell: book.get_value(sheet, *_split(cell)), edited)
+    expected = _expect_velocities(_run_following(tmp_path, [one / 1.5 for one in EDITED], 1.5))
+    assert expected[0][:3] == pytest.approx([82.80 * one for one in EDITED], rel=1e-3)
     assert found == tuple(pytest.approx(one, abs=1e-9) for one in expected)
 
 
-def test_an_estimate_of_a_floor_that_hardly_moves_follows_an_edit(tmp_path):
+def test_the_velocity_of_a_floor_that_hardly_moves_follows_an_edit(tmp_path):
     results = assessed(tmp_path / "w.xlsx", ITEMS[:1], [{"floor": "1", "pfa_x": 0.0001}], period=1.0)
     write_report(results, tmp_path / "r.xlsx")
     book = formualizer.load_workbook(str(_edit_pfa(tmp_path / "r.xlsx", [0.5], tmp_path / "edited.xlsx")))
     book.evaluate_all()
-    assert book.get_value("Floors", 2, 4) == pytest.approx(0.5 * 980.665 / (2 * math.pi), abs=1e-9)
+    ratio = results.motions[0].pfv_cm_s / results.motions[0].pfa_g
+    assert ratio == pytest.approx(105 * 1.816 / 1.535, rel=1e-3)
+    assert book.get_value("Floors", 2, 4) == pytest.approx(0.5 * ratio, abs=1e-9)

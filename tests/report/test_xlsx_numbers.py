@@ -84,16 +84,27 @@ def test_chances_of_the_formulas_are_those_of_the_results(run):
             assert row[key] == ("not evaluated" if value is None else _is(value))
 
 
+def _find_range(one):
+    """Return the range that the sheet shows: of all floors on assumed motion from the slower to the faster third."""
+    adopted, found = one["adopted"], one["verification"]
+    if adopted["basis"] != "simulated":
+        return None, None
+    ends = found["if_slower"], found["if_faster"], adopted["probability"]
+    assert None not in ends
+    return min(ends), max(ends)
+
+
 def test_what_verification_found_is_that_of_the_results(run, made):
     rows, _, results = run
     for row, one, result in zip(rows, results["items"], made, strict=True):
         found, adopted = one["verification"], one["adopted"]
         assert row["runs"] == (found and found["runs"])
-        is_adopted = adopted["method"] == "housner_monte_carlo"
+        is_adopted = adopted["basis"] == "simulated"
         assert row["basis"].split(" ")[0] == result.adopted.basis
         assert row["chance"] == (_is(adopted["probability"]) if is_adopted else None)
-        assert (row["low"], row["high"]) == (_is(adopted["low"]), _is(adopted["high"]))
-        assert row["beside"] == (_is(result.governing.simulation.ideal.probability) if is_adopted else None)
+        assert (row["low"], row["high"]) == tuple(map(_is, _find_range(one)))
+        assert result.governing.simulation is None or result.governing.simulation.ideal is None, "a drawn motion"
+        assert not row["beside"]
         shown = row["class"].removeprefix("⚓ ").removesuffix("*")
         assert shown == _label(adopted["class"])
         if found:
@@ -183,8 +194,8 @@ def test_floors_and_motions_are_those_of_the_results(run):
         assert row[9] == _is(one["pfa_file_g"])
     for floor in results["floors"]:
         for axis, at in (("X", 2), ("Y", 5)):
-            largest = max(one["pfa_g"] for one in floor["demands"] if one["axis"] == axis)
-            assert floors[floor["floor"]][at] == pytest.approx(largest, abs=1e-9)
+            largest = max(one["pfv_cm_s"] for one in floor["demands"] if one["axis"] == axis)
+            assert floors[floor["floor"]][at + 1] == pytest.approx(largest, abs=1e-9)
             shown = [(row[at], row[at + 1]) for row in rows if row[0] == floor["floor"] and row[at] is not None]
             served = [(one["pfa_g"], one["pfv_cm_s"]) for one in floor["demands"] if one["axis"] == axis]
             assert sorted(shown) == [(_is(pfa), _is(pfv)) for pfa, pfv in sorted(served)], "every parallel record"

@@ -60,7 +60,7 @@ def test_a_title_cannot_change_the_header(tmp_path):
 def test_items_show_bars_colours_and_choices(tmp_path):
     sheet = openpyxl.load_workbook(_report(tmp_path))["Items"]
     rules = [rule.type for area in sheet.conditional_formatting for rule in area.rules]
-    assert rules.count("dataBar") == 4
+    assert rules.count("dataBar") == 5
     assert rules.count("beginsWith") == 3 * 4 + 2
     heads = {cell.value: cell.column_letter for cell in sheet[1]}
     choices = {
@@ -70,7 +70,7 @@ def test_items_show_bars_colours_and_choices(tmp_path):
     assert choices[heads["Height [cm]"]].operator == "greaterThan"
     assert sheet.row_dimensions[1].height >= 30
     comments = [cell.comment.text for cell in sheet[1] if cell.comment]
-    assert len(comments) == 6
+    assert len(comments) == 7
     assert sheet.print_area.endswith(f"${heads['Basis']}$6")
     assert [heads[label] for label in ("Item", "Class", "Upper class", "Floor")] == list("ABCD")
     for label in ("Chance in an earthquake like this one", "Upper class", "Order: simulated"):

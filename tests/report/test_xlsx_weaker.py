@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import openpyxl
 import openpyxl.utils
 import pytest
@@ -97,6 +98,14 @@ def by_formula(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
+def by_paper(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("by_paper")
+    results = assess_rich(folder, Settings(verify="none", class_by="proposed OR"))
+    write_report(results, folder / "r.xlsx")
+    return Book(results, folder / "r.xlsx")
+
+
+@pytest.fixture(scope="module")
 def simulated(tmp_path_factory):
     folder = tmp_path_factory.mktemp("simulated")
     results = assess_rich(folder, Settings(verify="all", runs=40))
@@ -125,7 +134,8 @@ def test_weaker_floors_raise_no_count_and_no_class(book, tmp_path, factor, engin
 
 def _check_waiting(book: Book, rows: dict[str, dict[str, Any]], cells: Cells) -> None:
     """Where every floor is edited, what was simulated waits for a run, and what a bracket decides."""
-    waiting = {one.item.item for one in book.results if one.adopted.basis != "formula"}
+    bases = {one.item.item: one.adopted.basis if one.adopted.can_rock else one.main_basis for one in book.results}
+    waiting = {item for item, basis in bases.items() if basis != "formula"}
     known = {one.item.item for one in book.results if one.item.item in DECIDED}
     assert {item for item, row in rows.items() if row["class"] == AGAIN} == waiting | known
     pieces = sum(one.item.quantity for one in book.results if one.item.item in waiting | known)
@@ -260,12 +270,52 @@ def test_single_cells_in_libreoffice(kind, tmp_path, request):
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_a_row_by_formula_goes_by_the_largest_of_parallel_records(by_formula, tmp_path, engine):
-    """The record in the floor's own line is edited below the other one, which then governs."""
-    sheet = openpyxl.load_workbook(by_formula.path, data_only=True)["Floors"]
+@pytest.mark.parametrize(("name", "column"), [("by_formula", "D"), ("by_paper", "C")])
+def test_a_row_by_formula_goes_by_the_largest_of_parallel_records(name, column, request, tmp_path, engine):
+    """The record in the floor's own line is edited below the other one, which then governs.
+
+    Which is the largest is by PFV in FEMA P-58, and by PFA in OR.
+    """
+    book, at = request.getfixturevalue(name), "CD".index(column)
+    sheet = openpyxl.load_workbook(book.path, data_only=True)["Floors"]
     lines = {row[0].row: (row[2].value, row[3].value) for row in sheet.iter_rows(min_row=2) if row[0].value == "2"}
-    (first, (largest, _)), (_, (other, velocity)) = lines.items()
-    assert largest > other
-    cells = recalculate(by_formula.path, [("Floors", f"C{first}", other / 2)], engine, tmp_path)
-    row = by_formula.items(cells)["2-0"]
-    assert (row["axis"], row["pfa_g"], row["pfv_cm_s"]) == ("X", pytest.approx(other), pytest.approx(velocity))
+    (first, largest), (_, other) = lines.items()
+    assert largest[at] > other[at]
+    assert largest[1 - at] < other[1 - at], "the other peak alone would have the other record govern"
+    row = book.items(stored_cells(book.path))["2-0"]
+    assert (row["axis"], row["pfa_g"], row["pfv_cm_s"]) == ("X", *map(pytest.approx, largest))
+    cells = recalculate(book.path, [("Floors", f"{column}{first}", other[at] / 2)], engine, tmp_path)
+    row = book.items(cells)["2-0"]
+    assert (row["axis"], row["pfa_g"], row["pfv_cm_s"]) == ("X", *map(pytest.approx, other))
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_of_several_motions_the_strongest_that_can_start_the_piece_governs(tmp_path, engine):
+    """The motion of the larger PFV has too small a PFA to rock the stockier pieces: along an axis, or of a record."""
+    time = np.arange(0, 20, 0.01)
+    for name, pfa, cycles in (("fast.csv", 500, 4), ("slow.csv", 60, 0.25)):
+        values = pfa * np.sin(2 * np.pi * cycles * time) * np.exp(-(((time - 10) / 4) ** 2))
+        rows = "\n".join(f"{at:.2f},{value:.4f}" for at, value in zip(time, values, strict=True))
+        (tmp_path / name).write_text(f"time [s],x [cm/s2]\n{rows}\n", encoding="utf-8")
+    floors = [
+        {"floor": "1", "pfa_x": 0.06, "pfv_x": 40.0, "pfa_y": 0.5, "pfv_y": 20.0},
+        {"floor": "2", "record_x": "fast.csv; slow.csv", "record_y": "slow.csv"},
+        {"floor": "3", "record_x": "slow.csv", "record_y": "slow.csv; fast.csv"},
+    ]
+    items = [
+        {"item": f"{floor}-{breadth}{axis}", "floor": floor, "breadth": breadth, "width": 90, "height": 100}
+        | ({"axis": axis} if axis else {})
+        for floor in "123" for breadth in (15, 60, 90) for axis in ("X", "Y", "")
+    ]  # fmt: skip
+    results = assessed(tmp_path / "w.xlsx", items, floors, settings=Settings(verify="none"), period=1.0)
+    largest = {one.item.item: max((case.motion.pfv_cm_s, case.motion.pfa_g) for case in one.cases) for one in results}
+    passed = {one.item.item for one in results if one.governing.motion.pfv_cm_s < largest[one.item.item][0]}
+    assert {"1-60", "2-60", "3-60", "2-60X", "3-60Y"} <= passed
+    write_report(results, tmp_path / "r.xlsx")
+    book = Book(results, tmp_path / "r.xlsx")
+    shown = book.items(recalculate(book.path, [], engine, tmp_path))
+    for one in results:
+        row, motion = shown[one.item.item], one.governing.motion
+        assert row["axis"] == motion.axis, one.item.item
+        assert [row["pfa_g"], row["pfv_cm_s"]] == pytest.approx([motion.pfa_g, motion.pfv_cm_s]), one.item.item
+        assert row["class"].rstrip("*") == one.adopted.risk.label

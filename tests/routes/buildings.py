@@ -25,6 +25,7 @@ def make_falls(
     fell: Mapping[int, Sequence[bool] | BoolArray] | None = None,
     unconfirmed: Sequence[int] = (),
     in_record: Sequence[float] | None = None,
+    stands: Sequence[bool] | None = None,
     anchored: Sequence[bool] | None = None,
     quantity: Sequence[int] | None = None,
 ) -> Falls:
@@ -37,8 +38,9 @@ def make_falls(
         probability=np.array(probability, dtype=np.float64),
         high=np.array(high or probability, dtype=np.float64),
         fell=known,
-        unconfirmed=dict.fromkeys(unconfirmed, ("unconfirmed_period",)),
+        unconfirmed=dict.fromkeys(unconfirmed, ("unconfirmed_building",)),
         in_record=np.array(in_record or [np.nan] * n, dtype=np.float64),
+        stands=np.array(stands or [False] * n, dtype=np.bool_),
         anchored=np.array(anchored or [False] * n, dtype=np.bool_),
         quantity=np.array(quantity or [1] * n, dtype=np.intp),
     )

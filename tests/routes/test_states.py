@@ -281,7 +281,7 @@ def test_what_is_missing_matters_only_with_what_is_unconfirmed():
     items = [piece(1.5, 0.0, route="Way", segment="east"), piece(2.0, **LOOSE, room="Gallery")]
     (room,) = evaluated(make_falls([0.9, 0.5], unconfirmed=[0]), items, segments, places).rooms
     assert room.state is NOT_KNOWN
-    assert {row.what for row in room.missing} <= {"unconfirmed_period", "places", "positions"}
+    assert {row.what for row in room.missing} <= {"unconfirmed_building", "places", "positions"}
     assert room.missing
 
 

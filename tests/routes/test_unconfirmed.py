@@ -10,7 +10,7 @@ from tests.routes.buildings import evaluated, make_falls, one_segment, piece, pl
 WIDE, NARROW = stretch(), stretch(clear_width=1.6)
 HALF, WHOLE = piece(0.5, 0.0), piece(1.5, 0.0)
 """Alone a half leaves 1.1 m of the narrow one, two 0.6 m; a whole leaves 0.3 m of the wide one."""
-PERIOD = ("unconfirmed_period",)
+PERIOD = ("unconfirmed_building",)
 
 
 def whats(one):
@@ -26,7 +26,7 @@ def test_a_segment_that_it_would_block_is_not_known():
     assert (fallen.probability, fallen.low, fallen.high) == (1, 1, 1)
     assert found.most_likely_piece is None
     (near,) = found.pieces
-    assert (near.falls_while_blocked, near.flags[-1]) == (None, "unconfirmed_period")
+    assert (near.falls_while_blocked, near.flags[-1]) == (None, "unconfirmed_building")
 
 
 def test_one_that_does_not_matter_leaves_the_state_known():

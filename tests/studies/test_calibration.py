@@ -12,7 +12,17 @@ from assess.risk import RiskClass
 from assess.rocking.ensemble import rock_blocks
 from assess.studies import calibration
 from assess.studies.buildings import all_buildings
-from assess.studies.calibration import BEAMS, RECORDED, calibrate, collect
+from assess.studies.calibration import (
+    BEAMS,
+    RECORDED,
+    Outcomes,
+    by_chance,
+    by_class,
+    calibrate,
+    collect,
+    find_error,
+    find_score,
+)
 from assess.studies.calibration.floor_motions import (
     LEVELS,
     Tried,
@@ -22,10 +32,8 @@ from assess.studies.calibration.floor_motions import (
     list_recorded,
     try_floors,
 )
-from assess.studies.calibration.scoring import Outcomes, by_chance, by_class, find_error, find_score
-from assess.studies.study import Options
+from assess.studies.study import Options, render_block
 from assess.studies.study_files import PARTS
-from assess.studies.study_pages import render_block
 from assess.units import GRAVITY
 
 RUNS = 100

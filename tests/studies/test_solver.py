@@ -11,7 +11,9 @@ from hypothesis import strategies as st
 
 from assess.studies.solver import STUDY, pulses
 from assess.studies.solver.histories import follow_near, sample, tabulate_histories
-from assess.studies.solver.limits import (
+from assess.studies.solver.pulses import (
+    ALPHA,
+    ETA,
     EXACT,
     KERNEL,
     LOOSE,
@@ -20,14 +22,17 @@ from assess.studies.solver.limits import (
     RK45,
     SIDE,
     TIGHT,
+    Case,
     Limit,
+    P,
+    Response,
+    Solver,
     find_limit,
+    follow,
     read_limits,
     solve_half_sine,
 )  # fmt: skip
-from assess.studies.solver.pulses import ALPHA, ETA, Case, P, Response, Solver, follow
-from assess.studies.study import Options
-from assess.studies.study_pages import render_block
+from assess.studies.study import Options, render_block
 from tests.rocking.reference import Block, integrate
 
 LINEAR, NONLINEAR = (Case("one_sine", equation, 5.0) for equation in ("linear", "nonlinear"))

@@ -6,25 +6,25 @@ import pytest
 from jinja2 import UndefinedError
 
 from assess.resources import templates
-from assess.studies import all_studies, study_pages
+from assess.studies import all_studies, study
 
 
 def test_paragraphs_and_items_are_joined_and_rows_are_not():
     text = "\n\nOne\n  and two.\n\n\n* an item\n  goes on\n* another\n\n| a |\n|---|\n| b |\n\n"
     lines = ["One and two.", "", "* an item goes on", "* another", "", "| a |", "|---|", "| b |"]
-    assert study_pages._join_lines(text) == lines
-    assert study_pages._join_lines("\n".join(lines)) == lines
-    assert study_pages._join_lines(" \n\n") == []
+    assert study._join_lines(text) == lines
+    assert study._join_lines("\n".join(lines)) == lines
+    assert study._join_lines(" \n\n") == []
 
 
 def test_a_value_that_is_missing_is_an_error():
     with pytest.raises(UndefinedError, match="'missing' is undefined"):
-        study_pages.render_block("solver", "missing", side=0.16)
+        study.render_block("solver", "missing", side=0.16)
 
 
 def test_every_study_has_a_template_with_its_summary():
-    for study in all_studies():
-        text = (templates() / "studies" / f"{study.name}.md.j2").read_text(encoding="utf-8")
+    for one in all_studies():
+        text = (templates() / "studies" / f"{one.name}.md.j2").read_text(encoding="utf-8")
         assert "{% block page %}" in text
         assert "{% block summary %}" in text
 
@@ -33,9 +33,9 @@ def test_every_study_has_a_template_with_its_summary():
     ("values", "shown"), [([1.004, 1.0], "1.00"), ([0.5, 2.25, 1.0], "0.50 to 2.25"), ([-0.1], "-0.10")]
 )
 def test_a_span_of_equal_numbers_is_one_number(values, shown):
-    assert study_pages._span(values, 2) == shown
+    assert study._span(values, 2) == shown
 
 
 def test_an_unknown_share_is_a_dash():
-    assert (study_pages.percent(math.nan), study_pages.percent(0.255)) == ("-", "26 %")
-    assert (study_pages._points(math.nan), study_pages._points(0.255, "+")) == ("-", "+25.5")
+    assert (study.percent(math.nan), study.percent(0.255)) == ("-", "26 %")
+    assert (study._points(math.nan), study._points(0.255, "+")) == ("-", "+25.5")

@@ -10,10 +10,8 @@ from assess.settings import Settings
 from assess.studies.agreement import by_building, find_agreement, pool
 from assess.studies.buildings import FIRST_TOGETHER, LEVELS, RECORDED, TOGETHER
 from assess.studies.studied_methods import FORMULAS, INTEGRATION, PRINTED
-from assess.studies.study import Options, read_facts
-from assess.studies.study_pages import render_block
-from assess.studies.table2 import collect
-from assess.studies.table2.comparison import ALL, NOTHING, SUBSETS, compare
+from assess.studies.study import Options, read_facts, render_block
+from assess.studies.table2 import ALL, NOTHING, SUBSETS, collect, compare
 from assess.units import GRAVITY
 from tests.studies.made_up import make_compared
 

@@ -3,6 +3,8 @@
 import io
 import json
 import re
+import subprocess
+import sys
 from xml.etree import ElementTree
 
 import pytest
@@ -209,3 +211,33 @@ def test_the_catalogue_has_sizes_in_metres(path):
     types = {one["type"]: one for one in describe_catalogue(hold(path).snapshot())["types"]}
     shelf = types["Bookcase 5 shelves"]
     assert 0.2 < shelf["breadth"] < shelf["height"] < 3
+
+
+FIRST = """
+import sys, threading
+from pathlib import Path
+from types import SimpleNamespace
+from assess.web import answers
+from assess.web.book import Book
+sys.setswitchinterval(2e-6)
+asked, faults = SimpleNamespace(book=Book.open_disk(Path(sys.argv[1])), query={}), []
+every = answers.describe_plan, answers.describe_catalogue, answers.describe_routes
+ready = threading.Barrier(len(every))
+def ask(describe):
+    ready.wait()
+    try:
+        describe(asked)
+    except BaseException as fault:
+        faults.append(fault)
+threads = [threading.Thread(target=ask, args=(one,)) for one in every]
+for one in threads: one.start()
+for one in threads: one.join()
+print(faults)
+"""
+
+
+def test_the_first_requests_of_a_page_may_come_at_once(tmp_path):
+    """Each imports what it needs; of modules that import one another one of them would find a half of the other."""
+    write_workbook(tmp_path / "w.xlsx", Content({"Floors": FLOORS, "Items": ITEMS}))
+    command = [sys.executable, "-c", FIRST, str(tmp_path / "w.xlsx")]
+    assert subprocess.run(command, capture_output=True, text=True, check=True).stdout == "[]\n"

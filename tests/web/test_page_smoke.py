@@ -13,10 +13,10 @@ def test_an_edited_piece_gets_another_class(page, served, tmp_path):
     path = write(tmp_path / "office.xlsx")
     before = path.read_bytes()
     sheet = opened(page, served(path)).open("Items")
-    expect(sheet.cell(CLASS, 4)).to_contain_text("very high")
+    expect(sheet.cell(CLASS, 4)).to_contain_text("▲ high")
     sheet.select("Height", 4).type("60", "<Enter>")
-    expect(sheet.cell(CLASS, 4)).to_contain_text("▲ high*")
+    expect(sheet.cell(CLASS, 4)).to_contain_text("○ low*")
     sheet.type("<Control+z>")
-    expect(sheet.cell(CLASS, 4)).to_contain_text("very high")
+    expect(sheet.cell(CLASS, 4)).to_contain_text("▲ high")
     assert sheet.settle().values("Items", "height")[4] == 180
     assert sheet.server.client.get("/api/download").data == before

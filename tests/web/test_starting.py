@@ -34,6 +34,17 @@ def test_a_template_has_classes_at_once(served):
     assert inventory.language == "it"
 
 
+def test_pieces_on_a_floor_of_unknown_height_have_classes_too(served):
+    server = served()
+    server.client.post("/api/start", {**ASKED, "floor": "3", "language": "en"})
+    live = server.client.get("/api/live").json()
+    assert live["error"] == ""
+    assert len(live["items"]["class"]) == 2
+    assert set(live["items"]["class"]) <= {"low", "medium", "high", "very_high"}
+    (floor,) = assess.read_inventory(server.folder / "ufficio.xlsx").floors
+    assert floor.elevation is None
+
+
 def _speak(server, language):
     return f"{server.client.headers['Cookie']}; assess-language={language}"
 

@@ -68,7 +68,7 @@ def test_it_shows_every_kind_of_row(inventory, results):
     assert any(item.quantity > 1 and item.x is None for item in items)
     assert any(item.route and item.edge_distance is not None for item in items)
     assert {motion.source for motion in results.motions} == {"given"}
-    assert any("pfv_estimated" in one.governing.motion.flags for one in results), "T1 is in use"
+    assert any(motion.pfv_follows for motion in results.motions), "T1 is in use"
 
 
 def test_it_names_no_file(inventory):

@@ -391,8 +391,9 @@ def test_what_the_scenario_lacks_is_told_of_the_workbooks_own_sheet(tmp_path: Pa
     with pytest.raises(WorkbookError) as caught:
         assess.run(inventory, assess.Settings(verify="none"))
     assert {problem.sheet for problem in caught.value.problems} == {"Edificio", "Piani"}
-    notes = assess.run(read(tmp_path, Edificio=[["SDS [g]", 0.3]]), assess.Settings(verify="none")).problem_rows
-    assert {problem.place for problem in notes} == {"Edificio!B1"}
+    ground = [["SDS [g]", 0.3], ["Ground PGA [g]", 0.4]]  # of which floors follow one; Ground PGV has no line
+    notes = assess.run(read(tmp_path, Edificio=ground), assess.Settings(verify="none")).problem_rows
+    assert {problem.place for problem in notes} == {"Edificio!B1", "Edificio", "Piani!A2"}
 
 
 @pytest.mark.parametrize(

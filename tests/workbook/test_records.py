@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import assess
 from assess.errors import WorkbookError
 from assess.units import GRAVITY
 from assess.workbook.read import read_inventory
@@ -112,42 +113,70 @@ def test_direction_of_records(
     assert remarks(inventory, "warning") == (set() if off is None else {f"{message} {fix}"})
 
 
+UNSERVED = "Fill in PFA X or PFA Y, or name a record; or fill in Ground PGA, or choose Shaking, in Building."
+NO_GROUND = "Building gives neither Ground PGA nor Ground PGV nor SDS nor a ShakeMap file nor Shaking."
+
+
 def test_a_floor_without_motion(tmp_path: Path) -> None:
     floors: Sheet = [["Floor", "Name", "PFA X [g]", "PFV X [cm/s]"], ["1", "Ground", None, 30]]
     assert errors_of(write(tmp_path, floors=floors)) == {
-        "Floors!C2: floor '1' has neither a record nor a PFA, and no Elevation from which its motion could be derived. "
-        "Fill in PFA X or PFA Y, or name a record; or fill in Elevation, and Ground PGA or Shaking in Building."
+        "Floors!C2: floor '1' has neither a record nor a PFA, no Elevation by which its motion follows from other "
+        f"floors, and {NO_GROUND} {UNSERVED}"
     }
 
 
-UNSERVED = "Fill in PFA X or PFA Y, or name a record; or fill in Ground PGA, or choose Shaking, in Building."
-UNPLACED = "Fill in PFA X or PFA Y, or name a record; or fill in Elevation, and Ground PGA or Shaking in Building."
+def test_a_floor_beside_none_of_which_the_motion_and_the_height_are_known(tmp_path: Path) -> None:
+    floors: Sheet = [["Floor", "Elevation [m]", "PFA X [g]"], ["1", None, 0.3], ["2", 4, None]]
+    assert errors_of(write(tmp_path, floors=floors)) == {
+        f"Floors!C3: floor '2' has neither a record nor a PFA, no other floor has one and an Elevation, and {NO_GROUND} "
+        f"{UNSERVED}"
+    }
 
 
 @pytest.mark.parametrize(
     ("middle", "building", "error"),
     [
-        ((4, None), [], None),
-        ((12, None), [], "C3: floor '2' has neither a record nor a PFA, lies between no two floors that have one and an "
-         f"Elevation, and Building gives neither Ground PGA nor SDS nor a ShakeMap file nor Shaking. {UNSERVED}"),
-        ((12, None), [["Ground PGA [g]", 0.2]], None),
-        ((12, None), [["SDS [g]", 0.5]], None),
-        ((None, None), [["SDS [g]", 0.5]],
-         f"B3: floor '2' has neither a record nor a PFA, and no Elevation from which its motion could be derived. {UNPLACED}"),
-        ((None, None), [],
-         f"C3: floor '2' has neither a record nor a PFA, and no Elevation from which its motion could be derived. {UNPLACED}"),
+        ((4, None), [], None), ((12, None), [], None), ((-3, None), [], None),
+        *(((None, None), [line], None) for line in (
+            ["SDS [g]", 0.5], ["Ground PGA [g]", 0.2], ["Ground PGV [cm/s]", 20], ["Shaking", "JMA 7"]
+        )),
+        ((None, None), [["Storeys", 4]],
+         "C3: floor '2' has neither a record nor a PFA, no Elevation by which its motion follows from other floors, and "
+         f"{NO_GROUND} {UNSERVED}"),
     ],
 )  # fmt: skip
 def test_a_floor_without_motion_that_others_or_the_ground_serve(
     tmp_path: Path, middle: tuple[float | None, ...], building: list[list[Any]], error: str | None
 ) -> None:
     """What nothing can serve, whatever the scenario, is told with the other faults of the workbook."""
-    floors: Sheet = [["Floor", "Elevation [m]", "PFA X [g]"], ["1", 0, 0.3], ["2", *middle], ["3", 8, 0.4]]
+    floors: Sheet = [["Floor", "Elevation [m]", "PFA X [g]"], ["1", 3, 0.3], ["2", *middle], ["3", 8, 0.4]]
     items = [*ITEMS, ["A2", "9", 40, 180]]
     found = errors_of(write(tmp_path, items, floors, Building=building))
     other = {one for one in found if one.startswith("Items!B3: Floor '9' is not in the Floors sheet.")}
     assert len(other) == 1
     assert found - other == ({f"Floors!{error}"} if error else set())
+
+
+@pytest.mark.parametrize(
+    ("lowest", "building", "is_served"),
+    [
+        (["1", 0], [], True), (["1", -3], [["Storeys", 4]], True), (["1", 3], [], False),
+        (["0", None], [["Storeys", 4]], True), (["2", None], [["Storeys", 4]], False), (["0", None], [], False),
+    ],
+)  # fmt: skip
+def test_a_motion_at_grade_serves_floors_of_unknown_height(
+    tmp_path: Path, lowest: list[Any], building: list[list[Any]], is_served: bool
+) -> None:
+    write_record(tmp_path / "one.csv")
+    for motion in ([None, "one.csv"], [0.3, None]):
+        floors: Sheet = [["Floor", "Elevation [m]", "PFA X [g]", "Record X"], [*lowest, *motion], ["loft", *[None] * 3]]
+        path = write(tmp_path, floors=floors, items=[*ITEMS[:1], ["A1", "loft", 40, 180]], Building=building)
+        if not is_served:
+            assert {one.split(":")[0] for one in errors_of(path)} == {"Floors!C3"}
+            continue
+        loft = assess.run(path, verify="none").motions[-1]
+        unknown = "unknown_height" if building else "unknown_building"
+        assert (loft.floor, loft.source, loft.flags) == ("loft", "beam", ("drawn_building", unknown))
 
 
 def test_what_cannot_be_read_is_told_once(tmp_path: Path) -> None:

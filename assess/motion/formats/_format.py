@@ -27,17 +27,11 @@ Direction = tuple[float | None, bool]
 class Format:
     """One way in which files hold recorded motion.
 
-    Parameters
-    ----------
-    key : str
-        Short name.
-    title : str
-        As shown to people.
-    recognises : callable
-        Whether the first bytes of a file are of this format. The name of a file decides nothing.
-    read : callable
-        From the whole file and its name to its channels; raises RecordError, and nothing else, whatever the bytes. The
-        message need not name the file.
+    * `key`: short name.
+    * `title`: as shown to people.
+    * `recognises`: whether the first bytes of a file are of this format. The name of a file decides nothing.
+    * `read`: from the whole file and its name to its channels; raises RecordError, and nothing else, whatever the
+      bytes. The message need not name the file.
     """
 
     key: str

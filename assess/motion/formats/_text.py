@@ -64,14 +64,9 @@ class Columns:
 class Lines(Sequence[str]):
     """The lines of a text, each decoded (Latin-1) when it is asked for: as objects they take ten times their bytes.
 
-    Parameters
-    ----------
-    data : bytes
-        The text, whose lines end with a line feed.
-    ends : (n,) array
-        The place of the end of each line [bytes].
-    first : int
-        The place of the first line [bytes].
+    * `data`: the text, whose lines end with a line feed.
+    * `ends` (n,): the place of the end of each line [bytes].
+    * `first`: the place of the first line [bytes].
     """
 
     def __init__(self, data: bytes, ends: NDArray[np.int32], first: int = 0) -> None:

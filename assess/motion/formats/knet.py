@@ -39,7 +39,17 @@ _NUMBER = re.compile(r"[\d.]+")
 def _read_channel(section: Section, file: str) -> Record:
     header = {line[:NAME].strip(): line[NAME : 10 * NAME].strip() for line in section.lines[:HEADER]}
     rate, seconds = _number(header, "Sampling Freq(Hz)"), _number(header, "Duration Time(s)")
-    values, notes = read_words(section, HEADER, rate * seconds, _read_scale(header))
+    text = header.get("Scale Factor", "")
+    found = _SCALE.match(text)
+    above, below = (read_finite(found[1]), read_finite(found[2])) if found else (None, None)
+    if not above or not below:
+        raise RecordError(
+            fill(
+                "the scale factor is {text!r}, expected a ratio such as 3920(gal)/6182761. Get the file again",
+                text=text[:40],
+            )
+        )
+    values, notes = read_words(section, HEADER, rate * seconds, above / below * GAL)
     direction = header.get("Dir.", "")
     channel, azimuth = _DIRECTIONS.get(direction.lower(), (direction, None))
     return build_record(
@@ -71,21 +81,6 @@ def _number(header: dict[str, str], key: str) -> float:
             )
         )
     return number
-
-
-def _read_scale(header: dict[str, str]) -> float:
-    """Return what one count is [m/s2]."""
-    text = header.get("Scale Factor", "")
-    found = _SCALE.match(text)
-    above, below = (read_finite(found[1]), read_finite(found[2])) if found else (None, None)
-    if not above or not below:
-        raise RecordError(
-            fill(
-                "the scale factor is {text!r}, expected a ratio such as 3920(gal)/6182761. Get the file again",
-                text=text[:40],
-            )
-        )
-    return above / below * GAL
 
 
 def _read_start(text: str) -> str:

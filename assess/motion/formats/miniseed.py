@@ -17,7 +17,7 @@ from datetime import datetime, timedelta
 import numpy as np
 
 from assess.errors import RecordError
-from assess.i18n import Text, fill, nfill
+from assess.i18n import fill, nfill
 from assess.motion.formats._format import Format, build_record, check_channels, even_series, keep_readable
 from assess.motion.formats._values import direction_of_code
 from assess.motion.record import FloatArray, Record, Series, build_series, check_count
@@ -89,30 +89,22 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
         else:
             channels.setdefault(part.id, []).append(part)
             check_channels(len(channels))
-            _check_parts(number)
+            if number >= MOST_PARTS:
+                raise RecordError(
+                    fill("the file has more than {most:,} records of miniSEED: cut it to the shaking", most=MOST_PARTS)
+                )
     if not channels:
         raise RecordError(fill("the file has no complete miniSEED record. Get the file again"))
     codes = [parts[0].code for parts in channels.values()]
-    notes = _note_skipped(skipped)
-    return keep_readable(
-        channels.items(), lambda parts: _read_channel(file, parts, notes, codes.count(parts[0].code) > 1)
-    )
-
-
-def _check_parts(number: int) -> None:
-    if number >= MOST_PARTS:
-        raise RecordError(
-            fill("the file has more than {most:,} records of miniSEED: cut it to the shaking", most=MOST_PARTS)
-        )
-
-
-def _note_skipped(count: int) -> tuple[Text, ...]:
     note = nfill(
         "{n} byte that is no whole record of miniSEED was left out",
         "{n} bytes that are no whole records of miniSEED were left out",
-        count,
+        skipped,
     )
-    return (note,) if count else ()
+    notes = (note,) if skipped else ()
+    return keep_readable(
+        channels.items(), lambda parts: _read_channel(file, parts, notes, codes.count(parts[0].code) > 1)
+    )
 
 
 def _byte_order(data: bytes, at: int) -> str | None:

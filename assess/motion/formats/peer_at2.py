@@ -31,7 +31,17 @@ _YEAR = re.compile(r"[\d/. -]+|\w+ \d+ ?,? ?\d{4}")
 
 def _read_channel(section: Section, file: str) -> Record:
     header = read_fields(section, HEADER)
-    factor = _read_factor(header)
+    kind = header["kind"].lower()
+    if not kind:
+        raise RecordError(fill("the header does not name what the file holds. Get the file again"))
+    if kind != "acceleration":
+        raise RecordError(
+            fill(
+                "the file holds {kind}, not accelerations. Give the .AT2 file of the same channel",
+                kind=name_quantity(kind),
+            )
+        )
+    factor = require_unit(header["unit"])
     count, step = header["count"] or header["old_count"], read_finite(header["step"] or header["old_step"])
     if not count or step is None:
         raise RecordError(
@@ -50,21 +60,6 @@ def _read_channel(section: Section, file: str) -> Record:
         station=station,
         event=event,
     )
-
-
-def _read_factor(header: dict[str, str]) -> float:
-    """Return the factor from the file's unit to m/s2; raise RecordError unless it holds accelerations."""
-    kind = header["kind"].lower()
-    if not kind:
-        raise RecordError(fill("the header does not name what the file holds. Get the file again"))
-    if kind != "acceleration":
-        raise RecordError(
-            fill(
-                "the file holds {kind}, not accelerations. Give the .AT2 file of the same channel",
-                kind=name_quantity(kind),
-            )
-        )
-    return require_unit(header["unit"])
 
 
 def _read_title(line: str) -> tuple[str, str, str]:

@@ -220,7 +220,10 @@ def _read_values(data: bytes, table: _Table) -> list[FloatArray]:
     for block, line in _blocks(data, table):
         numbers = _read_block(block, table, line)
         rows += len(numbers) // width
-        _check_rows(rows, width)
+        if rows > MOST_SAMPLES:
+            raise RecordError(fill("the file has more than {most:,} rows: cut it to the shaking", most=MOST_SAMPLES))
+        if rows * width > MOST_VALUES:
+            raise too_many_values()
         found = np.array(numbers).reshape(-1, width)
         for column, own in zip(columns, found.T, strict=True):
             column.append(own.copy())
@@ -230,13 +233,6 @@ def _read_values(data: bytes, table: _Table) -> list[FloatArray]:
     while columns:  # each is let go as it is joined
         whole.append(np.concatenate(columns.pop(0)))
     return whole
-
-
-def _check_rows(rows: int, width: int) -> None:
-    if rows > MOST_SAMPLES:
-        raise RecordError(fill("the file has more than {most:,} rows: cut it to the shaking", most=MOST_SAMPLES))
-    if rows * width > MOST_VALUES:
-        raise too_many_values()
 
 
 def _blocks(data: bytes, table: _Table) -> Iterator[tuple[bytes, int]]:
@@ -364,13 +360,6 @@ def _azimuth_of_name(name: str) -> float | None:
     return float(found[1]) if found and float(found[1]) <= 360 else None
 
 
-def _read_corrected(comments: Mapping[str, str]) -> bool:
-    answer = comments.get("corrected", "").lower()
-    if answer not in _ANSWERS:
-        raise RecordError(fill("corrected is {text!r}, expected yes or no", text=answer[:40]))
-    return _ANSWERS[answer]
-
-
 def _build_record(
     file: str, table: _Table, column: _Column, azimuth: float | None, times: FloatArray, own: FloatArray
 ) -> Record:
@@ -379,12 +368,17 @@ def _build_record(
     except RecordError as error:
         raise RecordError(fill("channel {name!r}: {why}", name=column.name, why=error.message)) from None
     vertical, comments = azimuth == np.inf, table.comments
+    answer = comments.get("corrected", "").lower()
+    if answer not in _ANSWERS:
+        raise RecordError(fill("corrected is {text!r}, expected yes or no", text=answer[:40]))
+    unknown = ", ".join(repr(key[:40]) for key in comments if key not in KEYS)
+    note = fill("comments that are not used: {names} (known: {known})", names=unknown, known=", ".join(KEYS))
     return build_record(
         TITLE,
         file,
-        replace(series, notes=(*_note_comments(comments), *series.notes)),
+        replace(series, notes=(*((note,) if unknown else ()), *series.notes)),
         own=own,
-        corrected=_read_corrected(comments),
+        corrected=_ANSWERS[answer],
         channel=column.name,
         direction=(None if vertical else azimuth, vertical),
         location=comments.get("location", ""),
@@ -392,12 +386,6 @@ def _build_record(
         event=comments.get("event", ""),
         start=comments.get("start", ""),
     )
-
-
-def _note_comments(comments: Mapping[str, str]) -> tuple[str, ...]:
-    unknown = ", ".join(repr(key[:40]) for key in comments if key not in KEYS)
-    note = fill("comments that are not used: {names} (known: {known})", names=unknown, known=", ".join(KEYS))
-    return (note,) if unknown else ()
 
 
 FORMAT = Format(key="csv", title=TITLE, recognises=recognises, read=read)

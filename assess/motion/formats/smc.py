@@ -75,6 +75,7 @@ def _read_channel(section: Section, file: str) -> Record:
     numbers = _read_numbers(section, kind[1], header["title"])
     own, series = _read_series(section, numbers)
     vertical, azimuth, notes = _orientation(header["component"], numbers)
+    number = numbers.integers[RECORDER]
     record = build_record(
         TITLE,
         file,
@@ -89,7 +90,7 @@ def _read_channel(section: Section, file: str) -> Record:
         start=_start(header),
         header_pfa=read_peak(header["peak"], CM_S2),
         notes=notes,
-        recorder=_recorder(numbers),
+        recorder="" if number is None else str(number),
     )
     if numbers.integers[PROBLEM] != 1:
         return record
@@ -221,11 +222,6 @@ def _start(header: dict[str, str]) -> str:
         return ""
     date = f"{header['year']}-{int(header['month']):02d}-{int(header['day']):02d}"
     return f"{date} {header['hour']}:{header['minute']} UTC"
-
-
-def _recorder(header: _Numbers) -> str:
-    number = header.integers[RECORDER]
-    return "" if number is None else str(number)
 
 
 def _location(header: _Numbers) -> str:

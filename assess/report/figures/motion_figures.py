@@ -151,7 +151,12 @@ def _draw_motions(results: Results, worst: Traced, progress: Progress) -> Figure
     texts = [_("Floor {floor} along {axis}, where {item} stands, the worst simulated piece.",
                floor=floor, axis=axis, item=worst.name)]  # fmt: skip
     examples = sum(name != "record" for name, *_rest in accelerations)
-    if len(accelerations) > examples:
+    shown = _("Acceleration against time and 5 % response spectra of the motions of floor {floor}, {axis}",
+              floor=floor, axis=axis)  # fmt: skip
+    if spectra is None:
+        texts.append(ngettext("The first of the motions.", "The first {n:,} of the motions.", examples))
+        shown = _("Acceleration against time of the motions of floor {floor}, {axis}", floor=floor, axis=axis)
+    elif len(accelerations) > examples:
         texts.append(
             ngettext(
                 "Left: the recorded motion and the first of those made for it.",
@@ -167,8 +172,6 @@ def _draw_motions(results: Results, worst: Traced, progress: Progress) -> Figure
             "Right: the 5 % response spectra of {n:,} motions, their mean and the band from the 16th to the 84th "
             "percentile, with the target.", len(spectra.pseudo_g),
         ))  # fmt: skip
-    shown = _("Acceleration against time and 5 % response spectra of the motions of floor {floor}, {axis}",
-              floor=floor, axis=axis)  # fmt: skip
     height = max(2.9, 0.5 + 0.75 * (1 + len(accelerations)))
     drawing = draw(7, height, partial(_paint_motions, accelerations, spectra), progress=progress)
     return Figure(drawing, " ".join(texts), shown)
@@ -282,7 +285,6 @@ class Spectra:
     pseudo_g: FloatArray
     target_g: FloatArray | None
     target_name: str
-    is_generic: bool
 
 
 def _list_accelerations(results: Results, one: Traced) -> list[Acceleration]:
@@ -301,15 +303,16 @@ def _read_spectra(results: Results, motion: MotionRow) -> Spectra | None:
         return None
     target, said = None, ""
     if f"{name}/target_g" in series:
-        target = series[f"{name}/target_g"]
-        said = _("record, which is the target") if motion.has_record else _("target (generic)")
+        target, said = series[f"{name}/target_g"], _("record, which is the target")
     elif f"{name}/record_spectrum_g" in series:
         target, said = series[f"{name}/record_spectrum_g"], _("record")
-    return Spectra(series[f"{name}/periods_s"], series[f"{name}/spectra_g"], target, said, not motion.has_record)
+    return Spectra(series[f"{name}/periods_s"], series[f"{name}/spectra_g"], target, said)
 
 
 def _paint_motions(accelerations: Sequence[Acceleration], spectra: Spectra | None, figure: Any) -> None:
-    left, right = figure.subfigures(1, 2, width_ratios=(1.2, 1))
+    left = figure
+    if spectra is not None:
+        left, right = figure.subfigures(1, 2, width_ratios=(1.2, 1))
     panels = left.subplots(len(accelerations), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
     for axes, (gid, name, values, step) in zip(panels, accelerations, strict=True):
         times, shown = thin_out(np.arange(values.size) * step, values, MOST_SAMPLES)
@@ -343,8 +346,8 @@ def _paint_spectra(axes: Any, spectra: Spectra) -> None:
     axes.plot(periods, pseudo.mean(axis=0), color=MEAN, linewidth=1.2, linestyle="--", zorder=4,
               label=_("their mean"))[0].set_gid("mean")  # fmt: skip
     if spectra.target_g is not None:
-        axes.plot(periods, spectra.target_g, color=RECORD, linewidth=2.2, linestyle=":" if spectra.is_generic else "-",
-                  zorder=3, label=spectra.target_name)[0].set_gid("wanted")  # fmt: skip
+        axes.plot(periods, spectra.target_g, color=RECORD, linewidth=2.2, zorder=3,
+                  label=spectra.target_name)[0].set_gid("wanted")  # fmt: skip
 
 
 def _frame_spectra(axes: Any, periods: FloatArray) -> None:

@@ -114,23 +114,24 @@ def _describe_ratio(worst: ItemResult, ratio: float, methods: Sequence["MethodIn
     by_velocity = [method for method in methods if any(flag.startswith("pfv_") for flag in method.flags)]
     if not by_velocity:
         return
-    names = _name(by_velocity)
+    switching = _name([method for method in by_velocity if method.ruled_by == "pfa"])
     if math.isnan(ratio):
         yield _(
             "PFV is not known for the worst of these pieces: the panel {methods} shows the largest chance that any PFV "
             "gives.",
-            methods=names,
+            methods=switching,
         )
         return
     motion = worst.governing.motion
     yield _(
-        "In the panel {methods}, PFV grows with PFA, {ratio:.0f} cm/s for each g: the ratio of floor {floor} {axis}, "
-        "whose motion governs the worst of these pieces.",
-        methods=names, ratio=(motion.pfv_cm_s or 0.0) / motion.pfa_g, floor=motion.floor, axis=motion.axis,
+        "PFV grows with PFA, {ratio:.0f} cm/s for each g: the ratio of floor {floor} {axis}, whose motion governs the "
+        "worst of these pieces. Methods that depend on it: {methods}.",
+        ratio=(motion.pfv_cm_s or 0.0) / motion.pfa_g, floor=motion.floor, axis=motion.axis, methods=_name(by_velocity),
     )  # fmt: skip
-    if "pfv_estimated" in motion.flags:
-        yield _("This PFV is an estimate.")
-    yield _("Where the formula changes from PFA to PFV, it jumps, which shows as a step.")
+    if switching:
+        yield _(
+            "Where a method changes from PFA to PFV, it jumps, which shows as a step: {methods}.", methods=switching
+        )
 
 
 def _describe_alt(height: float, pieces: Sequence[ItemResult], methods: Sequence["MethodInfo"]) -> str:

@@ -22,8 +22,8 @@ FloatArray = NDArray[np.float64]
 LINES = (0.03, 0.1, 0.3, 0.5, 0.7, 0.9)
 """Chances at which lines are drawn [-]."""
 MOST_NAMES = 12
-PANEL = (205.0, 190.0)
-"""About the size of a panel [points], by which texts are kept off each other."""
+PANEL = (148.0, 190.0)
+"""About the size of a panel of three [points], by which texts are kept off each other."""
 MARKERS = {RiskClass.LOW: "o", RiskClass.MEDIUM: "D", RiskClass.HIGH: "^", RiskClass.VERY_HIGH: "s"}
 """The symbols of the classes, as matplotlib names them."""
 APART = {"unconfirmed": "p", "formula": "v"}
@@ -63,14 +63,19 @@ def paint_risk(axes: Any, breadth: FloatArray, pfa: FloatArray, risk: FloatArray
 
 
 def paint_checked(axes: Any, method: "MethodInfo", height_cm: float) -> None:
-    """Outline where a method has been checked, in so far as it says, for pieces of one height."""
+    """Outline where a method has been checked, in so far as it says, for pieces of one height; at any PFA its sides."""
     slender, pfa = method.valid.get("breadth_to_height"), method.valid.get("pfa")
-    if slender is None or pfa is None:
+    if slender is None:
         return
     left, right = (end * height_cm for end in (slender.low, slender.high))
-    corners = ([left, right, right, left, left], [pfa.low, pfa.low, pfa.high, pfa.high, pfa.low])
-    axes.plot(*corners, color=HALO, linewidth=2.2)
-    axes.plot(*corners, color=INK, linewidth=1.2, linestyle=":")[0].set_gid("checked")
+    if pfa is None:
+        corners = ([left, left, np.nan, right, right], [0, 1, np.nan, 0, 1])
+        where = {"transform": axes.get_xaxis_transform()}
+    else:
+        corners = ([left, right, right, left, left], [pfa.low, pfa.low, pfa.high, pfa.high, pfa.low])
+        where = {}
+    axes.plot(*corners, color=HALO, linewidth=2.2, **where)
+    axes.plot(*corners, color=INK, linewidth=1.2, linestyle=":", **where)[0].set_gid("checked")
 
 
 def paint_pieces(axes: Any, places: Mapping[Place, Sequence[ItemResult]]) -> None:
@@ -130,9 +135,6 @@ def paint_legend(figure: Any, *, has_checked: bool = True) -> None:
     checked = Line2D([], [], color=INK, linewidth=1.2, linestyle=":", label=_("range in which the formula is checked"))
     handles = [*fields, checked] if has_checked else fields
     figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=7, frameon=False)
-
-
-# ---------------------------------------------------------------- where texts go, in points
 
 
 def box_around(x: float, y: float, width: float, height: float) -> Box:

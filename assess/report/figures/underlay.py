@@ -96,9 +96,6 @@ def widen(box: Bounds, frame: Sequence[Point]) -> Bounds:
     )
 
 
-# ---------------------------------------------------------------- rooms and the building's edge
-
-
 def list_rooms(places: Sequence[Place]) -> tuple[Room, ...]:
     """Return the places of a floor that have an outline, the largest first."""
     outlined = [one for one in places if one.outline]

@@ -156,7 +156,6 @@ def _say_falls(found: AnnualTables) -> Iterator[str]:
 
 
 def _say_life_safety(found: AnnualTables) -> Iterator[str]:
-    """Say how likely any life-safety piece falls."""
     row = found.life_safety
     if row is None:
         yield _("No simulated free-standing piece has the Importance life safety.")

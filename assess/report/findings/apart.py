@@ -22,7 +22,7 @@ def list_apart(results: Iterable[ItemResult], basis: str) -> list[ItemResult]:
 
 def list_parts(results: Sequence[ItemResult]) -> list[tuple[str, list[ItemResult]]]:
     """Return the rows of a list by their basis, each part in their order: the first has no heading."""
-    heads = {"": "", "unconfirmed": _("Unconfirmed: class and chance by formula, a lower class was simulated"),
+    heads = {"": "", "unconfirmed": _("Unconfirmed: nothing is known of the building, or the motions may be too weak"),
              "formula": _("By formula only: not simulated")}  # fmt: skip
     parts = {basis: [one for one in results if one.apart == basis] for basis in heads}
     return [(heads[basis], own) for basis, own in parts.items() if own]
@@ -41,10 +41,10 @@ def say_apart(results: Sequence[ItemResult]) -> list[str]:
 def _say_unconfirmed(unconfirmed: Sequence[ItemResult]) -> str:
     names = words.name_first([words.cut(one.item.item, 20) for one in unconfirmed], NAMED)
     text = ngettext(
-        "{n:,} piece is unconfirmed and counted apart: simulation gave a lower class than the formula, but its motions "
-        "may be too weak to rely on ({names}).",
-        "{n:,} pieces are unconfirmed and counted apart: simulation gave a lower class than the formula, but its "
-        "motions may be too weak to rely on ({names}).",
+        "{n:,} piece is unconfirmed and counted apart, as nothing is known of its building or its motions may be too "
+        "weak ({names}).",
+        "{n:,} pieces are unconfirmed and counted apart, as nothing is known of their building or their motions may be "
+        "too weak ({names}).",
         _pieces(unconfirmed), names=names,
     )  # fmt: skip
     return _add_risky(text, unconfirmed)
@@ -65,8 +65,8 @@ def _add_risky(text: str, pieces: Sequence[ItemResult]) -> str:
     if not risky:
         return text
     return text + " " + ngettext(
-        "By the formula, {n:,} of them would be high or very high.",
-        "By the formula, {n:,} of them would be high or very high.",
+        "{n:,} of them would be high or very high.",
+        "{n:,} of them would be high or very high.",
         risky,
     )  # fmt: skip
 
@@ -75,10 +75,10 @@ def list_ways_to_settle(unconfirmed: Iterable[ItemResult]) -> list[str]:
     """Return what to fill in, or to use, so that unconfirmed pieces get a class of their own."""
     flags = {flag for one in unconfirmed for flag in one.adopted.flags}
     ways = []
-    if "unknown_period" in flags:
-        period, height = (_(BUILDING.column(name).label) for name in ("period", "height"))
-        ways.append(_("To settle this, fill in {period} or {height} in the sheet Building, or records of the floors.",
-                      period=period, height=height))  # fmt: skip
+    if "unknown_building" in flags:
+        storeys, period = (_(BUILDING.column(name).label) for name in ("storeys", "period"))
+        ways.append(_("To settle this, fill in {storeys} or {period} in the sheet Building, or records of the floors.",
+                      storeys=storeys, period=period))  # fmt: skip
     if "weak_motions" in flags:
         ways.append(_("To settle this, simulate under stronger motions: records of your own whose PFV reaches the "
                       "floor's, or scaled to it."))  # fmt: skip

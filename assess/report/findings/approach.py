@@ -51,7 +51,8 @@ def _say_classes(content: "Content") -> str:
 def _say_interval() -> str:
     return _(
         "A range is the 95 % sampling interval of Wilson (1927). It covers the number of draws only, not what is "
-        "unknown about the earthquake or the furniture."
+        "unknown about the earthquake or the furniture. On assumed motion it is the chance in the slower and in the "
+        "faster third of the drawn motions: what is not known of the ground and of the building."
     )
 
 

@@ -21,18 +21,18 @@ def say_shaking_shortly(results: Results) -> str:
         return ""
     values = {
         "intensity": _(found.choice), "pga": words.in_g(found.pga_g), "pgv": words.fixed(found.pgv_cm_s, 1),
-        "sources": ", ".join(found.sources), "code": found.profile, "scatter": number(found.scatter, "g"),
+        "sources": ", ".join(found.sources), "scatter": number(found.scatter, "g"),
     }  # fmt: skip
     if uses_scatter(results):
         text = _(
-            "Assumed shaking: {intensity}, by its published median PGA of {pga} g and PGV of {pgv} cm/s, scatter of "
-            "ln PGA {scatter} ({sources}), and the design profile of {code}.",
+            "Assumed shaking: {intensity}, by its median PGV of {pgv} cm/s and PGA of {pga} g, scatter of ln PGV "
+            "{scatter} ({sources}).",
             **values,
         )
     else:
         text = _(
-            "Assumed shaking: {intensity}, by its published median PGA of {pga} g and PGV of {pgv} cm/s ({sources}), "
-            "and the design profile of {code}; scatter is not in the results.",
+            "Assumed shaking: {intensity}, by its median PGV of {pgv} cm/s and PGA of {pga} g ({sources}); scatter is "
+            "not in the results.",
             **values,
         )
     return " ".join((text, *say_factor(results)))
@@ -46,13 +46,12 @@ def uses_scatter(results: Results) -> bool:
 def _say(found: AssumedShaking, results: Results) -> Iterator[str]:
     yield _(
         "Assumed shaking: no motion of the ground is known for this building. {intensity} is assumed, with its "
-        "published median PGA of {pga} g and PGV of {pgv} cm/s ({sources}).",
+        "median PGV of {pgv} cm/s and PGA of {pga} g ({sources}).",
         intensity=_(found.choice), pga=words.in_g(found.pga_g), pgv=words.fixed(found.pgv_cm_s, 1),
         sources=", ".join(found.sources),
     )  # fmt: skip
     yield from say_factor(results)
     yield _say_scatter(found, results)
-    yield _("Over the height the motion follows the design profile of {code}.", code=found.profile)
 
 
 def say_factor(results: Results) -> Iterator[str]:
@@ -67,18 +66,17 @@ def _say_scatter(found: AssumedShaking, results: Results) -> str:
     scatter = number(found.scatter, "g")
     if uses_scatter(results):
         return _(
-            "PGA scatters about this median by {scatter} (standard deviation of ln PGA); Motion uncertainty is set to "
-            "at least this value.",
+            "PGV scatters about this median by {scatter} (standard deviation of ln PGV), which is drawn.",
             scatter=scatter,
         )
     if results.has_simulated:
         return _(
-            "PGA scatters about this median by {scatter} (standard deviation of ln PGA); the simulation leaves this "
+            "PGV scatters about this median by {scatter} (standard deviation of ln PGV); the simulation leaves this "
             "scatter out: its chances hold for the median alone.",
             scatter=scatter,
         )
     return _(
-        "PGA scatters about this median by {scatter} (standard deviation of ln PGA). The formula takes the median; the "
+        "PGV scatters about this median by {scatter} (standard deviation of ln PGV). The formula takes the median; the "
         "scatter is not in it.",
         scatter=scatter,
     )
@@ -92,8 +90,8 @@ def list_assumptions(results: Results) -> list[tuple[str, str]]:
     lines = [(_("Shaking"), say_shaking(results))]
     if found.is_derived:
         text = _(
-            "derived from PGV by way of MMI, as no published relation of the JMA class to PGA was found; the "
-            "scatters of all steps and the width of the class are added up as independent"
+            "from PGV by the ratio that is drawn, as no published relation of the JMA class to PGA was found; the "
+            "scatter is that of PGV, with the width of the class"
         )
         lines.append((_("PGA of the assumed shaking"), text))
     if found.is_open:

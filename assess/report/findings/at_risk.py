@@ -108,9 +108,6 @@ def list_rooms_at_risk(routes: RouteTables) -> list[RoomRow]:
     )
 
 
-# ---------------------------------------------------------------- sentences
-
-
 def say_routes(results: Results) -> list[str]:
     """Return what a summary says of the routes; nothing where the workbook names none."""
     routes = results.route_tables

@@ -8,6 +8,7 @@ from assess.i18n import ngettext
 from assess.report import words
 from assess.report.findings.motions import ENVELOPES, describe_suite, list_floors, used_profiles, with_status
 from assess.results import MAY_BE_LOWER, MotionRow, Results, SuiteInfo
+from assess.workbook.schema import BUILDING
 
 UNLIKE = 0.10
 """Difference between the median PFA of the user's own motions and the PFA of a floor above which it is reported [-]."""
@@ -35,7 +36,7 @@ def build_cautions(results: Results) -> list[Caution]:
         cautions.append(Caution(text, text))
     if results.has_simulated:
         suite = results.provenance.suite
-        cautions += _generic(results.motions) if suite is None else _own_motions(results, suite)
+        cautions += _generic(results) if suite is None else _own_motions(results, suite)
     return cautions
 
 
@@ -86,22 +87,43 @@ def _underestimates(results: Results) -> Iterator[Caution]:
         yield Caution(text, short)
 
 
-def _generic(motions: Sequence[MotionRow]) -> Iterator[Caution]:
-    """Name the floors whose pieces were simulated under a generic spectrum, and where simulation may lower no class."""
-    made = [(one.floor, one.ensemble) for one in motions if one.ensemble is not None]
-    unknown = list(dict.fromkeys(floor for floor, one in made if one.unknown_period))
-    generic = list(dict.fromkeys(floor for floor, one in made if one.generic_spectrum and not one.unknown_period))
+def list_narrowing(results: Results) -> list[str]:
+    """Return what would narrow the chances on assumed motion, the most useful first; nothing where there is none."""
+    building, motions = results.building, results.motions
+    assumed = [one for one in motions if one.ensemble is not None and one.ensemble.assumed_motion]
+    if not assumed:
+        return []
+    at_grade = {one.source for one in motions if one.height_ratio == 0}
+    if all(one.source == "given" and not one.pfv_follows for one in assumed):  # met in every draw, whatever the ground
+        ways, is_ground_known = [_("records of the floors")], True
+    else:
+        ways = [] if "record" in at_grade else [_("a record of the ground on a floor of Elevation 0")]
+        is_ground_known = not at_grade.isdisjoint(("record", "given"))
+    known = {"ground_pgv": is_ground_known, "storeys": building.height or building.period}
+    for name in ("ground_pgv", "storeys", "period", "structure"):
+        if not (getattr(building, name) or known.get(name)):
+            ways.append(_(BUILDING.column(name).label))
+    return ways
+
+
+def _generic(results: Results) -> Iterator[Caution]:
+    """Name the floors whose pieces were simulated under assumed motions, and those with weaker ones."""
+    made = [(one.floor, one.ensemble) for one in results.motions if one.ensemble is not None]
+    unknown = list(dict.fromkeys(floor for floor, one in made if one.unknown_building))
+    assumed = list(dict.fromkeys(floor for floor, one in made if one.assumed_motion and not one.unknown_building))
     weak = list(dict.fromkeys(floor for floor, one in made if one.weak_motions))
     if unknown:
-        text = _("{floors}: the generated motions follow a generic spectrum, and neither T1 nor the building's height "
-                 "is known; simulation may raise a class there, never lower it.", floors=_name(unknown))  # fmt: skip
-        short = _("{floors}: generic spectrum, T1 unknown; simulation may raise a class there, never lower it.",
+        text = _("{floors}: assumed motion, and neither T1, Height, Storeys nor an Elevation is known; buildings of "
+                 "every period were drawn, and no class is confirmed.", floors=_name(unknown))  # fmt: skip
+        short = _("{floors}: assumed motion, nothing known of the building; no class is confirmed.",
                   floors=_name_some(unknown))  # fmt: skip
         yield Caution(text, short)
-    if generic:
-        text = _("{floors}: only peaks are known; the generated motions follow a generic spectrum for the building's "
-                 "period.", floors=_name(generic))  # fmt: skip
-        yield Caution(text, _("{floors}: generic spectrum for the building's period.", floors=_name_some(generic)))
+    if assumed:
+        text = _("{floors}: assumed motion: earthquakes with the known peaks of the ground and buildings of about this "
+                 "period were drawn.", floors=_name(assumed))  # fmt: skip
+        if ways := list_narrowing(results):
+            text += " " + _("What would narrow it: {ways}.", ways=", ".join(ways))
+        yield Caution(text, _("{floors}: assumed motion (ground and building drawn).", floors=_name_some(assumed)))
     if weak:
         text = _("{floors}: the generated motions have a smaller PFV than the floor's; simulation may raise a class "
                  "there, never lower it.", floors=_name(weak))  # fmt: skip

@@ -78,12 +78,9 @@ class Group:
         return self._describe([row.lowest for row in self.rows])
 
     def _describe(self, verdicts: Sequence[Verdict]) -> str:
-        """Return a method, its class and its values, and whether an estimated PFV raises the class."""
+        """Return a method, its class and its values."""
         first = verdicts[0]
-        said = f"{first.title}: {words.risk_label(first.risk)}, {words.percents([one.value for one in verdicts])}"
-        if not _rests_on_estimate(self.rows[0], first):
-            return said
-        return _("{verdict}, rests on an estimated PFV", verdict=said)
+        return f"{first.title}: {words.risk_label(first.risk)}, {words.percents([one.value for one in verdicts])}"
 
     @property
     def reasons(self) -> Sequence[str]:
@@ -220,17 +217,11 @@ def group_disagreements(disagreements: Iterable[Disagreement]) -> Sequence[Group
     groups: dict[tuple[object, ...], list[Disagreement]] = {}
     for one in disagreements:
         reasons = tuple((method.key, reason.text) for method, reason in one.reasons)
-        rests = [_rests_on_estimate(one, verdict) for verdict in (one.highest, one.lowest)]
-        key = (one.highest.method.key, one.highest.risk, one.lowest.method.key, one.lowest.risk, reasons, *rests)
+        key = (one.highest.method.key, one.highest.risk, one.lowest.method.key, one.lowest.risk, reasons)
         groups.setdefault(key, []).append(one)
     for rows in groups.values():
         rows.sort(key=lambda row: (-int(row.result.adopted.upper), natural_key(row.result.item.item)))
     return tuple(map(Group, sorted(groups.values(), key=_rank)))
-
-
-def _rests_on_estimate(row: Disagreement, verdict: Verdict) -> bool:
-    """Tell whether an estimated PFV raises the class that a method gives."""
-    return "rests_on_estimated_pfv" in row.result.governing.methods[verdict.method.key].flags
 
 
 def _rank(rows: Sequence[Disagreement]) -> tuple[bool, int, int, int]:

@@ -55,10 +55,10 @@ def _list_sentences(draws: EarthquakeDraws, *, has_suite: bool) -> Iterator[str]
 def _say_place(draws: EarthquakeDraws) -> str:
     source = _("as the ShakeMap gives it") if draws.is_shared_given else _("Boore et al. 2014")
     return _(
-        "The draws are those of a city: what is drawn has a part that is common to all places, a share of {shared} of "
-        "its variance ({source}), and one that is correlated with that of a place at a distance h by exp(-3h/{range} "
-        "km) (Jayaram and Baker 2009).",
-        shared=number(draws.shared, ".3f"), source=source, range=number(draws.range_km, "g"),
+        "The draws are those of a city: what is drawn, of ln {measure}, has a part that is common to all places, a "
+        "share of {shared} of its variance ({source}), and one that is correlated with that of a place at a distance h "
+        "by exp(-3h/{range} km) (Jayaram and Baker 2009).",
+        measure=draws.measure, shared=number(draws.shared, ".3f"), source=source, range=number(draws.range_km, "g"),
     )  # fmt: skip
 
 

@@ -9,6 +9,7 @@ from assess.report import words
 from assess.report.counts import Counts
 from assess.report.findings.motions import describe_source
 from assess.results import FloorRow, MotionRow
+from assess.risk import RiskClass
 
 SOURCES = 3
 """Sources that a line names."""
@@ -45,7 +46,7 @@ def _say_speed(axis: str, motions: Sequence[MotionRow]) -> str:
 
 def say_counts(counts: Counts) -> str:
     """Return the pieces of a floor by class, with what stands apart, and the expected falls."""
-    parts = [f"{words.risk_label(risk)} {pieces:,}" for risk, pieces in reversed(list(counts.by_class.items()))]
+    parts = [f"{words.risk_label(risk)} {counts.say(risk)}" for risk in reversed(RiskClass)]
     apart = (
         (words.UNCONFIRMED, _("unconfirmed"), counts.unconfirmed),
         (words.BY_FORMULA, _("by formula only"), counts.by_formula),

@@ -2,11 +2,11 @@
 
 from assess.i18n import gettext as _
 from assess.report import words
-from assess.report.findings.motions import describe_source, list_floors
+from assess.report.findings.motions import describe_source
 from assess.results import MotionRow, Results
 
 PEAKS = ("ground_pga", "sds")
-"""Fields of the building that serve floors on a code's profile, chances a year, and the code's force on anchors."""
+"""Fields of the building that serve floors without a record, chances a year, and the code's force on anchors."""
 
 
 def say_ground(results: Results, name: str, given: str) -> str:
@@ -25,7 +25,7 @@ def say_ground(results: Results, name: str, given: str) -> str:
     if not reason:
         return given
     used = _find_used(results) if name == "ground_pga" else None
-    of_anchors = name == _find_for_anchors(results)
+    of_anchors = name == ("sds" if results.building.sds is not None else "ground_pga")
     if used is None:
         if of_anchors:
             return _("{given}, used for the code's force on anchors only: {reason}", given=given, reason=reason)
@@ -40,18 +40,17 @@ def say_ground(results: Results, name: str, given: str) -> str:
              reason=reason)  # fmt: skip
 
 
-def _find_for_anchors(results: Results) -> str:
-    """Return the field of the building that the code's force on anchors follows: SDS where it is given."""
-    return "sds" if results.building.sds is not None else "ground_pga"
-
-
 def _find_reason(results: Results, name: str) -> str:
     """Return why no floor's motion follows a peak, "" where one does."""
     building = results.building
     if name == "ground_pga" and building.hazard:
         return ""
-    if not list_floors(results.motions, "profile"):
-        return _("no floor follows a code's profile")
+    if all(one.source == "record" or one.between for one in results.motions):
+        return _("every floor has a record")
+    levels = {one.floor: one.elevation_m for one in results.floor_rows}
+    at_grade = [one for one in results.motions if (level := levels.get(one.floor)) is not None and level <= 0]
+    if any(one.source in ("record", "given") for one in at_grade):
+        return _("the motion at grade is known")
     if name == "sds" and building.ground_pga is not None:
         return _("Ground PGA is given")
     return ""

@@ -4,10 +4,12 @@ from collections.abc import Iterable
 
 from assess.i18n import fill, ngettext, number
 from assess.i18n import gettext as _
+from assess.intensity import RATIO
 from assess.model import AXES
 from assess.report import words
 from assess.report.findings.ground_source import name_source
 from assess.results import MOTION_FLAGS, MotionRow, ProfileInfo, Results
+from assess.units import GRAVITY
 
 ENVELOPES = fill(
     "Profiles of building codes are design envelopes, not expected values: they mostly lie above what is recorded, but "
@@ -16,6 +18,13 @@ ENVELOPES = fill(
     "lowest of the four; a long T1 lowers that of ASCE 7-22."
 )
 """The caution that goes with a code's profile."""
+DRAWN = fill(
+    "assumed: drawn earthquakes through drawn buildings, beams that bend and shear with eight modes of 5 % damping "
+    "(Miranda and Taghavi 2005), on ground motions with the spectrum of Newmark and Hall (1982)"
+)
+"""What is assumed of floors without a record."""
+MOST_ELASTIC = 1.0
+"""PFA [g] above which a floor of a drawn building is said to hold if the building stays elastic."""
 MOST_PLACES = 20
 """Floors and axes of a source that are named."""
 
@@ -25,8 +34,9 @@ _OWN = {
     "shakemap": fill("ShakeMap"),
     "scenarios": fill("scenarios"),
     "assumed_elevation": fill("assumed elevation"),
-    "pfv_estimated": fill("PFV estimated from T1"),
-    "pfv_capped": fill("PFV capped by Ground PGV"),
+    "unknown_height": fill("height unknown"),
+    "unknown_building": fill("building unknown"),
+    "beyond_table": fill("beyond the table"),
 }
 _CARRIED = _OWN | {"one_axis_only": fill("one axis only")}
 """Flags next to a source: of the floor itself, and of a neighbouring floor."""
@@ -39,9 +49,12 @@ def describe_source(motion: MotionRow) -> str:
         source = _("design profile of {code}", code=motion.profile.key)
     elif motion.between:
         source = _describe_between(motion)
+    elif motion.source == "beam":
+        source = _("drawn buildings on the ground motion")
+        if motion.pfa_g > MOST_ELASTIC:
+            source = _("{source}, if the building stays elastic", source=source)
     elif motion.source == "given":
-        is_pfv_given = motion.pfv_cm_s is not None and "pfv_estimated" not in motion.flags
-        source = _("given PFA and PFV") if is_pfv_given else _("given PFA")
+        source = _("given PFA") if motion.pfv_follows else _("given PFA and PFV")
     texts = _CARRIED if motion.between else _OWN
     flags = [_(texts[flag]) for flag in motion.flags if flag in texts]
     return source + (f" ({'; '.join(flags)})" if flags else "")
@@ -62,6 +75,9 @@ def describe_origin(motion: MotionRow) -> str:
             code=motion.profile.key, clause=_with_status(motion.clause, motion.profile), factors=factors(motion),
             pga=words.in_g(motion.pfa_g / motion.amplification),
         )  # fmt: skip
+    if motion.source == "beam":
+        values = {"place": words.fixed(motion.height_ratio, 3), "factor": words.fixed(motion.amplification, 3)}
+        return _("{ground}: z/h {place}, PFA over the ground's {factor}", ground=_(motion.label), **values)
     if motion.is_level:
         return _describe_between(motion)
     if motion.between:
@@ -177,8 +193,6 @@ def list_assumptions(results: Results) -> list[tuple[str, str]]:
         return []
     building, floors = results.building, ", ".join(list_floors(results.motions, "profile"))
     chosen = _("design profile of {code}, the scenario", code=with_status(used[0]))
-    if results.provenance.scenario == "as filled":
-        chosen = _("design profile of {code}, the default, as no motion of them is known", code=with_status(used[0]))
     is_from_sds = building.ground_pga is None and building.sds is not None
     pga = served[0].pfa_g / (served[0].amplification or 1.0)
     source = _("0.4 SDS, as Ground PGA is blank") if is_from_sds else _("Ground PGA")
@@ -193,6 +207,36 @@ def list_assumptions(results: Results) -> list[tuple[str, str]]:
         (_("Roof height h of the profile"), _describe_roof(results)),
     ]  # fmt: skip
     return lines + (_list_reduction(results) if any(profile.reduced for profile in used) else [])
+
+
+def list_drawn_assumptions(results: Results) -> list[tuple[str, str]]:
+    """Return what is assumed of the ground motion and of the building where floors have no record."""
+    made = [one for one in results.motions if one.ensemble is not None and one.ensemble.assumed_motion]
+    floors = ", ".join(
+        dict.fromkeys(one.floor for one in [*made, *results.motions] if one in made or one.source == "beam")
+    )
+    if not floors:
+        return []
+    building, origin = results.building, results.provenance
+    ratio = _("as filled in")
+    if building.ground_pgv is None:
+        ratio = _(
+            "drawn: median {ratio} cm/s per g, deviation of ln 0.40, as in earthquakes of magnitude 6.5 to 7.5",
+            ratio=number(100 * RATIO * GRAVITY, ".0f"),
+        )
+        if origin.shaking or (origin.site_ground and origin.site_ground.pgv_cm_s):
+            ratio = _("as the source of the ground motion has it")
+    period = _("1.4 times ASCE 7-22 Eq. 12.8-7 for the height of the roof, standard deviation of ln 0.35")
+    if building.period is not None:
+        period = _("{period} s, standard deviation of ln 0.10", period=number(building.period, "g"))
+    elif any("unknown_building" in one.flags for one in results.motions):
+        period = _("drawn from 0.15 to 3 s, as nothing is known of the building")
+    return [
+        (_("Motion of floors {floors}", floors=words.clip(floors, 300)), _(DRAWN)),
+        (_("PGV over PGA of the ground"), ratio),
+        (_("Period T1 of the drawn buildings"), period),
+        (_("Structure of the drawn buildings"), _(building.structure or "unknown")),
+    ]
 
 
 def _describe_roof(results: Results) -> str:

@@ -272,7 +272,7 @@ def _of_chances(routes: RouteTables) -> tuple[str, ...]:
 def _of_doubts() -> tuple[str, ...]:
     return (
         _(
-            "A piece whose lower simulated class is not confirmed counts as standing and as fallen. A segment, route "
+            "A piece whose class is not confirmed counts as standing and as fallen. A segment, route "
             "or room whose state differs between the two is not known, and is left out of expected numbers; what is "
             "blocked with such pieces standing is blocked."
         ),
@@ -327,7 +327,7 @@ def _say_one_missing(one: MissingRow) -> str:
         "positions": _("fill in X and Y, or the Route, of {names}", names=names),
         "furniture": _("list the furniture of the building"),
         "beyond_stairs": _("add the way from {names} to an exit in Routes", names=names),
-        "unconfirmed_period": _("enter the Period T1 or the Height in the sheet Building"),
+        "unconfirmed_building": _("enter Storeys or the Period T1 in the sheet Building"),
         "unconfirmed_motions": _("run with motions of your own that reach the PFA and PFV of the floor"),
     }[one.what]
     return f"{said} ({cells})" if cells else said
@@ -363,16 +363,12 @@ def say_way(way: WayRow, routes: RouteTables) -> str:
         "{end} by {segments}: {chance}",
         end=words.cut(way.end, 40),
         segments=_name_segments([one.segment for one in segments]),
-        chance=_say_way_blocked(way),
+        chance=say_between(way.blocked, way.blocked_if_unconfirmed_fall, is_known=way.is_known),
     )
     if not way.shared:
         return said
     shared = _name_segments(way.shared)
     return _("{way}; shares {segments} with the first", way=said, segments=shared)
-
-
-def _say_way_blocked(way: WayRow) -> str:
-    return say_between(way.blocked, way.blocked_if_unconfirmed_fall, is_known=way.is_known)
 
 
 def _name_segments(names: Sequence[str]) -> str:

@@ -312,7 +312,7 @@ def say_effect_of_all(schedule: Schedule) -> list[str]:
     """Return what the whole schedule changes, and what it costs; nothing where there is nothing to fix."""
     if not schedule.rows:
         return []
-    before, after = (words.fixed(one.falls, 1) for one in (schedule.before, schedule.after))
+    before, after = map(_say_falls, (schedule.before, schedule.after))
     pieces = words.plural(sum(one.pieces for one in schedule.rows), "piece")
     effect = ngettext(
         "Fixing the {n:,} entry below ({pieces}) lowers the expected falls from {before} to {after}, if all anchors "
@@ -322,6 +322,14 @@ def say_effect_of_all(schedule: Schedule) -> list[str]:
         len(schedule.rows), pieces=pieces, before=before, after=after,
     )  # fmt: skip
     return [effect, say_costs(schedule)]
+
+
+def _say_falls(state: State) -> str:
+    """Return the expected falls, and what 5 and 95 % of the draws do not exceed."""
+    expected = words.fixed(state.falls, 1)
+    if state.falls_low is None or state.falls_high is None:
+        return expected
+    return f"{expected} ({words.say_span((round(state.falls_low), round(state.falls_high)))})"
 
 
 def say_doubtful_brackets(rows: Iterable[ItemResult]) -> list[str]:

@@ -79,6 +79,7 @@ def _describe(results: Results, verified: Verified) -> Iterator[str]:
 
 
 def _extent(verified: Verified) -> str:
+    n = sum(one.does_not_rock for one in verified.run)
     text = _(
         "The rocking of {done:,} of {rows} was integrated step by step (Housner's equations of a rigid block, see "
         "Methods). The chance is the share of draws in which the piece overturns, each of one motion.",
@@ -87,9 +88,9 @@ def _extent(verified: Verified) -> str:
     stocky = ngettext(
         "{n:,} row is too stocky to rock (B/H of {limit:.2f} or more).",
         "{n:,} rows are too stocky to rock (B/H of {limit:.2f} or more).",
-        sum(one.does_not_rock for one in verified.left), limit=1.41,
+        n, limit=1.41,
     )  # fmt: skip
-    return f"{text} {stocky}" if any(one.does_not_rock for one in verified.left) else text
+    return f"{text} {stocky}" if n else text
 
 
 def _selection(results: Results) -> str:
@@ -97,8 +98,9 @@ def _selection(results: Results) -> str:
         return _("All rows were chosen.")
     return _(
         "Chosen were the rows of high or very high class by any of these under any of their motions: {methods}; those "
-        "outside the range in which the {formula} was checked; and those on a route.",
-        methods=", ".join(_(one.title) for one in results.methods if one.selects), formula=_(results.formula.title),
+        "outside the range in which one of these was checked: {formulas}; and those on a route.",
+        methods=", ".join(_(one.title) for one in results.methods if one.selects),
+        formulas=", ".join(_(one.title) for one in results.methods if one.selecting_flags),
     )  # fmt: skip
 
 
@@ -111,8 +113,8 @@ def _describe_motions(results: Results) -> str:
     runs = results.settings.runs
     made = _(
         "On each floor and axis {motions} were generated (seed {seed}). Their mean 5 % response spectrum matches that "
-        "of the floor's recorded motion, or a generic one where only peaks are known. They differ by their random "
-        "phases alone, which is less than earthquakes differ.",
+        "of the floor's recorded motion, or of drawn earthquakes in drawn buildings where no record is known. The "
+        "former differ by their random phases alone, which is less than earthquakes differ.",
         motions=_("as many motions as are needed") if runs == AUTO else words.plural(int(runs), "motion"),
         seed=results.settings.seed,
     )
@@ -219,9 +221,9 @@ def _floor_motions(results: Results, motion: MotionRow, ensemble: EnsembleRow) -
 def _kind(suite: SuiteInfo | None, ensemble: EnsembleRow) -> str:
     if suite is not None:
         return _("own, scaled to PFA") if suite.is_scaled else _("own, not scaled")
-    if ensemble.unknown_period:
-        return _("generic spectrum, T1 unknown")
-    return _("generic spectrum") if ensemble.generic_spectrum else _("recorded spectrum")
+    if ensemble.unknown_building:
+        return _("assumed motion, nothing known of the building")
+    return _("assumed motion") if ensemble.assumed_motion else _("recorded motion")
 
 
 def _ratio(ratio: float | None, scatter: float) -> str:

@@ -60,6 +60,8 @@ def say_condition(results: Results) -> str:
         return _("if exactly this motion recurs and every piece is exactly as given")
     dispersion = results.provenance.uncertainty.motion
     motion = _("if exactly this motion recurs")
+    if not dispersion and has_drawn(results):
+        motion = _("for earthquakes with the given peaks")
     if dispersion:
         motion = _(
             "for an earthquake like this one (dispersion {dispersion}, {source})",
@@ -72,8 +74,10 @@ def say_condition(results: Results) -> str:
 
 def _say_motion(results: Results) -> str:
     dispersion = results.provenance.uncertainty.motion
-    if not dispersion:
+    if not dispersion and not has_drawn(results):
         return _("The motions are not scaled, as Motion uncertainty is 0 in the workbook: exactly this motion recurs.")
+    if not dispersion:
+        return _("Chances hold for earthquakes with the given peaks: ground motions and buildings are drawn.")
     return _(
         "Chances hold for an earthquake like this one: each draw scales the motions of the whole building by one "
         "factor, with a dispersion of {dispersion} (standard deviation of ln amplitude; {source}).",
@@ -85,10 +89,15 @@ def say_source(results: Results) -> str:
     """Return where the dispersion of the motions comes from."""
     shaking, given = results.provenance.shaking, results.building.motion_uncertainty
     if shaking and shaking.scatter == results.provenance.uncertainty.motion != given:
-        return _("scatter of ln PGA given the intensity, {sources}", sources=", ".join(shaking.sources))
+        return _("scatter of ln PGV given the intensity, {sources}", sources=", ".join(shaking.sources))
     if site := results.provenance.site_ground:
         return say_dispersion(site)
     return _("assumed") if results.building.motion_uncertainty is None else _("as filled in")
+
+
+def has_drawn(results: Results) -> bool:
+    """Return whether pieces were simulated under drawn motions: ground motion and building are assumed."""
+    return any(one.ensemble is not None and one.ensemble.assumed_motion for one in results.motions)
 
 
 def _say_piece(results: Results) -> str:
@@ -129,10 +138,12 @@ def say_sensitivity(results: Results, rows: Sequence[ItemResult]) -> str:
     """
     counted = [one for one in rows if not one.is_anchored and one.adopted.is_simulated]
     simulated = [(one, found) for one in counted if (found := one.governing.simulation) is not None]
+    if not results.settings.ideal:
+        simulated = [(one, found) for one, found in simulated if found.tried]  # what is drawn scatters by itself
     if not simulated:
         return ""
     if results.settings.ideal:
-        changes = _count((one, found.ideal.probability, found.probability) for one, found in simulated)
+        changes = _count((one, found.ideal.probability, found.probability) for one, found in simulated if found.ideal)
         return _(
             "In an earthquake like this one (dispersion {dispersion}), {changes}.",
             dispersion=number(results.provenance.uncertainty.motion, ".3g"), changes=_say_changes(*changes),

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from assess.i18n import fill, ngettext
 from assess.i18n import gettext as _
 from assess.report import words
+from assess.report.findings.cautions import list_narrowing
 from assess.report.findings.uncertain import list_conditions
 from assess.results import ItemResult, Results
 from assess.risk import RiskClass
@@ -16,11 +17,22 @@ NAMED = 12
 SCENARIO = fill("Chance of overturning in this scenario, not per year.")
 WITH_ANNUAL = fill("Chance of overturning in this scenario, unless it is called a chance a year.")
 INTERVAL = fill("the sampling interval covers the number of draws only")
+ASSUMED = fill("the range is what is not known of the ground and of the building")
 WILSON = (
     "Wilson EB (1927). Probable inference, the law of succession, and statistical inference. Journal of the American "
     "Statistical Association 22(158):209-212. doi:10.1080/01621459.1927.10502953"
 )
 """The interval of a simulated chance."""
+
+
+def say_range(results: Results) -> str:
+    """Return what the range behind a simulated chance is, without a full stop."""
+    assumed = {one.ensemble.assumed_motion for one in results.motions if one.ensemble is not None}
+    if assumed == {True}:
+        return _(ASSUMED)
+    if True in assumed:
+        return _("{interval}; on assumed motion {range}", interval=_(INTERVAL), range=_(ASSUMED))
+    return _(INTERVAL)
 
 
 def say_scenario(results: Results) -> str:
@@ -33,11 +45,11 @@ def say_scenario(results: Results) -> str:
 class Verified:
     """The rows of a report by what simulation found.
 
-    `done` were simulated and `left` were not. Of those done, `unconfirmed` keep the formula's class, as the lower one
-    that was found cannot be relied on. Of the others, `lowered` and `raised` have another class than the formula's;
-    `may_be` have an interval that reaches into a higher class; `undecided` are not resolved after the last check of
-    "auto"; `fell` overturn under a recorded motion itself; `ideal_higher` would have a higher class if exactly this
-    motion recurred.
+    `done` were simulated, `left` were not and can rock. Of those done, `unconfirmed` have a class that cannot be relied
+    on: nothing is known of their building, or they keep the formula's, as the motions are weak. Of the others,
+    `lowered` and `raised` have another class than the formula's; `may_be` have a range that reaches into a higher
+    class; `undecided` are not resolved after the last check of "auto"; `fell` overturn under a recorded motion itself;
+    `ideal_higher` would have a higher class if exactly this motion recurred.
     """
 
     run: Results
@@ -78,8 +90,8 @@ class Verified:
         if self.unconfirmed:
             texts.append(
                 ngettext(
-                    "{n:,} row is unconfirmed: the formula's class, counted apart",
-                    "{n:,} rows are unconfirmed: the formula's class, counted apart",
+                    "{n:,} row is unconfirmed and counted apart",
+                    "{n:,} rows are unconfirmed and counted apart",
                     len(self.unconfirmed),
                 )
             )
@@ -94,7 +106,7 @@ class Verified:
             return f"{say_scenario(self.run)} {self.sentence}"
         extent = ngettext(
             "Simulated: {done:,} of {n:,} row; {interval}.", "Simulated: {done:,} of {n:,} rows; {interval}.",
-            len(self.run), done=len(self.done), interval=INTERVAL,
+            len(self.run), done=len(self.done), interval=say_range(self.run),
         )  # fmt: skip
         return f"{say_scenario(self.run)} {extent}"
 
@@ -105,13 +117,16 @@ class Verified:
 
     @property
     def interval(self) -> str:
-        """What the interval covers, and which percentages have none; without a full stop."""
+        """What the range covers, what would narrow it, and which percentages have none; without a full stop."""
         if not self.done:
             return _("there are no intervals, as no rocking has been simulated in this run")
-        if self.left or self.unconfirmed:
-            without = _("percentages without a range come from the formula only")
-            return f"{_(INTERVAL)}; {without}"
-        return _(INTERVAL)
+        texts = [say_range(self.run)]
+        if ways := list_narrowing(self.run):
+            most = ways[0] if len(ways) == 1 else _("{first}, else {second}", first=ways[0], second=ways[1])
+            texts.append(_("what would narrow it most: {ways}", ways=most))
+        if self.left or not all(one.adopted.has_simulated for one in self.unconfirmed):
+            texts.append(_("percentages without a range come from the formula only"))
+        return "; ".join(texts)
 
     @property
     def adopted(self) -> str:
@@ -124,10 +139,15 @@ class Verified:
                 "Adopted risk: {simulation} (direct integration) where a piece was simulated, otherwise {formula}, "
                 "counted apart. The other methods are shown for comparison.", **titles,
             )  # fmt: skip
-        if self.unconfirmed:
+        if any(one.adopted.has_simulated for one in self.unconfirmed):
             text += " " + _(
-                "Where simulation gave a lower class that cannot be relied on, the class is that of {formula}, "
-                "unconfirmed.", **titles,
+                "Where nothing is known of the building, the class is at least that of the faster third of the draws, "
+                "unconfirmed."
+            )
+        if not all(one.adopted.has_simulated for one in self.unconfirmed):
+            text += " " + _(
+                "Where simulation gave a lower class under motions weaker than the floor's, the class is that of "
+                "{formula}, unconfirmed.", **titles,
             )  # fmt: skip
         return text
 
@@ -172,10 +192,10 @@ class Verified:
             (_("Class raised by simulation"), self.raised,
              ", ".join(_("{n:,} to {risk}", n=n, risk=risk)
                        for n, risk in _by_class(self.raised, lambda one: one.adopted.risk))),
-            (_("Unconfirmed, the formula's class although simulation gave a lower one: neither T1 nor the building's "
-               "height is known, or the motions are weaker than the floor's"),
+            (_("Unconfirmed, as nothing is known of the building, or the formula's class although simulation gave a "
+               "lower one, as the motions are weaker than the floor's"),
              self.unconfirmed, name_some(self.unconfirmed)),
-            (_("Could be of a higher class: the interval reaches into it"), self.may_be, ""),
+            (_("Could be of a higher class: the range reaches into it"), self.may_be, ""),
             (_("Would be of a higher class if exactly this motion recurred and the piece were exactly as given"),
              self.ideal_higher, name_some(self.ideal_higher)),
             (_("Undecided: the interval still covers more than one class after {most:,} motions", most=most),
@@ -197,12 +217,12 @@ def build_verified(run: Results, results: Sequence[ItemResult]) -> Verified:
     done = tuple(one for one in results if one.is_simulated)
     return Verified(
         run=run,
-        left=tuple(one for one in results if not one.is_simulated),
+        left=tuple(one for one in results if not one.is_simulated and one.adopted.can_rock),
         done=done,
         unconfirmed=tuple(one for one in done if one.adopted.is_unconfirmed),
         lowered=of(lambda one: one.adopted.lowered_from is not None),
         raised=of(lambda one: one.adopted.risk > one.formula_class),
-        may_be=of(lambda one: one.adopted.upper > one.adopted.risk),
+        may_be=of(lambda one: words.find_highest(one) > one.adopted.risk),
         undecided=of(lambda one: "undecided" in one.adopted.flags),
         fell=of(lambda one: one.fell_in_record),
         ideal_higher=of(lambda one: "ideal_higher" in one.adopted.flags),

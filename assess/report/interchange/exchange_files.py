@@ -20,7 +20,7 @@ LONGEST_NAME = 60
 LABELS: Mapping[str, str] = {"pfa": "g", "pfv": "cm/s"}
 """Units of the intensity measures in remarks."""
 SCREENING = (
-    "For screening: one rigid block in plane motion on the record-compatible or generic motions of its floor, without "
+    "For screening: one rigid block in plane motion on the record-compatible or drawn motions of its floor, without "
     "sliding, vertical motion, walls or anchors; not the fragility of a tested product."
 )
 
@@ -120,8 +120,8 @@ def describe_curve(one: PieceFragility, im: str) -> Iterator[str]:
             f"{curve.levels[-1] / unit:.3g} {label}."
         )
     yield f"PFV/PFA of the motions: {_span(one.pfv_per_pfa, '.3g')} s."
-    if any(motion.is_generic for motion in one.motions):
-        yield "Motions of a generic spectrum."
+    if any(motion.is_assumed for motion in one.motions):
+        yield "Assumed motions: ground motion and building are drawn."
     if one.may_be_too_low:
         yield "Its motions may be too weak: pieces may overturn at lower levels than it says."
     if any(item.anchored == "yes" for item in one.items):

@@ -21,7 +21,7 @@ import numpy as np
 from assess.errors import InputError
 from assess.i18n import Text, fill
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.demand import find_ground
+from assess.pipeline.known_ground import find_ground
 from assess.pipeline.piece_fragility import PieceFragilities, PieceFragility
 from assess.plain_text import plain_line
 from assess.report.interchange.exchange_files import (

@@ -130,9 +130,6 @@ def _set_properties(file: Any, content: Content, options: ReportOptions) -> None
     told.created = told.modified = report_time().replace(tzinfo=None)
 
 
-# ---------------------------------------------------------------- header and footer
-
-
 def write_margins(word: Word, short: str, status: str, conditions: str, page: str, of: str) -> None:
     """Write the header and the footer: what every page has to say, the building, and the page of all pages."""
     section = word.file.sections[0]
@@ -154,9 +151,6 @@ def _stop_at_right(paragraph: Any) -> None:
     from docx.shared import Mm
 
     paragraph.paragraph_format.tab_stops.add_tab_stop(Mm(WIDTH - 2 * SIDE), WD_TAB_ALIGNMENT.RIGHT)
-
-
-# ---------------------------------------------------------------- elements of Word that python-docx has no words for
 
 
 def make(name: str, attributes: dict[str, str] | None = None) -> Any:

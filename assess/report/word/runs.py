@@ -106,9 +106,6 @@ def _dress(run: Any, look: Look) -> None:
         shade(run._r.get_or_add_rPr(), look.ground)
 
 
-# ---------------------------------------------------------------- pictures
-
-
 def find_picture(word: Word, image: Any) -> tuple[bytes, float, str] | None:
     """Return the bytes of an image of the page, its width [mm] and what it says; None where there is none."""
     mark = image.get(MARK)

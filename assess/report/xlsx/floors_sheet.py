@@ -16,7 +16,7 @@ from assess.report.xlsx.item_formulas import FLOOR_AT, FLOOR_KEYS, edited_motion
 from assess.report.xlsx.items_sheet import HEAD, has_brackets
 from assess.report.xlsx.motion_lines import list_lines
 from assess.report.xlsx.pen import COUNT, LINE, Column, Pen, count_lines, of_field, with_unit
-from assess.results import EstimateRow, MotionRow
+from assess.results import MotionRow
 
 _WIDTHS = {"floor": 12, "name": 22, "pfa": 12, "pfv": 14, "source": 44, "elevation": 12, "edited": 10}
 _CODES = {"pfa": "0.000", "pfv": "0.0"}
@@ -26,7 +26,7 @@ def write_floors(pen: Pen, page: Any, content: Content) -> None:
     """Write the motion that serves each floor and axis, to be edited: Items and Summary follow."""
     lines, rows = list_lines(content.run), len(content.floors)
     pen.heads(page, _heads(), [_WIDTHS.get(key.split("_")[0], 20) for key in FLOOR_KEYS])
-    _comment(page)  # now: what is above the row being written is left out
+    _comment(page, content.run.formula.ruled_by)  # now: what is above the row being written is left out
     for row, line in enumerate(lines, HEAD):
         floor, motions = line.floor, line.motions
         texts = (floor.name, *map(_source, motions.values()))
@@ -39,7 +39,7 @@ def write_floors(pen: Pen, page: Any, content: Content) -> None:
             _write_motion(pen, page, row, motion)
             _write_as_run(pen, page, row, [motion, *(lines[at].motions[axis] for at in further)], further)
             if row < HEAD + rows:
-                _write_top(pen, page, row, motion, further)
+                _write_top(page, row, motion, further, content.run.formula.ruled_by)
         pen.put(page, row, FLOOR_AT["elevation"], floor.elevation_m, pen.style("plain"))
     _dress(page, len(lines), has_edits=content.run.has_simulated or has_brackets(content.run))
     tops: dict[str, int] = {axis: FLOOR_AT[f"pfa_top_{axis}"] for axis in AXES}
@@ -52,18 +52,19 @@ def _heads() -> list[str]:
         with_unit(_("PFA Y"), "g"), with_unit(_("PFV Y"), "cm/s"), _("Source Y"), with_unit(_("Elevation"), "m"),
         _("X since the run"), _("Y since the run"), with_unit(_("PFA X as run"), "g"),
         with_unit(_("PFV X as run"), "cm/s"), with_unit(_("PFA Y as run"), "g"), with_unit(_("PFV Y as run"), "cm/s"),
-        with_unit(_("Largest PFA X"), "g"), with_unit(_("PFV X of that record"), "cm/s"),
-        with_unit(_("Largest PFA Y"), "g"), with_unit(_("PFV Y of that record"), "cm/s"),
+        with_unit(_("PFA X of the stronger record"), "g"), with_unit(_("PFV X of that record"), "cm/s"),
+        with_unit(_("PFA Y of the stronger record"), "g"), with_unit(_("PFV Y of that record"), "cm/s"),
     ]  # fmt: skip
 
 
-def _comment(page: Any) -> None:
+def _comment(page: Any, ruling: str) -> None:
     edit_here = _(
         "Edit the PFA and PFV here: rows that were not simulated follow; simulated rows on the floor say 'run again' "
-        "and leave all counts. Where several records serve a floor, the one with the largest PFA stands in its line; "
-        "the others follow below the last floor. Simulated rows show the record that governed the run, other rows go "
-        "by the largest PFA. Interpolated floors and those of a code's profile hold numbers as run: they do not "
-        "follow when another floor is edited."
+        "and leave all counts. Where several records serve a floor, the one with the largest {peak} stands in its "
+        "line; the others follow below the last floor. Simulated rows show the record that governed the run, other "
+        "rows go by the largest {peak}. Interpolated floors and those of a code's profile hold numbers as run: they "
+        "do not follow when another floor is edited.",
+        peak=ruling.upper(),
     )
     page.write_comment(0, FLOOR_AT["pfa_X"], edit_here, {"x_scale": 2, "y_scale": 1.5})
 
@@ -88,21 +89,13 @@ def _write_motion(pen: Pen, page: Any, row: int, motion: MotionRow) -> None:
         if motion.is_borrowed:  # what serves this axis is the other one's: it follows when that is edited
             cell = _cell(f"{peak}_{other}", row)
             formula = f'=IF({cell}="","",{cell})'
-        elif peak == "pfv" and motion.estimate is not None:
-            formula = _estimate(motion, motion.estimate, _cell(f"pfa_{axis}", row))
+        elif peak == "pfv" and motion.pfv_follows and motion.pfv_cm_s and motion.pfa_g:
+            formula = f"={_cell(f'pfa_{axis}', row)}*{motion.pfv_cm_s / motion.pfa_g!r}"
         if formula:
             page.write_formula(row, at, formula, pen.style("live", _CODES[peak]), "" if value is None else value)
         else:
             pen.put(page, row, at, value, pen.style("input", _CODES[peak]))
     pen.put(page, row, FLOOR_AT[f"source_{axis}"], _source(motion), pen.style("text"))
-
-
-def _estimate(motion: MotionRow, estimate: EstimateRow, pfa: str) -> str:
-    """Return the formula of an estimated PFV: it is proportional to PFA, up to the cap by Ground PGV."""
-    if estimate.largest_cm_s is not None:
-        return f"=MIN({pfa}*{estimate.ratio!r},{estimate.largest_cm_s!r})"
-    ratio = motion.pfv_cm_s / motion.pfa_g if motion.pfv_cm_s and motion.pfa_g else estimate.ratio
-    return f"={pfa}*{ratio!r}"
 
 
 def _write_as_run(pen: Pen, page: Any, row: int, motions: Sequence[MotionRow], further: Sequence[int]) -> None:
@@ -118,12 +111,16 @@ def _write_as_run(pen: Pen, page: Any, row: int, motions: Sequence[MotionRow], f
     page.write_formula(row, FLOOR_AT[f"edited_{axis}"], formula, pen.style("warning"), "")
 
 
-def _write_top(pen: Pen, page: Any, row: int, motion: MotionRow, further: Sequence[int]) -> None:
-    """Write the peaks of the record with the largest PFA along an axis: as run, that of the floor's own line."""
+def _write_top(page: Any, row: int, motion: MotionRow, further: Sequence[int], ruling: str) -> None:
+    """Write the peaks of the record of the largest ruling peak along an axis: as run, that of the floor's own line."""
     axis, rows = motion.axis, (row, *(HEAD + at for at in further))
-    pfa, pfv = ([_cell(f"{peak}_{axis}", at) for at in rows] for peak in ("pfa", "pfv"))
-    formulas = top_motion(pfa, pfv, _cell(f"pfa_top_{axis}", row))
-    for peak, formula, value in zip(("pfa", "pfv"), formulas, (motion.pfa_g, motion.pfv_cm_s), strict=True):
+    other = "pfa" if ruling == "pfv" else "pfv"
+    first, second = ([_cell(f"{peak}_{axis}", at) for at in rows] for peak in (ruling, other))
+    values = {"pfa": motion.pfa_g, "pfv": motion.pfv_cm_s}
+    for peak, formula in zip(
+        (ruling, other), top_motion(first, second, _cell(f"{ruling}_top_{axis}", row)), strict=True
+    ):
+        value = values[peak]
         page.write_formula(row, FLOOR_AT[f"{peak}_top_{axis}"], formula, None, "" if value is None else value)
 
 
@@ -135,9 +132,6 @@ def _source(motion: MotionRow) -> str:
     detail = factors(motion) if motion.profile else motion.record
     source = describe_source(motion)
     return _("{source}: {detail}", source=source, detail=detail) if detail else source
-
-
-# ---------------------------------------------------------------- Motions, Verification
 
 
 def _of_motion(key: str, width: int = 10, **more: Any) -> Column:
@@ -174,7 +168,7 @@ def write_verification(pen: Pen, page: Any, content: Content) -> None:
 
     def kind(one: MotionRow) -> str:
         if suite is None:
-            return _("generic") if one.ensemble and one.ensemble.generic_spectrum else _("recorded")
+            return _("assumed") if one.ensemble and one.ensemble.assumed_motion else _("recorded")
         folder = words.cut(suite.folder, 60)
         return _("suite {folder}, scaled", folder=folder) if suite.is_scaled else _("suite {folder}", folder=folder)
 
@@ -183,7 +177,7 @@ def write_verification(pen: Pen, page: Any, content: Content) -> None:
         _of_motion("axis", 6),
         Column(_("Source"), 34, describe_source),
         Column(_("Record"), 30, lambda one: one.record),
-        Column(_("Spectrum"), 14, kind),
+        Column(_("Motion"), 14, kind),
         _of_motion("ensemble_motions", 9),
         Column(_("Seed"), 8, lambda _one: None if suite else seed, "0"),
         *(_of_motion(f"ensemble_fit_{name}") for name in _FIT),

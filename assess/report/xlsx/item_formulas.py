@@ -12,7 +12,9 @@ from dataclasses import dataclass
 from xlsxwriter.utility import xl_col_to_name
 
 from assess.i18n import gettext as _
+from assess.methods import MethodInfo
 from assess.model import AXES
+from assess.results import CANNOT_ROCK
 from assess.risk import RiskClass
 from assess.workbook import formulas as live
 from assess.workbook.formulas import say_class
@@ -27,6 +29,8 @@ ROW = "\x00"
 """Stands for the number of the row in a formula."""
 CLASS_WEIGHT, ROW_WEIGHT = 10, "1E-9"
 """In the order of the pieces a class weighs more than any chance; of equal chances the upper row comes first."""
+ABOVE_ANY_PEAK = "1E5"
+"""Weighs more than any peak [cm/s]."""
 SAME = ("breadth_cm", "width_cm", "height_cm", "centre_of_gravity", "friction")
 """Numbers of a row that a simulated class holds for; a blank one must stay blank."""
 SAME_WORDS = ("floor", "axis_given")
@@ -39,7 +43,7 @@ FLOOR_KEYS = (
     "floor", "name", "pfa_X", "pfv_X", "source_X", "pfa_Y", "pfv_Y", "source_Y", "elevation", "edited_X", "edited_Y",
     "pfa_run_X", "pfv_run_X", "pfa_run_Y", "pfv_run_Y", "pfa_top_X", "pfv_top_X", "pfa_top_Y", "pfv_top_Y",
 )  # fmt: skip
-"""The columns of the sheet Floors, in order; the last four hold the peaks of the record with the largest PFA."""
+"""The columns of the sheet Floors, in order; the last four hold the peaks of the record of the largest ruling peak."""
 FLOOR_AT: Mapping[str, int] = {key: at for at, key in enumerate(FLOOR_KEYS)}
 
 
@@ -91,6 +95,7 @@ def build_terms() -> Terms:
             "simulated": _("simulated"),
             "formula": _("formula (not simulated)"),
             "unconfirmed": _("unconfirmed"),
+            CANNOT_ROCK: _("cannot rock"),
         },
         labels=tuple(say_class(risk) for risk in RiskClass),
     )
@@ -112,17 +117,17 @@ def edited_motion(terms: Terms, motions: Sequence[tuple[Mapping[str, str], bool]
     return f'=IF(IFERROR(OR({",".join(tests)}),TRUE),{literal(terms.edited)},"")'
 
 
-def top_motion(pfa: Sequence[str], pfv: Sequence[str], top: str) -> tuple[str, str]:
-    """Return the formulas of the largest PFA of parallel records, and of the PFV of the record that has it.
+def top_motion(ruling: Sequence[str], other: Sequence[str], top: str) -> tuple[str, str]:
+    """Return the formulas of the largest peak that rules of parallel records, and of the other of the same record.
 
-    `pfa` and `pfv` are their cells, `top` is the cell of the former formula.
+    `ruling` and `other` are their cells, `top` is the cell of the former formula.
     """
-    if len(pfa) == 1:
-        return f'=IF({pfa[0]}="","",{pfa[0]})', f'=IF({pfv[0]}="","",{pfv[0]})'
+    if len(ruling) == 1:
+        return f'=IF({ruling[0]}="","",{ruling[0]})', f'=IF({other[0]}="","",{other[0]})'
     found = '""'
-    for peak, velocity in zip(reversed(pfa), reversed(pfv), strict=True):
-        found = f'IF({peak}={top},IF({velocity}="","",{velocity}),{found})'
-    return f'=IF(COUNT({",".join(pfa)})=0,"",MAX({",".join(pfa)}))', f"={found}"
+    for peak, beside in zip(reversed(ruling), reversed(other), strict=True):
+        found = f'IF({peak}={top},IF({beside}="","",{beside}),{found})'
+    return f'=IF(COUNT({",".join(ruling)})=0,"",MAX({",".join(ruling)}))', f"={found}"
 
 
 def _differs(now: str, as_run: str) -> str:
@@ -142,8 +147,8 @@ class ItemFormulas:
         The cells of the row by the keys of their columns.
     floors : str
         The sheet Floors as formulas write it, `last` the row of its last floor, `lowest` of its last record.
-    formula : str
-        Key of the adopted formula's method.
+    formula, paper : MethodInfo
+        The adopted formula, and the paper's.
     """
 
     cells: Mapping[str, str]
@@ -151,24 +156,44 @@ class ItemFormulas:
     last: int
     lowest: int
     terms: Terms
-    formula: str
+    formula: MethodInfo
+    paper: MethodInfo
 
-    def of(self, basis: str) -> dict[str, str]:
-        """Return the formulas of a row whose class rests on one of `assess.results.BASES`, by keys of columns."""
-        found = self._of_formula() if basis == "formula" else self._of_run(basis)
-        found = self._of_any(is_run=basis != "formula") | found
+    def of(self, basis: str, *, is_run: bool) -> dict[str, str]:
+        """Return the formulas of a row whose class rests on one of `assess.results.BASES`, by keys of columns.
+
+        `is_run`: whether it holds for the inputs as run alone.
+        """
+        found = self._of_any(is_run=is_run) | (self._of_run(basis) if is_run else self._of_formula())
         return {key: f"={one}" for key, one in found.items()}
 
     def _of_formula(self) -> dict[str, str]:
         """Return the formulas of a row that follows its inputs, unless they may change whether its bracket holds."""
-        risk, own, again = self.cells[self.formula], *map(literal, (self.terms.bases["formula"], self.terms.again))
-        is_edited = f"{self.cells['edited']}={literal(self.terms.edited)}"
+        risk, own, again = self.cells[self.formula.key], *map(literal, (self.terms.bases["formula"], self.terms.again))
+        is_edited, stands = f"{self.cells['edited']}={literal(self.terms.edited)}", f"{self.cells['can_rock']}=0"
+        cannot, low = literal(self.terms.bases[CANNOT_ROCK]), f"{self._mark()}&{literal(self.terms.labels[0])}"
         return {
             "edited": f'IF({self._bracket_decides()},{self._edited(*self._bracket_edits())},"")',
-            "basis": f"IF({is_edited},{again},{own})",
-            "class": f"IF({is_edited},{again},{self.cells['class_formula']})",
-            "order_formula": f'IF({is_edited},"",{self._order(risk, _rank(risk), risk)})',
+            "can_rock": self._can_rock(),
+            "basis": f"IF({is_edited},{again},IF({stands},{cannot},{own}))",
+            "class": f"IF({is_edited},{again},IF({stands},{low},{self.cells['class_formula']}))",
+            "order_formula": f'IF(OR({is_edited},{stands}),"",{self._order(risk, _rank(risk), risk)})',
         }
+
+    def _can_rock(self) -> str:
+        """Return whether the piece can rock, 1 or 0; 1 while its sizes or its motion are no numbers."""
+        return f"IFERROR(IF({self._rocks_at(self.cells['pfa_g'])},1,0),1)"
+
+    def _rocks_at(self, pfa: str) -> str:
+        """Return whether the piece may rock at a PFA [g]; an error while its sizes are no numbers."""
+        return f"AND({pfa}>={self._start()},{self._is_slender()})"
+
+    def _start(self) -> str:
+        share, ratio, centre = (self.cells[key] for key in ("rocks_from_run", "breadth_to_height", "centre_of_gravity"))
+        return f"{share}*{ratio}*50/{centre}"
+
+    def _is_slender(self) -> str:
+        return live.is_slender(self.cells["breadth_to_height"], f"{self.cells['centre_of_gravity']}/100")
 
     def _of_run(self, basis: str) -> dict[str, str]:
         """Return the formulas of a row whose class holds while its inputs are as run."""
@@ -181,20 +206,27 @@ class ItemFormulas:
             "basis": self._while_as_run(own, again),
             "class": self._while_as_run(f"{self._mark()}&{self.terms.label(rank)}", again),
             "class_upper": self._while_as_run(f"{self._mark()}&{self.terms.label(upper)}"),
-            "class_notes": self._while_as_run(self._notes(is_settled=basis == "simulated")),
-            "rank_formula": self._while_as_run(_rank(cells["formula_run"])),
+            "class_notes": self._while_as_run(self._notes(is_settled=basis != "unconfirmed")),
+            "rank_formula": self._while_as_run(rank if basis == CANNOT_ROCK else _rank(cells["formula_run"])),
             f"order_{basis}": self._order(rank, upper, cells["chance_run"]),
         }
         if basis == "simulated":
             found |= {key: self._while_as_run(cells[f"{key}_run"]) for key in AT_RUN}
+            found["beside"] = self._while_as_run(f'IF({cells["beside_run"]}="","",{cells["beside_run"]})')
         return found
 
     def _of_any(self, *, is_run: bool) -> dict[str, str]:
         cells, check = self.cells, literal(self.terms.check)
-        ratio, pfa, risk = cells["breadth_to_height"], cells["pfa_g"], cells[self.formula]
+        ratio, pfa = cells["breadth_to_height"], cells["pfa_g"]
         breadth, height = cells["breadth_cm"], cells["height_cm"]
-        classed = f"IF(ISNUMBER({risk}),{live.risk_class(risk, ratio, pfa, LIMITS)},{check})"
-        as_run = live.risk_class(cells["formula_run"], ratio, cells["formula_pfa_run"], LIMITS)
+        low = literal(self.terms.labels[0] + live.OUTSIDE)  # where FEMA P-58 has no value
+        classed, by_paper = (
+            f"IF(ISNUMBER({risk}),{live.risk_class(one, risk, ratio, pfa, LIMITS)},"
+            f'IF(AND({risk}="",{live.is_stocky(ratio)}),{low},{check}))'
+            for one in (self.formula, self.paper)
+            for risk in (cells[one.key],)
+        )
+        as_run = live.risk_class(self.formula, cells["formula_run"], ratio, cells["formula_pfa_run"], LIMITS)
         methods = {
             key: f"IF(AND(ISNUMBER({ratio}),ISNUMBER({pfa})),{formula},{check})"
             for key, formula in live_formulas(cells).items()
@@ -204,9 +236,14 @@ class ItemFormulas:
             "axis": self._while_unedited(cells["axis_run"], self._axis()) if is_run else self._axis(),
             "pfa_g": self._governing("pfa", is_run=is_run),
             "pfv_cm_s": self._governing("pfv", is_run=is_run),
-            "class_formula": f"{self._mark()}&{self._while_unedited(as_run, classed) if is_run else classed}",
+            "class_formula": self._classed(self._while_unedited(as_run, classed) if is_run else classed),
+            "class_or": self._classed(by_paper),
             "held": self._held(),
         }
+
+    def _classed(self, found: str) -> str:
+        """Return a class by formula: low where the piece cannot rock."""
+        return f"{self._mark()}&IF({self.cells['can_rock']}=0,{literal(self.terms.labels[0])},{found})"
 
     def _floor(self, key: str) -> str:
         """Return the value in a column of Floors for the row's floor."""
@@ -219,16 +256,43 @@ class ItemFormulas:
         return f"{self.floors}${letter}$2:${letter}${last}"
 
     def _axis(self) -> str:
-        given = self.cells["axis_given"]
-        x, y = (f"MAX({self._floor(f'pfa_top_{axis}')})" for axis in AXES)  # of a reference: a blank counts as 0
+        """Return the axis given, else that of the larger ruling peak; by velocity first one along which it can rock."""
+        given, ruling = self.cells["axis_given"], self.formula.ruled_by
+        x, y = (f"MAX({self._floor(f'{ruling}_top_{axis}')})" for axis in AXES)  # of a reference: a blank counts as 0
+        if ruling != "pfa":
+            x, y = (
+                f"IF({fastest}>0,{ABOVE_ANY_PEAK}+{fastest},{peak})"
+                for peak, fastest in zip((x, y), map(self._fastest, AXES), strict=True)
+            )
         return f'IF({given}<>"",{given},{live.worse_axis(x, y)})'
 
+    def _fastest(self, axis: str) -> str:
+        """Return the largest PFV of the motions along an axis that can rock the piece; 0 where none can."""
+        if self.lowest > self.last:
+            pfa, pfv, floors = (self._area(key, self.lowest) for key in (f"pfa_{axis}", f"pfv_{axis}", "floor"))
+            largest = f"SUMPRODUCT(MAX(({floors}={self.cells['floor']})*({pfa}>={self._start()})*{pfv}))"
+            return f"IFERROR(IF({self._is_slender()},{largest},0),0)"
+        pfa, pfv = (self._floor(f"{peak}_top_{axis}") for peak in ("pfa", "pfv"))
+        return f"IFERROR(IF({self._rocks_at(f'MAX({pfa})')},MAX({pfv}),0),0)"
+
+    def _top(self, peak: str, axis: str) -> str:
+        """Return the peak of the record along an axis that governs: by velocity, first of those that can rock it."""
+        top = self._floor(f"{peak}_top_{axis}")
+        if self.formula.ruled_by == "pfa" or self.lowest == self.last:
+            return top
+        fastest, found = self._fastest(axis), self._fastest(axis)
+        if peak == "pfa":
+            pfa, pfv, floors = (self._area(key, self.lowest) for key in (f"pfa_{axis}", f"pfv_{axis}", "floor"))
+            found = f"SUMPRODUCT(MAX(({floors}={self.cells['floor']})*({pfv}={fastest})*{pfa}))"
+        return f"IF({fastest}>0,{found},{top})"
+
     def _governing(self, peak: str, *, is_run: bool) -> str:
-        """Return the peak that governs: of the record as run, while that holds; else of the one with the largest PFA.
+        """Return the peak that governs: of the record as run, while that holds; else of the one with the largest
+        peak that rules the formula.
 
         It is that along the row's axis.
         """
-        floors = self._on_axis(self._floor(f"{peak}_top_X"), self._floor(f"{peak}_top_Y"))
+        floors = self._on_axis(*(self._top(peak, axis) for axis in AXES))
         if not is_run:
             return floors
         areas = (self._area(f"{peak}_{axis}", self.lowest) for axis in AXES)
@@ -299,7 +363,9 @@ class ItemFormulas:
         could_be = sentence(", " + _("could be {risk}"), risk=self.terms.label(upper))
         lowered = sentence(", " + _("lowered by simulation (formula: {risk})"), risk=self.terms.label(formula))
         fell = literal(", " + _("as it overturns under the record itself"))
-        notes = [(f"{upper}>{rank}", could_be), (f"{formula}>{rank}", lowered), (f"{self.cells['fell']}=1", fell)]
+        notes = [(f"{upper}>{rank}", could_be), (f"{self.cells['fell']}=1", fell)]
+        if is_settled:
+            notes.insert(1, (f"{formula}>{rank}", lowered))
         texts = [] if is_settled else [f"{literal(', ')}&{self.cells['settle']}"]
         held = f'AND({self.cells["held"]}={literal(self.terms.yes)},{self.cells["bracket_held"]}<>"")'
         notes.append((held, f"{literal(', ')}&{self.cells['bracket_held']}"))

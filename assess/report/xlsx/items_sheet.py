@@ -20,6 +20,7 @@ from assess.report.xlsx.item_formulas import AT_RUN, BRACKET, ROW, ItemFormulas,
 from assess.report.xlsx.item_values import (
     chance_behind,
     class_by_formula,
+    class_by_paper,
     class_in_force,
     class_notes,
     is_as_run,
@@ -34,7 +35,7 @@ from assess.report.xlsx.item_values import (
 )
 from assess.report.xlsx.motion_lines import find_places, list_lines
 from assess.report.xlsx.pen import CHANCE, COUNT, LINE, LOOKS, Column, Pen, count_lines, of_field, widen, with_unit
-from assess.results import BASES, ItemResult, Results
+from assess.results import BASES, CANNOT_ROCK, ItemResult, Results
 from assess.workbook.schema import ITEMS
 
 if TYPE_CHECKING:
@@ -62,7 +63,9 @@ INPUTS = (
 _PLACED = (*FRONT, "breadth_to_height", "axis", "pfa_g", "pfv_cm_s", "pfa_source")
 NUMBERS = ("breadth_cm", "width_cm", "height_cm", "friction")
 CLASSES = ("class_formula", "class", "class_upper")
-ORDERS = tuple(f"order_{basis}" for basis in BASES)
+LISTED = tuple(basis for basis in BASES if basis != CANNOT_ROCK)
+"""What has a list of the pieces most likely to fall."""
+ORDERS = tuple(f"order_{basis}" for basis in LISTED)
 """Columns that hold the order of the pieces: each basis has its own list."""
 
 
@@ -146,6 +149,7 @@ def _live(known: Mapping[str, Field], results: Results) -> Iterator[Column]:
             yield of_field(known[f"{method.key}_{name}"], look="live", is_live=True)
         yield of_field(known[method.key], label=_(method.short_title), look="plain", is_live=True)
     yield Column(_("Class (formula)"), 16, class_by_formula, key="class_formula", look="live", is_live=True)
+    yield Column(_("Class (OR)"), 16, class_by_paper, key="class_or", look="live", is_live=True)
 
 
 def _class(results: Results) -> Iterator[Column]:
@@ -177,7 +181,7 @@ def _in_force(results: Results) -> Iterator[Column]:
 def name_found(*, is_ideal: bool) -> tuple[str, str, str, str]:
     """Return the headings of `AT_RUN`: the adopted chance, its interval, and the chance to compare it with."""
     like, ideal = _("Chance in an earthquake like this one"), _("Chance if exactly this motion recurred")
-    return ideal if is_ideal else like, _("Interval low"), _("Interval high"), like if is_ideal else ideal
+    return ideal if is_ideal else like, _("Range low"), _("Range high"), like if is_ideal else ideal
 
 
 def _found(at: int, *, is_ideal: bool) -> Read:
@@ -242,9 +246,10 @@ def _workings(results: Results) -> Iterator[Column]:
     yield column("settle", _("How to settle the class"), _settle)
     yield column("bracket_held", _("Bracket as run"), say_bracket_held)
     yield column("rank", _("Rank"), _if_as_run(lambda one: int(one.adopted.risk)), is_live=True)
-    yield column("rank_upper", _("Rank, upper"), _if_as_run(lambda one: int(one.adopted.upper)), is_live=True)
+    yield column("rank_upper", _("Rank, upper"), _if_as_run(lambda one: int(words.find_highest(one))), is_live=True)
     yield column("rank_formula", _("Rank, formula"), _if_as_run(lambda one: int(one.formula_class)), is_live=True)
-    for key, name in zip(ORDERS, map(build_terms().bases.__getitem__, BASES), strict=True):
+    yield column("can_rock", _("Can rock"), lambda one: int(one.adopted.can_rock), is_live=True)
+    for key, name in zip(ORDERS, map(build_terms().bases.__getitem__, LISTED), strict=True):
         yield column(key, _("Order: {basis}", basis=name), lambda one: None, is_live=True)
 
 
@@ -260,6 +265,7 @@ def _inputs() -> Iterator[tuple[str, str, Read]]:
     yield "bracket_capacity_kn", _("Bracket capacity as run"), lambda one: one.item.anchor.bracket_capacity_kn
     yield "bracket_height_cm", _("Bracket height as run"), lambda one: one.item.anchor.bracket_height_cm
     yield "weight_kg", _("Weight as run"), lambda one: one.item.weight_kg
+    yield "rocks_from", _("Share of g b/z from which it may rock"), lambda one: one.adopted.rocks_from
 
 
 def _centre(one: ItemResult) -> float:
@@ -289,8 +295,10 @@ def write_items(pen: Pen, page: Any, content: Content) -> None:
     _comment(page, columns)  # now: what is above the row being written is left out
     cells = {column.key: f"${xl_col_to_name(at)}{ROW}" for at, column in enumerate(columns)}
     last, lowest = HEAD + len(content.floors), HEAD + len(list_lines(content.run))
-    formulas = ItemFormulas(cells, pen.refer("Floors"), last, lowest, pen.terms, content.run.formula.key)
-    by_basis = {basis: formulas.of(basis) for basis in BASES}
+    formulas = ItemFormulas(
+        cells, pen.refer("Floors"), last, lowest, pen.terms, content.run.formula, content.run.paper_formula
+    )
+    by_basis = {(basis, is_run): formulas.of(basis, is_run=is_run) for basis in BASES for is_run in (False, True)}
     plan = [(at, column, _style(pen, column)) for at, column in enumerate(columns)]
     texts = [(column.read, column.width) for column in columns if column.look == "text" and not column.is_hidden]
     for row, one in enumerate(content.results, HEAD):
@@ -298,7 +306,7 @@ def write_items(pen: Pen, page: Any, content: Content) -> None:
         lines = max(count_lines(read(one), width, MOST_LINES) for read, width in texts)
         if lines > 1:
             page.set_row(row, LINE * lines)
-        _write_row(pen, page, row, one, plan, by_basis[one.adopted.basis])
+        _write_row(pen, page, row, one, plan, by_basis[one.adopted.basis, is_as_run(one)])
     _dress(pen, page, columns, HEAD + max(1, len(content.results)))
 
 
@@ -348,7 +356,14 @@ def _dress(pen: Pen, page: Any, columns: Sequence[Column], last: int) -> None:
 
 
 def _comment(page: Any, columns: Sequence[Column]) -> None:
-    comments = {
+    comments = _list_comments()
+    for at, column in enumerate(columns):
+        if column.key in comments:
+            page.write_comment(0, at, comments[column.key], {"x_scale": 3, "y_scale": 2})
+
+
+def _list_comments() -> dict[str, str]:
+    return {
         "breadth_cm": _(
             "Edit the coloured cells. Quantity and Anchored change the counts at once. A row that was not simulated "
             "follows by the formula. A row that was simulated says 'run again' once its size, centre of gravity, "
@@ -356,14 +371,15 @@ def _comment(page: Any, columns: Sequence[Column]) -> None:
             "does a row held by a bracket of known capacity, and also once its bracket or weight is edited."
         ),
         "class_formula": _(
-            "By the limits in Assumptions. * behind a class: outside the range in which the formula was checked by "
-            "tests. ⚓ before it: anchored, so its risk depends on its anchor; the class is that of the piece without "
+            "By the limits in Assumptions. * behind a class: outside the range in which the formula was checked. "
+            "⚓ before it: anchored, so its risk depends on its anchor; the class is that of the piece without "
             "it."
         ),
         "basis": _(
             "What the class rests on. simulated: the chance found by simulation. formula (not simulated): the "
-            "published formula, as nothing was simulated. unconfirmed: the formula, as simulation gave a lower class "
-            "under motions that may be too weak. The three are never added up."
+            "published formula, as nothing was simulated. unconfirmed: nothing is known of the building; or the "
+            "formula, as simulation gave a lower class under motions that are too weak. The three are never added up. "
+            "cannot rock: low; counted with the run."
         ),
         "beside": _(
             "For comparison. In an earthquake like this one: motion and piece differ from draw to draw. If exactly "
@@ -371,13 +387,12 @@ def _comment(page: Any, columns: Sequence[Column]) -> None:
         ),
         "class": _(
             "The class in force, by the limits in Assumptions; at least high where the piece overturns under the "
-            "record itself. Columns to the right of the notes are not printed."
+            "record itself. Columns to the right of the notes are not printed."),
+        "low": _(
+            "The sampling interval; on assumed motion the chances in the slower and the faster third of the draws."
         ),
-        "class_upper": _("By the upper end of the interval, and at least that of the chance to compare with."),
-    }
-    for at, column in enumerate(columns):
-        if column.key in comments:
-            page.write_comment(0, at, comments[column.key], {"x_scale": 3, "y_scale": 2})
+        "class_upper": _("By the upper end of the range, and at least that of the chance to compare with."),
+    }  # fmt: skip
 
 
 def _validate(page: Any, letters: Mapping[str, str], last: int) -> None:

@@ -24,9 +24,6 @@ def _columns(*heads: tuple[str, int]) -> list[Column]:
     return [Column(label, width, itemgetter(at)) for at, (label, width) in enumerate(heads)]
 
 
-# ---------------------------------------------------------------- Methods
-
-
 def write_methods(pen: Pen, page: Any, content: Content) -> None:
     """Write the classes, the methods, what was simulated how, what the marks mean, and the limits of it all."""
     columns = _columns((_("Method"), 28), (_("What"), 26), (_("Text"), 110))
@@ -84,9 +81,6 @@ def _ranges(method: "MethodInfo") -> Iterator[str]:
         yield _("{what} {low:g} to {high:g} {unit}", what=what, low=one.low, high=one.high, unit=one.unit).strip()
 
 
-# ---------------------------------------------------------------- Assumptions
-
-
 def named_values(results: Results) -> list[tuple[str, str, float]]:
     """Return what formulas refer to by name: name of the cell, meaning and value, in the order of the rows."""
     found = [
@@ -115,9 +109,6 @@ def write_assumptions(pen: Pen, page: Any, content: Content) -> None:
         page.set_row(row, row_height((where, what), [one.width for one in columns]))
         pen.put(page, row, 0, where, pen.style("text"))
         pen.put(page, row, 1, what, pen.style("text"))
-
-
-# ---------------------------------------------------------------- Quality log, Notes
 
 
 def write_quality(pen: Pen, page: Any, content: Content) -> None:

@@ -1,11 +1,13 @@
 """The lines of the sheet Floors: one a floor, then one for every further record that serves a floor.
 
-Where several records serve a floor, the one with the largest PFA along each axis stands in the floor's own line, which
-formulas look up by its name; the others stand in lines of the same name below the last floor.
+Where several records serve a floor, the one with the largest peak that rules the formula, along each axis, stands in
+the floor's own line, which formulas look up by its name; the others stand in lines of the same name below the last
+floor.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 
 from assess.model import AXES
 from assess.report.row_order import order_floors
@@ -27,7 +29,8 @@ class MotionLine:
 def list_lines(results: Results) -> list[MotionLine]:
     """Return the lines in order."""
     floors = order_floors(results.floor_rows)
-    sorted_motions = [{axis: _sort(results.motions_of(floor.floor, axis)) for axis in AXES} for floor in floors]
+    ruling = results.formula.ruled_by
+    sorted_motions = [{axis: _sort(results.motions_of(floor.floor, axis), ruling) for axis in AXES} for floor in floors]
     below: list[MotionLine] = []
     own = []
     for floor, motions in zip(floors, sorted_motions, strict=True):
@@ -41,9 +44,10 @@ def list_lines(results: Results) -> list[MotionLine]:
     return [*own, *below]
 
 
-def _sort(motions: Sequence[MotionRow]) -> list[MotionRow]:
-    """Return parallel motions, that of the largest PFA first; in the results' order otherwise."""
-    largest = max(motions, key=lambda one: round(one.pfa_g, 9), default=None)
+def _sort(motions: Sequence[MotionRow], ruling: str) -> list[MotionRow]:
+    """Return parallel motions, that of the largest ruling peak first; in the results' order otherwise."""
+    peak = attrgetter({"pfa": "pfa_g", "pfv": "pfv_cm_s"}[ruling])
+    largest = max(motions, key=lambda one: round(peak(one) or 0.0, 9), default=None)
     return sorted(motions, key=lambda one: one is not largest)
 
 

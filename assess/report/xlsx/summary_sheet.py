@@ -15,7 +15,7 @@ from assess.i18n import ngettext
 from assess.report import words
 from assess.report.content import Content
 from assess.report.findings.at_risk import describe_at_risk
-from assess.report.findings.ground_source import say_ground_source
+from assess.report.findings.ground_source import say_ground
 from assess.report.findings.verified import INTERVAL, say_scenario
 from assess.report.summary import ROUTES
 from assess.report.xlsx import charts
@@ -24,7 +24,7 @@ from assess.report.xlsx.item_values import list_bases, say_inputs_that_settle
 from assess.report.xlsx.items_sheet import HEAD, item_areas
 from assess.report.xlsx.pen import LINE, Pen, count_lines, row_height, say_conditions
 from assess.report.xlsx.worst_pieces import CHANCES, LAST, WIDTHS, WorstList, find_worst
-from assess.results import ItemResult
+from assess.results import CANNOT_ROCK, ItemResult
 from assess.risk import RiskClass
 from assess.workbook.formulas import OUTSIDE
 
@@ -131,7 +131,6 @@ def _list_lines(pen: Pen, content: Content, areas: Mapping[str, str], bases: Seq
 
 
 def _write_lines(plan: _Plan) -> None:
-    """Write the sentences below the title."""
     pen, page = plan.pen, plan.page
     for row, (text, formula) in enumerate(_list_lines(pen, plan.content, plan.areas, plan.bases), 1):
         page.merge_range(row, 0, row, LAST, "", pen.style("text"))
@@ -146,7 +145,7 @@ def _lines(pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequence
     scenario, verified = content.run.building.scenario, content.verified
     if scenario:
         yield _("Scenario: {scenario}", scenario=words.cut(scenario, 300)), ""
-    if shaking := say_ground_source(content.run):
+    if shaking := say_ground(content.run):
         yield shaking, ""
     yield from ((text, "") for text in say_conditions(content.run.settings))
     if not content.run.has_simulated:
@@ -166,17 +165,18 @@ def _lines(pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequence
 def _follow(pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequence[str]) -> Iterator[tuple[str, str]]:
     """Yield the sentences with numbers that follow an edit."""
     free = f"({areas['held']}<>{literal(pen.terms.yes)})"
+    unconfirmed = literal(pen.terms.bases["unconfirmed"])
     if "unconfirmed" in bases:
         own = [one for one in content.results if one.adopted.is_unconfirmed]
         ways = "; ".join(dict.fromkeys(map(say_inputs_that_settle, own)))
-        text = _("Unconfirmed pieces: {n}. They hold the class of the formula, as simulation may not lower it here; to "
-                 "settle them: {ways}.")  # fmt: skip
+        text = _("Unconfirmed pieces: {n}; to settle them: {ways}.")
         n = sum(one.item.quantity for one in own if not one.is_anchored)
-        is_own = f"({areas['basis']}={literal(pen.terms.bases['unconfirmed'])})"
+        is_own = f"({areas['basis']}={unconfirmed})"
         counted = f"SUMPRODUCT({is_own}*{free},{areas['quantity']})"
         yield text.format(n=n, ways=ways), sentence(text, n=counted, ways=literal(ways))
     rank = areas["rank"]
-    lowered = f'SUMPRODUCT(({rank}<>"")*({rank}<{areas["rank_formula"]}))'
+    is_lowered = f'({rank}<>"")*({rank}<{areas["rank_formula"]})'
+    lowered = f"SUMPRODUCT({is_lowered}*({areas['basis']}<>{unconfirmed}))"
     text = _("Rows whose class simulation lowers: {n}.")
     yield text.format(n=sum(one.adopted.lowered_from is not None for one in content.results)), sentence(text, n=lowered)
 
@@ -233,7 +233,7 @@ def _write_building(plan: _Plan) -> None:
 
 def _count_as_run(results: Sequence[ItemResult], basis: str) -> list[int]:
     """Return the free-standing pieces of a basis by class, and their sum."""
-    own = [one for one in results if one.adopted.basis == basis and not one.is_anchored]
+    own = [one for one in results if (one.apart or one.main_basis) == basis and not one.is_anchored]
     counts = [sum(one.item.quantity for one in own if one.adopted.risk == risk) for risk in RiskClass]
     return [*counts, sum(counts)]
 
@@ -282,7 +282,9 @@ def _count(plan: _Plan, basis: str, number: int, row: int) -> list[str]:
     areas, terms, quantity = plan.areas, plan.pen.terms, plan.areas["quantity"]
     on_floor = f"({areas['floor']}={plan.pen.refer('Floors')}$A${HEAD + number})"  # SUMIFS would read names as criteria
     anchored = f"({areas['held']}={literal(terms.yes)})"
-    free = f"{on_floor}*(1-{anchored})*({areas['basis']}={literal(terms.bases[basis])})"
+    bases = (basis, CANNOT_ROCK) if basis == plan.content.run.main_basis else (basis,)
+    rests = "+".join(f"({areas['basis']}={literal(terms.bases[one])})" for one in bases)
+    free = f"{on_floor}*(1-{anchored})*({rests})"
     formulas = []
     for label in terms.labels:
         classed = f"({areas['class']}={literal(label)})"

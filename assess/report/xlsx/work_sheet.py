@@ -147,7 +147,6 @@ def _write_lines(pen: Pen, page: Any, row: int, schedule: Schedule, widths: Sequ
 
 
 def _write_changes(pen: Pen, page: Any, row: int, schedule: Schedule) -> None:
-    """Write the building before and after."""
     page.write_string(row, 0, _("Before and after"), pen.style("heading"))
     for at, text in enumerate(("", _("Before"), _("After"))):
         _put_wide(pen, page, row + 1, at, text, pen.style("head"))

@@ -27,8 +27,7 @@ from assess.studies.studied_methods import (
     Range,
     write_model,
 )  # fmt: skip
-from assess.studies.study import Finding, Options, Row, Study, Table
-from assess.studies.study_pages import write_finding
+from assess.studies.study import Finding, Options, Row, Study, Table, write_finding
 from assess.units import GRAVITY
 
 COLUMNS = (

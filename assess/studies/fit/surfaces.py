@@ -32,12 +32,8 @@ Refit = Callable[[BoolArray], Callable[[BoolArray], FloatArray]]
 class Points:
     """The n cases that a surface is fitted to.
 
-    Parameters
-    ----------
-    x, y, z : (n,) arrays
-        B/H [-], PFA [cm/s2], and the chance of overturning [-].
-    group : (n,) array
-        Cases left out together: the building of each case, as text or number.
+    * `x`, `y`, `z` (n,): B/H [-], PFA [cm/s2], and the chance of overturning [-].
+    * `group` (n,): cases left out together: the building of each case, as text or number.
     """
 
     x: FloatArray
@@ -106,10 +102,7 @@ EQUATION_8 = next(one for one in CANDIDATES if one.name == "1/x to order 2, y to
 class LeftOut:
     """Errors for the groups left out in turn, each predicted by a fit to all others.
 
-    Parameters
-    ----------
-    squares : tuple of float
-        Mean square error of each group [-].
+    * `squares`: mean square error of each group [-].
     """
 
     squares: tuple[float, ...]
@@ -143,17 +136,11 @@ def leave_out(z: FloatArray, group: NDArray[Any], refit: Refit) -> LeftOut:
 class Surface:
     """A fitted candidate.
 
-    Parameters
-    ----------
-    candidate : Candidate
-    coefficients : tuple of float
-        In the order of its powers; PFA in cm/s2.
-    r2, adjusted_r2, aic : float
-        Shares of the variance explained [-]; AIC = n ln(RSS/n) + 2k of normal errors, k coefficients.
-    left_out : LeftOut
-        Errors for groups left out of the fit.
-    condition : float
-        Condition number of the columns scaled to unit norm [-].
+    * `coefficients`: in the order of its powers; PFA in cm/s2.
+    * `r2`, `adjusted_r2`, `aic`: shares of the variance explained [-]; AIC = n ln(RSS/n) + 2k of normal errors, k
+      coefficients.
+    * `left_out`: errors for groups left out of the fit.
+    * `condition`: condition number of the columns scaled to unit norm [-].
     """
 
     candidate: Candidate

@@ -11,7 +11,9 @@ from itertools import product
 import numpy as np
 
 from assess.studies.solver.histories import draw_histories, follow_near, tabulate_histories
-from assess.studies.solver.limits import (
+from assess.studies.solver.pulses import (
+    ALPHA,
+    ETA,
     EXACT,
     KERNEL,
     NEAR,
@@ -21,15 +23,17 @@ from assess.studies.solver.limits import (
     SIDE,
     SOLVERS,
     TIGHT,
+    Case,
     Found,
     Limit,
+    P,
+    Solver,
     find_limit,
+    follow,
     read_limits,
     solve_half_sine,
 )
-from assess.studies.solver.pulses import ALPHA, ETA, Case, P, Solver, follow
-from assess.studies.study import Finding, Options, Row, Study, Table
-from assess.studies.study_pages import write_finding
+from assess.studies.study import Finding, Options, Row, Study, Table, write_finding
 from assess.units import GRAVITY
 
 BANDS = tuple(round(1.25 + 0.25 * at, 2) for at in range(32))

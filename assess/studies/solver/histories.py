@@ -9,8 +9,19 @@ from typing import Any
 import numpy as np
 
 from assess.report.figures.draw import draw
-from assess.studies.solver.limits import KERNEL, NEAR, ODE23S, RK45, SHOWN, Limit
-from assess.studies.solver.pulses import ALPHA, OVERTURNED, Response, Solver, follow
+from assess.studies.solver.pulses import (
+    ALPHA,
+    KERNEL,
+    NEAR,
+    ODE23S,
+    OVERTURNED,
+    RK45,
+    SHOWN,
+    Limit,
+    Response,
+    Solver,
+    follow,
+)
 from assess.studies.studied_methods import FloatArray
 from assess.studies.study import Options, Table
 

@@ -47,24 +47,14 @@ class Ode23s(OdeSolver):  # type: ignore[misc]  # scipy is not typed
     The error of every component is at most max(rtol |y|, atol), as in MATLAB, where |y| is the larger value of both
     ends of the step. `nfev` counts the evaluations of the steps alone, as in scipy, without `jac` and differences.
 
-    Parameters
-    ----------
-    fun : callable
-        F(t, y), (n,).
-    t0, t_bound : float
-        Start and end.
-    y0 : (n,) array
-        Initial state.
-    rtol, atol : float
-        Relative and absolute tolerance, above 0.
-    jac : callable, optional
-        J(t, y), (n, n); default: forward differences.
-    first_step : float, optional
-        Length of the first step; default: by the second derivative of y.
-    max_step : float
-        Longest step.
-    vectorized : bool
-        Whether `fun` accepts several y at once.
+    * `fun`: F(t, y), (n,).
+    * `t0`, `t_bound`: start and end.
+    * `y0` (n,): initial state.
+    * `rtol`, `atol`: relative and absolute tolerance, above 0.
+    * `jac`: J(t, y), (n, n); default: forward differences.
+    * `first_step`: length of the first step; default: by the second derivative of y.
+    * `max_step`: longest step.
+    * `vectorized`: whether `fun` accepts several y at once.
 
     Raises
     ------
@@ -103,14 +93,10 @@ class Ode23s(OdeSolver):  # type: ignore[misc]  # scipy is not typed
         self.rates = self.fun(self.t, self.y)
         self.ahead = abs(t_bound - t0) if first_step is None else first_step
         if first_step is None and self.n:
-            self.ahead = min(self.ahead, self._choose_first())
+            by_t, by_y = self._differentiate(min(self.ahead, self.max_step))
+            bend = float(np.max(np.abs(by_t + by_y @ self.rates) / self._scale(self.y))) / 2
+            self.ahead = min(self.ahead, SAFETY * (self.rtol ** (1 / 3)) / math.sqrt(bend) if bend > 0 else math.inf)
         self.path: _Parabola | None = None
-
-    def _choose_first(self) -> float:
-        """Return a step whose error, by the second derivative of y, is within the tolerance."""
-        by_t, by_y = self._differentiate(min(self.ahead, self.max_step))
-        bend = float(np.max(np.abs(by_t + by_y @ self.rates) / self._scale(self.y))) / 2
-        return SAFETY * (self.rtol ** (1 / 3)) / math.sqrt(bend) if bend > 0 else math.inf
 
     def _scale(self, y: FloatArray) -> FloatArray:
         """Return the reference size of each component of y for its error: |y|, at least atol / rtol."""

@@ -11,8 +11,7 @@ from assess.report.words import cut
 from assess.risk import RiskClass, classify
 from assess.rocking.block import STOCKY
 from assess.studies.studied_methods import SHORT_TITLES, Cases, evaluate_formulas
-from assess.studies.study import Finding, Options, Row, Table
-from assess.studies.study_pages import write_finding
+from assess.studies.study import Finding, Options, Row, Table, write_finding
 from assess.studies.table1.tower import METHOD_COLUMNS, method_cells
 from assess.units import GRAVITY, VELOCITY
 

@@ -1,4 +1,4 @@
-"""The paper's 50 monitored buildings, floor by floor, under a code's profile: their records are not published."""
+"""The paper's 50 monitored buildings, floor by floor, on the PGA of their base: their records are not published."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from assess.model import Floor
-from assess.motion.scenario import DEFAULT
-from assess.motion.target import estimate_period
-from assess.pipeline.demand import Demand, Ground, serve_by_profile
+from assess.intensity import RATIO
+from assess.motion.assumed import UNKNOWN, estimate_period
+from assess.motion.floor_medians import find_medians
 from assess.risk import LIMITS, RiskClass, classify
 from assess.studies.studied_methods import CRITERIA, FORMULAS, METHODS, Cases, FloatArray, evaluate_formulas
 from assess.studies.study import Options, read_facts
@@ -27,16 +26,10 @@ DIRECTIONS = ("transverse", "longitudinal")
 class Station:
     """One line of the paper's Table 1.
 
-    Parameters
-    ----------
-    number, name, earthquake : str
-        As printed.
-    storeys : int
-        Above the ground.
-    height : float
-        Of the building [m].
-    pga : mapping of str to float
-        At the base, by direction [m/s2]; empty where it is not printed.
+    * `number`, `name`, `earthquake`: as printed.
+    * `storeys`: above the ground.
+    * `height`: of the building [m].
+    * `pga`: at the base, by direction [m/s2]; empty where it is not printed.
     """
 
     number: str
@@ -66,7 +59,7 @@ def read_stations() -> list[Station]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Level:
-    """One floor of a building in one direction, and its demand.
+    """One floor of a building in one direction, with z/h [-] and its median peaks [m/s2], [m/s].
 
     `number` is that of the paper's Table 2: 1 is the ground, the number of storeys plus one the roof.
     """
@@ -74,7 +67,9 @@ class Level:
     station: Station
     direction: str
     number: int
-    demand: Demand
+    place: float
+    pfa: float
+    pfv: float
 
     @property
     def is_roof(self) -> bool:
@@ -82,22 +77,13 @@ class Level:
         return self.number == self.station.storeys + 1
 
 
-def climb(station: Station, period: float | None) -> Iterator[Level]:
-    """Yield every floor of a building in both directions; storeys are assumed to be of one height.
-
-    Parameters
-    ----------
-    station : Station
-    period : float, optional
-        T1 [s], as a workbook would give it; where it is None, ASCE 7-22 has an equation without it and PFV is unknown.
-    """
+def climb(station: Station, period: float) -> Iterator[Level]:
+    """Yield every floor of a building with T1 [s] in both directions; storeys are assumed to be of one height."""
     for direction, pga in station.pga.items():
-        ground = Ground(pga=pga, is_from_sds=False, roof=station.height, is_highest_floor=False)
         for number in range(1, station.storeys + 2):
-            elevation = station.height * (number - 1) / station.storeys
-            floor = Floor(row=0, floor=str(number), elevation=elevation)
-            demand = serve_by_profile(floor, DEFAULT, ground, period, 1.0)["X"][0]
-            yield Level(station, direction, number, demand)
+            place = (number - 1) / station.storeys
+            by_pga, by_pgv = find_medians(period, place, UNKNOWN, RATIO)
+            yield Level(station, direction, number, place, pga * by_pga, pga * RATIO * by_pgv)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -117,15 +103,14 @@ class Climbed:
         return found
 
 
-def climb_all(stations: Sequence[Station], periods: Sequence[float | None], options: Options) -> Climbed:
+def climb_all(stations: Sequence[Station], periods: Sequence[float], options: Options) -> Climbed:
     """Evaluate the piece of the options on every floor of buildings with the given T1 [s]."""
     levels = [level for one, period in zip(stations, periods, strict=True) for level in climb(one, period)]
     cases = Cases.of(
         breadth=options.breadth,
         height=options.height,
-        pfa=[level.demand.pfa for level in levels],
-        pfv=[level.demand.pfv for level in levels],
-        pfv_estimated=["pfv_estimated" in level.demand.flags for level in levels],
+        pfa=[level.pfa for level in levels],
+        pfv=[level.pfv for level in levels],
     )
     return Climbed(levels, evaluate_formulas(cases, options.settings))
 
@@ -159,7 +144,9 @@ def paint_climbed(climbed: Climbed, names: Mapping[str, str], figure: Any) -> No
         axes.set_title(name, loc="left", fontsize=8)
         axes.tick_params(labelsize=6)
         axes.spines[["top", "right"]].set_visible(False)
-        _name_classes(axes)
+        edges = np.sqrt([0, *LIMITS, 1])
+        for risk, middle in zip(RiskClass, (edges[1:] + edges[:-1]) / 2, strict=True):
+            axes.text(1.01, middle, risk.label, transform=axes.transAxes, fontsize=6, va="center")
     panels[-1].set_xlim(0, 51)
     panels[-1].set_xticks([1, *range(5, 51, 5)], [f"{number:03d}" for number in (1, *range(5, 51, 5))])
     panels[-1].set_xlabel("building (ID of Table 1)", fontsize=7)
@@ -173,12 +160,6 @@ def _dashes(climbed: Climbed, key: str) -> tuple[FloatArray, FloatArray]:
     dashes = sorted({(int(one.station.number), round(value, 3)) for one, value in every if value == value})
     points = np.array([((at - 0.3, risk), (at + 0.3, risk), (at, np.nan)) for at, risk in dashes]).reshape(-1, 2)
     return points[:, 0], points[:, 1]
-
-
-def _name_classes(axes: Any) -> None:
-    edges = np.sqrt([0, *LIMITS, 1])
-    for risk, middle in zip(RiskClass, (edges[1:] + edges[:-1]) / 2, strict=True):
-        axes.text(1.01, middle, risk.label, transform=axes.transAxes, fontsize=6, va="center")
 
 
 def _root(values: Any) -> Any:

@@ -25,9 +25,9 @@ export class Viewport extends EventTarget {
     const [w, h] = this.size;
     const [oldW, oldH] = this.#size;
     this.#size = [w, h];
-    if (oldW < 2 || w < 2) return;
-    if (this.wanted) this.fit(this.wanted);
-    else this.set(this.scale, this.left + (w - oldW) / 2, this.top + (h - oldH) / 2);
+    if (w < 2) return;
+    if (this.wanted) this.fit(this.wanted); // also one that was asked for before there was any room
+    else if (oldW >= 2) this.set(this.scale, this.left + (w - oldW) / 2, this.top + (h - oldH) / 2);
   }
 
   set(scale, left, top) {

@@ -113,6 +113,8 @@ function table(heads, rows, isNumbers = false) {
 
 const row = (head, ...numbers) => el("tr", null, el("th", { scope: "row" }, head), numbers.map((text) => el("td", { class: "num", text })));
 const whole = (n) => number(n ?? 0, 0, true);
+/** The expected falls, with what 5 and 95 % of the draws do not exceed. */
+const falls = (side) => `${number(side.falls, 1)}${side.falls_low === null ? "" : ` (${whole(side.falls_low)}–${whole(side.falls_high)})`}`;
 
 /** Pieces by class by the formula and by the simulation, both of the same run: each column is all pieces. */
 function countsCard(job) {
@@ -140,7 +142,7 @@ function fixing(job) {
   const rows = CLASSES.map((key) => pair(badge(key), (side) => side.counts[key]));
   if (before.apart || after.apart) rows.push(pair(t("formula's class only"), (side) => side.apart));
   rows.push(pair(t("anchored"), (side) => side.anchored), pair(t("All pieces"), sum));
-  rows.push(row(t("Pieces expected to overturn"), number(before.falls, 1), number(after.falls, 1)));
+  rows.push(row(t("Pieces expected to overturn"), falls(before), falls(after)));
   const title = tn("If the {n:,} entry of the list of fixes is done", "If all {n:,} entries of the list of fixes are done", sums.entries);
   const basis = countSimulated(job) ? t("The list by the simulation, as in the reports. By the formulas, as in What if, it may have another number of entries.") : t("The list by the formula, as in the reports.");
   return el("section", { class: "card" }, el("h3", { text: title }), el("p", { class: "hint", text: basis }), table([t("Pieces"), t("Now"), t("Once fixed")], rows, true));

@@ -1,0 +1,149 @@
+"""What the workbook tells of the ground motion and of the building, from which floors without a motion follow."""
+
+import math
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+
+from assess.intensity import SHAKINGS, Shaking
+from assess.model import Floor, Inventory
+from assess.motion import assumed
+from assess.motion.assumed import assume_elevation
+from assess.motion.site_ground import SiteGround
+
+_NOTHING = assumed.Building()
+"""A building of which nothing is known."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ground:
+    """The ground motion, the roof and the building.
+
+    * `motion`: medians of PGA and PGV, as far as they are known; None where nothing gives them: Ground PGA or PGV, SDS,
+      a ShakeMap, scenarios, Shaking.
+    * `building`: T1, by its height where it is not given, and its structure.
+    * `is_period_given`: whether T1 is given.
+    * `is_from_sds`: whether PGA is 0.4 SDS.
+    * `roof`: height of the roof [m], at least 0; None where neither Height nor Storeys nor any Elevation is given.
+    * `is_highest_floor`: whether `roof` is the highest floor of the workbook, which makes z/h larger than the roof
+      would.
+    * `shaking`: the assumed intensity that `motion` is the median of.
+    * `site`: the ShakeMap or the scenarios whose median it is.
+    * `storeys`: storeys above ground, from which the elevations of numbered floors are assumed; None where a floor has
+      its own.
+    """
+
+    motion: assumed.Ground | None = None
+    building: assumed.Building = _NOTHING
+    is_period_given: bool = False
+    is_from_sds: bool = False
+    roof: float | None = None
+    is_highest_floor: bool = False
+    shaking: Shaking | None = None
+    site: SiteGround | None = None
+    storeys: int | None = None
+
+    @property
+    def pga(self) -> float | None:
+        """Median peak ground acceleration [m/s2]."""
+        return None if self.motion is None else self.motion.peaks[0]
+
+    @property
+    def pgv(self) -> float | None:
+        """Median peak ground velocity [m/s], where it is known."""
+        return None if self.motion is None else self.motion.pgv
+
+    @property
+    def dispersion(self) -> float:
+        """Standard deviation of ln of what is known of the ground [-]: of PGV where that is; 0 of a typed value."""
+        if self.site:
+            return self.site.dispersion
+        return self.shaking.scatter if self.shaking else 0.0
+
+    def find_pga(self, sources: Collection[str]) -> float | None:
+        """Return the peak that motions of floors with these sources belong to [m/s2]; None where it is not known.
+
+        Only Ground PGA is that of floors with motions of their own: an SDS, an intensity or a map serves the others.
+        """
+        serves_others = self.is_from_sds or self.shaking or self.site
+        return None if serves_others and not set(sources) <= {"profile", "beam"} else self.pga
+
+    def place(self, floor: Floor) -> tuple[float | None, tuple[str, ...]]:
+        """Return the elevation of a floor [m] with its flags: as filled in, else by Storeys and Height, else None."""
+        if floor.elevation is not None:
+            return floor.elevation, ()
+        assumed = None if self.is_highest_floor else assume_elevation(floor.floor, self.roof, self.storeys)
+        return assumed, () if assumed is None else ("assumed_elevation",)
+
+    def find_ratio(self, floor: Floor) -> float | None:
+        """Return z/h of a floor [-], None where it is not known."""
+        z, _ = self.place(floor)
+        if z is None or z <= 0:
+            return z if z is None else 0.0
+        return find_height_ratio(z, self.roof) if self.roof else None
+
+
+def find_height_ratio(elevation: float, roof: float) -> float:
+    """Return z/h of a floor, 0 at and below grade, at most 1 [-]; both heights are above the ground [m]."""
+    return min(elevation / roof, 1.0) if elevation > 0 else 0.0
+
+
+def find_ground(inventory: Inventory) -> Ground:
+    """Return what the workbook gives, as far as it does."""
+    building = inventory.building
+    highest = max((floor.elevation for floor in inventory.floors if floor.elevation is not None), default=None)
+    by_sds = building.ground_pga is None and building.sds is not None
+    pga = building.known_pga
+    site = inventory.site_ground if pga is None else None
+    shaking = SHAKINGS.get(building.shaking) if pga is None and site is None else None
+    roof, is_highest = _find_roof(building.height, building.storeys, highest)
+    return Ground(
+        motion=_find_motion(pga, building.ground_pgv, site, shaking),
+        building=_describe(building.period, roof, building.structure),
+        is_period_given=building.period is not None,
+        is_from_sds=by_sds,
+        roof=roof,
+        is_highest_floor=is_highest,
+        shaking=shaking,
+        site=site,
+        storeys=building.storeys if highest is None else None,
+    )
+
+
+def _find_motion(
+    pga: float | None, pgv: float | None, site: SiteGround | None, shaking: Shaking | None
+) -> assumed.Ground | None:
+    """Return the medians; a Ground PGV that is typed rules that of a map or an intensity."""
+    if site:
+        return assumed.Ground(pga=site.pga, pgv=site.pgv if pgv is None else pgv)
+    if shaking:
+        return assumed.Ground(pga=None if shaking.is_derived else shaking.pga, pgv=pgv or shaking.pgv)
+    return None if pga is None and pgv is None else assumed.Ground(pga=pga, pgv=pgv)
+
+
+def _find_roof(height: float | None, storeys: int | None, highest: float | None) -> tuple[float | None, bool]:
+    """Return the height of the roof [m], and whether it is but the highest floor."""
+    if height is not None:
+        return height, False
+    by_storeys = assumed.STOREY * storeys if storeys else 0.0
+    if by_storeys > max(highest or 0.0, 0.0):
+        return by_storeys, False
+    return (None if highest is None else max(highest, 0.0)), True
+
+
+def _describe(period: float | None, roof: float | None, structure: str) -> assumed.Building:
+    known = assumed.Building(structure=structure or assumed.UNKNOWN)
+    if period is not None:
+        return replace(known, period=period)
+    by_height = assumed.estimate_period(roof)
+    return known if by_height is None else replace(known, period=by_height, scatter=assumed.SCATTER)
+
+
+def find_dispersion(ground: Ground, given: float | None) -> float:
+    """Return the standard deviation of ln amplitude of floors that follow from the ground [-].
+
+    `given` is Motion uncertainty. The scatter of an assumed intensity is the total one, of earthquakes and sites alike:
+    it stands in for a smaller value, and adds to none; that of a map or of scenarios adds to its variance.
+    """
+    if ground.site:
+        return math.hypot(given or 0.0, ground.dispersion)
+    return max(given or 0.0, ground.dispersion)
