@@ -22,7 +22,7 @@ RECORDS = {
 def write_record(path: Path, acceleration: FloatArray, step: float = STEP) -> Path:
     """Write a record [g] as a plain table."""
     lines = [f"{at * step:.4f},{value:.6f}" for at, value in enumerate(acceleration)]
-    path.write_text("\n".join(["time [s],acceleration [g]", *lines]) + "\n", encoding="utf-8")
+    path.write_text("\n".join(["time [s],x [g]", *lines]) + "\n", encoding="utf-8")
     return path
 
 

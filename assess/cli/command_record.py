@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from assess.cli.console import count, print_error, show_progress
+from assess.cli.console import count, print_error, say, show_progress
 from assess.cli.options import AsJson, check_file, figure_kind, save_file
 from assess.errors import InputError
 from assess.units import GRAVITY
@@ -47,13 +47,13 @@ def command(
     if not found:
         raise typer.Exit(2)
     if as_json:
-        typer.echo(json.dumps(documents[0] if len(files) == 1 else documents, ensure_ascii=False, indent=1))
+        say(json.dumps(documents[0] if len(files) == 1 else documents, ensure_ascii=False, indent=1))
     else:
-        typer.echo("\n\n".join("\n".join(list_lines(document)) for document in documents))
+        say("\n\n".join("\n".join(list_lines(document)) for document in documents))
     if plot is not None:
         channels = [channel for every in found for channel in every]
         left = len(channels) - write_figure(channels, plot)
-        typer.echo(f"wrote {plot}" + (f"; {count(left, 'more channel')} not drawn" if left else ""), err=True)
+        say(f"wrote {plot}" + (f"; {count(left, 'more channel')} not drawn" if left else ""), err=True)
     if len(found) < len(files):
         raise typer.Exit(1)
 
@@ -143,9 +143,15 @@ def list_lines(document: dict[str, Any]) -> Iterator[str]:
 
 
 def _where(one: dict[str, Any]) -> str:
-    azimuth = "vertical" if one["vertical"] else "" if one["azimuth_deg"] is None else f"{one['azimuth_deg']:g} deg"
-    parts = [part for part in (f"channel {one['channel']}", one["location"], azimuth) if part]
+    direction = _say_direction(one["vertical"], one["azimuth_deg"], " deg")
+    parts = [part for part in (f"channel {one['channel']}", one["location"], direction) if part]
     return f" ({', '.join(parts)})"
+
+
+def _say_direction(vertical: bool | None, azimuth_deg: float | None, sign: str) -> str:
+    if azimuth_deg is not None:
+        return f"{azimuth_deg:g}{sign}"
+    return "direction not known" if vertical is None else "vertical" if vertical else "horizontal"
 
 
 # ---------------------------------------------------------------- figure
@@ -175,8 +181,8 @@ def _paint(shown: Sequence["Channel"], figure: Any) -> None:
     periods = build_periods(0.03, 10.0, 150)
     for (name, record, motion), (first, second, third) in zip(shown, rows, strict=True):
         times = np.arange(motion.acceleration.size) * motion.time_step
-        azimuth = "vertical" if record.vertical else "" if record.azimuth_deg is None else f"{record.azimuth_deg:g}°"
-        title = ", ".join(part for part in (name, record.location, azimuth) if part)
+        direction = _say_direction(record.vertical, record.azimuth_deg, "°")
+        title = ", ".join(part for part in (name, record.location, direction) if part)
         first.set_title(title.replace("$", r"\$")[:90], loc="left", fontsize=8)
         for axes, values, unit in (
             (first, motion.acceleration / GRAVITY, "g"),

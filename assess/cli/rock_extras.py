@@ -152,6 +152,8 @@ def read_vertical(name: str, case: RockCase) -> tuple[str, "FloatArray"]:
 
     channels = read_channels(name)
     upright = [channel for channel in channels if channel.record.vertical]
+    if not upright and len(channels) == 1 and channels[0].record.vertical is None:
+        upright = channels  # named by the user; the file does not tell
     file, held = Path(name).name, ", ".join(channel.name for channel in upright or channels)
     if not upright and len(channels) == 1:
         raise InputError(f"--vertical: {held} is a horizontal channel: choose the vertical one")

@@ -30,6 +30,7 @@ from numpy.typing import NDArray
 from assess.errors import InputError
 from assess.hazard import FAR, find_distance
 from assess.i18n import Text, fill, join, nfill
+from assess.input_file import read_input
 from assess.motion.site_ground import SiteGround
 from assess.units import GRAVITY
 
@@ -272,8 +273,7 @@ class _Table:
 def _read_table(path: Path, texts: dict[str, int]) -> _Table:
     """Return the table of a file; custom_site_id, which is a text, by the number that `texts` gives it."""
     try:
-        with path.open("rb") as file:
-            data = file.read(LARGEST_FILE + 1)
+        data = read_input(path, LARGEST_FILE)
         with _naming(path.name):
             return _parse_table(data, texts)
     except OSError as error:

@@ -26,6 +26,7 @@ import numpy as np
 
 from assess.errors import InputError
 from assess.i18n import Text, fill, join, nfill
+from assess.input_file import read_input
 from assess.motion.shake_grid import LARGEST_FILE, FloatArray, Grid, describe_place, find_turn, parse_grid
 from assess.motion.site_ground import SiteGround
 from assess.motion.spatial_field import MAGNITUDES, SCATTERS, Measure
@@ -251,8 +252,7 @@ def name_uncertainty(name: str) -> tuple[str, ...]:
 def read_file(path: Path) -> bytes:
     """Return the bytes of a file, but no more than show that it is too large; InputError if it cannot be read."""
     try:
-        with path.open("rb") as file:
-            return file.read(LARGEST_FILE + 1)
+        return read_input(path, LARGEST_FILE)
     except (OSError, ValueError) as error:  # ValueError: a zero character in the name
         why = getattr(error, "strerror", None) or str(error)
         raise InputError(fill("{file}: the file cannot be read ({why})", file=path.name, why=why)) from None

@@ -3,14 +3,14 @@
 import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from itertools import groupby
+from itertools import groupby, islice
 from pathlib import Path
 
 import numpy as np
 
 from assess.errors import RecordError
-from assess.i18n import fill, nfill
-from assess.motion.formats import read_records
+from assess.i18n import fill, join, nfill
+from assess.motion.formats import read_records, settle_directions
 from assess.motion.record import FloatArray, Motion, Record, treat
 from assess.motion.target_fit import Spectra
 from assess.progress import SILENT, Progress
@@ -85,7 +85,7 @@ def _stack(rows: list[FloatArray]) -> FloatArray:
     return stacked
 
 
-def read_suite(folder: Path, *, progress: Progress = SILENT) -> Suite:
+def read_suite(folder: Path | str, *, progress: Progress = SILENT) -> Suite:
     """Read every record of a folder, but not of folders within it.
 
     Raises
@@ -94,6 +94,7 @@ def read_suite(folder: Path, *, progress: Progress = SILENT) -> Suite:
         If there is no such folder, no horizontal channel in it, or a file cannot be read as a record: the message names
         it. Texts (.md, .html, .pdf, .rst), .ini and .db, and hidden files are passed over.
     """
+    folder = Path(folder)
     if not folder.is_dir():
         raise RecordError(fill("{folder}: there is no such folder. Name a folder of floor records", folder=folder))
     paths = [path for path in sorted(folder.iterdir()) if path.is_file() and not path.name.startswith(".")]
@@ -103,23 +104,36 @@ def read_suite(folder: Path, *, progress: Progress = SILENT) -> Suite:
 
 def _read_suite(folder: Path, paths: list[Path], progress: Progress) -> Suite:
     found = {path: _read(path, progress) for path in paths}
+    settled = iter(settle_directions([record for records in found.values() for record in records]))
+    found = {path: tuple(islice(settled, len(records))) for path, records in found.items()}
     motions = [one for path, records in found.items() for one in _horizontal(path, records, progress)]
+    notes = tuple(_note_directions(found))
     if not motions:
-        raise RecordError(
-            fill("{folder}: the folder holds no horizontal channel. Put floor records into it", folder=folder)
-        )
-    vertical = [f"{path.name}#{one.channel}" for path, records in found.items() for one in records if one.vertical]
+        why = fill("{folder}: the folder holds no horizontal channel. Put floor records into it", folder=folder)
+        raise RecordError(join("; ", (why, *notes)))
     return Suite(
         folder=folder.name,
         motions=tuple(sorted(motions, key=lambda one: (one[1].time_step, one[0]))),
         files={path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in found},
-        notes=tuple(_notes(len(motions), vertical)),
+        notes=(*notes, *_note_few(len(motions))),
     )
 
 
-def _notes(count: int, vertical: list[str]) -> Iterator[str]:
+def _note_directions(found: Mapping[Path, tuple[Record, ...]]) -> Iterator[str]:
+    """Yield what is left out for its direction."""
+    channels = [(f"{path.name}#{one.channel}", one.vertical) for path, records in found.items() for one in records]
+    vertical, unknown = ([name for name, kind in channels if kind is which] for which in (True, None))
     if vertical:
         yield fill("vertical channels are left out: {channels}", channels=", ".join(vertical))
+    if unknown:
+        yield fill(
+            "channels are left out because their direction is not known: {channels} (where they are horizontal, give "
+            "them as plain CSV, with x or y as the heading)",
+            channels=", ".join(unknown),
+        )
+
+
+def _note_few(count: int) -> Iterator[str]:
     if count < FEW:
         yield nfill(
             "only {n} motion: the probabilities have wide intervals",
@@ -138,5 +152,5 @@ def _read(path: Path, progress: Progress) -> tuple[Record, ...]:
 def _horizontal(path: Path, records: tuple[Record, ...], progress: Progress) -> Iterator[tuple[str, Motion]]:
     for record in records:
         progress.check()
-        if not record.vertical:
+        if record.vertical is False:
             yield (f"{path.name}#{record.channel}" if len(records) > 1 else path.name), treat(record)

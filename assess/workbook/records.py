@@ -271,6 +271,12 @@ def _parse_shakemap(
 def _check_direction(
     table: Table, name: str, row: Row, one: FloorRecord, axis: Axis, along: float | None
 ) -> Iterator[Problem]:
+    if one.record.vertical is None:
+        message = fill("the direction of {record} is not known: is it horizontal?", record=shorten(one.name))
+        fix = fill(
+            "If it is vertical, choose another channel. In plain CSV, the heading x or y tells that it is horizontal."
+        )
+        yield table.problem(name, row, message, fix, "warning")
     azimuth = one.record.azimuth_deg
     off = 0.0 if along is None or azimuth is None else angle_between(azimuth, along)
     if off > NEAR_AXIS:

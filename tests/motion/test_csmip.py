@@ -50,7 +50,7 @@ def test_text(data: bytes) -> None:
 def test_text_that_says_little() -> None:
     bare = changed(changed(V1, b"CHAN  1:  90 DEG", b"CHANNEL"), b"TRIGGER TIME", b"            ")
     record = read_one(changed(bare, b"STATION NO. 14403", b"STATION          "))
-    assert (record.channel, record.location, record.azimuth_deg, record.vertical) == ("1", "", None, False)
+    assert (record.channel, record.location, record.azimuth_deg, record.vertical) == ("1", "", None, None)
     assert (record.station, record.start) == ("TOWN HALL", "JANUARY 17, 1994 04:31 PST")
 
 
@@ -64,10 +64,10 @@ def test_the_recorder_s_number_where_the_building_s_is_not_given() -> None:
     [
         (b"360 DEG", 360.0, False), (b"  2 DEG", 2.0, False), (b"UP", None, True), (b"V", None, True),
         (b"EW", 90.0, False), (b"NS", 0.0, False), (b"N08W", 352.0, False), (b"S62W", 242.0, False),
-        (b"S45E", 135.0, False), (b"400 DEG", None, False), (b"RADIAL", None, False),
+        (b"S45E", 135.0, False), (b"400 DEG", None, None), (b"RADIAL", None, False),
     ],
 )  # fmt: skip
-def test_directions(direction: bytes, azimuth: float | None, vertical: bool) -> None:
+def test_directions(direction: bytes, azimuth: float | None, vertical: bool | None) -> None:
     record = read_one(changed(V2, b"1:  90 DEG  (STA", b"1: " + direction + b"  (STA"))
     assert (record.azimuth_deg, record.vertical) == (azimuth, vertical)
 

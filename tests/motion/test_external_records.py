@@ -18,7 +18,8 @@ from hypothesis import strategies as st
 
 from assess.errors import RecordError
 from assess.motion.formats import read_records
-from assess.motion.formats._values import read_acceleration_unit, read_direction
+from assess.motion.formats._direction import read_direction
+from assess.motion.formats._values import read_acceleration_unit
 from assess.motion.record import Record, treat
 from tests.motion.damage import damaged
 

@@ -47,7 +47,7 @@ def test_directions(direction: str, channel: str, location: str, azimuth: float 
 
 def test_headers_that_say_little() -> None:
     record = read_one(write(direction="", **{"Max._Acc._(gal)": "", "Record_Time": "yesterday"}))
-    assert (record.channel, record.azimuth_deg, record.vertical) == ("1", None, False)
+    assert (record.channel, record.azimuth_deg, record.vertical) == ("1", None, None)
     assert (record.header_pfa, record.start) == (None, "yesterday")
     assert read_one(write(Record_Time="0001/01/01 00:00:00")).start == "0001/01/01 00:00:00"
 

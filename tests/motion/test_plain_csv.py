@@ -53,10 +53,10 @@ def test_csv_unknown_comments_are_noted() -> None:
         ("B 315°", 315.0, False),
         ("CH3 Up", None, True),
         ("U-D", None, True),
-        ("zone", None, False),
+        ("zone", None, None),
     ],
 )
-def test_csv_direction_from_the_name(name: str, azimuth: float | None, vertical: bool) -> None:
+def test_csv_direction_from_the_name(name: str, azimuth: float | None, vertical: bool | None) -> None:
     (record,) = read_csv(csv_text(f"time [s],{name} [g]"))
     assert (record.channel, record.azimuth_deg, record.vertical) == (name, azimuth, vertical)
 

@@ -132,7 +132,7 @@ def test_smc_headers_that_say_little() -> None:
     bare = with_line(with_line(with_line(ROOF, 4, b"*"), 6, b"*"), 7, b"pk acc = E")
     record = read_smc(header_line(bare, 13, 5, "-32768", 10))
     assert (record.station, record.event, record.start, record.header_pfa) == ("", "", "", None)
-    assert (record.azimuth_deg, record.vertical, record.channel) == (None, False, "1")
+    assert (record.azimuth_deg, record.vertical, record.channel) == (None, None, "1")
 
 
 def test_smc_pairs_in_time() -> None:

@@ -49,6 +49,14 @@ def test_records(tmp_path: Path) -> None:
     assert all(re.fullmatch("[0-9a-f]{64}", digest) for digest in inventory.files.values())
 
 
+def test_a_direction_that_is_not_known_is_asked_for(tmp_path: Path) -> None:
+    write_record(tmp_path / "one.csv", "time [s],acceleration [g]")
+    (warning,) = remarks(read(tmp_path, floors=floors_with("one.csv")), "warning")
+    assert warning.startswith("Floors!B2: the direction of 'one.csv' is not known: is it horizontal?")
+    write_record(tmp_path / "one.csv", "time [s],x [g]")
+    assert not remarks(read(tmp_path, floors=floors_with("one.csv")), "warning")
+
+
 BAD_RECORDS = [
     ("two.csv", "two.csv holds 2 channels: NS, Up. Name one of them, such as two.csv#NS."),
     ("two.csv#9", "two.csv has no channel '9'. It holds: NS, Up."),

@@ -8,8 +8,10 @@ from typing import NamedTuple
 
 from assess.errors import RecordError
 from assess.i18n import fill, join
+from assess.input_file import read_input
 from assess.motion.formats._archive import is_archive, read_archive
 from assess.motion.formats._choice import list_addresses, rename_duplicates, select
+from assess.motion.formats._direction import settle_directions
 from assess.motion.formats._format import Format
 from assess.motion.record import Baseline, Motion, Record, treat
 from assess.progress import SILENT, Progress
@@ -26,6 +28,7 @@ __all__ = [
     "read_channels",
     "read_records",
     "select",
+    "settle_directions",
 ]
 
 LARGEST_FILE = 64_000_000
@@ -77,11 +80,10 @@ def read_records(path: Path, *, progress: Progress = SILENT) -> tuple[Record, ..
 def read_bytes(path: Path) -> bytes:
     """Return the bytes of a file, but no more than show that it is too large; RecordError if it cannot be read."""
     try:
-        with path.open("rb") as file:
-            return file.read(LARGEST_FILE + 1)
+        return read_input(path, LARGEST_FILE)
     except (OSError, ValueError) as error:  # ValueError: a zero character in the name
         why = next((text for kind, text in _NO_FILE.items() if isinstance(error, kind)), None)
-        why = why or fill("the file cannot be read ({why})", why=str(error))
+        why = why or fill("the file cannot be read ({why})", why=getattr(error, "strerror", None) or error)
         raise RecordError(join(": ", (path.name or path, why))) from None
 
 
@@ -103,11 +105,11 @@ def parse_records(data: bytes, name: str, *, progress: Progress = SILENT) -> tup
             )
             raise RecordError(text)
         if is_archive(data):
-            return rename_duplicates(read_archive(data, name, _read_member, progress))
+            return settle_directions(rename_duplicates(read_archive(data, name, _read_member, progress)))
         found = _find_format(data[:HEAD])
         if found is None:
             raise _unsupported(data)
-        return rename_duplicates(found.read(data, name))
+        return settle_directions(rename_duplicates(found.read(data, name)))
     except RecordError as error:
         raise RecordError(join(": ", (name, error.message))) from error
 

@@ -6,6 +6,7 @@ from typing import TypeVar
 
 from assess.errors import RecordError
 from assess.i18n import Text, fill, join, nfill
+from assess.motion.formats._direction import UNKNOWN, Direction
 from assess.motion.record import FloatArray, Record, Series, check_samples, check_time_step, peak
 
 T = TypeVar("T")
@@ -18,9 +19,6 @@ MOST_NOTES = 4
 """Notes on single channels that are left out."""
 HEADER_PEAK_WITHIN = 0.02
 """Headers print two to four digits of the peak; a larger difference [-] is noted."""
-
-Direction = tuple[float | None, bool]
-"""Azimuth [deg], None where it is unknown, and whether the channel is vertical."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +46,7 @@ def build_record(
     corrected: bool,
     own: FloatArray | None = None,
     channel: str = "",
-    direction: Direction = (None, False),
+    direction: Direction = UNKNOWN,
     location: str = "",
     station: str = "",
     event: str = "",
@@ -68,8 +66,8 @@ def build_record(
         Evenly spaced samples [m/s2].
     own : (n,) array, optional
         The file's own samples [m/s2], where they are not evenly spaced.
-    direction : (float or None, bool)
-        Azimuth [deg] and whether it is vertical.
+    direction : Direction
+        Azimuth [deg] and whether it is vertical; None where it is not known.
     has_offset : bool
         Whether the samples carry the instrument's offset: the peak is then that about their mean.
     notes : sequence of str

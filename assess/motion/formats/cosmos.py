@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 from assess.errors import RecordError
 from assess.i18n import fill
-from assess.motion.formats._format import Direction, build_record, even_series
+from assess.motion.formats._direction import Direction, read_direction
+from assess.motion.formats._format import build_record, even_series
 from assess.motion.formats._text import (
     LONGEST_TEXT,
     Columns,
@@ -24,7 +25,7 @@ from assess.motion.formats._text import (
     read_format,
     text_format,
 )
-from assess.motion.formats._values import read_acceleration_unit, read_direction, read_peak
+from assess.motion.formats._values import NUMBER, read_acceleration_unit, read_peak
 from assess.motion.record import Record, Series
 from assess.units import ACCELERATION, GRAVITY
 
@@ -42,7 +43,7 @@ HEADER = fields(
         8,
         r"^sta\s+cha\w*:?\s*(?P<channel>\w+)\s*:\s*(?P<direction>.*?)\s*\(.*?\)\s*(?:location:\s*(?P<location>.*))?",
     ),
-    (10, r"\bmax\s*=\s*(?P<peak>[-+.\dE]+)\s*(?P<peak_unit>[^\s,]+)"),
+    (10, rf"\bmax\s*=\s*(?P<peak>[-+]?{NUMBER})\s*(?P<peak_unit>[^\s,]+)"),
 )
 
 # Places in the blocks of numbers, counted from 0; the format's description counts from 1.
@@ -153,8 +154,10 @@ def _factor(unit: str, code: int) -> float:
 
 def _read_direction(header: Mapping[str, str], code: float) -> Direction:
     azimuth, vertical = read_direction(header["direction"])
-    if azimuth is None and not vertical:
-        return (code if 1 <= code <= 360 else None), 400 <= code <= 402
+    if vertical is None and 400 <= code <= 402:
+        return None, True
+    if azimuth is None and not vertical and 1 <= code <= 360:
+        return code, False
     return azimuth, vertical
 
 

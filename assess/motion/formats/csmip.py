@@ -21,9 +21,10 @@ import numpy as np
 
 from assess.errors import RecordError
 from assess.i18n import fill
+from assess.motion.formats._direction import read_direction
 from assess.motion.formats._format import build_record, even_series
 from assess.motion.formats._text import Columns, Section, fields, read_columns, read_fields, read_format, text_format
-from assess.motion.formats._values import read_acceleration_unit, read_direction, read_finite, read_peak
+from assess.motion.formats._values import NUMBER, read_acceleration_unit, read_finite, read_peak
 from assess.motion.record import FloatArray, Record, Series, build_series
 from assess.units import ACCELERATION, GRAVITY
 
@@ -50,22 +51,23 @@ TEXT = fields(
     ),
 )
 """Counted from the line "Uncorrected accelerogram data", which both volumes have."""
-PEAK_V1 = fields((range(9, TEXT_V1), r"max\s*=\s*(?P<peak>[-+.\dE]+)\s*g\b"))
-PEAK_V2 = fields((range(TEXT_V2), r"peak\s+acceleration\s*=\s*(?P<peak>[-+.\dE]+)"))
+PEAK_V1 = fields((range(9, TEXT_V1), rf"max\s*=\s*(?P<peak>[-+]?{NUMBER})\s*g\b"))
+PEAK_V2 = fields((range(TEXT_V2), rf"peak\s+acceleration\s*=\s*(?P<peak>[-+]?{NUMBER})"))
 TITLE_V1 = fields(
     (
         DATA_V1,
-        r"^(?P<count>\d{1,9})\s+accel\w*\s+points\s+at\s+(?P<rate>[\d.]+)\s*pts/sec\s+in\s+units\s+of\s+(?P<unit>[\w/]+)",
+        rf"^(?P<count>\d{{1,9}})\s+accel\w*\s+points\s+at\s+(?P<rate>{NUMBER})\s*pts/sec\s+in\s+units\s+of\s+(?P<unit>[\w/]+)",
     )
 )
 TITLE_V2 = fields(
-    (0, r"^(?P<count>\d{1,9})\s+points of accel data equally spaced at\s+(?P<step>[\d.]+)\s*sec"),
+    (0, r"^(?P<count>\d{1,9})\s+points of accel data"),
+    (0, rf"equally spaced at\s+(?P<step>{NUMBER})\s*sec"),
     (0, r"(?:units:|,\s*in)\s*(?P<unit>cm/sec/sec|cm/sec2|g)\b"),
 )
 
 _COUNT = re.compile(r"no\.\s*of points\s*=\s*(\d{1,9})\b", re.IGNORECASE)
 _UNIT = re.compile(r"\bare\s+sec\s+and\s+(g(?:\s*/\s*10)?)\b", re.IGNORECASE)
-_DATA_V2 = re.compile(r"\s*\d{1,9}\s+points of accel data equally spaced at\s+[\d.]+\s*sec", re.IGNORECASE)
+_DATA_V2 = re.compile(r"\s*\d{1,9}\s+points of accel data equally spaced at\s+\S+\s*sec", re.IGNORECASE)
 _START_V1 = re.compile(r"\s*uncorrected accelerogram data\b", re.IGNORECASE)
 _SPECTRA = re.compile(r"\s*response and fourier", re.IGNORECASE)
 

@@ -9,9 +9,10 @@ from collections import defaultdict
 
 from assess.errors import RecordError
 from assess.i18n import fill
+from assess.motion.formats._direction import read_direction
 from assess.motion.formats._format import build_record, even_series
 from assess.motion.formats._text import Section, read_words, text_format
-from assess.motion.formats._values import direction_of_code, name_quantity, read_finite, read_peak, require_unit
+from assess.motion.formats._values import name_quantity, read_finite, read_peak, require_unit
 from assess.motion.record import Record
 from assess.units import ACCELERATION
 
@@ -48,7 +49,7 @@ def _read_channel(section: Section, file: str) -> Record:
         # Only filtered data need no further filter; a baseline alone may have been removed from raw data, too.
         corrected=not (_RAW.fullmatch(header["PROCESSING"]) or _RAW.fullmatch(header["FILTER_TYPE"])),
         channel=header["STREAM"],
-        direction=direction_of_code(header["STREAM"]),
+        direction=read_direction(header["STREAM"], bare_degrees=False),
         location=header["LOCATION"],
         station=f"{name} ({code})" if name and code else name or code,
         event=" ".join(filter(None, (header["EVENT_NAME"], header["EVENT_DATE_YYYYMMDD"]))),

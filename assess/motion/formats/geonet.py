@@ -10,9 +10,10 @@ import re
 
 from assess.errors import RecordError
 from assess.i18n import fill
+from assess.motion.formats._direction import read_direction
 from assess.motion.formats._format import build_record, even_series
 from assess.motion.formats._text import Columns, Section, fields, read_columns, read_fields, text_format
-from assess.motion.formats._values import read_acceleration_unit, read_direction, read_finite, read_peak
+from assess.motion.formats._values import NUMBER, read_acceleration_unit, read_finite, read_peak
 from assess.motion.record import Record
 
 TITLE = "GeoNet"
@@ -28,9 +29,9 @@ HEADER = fields(
     (2, r"(?P<station>.*)"),
     (6, r"(?P<event>.*)"),
     (7, r"(?P<start>.*)"),
-    (10, r"raw readings in units of\s+(?P<multiple>[\d.]+)\s+(?P<raw_unit>\S+)"),
+    (10, rf"raw readings in units of\s+(?P<multiple>{NUMBER})\s+(?P<raw_unit>\S+)"),
     (12, r"^(?:component)?\s*(?P<component>\S*)"),
-    (13, r"acceleration:\s*peak\s+(?P<peak>[-+.\d]+)\s*(?P<unit>\S+)"),
+    (13, rf"acceleration:\s*peak\s+(?P<peak>[-+]?{NUMBER})\s*(?P<unit>\S+)"),
 )
 
 

@@ -15,9 +15,10 @@ from datetime import datetime, timedelta
 
 from assess.errors import RecordError
 from assess.i18n import fill
+from assess.motion.formats._direction import read_direction
 from assess.motion.formats._format import build_record, even_series
 from assess.motion.formats._text import Section, read_words, text_format
-from assess.motion.formats._values import read_finite, read_peak
+from assess.motion.formats._values import NUMBER, read_finite, read_peak
 from assess.motion.record import Record
 from assess.units import ACCELERATION
 
@@ -29,11 +30,19 @@ HEADER, NAME = 17, 18
 DELAY = timedelta(seconds=15)
 """From the first sample to the record time."""
 
-_DIRECTIONS = {"n-s": ("NS", 0.0), "e-w": ("EW", 90.0), "u-d": ("UD", None),
-               "1": ("NS1", 0.0), "2": ("EW1", 90.0), "3": ("UD1", None),
-               "4": ("NS2", 0.0), "5": ("EW2", 90.0), "6": ("UD2", None)}  # fmt: skip
-_SCALE = re.compile(r"([\d.]+)\s*\(gal\)\s*/\s*([\d.]+)", re.IGNORECASE)
-_NUMBER = re.compile(r"[\d.]+")
+_CHANNELS = {
+    "n-s": "NS",
+    "e-w": "EW",
+    "u-d": "UD",
+    "1": "NS1",
+    "2": "EW1",
+    "3": "UD1",
+    "4": "NS2",
+    "5": "EW2",
+    "6": "UD2",
+}
+_SCALE = re.compile(rf"({NUMBER})\s*\(gal\)\s*/\s*({NUMBER})", re.IGNORECASE)
+_NUMBER = re.compile(NUMBER, re.IGNORECASE)
 
 
 def _read_channel(section: Section, file: str) -> Record:
@@ -51,14 +60,14 @@ def _read_channel(section: Section, file: str) -> Record:
         )
     values, notes = read_words(section, HEADER, rate * seconds, above / below * GAL)
     direction = header.get("Dir.", "")
-    channel, azimuth = _DIRECTIONS.get(direction.lower(), (direction, None))
+    channel = _CHANNELS.get(direction.lower(), direction)
     return build_record(
         TITLE,
         file,
         even_series(values, 1 / rate, notes),
         corrected=False,
         channel=channel,
-        direction=(azimuth, channel.startswith("UD")),
+        direction=read_direction(channel),
         location={"1": "borehole", "2": "surface"}.get(channel[2:], ""),
         station=header.get("Station Code", ""),
         event=f"{header.get('Origin Time', '')} M{header.get('Mag.', '')}",

@@ -18,8 +18,8 @@ import numpy as np
 
 from assess.errors import RecordError
 from assess.i18n import fill, nfill
+from assess.motion.formats._direction import read_direction
 from assess.motion.formats._format import Format, build_record, check_channels, even_series, keep_readable
-from assess.motion.formats._values import direction_of_code
 from assess.motion.record import FloatArray, Record, Series, build_series, check_count
 
 TITLE = "miniSEED"
@@ -207,7 +207,7 @@ def _read_channel(file: str, parts: Sequence[_Part], notes: Sequence[str], whole
         own=own,
         corrected=False,
         channel=first.id if whole_name else code,
-        direction=direction_of_code(code),
+        direction=read_direction(code, bare_degrees=False),
         location=location,
         station=".".join(filter(None, (network, station))),
         start=f"{first.start.isoformat(sep=' ', timespec='milliseconds')} UTC",

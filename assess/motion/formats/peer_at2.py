@@ -10,9 +10,10 @@ import re
 
 from assess.errors import RecordError
 from assess.i18n import fill
+from assess.motion.formats._direction import read_direction
 from assess.motion.formats._format import build_record, even_series
 from assess.motion.formats._text import Section, fields, read_fields, read_words, text_format
-from assess.motion.formats._values import name_quantity, read_direction, read_finite, require_unit
+from assess.motion.formats._values import END, NUMBER, name_quantity, read_finite, require_unit
 from assess.motion.record import Record
 
 TITLE = "PEER AT2"
@@ -23,8 +24,8 @@ _KIND = r"\b(?P<kind>acceleration|velocity|displacement) time (?:series|history)
 HEADER = fields(
     (range(DATA), _KIND),
     (1, r"(?P<title>.*)"),
-    (3, r"npts\s*=\s*(?P<count>\d{1,9})\s*,?\s*dt\s*=\s*(?P<step>[\d.]+)"),
-    (3, r"^(?P<old_count>\d{1,9})\s+(?P<old_step>[\d.]+)\s+npts\s*,\s*dt\b"),
+    (3, rf"npts\s*=\s*(?P<count>\d{{1,9}})\s*,?\s*dt\s*=\s*(?P<step>{NUMBER})\s*(?:sec|{END})"),
+    (3, rf"^(?P<old_count>\d{{1,9}})\s+(?P<old_step>{NUMBER})\s+npts\s*,\s*dt\b"),
 )
 _YEAR = re.compile(r"[\d/. -]+|\w+ \d+ ?,? ?\d{4}")
 

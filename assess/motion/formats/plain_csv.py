@@ -17,6 +17,7 @@ import numpy as np
 
 from assess.errors import RecordError
 from assess.i18n import fill
+from assess.motion.formats._direction import UNKNOWN, Direction, read_direction
 from assess.motion.formats._format import (
     MOST_CHANNELS,
     MOST_VALUES,
@@ -41,12 +42,10 @@ MOST_HEAD = 2**19
 """Bytes of the comments and headings: a thousand for each channel."""
 
 _ANSWERS = {"yes": True, "true": True, "no": False, "false": False, "": False}
-_VERTICAL = frozenset({"up", "down", "vertical", "vert", "ud", "z"})
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
 _PLAIN = b"0123456789+-.eE,; \t\n"
 """With no other signs than these, float() takes what _NUMBER takes."""
 _LINE_END = re.compile(rb"\r\n?|\n")
-_DEGREES = re.compile(r"(\d{1,3}(?:\.\d+)?)\s*(?:deg|°)", re.IGNORECASE | re.ASCII)
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,12 +86,12 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
     """
     table = _read_head(data)
     values = _read_values(data, table)
-    azimuths = _read_azimuths(table)
+    directions = _read_directions(table)
     times, records = values.pop(0), []
     for column in table.columns:
         with np.errstate(over="ignore"):  # what becomes infinite is refused further on
             own = values.pop(0) * column.factor
-        records.append(_build_record(file, table, column, azimuths[column.name], times, own))
+        records.append(_build_record(file, table, column, directions[column.name], times, own))
     return tuple(records)
 
 
@@ -314,10 +313,10 @@ def _read_number(cell: str, separator: str, line: int) -> float:
     return float(text)
 
 
-def _read_azimuths(table: _Table) -> dict[str, float | None]:
-    """Return for each channel its azimuth [deg], or infinity where it is vertical, or None where it is unknown."""
+def _read_directions(table: _Table) -> dict[str, Direction]:
+    """Return for each channel its direction: that of the comments, else what its name tells."""
     given = {column.name.casefold(): column.name for column in table.columns}
-    azimuths = {column.name: _azimuth_of_name(column.name) for column in table.columns}
+    directions = {column.name: read_direction(column.name, bare_degrees=False) for column in table.columns}
     parts = [part for part in re.split("[,;]", table.comments.get("azimuth", "")) if part.strip()]
     for part in parts:
         name, equals, value = part.rpartition("=")
@@ -330,44 +329,37 @@ def _read_azimuths(table: _Table) -> dict[str, float | None]:
                 fill(
                     "an azimuth is given for {name!r}, but the channels are: {names}",
                     name=name.strip()[:80],
-                    names=", ".join(azimuths),
+                    names=", ".join(directions),
                 )
             )
-        for own in [given[name.strip().casefold()]] if equals else list(azimuths):
-            azimuths[own] = _read_azimuth(value.strip())
-    return azimuths
+        for own in [given[name.strip().casefold()]] if equals else list(directions):
+            directions[own] = _read_azimuth(value.strip())
+    return directions
 
 
-def _read_azimuth(text: str) -> float:
-    if text.lower() in _VERTICAL:
-        return np.inf
+def _read_azimuth(text: str) -> Direction:
     number = text.lower().removesuffix("deg").removesuffix("°").strip()
-    if not _NUMBER.fullmatch(number) or not 0 <= float(number) <= 360:
+    if _NUMBER.fullmatch(number) and 0 <= float(number) <= 360:
+        return float(number), False
+    found = read_direction(text, bare_degrees=False)
+    if found == UNKNOWN:
         raise RecordError(
             fill(
                 "the azimuth is {text!r}, expected 0 to 360 degrees clockwise from north, or up",
                 text=text[:40],
             )
         )
-    return float(number)
-
-
-def _azimuth_of_name(name: str) -> float | None:
-    words = re.split(r"[^a-z]+", name.lower().replace("u-d", "ud"))
-    if _VERTICAL.intersection(words):
-        return np.inf
-    found = _DEGREES.search(name)
-    return float(found[1]) if found and float(found[1]) <= 360 else None
+    return found
 
 
 def _build_record(
-    file: str, table: _Table, column: _Column, azimuth: float | None, times: FloatArray, own: FloatArray
+    file: str, table: _Table, column: _Column, direction: Direction, times: FloatArray, own: FloatArray
 ) -> Record:
     try:
         series = build_series(times, own)
     except RecordError as error:
         raise RecordError(fill("channel {name!r}: {why}", name=column.name, why=error.message)) from None
-    vertical, comments = azimuth == np.inf, table.comments
+    comments = table.comments
     answer = comments.get("corrected", "").lower()
     if answer not in _ANSWERS:
         raise RecordError(fill("corrected is {text!r}, expected yes or no", text=answer[:40]))
@@ -380,7 +372,7 @@ def _build_record(
         own=own,
         corrected=_ANSWERS[answer],
         channel=column.name,
-        direction=(None if vertical else azimuth, vertical),
+        direction=direction,
         location=comments.get("location", ""),
         station=comments.get("station", ""),
         event=comments.get("event", ""),

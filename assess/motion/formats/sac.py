@@ -19,8 +19,9 @@ import numpy as np
 
 from assess.errors import RecordError
 from assess.i18n import fill
-from assess.motion.formats._format import Direction, Format, build_record, even_series
-from assess.motion.formats._values import direction_of_code, read_acceleration_unit
+from assess.motion.formats._direction import Direction, read_direction
+from assess.motion.formats._format import Format, build_record, even_series
+from assess.motion.formats._values import read_acceleration_unit
 from assess.motion.record import FloatArray, Record, check_count, peak
 
 TITLE = "SAC"
@@ -169,7 +170,7 @@ def _read_direction(header: _Header) -> Direction:
         return None, True
     if tilt == 90.0 and azimuth is not None and 0 <= azimuth <= 360:
         return azimuth, False
-    return direction_of_code(header.texts["channel"])
+    return read_direction(header.texts["channel"], bare_degrees=False)
 
 
 def _read_start(header: _Header) -> str:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 from assess.errors import RecordError
 from assess.i18n import fill
+from assess.motion.formats._direction import Direction, read_direction
 from assess.motion.formats._format import build_record, even_series
 from assess.motion.formats._text import (
     MOST_BEYOND,
@@ -27,7 +28,7 @@ from assess.motion.formats._text import (
     text_format,
     too_long,
 )
-from assess.motion.formats._values import read_peak
+from assess.motion.formats._values import NUMBER, read_peak
 from assess.motion.record import FloatArray, Record, Series, build_series
 from assess.units import ACCELERATION
 
@@ -49,7 +50,7 @@ HEADER = fields(
     (3, r"(?P<earthquake>.*)"),
     (5, r"^station\s*=(?P<station>.*?)component\s*=(?P<component>.*)"),
     (5, r"(?P<bare_station>.*)"),
-    (6, r"\bpk\b[^=]*=\s*(?P<peak>[-+.\dE]+)"),
+    (6, rf"\bpk\b[^=]*=\s*(?P<peak>[-+]?{NUMBER})"),
 )
 _KIND = re.compile(r"[ \t]*([1-6])[ \t]+(?:UNCORRECTED|CORRECTED|VELOCITY|DISPLACEMENT|FOURIER|RESPONSE)")
 _REFUSED = {
@@ -74,7 +75,7 @@ def _read_channel(section: Section, file: str) -> Record:
     header = read_fields(section, HEADER)
     numbers = _read_numbers(section, kind[1], header["title"])
     own, series = _read_series(section, numbers)
-    vertical, azimuth, notes = _orientation(header["component"], numbers)
+    direction, notes = _orientation(header["component"], numbers)
     number = numbers.integers[RECORDER]
     record = build_record(
         TITLE,
@@ -83,7 +84,7 @@ def _read_channel(section: Section, file: str) -> Record:
         own=own,
         corrected=kind[1] == "2",
         channel=header["component"],
-        direction=(azimuth, vertical),
+        direction=direction,
         location=_location(numbers),
         station=header["station"] or header["bare_station"].strip(" *"),
         event=header["event"] if header["year"] else header["earthquake"].strip(" *"),
@@ -232,12 +233,12 @@ def _location(header: _Numbers) -> str:
     return "" if floor is None else f"floor {floor}"
 
 
-def _orientation(component: str, header: _Numbers) -> tuple[bool, float | None, tuple[str, ...]]:
-    """Return whether it is vertical, else its azimuth [deg], and a note where text and numbers disagree."""
+def _orientation(component: str, header: _Numbers) -> tuple[Direction, tuple[str, ...]]:
+    """Return its direction, and a note where text and numbers disagree."""
     upright, number = header.integers[VERTICAL_ANGLE], header.integers[AZIMUTH]
-    if component.lower().startswith(("up", "down", "vert")) or (not component and upright in {0, 180}):
-        return True, None, ()
-    text = float(component) if re.fullmatch(r"\d{1,3}(\.\d*)?", component) else None
+    text, vertical = read_direction(component)
+    if vertical or (not component and upright in {0, 180}):
+        return (None, True), ()
     known = [azimuth for azimuth in (text, number) if azimuth is not None and 0 <= azimuth <= 360]
     if len(known) == 2 and (known[0] - known[1]) % 360:
         note = fill(
@@ -245,8 +246,8 @@ def _orientation(component: str, header: _Numbers) -> tuple[bool, float | None, 
             first=known[0],
             other=known[1],
         )
-        return False, float(known[0]), (note,)
-    return False, float(known[0]) if known else None, ()
+        return (float(known[0]), False), (note,)
+    return ((float(known[0]), False) if known else (None, vertical)), ()
 
 
 FORMAT = text_format("smc", TITLE, recognised=_KIND, read_channel=_read_channel)

@@ -73,8 +73,9 @@ def _read(file: Path) -> tuple[list[Channel], list[tuple[str, str]]]:
         found = read_channels(str(file))
     except RecordError as error:
         return [], [(name, _spell(str(error).removeprefix(f"{file.name}: ")))]
-    reasons = [(_spell(one.name), "vertical channel: choose a horizontal one") for one in found if one.record.vertical]
-    return [one._replace(name=_spell(one.name)) for one in found if not one.record.vertical], reasons
+    why = {True: "vertical channel: choose a horizontal one", None: "its direction is not known: is it horizontal?"}
+    reasons = [(_spell(one.name), why[one.record.vertical]) for one in found if one.record.vertical is not False]
+    return [one._replace(name=_spell(one.name)) for one in found if one.record.vertical is False], reasons
 
 
 def _spell(text: str) -> str:
