@@ -13,6 +13,7 @@ from assess.bim.ifc_file import check_installed, check_model
 from assess.bim.model_process import run_apart
 from assess.errors import ModelError
 from assess.i18n import fill
+from assess.input_file import open_input
 from assess.progress import Progress
 
 
@@ -135,7 +136,8 @@ def _check_pairs(found: ExportRun, model: Path, pairs: Sequence[Pair], *, with_p
 
 def _read_bytes(model: Path) -> bytes:
     try:
-        return model.read_bytes()
+        with open_input(model) as file:
+            return file.read()
     except OSError as error:
         why = error.strerror or str(error)
         raise ModelError(fill("{name} cannot be read: {why}.", name=model.name, why=why)) from None

@@ -39,6 +39,19 @@ def list_outer(elements: Sequence[Element]) -> list[Element]:
     return [one for one in elements if (whole := get_aggregate(one)) is None or whole.id() not in ids]
 
 
+def find_whole(element: Element) -> Element | None:
+    """Return the outermost element that an element is a part of; None where it is no part."""
+    from ifcopenshell.util.element import get_aggregate
+
+    whole, one = None, element
+    for _ in range(_DEEPEST):
+        one = get_aggregate(one)
+        if one is None or not one.is_a("IfcElement"):
+            break
+        whole = one
+    return whole
+
+
 def list_parts(element: Element) -> list[Element]:
     """Return an element and its parts; neither openings in it nor what fills them."""
     from ifcopenshell.util.element import get_components, get_parts

@@ -11,6 +11,7 @@ from typing import Any
 from assess.errors import ModelError
 from assess.extras import say_install
 from assess.i18n import Text, fill
+from assess.input_file import open_input
 
 MOST_BYTES = 512 * 2**20
 """Size of a model that is read [bytes]."""
@@ -34,7 +35,7 @@ def check_model(path: Path, name: str) -> None:
     """
     try:
         size = path.stat().st_size
-        with path.open("rb") as file:
+        with open_input(path) as file:
             start = file.read(_LOOKED_AT)
             file.seek(max(0, size - _LOOKED_AT))
             end = file.read()
@@ -62,9 +63,13 @@ def _find_fault(size: int, start: bytes, end: bytes) -> Text | None:
     found = _SCHEMA.search(start)
     schema = found[1].decode("ascii", "replace") if found else "-"
     if not schema.upper().startswith(SCHEMAS):
-        known = ", ".join(SCHEMAS)
-        return fill("its schema is {schema}, expected one of: {known}. Export it as IFC4", schema=schema, known=known)
+        return _say_schema(schema)
     return None
+
+
+def _say_schema(schema: str) -> Text:
+    known = ", ".join(SCHEMAS)
+    return fill("its schema is {schema}, expected one of: {known}. Export it as IFC4", schema=schema, known=known)
 
 
 def check_installed() -> None:
@@ -85,10 +90,32 @@ def open_model(path: Path, name: str) -> Any:
     try:
         model = ifcopenshell.open(str(path))
     except (ifcopenshell.Error, RuntimeError, ValueError, OSError) as error:
+        if "unsupported schema" in str(error).lower():
+            schema = str(error).strip().split()[-1]
+            raise ModelError(fill("{name} cannot be read: {why}.", name=name, why=_say_schema(schema))) from None
         raise find_damage(name, error) from None
     if not isinstance(model, ifcopenshell.file):
         raise ModelError(fill("{name} cannot be read: {why}.", name=name, why=_NO_MODEL))
+    _set_clearances_aside(model)
     return model
+
+
+def _set_clearances_aside(model: Any) -> None:
+    """Give representations called Clearance, the room that an element needs, a context of their own: they are no body.
+
+    It is the identifier of a representation that names its use (IFC4, IfcShapeRepresentation); some programs put it
+    into the context of bodies all the same.
+    """
+    contexts: dict[int, Any] = {}
+    for one in model.by_type("IfcShapeRepresentation"):
+        if (one.RepresentationIdentifier or "").strip().casefold() == "clearance":
+            whole = getattr(one.ContextOfItems, "ParentContext", None) or one.ContextOfItems
+            if whole.id() not in contexts:
+                contexts[whole.id()] = model.create_entity(
+                    "IfcGeometricRepresentationSubContext", ContextIdentifier="Clearance", ContextType="Model",
+                    ParentContext=whole, TargetView="MODEL_VIEW",
+                )  # fmt: skip
+            one.ContextOfItems = contexts[whole.id()]
 
 
 def find_damage(name: str, error: Exception) -> ModelError:

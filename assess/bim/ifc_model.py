@@ -68,6 +68,8 @@ def _read(
     known = {one.key: one for one in storeys}
     spaces = tuple(list_spaces(model, known))
     found = find_pieces(model, storeys, spaces, also)
+    storeys = found.storeys
+    known = {one.key: one for one in storeys}
     walls, windows = cut_walls(model, storeys)
     title, address = find_names(model)
     latitude, longitude = find_position(model) or (None, None)
@@ -75,7 +77,8 @@ def _read(
         source=name, schema=model.schema_identifier, name=title, address=address, storeys=tuple(storeys), spaces=spaces,
         doors=tuple(list_doors(model, known, unit)), stairs=tuple(list_stairs(model, storeys)),
         pieces=tuple(found.pieces), walls=walls, windows=windows, left_out=found.list_left_out(),
-        azimuth_deg=find_azimuth(model), latitude=latitude, longitude=longitude, warnings=warnings,
+        azimuth_deg=find_azimuth(model), latitude=latitude, longitude=longitude,
+        warnings=(*warnings, *found.warnings),
         remarks=tuple(_note_rooms(model, spaces, found)),
     )  # fmt: skip
     return bring_near(read)

@@ -1,9 +1,11 @@
 """The furniture of a building model: which elements are pieces, where they stand, and what is left out."""
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
+
+import numpy as np
 
 from assess.bim.building_model import NOT_ON_FLOOR, ON_FLOOR, LeftOut, Piece, Space, Storey
 from assess.bim.ifc_elements import (
@@ -11,14 +13,16 @@ from assess.bim.ifc_elements import (
     find_holders,
     find_key,
     find_storey,
+    find_whole,
     join_parts,
     list_elements,
     list_outer,
     tell_apart,
 )
 from assess.bim.ifc_site import say
-from assess.bim.plan_shapes import Shape, find_box
+from assess.bim.plan_shapes import FloatArray, Shape, find_box, join
 from assess.bim.space_search import SpaceSearch
+from assess.bim.stacked_parts import join_stacked, note_stacked
 from assess.errors import ModelError
 from assess.i18n import Text, fill
 
@@ -40,15 +44,24 @@ MOST_PIECES = 20_000
 """Pieces of a model that are read."""
 NO_SHAPE = fill("no geometry")
 NO_PIECE = fill("its class is not furniture; it can be imported by the name of its class")
+_FEWEST, _NEARLY_ALL, _ALIKE = 3, 0.8, 0.03
+"""Pieces, their share [-] and their heights [m] by which furniture tells the floor of its storey."""
+_HUNG = (0.6, 2.4)
+"""Heights at which furniture hangs on walls [m]."""
 _NEAR_FLOOR = 0.3
 """How far below the floor of a room a piece may begin to stand in it [m]."""
 
 
 @dataclass(slots=True)
 class FoundPieces:
-    """Pieces, and how many elements were left out by class, type, reason and whether they may be furniture."""
+    """Pieces, storeys with the levels of their floors, and how many elements were left out.
 
+    They are counted by class, type, reason and whether they may be furniture.
+    """
+
+    storeys: Sequence[Storey] = ()
     pieces: list[Piece] = field(default_factory=list)
+    warnings: list[Text] = field(default_factory=list)
     left_out: Counter[tuple[str, str, Text, bool]] = field(default_factory=Counter)
 
     def leave_out(self, element: Element, reason: Text, *, is_furniture: bool = True) -> None:
@@ -81,19 +94,100 @@ def find_pieces(
     for one in every:
         if one.id() not in pieces:
             found.leave_out(one, NO_PIECE, is_furniture=False)
-    places, keys = _Places(storeys, spaces), tell_apart(pieces.values())
-    shaped: dict[int, Piece] = {}
-    for number, shape in join_parts(model, list(pieces.values())):
-        shaped[number] = _to_piece(pieces[number], keys[number], shape, places)
+    shaped = _Shaped(model, pieces, _Places(storeys, spaces))
+    found.storeys, warnings = shaped.settle_levels(storeys)
+    parts = shaped.join_groups()
     for number, element in pieces.items():
-        piece = shaped.get(number)
-        if piece is None:
+        piece = shaped.pieces.get(number)
+        if piece is None and number not in parts:
             found.leave_out(element, NO_SHAPE)
-        elif piece.bottom > ON_FLOOR:
+        elif piece is not None and piece.bottom > ON_FLOOR:
             found.leave_out(element, NOT_ON_FLOOR)
-        else:
+        elif piece is not None:
             found.pieces.append(piece)
+    found.warnings = [*warnings, *shaped.note_stacked()]
     return found
+
+
+class _Shaped:
+    """The pieces that have a shape, by the number of their element, and the box round each in the model's axes."""
+
+    def __init__(self, model: Any, elements: Mapping[int, Element], places: "_Places") -> None:
+        self.elements, self.places, self.keys = elements, places, tell_apart(elements.values())
+        self.pieces: dict[int, Piece] = {}
+        self.bounds: dict[int, FloatArray] = {}
+        self._wholes = {number: whole for number, one in elements.items() if (whole := find_whole(one)) is not None}
+        self._shapes: dict[int, Shape] = {}  # of parts alone: a building may hold thousands of chairs
+        for number, shape in join_parts(model, list(elements.values())):
+            self._take(number, shape)
+            if number in self._wholes:
+                self._shapes[number] = shape
+
+    def _take(self, number: int, shape: Shape, name: str = "") -> None:
+        self.pieces[number] = _to_piece(self.elements[number], self.keys[number], shape, self.places, name)
+        self.bounds[number] = np.concatenate([shape.points.min(axis=0), shape.points.max(axis=0)])
+
+    def settle_levels(self, storeys: Sequence[Storey]) -> tuple[Sequence[Storey], list[Text]]:
+        """Return the storeys and warnings; where nearly all pieces are off the floor by one height, it is moved."""
+        settled, warnings = [], list[Text]()
+        for storey in storeys:
+            own = [number for number, one in self.pieces.items() if one.storey == storey.key and not one.space]
+            shift = find_shift([self.pieces[number].bottom for number in own], storey.elevation - storey.level)
+            for number in own if shift else ():
+                self.pieces[number] = replace(self.pieces[number], bottom=self.pieces[number].bottom - shift)
+            settled.append(replace(storey, level=storey.level + shift))
+            if shift:
+                warnings.append(
+                    fill("The furniture of {storey} stands {shift:.2f} m above where the model has its floor: that "
+                         "height was taken as its floor. Check Elevation in Floors.", storey=storey.name, shift=shift)
+                )  # fmt: skip
+        self.places.move(settled)
+        return settled, warnings
+
+    def join_groups(self) -> set[int]:
+        """Make one piece of the parts of an assembly that stand on each other; return those that are no longer one."""
+        groups: dict[int, list[int]] = {}
+        for number, whole in self._wholes.items():
+            if number in self._shapes:
+                groups.setdefault(whole.id(), []).append(number)
+        gone = set[int]()
+        for members in groups.values():
+            on_floor = [self.pieces[number].bottom <= ON_FLOOR for number in members]
+            for places in join_stacked(np.array([self.bounds[number] for number in members]), on_floor, beside=True):
+                first, *others = (members[at] for at in places)
+                if others:
+                    name = say(self._wholes[first].Name) if len(places) == len(members) else ""
+                    self._take(first, join([self._shapes[number] for number in (first, *others)]), name)
+                    gone |= {*others}
+        for number in gone:
+            del self.pieces[number], self.bounds[number]
+        return gone
+
+    def note_stacked(self) -> list[Text]:
+        """Return the warning about pieces on which others stand that were left out."""
+        on_floor = [number for number, one in self.pieces.items() if one.bottom <= ON_FLOOR]
+        off = [number for number, one in self.pieces.items() if one.bottom > ON_FLOOR]
+        names = [self.pieces[number].name or self.pieces[number].type for number in on_floor]
+        return note_stacked(names, *(np.array([self.bounds[one] for one in own]) for own in (on_floor, off)))
+
+
+def find_shift(bottoms: Sequence[float], stated: float) -> float:
+    """Return by what height nearly all pieces of a storey stand above its floor, 0 where they do not [m].
+
+    Parameters
+    ----------
+    bottoms : sequence of float
+        Heights of the lowest points of its pieces above its floor [m].
+    stated : float
+        How much higher the floor is by the Elevation that the model states [m]: where that is the height, one piece
+        tells it. At heights of `_HUNG` furniture may hang on walls.
+    """
+    height = float(np.median(bottoms)) if bottoms else 0.0
+    alike = sum(abs(one - height) <= _ALIKE for one in bottoms)
+    is_stated = abs(height - stated) <= _ALIKE
+    is_clear = len(bottoms) >= _FEWEST and not _HUNG[0] <= height <= _HUNG[1]
+    nearly_all = alike >= _NEARLY_ALL * len(bottoms)
+    return height if abs(height) > ON_FLOOR and nearly_all and (is_stated or is_clear) else 0.0
 
 
 def _check_classes(model: Any, classes: Sequence[str]) -> None:
@@ -154,6 +248,10 @@ class _Places:
             of_storey.setdefault(one.storey, []).append(one)
         self._searches = {storey: SpaceSearch(own) for storey, own in of_storey.items()}
 
+    def move(self, storeys: Sequence[Storey]) -> None:
+        """Take other levels for the floors."""
+        self.storeys = {one.key: one for one in storeys}
+
     def find(self, element: Element, x: float, y: float, bottom: float) -> tuple[str, Space | None]:
         """Return the key of the storey, and the space."""
         holder = next((find_key(one) for one in find_holders(element) if one.is_a("IfcSpace")), "")
@@ -172,14 +270,14 @@ class _Places:
                     yield space
 
 
-def _to_piece(element: Element, key: str, shape: Shape, places: _Places) -> Piece:
+def _to_piece(element: Element, key: str, shape: Shape, places: _Places, name: str = "") -> Piece:
     box = find_box(shape)
     storey, space = places.find(element, box.x, box.y, shape.bottom)
     floor = space.bottom if space is not None else places.storeys[storey].level
-    kind = name_type(element)
+    kind = name or name_type(element)
     return Piece(
         key=key, storey=storey, space=space.key if space is not None else "",
-        ifc_class=element.is_a(), name=say(element.Name), type=kind, x=box.x, y=box.y, breadth=box.breadth,
+        ifc_class=element.is_a(), name=name or say(element.Name), type=kind, x=box.x, y=box.y, breadth=box.breadth,
         width=box.width, height=box.height, angle_deg=box.angle_deg, support_breadth=box.support_breadth,
         support_width=box.support_width, bottom=shape.bottom - floor, is_fitted=_is_fitted(kind),
         support_reach=box.base.reach, support_angle_deg=box.base.angle_deg, support_across=box.base.across,

@@ -107,7 +107,9 @@ def list_storeys(model: Any, unit: float) -> tuple[list[Storey], list[Text]]:
         name = say(one.Name) or say(one.LongName) or str(number)
         if math.isfinite(level) and (own is None or math.isfinite(own)):
             found.append((Storey(keys[one.id()], name, level, level), own))
-    if len({round(storey.level, 2) for storey, _ in found}) == 1:  # none is placed: what is in them is
+    if (
+        len(found) > 1 and len({round(storey.level, 2) for storey, _ in found}) == 1
+    ):  # none is placed: what is in them is
         found = [(replace(storey, level=storey.level if own is None else own), own) for storey, own in found]
     found.sort(key=lambda pair: (pair[0].level, pair[0].name))
     return _count_from_zero(found)

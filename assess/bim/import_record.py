@@ -7,6 +7,7 @@ from pathlib import Path, PurePath
 
 from assess.bim.import_workbook import MOST_NAMED, ImportedBuilding, group_skipped, say_skipped
 from assess.i18n import count
+from assess.input_file import open_input
 from assess.plain_text import plain_text
 from assess.version import __version__
 
@@ -32,7 +33,7 @@ def keep_record(found: ImportedBuilding, path: Path) -> ImportedBuilding:
 
     Raises OSError if the file cannot be read again.
     """
-    with path.open("rb") as file:
+    with open_input(path) as file:
         digest = hashlib.file_digest(file, "sha256").hexdigest()
     lines = (f"Imported by assess {__version__} from {found.source}, SHA-256 {digest}", "", *describe(found))
     text = "\n".join(map(plain_text, lines)) + "\n"

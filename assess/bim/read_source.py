@@ -12,6 +12,7 @@ from assess.bim.model_process import run_apart
 from assess.bim.model_rows import Drafts, list_building
 from assess.errors import InputError, ModelError
 from assess.i18n import fill, load_catalogue, speaking, spoken
+from assess.input_file import open_input, read_input
 from assess.progress import SILENT, Progress
 
 Reader = Callable[[Path, str, Sequence[str]], BuildingModel]
@@ -41,7 +42,7 @@ def read_source(
     if path.is_dir():
         raise InputError(fill("{name} is a folder. Name the file in it that is to be imported.", name=name))
     try:
-        with path.open("rb") as file:
+        with open_input(path) as file:
             start = file.read(_LOOKED_AT)
         return keep_record(_read(path, name, start, progress, routes, also), path)
     except OSError as error:
@@ -90,20 +91,14 @@ def read_scan(path: Path, name: str, _also: Sequence[str]) -> BuildingModel:
     from assess.bim.roomplan import read_roomplan
     from assess.bim.scan_values import MOST_BYTES
 
-    return read_roomplan(_read_bytes(path, MOST_BYTES), name)
+    return read_roomplan(read_input(path, MOST_BYTES), name)
 
 
 def read_home(path: Path, name: str, _also: Sequence[str]) -> BuildingModel:
     """Read a home of Sweet Home 3D; errors as of `assess.bim.sweet_home.read_sweet_home`."""
     from assess.bim.sweet_home import MOST_BYTES, read_sweet_home
 
-    return read_sweet_home(_read_bytes(path, MOST_BYTES), name)
-
-
-def _read_bytes(path: Path, most: int) -> bytes:
-    """Return a file, of one that is too large just more than is read: its reader says so."""
-    with path.open("rb") as file:
-        return file.read(most + 1)
+    return read_sweet_home(read_input(path, MOST_BYTES), name)
 
 
 def _read_packed(path: Path, name: str, progress: Progress, routes: Drafts) -> ImportedBuilding:

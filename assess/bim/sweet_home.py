@@ -12,10 +12,11 @@ import zipfile
 import zlib
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from statistics import median
 from xml.parsers import expat
 
+import numpy as np
 import shapely
 from shapely import LineString, Polygon
 
@@ -36,6 +37,7 @@ from assess.bim.building_model import (
 )
 from assess.bim.plan_shapes import list_polygons, merge, to_area, to_polygon
 from assess.bim.space_search import find_rooms_at
+from assess.bim.stacked_parts import join_stacked, note_stacked
 from assess.errors import ModelError
 from assess.i18n import Text, fill, gettext, nfill
 
@@ -66,12 +68,13 @@ _Attributes = dict[str, str]
 
 @dataclass(slots=True)
 class _Element:
-    """An element of a home with what is inside it that counts: corners of a room."""
+    """An element of a home with what is inside it that counts, corners of a room, and the outermost group it is in."""
 
     place: str
     tag: str
     values: _Attributes
     corners: list[Point] = field(default_factory=list)
+    group: "_Element | None" = None
 
 
 def read_sweet_home(data: bytes, name: str) -> BuildingModel:
@@ -185,6 +188,7 @@ class _Home:
                 for name in ("level", "visible"):
                     if name in group.values:
                         element.values.setdefault(name, group.values[name])
+                element.group = group.group or group
             kept[element.tag].append(element)
             most = {"level": MOST_LEVELS, "wall": MOST_WALLS, "room": MOST_WALLS}.get(element.tag, MOST_PIECES)
             if len(kept[element.tag]) > most:
@@ -227,7 +231,7 @@ class _Home:
         """Return the model."""
         storeys = self._list_storeys()
         spaces = tuple(self._list_spaces(storeys))
-        boxes = [self._box(one, storeys) for one in self.furniture]
+        boxes = _join_groups([self._box(one, storeys) for one in self.furniture])
         drawn = [one for one in boxes if not one.is_hidden]
         passages = [one for one in drawn if one.is_opening]
         doors = [one for one in passages if one.bottom <= SILL]
@@ -248,7 +252,7 @@ class _Home:
             },
             left_out=tuple(LeftOut(SCHEMA, *one[:2], number, one[2]) for one, number in self.left_out.items()),
             azimuth_deg=round((90 - math.degrees(north)) % 360, 1) if north else None,
-            warnings=(DRAWN_SIZES,) if pieces else (),
+            warnings=(*((DRAWN_SIZES,) if pieces else ()), *_note_stacked(boxes)),
             remarks=tuple(self.remarks),
         )
 
@@ -328,7 +332,10 @@ def _say(value: str | None) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Box:
-    """A piece, door or window: its centre, its sides along `angle` [rad] and across it, and its height [m]."""
+    """A piece, door or window: its centre, its sides along `angle` [rad] and across it, and its height [m].
+
+    `feet` are the sides of what stands on the floor, where those of the body are others.
+    """
 
     element: _Element
     key: str
@@ -342,6 +349,7 @@ class _Box:
     height: float
     bottom: float
     is_tilted: bool
+    feet: tuple[float, float] | None = None
 
     @property
     def is_hidden(self) -> bool:
@@ -380,14 +388,21 @@ class _Box:
             return IS_TILTED
         return NOT_ON_FLOOR if self.bottom > ON_FLOOR else None
 
+    @property
+    def bounds(self) -> tuple[float, ...]:
+        """Least and largest X, Y and Z, as `assess.bim.stacked_parts` takes them; storeys lie far from each other."""
+        left, low, right, high = self.polygon.bounds
+        return left, low, self.bottom, right, high, self.bottom + self.height
+
     def to_piece(self, space: str) -> Piece:
         """Return it as a piece; what is part of the base plan, which the program calls not movable, as fitted."""
         short, long = sorted((self.width, self.depth))
+        feet = (self.feet or (self.width, self.depth))[:: 1 if self.width <= self.depth else -1]
         angle = math.degrees(self.angle) + (0 if self.width <= self.depth else 90)
         return Piece(
             key=self.key, storey=self.storey, space=space, ifc_class=SCHEMA, name=self.name, type=self.name,
             x=self.x, y=self.y, breadth=short, width=long, height=self.height, angle_deg=(angle + 90) % 180 - 90,
-            support_breadth=short, support_width=long, bottom=self.bottom,
+            support_breadth=feet[0], support_width=feet[1], bottom=self.bottom,
             is_fitted=self.element.values.get("movable") == "false",
         )  # fmt: skip
 
@@ -407,3 +422,49 @@ def _list_stairs(boxes: Sequence[_Box], storeys: Sequence[Storey]) -> Iterator[S
             yield Stair(key, one.storey, one.name, "foot", one.x, one.y)
             above = keys[keys.index(one.storey) + 1 :]
             yield from (Stair(key, storey, one.name, "head", one.x, one.y) for storey in above[:1])
+
+
+def _join_groups(boxes: Sequence[_Box]) -> list[_Box]:
+    """Return the boxes, with one in place of the parts of a group that stand on each other."""
+    groups: dict[tuple[str, str], list[int]] = {}
+    for at, one in enumerate(boxes):
+        if one.element.group is not None and one.why_left_out() in (None, NOT_ON_FLOOR) and not one.is_opening:
+            groups.setdefault((one.storey, one.element.group.place), []).append(at)
+    joined: dict[int, _Box] = {}
+    gone = set[int]()
+    for members in groups.values():
+        own = [boxes[at] for at in members]
+        for places in join_stacked(np.array([one.bounds for one in own]), [one.bottom <= ON_FLOOR for one in own]):
+            if len(places) > 1:
+                group = own[0].element.group if len(places) == len(own) else None
+                name = _say(group.values.get("name")) if group is not None else ""
+                joined[members[places[0]]] = _join_boxes([own[at] for at in places], name)
+                gone |= {members[at] for at in places[1:]}
+    return [joined.get(at, one) for at, one in enumerate(boxes) if at not in gone]
+
+
+def _join_boxes(boxes: Sequence[_Box], name: str) -> _Box:
+    """Return the box round several in the axes of the first, which carries the others."""
+    first = boxes[0]
+    c, s = math.cos(first.angle), math.sin(first.angle)
+    turn = np.array([[c, -s], [s, c]])
+    turned = [(np.array(one.polygon.exterior.coords) - (first.x, first.y)) @ turn for one in boxes]
+    points = np.concatenate(turned)
+    feet = np.ptp(
+        np.concatenate([own for own, one in zip(turned, boxes, strict=True) if one.bottom <= ON_FLOOR]), axis=0
+    )
+    (u, v), (width, depth) = (points.min(axis=0) + points.max(axis=0)) / 2, np.ptp(points, axis=0)
+    top = max(one.bottom + one.height for one in boxes)
+    return replace(
+        first, x=first.x + float(c * u - s * v), y=first.y + float(s * u + c * v), width=float(width),
+        depth=float(depth), height=top - first.bottom, name=name or first.name, feet=(float(feet[0]), float(feet[1])),
+    )  # fmt: skip
+
+
+def _note_stacked(boxes: Sequence[_Box]) -> Iterator[Text]:
+    for storey in dict.fromkeys(one.storey for one in boxes):
+        own = [one for one in boxes if one.storey == storey and not one.is_opening]
+        taken = [one for one in own if one.why_left_out() is None]
+        left = [one for one in own if one.why_left_out() == NOT_ON_FLOOR]
+        lists = (np.array([one.bounds for one in each]) for each in (taken, left))
+        yield from note_stacked([one.name for one in taken], *lists)

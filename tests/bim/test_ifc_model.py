@@ -386,3 +386,92 @@ def test_shapes_with_no_breadth_and_numbers_beyond_bounds_end_in_words(tmp_path)
     found = read_model(model.write(tmp_path / "a.ifc"), "a.ifc")
     assert "Shelf" in {one.name for one in found.pieces}
     assert all(math.isfinite(one.x + one.y + one.breadth + one.width + one.height) for one in found.pieces)
+
+
+# ---------------------------------------------------------------- floors that are placed elsewhere, pieces of parts
+
+
+@pytest.mark.parametrize("site", [0.0, 450.0])
+@pytest.mark.parametrize("elevation", [0.0, None])
+def test_one_storey_placed_above_zero_keeps_its_furniture(tmp_path, site, elevation):
+    model = ModelWriter()
+    storey = model.storey("L0", elevation, z=site)
+    model.piece("Shelf", SHELF, within=storey, at=(2, 1, site))
+    found = read_model(model.write(tmp_path / "a.ifc"), "a.ifc")
+    assert [(one.name, round(one.bottom, 3)) for one in found.pieces] == [("Shelf", 0)]
+    assert not found.warnings
+
+
+@pytest.mark.parametrize("levels", [(3.0,), (0.0, 3.0)])
+def test_furniture_tells_the_floor_of_a_storey_that_is_not_placed(tmp_path, levels):
+    model = ModelWriter()
+    for number, level in enumerate(levels):
+        storey = model.storey(f"L{number}", level, z=0.0)
+        model.piece("Shelf", SHELF, within=storey, at=(2, 1, level))
+    found = read_model(model.write(tmp_path / "a.ifc"), "a.ifc")
+    assert [round(one.bottom, 3) for one in found.pieces] == [0] * len(levels)
+    assert [round(one.elevation, 3) for one in found.storeys] == [*levels]
+
+
+@pytest.mark.parametrize(
+    ("heights", "taken"),
+    [
+        ((0.2, 0.2, 0.2), 3),  # a floor laid on the slab
+        ((1.4, 1.4, 1.4, 1.4), 0),  # hung on walls
+        ((0.2, 0.2), 0),  # too few to tell
+        ((0.0, 0.0, 0.0, 0.75), 3),  # one stands on a table
+    ],
+)
+def test_nearly_all_furniture_off_the_floor_by_one_height_moves_the_floor(tmp_path, heights, taken):
+    model = ModelWriter()
+    storey = model.storey("L0", 0.0)
+    for number, height in enumerate(heights):
+        model.piece("Shelf", SHELF, within=storey, at=(2 * number, 1, height))
+    found = read_model(model.write(tmp_path / "a.ifc"), "a.ifc")
+    assert len(found.pieces) == taken
+    assert sum("stands 0.20 m above where the model has its floor" in str(one) for one in found.warnings) == (
+        heights[0] == 0.2 and taken > 0
+    )
+
+
+def test_the_parts_of_an_assembly_that_stand_on_each_other_are_one_piece(tmp_path):
+    model, storey, _ = one_room()
+    parts = [model.piece(f"part {at}", (0, 0, 0, 0.4, 0.9, 0.5), at=(2, 1, 0.5 * at)) for at in range(4)]
+    apart = [model.piece(f"bookcase {at}", SHELF, at=(4, at * 0.8, 0)) for at in range(2)]
+    for name, own in (("Wardrobe", parts), ("Row", apart)):
+        whole = model.element("IfcElementAssembly", name, within=storey)
+        model.aggregate(whole, *own)
+    found = {one.name: one for one in read_model(model.write(tmp_path / "a.ifc"), "a.ifc").pieces}
+    assert found.keys() == {"Wardrobe", "bookcase 0", "bookcase 1"}
+    assert (found["Wardrobe"].breadth, found["Wardrobe"].width, found["Wardrobe"].height) == pytest.approx(
+        (0.4, 0.9, 2)
+    )
+    assert found["Wardrobe"].bottom == pytest.approx(0)
+
+
+def test_sides_and_shelves_of_an_assembly_are_one_piece(tmp_path):
+    model, storey, _ = one_room()
+    sides = [model.piece(f"side {at}", (0, 0, 0, 0.4, 0.02, 2.0), at=(2, at * 0.88, 0)) for at in range(2)]
+    shelves = [model.piece(f"shelf {at}", (0, 0, 0, 0.4, 0.86, 0.02), at=(2, 0.44, 0.4 * at)) for at in range(1, 5)]
+    model.aggregate(model.element("IfcElementAssembly", "Bookcase", within=storey), *sides, *shelves)
+    (piece,) = read_model(model.write(tmp_path / "a.ifc"), "a.ifc").pieces
+    assert (piece.name, piece.breadth, piece.width, piece.height) == ("Bookcase", *map(pytest.approx, (0.4, 0.9, 2.0)))
+
+
+def test_what_stands_on_a_piece_and_is_left_out_is_warned_of(tmp_path):
+    model, storey, _ = one_room()
+    model.piece("Base", (0, 0, 0, 0.4, 0.9, 0.5), within=storey, at=(2, 1, 0))
+    model.piece("Top", (0, 0, 0, 0.4, 0.9, 1.5), within=storey, at=(2, 1, 0.5))
+    found = read_model(model.write(tmp_path / "a.ifc"), "a.ifc")
+    assert [one.name for one in found.pieces] == ["Base"]
+    assert "stands on 1 piece, whose height is then not the whole: Base" in str(found.warnings[0])
+
+
+def test_the_room_that_a_piece_needs_is_not_its_body(tmp_path):
+    model, storey, _ = one_room()
+    piece = model.piece("Cabinet", (0, 0, 0, 0.4, 0.9, 1.8), within=storey, at=(2, 1, 0))
+    clearance = model.solid((0, 0, 0, 2, 2, 2)).Representations[0]
+    clearance.RepresentationIdentifier = "Clearance"
+    piece.Representation.Representations = [*piece.Representation.Representations, clearance]
+    (found,) = read_model(model.write(tmp_path / "a.ifc"), "a.ifc").pieces
+    assert (found.breadth, found.width, found.height) == pytest.approx((0.4, 0.9, 1.8))

@@ -253,3 +253,39 @@ def test_a_part_in_code_is_refused():
     for at in (6, data.index(b"PK\x01\x02") + 8):
         struct.pack_into("<H", data, at, 1)
     assert "h.sh3d is damaged" in refused(bytes(data))
+
+
+HUTCH = b"""<furnitureGroup name='Dresser with hutch' x='300' y='900' width='110' depth='60' height='200'>
+<pieceOfFurniture id='d1' name='Dresser' x='300' y='900' width='100' depth='50' height='90'/>
+<pieceOfFurniture id='d2' name='Hutch' x='300' y='905' elevation='90' width='100' depth='40' height='110'/>{more}
+</furnitureGroup>"""
+
+
+@pytest.mark.parametrize(
+    ("more", "names", "height"),
+    [
+        (b"", {"Dresser with hutch"}, 2.0),
+        (b"<pieceOfFurniture id='d3' name='Chair' x='380' y='900' width='60' depth='50' height='90'/>",
+         {"Dresser", "Chair"}, 2.0),  # stands beside: it stays apart
+        (b"<pieceOfFurniture id='d3' name='Lamp' x='300' y='900' elevation='200' width='20' depth='20' height='40'/>",
+         {"Dresser"}, 2.0),  # covers little of what it stands on
+    ],
+)  # fmt: skip
+def test_parts_of_a_group_that_stand_on_each_other_are_one_piece(more, names, height):
+    group = HUTCH.replace(b"{more}", more)
+    before = {one.name for one in read(FILE.read_bytes()).pieces}
+    model = read(change(b"</home>", group + b"</home>"))
+    new = {one.name: one for one in model.pieces if one.name not in before}
+    assert new.keys() == names
+    piece = next(one for name, one in new.items() if "Dresser" in name)
+    assert (piece.breadth, piece.width, piece.height) == pytest.approx((0.5, 1.0, height))
+    assert (piece.support_breadth, piece.support_width) == pytest.approx((0.5, 1.0))
+
+
+def test_what_stands_on_a_piece_and_is_left_out_is_warned_of():
+    top = b"<pieceOfFurniture id='t' name='Top box' x='300' y='900' elevation='90' width='90' depth='50' height='80'/>"
+    base = b"<pieceOfFurniture id='b' name='Base box' x='300' y='900' width='100' depth='50' height='90'/>"
+    (warning,) = read(change(b"</home>", base + top + b"</home>")).warnings[1:]
+    assert str(warning).startswith(
+        "Something that was left out stands on 1 piece, whose height is then not the whole: Base box. Check its Height"
+    )
