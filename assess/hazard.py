@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from assess.errors import InputError
 from assess.i18n import Text, fill, join, nfill
+from assess.input_file import read_input
 from assess.motion.formats.plain_csv import decode, is_comment
 from assess.plain_text import split_text
 from assess.units import GRAVITY
@@ -91,8 +92,7 @@ def read_hazard(path: Path, *, latitude: float | None = None, longitude: float |
 def read_bytes(path: Path) -> bytes:
     """Return the bytes of a file, but no more than show that it is too large; InputError if it cannot be read."""
     try:
-        with path.open("rb") as file:
-            return file.read(LARGEST_FILE + 1)
+        return read_input(path, LARGEST_FILE)
     except (OSError, ValueError) as error:  # ValueError: a zero character in the name
         why = getattr(error, "strerror", None) or str(error)
         raise InputError(fill("{file}: the file cannot be read ({why})", file=path.name, why=why)) from None

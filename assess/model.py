@@ -17,6 +17,7 @@ from assess.motion.formats import parse_records, select
 from assess.motion.record import Record
 from assess.motion.scenario import PGA_OF_SDS
 from assess.motion.site_ground import SiteGround
+from assess.plain_text import plain_line
 from assess.rocking.block import MIDDLE
 from assess.units import LENGTH, to_edge
 
@@ -453,6 +454,11 @@ class Inventory:
         """The errors, if it was read with ``strict=False``."""
         return tuple(one for one in self.problems if one.severity == "error")
 
+    @property
+    def file_name(self) -> str:
+        """The name of the workbook's file as it is shown: what is no text in it is replaced."""
+        return plain_line(self.source.name)
+
     def friction_of(self, item: Item) -> float | None:
         """Return the coefficient of friction of an item: its own, else the building's; None where it cannot slide."""
         return self.building.friction if item.friction is None else item.friction
@@ -520,11 +526,11 @@ class Inventory:
         return found | {"friction": self.friction_of(item), "assumed": list(self.assumed_of(item))}
 
     def __repr__(self) -> str:
-        return f"<Inventory {self.source.name}: {count(len(self.items), 'item')} on {count(len(self.floors), 'floor')}>"
+        return f"<Inventory {self.file_name}: {count(len(self.items), 'item')} on {count(len(self.floors), 'floor')}>"
 
     def _repr_html_(self) -> str:
         """Return what a notebook shows."""
-        name, problems = escape(self.building.building or self.source.name), len(self.problems)
+        name, problems = escape(self.building.building or self.file_name), len(self.problems)
         return (
             f"<p><b>{name}</b>: {count(len(self.items), 'item')} on {count(len(self.floors), 'floor')}, "
             f"{count(len(self.routes), 'route segment')}, {count(problems, 'problem')} reported. <code>frame()</code> "

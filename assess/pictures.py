@@ -35,6 +35,14 @@ _ALONE = frozenset({0x01, *range(0xD0, 0xD9)})
 """Markers without a length."""
 _ORIENTATION = 0x0112
 """Tag of Exif: how a camera was held."""
+_PRIVATE = frozenset({"exif", "xmp", "XML:com.adobe.xmp", "comment", "photoshop"})
+"""What may tell who took a picture, where and when."""
+_PRIVATE_CHUNKS = frozenset({b"tEXt", b"zTXt", b"iTXt", b"eXIf", b"tIME"})
+_PRIVATE_SEGMENTS = frozenset({0xE1, *range(0xE3, 0xEE), 0xEF, 0xFE})
+"""Markers of application data but JFIF, colour profile and Adobe's transform, and of comments."""
+_SCAN, _FILL = 0xDA, 0xFF
+_SHOWN_BY = frozenset({"transparency", "gamma", "icc_profile", "dpi"})
+"""What the look of a picture rests on."""
 
 
 class PictureError(InputError):
@@ -66,7 +74,9 @@ def check_picture(data: bytes) -> None:
 
 
 def prepare_picture(data: bytes) -> tuple[bytes, str]:
-    """Return the bytes of a picture as a report embeds it, and their media type; large ones are made smaller.
+    """Return the bytes of a picture as a report embeds it, and their media type.
+
+    Large ones are made smaller; what the camera or the author wrote into it (place, date, comments) is left out.
 
     Raises PictureError as `check_picture`.
     """
@@ -76,7 +86,52 @@ def prepare_picture(data: bytes) -> tuple[bytes, str]:
         target = io.BytesIO()
         _reduce(picture, math.ceil(max(picture.size) / SHOWN)).save(target, kind, quality=90)
         data = target.getvalue()
+    elif _PRIVATE.intersection(picture.info) or getattr(picture, "text", None):
+        data = _without_private(data, picture, kind)
     return data, f"image/{kind.lower()}"
+
+
+def _without_private(data: bytes, picture: "Image", kind: str) -> bytes:
+    from PIL import ImageOps
+
+    is_turned = _is_turned(picture)
+    kept = None if is_turned else _drop_chunks(data) if kind == "PNG" else _drop_segments(data)
+    if kept is not None:
+        return kept
+    upright, target = ImageOps.exif_transpose(picture) if is_turned else picture, io.BytesIO()
+    upright.info = {name: value for name, value in picture.info.items() if name in _SHOWN_BY}
+    upright.save(target, kind, quality=90, exif=b"")
+    return target.getvalue()
+
+
+def _drop_chunks(data: bytes) -> bytes:
+    """Return a sound PNG without its texts and what a camera wrote."""
+    kept, at = [data[: len(PNG)]], len(PNG)
+    while at < len(data):
+        end = at + 12 + int.from_bytes(data[at : at + 4])
+        kept += [] if data[at + 4 : at + 8] in _PRIVATE_CHUNKS else [data[at:end]]
+        at = end
+    return b"".join(kept)
+
+
+def _drop_segments(data: bytes) -> bytes | None:
+    """Return a JPEG without its comments and what a camera wrote; None where its segments do not follow each other."""
+    kept, at = [data[:2]], 2
+    while at + 4 <= len(data) and data[at] == _FILL:
+        marker = data[at + 1]
+        if marker == _SCAN:
+            return b"".join((*kept, data[at:]))
+        end = at + 1 if marker == _FILL else at + 2 + (0 if marker in _ALONE else int.from_bytes(data[at + 2 : at + 4]))
+        kept += [] if marker in _PRIVATE_SEGMENTS else [data[at:end]]
+        at = end
+    return None
+
+
+def _is_turned(picture: "Image") -> bool:
+    try:
+        return picture.getexif().get(_ORIENTATION) in range(2, 9)
+    except Exception:  # damaged Exif data, which change nothing else
+        return False
 
 
 def prepare_photo(data: bytes) -> bytes:
@@ -100,10 +155,7 @@ def _shrink(data: bytes, most: int) -> "Image":
     from PIL import Image, ImageOps
 
     picture = _decode(data, most)
-    try:
-        orientation = picture.getexif().get(_ORIENTATION)
-    except Exception:  # damaged Exif data, which change nothing else
-        orientation = None
+    orientation = picture.getexif().get(_ORIENTATION) if _is_turned(picture) else None
     small = _reduce(picture, max(1, max(picture.size) // most))
     if small.mode == "RGBA":
         ground = Image.new("RGB", small.size, "white")

@@ -632,6 +632,13 @@ def _formula_class(cases: Sequence[CaseRow], key: str) -> RiskClass:
     return max((one for one in classes if one is not None), default=RiskClass.LOW)
 
 
+def find_ideal_class(cases: Sequence[CaseRow]) -> RiskClass:
+    """Return the highest class of a piece as given under exactly its motions; low where none was simulated."""
+    exact = [case.simulation.ideal for case in cases if case.simulation is not None]
+    classes = [classify(one.probability) for one in exact if one is not None]
+    return max((one for one in classes if one is not None), default=RiskClass.LOW)
+
+
 @dataclass(frozen=True, slots=True)
 class WorkedMethod:
     """What one method computes for the piece of the worked example: steps with the numbers put in, and its value."""
@@ -1258,12 +1265,13 @@ class Results:
         formula = _formula_class(cases, self.formula.key)
         is_lowered = risk < formula and governing.adopted.can_rock and not governing.adopted.is_unconfirmed
         carried = [flag for flag in CARRIED if any(flag in case.adopted.flags for case in cases)]
+        dropped = set() if find_ideal_class(cases) > risk else {"ideal_higher"}
         return replace(
             governing.adopted,
             risk=risk,
             upper=upper,
             lowered_from=formula if is_lowered else None,
-            flags=tuple(dict.fromkeys((*governing.adopted.flags, *carried))),
+            flags=tuple(dict.fromkeys(flag for flag in (*governing.adopted.flags, *carried) if flag not in dropped)),
         )
 
     # ------------------------------------------------------------ tables for notebooks

@@ -1,13 +1,21 @@
 """The documentation: generated parts are current, links lead somewhere, examples run, the README keeps its promises."""
 
+import ast
+import importlib
+import inspect
 import re
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
+import assess
+from assess.methods._fitted import write_model
 from assess.report.pages.pdf import DEBIAN
 from docs.bounds import replace_table
 from docs.reference import build_pages
+from tests.methods.test_fitted import PROBIT
+from tests.shaking import RECORDS, write_record
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -73,6 +81,46 @@ def test_examples_in_python_run(page, tmp_path, monkeypatch):
     for code in PYTHON.findall(page.read_text(encoding="utf-8")):
         exec(compile(code, page.name, "exec"), space)
     assert "results" in space
+
+
+def test_code_within_the_sentences_runs(tmp_path, monkeypatch):
+    """What stands between words: an expression is evaluated; a call with ``...`` takes its arguments."""
+    text = (DOCS / "python.md").read_text(encoding="utf-8")
+    (tmp_path / "folder").mkdir()
+    write_record(tmp_path / "folder" / "a.csv", RECORDS["fast"])
+    (tmp_path / "fitted_probit.toml").write_text(write_model(PROBIT), encoding="utf-8")
+    (tmp_path / "inventories").symlink_to(ROOT / "inventories")
+    monkeypatch.chdir(tmp_path)
+    blocks = [code for code in PYTHON.findall(text) if "inventory =" in code or "compute(" in code or "show" in code]
+    space: dict[str, object] = {"error": assess.InputError("why"), "frame": None}
+    for code in blocks:
+        exec(compile(code, "python.md", "exec"), space)
+    space["results"] = assess.run("inventories/market-street.xlsx", verify="none")
+    sentences, tried = re.sub(r"```.*?```", "", text, flags=re.DOTALL), 0
+    for name, module in re.findall(r"`(\w+)\([^`]*\)`\s+of\s+`([\w.]+)`", sentences):
+        space[name] = getattr(importlib.import_module(module), name)
+    for code in re.findall(r"`([^`\n]+)`", sentences):
+        with suppress(SyntaxError):  # words and commands; a single word is a name in a table
+            if code.isidentifier():
+                continue
+            expression = ast.parse(re.sub(r"^\w+=(?=[^=])", "", code), mode="eval").body
+            tried += _try_code(expression, space)
+    assert tried > 12
+
+
+def _try_code(expression: ast.expr, space: dict[str, object]) -> int:
+    """Evaluate an expression; of a call with ``...``, or of a writer, its arguments alone, by the signature."""
+
+    def value(one: ast.expr) -> object:
+        return eval(compile(ast.Expression(one), "python.md", "eval"), space)
+
+    if not (isinstance(expression, ast.Call) and re.search(r"write_|\.\.\.", ast.unparse(expression))):
+        value(expression)
+        return 1
+    given = {str(one.arg): value(one.value) for one in expression.keywords}
+    places = [value(one) for one in expression.args]
+    inspect.signature(value(expression.func)).bind(*places, **given)
+    return 1
 
 
 def _find(pattern, paths):

@@ -5,7 +5,8 @@ import struct
 
 import numpy as np
 import pytest
-from PIL import Image
+from PIL import Image, ImageOps
+from PIL.PngImagePlugin import PngInfo
 
 from assess import pictures
 from assess.pictures import (
@@ -101,6 +102,31 @@ def test_sixteen_bits_of_grey_become_eight() -> None:
     deep.save(target, "PNG")
     data, _ = prepare_picture(target.getvalue())
     assert Image.open(io.BytesIO(data)).getpixel((3, 3)) == (117, 117, 117)
+
+
+def _with_marks(kind: str, orientation: int | None = None) -> bytes:
+    """Return a picture that tells its camera, its place and a comment."""
+    exif = Image.Exif()
+    exif[0x010F] = "SECRET CAMERA"
+    if orientation is not None:
+        exif[0x0112] = orientation
+    told = PngInfo()
+    told.add_text("Comment", "SECRET PLACE")
+    more = {"pnginfo": told} if kind == "PNG" else {"comment": b"SECRET PLACE", "xmp": b"<x>SECRET AUTHOR</x>"}
+    return picture(kind, exif=exif, **more)
+
+
+@pytest.mark.parametrize("orientation", [None, 1, 6, 99])
+@pytest.mark.parametrize("kind", ["PNG", "JPEG"])
+def test_what_the_camera_wrote_is_left_out_and_nothing_else_changes(kind: str, orientation: int | None) -> None:
+    marked = _with_marks(kind, orientation)
+    assert b"SECRET" in marked
+    data, _ = prepare_picture(marked)
+    assert b"SECRET" not in data
+    shown, meant = Image.open(io.BytesIO(data)), ImageOps.exif_transpose(Image.open(io.BytesIO(marked)))
+    assert (shown.format, shown.size) == (kind, meant.size)
+    off = np.abs(np.asarray(shown, int) - np.asarray(meant, int))
+    assert off.max() <= (40 if kind == "JPEG" and orientation == 6 else 0)
 
 
 # ---------------------------------------------------------------- photos and plans

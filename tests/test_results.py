@@ -11,6 +11,7 @@ import assess
 from assess.errors import InputError
 from assess.fields import Shape, item_fields
 from assess.report import write_reports
+from assess.results import find_ideal_class
 from assess.settings import Settings
 from tests.report.routed import assess_routed
 from tests.workbooks import ITEMS, assessed
@@ -45,6 +46,15 @@ def test_a_change_makes_results_unequal(simulated):
     table = simulated.cases_table
     changed = table.adopted | {"probability": np.nextafter(table.adopted["probability"], 1)}
     assert replace(simulated, cases_table=replace(table, adopted=changed)) != simulated
+
+
+def test_only_a_class_above_that_of_the_piece_is_called_higher(simulated):
+    table = simulated.cases_table
+    flagged = table.adopted | {"ideal_higher": np.ones_like(table.adopted["ideal_higher"])}  # of every motion
+    results = replace(simulated, cases_table=replace(table, adopted=flagged))
+    higher = [find_ideal_class(one.cases) > one.adopted.risk for one in results]
+    assert ["ideal_higher" in one.adopted.flags for one in results] == higher
+    assert not all(higher)
 
 
 def test_reports_of_results_that_were_pickled_are_the_same(simulated, tmp_path):

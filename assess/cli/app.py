@@ -18,7 +18,7 @@ import typer
 
 import assess.cli
 from assess.cli.completion import ASKED, PROGRAM, find_typed_command
-from assess.cli.console import guard
+from assess.cli.console import guard, say
 from assess.cli.ending import run_to_the_end
 from assess.cli.interrupts import answer_signals
 from assess.version import __version__
@@ -85,7 +85,7 @@ def build_app(names: Sequence[str] = ()) -> typer.Typer:
 
 def _show_version(wanted: bool) -> None:
     if wanted:
-        typer.echo(f"assess {__version__}")
+        say(f"assess {__version__}")
         raise typer.Exit
 
 

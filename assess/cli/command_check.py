@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Never
 
 import typer
 
-from assess.cli.console import count, count_errors, print_numbered, print_problems, print_ways, show_progress
+from assess.cli.console import count, count_errors, print_numbered, print_problems, print_ways, say, show_progress
 from assess.cli.options import Workbook, check_new_file, save_file
 from assess.errors import Gap, Problem, WorkbookError
 from assess.settings import Settings
@@ -60,7 +60,7 @@ def command(
             raise
         print_problems(error.problems)
         print_ways(error.problems)
-        typer.echo(f"{count_errors(error.problems)} to correct by hand.", err=True)
+        say(f"{count_errors(error.problems)} to correct by hand.", err=True)
         raise typer.Exit(2) from None
 
 
@@ -79,13 +79,13 @@ def _report(inventory: "Inventory", path: Path) -> None:
         print_numbered("To know the shaking better:", BETTER)
     rows, floors = count(len(inventory.items), "row"), count(len(inventory.floors), "floor")
     segments = count(len(inventory.routes), "route segment")
-    typer.echo(f"{path.name}: no errors. {rows} of furniture on {floors}, {segments}.")
+    say(f"{path.name}: no errors. {rows} of furniture on {floors}, {segments}.")
 
 
 def _end_incomplete(path: Path, problems: Sequence[Problem]) -> Never:
     """Print what a workbook lacks and what completes it."""
     print_problems(problems)
-    typer.echo(f"{path.name} is incomplete: what is filled in can be used.", err=True)
+    say(f"{path.name} is incomplete: what is filled in can be used.", err=True)
     print_ways(problems)
     raise typer.Exit(1)
 
@@ -100,7 +100,7 @@ def _write_corrected(path: Path, out: Path, *, replaces: bool) -> "Inventory":
     if done.changed:
         save_file(done.inventory.data or b"", out)
     for line in _describe(done, path, out):
-        typer.echo(line)
+        say(line)
     return done.inventory
 
 

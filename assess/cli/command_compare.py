@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from assess.cli.completion import list_of, one_of
-from assess.cli.console import show_progress
+from assess.cli.console import say, show_progress
 from assess.cli.options import AsJson, read_formats
 from assess.errors import InputError
 from assess.i18n import LANGUAGES, find_language
@@ -69,12 +69,12 @@ def command(
         options = ReportOptions(language=code or _find_own_language(found.after))
         written = write_comparison(found, out, wanted, options, progress=progress)
     if as_json:
-        typer.echo(dump(describe(found)), nl=False)
+        say(dump(describe(found)), nl=False)
     else:
         for line in describe_comparison(found):
-            typer.echo(line)
+            say(line)
     for file in written.values():
-        typer.echo(f"wrote {file}", err=True)
+        say(f"wrote {file}", err=True)
 
 
 def _find_own_language(run: "PastRun") -> str:

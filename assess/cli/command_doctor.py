@@ -12,6 +12,7 @@ import typer
 
 from assess import resources
 from assess.cache_folder import choose_folder
+from assess.cli.console import say
 from assess.errors import PdfUnavailableError
 from assess.extras import say_install
 from assess.version import __version__
@@ -35,7 +36,7 @@ def command() -> None:
     """
     findings = list(examine())
     for finding in findings:
-        typer.echo(f"{'ok     ' if finding.works else 'missing'}  {finding.what}: {finding.detail}")
+        say(f"{'ok     ' if finding.works else 'missing'}  {finding.what}: {finding.detail}")
     if not all(finding.works for finding in findings):
         raise typer.Exit(1)
 

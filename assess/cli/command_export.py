@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from assess.cli.console import count, show_progress
+from assess.cli.console import count, say, show_progress
 from assess.cli.options import check_file, save_files
 from assess.errors import InputError, OutputError
 
@@ -66,9 +66,9 @@ def command(
     files = {out: export.model, bcf: export.topics.data if export.topics else None}
     save_files({path: data for path, data in files.items() if path is not None and data is not None})
     for line in describe_export(export, ifc.name):
-        typer.echo(line)
+        say(line)
     for path in filter(None, (out, bcf)):
-        typer.echo(f"wrote {path}", err=True)
+        say(f"wrote {path}", err=True)
     if not export.is_complete:
         raise typer.Exit(1)
 

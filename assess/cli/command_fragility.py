@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from assess.cli.completion import list_of
-from assess.cli.console import print_warnings, show_progress
+from assess.cli.console import print_warnings, say, show_progress
 from assess.cli.options import (
     AsJson,
     Draws,
@@ -126,7 +126,7 @@ def command(
     with show_progress() as progress:
         curves = _find(path, by, im, span, settings, "nrml" in wanted, jobs, progress)
     written = _render(curves, wanted)
-    typer.echo(curves.to_json() if as_json else curves.to_text())
+    say(curves.to_json() if as_json else curves.to_text())
     _write(curves, written, folder, plot)
 
 
@@ -184,7 +184,7 @@ def _write(curves: "Curves", written: "Sequence[Exchange]", folder: Path, plot: 
     save_with_figure(files, plot, partial(_draw, curves), "curve")
     lines = [line for one in written for line in say_left_out(one)]
     for line in lines:
-        typer.echo(line, err=True)
+        say(line, err=True)
     if lines:
         raise typer.Exit(1)
 

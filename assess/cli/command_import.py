@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from assess.cli.console import count, show_progress
+from assess.cli.console import count, say, show_progress
 from assess.cli.options import save_files
 from assess.errors import InputError, OutputError
 from assess.progress import Progress
@@ -80,8 +80,8 @@ def command(
             made = _build(source, out, progress, choices, replaces=force)
     save_files({**({out: made.data} if made.data is not None else {}), **made.plans})
     for line in (*describe(made.found), *made.lines):
-        typer.echo(line)
-    typer.echo(_describe_written(out, made, is_new=not update), err=True)
+        say(line)
+    say(_describe_written(out, made, is_new=not update), err=True)
     if not made.is_complete:
         raise typer.Exit(1)
 
@@ -119,9 +119,10 @@ def _update(source: Path, out: Path, progress: Progress, choices: Mapping[str, A
     from assess.bim.read_source import read_source
     from assess.bim.update_workbook import update_workbook
     from assess.i18n import load_catalogue, speaking
+    from assess.workbook.open import read_file
     from assess.workbook.read import hold_sheets
 
-    data = out.read_bytes()
+    data = read_file(out)
     with speaking(load_catalogue(hold_sheets(data, out.name, progress).language)):
         found = read_source(source, source.name, progress, **choices)
         updated = progress.wait_for(lambda: update_workbook(data, found, out.name, progress, records=out.parent))

@@ -1,6 +1,6 @@
 """``assess methods``: what each method predicts, needs and rests on."""
 
-import typer
+from assess.cli.console import say
 
 ORDER = 8
 EXAMPLES = ("assess methods", "assess methods > methods.txt")
@@ -11,9 +11,9 @@ def command() -> None:
     from assess.methods import all_methods
 
     for method in all_methods():
-        typer.echo(f"{method.key}: {method.title} ({method.kind})")
-        typer.echo(f"  {method.predicts}")
-        typer.echo(f"  needs: {', '.join(sorted(method.needs))}")
+        say(f"{method.key}: {method.title} ({method.kind})")
+        say(f"  {method.predicts}")
+        say(f"  needs: {', '.join(sorted(method.needs))}")
         for name, limits in method.valid.items():
-            typer.echo(f"  checked for {name} {limits.low:g} to {limits.high:g} {limits.unit}".rstrip())
-        typer.echo(f"  {method.reference}\n")
+            say(f"  checked for {name} {limits.low:g} to {limits.high:g} {limits.unit}".rstrip())
+        say(f"  {method.reference}\n")

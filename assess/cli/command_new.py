@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from assess.cli.completion import one_of
+from assess.cli.console import say
 from assess.errors import InputError, OutputError
 from assess.i18n import LANGUAGES
 
@@ -75,13 +76,13 @@ def command(
     write_new_workbook(path, units.value, language=find_language(language), use=purpose, example=example, replace=force)
     name = f'"{path}"' if " " in str(path) else path
     if example:
-        typer.echo(f"wrote {path}. Open it to see its classes. Assess it with: assess run {name}", err=True)
+        say(f"wrote {path}. Open it to see its classes. Assess it with: assess run {name}", err=True)
     elif use:
         steps = "Put your furniture in place of the example room in Items, fill in how the floor shakes in Floors or "
         steps += "choose Shaking in Building"
-        typer.echo(f"wrote {path}. {steps}, then run: assess check {name}", err=True)
+        say(f"wrote {path}. {steps}, then run: assess check {name}", err=True)
     else:
-        typer.echo(f"wrote {path}. Fill in its sheets Floors and Items, then run: assess check {name}", err=True)
+        say(f"wrote {path}. Fill in its sheets Floors and Items, then run: assess check {name}", err=True)
 
 
 def write_new_workbook(

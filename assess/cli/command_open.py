@@ -10,6 +10,7 @@ import typer
 
 from assess.cli import interrupts
 from assess.cli.completion import one_of
+from assess.cli.console import say
 from assess.errors import AssessError, InputError
 from assess.extras import say_install
 from assess.i18n import LANGUAGES, find_language
@@ -94,7 +95,7 @@ def command(
 
 def _warn(*remarks: str) -> None:
     for remark in filter(None, remarks):
-        typer.echo(f"warning  {remark}", err=True)
+        say(f"warning  {remark}", err=True)
 
 
 def _check_packages() -> None:
@@ -131,14 +132,14 @@ def _welcome(server: "Server", place: "Place", no_browser: bool) -> None:
     """Print the address, open it in the browser, and do so again at each Enter."""
     _show(server.issue_address(), no_browser or place.is_hosted)
     if place.is_hosted:
-        typer.echo(f"Behind the proxy of {', '.join(place.allowed)}. Ctrl-C or SIGTERM ends it.", err=True)
+        say(f"Behind the proxy of {', '.join(place.allowed)}. Ctrl-C or SIGTERM ends it.", err=True)
     elif sys.stdin is not None and sys.stdin.isatty():
-        typer.echo("Ctrl-C here ends it; Enter opens the page again.", err=True)
+        say("Ctrl-C here ends it; Enter opens the page again.", err=True)
         threading.Thread(target=_repeat, args=(server, no_browser), name="assess-enter", daemon=True).start()
 
 
 def _show(address: str, no_browser: bool) -> None:
-    typer.echo(address)
+    say(address)
     sys.stdout.flush()
     if not no_browser:
         from assess.cli.opening import open_address
@@ -153,10 +154,10 @@ def _repeat(server: "Server", no_browser: bool) -> None:
 
 def _say_goodbye(ending: "Ending") -> None:
     for name in ending.lost:
-        typer.echo(f"Changes of {name} were not downloaded and are gone.", err=True)
+        say(f"Changes of {name} were not downloaded and are gone.", err=True)
     for name, path in ending.kept:
-        typer.echo(f"Changes of {name} that were not saved in it are kept in {path}.", err=True)
+        say(f"Changes of {name} that were not saved in it are kept in {path}.", err=True)
     if ending.saved:
-        typer.echo(f"Stopped. All changes are saved in {ending.saved}.", err=True)
+        say(f"Stopped. All changes are saved in {ending.saved}.", err=True)
     else:
-        typer.echo("Stopped.", err=True)
+        say("Stopped.", err=True)

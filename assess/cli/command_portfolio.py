@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from assess.cli.completion import list_of, one_of
-from assess.cli.console import InterruptedWorkError, count, print_error, show_progress
+from assess.cli.console import InterruptedWorkError, count, print_error, say, show_progress
 from assess.cli.options import (
     ClassBy,
     GroundMotions,
@@ -169,7 +169,7 @@ def _prepare_example(
     from assess.portfolio.example_city import write_example_city
 
     if write_example_city(folder):
-        typer.echo(f"wrote {folder}", err=True)
+        say(f"wrote {folder}", err=True)
     shaken = shakemap if shakemap or ground_motions else folder / EXAMPLE_MAP
     return folder / EXAMPLE_INDEX, shaken, background or folder / EXAMPLE_COAST
 
@@ -225,15 +225,15 @@ def _tell(result: "PortfolioResult", settings: Settings) -> None:
     from assess.portfolio.piece_words import name_skipped
 
     for line in describe_city(build_totals(result.view), result, settings):
-        typer.echo(line)
+        say(line)
     for file in result.files:
-        typer.echo(f"wrote {file}", err=True)
+        say(f"wrote {file}", err=True)
     names = dict(zip(result.view.buildings["path"], result.view.buildings["building"], strict=True))
     for path, why in result.skipped[:MOST_SKIPPED]:
         print_error(f"{plain_line(name_skipped(names.get(path), path))}: skipped. {plain_line(why)}")
     if len(result.skipped) > MOST_SKIPPED:
         more = count(len(result.skipped) - MOST_SKIPPED, "more building")
-        typer.echo(f"... and {more} skipped: see the table problems.", err=True)
+        say(f"... and {more} skipped: see the table problems.", err=True)
     if result.skipped:
         raise typer.Exit(1)
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any, cast, get_args
 import typer
 
 from assess.cli.completion import one_of
-from assess.cli.console import count, show_progress
-from assess.cli.options import AsJson, check_file, check_size, figure_kind, save_file
+from assess.cli.console import count, say, show_progress
+from assess.cli.options import SIZE, AsJson, check_file, check_size, figure_kind, save_file
 from assess.errors import InputError
 from assess.units import GRAVITY, LENGTH, SHARE, VELOCITY
 
@@ -42,8 +42,8 @@ RECORD, AFTER, PATH, MARK = "#444444", "#b8b8b8", "#1b4f72", "#b03a2e"
 
 
 def command(
-    breadth: Annotated[float, typer.Option(help="Side parallel to the motion [cm].", show_default=False)],
-    height: Annotated[float, typer.Option(help="Height [cm].", show_default=False)],
+    breadth: Annotated[float, typer.Option(help="Side parallel to the motion [cm].", show_default=False, **SIZE)],
+    height: Annotated[float, typer.Option(help="Height [cm].", show_default=False, **SIZE)],
     record: Annotated[str, typer.Option(help="The motion: FILE or FILE#channel.", show_default=False)],
     pfa: Annotated[
         float | None, typer.Option(help="Scale the motion to this peak [g].", show_default="not scaled")
@@ -92,10 +92,10 @@ def command(
 
         extras = evaluate_extras(case, response, wall=wall, vertical=vertical, friction=friction)
     response, document = extras.response, describe(case, extras.response) | extras.document
-    typer.echo(json.dumps(document, indent=1) if as_json else "\n".join(list_lines(case, response, extras)))
+    say(json.dumps(document, indent=1) if as_json else "\n".join(list_lines(case, response, extras)))
     if plot is not None:
         write_figure(case, response, plot)
-        typer.echo(f"wrote {plot}", err=True)
+        say(f"wrote {plot}", err=True)
 
 
 # ---------------------------------------------------------------- what was given

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from assess.cli.console import print_warnings, show_progress
+from assess.cli.console import print_warnings, say, show_progress
 from assess.cli.options import (
     AsJson,
     Draws,
@@ -86,7 +86,7 @@ def command(
         peaks = [value * GRAVITY for value in values]
         fragility = find_fragility(assessment, peaks, most_inserted=MOST_INSERTED, jobs=jobs, progress=progress)
     sweep = Sweep(assessment, fragility)
-    typer.echo(sweep.to_json() if as_json else sweep.to_text())
+    say(sweep.to_json() if as_json else sweep.to_text())
     print_warnings(assessment.problems)
     files = {} if csv is None else {csv: sweep.to_csv().encode("utf-8-sig")}
     save_with_figure(files, plot, partial(_draw, sweep), "route")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from assess.cli.completion import list_of, one_of
-from assess.cli.console import print_warnings, show_progress
+from assess.cli.console import print_warnings, say, show_progress
 from assess.cli.opening import open_file
 from assess.cli.options import (
     ClassBy,
@@ -171,9 +171,9 @@ def command(
         results = _assess(inventory, settings, motions, methods or (), jobs, not set(wanted) <= PLAIN, progress)
         written = _write(results, folder, wanted, options, progress)
     for line in describe_result(results):
-        typer.echo(line)
+        say(line)
     for file in written.values():
-        typer.echo(f"wrote {file}", err=True)
+        say(f"wrote {file}", err=True)
     if open_report:
         _open(written)
 
@@ -347,4 +347,4 @@ def _describe_routes(routes: "RouteTables") -> str:
 def _open(written: Mapping[str, Path]) -> None:
     """Open the first report in the browser or viewer, or say where it is."""
     if message := open_file(next(written[name] for name in OPENED if name in written)):
-        typer.echo(message, err=True)
+        say(message, err=True)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from assess.cli.completion import one_of
-from assess.cli.console import InterruptedWorkError, show_progress
-from assess.cli.options import Jobs, check_size
+from assess.cli.console import InterruptedWorkError, say, show_progress
+from assess.cli.options import SIZE, Jobs, check_size
 from assess.errors import CancelledError, InputError
 from assess.progress import Progress
 from assess.settings import count_processors
@@ -59,10 +59,10 @@ def command(
         str | None, typer.Option(metavar="DIR", help="Folder of your own records, for table1.", show_default=False)
     ] = None,
     breadth: Annotated[
-        float | None, typer.Option(help="Breadth of the piece in table1 and table2 [cm].", show_default="45")
+        float | None, typer.Option(help="Breadth of the piece in table1 and table2 [cm].", show_default="45", **SIZE)
     ] = None,
     height: Annotated[
-        float | None, typer.Option(help="Height of the piece in table1 and table2 [cm].", show_default="160")
+        float | None, typer.Option(help="Height of the piece in table1 and table2 [cm].", show_default="160", **SIZE)
     ] = None,
     jobs: Jobs = None,
 ) -> None:
@@ -135,10 +135,10 @@ def _print_findings(chosen: "Sequence[Study]", findings: "Mapping[str, Finding]"
 
     for one in chosen:
         for sentence in findings[one.name].summary:
-            typer.echo(sentence)
+            say(sentence)
     page = out / (f"{chosen[0].name}.md" if len(chosen) == 1 else PAGE)
     kept = f"; {out / PARTS} keeps the long integrations for the next run" if (out / PARTS).is_dir() else ""
-    typer.echo(f"wrote {page}{kept}", err=True)
+    say(f"wrote {page}{kept}", err=True)
 
 
 def _describe_parts(out: Path) -> str:

@@ -54,6 +54,11 @@ class InterruptedWorkError(AssessError):
     """The user stopped the work; the message says what was kept of it."""
 
 
+def say(text: str, *, err: bool = False, nl: bool = True) -> None:
+    """Print a text without what could command a terminal, as the name of a file may."""
+    typer.echo(plain_text(text), err=err, nl=nl)
+
+
 def guard(command: Callable[..., None]) -> Callable[..., None]:
     """Return a command that turns each error of the library into a message and an exit status.
 
@@ -91,7 +96,7 @@ def _explain(error: BaseException, command: Callable[..., None]) -> Never:
     if isinstance(error, WorkbookError):
         print_problems(error.problems)
         print_ways(error.problems)
-        typer.echo(f"{count_errors(error.problems)}; nothing was written.", err=True)
+        say(f"{count_errors(error.problems)}; nothing was written.", err=True)
         raise typer.Exit(2) from None
     if isinstance(error, InputError):
         text = str(error) if isinstance(error, RecordError) else _name_option(str(error), command)
@@ -125,7 +130,7 @@ def _list_options(command: Callable[..., None]) -> Mapping[str, str]:
 
 def print_error(message: str) -> None:
     """Print one error to standard error."""
-    typer.echo(f"error  {_lay_out(message)}", err=True)
+    say(f"error  {_lay_out(message)}", err=True)
 
 
 def _lay_out(message: str) -> str:
@@ -139,9 +144,9 @@ def print_problems(problems: Sequence[Problem]) -> None:
 
     shown = group_problems(problems)
     for problem in shown[:MOST_PRINTED]:
-        typer.echo(f"{problem.severity:<7}  {_lay_out(str(problem))}", err=True)
+        say(f"{problem.severity:<7}  {_lay_out(str(problem))}", err=True)
     if len(shown) > MOST_PRINTED:
-        typer.echo(f"... and {len(shown) - MOST_PRINTED:,} more.", err=True)
+        say(f"... and {len(shown) - MOST_PRINTED:,} more.", err=True)
 
 
 def print_ways(problems: Sequence[Problem]) -> None:
@@ -154,9 +159,9 @@ def print_ways(problems: Sequence[Problem]) -> None:
 def print_numbered(heading: str, lines: Sequence[str]) -> None:
     """Print a heading and a numbered list below it to standard error; nothing where the list is empty."""
     if lines:
-        typer.echo(heading, err=True)
+        say(heading, err=True)
     for number, line in enumerate(lines, 1):
-        typer.echo(f"  {number}. {line}", err=True)
+        say(f"  {number}. {line}", err=True)
 
 
 def print_warnings(problems: Sequence[Problem]) -> None:

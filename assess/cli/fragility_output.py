@@ -118,7 +118,7 @@ class Curves:
         inventory, found = self.assessment.inventory, self.found
         return {
             "schema": SCHEMA,
-            "workbook": {"file": inventory.source.name, "sha256": inventory.sha256},
+            "workbook": {"file": inventory.file_name, "sha256": inventory.sha256},
             "assess": {"version": __version__, "platform": dict(versions(has_rocked=True))},
             "meaning": " ".join(self.say()),
             "cautions": list(self.cautions()),
@@ -206,7 +206,7 @@ class Curves:
     def _lines(self) -> Iterator[str]:
         found = self.found
         yield (
-            f"{self.assessment.inventory.source.name}: scenario {self.assessment.scenario}, "
+            f"{self.assessment.inventory.file_name}: scenario {self.assessment.scenario}, "
             f"{count(found.runs, 'draw')}, seed {found.seed}; against the floor's {self.measure}"
         )
         yield ""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from assess.cli.completion import one_of
-from assess.cli.console import count
+from assess.cli.console import count, say
 from assess.errors import InputError, OutputError
 from assess.settings import AUTO, CLASS_BY, MOST_SCALE, RUNS, SCENARIOS, SEED, Settings, change_settings
 
@@ -28,9 +28,48 @@ Runs = Annotated[
 ]
 Draws = Annotated[str | None, typer.Option(help="Draws: motions of each floor and axis.", show_default=str(RUNS))]
 Seed = Annotated[int | None, typer.Option(help="Random seed of the generated motions.", show_default=str(SEED))]
+
+
+def read_size(text: str | float) -> float:
+    """Return a length in cm, typed as in the workbook: 40, 40 cm, 12in, 1' 6"; typer.BadParameter if it is none."""
+    from assess.workbook.schema import ITEMS
+    from assess.workbook.typed import understand
+
+    return _read_typed(
+        text, lambda typed: understand(ITEMS.column("breadth"), typed, "cm", repr)[0], "such as 40 or 12in"
+    )
+
+
+def read_factor(text: str | float) -> float:
+    """Return a factor [-], which may be typed as a percentage; typer.BadParameter if it is none."""
+    share = str(text).strip().endswith("%")
+    number = _read_typed(str(text).strip().removesuffix("%"), lambda typed: None, "such as 1.5 or 150%")
+    return number / 100 if share else number
+
+
+def _read_typed(text: str | float, understand: Callable[[str], object], example: str) -> float:
+    from assess.workbook.habits import CellError
+
+    try:
+        return float(text)
+    except ValueError:
+        pass
+    try:
+        found = understand(str(text))
+    except CellError as error:
+        raise typer.BadParameter(f"{error.message} {error.fix}".strip()) from None
+    if not isinstance(found, int | float):
+        raise typer.BadParameter(f"{text!r} is no number, expected one {example}")
+    return float(found)
+
+
+SIZE: dict[str, Any] = {"parser": read_size, "metavar": "<float>"}
+"""Of an option that takes a length [cm]."""
 Scale = Annotated[
     float,
     typer.Option(
+        parser=read_factor,
+        metavar="<float>",
         help=f"Factor on every floor's motion, records and peaks alike: above 0, at most {MOST_SCALE:g}.",
         show_default=True,
     ),
@@ -177,7 +216,7 @@ def save_with_figure(
     save_files(everything)
     for file in everything:
         more = f"; {count(left, f'more {what}')} not drawn" if file == plot and left else ""
-        typer.echo(f"wrote {file}{more}", err=True)
+        say(f"wrote {file}{more}", err=True)
 
 
 def figure_kind(path: Path) -> str:

@@ -114,7 +114,7 @@ class Sweep:
         """Return the document of `assess routes --json`."""
         inventory, fragility = self.assessment.inventory, self.fragility
         return {
-            "workbook": {"file": inventory.source.name, "sha256": inventory.sha256},
+            "workbook": {"file": inventory.file_name, "sha256": inventory.sha256},
             "assess": {"version": __version__, "platform": dict(versions(has_rocked=True, has_routes=True))},
             "verdict": self.verdict.describe(),
             "meaning": " ".join((*MEANING, self.say_uncertain())),
@@ -206,7 +206,7 @@ class Sweep:
         for paragraph in (*self.cautions(), *self._notes()):
             yield from textwrap.wrap(paragraph, WIDE)
         yield (
-            f"{self.assessment.inventory.source.name}: scenario {self.assessment.scenario}, "
+            f"{self.assessment.inventory.file_name}: scenario {self.assessment.scenario}, "
             f"{count(fragility.runs, 'draw')}, seed {fragility.seed}"
         )
 

@@ -14,6 +14,7 @@ from typing import Any, Never, TypeVar
 from assess.compare import past_run as past
 from assess.errors import InputError
 from assess.i18n import Text, fill
+from assess.input_file import read_input
 from assess.model import MEASURED
 from assess.plain_text import plain_line
 from assess.report.results_schema import VERSION
@@ -85,7 +86,7 @@ def _load(path: Path, file: Path) -> tuple[bytes, datetime.datetime]:
                     most=MOST_BYTES >> 20,
                 )
             )
-        return file.read_bytes(), datetime.datetime.fromtimestamp(status.st_mtime, datetime.UTC)
+        return read_input(file, MOST_BYTES), datetime.datetime.fromtimestamp(status.st_mtime, datetime.UTC)
     except OSError as error:
         why = error.strerror or str(error)
         raise InputError(fill("{path} cannot be read: {why}.", path=file, why=why)) from None

@@ -68,7 +68,7 @@ def _number(value: float) -> str:
     return repr(float(value))
 
 
-def read_model(path: Path) -> Method:
+def read_model(path: Path | str) -> Method:
     """Return the model of a TOML file as a method.
 
     Raises
@@ -76,6 +76,7 @@ def read_model(path: Path) -> Method:
     InputError
         If it cannot be used: the message names the file, the key and how to fix it.
     """
+    path = Path(path)
     text = _read_text(path)
     digest = hashlib.sha256(text.encode()).hexdigest()
     return build_method(parse_model(text, str(path)), f"{path.name}, SHA-256 {digest}")

@@ -95,7 +95,7 @@ def find_results(data: bytes, inventory: Inventory) -> dict[str, Values]:
         program computes them, for columns that they rest on and for rows that cannot be used. LibreOffice keeps
         stored results when it opens a workbook, although the workbook asks for recalculation.
     """
-    with Book(data, inventory.source.name) as book:
+    with Book(data, inventory.file_name) as book:
         sheets = list(book.sheets)
         lists = [name for name in sheets if is_lists(name)]
         items = inventory.sheets.get(ITEMS.name, ITEMS.name)

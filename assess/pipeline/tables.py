@@ -321,7 +321,7 @@ def build_provenance(assessment: Assessment) -> Provenance:
     return Provenance(
         version=__version__,
         platform=versions(has_rocked=bool(assessment.joints), has_routes=bool(inventory.routes)),
-        workbook=inventory.source.name,
+        workbook=inventory.file_name,
         sha256=inventory.sha256,
         files=dict(inventory.files),
         scenario=assessment.scenario,

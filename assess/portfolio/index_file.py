@@ -12,6 +12,7 @@ from typing import Any
 
 from assess.errors import InputError
 from assess.i18n import Text, fill, join
+from assess.input_file import read_input
 from assess.motion.formats.plain_csv import decode, is_comment
 from assess.plain_text import plain_line
 from assess.workbook.schema import BUILDING
@@ -113,8 +114,7 @@ def read_index(file: Path) -> tuple[IndexRow, ...]:
 
 def _read_text(file: Path) -> str:
     try:
-        with file.open("rb") as opened:
-            data = opened.read(LARGEST_FILE + 1)
+        data = read_input(file, LARGEST_FILE)
     except (OSError, ValueError) as error:  # ValueError: a zero character in the name
         why = getattr(error, "strerror", None) or str(error)
         raise InputError(fill("the index cannot be read: {why}.", why=why)) from None

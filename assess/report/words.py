@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
 from assess.model import SCANNED
-from assess.results import ItemResult
+from assess.results import ItemResult, find_ideal_class
 from assess.risk import LIMITS, RiskClass, classify
 from assess.workbook.draft_names import is_draft
 
@@ -316,7 +316,7 @@ def risk_notes(one: ItemResult) -> list[str]:
     adopted, notes = one.adopted, []
     if classify(adopted.probability) != adopted.risk and one.fell_in_record:
         notes.append(_("as it overturns under the record itself"))
-    ideal = _ideal_class(one)
+    ideal = find_ideal_class(one.cases) if "ideal_higher" in one.adopted.flags else None
     if ideal is not None:
         notes.append(_("{risk} if exactly this motion recurred", risk=risk_word(ideal)))
     highest = find_highest(one)
@@ -325,16 +325,6 @@ def risk_notes(one: ItemResult) -> list[str]:
     if adopted.lowered_from is not None and not one.apart:
         notes.append(was_lowered(risk_word(adopted.lowered_from)))
     return notes
-
-
-def _ideal_class(one: ItemResult) -> RiskClass | None:
-    """Return the class of the piece as given under exactly its motions, None where that is no higher."""
-    if "ideal_higher" not in one.adopted.flags:
-        return None
-    exact = [case.simulation.ideal for case in one.cases if case.simulation is not None]
-    classes = (classify(one.probability) for one in exact if one is not None)
-    ideal = max((risk for risk in classes if risk is not None), default=RiskClass.LOW)
-    return ideal if ideal > one.adopted.risk else None
 
 
 def could_be(risk: str) -> str:

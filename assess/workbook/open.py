@@ -7,6 +7,7 @@ file ends in one clear sentence and takes little memory. The limits are far abov
 
 import io
 import posixpath
+import re
 import zipfile
 import zlib
 from collections.abc import Iterable, Iterator
@@ -17,6 +18,7 @@ from xml.parsers import expat
 
 from assess.errors import Problem, WorkbookError
 from assess.i18n import Text, fill
+from assess.input_file import open_input
 from assess.progress import SILENT, Progress
 from assess.workbook.number_formats import find_format, read_number
 from assess.workbook.plain_rows import PlainCell, RowCutter, column_letters, column_number, list_cells, list_unsaved
@@ -45,8 +47,10 @@ DAMAGE = (ValueError, TypeError, LookupError, OSError, EOFError, ArithmeticError
           zipfile.BadZipFile, zlib.error, expat.ExpatError)  # fmt: skip
 """What zipfile, zlib and expat raise on a damaged file."""
 
-ESCAPED = ("_x005F_", "_")
-"""How programs write a text that has ``_x`` and four digits itself, and what it means."""
+_CODED = re.compile("_x([0-9A-Fa-f]{4})_")
+"""How programs write a character that XML cannot hold, and the underscore of a text that looks like one."""
+_AROUND = "\ufeff\u200b\u2060\r\n"
+"""Signs without width, and ends of lines, that come along when a text is copied: at its ends they mean nothing."""
 
 UNSAVED = object()
 """The value of a cell that holds a formula without a saved result."""
@@ -58,6 +62,14 @@ _PLAIN_TAGS = {(False, False): set[str](), (False, True): {"v"}, (True, False): 
 
 Cells = dict[int, Any]
 """The values of a row by column, from 0; blank cells are left out."""
+
+
+def decode_text(text: str) -> str:
+    """Return the text of a cell from that in the file: with its coded characters, without signs that are not seen."""
+    if "_x" in text:
+        units = _CODED.sub(lambda found: chr(int(found[1], 16)), text).encode("utf-16", "surrogatepass")
+        text = units.decode("utf-16", "replace")
+    return text.strip(_AROUND)
 
 
 def unreadable(message: str, fix: str) -> WorkbookError:
@@ -91,9 +103,9 @@ def _bomb(name: str) -> WorkbookError:
 def read_file(path: Path) -> bytes:
     """Return the bytes of a workbook; raises WorkbookError if `path` is no file that can be read, or is too large."""
     try:
-        if path.exists() and not path.is_file():
+        if path.is_dir():
             raise unreadable(fill("{path} is a folder, not a workbook.", path=path), fill("Name the .xlsx file in it."))
-        with path.open("rb") as file:
+        with open_input(path) as file:
             head = file.read(len(_OLE))
             return head + file.read(MAX_FILE + 1) if head.startswith(_ZIP) else head
     except FileNotFoundError:
@@ -131,10 +143,14 @@ def _open_archive(data: bytes, name: str) -> zipfile.ZipFile:
         message = fill("{name} is damaged: its zip cannot be read.", name=name)
         raise unreadable(message, fill("Open it in Excel and save it again.")) from None
     _check_directory(name, archive.infolist())
+    archive.NameToInfo = {one.filename: one for one in archive.infolist()}
     return archive
 
 
 def _check_directory(name: str, parts: list[zipfile.ZipInfo]) -> None:
+    for part in parts:  # some programs write the names of parts in their own way; Excel opens them
+        own = part.filename.replace("\\", "/")
+        part.filename = next((known for known in (TYPES, WORKBOOK, RELATIONS) if known.lower() == own.lower()), own)
     names = {part.filename for part in parts}
     if not {TYPES, WORKBOOK, RELATIONS} <= names:
         message = fill("{name} is a zip file, but not an Excel workbook (.xlsx).", name=name)
@@ -142,7 +158,7 @@ def _check_directory(name: str, parts: list[zipfile.ZipInfo]) -> None:
     if any(part.flag_bits & 1 for part in parts):
         message = fill("{name} is protected by a password.", name=name)
         raise unreadable(message, fill("Save it without a password."))
-    if len(names) < len(parts):
+    if len({one.lower() for one in names}) < len(parts):
         raise damaged(fill("its zip holds two parts of one name"))
     if any(part.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED) for part in parts):
         raise damaged(fill("its zip uses a compression that Excel does not use"))
@@ -285,7 +301,7 @@ class _Strings(Part):
         self.takes = False
         self.is_phonetic = self.is_phonetic and tag != "rPh"
         if tag == "si":
-            self.found.append("".join(self.parts).replace(*ESCAPED))
+            self.found.append(decode_text("".join(self.parts)))
 
 
 # ---------------------------------------------------------------- sheets
@@ -478,7 +494,7 @@ class SheetCells(Part):
             from openpyxl.utils.datetime import from_ISO8601
 
             return from_ISO8601(text)  # type: ignore[no-untyped-call]
-        return text.replace(*ESCAPED)
+        return decode_text(text)
 
     def _number_or_date(self, number: float) -> Any:
         return read_number(number, self._format(self._style), is_1904=self.shared.is_1904)
@@ -524,6 +540,7 @@ class Book:
     def __init__(self, data: bytes, name: str, progress: Progress = SILENT) -> None:
         self.name, self.progress, self._shared = name, progress, _Shared()
         self.archive = _open_archive(data, name)
+        self._present = {one.lower(): one for one in self.archive.namelist()}
         with self:
             types, book = self.read(Tree, TYPES), self.read(Tree, WORKBOOK)
             _check_kind(types, book)
@@ -544,12 +561,17 @@ class Book:
             )
 
     def _links(self) -> dict[str, tuple[str, str]]:
-        present, found = set(self.archive.namelist()), {}
+        found = {}
         for one in self.read(Tree, RELATIONS).find("Relationship"):
-            path = posixpath.normpath(posixpath.join("/xl", one.get("Target", ""))).lstrip("/")
-            if path in present and one.get("TargetMode") != "External":
+            path = self.find_part("xl", one.get("Target", ""))
+            if path is not None and one.get("TargetMode") != "External":
                 found[one.get("Id", "")] = (one.get("Type", "").rpartition("/")[2], path)
         return found
+
+    def find_part(self, folder: str, target: str) -> str | None:
+        """Return the part that `target` means in `folder`, whatever the case of its name; None where there is none."""
+        path = posixpath.normpath(posixpath.join("/", folder, target.replace("\\", "/"))).lstrip("/")
+        return self._present.get(path.lower())
 
     def __enter__(self) -> Self:
         return self

@@ -16,7 +16,7 @@ from xml.sax.saxutils import escape
 from assess.errors import Problem, WorkbookError
 from assess.i18n import Text, fill
 from assess.progress import SILENT, Progress
-from assess.workbook.open import ESCAPED, SHEET_COLUMNS, SHEET_ROWS, Book, unreadable
+from assess.workbook.open import SHEET_COLUMNS, SHEET_ROWS, Book, decode_text, unreadable
 from assess.workbook.patch_parts import drop_from_chain, find_headings, set_recalculation
 from assess.workbook.places import (
     CellPlace,
@@ -341,7 +341,7 @@ def _code(value: str) -> str:
 def read_back(value: Value) -> Value:
     """Return what reading finds in a cell of the general format that a value was written into."""
     if isinstance(value, str):
-        return _code(value).replace(*ESCAPED) or None
+        return decode_text(_code(value)) or None
     if value is None or isinstance(value, bool):
         return value
     text = _write_number(value)

@@ -68,14 +68,10 @@ def _drop_references(book: Book, path: str) -> Mapping[str, bytes]:
     changed = {}
     for name, tag, attribute in ((TYPES, "Override", "PartName"), (RELATIONS, "Relationship", "Target")):
         part = book.read(SmallPart, name)
-        found = [one for one in part.named(tag) if _resolve("xl", one.attributes.get(attribute, "")) == path]
+        found = [one for one in part.named(tag) if book.find_part("xl", one.attributes.get(attribute, "")) == path]
         if found:
             changed[name] = apply_edits(part.data, [(one.start, one.end, b"") for one in found])
     return changed
-
-
-def _resolve(folder: str, target: str) -> str:
-    return posixpath.normpath(posixpath.join("/", folder, target)).lstrip("/")
 
 
 def find_headings(book: Book, path: str) -> list[tuple[int, int, int]]:
@@ -84,13 +80,13 @@ def find_headings(book: Book, path: str) -> list[tuple[int, int, int]]:
     A table keeps a copy of its headers; where they differ, Excel repairs the file.
     """
     folder, name = posixpath.split(path)
-    relations, present = f"{folder}/_rels/{name}.rels", {*book.archive.namelist()}
-    if relations not in present:
+    relations = book.find_part(folder, f"_rels/{name}.rels")
+    if relations is None:
         return []
     found = []
     for one in book.read(Tree, relations).find("Relationship"):
-        target = _resolve(folder, one.get("Target", ""))
-        if one.get("Type", "").endswith("/table") and target in present:
+        target = book.find_part(folder, one.get("Target", ""))
+        if one.get("Type", "").endswith("/table") and target is not None:
             for table in book.read(Tree, target).find("table"):
                 span = split_range(table.get("ref", ""))
                 if span is not None and table.get("headerRowCount", "1") != "0":

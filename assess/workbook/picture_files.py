@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TypeVar
 
 from assess.errors import Problem
-from assess.i18n import fill, join, nfill
+from assess.i18n import Text, fill, join, nfill
+from assess.input_file import open_input, read_input
 from assess.model import FloorPlan
 from assess.pictures import PictureError, check_picture, count_pixels, prepare_photo
 from assess.plans import MOST_FILE, Drawing, count_side, is_picture, read_plan
@@ -64,7 +65,7 @@ class PictureReader:
             try:
                 self.logo, _data = self._read(row.get("logo"), self._take_logo, "logo")
             except CellError as error:
-                yield table.problem("logo", row, error.message, error.fix)
+                yield table.problem("logo", row, _left_out(error.message), error.fix, "warning")
 
     def _take_logo(self, data: bytes) -> None:
         self._allowance.take_pixels(count_pixels(data))
@@ -82,7 +83,7 @@ class PictureReader:
                 except CellError as error:
                     self._useless[text] = error
             if useless := self._useless.get(text):
-                yield table.habit("photo", row, useless.message, useless.fix)
+                yield table.habit("photo", row, _left_out(useless.message), useless.fix, "warning")
 
     def _take_photo(self, data: bytes) -> bytes:
         self._allowance.take_photo()
@@ -161,9 +162,14 @@ class PictureReader:
         return path, found
 
 
+def _left_out(message: Text) -> Text:
+    """Return a message with what follows: a picture is no reason to do without a report."""
+    return fill("{message} It is left out.", message=message)
+
+
 def _is_of_pixels(path: Path) -> bool:
     try:
-        with path.open("rb") as file:
+        with open_input(path) as file:
             return is_picture(file.read(16))
     except OSError:
         return False
@@ -171,8 +177,7 @@ def _is_of_pixels(path: Path) -> bool:
 
 def _make(path: Path, name: str, take: Callable[[bytes], Taken]) -> Taken | PictureError:
     try:
-        with path.open("rb") as file:
-            data = file.read(MOST_FILE + 1)
+        data = read_input(path, MOST_FILE)
     except OSError as error:
         message = fill("the file {name} cannot be opened: {why}.", name=name, why=error.strerror)
         raise CellError(message, fill("Check its access rights.")) from None

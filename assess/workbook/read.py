@@ -5,7 +5,7 @@ import json
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from assess.errors import InputError, Problem, WorkbookError
 from assess.i18n import fill
@@ -34,11 +34,14 @@ from assess.workbook.resolve import (
 )
 from assess.workbook.schema import SHEETS, Sheet
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 IN_CODE = "inventory.xlsx"
 """What an inventory without a file is called in reports."""
 
-Rows = Mapping[str, Sequence[Mapping[str, Any]] | Mapping[str, Any]]
-"""Rows in code: by the name of the sheet, each a value by field or header."""
+Rows = Mapping[str, "Sequence[Mapping[str, Any]] | Mapping[str, Any] | pd.DataFrame"]
+"""Rows in code: by the name of the sheet, each a value by field or header; or a table of pandas."""
 
 
 def read_inventory(
@@ -56,8 +59,9 @@ def read_inventory(
     ----------
     source : str, Path, bytes or mapping
         The .xlsx (or .xlsm, whose macros are never run), its bytes, or rows by sheet: ``{"Items": [{"item": "A1",
-        "Height [m]": 1.8}], "Floors": [...], "Building": {...}}``. A key is a field of `assess.workbook.schema`, its
-        value in the unit of an empty workbook's header, or a header with its unit.
+        "Height [m]": 1.8}], "Floors": [...], "Building": {...}}``, where a table of pandas serves as well. A key is a
+        field of `assess.workbook.schema`, its value in the unit of an empty workbook's header, or a header with its
+        unit.
     records : mapping of str to bytes, or path of a folder, optional
         The recorded motions and pictures that the workbook names: their bytes by name, or the folder that holds them.
         By default they are looked for in the folder of the workbook.
@@ -94,10 +98,12 @@ def _read(
 ) -> Inventory:  # fmt: skip
     data = read_file(path) if isinstance(source, str | Path) else source if isinstance(source, bytes) else None
     if isinstance(source, Mapping):
-        tables, problems = _tables_in_code(source)
+        rows = {name: _list_rows(name, content) for name, content in source.items()}
+        tables, problems = _tables_in_code(rows)
+        hashed = json.dumps(rows, sort_keys=True, default=str).encode()
     else:
         tables, problems = read_tables(data or b"", path.name, stage.progress)
-    hashed = data if data is not None else json.dumps(source, sort_keys=True, default=str).encode()
+        hashed = data or b""
     stage.at(0.5)
     if files is None and isinstance(source, str | Path):
         files = path.resolve().parent
@@ -252,19 +258,26 @@ def _describe_missing(sheet: Sheet, language: str, unknown: Sequence[str]) -> It
         yield Problem("error", translate(sheet, language).name, "", fill("the sheet is missing."), fix)
 
 
-def _tables_in_code(rows: Rows) -> tuple[Tables, list[Problem]]:
-    """Read rows that are given in code; raises InputError if a sheet is not known, or its rows are no rows."""
+def _list_rows(name: str, content: Any) -> list[Mapping[str, Any]]:
+    """Return the rows of a sheet that is given in code; raises InputError if they are none."""
+    if hasattr(content, "to_dict"):
+        content = content.astype(object).where(content.notna(), None).to_dict("records")
+    listed = [content] if isinstance(content, Mapping) else list(content)
+    if not all(isinstance(row, Mapping) for row in listed):
+        raise InputError(fill("{name}: every row has to be a mapping of fields to values.", name=name))
+    return listed
+
+
+def _tables_in_code(rows: Mapping[str, Sequence[Mapping[str, Any]]]) -> tuple[Tables, list[Problem]]:
+    """Read rows that are given in code; raises InputError if a sheet is not known."""
     given: dict[str, tuple[Source, str]] = {}
     for name, content in rows.items():
         found = find_sheet(name)
         if found is None:
             names = ", ".join(sheet.name for sheet in SHEETS)
             raise InputError(fill("the sheet {name} is not known, expected: {names}.", name=repr(name), names=names))
-        listed = [content] if isinstance(content, Mapping) else list(content)
-        if not all(isinstance(row, Mapping) for row in listed):
-            raise InputError(fill("{name}: every row has to be a mapping of fields to values.", name=name))
         english = next(sheet for sheet in SHEETS if sheet.name == found[0])
-        given[found[0]] = (CodeCells(english, listed), found[1])
+        given[found[0]] = (CodeCells(english, content), found[1])
     missing = (one for sheet in SHEETS if sheet.name not in given for one in _describe_missing(sheet, ENGLISH, ()))
     return _parse(given, ENGLISH, [*missing])
 

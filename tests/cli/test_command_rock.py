@@ -145,6 +145,18 @@ def test_a_channel_of_a_file_and_of_an_archive(tmp_path):
     assert "Record   set.zip#11 (channel 11, " in rock(record=f"{tmp_path / 'set.zip'}#11").stdout
 
 
+@pytest.mark.parametrize(("breadth", "height"), [("12in", "6ft"), ("1'", "6' 0\""), ("0.3048 m", "1828.8mm")])
+def test_sizes_may_have_their_unit_as_in_the_workbook(breadth: str, height: str) -> None:
+    assert rock(breadth=breadth, height=height).stdout == rock(breadth=30.48, height=182.88).stdout
+
+
+@pytest.mark.parametrize("size", ["forty", "12 apples", "1,234.5.6"])
+def test_a_size_that_is_no_length_is_refused(size: str) -> None:
+    result = rock(breadth=size)
+    assert (result.exit_code, "Traceback" in result.output) == (2, False)
+    assert f"'{size}' is no number, expected one such as 40 or 12in" in " ".join(result.output.split())
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
@@ -168,7 +180,7 @@ def test_a_channel_of_a_file_and_of_an_archive(tmp_path):
         ({"restitution": -0.1}, "--restitution is -0.1, expected 0 to 1"),
         ({"restitution": "nan"}, "--restitution is nan, expected 0 to 1"),
         ({"baseline": "strict"}, "--baseline is 'strict', expected one of: standard, none"),
-        ({"breadth": "40cm"}, "Invalid value for '--breadth'"),
+        ({"breadth": "40 lb"}, "Invalid value for '--breadth'"),
         ({"record": f"{SWEEP}#up"}, "made-up-sweep.csv#up is a vertical channel: choose a"),
         ({"record": SAMPLES / "1103.HNZ.NP.BE_a.smc"}, "1103.HNZ.NP.BE_a.smc is a vertical channel"),
         ({"record": SWEEP}, "made-up-sweep.csv holds 3 channels: north, east, up. Name one of them, such as made"),

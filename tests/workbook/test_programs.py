@@ -1,6 +1,7 @@
 """Workbooks as other programs write them."""
 
 import re
+import zipfile
 from datetime import datetime
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,7 @@ import openpyxl
 import pytest
 
 from assess.errors import WorkbookError
+from assess.workbook.patch import patch_workbook
 from assess.workbook.read import read_inventory
 from tests.recalculate import libreoffice, needs_libreoffice
 from tests.workbook.books import (
@@ -136,3 +138,34 @@ def test_20000_rows(tmp_path: Path) -> None:
     inventory = read_inventory(write_shared(tmp_path / "book.xlsx", {"Items": [ITEMS[0], *rows], "Floors": FLOORS}))
     assert len(inventory.items) == 20_000
     assert inventory.items[-1].row == 20_001
+
+
+UNSEEN = ["\ufeff{}", "{}\u200b", "\u2060{}\u2060", "{}_x000D_\n", "\r\n{}"]
+
+
+@pytest.mark.parametrize("form", UNSEEN)
+def test_signs_without_width_round_a_text_are_no_part_of_it(tmp_path: Path, form: str) -> None:
+    items = [[form.format(one) if isinstance(one, str) else one for one in row] for row in ITEMS]
+    path = write_book(tmp_path / "book.xlsx", {"Items": items, "Floors": FLOORS})
+    inventory = read_inventory(path)
+    assert (items_of(path), inventory.problems) == ([("A1", "1", 0.4, 1.8)], ())
+
+
+CASES = {
+    "xl/sharedStrings.xml": "xl/SharedStrings.xml",
+    SHEET: "xl\\worksheets\\Sheet1.XML",
+    "xl/workbook.xml": "XL/Workbook.xml",
+}
+
+
+@pytest.mark.parametrize(("name", "other"), CASES.items())
+def test_names_of_parts_in_another_case_or_with_a_backslash(tmp_path: Path, name: str, other: str) -> None:
+    path = write_shared(tmp_path / "book.xlsx", {"Items": ITEMS, "Floors": FLOORS})
+    with zipfile.ZipFile(path) as archive:
+        parts = {one: archive.read(one) for one in archive.namelist()}
+    with zipfile.ZipFile(path, "w") as archive:
+        for one, data in parts.items():
+            archive.writestr(other if one == name else one, data)
+    assert items_of(path) == [("A1", "1", 0.4, 1.8)]
+    (tmp_path / "saved.xlsx").write_bytes(patch_workbook(path.read_bytes(), {"Items": {"D2": 150}}).data)
+    assert items_of(tmp_path / "saved.xlsx") == [("A1", "1", 0.4, 1.5)]

@@ -87,7 +87,7 @@ def name_safely(names: Iterable[str], joint: str) -> list[str]:
 
 def find_stem(assessment: Assessment) -> str:
     """Return the name of the workbook without its ending: files are named after it."""
-    return Path(assessment.inventory.source.name).stem
+    return Path(assessment.inventory.file_name).stem
 
 
 def round_number(value: float) -> float:
@@ -101,7 +101,7 @@ def describe_origin(assessment: Assessment, found: PieceFragilities) -> str:
     pieces = "that of the pieces is" if found.has_drawn_pieces else "neither is that of the pieces"
     return (
         f"Overturning of free-standing furniture by direct integration of its rocking, assess {__version__}. "
-        f"Workbook {plain_line(inventory.source.name)}, SHA-256 {inventory.sha256}; scenario {assessment.scenario}; "
+        f"Workbook {inventory.file_name}, SHA-256 {inventory.sha256}; scenario {assessment.scenario}; "
         f"{found.runs} motions, seed {found.seed}. Lognormals are fitted by maximum binomial likelihood (Baker 2015, "
         f"doi:10.1193/021113EQS025M). The uncertainty of the motion is not in them, {pieces}. A curve holds for "
         f"motions of the PFV/PFA stated with it. {SCREENING}"

@@ -322,6 +322,7 @@ FILTERS: Mapping[str, Any] = {
     "cut": words.cut,
     "described": summary.describe,
     "first_names": route_words.name_few,
+    "deviation": words.deviation,
     "fixed": words.fixed,
     "flag_name": lambda flag: _(flag.replace("_", " ")),
     "name_rooms": route_words.name_rooms,
