@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from assess.cli.completion import list_of, one_of
-from assess.cli.console import say, show_progress
+from assess.cli.console import say, say_written, show_progress
 from assess.cli.options import AsJson, read_formats
 from assess.errors import InputError
 from assess.i18n import LANGUAGES, find_language
@@ -73,8 +73,7 @@ def command(
     else:
         for line in describe_comparison(found):
             say(line)
-    for file in written.values():
-        say(f"wrote {file}", err=True)
+    say_written(written.values(), written.removed)
 
 
 def _find_own_language(run: "PastRun") -> str:

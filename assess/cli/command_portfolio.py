@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from assess.cli.completion import list_of, one_of
-from assess.cli.console import InterruptedWorkError, count, print_error, say, show_progress
+from assess.cli.console import InterruptedWorkError, count, print_error, say, say_written, show_progress
 from assess.cli.options import (
     ClassBy,
     GroundMotions,
@@ -226,8 +226,7 @@ def _tell(result: "PortfolioResult", settings: Settings) -> None:
 
     for line in describe_city(build_totals(result.view), result, settings):
         say(line)
-    for file in result.files:
-        say(f"wrote {file}", err=True)
+    say_written(result.files, result.removed)
     names = dict(zip(result.view.buildings["path"], result.view.buildings["building"], strict=True))
     for path, why in result.skipped[:MOST_SKIPPED]:
         print_error(f"{plain_line(name_skipped(names.get(path), path))}: skipped. {plain_line(why)}")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from assess.cli.completion import list_of, one_of
-from assess.cli.console import print_warnings, say, show_progress
+from assess.cli.console import print_warnings, say, say_written, show_progress
 from assess.cli.opening import open_file
 from assess.cli.options import (
     ClassBy,
@@ -29,6 +29,7 @@ from assess.progress import Progress
 from assess.settings import ROUTE_RISK, VERIFY, Settings, change_settings
 
 if TYPE_CHECKING:
+    from assess.delivery.deliver import Written
     from assess.methods import Method
     from assess.model import Inventory
     from assess.report.report_options import ReportOptions
@@ -172,8 +173,7 @@ def command(
         written = _write(results, folder, wanted, options, progress)
     for line in describe_result(results):
         say(line)
-    for file in written.values():
-        say(f"wrote {file}", err=True)
+    say_written(written.values(), written.removed)
     if open_report:
         _open(written)
 
@@ -214,7 +214,7 @@ def _assess(
 
 def _write(
     results: "Results", folder: Path, formats: Sequence[str], options: "ReportOptions", progress: Progress
-) -> dict[str, Path]:
+) -> "Written":
     from assess.report import write_reports
 
     print_warnings(results.problem_rows)

@@ -11,10 +11,11 @@ import re
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import wraps
+from pathlib import Path
 from typing import Any, Never, TextIO, get_type_hints
 
 import typer
@@ -57,6 +58,14 @@ class InterruptedWorkError(AssessError):
 def say(text: str, *, err: bool = False, nl: bool = True) -> None:
     """Print a text without what could command a terminal, as the name of a file may."""
     typer.echo(plain_text(text), err=err, nl=nl)
+
+
+def say_written(files: Iterable[Path], removed: Iterable[Path] = ()) -> None:
+    """Print what was written, and what of an earlier run is gone."""
+    for file in files:
+        say(f"wrote {file}", err=True)
+    for file in removed:
+        say(f"removed {file}, of an earlier run", err=True)
 
 
 def guard(command: Callable[..., None]) -> Callable[..., None]:

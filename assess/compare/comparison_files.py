@@ -3,14 +3,14 @@
 As with reports, a later comparison replaces or removes only what compare.json lists, so that it is always written.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from assess.compare.changes import Comparison
 from assess.compare.comparison_data import write_data
 from assess.compare.comparison_view import View
-from assess.delivery.deliver import check_moves, deliver, explain_fault, stage_for
+from assess.delivery.deliver import Written, deliver, explain_fault, stage_for
 from assess.delivery.disk import find_digest, flush_file
 from assess.delivery.stages import NEW
 from assess.errors import InputError, PdfUnavailableError
@@ -53,7 +53,7 @@ def write_comparison(
     options: ReportOptions | None = None,
     *,
     progress: Progress = SILENT,
-) -> dict[str, Path]:
+) -> Written:
     """Write the files of a comparison.
 
     Parameters
@@ -71,8 +71,8 @@ def write_comparison(
 
     Returns
     -------
-    dict of str to Path
-        The file of each format.
+    Written
+        The file of each format, and what was removed.
 
     Raises
     ------
@@ -92,12 +92,17 @@ def write_comparison(
         with stage_for(folder) as stage, options.spoken():
             job = _Job(View(comparison), options, progress, stage / NEW)
             missing = _write_all(job, wanted)
-            deliver(stage, folder, lambda target: find_reports(target, job.written, FILES["json"]), progress)
+            gone = deliver(stage, folder, lambda target: _find_old(target, job.written), FILES["json"], progress)
     except OSError as error:
         raise explain_fault(folder, error, FILES.values()) from None
     if missing:
         raise missing
-    return {name: folder / file for name, file in FILES.items() if file in job.written}
+    files = {name: folder / file for name, file in FILES.items() if file in job.written}
+    return Written(files, removed=[folder / name for name in gone])
+
+
+def _find_old(folder: Path, wanted: Collection[str]) -> frozenset[str]:
+    return find_reports(folder, wanted, lambda name: name in FILES.values(), FILES["json"])
 
 
 def check_out(folder: Path, formats: Sequence[str]) -> None:
@@ -105,11 +110,7 @@ def check_out(folder: Path, formats: Sequence[str]) -> None:
     names = {FILES[name] for name in _arrange(formats)}
     check_folder(folder)
     if folder.is_dir():
-        try:
-            check_moves(folder)
-        except OSError as error:
-            raise explain_fault(folder, error, FILES.values()) from None
-        find_reports(folder, names, FILES["json"])
+        _find_old(folder, names)
 
 
 def _arrange(formats: Sequence[str]) -> list[str]:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Never, TypeVar
 
 from assess.compare import past_run as past
+from assess.delivery.deliver import explain_unfinished, is_unfinished
 from assess.errors import InputError
 from assess.i18n import Text, fill
 from assess.input_file import read_input
@@ -65,6 +66,8 @@ def read_record(path: Path) -> tuple[past.PastRun, Mapping[str, Any], "Reader"]:
 def _load(path: Path, file: Path) -> tuple[bytes, datetime.datetime]:
     try:
         if not file.is_file():
+            if is_unfinished(file.parent, file.name):
+                raise InputError(explain_unfinished(file.parent))
             if path.is_dir():
                 raise InputError(
                     fill(

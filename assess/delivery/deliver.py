@@ -2,16 +2,13 @@
 
 import os
 import shutil
-import stat
-import sys
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from assess.delivery.disk import flush_file, flush_folder, write_through
 from assess.delivery.folder_lock import locked
-from assess.delivery.moves import Move, has_journal, plan_move, recover
-from assess.delivery.stages import NEW, note_exchange, staging
+from assess.delivery.stages import NEW, OLD, staging
 from assess.delivery.traces import moving
 from assess.errors import OutputError
 from assess.i18n import fill
@@ -19,27 +16,45 @@ from assess.progress import SILENT, Progress
 
 # ---------------------------------------------------------------- a folder
 
-_AT_FDCWD, _RENAME_EXCHANGE, _RENAME_SWAP = -100, 2, 2
+
+def name_aside(data: str) -> tuple[str, str]:
+    """Return how the lists of the earlier and of the new run are called while files are moved: hidden files."""
+    stem, dot, ending = data.rpartition(".")
+    return f".{stem}.old{dot}{ending}", f".{stem}.new{dot}{ending}"
+
+
+def is_unfinished(folder: Path, data: str) -> bool:
+    """Whether a process was killed while it moved files into a folder, which has no list of them since."""
+    return not (folder / data).exists() and any((folder / name).is_file() for name in name_aside(data))
+
+
+def explain_unfinished(folder: Path) -> str:
+    """Return what is said of such a folder."""
+    return fill(
+        "{folder} is unfinished: a run was stopped while it moved its files there. Run it again into this folder.",
+        folder=folder,
+    )
+
+
+class Written(dict[str, Path]):
+    """The files that were written, by format; `removed` are those of an earlier run that were not replaced."""
+
+    def __init__(self, files: Mapping[str, Path], removed: Sequence[Path] = ()) -> None:
+        super().__init__(files)
+        self.removed = tuple(removed)
 
 
 @contextmanager
 def stage_for(folder: Path) -> Iterator[Path]:
-    """Make the stage of what is to be in a folder, which need not exist: beside it, or in it if that cannot be."""
-    with ExitStack() as stack:
-        stage = None
-        if not folder.exists() or (can_exchange() and _is_plain(folder)):
-            with suppress(OSError):
-                stage = stack.enter_context(staging(_find_existing(folder.resolve().parent)))
-        yield stage or stack.enter_context(staging(_find_existing(folder.resolve())))
-
-
-def _find_existing(folder: Path) -> Path:
-    return next(one for one in (folder, *folder.parents) if one.is_dir())
+    """Make the stage of what is to be in a folder: in it, or, where it does not exist yet, beside it."""
+    place = folder.resolve()
+    with staging(next(one for one in (place, *place.parents) if one.is_dir())) as stage:
+        yield stage
 
 
 def deliver(
-    stage: Path, folder: Path, find_old: Callable[[Path], Collection[str]], progress: Progress = SILENT
-) -> None:
+    stage: Path, folder: Path, find_old: Callable[[Path], Collection[str]], data: str, progress: Progress = SILENT
+) -> list[str]:
     """Bring what is in the folder `NEW` of a stage to a folder, which is made if missing.
 
     Parameters
@@ -51,55 +66,32 @@ def deliver(
     find_old : callable
         Returns the names of the files in the folder that are an earlier run's, which are replaced or removed; whatever
         it raises leaves all as it was. Called while the folder is locked.
+    data : str
+        Name of the file that lists the others; it is among the new ones.
     progress : Progress
         Checked while another run is waited for.
+
+    Returns
+    -------
+    list of str
+        Names of the files that were removed and not replaced.
 
     Raises
     ------
     OSError
         If a file cannot be moved; all is as it was.
-    InputError
-        If a file of a move that was killed was changed since.
     OutputError
         If another run writes to the folder.
     """
     flush_folder(stage / NEW)
     target = folder.resolve()
     if not target.exists() and _put(stage / NEW, target):
-        return
+        return []
     with locked(target, progress):
-        finish_move(target)
         old = frozenset(find_old(target))
         progress.check()
         with moving():
-            if not _swap(stage, target, old):
-                _move(stage, target, old)
-
-
-def finish_move(folder: Path) -> None:
-    """Finish the move of a process that was killed, if there is one, under the folder's lock."""
-    if has_journal(folder):
-        with moving():
-            recover(folder)
-
-
-def check_moves(folder: Path) -> None:
-    """Finish the move of a process that was killed, if there is one."""
-    if has_journal(folder):
-        with locked(folder):
-            finish_move(folder)
-
-
-def explain_fault(folder: Path, error: OSError, files: Collection[str]) -> OutputError:
-    """Return the error of `files` that could not be brought to a folder, from what the system refused."""
-    why = error.strerror or str(error)
-    where = Path(error.filename2 or error.filename or folder)
-    if where.name in files:
-        path = folder / where.name
-        return OutputError(
-            fill("{path} could not be replaced: {why}. Is it open in another program?", path=path, why=why)
-        )
-    return OutputError(fill("{folder} cannot be written to: {why}.", folder=folder, why=why))
+            return _replace_set(stage, target, old, data)
 
 
 def _put(new: Path, target: Path) -> bool:
@@ -115,90 +107,84 @@ def _put(new: Path, target: Path) -> bool:
     return True
 
 
-def _swap(stage: Path, target: Path, old: Collection[str]) -> bool:
-    """Exchange the folder if it holds old files alone; False if it cannot be, and then nothing has changed."""
-    new = stage / NEW
-    held = {path.name for path in target.iterdir()}
-    if not (held <= set(old) and can_exchange() and _is_alike(target, new) and not _is_stood_in(target)):
-        return False
-    new.chmod(stat.S_IMODE(target.stat().st_mode))
-    note_exchange(stage, {*held, *(path.name for path in new.iterdir())})
-    if not exchange(new, target):
-        return False
-    flush_folder(target.parent)
-    for path in new.iterdir():
-        if path.name not in held and not (target / path.name).exists():  # it came in between
-            path.rename(target / path.name)
-    return True
+def _replace_set(stage: Path, target: Path, old: Collection[str], data: str) -> list[str]:
+    """Replace the files of an earlier run, its list first and the new list last; return what is gone."""
+    aside, coming = (target / name for name in name_aside(data))
+    names = sorted(path.name for path in (stage / NEW).iterdir() if path.name != data)
+    gone = sorted(name for name in old if name not in names and name != data)
+    with _taken_back(stage, target, [*names, *gone, data, aside.name, coming.name]):
+        if is_unfinished(target, data):  # its files may be of two runs: after a second kill they would be of three
+            for name in old:
+                (target / name).unlink(missing_ok=True)
+        _bring(stage / NEW / data, coming)
+        if (target / data).exists():
+            (target / data).replace(aside)
+        flush_folder(target)
+        for name in names:
+            _bring(stage / NEW / name, target / name)
+        for name in gone:
+            (target / name).unlink(missing_ok=True)
+        flush_folder(target)
+        coming.replace(target / data)
+        aside.unlink(missing_ok=True)
+        flush_folder(target)
+    return gone
 
 
-def _is_plain(folder: Path) -> bool:
-    """Whether another folder in its place would have the same owner and rights; this user's, without special bits."""
+@contextmanager
+def _taken_back(stage: Path, target: Path, names: Sequence[str]) -> Iterator[None]:
+    """Keep what stands at some names in the folder `OLD` of a stage, and put it back if anything is raised."""
+    kept = stage / OLD
+    kept.mkdir(exist_ok=True)
+    there = [name for name in names if (target / name).is_file()]
+    for name in there:
+        os.replace(target / name, target / name)  # noqa: PTH105 - on Windows fails if it is open
+        _keep(target / name, kept / name)
     try:
-        found, parent = folder.stat(), folder.resolve().parent.stat()
-        attributes = os.listxattr(folder) if hasattr(os, "listxattr") else []
-    except OSError:
-        return False
-    is_ours = found.st_uid == os.geteuid() and found.st_dev == parent.st_dev
-    special = stat.S_ISUID | stat.S_ISGID | stat.S_ISVTX
-    return is_ours and not found.st_mode & special and not any("posix_acl" in name for name in attributes)
+        yield
+    except BaseException:
+        for name in names:
+            with suppress(OSError):
+                if name in there:
+                    (kept / name).replace(target / name)
+                else:
+                    (target / name).unlink(missing_ok=True)
+        raise
 
 
-def _is_alike(folder: Path, other: Path) -> bool:
-    """Whether a folder can stand in for another one: the same file system, owner, group and extended attributes."""
+def _keep(path: Path, kept: Path) -> None:
     try:
-        one, two = folder.stat(), other.stat()
-        attributes = [sorted(os.listxattr(each)) for each in (folder, other)] if hasattr(os, "listxattr") else [[], []]
+        os.link(path, kept)
     except OSError:
-        return False
-    same = (one.st_dev, one.st_uid, one.st_gid) == (two.st_dev, two.st_uid, two.st_gid)
-    return _is_plain(folder) and same and attributes[0] == attributes[1]
-
-
-def _is_stood_in(folder: Path) -> bool:
-    """Whether a process works in a folder, as far as can be known: it would be left in one that is removed."""
-    for place in (Path(), *Path("/proc").glob("[0-9]*/cwd")):
-        with suppress(OSError):
-            if place.samefile(folder):
-                return True
-    return False
-
-
-def _move(stage: Path, target: Path, old: Collection[str]) -> None:
-    with ExitStack() as stack:
-        inside = stage if stage.parent == target else stack.enter_context(staging(target))
-        if inside != stage:
-            for path in (stage / NEW).iterdir():
-                _bring(path, inside / NEW / path.name)
-        _move_all([plan_move(target, inside, old)])
+        shutil.copy2(path, kept)
+        flush_file(kept)
 
 
 def _bring(path: Path, to: Path) -> None:
-    """Move a file of a stage into another one: by name, or as a copy to another file system."""
+    """Move a file of a stage to its place; from another file system as a copy that is whole before it is seen."""
+    if to.is_dir():
+        raise IsADirectoryError(0, fill("it is a folder"), str(to))
     try:
-        path.rename(to)
+        path.replace(to)
     except OSError:
-        shutil.copyfile(path, to)
-        flush_file(to)
+        if path.stat().st_dev == to.parent.stat().st_dev:
+            raise
+        with staging(to.parent) as stage:
+            shutil.copyfile(path, stage / NEW / to.name)
+            flush_file(stage / NEW / to.name)
+            (stage / NEW / to.name).replace(to)
 
 
-def _move_all(moves: Collection[Move]) -> None:
-    """Move the files of several folders; if one move fails, all are taken back."""
-    begun: list[Move] = []
-    try:
-        for move in moves:
-            begun.append(move)
-            move.begin()
-        for move in moves:
-            move.do()
-    except BaseException:
-        for move in begun:
-            if has_journal(move.folder):
-                move.undo()
-                move.end()
-        raise
-    for move in moves:
-        move.end()
+def explain_fault(folder: Path, error: OSError, files: Collection[str]) -> OutputError:
+    """Return the error of `files` that could not be brought to a folder, from what the system refused."""
+    why = error.strerror or str(error)
+    where = Path(error.filename2 or error.filename or folder)
+    if where.name in files:
+        path = folder / where.name
+        return OutputError(
+            fill("{path} could not be replaced: {why}. Is it open in another program?", path=path, why=why)
+        )
+    return OutputError(fill("{folder} cannot be written to: {why}.", folder=folder, why=why))
 
 
 # ---------------------------------------------------------------- some files
@@ -246,40 +232,14 @@ def saving(path: Path) -> Iterator[Path]:
 
 
 def _place(stages: Mapping[Path, Path], stack: ExitStack) -> None:
-    """Bring the files of stages to their folders; a single one needs no journal."""
-    staged = [(folder, path) for folder, stage in stages.items() for path in (stage / NEW).iterdir()]
-    if len(staged) == 1:
-        ((folder, path),) = staged
-        with moving():
-            path.replace(folder / path.name)
+    """Bring the files of stages to their folders."""
+    if sum(1 for stage in stages.values() for _ in (stage / NEW).iterdir()) > 1:
+        for folder in sorted(stages):
+            stack.enter_context(locked(folder))
+    with moving(), ExitStack() as kept:
+        for folder, stage in stages.items():
+            kept.enter_context(_taken_back(stage, folder, [path.name for path in (stage / NEW).iterdir()]))
+        for folder, stage in stages.items():
+            for path in sorted((stage / NEW).iterdir()):
+                _bring(path, folder / path.name)
             flush_folder(folder)
-        return
-    for folder in sorted(stages):
-        stack.enter_context(locked(folder))
-        finish_move(folder)
-    with moving():
-        _move_all([plan_move(folder, stage) for folder, stage in stages.items()])
-
-
-def can_exchange() -> bool:
-    """Whether this system has such a call; a file system may refuse it."""
-    return sys.platform in ("linux", "darwin")
-
-
-def exchange(one: Path, other: Path) -> bool:
-    """Exchange two folders; False if the system or the file system cannot, and then nothing has changed.
-
-    Linux: renameat2 (man 2 rename; since 3.15). macOS: renamex_np (man 2 renamex_np; since 10.12, on APFS).
-    """
-    if not can_exchange():
-        return False
-    import ctypes
-
-    try:
-        library = ctypes.CDLL(None, use_errno=True)
-        first, second = os.fsencode(one), os.fsencode(other)
-        if sys.platform == "darwin":
-            return int(library.renamex_np(first, second, _RENAME_SWAP)) == 0
-        return int(library.renameat2(_AT_FDCWD, first, _AT_FDCWD, second, _RENAME_EXCHANGE)) == 0
-    except (AttributeError, OSError):  # a C library that is older than the call
-        return False

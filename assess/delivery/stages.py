@@ -5,22 +5,18 @@ process lives: one that is not was left behind by a process that was killed, and
 it.
 """
 
-import json
 import os
 import stat
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from assess.delivery.disk import write_through
 from assess.delivery.folder_lock import FolderLock
 from assess.delivery.traces import forget_folder, make_folder, remove_folder
 
 PREFIX = ".assess-writing-"
-NEW, OLD, MARK = "new", "old", "exchanged.json"
-JOURNALS = (".assess-journal.json", ".assess-undo.json")
-"""The journal of moves that go on, and of moves that are taken back: see `assess.delivery.moves`."""
+NEW, OLD = "new", "old"
 _OLD = 24 * 3600.0
 """Age [s] of a stage that no process writes to any more, for file systems without locks."""
 
@@ -35,7 +31,7 @@ def staging(where: Path) -> Iterator[Path]:
         yield stage
     finally:
         lock.release()
-        discard(stage)
+        remove_folder(stage)
 
 
 def _make(where: Path) -> tuple[Path, FolderLock]:
@@ -49,17 +45,15 @@ def _make(where: Path) -> tuple[Path, FolderLock]:
 
 
 def sweep(where: Path) -> None:
-    """Remove the stages in a folder that killed processes left behind, unless a journal still needs them."""
-    if any((where / name).exists() for name in JOURNALS):
-        return
+    """Remove the stages in a folder that killed processes left behind."""
     for stage in where.glob(f"{PREFIX}*"):
         lock = FolderLock(stage)
         if _is_ours(stage) and lock.take():
             if lock.is_held or _is_old(stage):
-                discard(stage)
+                remove_folder(stage)
             lock.release()
             if stage.is_dir() and _is_old(stage):  # on Windows it could not be removed while its lock was open
-                discard(stage)
+                remove_folder(stage)
 
 
 def _is_ours(stage: Path) -> bool:
@@ -73,22 +67,3 @@ def _is_ours(stage: Path) -> bool:
 def _is_old(stage: Path) -> bool:
     """Whether a stage is older than any run, where locks tell nothing."""
     return time.time() - stage.stat().st_mtime > _OLD
-
-
-def note_exchange(stage: Path, names: Iterable[str]) -> None:
-    """Note in a stage what its `NEW` may hold from now on: files of this run, or after the exchange those before it."""
-    write_through(stage / MARK, json.dumps(sorted(names)).encode())
-
-
-def discard(stage: Path) -> None:
-    """Remove a stage; one whose folder was exchanged stays if it holds a file that nobody noted."""
-    if (stage / MARK).is_file():
-        try:
-            noted = set(json.loads((stage / MARK).read_bytes()))
-            others = {path.name for path in (stage / NEW).iterdir()} - noted if (stage / NEW).is_dir() else set()
-        except (OSError, ValueError, TypeError):
-            others = set()
-        if others:
-            forget_folder(stage)
-            return
-    remove_folder(stage)

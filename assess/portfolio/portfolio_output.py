@@ -1,7 +1,8 @@
 """What a portfolio writes: tables, reports and the file that lists them, all of them or none."""
 
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+import re
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePath
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 VERSION = "1"
 """Of the shape of portfolio.json."""
 DATA = "portfolio.json"
+Paths = tuple[Path, ...]
 FILES: Mapping[str, str] = {"xlsx": "ranking.xlsx", "html": "city.html", "pdf": "city.pdf"}
 """Reports by their format; the format parquet gives files of the names of `TABLES`."""
 FORMATS = ("parquet", *FILES)
@@ -79,8 +81,15 @@ def list_names(formats: Sequence[str]) -> list[str]:
     return [*tables, *(FILES[name] for name in formats if name in FILES), DATA]
 
 
-def write_output(job: Output, summaries: Mapping[str, Summary]) -> "tuple[tuple[Path, ...], CityView]":
-    """Write tables and reports; return the files, and the tables as frames.
+def find_old(out: Path, wanted: Collection[str]) -> frozenset[str]:
+    """Return the names of the files that an earlier run wrote into a folder; InputError as `find_reports`."""
+    tables = "|".join(TABLES)
+    written = re.compile(rf"(?:{tables})(?:-\d{{4}})?\.parquet|" + "|".join(map(re.escape, FILES.values())))
+    return find_reports(out, wanted, lambda name: written.fullmatch(name) is not None, DATA)
+
+
+def write_output(job: Output, summaries: Mapping[str, Summary]) -> "tuple[Paths, Paths, CityView]":
+    """Write tables and reports; return the files, those that were removed, and the tables as frames.
 
     Raises
     ------
@@ -99,12 +108,12 @@ def write_output(job: Output, summaries: Mapping[str, Summary]) -> "tuple[tuple[
             names = sorted(path.name for path in (stage / NEW).iterdir())
             write_through(stage / NEW / DATA, _describe_run(job, view, stage / NEW, names))
             names.append(DATA)
-            deliver(stage, job.out, lambda target: find_reports(target, names, DATA), job.progress)
+            gone = deliver(stage, job.out, lambda target: find_old(target, names), DATA, job.progress)
     except OSError as error:
         raise explain_fault(job.out, error, names) from None
     if missing is not None:
         raise missing
-    return tuple(job.out / name for name in names), view
+    return tuple(job.out / name for name in names), tuple(job.out / name for name in gone), view
 
 
 def _write_tables(job: Output, summaries: Mapping[str, Summary], folder: Path) -> "dict[str, TableWriter]":

@@ -12,7 +12,7 @@ from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING
 
-from assess.delivery.deliver import check_moves, explain_fault
+from assess.delivery.deliver import explain_fault
 from assess.delivery.folder_lock import FolderLock
 from assess.errors import InputError, OutputError
 from assess.i18n import fill
@@ -20,11 +20,10 @@ from assess.motion.site_ground import GroundField
 from assess.plain_text import plain_line
 from assess.portfolio.building_task import Summary, Task
 from assess.portfolio.part_files import ENDING, FOLDER, sweep_parts
-from assess.portfolio.portfolio_output import DATA, FORMATS, Output, list_names, list_skipped, write_output
+from assess.portfolio.portfolio_output import FORMATS, Output, find_old, list_names, list_skipped, write_output
 from assess.portfolio.sources import find_sources
 from assess.progress import Listener, Progress, Report
 from assess.report import check_folder
-from assess.report.ownership import find_reports
 from assess.report.report_options import ReportOptions
 from assess.settings import AUTO, Settings, count_processors
 
@@ -44,8 +43,8 @@ class PortfolioResult:
     ----------
     folder : Path
         Of the results.
-    files : tuple of Path
-        What was written.
+    files, removed : tuple of Path
+        What was written, and what of an earlier run was not replaced.
     kept : int
         Buildings whose part of an earlier run was there.
     skipped : tuple of pairs of str
@@ -56,6 +55,7 @@ class PortfolioResult:
 
     folder: Path
     files: tuple[Path, ...]
+    removed: tuple[Path, ...]
     kept: int
     skipped: tuple[tuple[str, str], ...]
     view: "CityView"
@@ -132,11 +132,12 @@ def run_portfolio(
     )
     with _reserving(out):
         summaries = _assess_all(job, jobs or count_processors(), scheduler)
-        files, view = write_output(job, summaries)
+        files, removed, view = write_output(job, summaries)
         _remove_unused(out, {one.key for one in summaries.values()})
     return PortfolioResult(
         folder=out,
         files=files,
+        removed=removed,
         kept=sum(one.is_kept for one in summaries.values()),
         skipped=tuple(list_skipped(view)),
         view=view,
@@ -177,8 +178,7 @@ def _check_out(source: Path, out: Path, formats: Sequence[str]) -> None:
         raise InputError(fill("out: {folder} holds the workbooks; name another folder.", folder=shown))
     check_folder(out)
     if out.is_dir():
-        check_moves(out)
-        find_reports(out, list_names(formats), DATA)
+        find_old(out, list_names(formats))
 
 
 def _check_settings(settings: Settings, ground: GroundField | None) -> Settings:

@@ -6,13 +6,13 @@ were. A run replaces and removes only what results.json lists (`assess.report.ow
 """
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from assess.delivery.deliver import check_moves, deliver, explain_fault, stage_for
+from assess.delivery.deliver import Written, deliver, explain_fault, stage_for
 from assess.delivery.disk import find_digest, flush_file
 from assess.delivery.stages import NEW
 from assess.errors import InputError, OutputError, PdfUnavailableError
@@ -141,7 +141,7 @@ def write_reports(
     options: ReportOptions | None = None,
     *,
     progress: Progress = SILENT,
-) -> dict[str, Path]:
+) -> Written:
     """Write the reports of a run.
 
     Parameters
@@ -161,8 +161,8 @@ def write_reports(
 
     Returns
     -------
-    dict of str to Path
-        The file of each format.
+    Written
+        The file of each format; `removed` are those of an earlier run that were not replaced.
 
     Raises
     ------
@@ -188,12 +188,17 @@ def write_reports(
         with stage_for(folder) as stage, options.spoken():
             job = Job(results, options, progress, stage / NEW)
             missing = _write_all(job, folder, _arrange(formats))
-            deliver(stage, folder, lambda target: find_reports(target, job.written), progress)
+            gone = deliver(stage, folder, lambda target: _find_old(target, job.written), FILES["json"], progress)
     except OSError as error:
         raise explain_fault(folder, error, FILES.values()) from None
     if missing:
         raise missing
-    return {name: folder / file for name, file in FILES.items() if file in job.written}
+    files = {name: folder / file for name, file in FILES.items() if file in job.written}
+    return Written(files, removed=[folder / name for name in gone])
+
+
+def _find_old(folder: Path, wanted: Collection[str]) -> frozenset[str]:
+    return find_reports(folder, wanted, lambda name: name in FILES.values())
 
 
 def _arrange(formats: Sequence[str]) -> list[str]:
@@ -233,11 +238,7 @@ def check_folder(folder: Path, formats: Sequence[str] = ()) -> None:
         why = fill("you have no right to write there") if there.is_dir() else fill("{path} is a file", path=there)
         raise OutputError(fill("{folder} cannot be written to: {why}. Name another folder.", folder=folder, why=why))
     if formats and folder.is_dir():
-        try:
-            check_moves(folder)
-        except OSError as error:
-            raise explain_fault(folder, error, FILES.values()) from None
-        find_reports(folder, {FILES[name] for name in (*formats, "json")})
+        _find_old(folder, {FILES[name] for name in (*formats, "json")})
 
 
 def _write_all(job: Job, folder: Path, formats: Sequence[str]) -> PdfUnavailableError | None:

@@ -2,29 +2,31 @@
 
 results.json names the reports of its run with their SHA-256, so that a file that was changed since, or put there by
 hand, is known to be the user's. It lists neither itself nor, by a hash, the PDFs, which carry it: see
-`assess.report.pages.pdf_seal`. Versions before the list wrote the files of `BEFORE`, which count as reports next to a
-results.json without it.
+`assess.report.pages.pdf_seal`. A file is a report only by its hash, or as a sealed PDF, and only names that this
+program writes are looked at: folders of reports travel, and a list may be anybody's.
 """
 
 import json
 import os
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from assess.delivery.deliver import name_aside
 from assess.delivery.disk import find_digest
 from assess.errors import InputError
 from assess.i18n import fill
 from assess.report.pages.pdf_seal import is_sealed
 
 DATA = "results.json"
-BEFORE = ("report.pdf", "report.xlsx", "report.html", DATA, "items.csv", "outcomes.npz")
-"""The files that versions without a list have written."""
 _HEAD = 4 << 20
 """Bytes at the head of results.json within which its first two entries stand."""
+MOST_NAMED = 3
 
 
-def find_reports(folder: Path, wanted: Collection[str], data: str = DATA) -> frozenset[str]:
+def find_reports(
+    folder: Path, wanted: Collection[str], known: Callable[[str], bool], data: str = DATA
+) -> frozenset[str]:
     """Return the names of the files in a folder that are an earlier run's.
 
     Parameters
@@ -33,6 +35,8 @@ def find_reports(folder: Path, wanted: Collection[str], data: str = DATA) -> fro
         May be missing.
     wanted : collection of str
         Names of the files that are to be written.
+    known : callable
+        Whether the program writes a file of this name into such a folder.
     data : str
         Name of the file that lists those of the earlier run.
 
@@ -41,44 +45,57 @@ def find_reports(folder: Path, wanted: Collection[str], data: str = DATA) -> fro
     InputError
         If a folder or a file of the user's stands at one of these names, or a report was changed after it was written.
     """
+    lists = [folder / name for name in (data, *name_aside(data))]
     try:
-        listed = read_list(folder / data)
-        found = {name for name in {*wanted, *listed} if os.path.lexists(folder / name)}
-        for name in sorted(found):
-            _check(folder / name, name in wanted, listed, folder / data)
+        listed = {path: read_list(path) for path in lists}
+        names = {*wanted, *(name for found in listed.values() for name in found if known(name))}
+        found = sorted(name for name in names if os.path.lexists(folder / name))
+        others = [name for name in found if not _is_report(folder / name, listed)]
+        mine = [name for name in others if find_digest(folder / name) is not None]
+        blocked = [name for name in others if name in wanted and name not in mine]
     except OSError as error:
         why = error.strerror or str(error)
         raise InputError(fill("{path} cannot be read: {why}.", path=error.filename or folder, why=why)) from None
-    return frozenset(name for name in found if (folder / name).is_file())
+    if blocked:
+        raise InputError(
+            fill("{path} is a folder or a link, where a report is to be written. Move or rename it.",
+                 path=folder / blocked[0])
+        )  # fmt: skip
+    if mine:
+        raise _explain(folder, mine, any(name in own for own in listed.values() for name in mine), data)
+    return frozenset(name for name in found if (folder / name).is_file() and name not in others)
 
 
-def _check(path: Path, is_wanted: bool, listed: Mapping[str, str | None], data: Path) -> None:
-    """Raise InputError if what stands at the name of a report is the user's."""
+def _is_report(path: Path, listed: Mapping[Path, Mapping[str, str | None]]) -> bool:
+    """Whether a file is one that a list names by its hash, a PDF that is sealed with it, or the list itself."""
     digest = find_digest(path)
-    if digest is None and not is_wanted:
-        return  # a folder or a link that took the place of a report that is not written again
     if digest is None:
-        raise InputError(
-            fill("{path} is a folder or a link, where a report is to be written. Move or rename it.", path=path)
-        )
-    if path.name not in listed:
-        raise InputError(
-            fill(
-                "{path} would be replaced, but it is not a report of an earlier run: no {data} next to it lists it. "
-                "Move or rename it, or choose another folder for the reports.",
-                path=path,
-                data=data.name,
-            )
-        )
-    known = listed[path.name]
-    if known != digest if known else path.suffix == ".pdf" and not is_sealed(path, data):
-        raise InputError(
-            fill(
-                "{path} was changed after it was written. Move or rename it to keep it, or choose another folder for "
-                "the reports.",
-                path=path,
-            )
-        )
+        return False
+    for data, files in listed.items():
+        if path == data and files:
+            return True
+        if path.name in files:
+            known = files[path.name]
+            if known == digest or (known is None and path.suffix == ".pdf" and is_sealed(path, data)):
+                return True
+    return False
+
+
+def _explain(folder: Path, names: Sequence[str], is_listed: bool, data: str) -> InputError:
+    shown = ", ".join(names[:MOST_NAMED]) + (", ..." if len(names) > MOST_NAMED else "")
+    if is_listed:
+        message = fill(
+            "out: {folder} holds files that were changed after they were written, or that its {data} lists without "
+            "their hash: {names}. Move or rename them to keep them, or choose another folder. Nothing was touched.",
+            folder=folder, data=data, names=shown,
+        )  # fmt: skip
+    else:
+        message = fill(
+            "out: {folder} holds files that would be replaced, but no {data} beside them lists them as reports of an "
+            "earlier run: {names}. Move or rename them, or choose another folder. Nothing was touched.",
+            folder=folder, data=data, names=shown,
+        )  # fmt: skip
+    return InputError(message)
 
 
 def read_list(path: Path) -> Mapping[str, str | None]:
@@ -98,7 +115,7 @@ def read_list(path: Path) -> Mapping[str, str | None]:
         return {}
     files = origin.get("files")
     if not isinstance(files, dict):
-        return dict.fromkeys(BEFORE if path.name == DATA else ())
+        return {}
     plain = {
         name: digest for name, digest in files.items() if name not in (".", "..") and not set(name) & set("/\\:\0")
     }

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from assess.details import AT_BASE, AT_WALL, DETAILS, find_detail
 from assess.errors import Gap, Problem
 from assess.i18n import Text, fill, join, nfill
-from assess.model import AXES, MEASURED
+from assess.model import AXES, MEASURED, CatalogueType
 from assess.motion.assumed import find_storey
 from assess.units import ROUNDING
 from assess.workbook.ground_files import SHAKEN
@@ -19,6 +19,9 @@ from assess.workbook.resolve import build_catalogue, defined, filled_sizes, turn
 from assess.workbook.values import shorten
 
 Check = Callable[[Tables], Iterable[Problem]]
+
+_LIKE = 2.0
+"""Ratio up to which a size is like that of its Type [-]."""
 
 
 def run_checks(tables: Tables, checks: Sequence[Check]) -> tuple[Tables, list[Problem]]:
@@ -274,7 +277,7 @@ def check_items(tables: Tables) -> Iterator[Problem]:
                 values = {"label": table.label(name), "type": table.label("type")}
                 message = fill("{label} is blank and no {type} gives it.", **values)
                 yield table.habit(name, row, message, fill("Fill it in, or choose a {type} that has one.", **values))
-        yield from _check_sizes(table, row, sizes)
+        yield from _check_sizes(table, row, sizes, types.get(key(row.get("type") or "")))
         yield from _check_position(table, row)
         yield from _check_axis(table, row)
         yield from _check_bracket(table, row, sizes.get("height"))
@@ -334,14 +337,23 @@ def _check_plan_sides(table: Table, row: Row, breadth: float | None, width: floa
         yield table.habit("breadth", row, message, fix)
 
 
-def _check_sizes(table: Table, row: Row, sizes: dict[str, float]) -> Iterator[Problem]:
+def _check_sizes(table: Table, row: Row, sizes: dict[str, float], kind: CatalogueType | None) -> Iterator[Problem]:
     breadth, height = sizes.get("breadth"), sizes.get("height")
     yield from _check_plan_sides(table, row, breadth, sizes.get("width"))
     is_typed = row.get("sizes_from") in (None, MEASURED)  # nobody exchanges the sizes of shapes
     if is_typed and breadth is not None and height is not None and breadth > height * (1 + ROUNDING):
         values = {"breadth": breadth * 100, "height": height * 100}
         message = fill("Breadth {breadth:g} cm is greater than Height {height:g} cm.", **values)
-        yield table.habit("breadth", row, message, fill("Are the two exchanged?"), "warning")
+        if kind is None or kind.breadth is None or kind.height is None:
+            yield table.habit("breadth", row, message, fill("Are the two exchanged?"), "warning")
+        elif _fits(breadth, kind.height) and _fits(height, kind.breadth) and kind.breadth < kind.height:
+            sides = {"breadth": kind.breadth * 100, "height": kind.height * 100}
+            fix = fill("Its Type is {breadth:g} cm deep and {height:g} cm high: exchange the two.", **sides)
+            yield table.habit("breadth", row, message, fix)
+
+
+def _fits(size: float, usual: float) -> bool:
+    return usual / _LIKE <= size <= usual * _LIKE
 
 
 def _check_position(table: Table, row: Row) -> Iterator[Problem]:

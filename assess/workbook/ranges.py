@@ -50,6 +50,13 @@ def find_slip(column: Column, number: float, unit: str) -> Text | str:
         return fill("Remove the minus sign.") if (column.low or 0) >= 0 else ""
     if unit == "%" and number < 1 and is_within(column, 100 * number, unit):
         return fill("Write {percent:g} for {percent:g} %.", percent=100 * number)
+    if (
+        not unit
+        and column.kind == "number"
+        and number > 3 * (column.high or number)
+        and is_within(column, number / 100, unit)
+    ):
+        return fill("Did you mean {number:g}?", number=number / 100)
     readings = [_say_reading(column, number, other, unit) for other in _list_units(column, number, unit)]
     if len(readings) > 1:
         return fill("Did you mean {one}, or {other}?", one=readings[0], other=readings[1])

@@ -238,7 +238,7 @@ def test_the_terminal_tells_what_is_not_known_of_people_and_motions(states, said
         for name, state, people in zip("AB", states, (20, 30), strict=True)
     ]  # fmt: skip
     city = view([BUILDING], routes=routes)
-    result = PortfolioResult(folder=Path("out"), files=(), kept=0, skipped=(), view=city)
+    result = PortfolioResult(folder=Path("out"), files=(), removed=(), kept=0, skipped=(), view=city)
     lines = [line.strip() for line in describe_city(build_totals(city), result, Settings())]
     assert f"People whose route is blocked: {said}" in lines
     assert "With motions of their own, which may not be of this earthquake: 1 building, in the sums above." in lines

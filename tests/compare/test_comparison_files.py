@@ -115,7 +115,7 @@ def test_a_second_comparison_replaces_the_first_and_removes_what_it_does_not_wri
 
 def test_a_file_of_the_users_own_is_not_replaced(found, tmp_path):
     (tmp_path / "compare.html").write_text("mine", encoding="utf-8")
-    with pytest.raises(InputError, match=r"compare\.html would be replaced.*no compare\.json next to it lists it"):
+    with pytest.raises(InputError, match=r"would be replaced, but no compare\.json beside them .*: compare\.html\."):
         write_comparison(found, tmp_path, ("html",))
     assert {path.name: path.read_text(encoding="utf-8") for path in tmp_path.iterdir()} == {"compare.html": "mine"}
 
@@ -126,7 +126,7 @@ def test_a_file_that_was_changed_is_not_replaced(found, tmp_path):
         write_comparison(found, folder, formats)
         with (folder / name).open("ab") as file:
             file.write(b"\n% more")
-        with pytest.raises(InputError, match=rf"{name} was changed after it was written"):
+        with pytest.raises(InputError, match=rf"changed after they were written, .*: {name}\. Move"):
             write_comparison(found, folder, formats)
 
 

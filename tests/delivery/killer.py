@@ -1,9 +1,9 @@
 """Deliver files again and again, each time killed one step later, until it comes through: a script, run by tests.
 
 ``python killer.py WAY FOLDER STRIDE`` takes every STRIDE-th moment and prints one JSON document: for each what the
-folder held right after the kill, and what it held after the next run had recovered it. A moment is a line of
-`assess.delivery`, or what the interpreter reports (an audit event) before it opens, renames, links, removes or makes a
-file or a folder, wherever it is called. Forking is safe here: this process has no threads.
+folder held right after the kill, and what it held after the next run. A moment is a line of `assess.delivery`, or what
+the interpreter reports (an audit event) before it opens, renames, links, removes or makes a file or a folder, wherever
+it is called. Forking is safe here: this process has no threads.
 """
 
 import contextlib
@@ -15,15 +15,14 @@ import sys
 from pathlib import Path
 
 from assess.delivery import traces
-from assess.delivery.deliver import deliver, save, stage_for
-from assess.delivery.moves import has_journal, recover
+from assess.delivery.deliver import deliver, is_unfinished, save, stage_for
 from assess.delivery.stages import NEW, sweep
 
-OLD = {"report.html": "old", "items.csv": "old", "gone.pdf": "old"}
-FRESH = {"report.html": "new", "items.csv": "new", "added.xlsx": "new"}
-EVENTS = ("open", "os.", "shutil.", "ctypes.")
-MIDWAY = [0]
-"""The step up to which a move was looked for in its midst."""
+DATA = "list.json"
+OLD = {"report.html": "old", "items.csv": "old", "gone.pdf": "old", DATA: "old"}
+FRESH = {"report.html": "new", "items.csv": "new", "added.xlsx": "new", DATA: "new"}
+NEXT = dict.fromkeys(FRESH, "next")
+EVENTS = ("open", "os.", "shutil.")
 OWN = str(Path(traces.__file__).parent)
 
 
@@ -56,14 +55,19 @@ def fill(folder, files):
         (folder / name).write_text(text)
 
 
-def work(way, folder):
+def find_old(folder):
+    return [name for name in {**OLD, **FRESH} if (folder / name).is_file()]
+
+
+def work(way, folder, files=None):
     """Deliver the new files."""
+    files = files or FRESH
     if way == "save":
-        save({folder / name: text.encode() for name, text in FRESH.items()})
+        save({folder / name: text.encode() for name, text in files.items()})
         return
     with stage_for(folder) as stage:
-        fill(stage / NEW, FRESH)
-        deliver(stage, folder, lambda target: [name for name in OLD if (target / name).exists()])
+        fill(stage / NEW, files)
+        deliver(stage, folder, find_old, DATA)
 
 
 def fail(way, folder):
@@ -84,13 +88,11 @@ def look(folder):
     return {path.name: path.read_text() for path in folder.iterdir() if path.is_file() and path.name[0] != "."}
 
 
-def prepare(way, folder):
-    """Make the folder as it was before; return the way without the remark."""
+def prepare(folder):
+    """Make the folder as it was before, with a file of the user's."""
     shutil.rmtree(folder.parent, ignore_errors=True)
     folder.mkdir(parents=True)
-    fill(folder, OLD)
-    if way != "exchange":
-        fill(folder, {"mine.txt": "mine"})
+    fill(folder, OLD | {"mine.txt": "mine"})
 
 
 def run_killed(step, act, *words):
@@ -110,31 +112,26 @@ def run_killed(step, act, *words):
     return status != 0
 
 
-def stop_midway(folder):
-    """Have a process killed in the midst of its moves."""
-    while {"old", "new"} - set(look(folder).values()):
-        prepare("journal", folder)
-        assert run_killed(MIDWAY[-1], work, "journal", folder)
-        MIDWAY.append(MIDWAY[-1] + 1)
-    MIDWAY.append(MIDWAY[-1] - 1)
+def look_whole(folder):
+    """Return what readers see: nothing of a folder that is unfinished."""
+    return None if is_unfinished(folder, DATA) or not (folder / DATA).exists() else look(folder)
 
 
 def main():
     way, folder, found, step = sys.argv[1], Path(sys.argv[2]) / "parent" / "out", [], 0
-    act = {"undo": fail, "recovery": lambda _, folder: recover(folder)}.get(way, work)
+    act = fail if way == "undo" else work
     killed = True
     while killed:
-        prepare(way, folder)
-        if way == "recovery":
-            stop_midway(folder)
-        killed = run_killed(step, act, way, folder)
-        before, had_journal = look(folder), has_journal(folder)
-        recover(folder)
-        after = look(folder)
+        prepare(folder)
+        if way == "twice":  # a second run is killed where a first one was
+            run_killed(step // 2, work, "list", folder)
+        killed = run_killed(step, act, way, folder, *([NEXT] if way == "twice" else []))
+        before = look_whole(folder)
+        work("save" if way == "save" else "list", folder, NEXT)
         for place in (folder, folder.parent):
             sweep(place)
         left = [path.name for place in (folder, folder.parent) for path in place.iterdir() if path.name[0] == "."]
-        found.append({"before": before, "after": after, "journal": had_journal, "left": left})
+        found.append({"before": before, "after": look(folder), "left": left})
         step += int(sys.argv[3])
     print(json.dumps(found))
 

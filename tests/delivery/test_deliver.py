@@ -1,7 +1,6 @@
-"""Where a folder is exchanged, where its files are moved; failures, locks, and what killed runs leave."""
+"""How files come to their place; failures, locks, and what killed runs leave."""
 
 import contextlib
-import json
 import os
 import subprocess
 import sys
@@ -10,24 +9,19 @@ from pathlib import Path
 
 import pytest
 
-from assess.delivery import deliver as delivering
 from assess.delivery import folder_lock
-from assess.delivery.deliver import check_moves, deliver, exchange, save, saving, stage_for
+from assess.delivery.deliver import deliver, is_unfinished, name_aside, save, saving, stage_for
 from assess.delivery.folder_lock import FolderLock
-from assess.delivery.stages import JOURNALS, NEW, PREFIX, staging, sweep
+from assess.delivery.stages import NEW, PREFIX, staging, sweep
 from assess.errors import CancelledError, InputError, OutputError
 from assess.progress import Progress
-from tests.delivery.killer import FRESH, OLD, fill, look
+from tests.delivery.killer import DATA, FRESH, OLD, fill, find_old, look
 
 
-def _find_old(folder):
-    return [name for name in OLD if (folder / name).is_file()]
-
-
-def _deliver(folder, find_old=_find_old, **words):
+def _deliver(folder, find=find_old, **words):
     with stage_for(folder) as stage:
         fill(stage / NEW, FRESH)
-        deliver(stage, folder, find_old, **words)
+        return deliver(stage, folder, find, DATA, **words)
 
 
 def _hidden(*folders):
@@ -42,19 +36,6 @@ def out(tmp_path):
     return folder
 
 
-@pytest.fixture
-def swaps(monkeypatch):
-    """What came of each attempt to exchange a folder."""
-    found, whole = list[bool](), delivering._swap
-
-    def swap(*words):
-        found.append(whole(*words))
-        return found[-1]
-
-    monkeypatch.setattr(delivering, "_swap", swap)
-    return found
-
-
 def test_a_folder_that_is_missing_appears_whole(tmp_path):
     _deliver(tmp_path / "a" / "b")
     assert look(tmp_path / "a" / "b") == FRESH
@@ -62,70 +43,55 @@ def test_a_folder_that_is_missing_appears_whole(tmp_path):
     assert (tmp_path / "a" / "b").stat().st_mode == (tmp_path / "a").stat().st_mode
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="not every file system of macOS can exchange folders")
-def test_a_folder_of_old_files_alone_is_exchanged(out, swaps):
-    out.chmod(0o711)
-    _deliver(out)
-    assert (swaps, look(out), out.stat().st_mode & 0o777) == ([True], FRESH, 0o711)
-    assert _hidden(out, out.parent) == []
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="not every file system of macOS can exchange folders")
-def test_a_link_to_a_folder_stays_a_link(out, swaps, tmp_path):
-    link = tmp_path / "link"
-    link.symlink_to(out)
-    _deliver(link)
-    assert (swaps, link.is_symlink(), look(out)) == ([True], True, FRESH)
-
-
-def test_beside_a_file_of_the_users_the_files_are_moved(out, swaps):
+@pytest.mark.parametrize("place", ["itself", "a link", "the working folder"])
+def test_files_are_moved_into_the_folder_and_nothing_else_is_touched(out, tmp_path, monkeypatch, place):
     (out / "mine").mkdir()
-    number = out.stat().st_ino
-    _deliver(out)
-    assert (swaps, look(out), out.stat().st_ino) == ([False], FRESH, number)
+    (out / "mine.txt").write_text("mine")
+    number, folder = out.stat().st_ino, out
+    if place == "a link":
+        folder = tmp_path / "link"
+        folder.symlink_to(out)
+    elif place == "the working folder":
+        monkeypatch.chdir(out)
+        folder = Path()
+    assert _deliver(folder) == ["gone.pdf"]
+    assert (look(out), out.stat().st_ino) == (FRESH | {"mine.txt": "mine"}, number)
     assert (out / "mine").is_dir()
     assert _hidden(out, out.parent) == []
 
 
-@pytest.mark.parametrize("who", ["this process", "another one"])
-def test_a_folder_that_a_process_works_in_stays_where_it_is(out, swaps, monkeypatch, who):
-    """A shell would be left in a folder that is gone."""
-    if who == "this process":
-        monkeypatch.chdir(out)
-        _deliver(Path())
-    elif not Path("/proc/self/cwd").exists():
-        pytest.skip("not known here")
-    else:
-        with subprocess.Popen([sys.executable, "-c", "input()"], cwd=out, stdin=subprocess.PIPE) as process:
-            _deliver(out)
-            process.communicate(b"\n")
-    assert (swaps, look(out)) == ([False], FRESH)
-
-
-@pytest.mark.parametrize("why", ["system", "parent"])
-def test_where_folders_cannot_be_exchanged_the_files_are_moved(out, monkeypatch, why):
-    if why == "system":
-        monkeypatch.setattr(delivering, "exchange", lambda *_: False)
-    else:  # a parent in which nothing can be made
-        whole = staging
-        monkeypatch.setattr(delivering, "staging", lambda where: whole(where if where == out else where / "missing"))
+def test_a_folder_that_was_left_unfinished_is_known_and_completed(out):
+    old, new = name_aside(DATA)
+    (out / DATA).rename(out / old)
+    (out / new).write_text("new")
+    (out / "added.xlsx").write_text("new")
+    assert is_unfinished(out, DATA)
     _deliver(out)
-    assert look(out) == FRESH
-    assert _hidden(out, out.parent) == []
+    assert (look(out), is_unfinished(out, DATA)) == (FRESH, False)
+    assert _hidden(out) == []
 
 
-def test_a_stage_on_another_file_system_is_copied(out, monkeypatch):
-    (out / "mine.txt").write_text("mine")
-    whole = Path.rename
+def test_a_stage_on_another_file_system_is_copied(out, monkeypatch, tmp_path):
+    whole, other = Path.replace, tmp_path / "other"
 
-    def rename(self, target):
-        if self.parent.name == NEW:
+    def replace(self, target):
+        if other in self.parents:
             raise OSError(18, "Invalid cross-device link")
         return whole(self, target)
 
-    monkeypatch.setattr(Path, "rename", rename)
-    _deliver(out)
-    assert look(out) == FRESH | {"mine.txt": "mine"}
+    def stat(self, **words):
+        found = whole_stat(self, **words)
+        return os.stat_result((*found[:2], found.st_dev + 1, *found[3:])) if other in self.parents else found
+
+    whole_stat = Path.stat
+    other.mkdir()
+    with staging(other) as stage:
+        fill(stage / NEW, FRESH)
+        monkeypatch.setattr(Path, "replace", replace)
+        monkeypatch.setattr(Path, "stat", stat)
+        deliver(stage, out, find_old, DATA)
+    assert look(out) == FRESH
+    assert _hidden(out) == []
 
 
 @pytest.mark.parametrize("links", [True, False])
@@ -163,17 +129,6 @@ def test_what_is_in_the_way_at_the_end_leaves_all_as_it_was(out):
         _deliver(out)
     assert look(out) == OLD
     assert _hidden(out, out.parent) == []
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="not every file system of macOS can exchange folders")
-def test_a_file_that_comes_at_the_last_moment_is_kept(out, monkeypatch):
-    def late(one, other):
-        (out / "mine.txt").write_text("mine")
-        return exchange(one, other)
-
-    monkeypatch.setattr(delivering, "exchange", late)
-    _deliver(out)
-    assert look(out) == FRESH | {"mine.txt": "mine"}
 
 
 # ---------------------------------------------------------------- some files
@@ -300,22 +255,20 @@ def test_the_lock_of_a_killed_process_does_not_hold(out, lock_of, request):
 
 def test_runs_side_by_side_do_not_mix(tmp_path):
     """Threads exclude each other as processes do: whatever the order, the folder is of one of them."""
-    names = [f"{at}.txt" for at in range(5)]
+    names = [*(f"{at}.txt" for at in range(5)), DATA]
 
     def work(text):
         for _ in range(10):
             with stage_for(tmp_path / "out") as stage:
                 fill(stage / NEW, dict.fromkeys(names, text))
-                deliver(stage, tmp_path / "out", lambda folder: [path.name for path in folder.glob("*.txt")])
-            if text == "a":  # from now on the files are moved
-                (tmp_path / "out" / "mine").write_text("mine")
+                deliver(stage, tmp_path / "out", lambda folder: [one for one in names if (folder / one).exists()], DATA)
 
     threads = [threading.Thread(target=work, args=(text,)) for text in "abc"]
     for one in threads:
         one.start()
     for one in threads:
         one.join()
-    assert look(tmp_path / "out") in [dict.fromkeys(names, text) | {"mine": "mine"} for text in "abc"]
+    assert look(tmp_path / "out") in [dict.fromkeys(names, text) for text in "abc"]
     assert _hidden(tmp_path, tmp_path / "out") == []
 
 
@@ -327,38 +280,3 @@ def test_the_stage_of_a_living_process_is_left_and_that_of_a_dead_one_removed(tm
         assert stage.is_dir()
         assert sorted(_hidden(tmp_path)) == sorted([stage.name, f"{PREFIX}mine.txt"])
     assert _hidden(tmp_path) == [f"{PREFIX}mine.txt"]
-
-
-@pytest.mark.parametrize(
-    "journal",
-    [
-        "", "[]", "{}", "null",
-        {"about": "", "stage": f"{PREFIX}x", "new": {"../mine.txt": "0"}, "old": {}},
-        {"about": "", "stage": f"{PREFIX}x", "new": {}, "old": {"/etc/hosts": "0"}},
-        {"about": "", "stage": f"{PREFIX}x/../..", "new": {}, "old": {}},
-        {"about": "", "stage": "out", "new": {}, "old": {}},
-        {"about": "", "stage": f"{PREFIX}x", "new": {"link/mine.txt": "0"}, "old": {}},
-        {"about": "", "stage": f"{PREFIX}x", "new": [], "old": {}},
-        {"about": "", "stage": f"{PREFIX}x", "new": {"a": 1}, "old": {}},
-    ],
-)  # fmt: skip
-@pytest.mark.parametrize("name", JOURNALS)
-def test_a_journal_of_someone_else_leads_out_of_no_folder(tmp_path, out, name, journal):
-    (tmp_path / "mine.txt").write_text("mine")
-    (out / "link").symlink_to(tmp_path)
-    (out / name).write_text(journal if isinstance(journal, str) else json.dumps(journal))
-    with pytest.raises(InputError, match="is damaged: remove it, or choose another folder"):
-        check_moves(out)
-    assert (look(out), (tmp_path / "mine.txt").read_text()) == (OLD, "mine")
-
-
-def test_a_file_that_was_changed_since_the_kill_stops_the_recovery(out):
-    digest = "0" * 64
-    journal = {"about": "", "stage": f"{PREFIX}x", "new": {"report.html": digest}, "old": {"report.html": digest}}
-    (out / JOURNALS[0]).write_text(json.dumps(journal))
-    with pytest.raises(InputError, match=r"html was changed while an earlier run was being finished\. Move"):
-        _deliver(out)
-    assert look(out) == OLD
-    (out / "report.html").unlink()
-    _deliver(out)
-    assert look(out) == FRESH

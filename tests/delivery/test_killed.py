@@ -1,4 +1,4 @@
-"""A process that is killed between any two operations on files leaves all old or all new files."""
+"""A process that is killed between any two operations on files never leaves files of two runs beside one list."""
 
 import json
 import os
@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.delivery import killer
-from tests.delivery.killer import FRESH, OLD
+from tests.delivery.killer import FRESH, NEXT, OLD
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="forks")
 MINE = {"mine.txt": "mine"}
@@ -30,31 +30,19 @@ def _run(way, folder, stride):
     return found
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="not every file system of macOS can exchange folders")
 @pytest.mark.parametrize("stride", STRIDES)
-def test_a_folder_of_reports_alone_is_of_one_run_at_every_moment(tmp_path, stride):
-    """Without any recovery: whoever looks sees one run."""
-    found = _run("exchange", tmp_path, stride)
-    assert len(found) * stride > 200
-    assert [one["before"] for one in found if one["before"] not in (OLD, FRESH)] == []
-    assert not any(one["journal"] for one in found)
-    assert (found[0]["before"], found[-1]["before"]) == (OLD, FRESH)
-
-
-@pytest.mark.parametrize("stride", STRIDES)
-@pytest.mark.parametrize(("way", "kept"), [("journal", {}), ("undo", {}), ("save", {"gone.pdf": "old"})])
-def test_beside_other_files_the_next_run_finishes_or_takes_back(tmp_path, way, kept, stride):
-    """Files of two runs are seen only next to a journal; after it was carried out all are old, or all new."""
-    found, old, new = _run(way, tmp_path, stride), OLD | MINE, FRESH | MINE | kept
-    assert len(found) * stride > 200
-    assert [one["after"] for one in found if one["after"] not in (old, new)] == []
-    assert [one["before"] for one in found if one["before"] not in (old, new) and not one["journal"]] == []
-    assert (found[0]["after"], found[-1]["before"]) == (old, old if way == "undo" else new)
+@pytest.mark.parametrize("way", ["list", "undo", "twice"])
+def test_readers_see_one_run_and_the_next_run_completes(tmp_path, way, stride):
+    found, old, new = _run(way, tmp_path, stride), OLD | MINE, FRESH | MINE
+    whole = [old, new, NEXT | MINE] if way == "twice" else [old, new]
+    assert len(found) * stride > 100
+    assert [one["before"] for one in found if one["before"] is not None and one["before"] not in whole] == []
+    assert [one["after"] for one in found if one["after"] != NEXT | MINE] == []
+    assert (found[0]["before"], found[-1]["before"]) == (old, {"list": new, "undo": old, "twice": NEXT | MINE}[way])
 
 
 @pytest.mark.slow
-def test_a_recovery_that_is_killed_goes_on_the_next_time(tmp_path):
-    found, new = _run("recovery", tmp_path, 3), FRESH | MINE
-    assert len(found) > 10
-    assert [one["after"] for one in found if one["after"] != new] == []
-    assert sum(one["before"] not in (OLD | MINE, new) for one in found) > 1
+def test_files_without_a_list_are_each_whole(tmp_path):
+    found = _run("save", tmp_path, 1)
+    assert {text for one in found for text in (one["before"] or {}).values()} == {"old", "new", "mine"}
+    assert [one["after"] for one in found if one["after"] != NEXT | MINE | {"gone.pdf": "old"}] == []

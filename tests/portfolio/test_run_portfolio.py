@@ -238,7 +238,7 @@ def test_a_folder_that_cannot_take_the_results_is_an_error_before_the_work(tmp_p
         run_portfolio(city, tmp_path / "file", FORMULAS)
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "ranking.xlsx").write_bytes(b"mine")
-    with pytest.raises(InputError, match=r"ranking.xlsx would be replaced, but it is not a report"):
+    with pytest.raises(InputError, match=r"would be replaced, but no portfolio.json beside them .*: ranking.xlsx\."):
         run_portfolio(city, tmp_path / "out", FORMULAS)
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["ranking.xlsx"]
 

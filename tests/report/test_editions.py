@@ -122,7 +122,7 @@ def test_both_carry_workbook_and_results_and_are_known_when_they_change(results,
         assert document.is_tagged()
         document.close()
     written["annex"].write_bytes(written["annex"].read_bytes() + b"\n% mine\n")
-    with pytest.raises(assess.InputError, match=r"annex\.pdf was changed after it was written"):
+    with pytest.raises(assess.InputError, match=r"changed after they were written, .*: annex\.pdf\. Move"):
         assess.write_reports(results, tmp_path, ("json",))
     assert written["pdf"].is_file()
 

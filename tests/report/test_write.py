@@ -102,9 +102,12 @@ def test_results_list_the_files_of_their_run(tmp_path, results):
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda path: path.write_text("mine"), "would be replaced, but it is not a report of an earlier run"),
-        (lambda path: path.mkdir(), "is a folder or a link, where a report is to be written"),
-        (lambda path: path.symlink_to("elsewhere"), "is a folder or a link, where a report is to be written"),
+        (
+            lambda path: path.write_text("mine"),
+            "out: .* would be replaced, but no results.json beside them lists them .*: {}",
+        ),
+        (lambda path: path.mkdir(), "{} is a folder or a link, where a report is to be written"),
+        (lambda path: path.symlink_to("elsewhere"), "{} is a folder or a link, where a report is to be written"),
     ],
 )
 @pytest.mark.parametrize("name", ["report.html", "results.json"])
@@ -112,9 +115,9 @@ def test_what_is_in_the_way_is_named_before_the_run(tmp_path, results, name, mak
     out = tmp_path / "out"
     out.mkdir()
     make(out / name)
-    with pytest.raises(assess.InputError, match=f"{name} {message}"):
+    with pytest.raises(assess.InputError, match=message.format(name)):
         check_folder(out, ("html",))
-    with pytest.raises(assess.InputError, match=f"{name} {message}"):
+    with pytest.raises(assess.InputError, match=message.format(name)):
         assess.write_reports(results, out, "html")
     assert (_names(out), _names(tmp_path)) == ([name], ["out"])
     check_folder(tmp_path / "other", ("html",))
@@ -139,7 +142,7 @@ def test_a_report_that_was_changed_is_the_users(tmp_path, results):
     with (tmp_path / "report.html").open("a") as file:
         file.write("<!-- signed -->")
     for formats in ("html", "csv"):
-        with pytest.raises(assess.InputError, match=r"report\.html was changed after it was written"):
+        with pytest.raises(assess.InputError, match=r"changed after they were written, .*: report\.html\. Move"):
             assess.write_reports(results, tmp_path, formats)
     (tmp_path / "report.html").rename(tmp_path / "signed.html")
     assess.write_reports(results, tmp_path, "csv")
@@ -154,16 +157,52 @@ def test_a_pdf_that_was_changed_is_the_users(tmp_path, results, change):
     assess.write_reports(results, tmp_path, "pdf")
     path = tmp_path / "report.pdf"
     path.write_bytes(change(path.read_bytes()))
-    with pytest.raises(assess.InputError, match=r"report\.pdf was changed after it was written"):
+    with pytest.raises(assess.InputError, match=r"changed after they were written, .*: report\.pdf\. Move"):
         assess.write_reports(results, tmp_path, "csv")
 
 
-def test_reports_of_a_version_without_a_list_are_known_by_their_names(tmp_path, results):
-    write_json(results, tmp_path / "results.json")
+@pytest.mark.parametrize("files", [None, {}, {"items.csv": None, "report.html": None}, {"items.csv": 1}])
+def test_a_list_without_hashes_makes_nothing_a_report(tmp_path, results, files):
+    """As versions without a list wrote it, and as anybody may."""
+    write_json(results, tmp_path / "results.json", files=files)
     for name in ("report.html", "items.csv", "mine.txt", "annex.pdf"):
-        (tmp_path / name).write_text("old")
-    assess.write_reports(results, tmp_path, "csv")
-    assert _names(tmp_path) == ["annex.pdf", "items.csv", "mine.txt", "results.json"]
+        (tmp_path / name).write_text("mine")
+    before = _contents(tmp_path)
+    with pytest.raises(assess.InputError, match=r"out: .*: items\.csv.* choose another folder\. Nothing was touched"):
+        assess.write_reports(results, tmp_path, "csv")
+    assert _contents(tmp_path) == before
+
+
+@pytest.mark.parametrize("listed", [None, 1, "0" * 64, hashlib.sha256(b"mine").hexdigest()])
+def test_a_stranger_s_list_removes_no_file_of_the_user_s(tmp_path, results, listed):
+    """Whatever it says of names that the program never writes, even with their hash."""
+    files = dict.fromkeys(("thesis.docx", "photo.jpg", "report.html.bak"), listed)
+    (tmp_path / "results.json").write_text(json.dumps({"schema": "1", "assess": {"version": "0.1.0", "files": files}}))
+    for name in files:
+        (tmp_path / name).write_text("mine")
+    written = assess.write_reports(results, tmp_path, "json")
+    assert written.removed == ()
+    assert all((tmp_path / name).read_text() == "mine" for name in files)
+
+
+def test_what_is_removed_and_not_replaced_is_said(tmp_path):
+    book = write(tmp_path / "w.xlsx")
+    words = ("run", book, "--verify", "none", "--out", tmp_path / "out")
+    run(*words, "--formats", "html,csv")
+    done = run(*words, "--formats", "json")
+    gone = [f"removed {tmp_path / 'out' / name}, of an earlier run" for name in ("items.csv", "report.html")]
+    assert [line for line in done.stderr.splitlines() if line.startswith("removed")] == gone
+
+
+def test_a_folder_without_results_is_unfinished(tmp_path):
+    book = write(tmp_path / "w.xlsx")
+    words = ("run", book, "--verify", "none", "--formats", "csv", "--out", tmp_path / "out")
+    run(*words)
+    (tmp_path / "out" / "results.json").rename(tmp_path / "out" / ".results.old.json")
+    said = error(run("compare", tmp_path / "out", tmp_path / "out"))
+    assert "out is unfinished: a run was stopped while it moved its files there" in said
+    assert run(*words).exit_code == 0
+    assert _names(tmp_path / "out") == ["items.csv", "results.json"]
 
 
 @pytest.mark.parametrize(

@@ -92,13 +92,13 @@ def test_tables_of_pandas_are_rows_in_code() -> None:
     rows = {name: [content] if isinstance(content, dict) else content for name, content in CODE.items()}
     tables = {name: pd.DataFrame(content) for name, content in rows.items()}
     assert read_inventory(tables).items == read_inventory(CODE).items
-    wider = tables["Items"].assign(notes=[None, "Shelf"], quantity=pd.array([pd.NA, 2], dtype="Int64"))
+    wider = tables["Items"].assign(notes=pd.Series([None, "Shelf"]), quantity=pd.array([pd.NA, 2], dtype="Int64"))
     assert [(one.notes, one.quantity) for one in read_inventory({**tables, "Items": wider}).items] == [
         ("", 1),
         ("Shelf", 2),
     ]
     longer = pd.concat([wider] * 40, ignore_index=True).assign(item=[f"A{at}" for at in range(80)])
-    changed = longer.assign(notes=["Desk" if at == 40 else None for at in range(80)])
+    changed = longer.assign(notes=pd.Series(["Desk" if at == 40 else None for at in range(80)]))
     hashes = {read_inventory({**tables, "Items": one}).sha256 for one in (longer, changed)}
     assert len(hashes) == 2  # of all rows, not of the few that a table prints
 

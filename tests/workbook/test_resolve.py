@@ -7,6 +7,7 @@ import pytest
 
 from assess.model import axis_of
 from assess.units import GRAVITY
+from assess.workbook.read import read_inventory
 from assess.workbook.schema import BUILDING, SHEETS
 from tests.workbook.books import (
     ITEMS,
@@ -62,6 +63,23 @@ def test_breadth_greater_than_height_is_warned_of(tmp_path: Path) -> None:
     assert remarks(inventory, "warning") == {
         "Items!C2: Breadth 180 cm is greater than Height 75 cm. Are the two exchanged?"
     }
+
+
+@pytest.mark.parametrize(
+    ("sizes", "severity"),
+    [((180, 40), "error"), ((150, 60), "error"), ((70, 60), None), ((600, 30), None), ((40, 180), None)],
+)
+def test_sizes_are_exchanged_where_those_of_the_type_say_so(
+    tmp_path: Path, sizes: tuple[int, int], severity: str | None
+) -> None:
+    items: Sheet = [["Item", "Floor", "Type", "Breadth [cm]", "Height [cm]"], ["A1", "1", "Rack", *sizes]]
+    types: Sheet = [["Type", "Breadth [cm]", "Height [cm]"], ["Rack", 45, 200]]
+    path = write(tmp_path, items, Catalogue=types)
+    message = f"Breadth {sizes[0]} cm is greater than Height {sizes[1]} cm. "
+    if severity == "error":
+        assert errors_of(path) == {f"Items!D2: {message}Its Type is 45 cm deep and 200 cm high: exchange the two."}
+    else:
+        assert not any("Height" in str(one) for one in read_inventory(path).problems)
 
 
 def test_the_centre_of_gravity_is_the_rows_own_else_the_types_else_at_mid_height(tmp_path: Path) -> None:
@@ -200,7 +218,7 @@ def test_yes_and_no(tmp_path: Path, value: object, is_uncertain: bool) -> None:
     [
         ("Motion uncertainty", -0.1, "Motion uncertainty is -0.1, expected 0 to 1.5. Remove the minus sign."),
         ("Motion uncertainty", 1.6, "Motion uncertainty is 1.6, expected 0 to 1.5. Check the number and the unit in "),
-        ("Motion uncertainty", 40, "Motion uncertainty is 40, expected 0 to 1.5. Check the number and the unit in the"),
+        ("Motion uncertainty", 40, "Motion uncertainty is 40, expected 0 to 1.5. Did you mean 0.4?"),
         ("Piece uncertainty", 1, "Piece uncertainty is '1', expected one of: yes, no. Choose from the list."),
         ("Piece uncertainty", "partly", "Piece uncertainty is 'partly', expected one of: yes, no. Choose from the"),
         (
