@@ -6,10 +6,9 @@ The workbook is that of `assess new`, filled in. Motions of the floors are not k
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
+from assess.delivery.private_folder import private_folder
 from assess.errors import Problem
 from assess.i18n import Text, count, fill
 from assess.pipeline.new_content import store_live
@@ -100,8 +99,8 @@ def build_workbook(imported: ImportedBuilding) -> bytes:
     content = Content(list_rows(imported))
     if len(imported.items) <= MOST_LIVE:
         content = store_live(content, "si")
-    with TemporaryDirectory(prefix="assess-import-") as folder:
-        path = Path(folder) / "imported.xlsx"
+    with private_folder("assess-import-") as folder:
+        path = folder / "imported.xlsx"
         write_workbook(path, content)
         return path.read_bytes()
 

@@ -12,9 +12,9 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import ParamSpec, TypeVar, cast
 
+from assess.delivery.private_folder import private_folder
 from assess.errors import AssessError, ModelError
 from assess.i18n import fill
 from assess.progress import Progress
@@ -25,6 +25,7 @@ MEMORY = 4 * 2**30
 """Memory that it may use [bytes]."""
 PATIENCE = 4
 _ASKED_EVERY = 0.05
+PREFIX = "assess-model-"
 ORDER, ANSWER = "order", "answer"
 """Names of the files in which a process gets its work and leaves what came out."""
 
@@ -45,11 +46,11 @@ def run_apart(
 
     Raises ModelError if the process crashed, or reached a limit; AssessError as `work` raises it.
     """
-    with TemporaryDirectory(prefix="assess-model-") as folder:
+    with private_folder(PREFIX) as folder:
         order = (work.__module__, work.__qualname__, args, named, SECONDS, MEMORY)
-        Path(folder, ORDER).write_bytes(pickle.dumps(order))
-        status = _wait(folder, name, progress)
-        answer = Path(folder, ANSWER)
+        (folder / ORDER).write_bytes(pickle.dumps(order))
+        status = _wait(str(folder), name, progress)
+        answer = folder / ANSWER
         if not answer.exists():
             raise _explain(name, status)
         is_error, found = pickle.loads(answer.read_bytes())  # noqa: S301  written by our own process, just now

@@ -75,7 +75,8 @@ def command(
     """
     code = find_language(language) if language else ""
     _check_packages()
-    from assess.web.folders import private_folder
+    from assess.delivery.private_folder import private_folder
+    from assess.web.folders import PREFIX
     from assess.web.server import Place, Server, bind
 
     place = Place(host, port, tuple(allowed_host or ()), user_header or "", code)
@@ -85,7 +86,7 @@ def command(
         from assess.web.book import Book
 
         book = Book.open_disk(path)
-    with bind(place) as listening, private_folder() as folder:
+    with bind(place) as listening, private_folder(PREFIX) as folder:
         server = Server(listening, place, folder, Path.cwd())
         if book is not None:
             _warn(server.take(book), str(book.state()["save_error"]))

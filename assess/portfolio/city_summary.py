@@ -1,10 +1,9 @@
 """The summary of a city as PDF: the answer, the map, what to start with, what is not in it, method and references."""
 
-import tempfile
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
+from assess.delivery.private_folder import private_folder
 from assess.environment import find_source_date
 from assess.i18n import gettext as _
 from assess.portfolio.background import Background
@@ -45,9 +44,9 @@ def render_summary(
         If the work was cancelled.
     """
     options = options or ReportOptions()
-    with options.spoken(), tempfile.TemporaryDirectory(prefix="assess-") as folder:
+    with options.spoken(), private_folder("assess-page-") as folder:
         html = progress.wait_for(lambda: _render(view, background, isolines, options))
-        path = Path(folder) / "city.pdf"
+        path = folder / "city.pdf"
         print_page(html, path, (), options, progress, moment=find_source_date() or CREATED)
         return path.read_bytes()
 

@@ -3,11 +3,10 @@
 Numbers are numbers, and every text stays text: no name becomes a formula or a link.
 """
 
-import tempfile
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Any
 
+from assess.delivery.private_folder import private_folder
 from assess.environment import find_source_date
 from assess.i18n import fill
 from assess.i18n import gettext as _
@@ -51,9 +50,9 @@ def render_ranking(view: CityView, *, options: ReportOptions | None = None, prog
         If the work was cancelled.
     """
     options = options or ReportOptions()
-    with options.spoken(), tempfile.TemporaryDirectory(prefix="assess-") as folder:
+    with options.spoken(), private_folder("assess-page-") as folder:
         content = progress.wait_for(lambda: build_content(view))
-        path = Path(folder) / "ranking.xlsx"
+        path = folder / "ranking.xlsx"
 
         def write(book: Any) -> None:
             moment = (find_source_date() or CREATED).replace(tzinfo=None)

@@ -3,13 +3,14 @@
 import errno
 import hashlib
 import os
+import shutil
 import stat
-import tempfile
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from assess.delivery.disk import flush_folder
+from assess.delivery.disk import flush_folder, write_through
+from assess.delivery.stages import NEW, staging
 from assess.errors import InputError, OutputError
 from assess.i18n import fill
 from assess.workbook.open import read_file
@@ -112,20 +113,14 @@ class DiskFile:
         return fill("{name} cannot be saved: {why}. Download your version.", name=name, why=why)
 
     def _swap(self, target: Path, data: bytes, mode: int) -> None:
-        handle, name = tempfile.mkstemp(prefix=f".{target.name}.", suffix=".tmp", dir=target.parent)
-        staged = Path(name)
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(data)
-                file.flush()
-                os.fsync(file.fileno())
+        with staging(target.parent) as stage:
+            staged = stage / NEW / target.name
+            write_through(staged, data)
             staged.chmod(mode)
+            _copy_rights(target, staged)
             if self.is_changed():  # while it was written
                 raise ChangedOutsideError(self.path)
             staged.replace(target)
-        finally:
-            with suppress(OSError):
-                staged.unlink(missing_ok=True)
         flush_folder(target.parent)
 
     def _look(self) -> tuple[int, ...]:
@@ -135,3 +130,21 @@ class DiskFile:
         except OSError:
             return ()
         return found.st_mtime_ns, found.st_size, found.st_ino
+
+
+def _copy_rights(source: Path, target: Path) -> None:
+    """Give a file the owner, the group, the access list and the extended attributes of another, as far as allowed.
+
+    Others who write to a shared workbook keep their right to do so.
+    """
+    found = source.stat()
+    if hasattr(os, "chown"):
+        for owner in (found.st_uid, -1):  # a group may be given by its members, an owner by root alone
+            try:
+                os.chown(target, owner, found.st_gid)
+            except OSError:
+                continue
+            break
+    with suppress(OSError):
+        shutil.copystat(source, target)
+    os.utime(target)

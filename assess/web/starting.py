@@ -1,6 +1,5 @@
 """New workbooks: what they can be made of, a template by use, the worked example."""
 
-import tempfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
@@ -8,6 +7,7 @@ from pathlib import Path
 from typing import Any, Literal, cast
 
 from assess import resources
+from assess.delivery.private_folder import private_folder
 from assess.errors import OutputError
 from assess.i18n import LANGUAGES, Text, fill, gettext, list_languages, load_catalogue, speaking
 from assess.intensity import SHAKINGS
@@ -94,8 +94,8 @@ def build_workbook(request: Mapping[str, Any]) -> Made:
     from assess.workbook.template import write_workbook
 
     catalogue = load_catalogue(wanted.language)
-    with speaking(catalogue), tempfile.TemporaryDirectory(prefix="assess-new-") as folder:
-        path = Path(folder) / wanted.name
+    with speaking(catalogue), private_folder("assess-new-") as folder:
+        path = folder / wanted.name
         write_workbook(path, _fill(wanted), wanted.units)
         return Made(wanted.name, path.read_bytes())
 

@@ -22,6 +22,14 @@ def test_it_returns_what_the_work_returns_from_another_process():
     assert run_apart("a.ifc", SILENT, os.getpid) != os.getpid()
 
 
+def test_what_a_killed_process_left_is_removed_by_the_next(tmp_path, monkeypatch):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    (tmp_path / f"{model_process.PREFIX}left").mkdir()
+    (tmp_path / f"{model_process.PREFIX}left" / "order").write_bytes(b"a building")
+    assert run_apart("a.ifc", SILENT, divmod, 17, 5) == (3, 2)
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_it_raises_what_the_work_raises_with_all_that_it_holds():
     with pytest.raises(WorkbookError, match="not an Excel workbook") as caught:
         run_apart("a.ifc", SILENT, read_cobie, b"no workbook", "a.xlsx")

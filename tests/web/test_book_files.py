@@ -95,6 +95,35 @@ def test_a_save_replaces_the_file_and_can_be_undone(path, filled):
     assert [one.name for one in path.parent.iterdir()] == ["office.xlsx"]  # no other file is left
 
 
+@pytest.mark.skipif(not hasattr(os, "setxattr"), reason="attributes of files are those of Linux")
+def test_a_save_keeps_owner_group_and_attributes(path):
+    path.chmod(0o664)
+    try:
+        os.setxattr(path, "user.project", b"school")
+    except OSError:
+        pytest.skip("this file system keeps no attributes")
+    if os.geteuid() == 0:  # saved by another user
+        os.chown(path, 1234, 2345)
+    before = path.stat()
+    book = Book.open_disk(path)
+    set_height(book, 150)
+    book.save()
+    after = path.stat()
+    assert (after.st_uid, after.st_gid, after.st_mode) == (before.st_uid, before.st_gid, before.st_mode)
+    assert os.getxattr(path, "user.project") == b"school"
+    assert after.st_mtime_ns > before.st_mtime_ns
+
+
+def test_what_a_killed_save_left_is_removed_by_the_next(path):
+    left = path.parent / ".assess-writing-left"
+    (left / "new").mkdir(parents=True)
+    (left / "new" / path.name).write_bytes(path.read_bytes())
+    book = Book.open_disk(path)
+    set_height(book, 150)
+    book.save()
+    assert [one.name for one in path.parent.iterdir()] == ["office.xlsx"]
+
+
 def test_nothing_to_save_writes_nothing(path):
     before = path.stat()
     book = Book.open_disk(path)

@@ -12,6 +12,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import IO, Any
 
+from assess.delivery.private_folder import private_folder
 from assess.errors import AssessError, PdfUnavailableError, Problem
 from assess.i18n import fill
 from assess.i18n import gettext as _
@@ -164,9 +165,9 @@ def _read_data(results: Results, data: Path | None) -> bytes:
 
     if data is not None:
         return data.read_bytes()
-    with tempfile.TemporaryDirectory(prefix="assess-") as folder:
-        write_json(results, Path(folder) / DATA)
-        return (Path(folder) / DATA).read_bytes()
+    with private_folder("assess-page-") as folder:
+        write_json(results, folder / DATA)
+        return (folder / DATA).read_bytes()
 
 
 def _list_unattached(results: Results) -> list[Problem]:

@@ -2,13 +2,13 @@
 
 import base64
 import re
-import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from html import escape, unescape
 from pathlib import Path
 from xml.etree import ElementTree
 
+from assess.delivery.private_folder import private_folder
 from assess.progress import Progress
 
 WIDEST, TALLEST = 166.0, 150.0
@@ -131,8 +131,8 @@ def draw_all(drawings: Sequence[Drawing], page: str, progress: Progress) -> list
         return []
     from assess.report.pages.pdf import lay_out_page
 
-    with tempfile.TemporaryDirectory(prefix="assess-") as folder:
-        path = Path(folder) / "drawings.pdf"
+    with private_folder("assess-page-") as folder:
+        path = folder / "drawings.pdf"
         lay_out_page(_write_sheet(drawings, "".join(_STYLE.findall(page))), path, progress)
         return progress.wait_for(lambda: _read_pictures(path, drawings))
 
