@@ -1,6 +1,6 @@
 """Cells of one sheet that follow a building model: compared in their unit, set or kept, and listed as changes."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -117,6 +117,8 @@ class SheetUpdate:
         Its cells; they stay as they were.
     changes : list of Change
         Where all that happens is noted; sheets share one.
+    totals : sequence of int
+        Rows that are totals rows of tables.
     values : dict of str to value
         What is to be written, by address.
     """
@@ -124,6 +126,7 @@ class SheetUpdate:
     table: Table
     cells: HeldCells
     changes: list[Change]
+    totals: Sequence[int] = ()
     values: dict[str, Value] = field(default_factory=dict)
 
     def can_hold(self, name: str) -> bool:

@@ -54,7 +54,10 @@ def add_rows(update: SheetUpdate, rows: Rows) -> Problem | None:
     Returns why no row was added, where it is not certain that they belong there: a warning.
     """
     last = _find_last(update)
+    total = next((row for row in sorted(update.totals) if last < row <= last + len(rows)), None)
     why = _find_hindrance(update, last, len(rows))
+    if not why and total is not None:
+        why = fill("row {row} is the totals row of a table", row=str(total))
     if not why:
         for number, row in enumerate(rows, last + 1):
             update.write_row(number, row)
@@ -63,7 +66,11 @@ def add_rows(update: SheetUpdate, rows: Rows) -> Problem | None:
         "{n:,} new row of the model was not added: {why}.", "{n:,} new rows of the model were not added: {why}.",
         len(rows), why=why,
     )  # fmt: skip
-    fix = fill("Move what stands below the last complete row of this sheet elsewhere, then import again.")
+    fix = (
+        fill("Move what stands below the last complete row of this sheet elsewhere, then import again.")
+        if total is None
+        else fill("Turn the totals row of the table off (Table Design), import again, and turn it on.")
+    )
     cell = update.cells.address(last, 0) if last else ""
     return Problem("warning", update.cells.title, cell, message, fix)
 
@@ -78,6 +85,8 @@ def _find_last(update: SheetUpdate) -> int:
     for number in sorted(cells.cells, reverse=True):
         if number <= table.header:
             break
+        if number in update.totals:
+            continue
         filled = {at for at, value in cells.cells[number].items() if at in typed and not is_blank(value)}
         if any(at in known or (number, at) not in formulas for at in filled):
             return number

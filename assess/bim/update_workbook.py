@@ -33,6 +33,7 @@ from assess.progress import SILENT, Progress
 from assess.workbook.names import key
 from assess.workbook.parse import Row, Table
 from assess.workbook.patch import patch_workbook
+from assess.workbook.patch_parts import find_totals
 from assess.workbook.read import hold_sheets, parse_held, read_inventory
 from assess.workbook.values import read_text
 
@@ -115,7 +116,10 @@ def update_workbook(
     held = hold_sheets(data, name, progress)
     tables, problems = parse_held(held)
     changes: list[Change] = []
-    sheets = {one: SheetUpdate(tables[one], held.cells[one], changes) for one in held.cells}
+    sheets = {
+        one: SheetUpdate(tables[one], cells, changes, find_totals(data, cells.title, name))
+        for one, cells in held.cells.items()
+    }
     items = tables["Items"]
     if not items.rows and any(one.severity == "error" and one.sheet == items.sheet.name for one in problems):
         raise WorkbookError(problems, held.language)

@@ -79,18 +79,35 @@ def find_headings(book: Book, path: str) -> list[tuple[int, int, int]]:
 
     A table keeps a copy of its headers; where they differ, Excel repairs the file.
     """
+    return [span[:3] for span, table in _list_tables(book, path) if table.get("headerRowCount", "1") != "0"]
+
+
+def find_totals(data: bytes, sheet: str, name: str) -> list[int]:
+    """Return the rows of a sheet that are totals rows of tables; WorkbookError if the workbook cannot be opened."""
+    with Book(data, name) as book:
+        tables = _list_tables(book, book.sheets[sheet]) if sheet in book.sheets else []
+    return [
+        row
+        for (_, _, _, bottom), table in tables
+        if (count := table.get("totalsRowCount", "0")).isdigit()
+        for row in range(bottom - int(count) + 1, bottom + 1)
+    ]
+
+
+def _list_tables(book: Book, path: str) -> list[tuple[tuple[int, int, int, int], Mapping[str, str]]]:
+    """Return the area of each table of a sheet, and its attributes."""
     folder, name = posixpath.split(path)
     relations = book.find_part(folder, f"_rels/{name}.rels")
     if relations is None:
         return []
-    found = []
+    found: list[tuple[tuple[int, int, int, int], Mapping[str, str]]] = []
     for one in book.read(Tree, relations).find("Relationship"):
         target = book.find_part(folder, one.get("Target", ""))
         if one.get("Type", "").endswith("/table") and target is not None:
             for table in book.read(Tree, target).find("table"):
                 span = split_range(table.get("ref", ""))
-                if span is not None and table.get("headerRowCount", "1") != "0":
-                    found.append((span[0], span[1], span[2]))
+                if span is not None:
+                    found.append((span, table))
     return found
 
 

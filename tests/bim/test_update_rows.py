@@ -257,10 +257,11 @@ def test_a_column_without_a_known_unit_is_left_alone(tmp_path: Path) -> None:
     assert "Items Breadth of the model was left out: its header gives no known unit" in texts(found)
 
 
-def test_a_table_of_excel_with_a_row_of_totals(tmp_path: Path) -> None:
+@pytest.mark.parametrize("label", [None, "Total"])
+def test_a_table_of_excel_with_a_row_of_totals(tmp_path: Path, label: str | None) -> None:
     def total(book: Any) -> None:
         page = book["Items"]
-        page["B10"] = "Total"
+        page["B10"] = label
         page["I10"] = "=SUBTOTAL(109,I4:I9)"
         area = ExcelTable(displayName="Furniture", ref="B3:J10")
         area._initialise_columns()  # type: ignore[attr-defined]
@@ -271,7 +272,7 @@ def test_a_table_of_excel_with_a_row_of_totals(tmp_path: Path) -> None:
 
     found = update(resaved(in_own_order(tmp_path / "book.xlsx"), total), grown(places=[], types=[]))
     assert "Items B201-07 of the model was left out" in texts(found)
-    assert "row 10, the last that holds something" in str(found.problems[0])
+    assert "row 10 is the totals row of a table. Turn the totals row of the table off" in str(found.problems[0])
 
 
 def test_headings_blank_rows_and_typed_units(tmp_path: Path) -> None:
