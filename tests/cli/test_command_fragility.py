@@ -209,7 +209,7 @@ def curves_of(*shares: list[float], weak: bool = False) -> Curves:
         by="item", im="pfa", runs=100, seed=1, has_drawn_pieces=True, curves=tuple(every), stocky=()
     )
     floors = (SimpleNamespace(floor="1"),)
-    inventory = SimpleNamespace(source=Path("w.xlsx"), sha256="", floors=floors)
+    inventory = SimpleNamespace(file_name="w.xlsx", sha256="", floors=floors)
     return Curves(cast("Any", SimpleNamespace(inventory=inventory, scenario="given")), found)
 
 

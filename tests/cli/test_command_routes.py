@@ -20,6 +20,7 @@ from assess.cli import command_routes
 from assess.cli.command_routes import PFA
 from assess.cli.route_figure import A_PANEL, MOST_PANELS, choose_drawn, paint
 from assess.cli.route_output import Sweep
+from assess.delivery.deliver import Written
 from assess.pipeline.route_sweep import Fragility, RouteFragility
 from assess.report.words import in_percent
 from assess.rocking.draws import Uncertainty
@@ -232,7 +233,7 @@ def swept_with(chances: list[float], spread: float, anchors: list[float] | None 
         values=values, inserted=frozenset(), limit=0.03, runs=100, seed=1, uncertainty=Uncertainty(), routes=(route,),
         generic=(), unshaped=(), weak=(), stocky=0, unplaced=0,
     )  # fmt: skip
-    inventory = SimpleNamespace(source=Path("w.xlsx"), sha256="")
+    inventory = SimpleNamespace(file_name="w.xlsx", sha256="")
     return Sweep(cast("Any", SimpleNamespace(inventory=inventory, scenario="as filled")), found)
 
 
@@ -471,7 +472,7 @@ def test_a_risk_of_routes_is_used(tmp_path, monkeypatch):
 
     def note(results, *_, **__):
         used.append(results.settings.route_risk)
-        return {}
+        return Written({})
 
     monkeypatch.setattr("assess.report.write_reports", note)
     path = write(tmp_path, Items=ITEMS[:1])

@@ -175,6 +175,7 @@ def test_files_that_cannot_be_opened(tmp_path: Path, monkeypatch: pytest.MonkeyP
     def forbid(*_args: object) -> None:
         raise PermissionError
 
+    (tmp_path / "secret.smc").write_bytes(b"")
     monkeypatch.setattr(Path, "open", forbid)
     with pytest.raises(RecordError, match=r"you have no right to read it"):
         read_records(tmp_path / "secret.smc")

@@ -196,9 +196,11 @@ def test_photos_are_read_once_and_kept_small(folder: Path) -> None:
 
 def test_a_photo_that_is_no_picture(folder: Path) -> None:
     path = _write(folder, {}, {**PIECE, "item": "B", "photo": "text.png"}, {**PIECE, "item": "C", "photo": "p.svg"})
-    assert errors_of(path) == {
+    inventory = read_inventory(path)
+    assert inventory.photos == {}
+    assert remarks(inventory, "warning") == {
         f"Items!{address('photo', row)}: the picture '{name}' cannot be used: it is no PNG or JPEG picture. Save it as PNG "
-        "or JPEG."
+        "or JPEG. It is left out."
         for row, name in ((3, "text.png"), (4, "p.svg"))
     }
 
@@ -206,8 +208,8 @@ def test_a_photo_that_is_no_picture(folder: Path) -> None:
 def test_too_many_photos(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(allowance, "MOST_PHOTOS", 1)
     path = _write(folder, {}, {**PIECE, "item": "B", "photo": "p.png"}, {**PIECE, "item": "C", "photo": "p.jpg"})
-    (error,) = errors_of(path)
-    assert error.startswith(f"Items!{address('photo', 4)}: this workbook names more than 1 photos")
+    (warning,) = remarks(read_inventory(path), "warning")
+    assert warning.startswith(f"Items!{address('photo', 4)}: this workbook names more than 1 photos")
 
 
 def test_series_hold_plans_and_photos_and_results_json_does_not(folder: Path) -> None:
@@ -228,7 +230,7 @@ def test_pieces_are_read_without_pictures_that_are_wrong(folder: Path) -> None:
     inventory = read_inventory(path, strict=False)
     assert [item.item for item in inventory.items] == ["A1", "A2"]
     assert inventory.floors[0].plan is None
-    assert "photo" not in inventory.items[1].more
-    assert len(inventory.errors) == 2
+    assert inventory.photos == {}
+    assert len(inventory.errors) == 1
     both = _write(folder, {}, PIECE | {"item": "A2", "photo": "gone.jpg", "height": "tall"})
     assert [item.item for item in read_inventory(both, strict=False).items] == ["A1"]

@@ -232,8 +232,10 @@ PICTURES = [
 def test_pictures_that_cannot_be_used(tmp_path: Path, data: bytes, name: str, message: str, sheet: str) -> None:
     (tmp_path / "logo.png").write_bytes(data)
     if sheet == "Building":
-        path = write(tmp_path, Building=[["Logo file", name]])
-        assert errors_of(path) == {f"Building!B1: {message}"}
+        inventory = read_inventory(write(tmp_path, Building=[["Logo file", name]]))
+        assert inventory.building.logo is None
+        (warning,) = remarks(inventory, "warning")
+        assert warning.replace(" It is left out.", "") == f"Building!B1: {message}"
     else:
         path = write(tmp_path, floors=[["Floor", "PFA X [g]", "Plan image"], ["1", 0.5, name]])
         plan = {b"": "it is no PNG, JPEG, SVG or DXF file. Save it as one of them."}
