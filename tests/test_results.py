@@ -9,7 +9,6 @@ import pytest
 
 import assess
 from assess.errors import InputError
-from assess.fields import Shape, item_fields
 from assess.report import write_reports
 from assess.results import find_ideal_class
 from assess.settings import Settings
@@ -147,12 +146,6 @@ def test_tables_of_routes_join_by_name_and_index(tmp_path):
 def test_a_building_without_routes_has_empty_tables_with_the_same_columns(simulated, example):
     assert len(simulated.segments) == len(simulated.rooms) == 0
     assert list(simulated.segments.columns) == list(example.segments.columns)
-
-
-def test_a_table_row_is_that_of_the_fields(simulated):
-    flat = Shape(item_fields(simulated)).flatten(simulated["A1"])
-    row = simulated.items.iloc[0]
-    assert {key: None if value is None else row[key] for key, value in flat.items()} == flat
 
 
 # ---------------------------------------------------------------- in a notebook

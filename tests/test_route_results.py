@@ -9,7 +9,7 @@ import jsonschema
 import pytest
 
 from assess.report.data import SCHEMA, write_json
-from assess.route_results import RouteState, RouteTables
+from assess.route_results import RouteTables
 from assess.settings import Settings
 from tests.report.routed import DOUBTED, KNOWN, PARTLY, ROUTES, assess_routed
 from tests.workbooks import assessed
@@ -129,12 +129,6 @@ def test_a_segment_on_the_plan_has_its_ends(written):
     ends = (aisle.start_x_m, aisle.start_y_m, aisle.end_x_m, aisle.end_y_m)
     assert math.dist(ends[:2], ends[2:]) == pytest.approx(aisle.length_m)
     assert (flight.start_x_m, flight.length_m) == (None, None)
-
-
-@pytest.mark.parametrize(("state", "severity"), [("open", 0), ("doubtful", 1), ("not known", 2), ("blocked", 3)])
-def test_states_are_words_in_order(state, severity):
-    assert RouteState(state).severity == severity
-    assert json.dumps(RouteState(state)) == f'"{state}"'
 
 
 def test_what_is_blocked_by_what_is_told(written):

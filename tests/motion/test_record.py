@@ -18,7 +18,6 @@ from assess.motion.record import (
     FEWEST_SAMPLES,
     RESAMPLED_STEP,
     FloatArray,
-    Motion,
     Record,
     build_series,
     resample,
@@ -170,11 +169,6 @@ def test_drift_is_removed() -> None:
 def test_without_filter_the_mean_is_still_removed() -> None:
     values = 0.5 + sine(1, 10)
     np.testing.assert_allclose(treat(make_record(values), "none").acceleration, values - values.mean())
-
-
-def test_motion_knows_its_peaks() -> None:
-    motion = Motion(np.array([0.0, -3.0, 1.0]), np.array([0.0, 0.5, -0.2]), np.array([0.0, 0.1, -0.3]), 0.01)
-    assert (motion.pfa, motion.pfv, motion.pfd) == (3.0, 0.5, 0.3)
 
 
 def test_velocity_and_displacement_are_those_of_the_provider() -> None:

@@ -254,22 +254,6 @@ def test_marks_are_explained_where_they_occur(html, assessment):
         assert (f"{flag.replace('_', ' ')} {meaning}" in text) == (flag in told)
 
 
-@EACH
-def test_every_room_says_how_it_may_lose_its_exits_and_its_ways(name, request):
-    assessment = request.getfixturevalue(name)
-    rows, rooms = _rows(render(assessment), "rooms"), assessment.route_tables.rooms
-    assert [row[0] for row in rows] == [one.room for one in rooms] == ["Office <1>", "Archive"]
-    for row, one in zip(rows, rooms, strict=True):
-        assert row[2] == ", ".join(one.exits)
-        assert row[3] == said.say_room_state(one)
-        assert row[4:6] == [_flat(said.say_lost(one)), _chance(one.loses_if_anchors_fail)]
-        assert row[6] == _item(one.most_likely_piece)
-        assert one.ways[0].end in row[7]
-        for way in one.ways:
-            assert said.say_way(way, assessment.route_tables).replace(words.NO_BREAK, " ") in row[7]
-        assert ("no other way" in row[7]) == (len(one.ways) == 1)
-
-
 def test_floors_say_what_is_to_be_expected(html, assessment):
     for row, one in zip(_rows(html, "route-floors"), assessment.route_tables.floors, strict=True):
         counted = (

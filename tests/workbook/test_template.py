@@ -72,18 +72,6 @@ def test_sheets(book: Any) -> None:
     assert book.sheetnames == ["Help", *NAMES, "Lists"]
 
 
-@pytest.mark.parametrize("sheet", SHEETS, ids=NAMES)
-def test_headers_are_those_of_the_columns(book: Any, units: Units, sheet: Sheet) -> None:
-    page = book[sheet.name]
-    wanted = [column.header(units) for column in sheet.columns]
-    if sheet.layout == "form":
-        assert [cell.value for cell in page["A"]] == wanted
-    else:
-        if sheet is ITEMS:
-            wanted = [wanted[0], CLASS, *wanted[1:], *(label for label in LIVE if label != CLASS), *WORKINGS]
-        assert [cell.value for cell in page[1]] == wanted
-
-
 @pytest.mark.parametrize("sheet", TABLES, ids=[sheet.name for sheet in TABLES])
 def test_tables_can_be_scrolled_sorted_and_printed(book: Any, sheet: Sheet) -> None:
     page = book[sheet.name]

@@ -74,7 +74,7 @@ def _list_columns(schedule: Schedule) -> list[Column]:
         replace(own["pieces"], align="center"),
         Column(_("Names"), 14, lambda one: one.all_names),
         Column(_("Description"), 16, lambda one: one.described),
-        Column(_("Why"), 34, lambda one: f"{one.risk}; {one.chance}; {one.reason}", key="why"),
+        Column(_("Why, as run"), 34, lambda one: f"{one.risk}; {one.chance}; {one.reason}", key="why"),
         Column(own["detail"].label, 13, lambda one: _(one.detail.title)),
         *forces,
         replace(own["fixings"], align="center", read=lambda one: schedule_words.say_fixings(one.row)),
@@ -133,6 +133,7 @@ def _write_sums(pen: Pen, page: Any, works: Sequence[Work], at: Mapping[str, int
 def _write_lines(pen: Pen, page: Any, row: int, schedule: Schedule, widths: Sequence[int]) -> int:
     """Write the sentences below the list, and return the row below them."""
     texts = [
+        _("This list is as run: it does not follow what is edited in Items and Floors."),
         *schedule_words.say_effect_of_all(schedule),
         schedule_words.say_order(),
         schedule_words.say_checks(),
