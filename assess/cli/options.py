@@ -59,7 +59,7 @@ def _read_typed(text: str | float, understand: Callable[[str], object], example:
     except CellError as error:
         raise typer.BadParameter(f"{error.message} {error.fix}".strip()) from None
     if not isinstance(found, int | float):
-        raise typer.BadParameter(f"{text!r} is no number, expected one {example}")
+        raise typer.BadParameter(f"{text!r} is not a number; expected one {example}")
     return float(found)
 
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.compiled import compiled
+from assess.compiled import compiled, compiled_into
 from assess.motion.record import FloatArray
 
 Single = NDArray[np.float32]
@@ -60,18 +60,23 @@ def find_common(
     return by, by * (1 + extra)
 
 
+@compiled_into
+def _find_peaks(row: Single, slow: Single, extra: float, time_step: float) -> tuple[float, float]:  # pragma: no cover
+    """Return PFA and PFV of row + extra slow, which starts at rest."""
+    strongest, fastest, speed, before = 0.0, 0.0, 0.0, 0.0
+    for i in range(row.size):
+        a = row[i] + extra * slow[i]
+        speed += (before + a) * (time_step / 2)
+        before = a
+        strongest, fastest = max(strongest, abs(a)), max(fastest, abs(speed))
+    return strongest, fastest
+
+
 @compiled
 def _measure(rows: Single, low: Single, extra: float, time_step: float, peaks: FloatArray) -> None:  # pragma: no cover
     """Fill `peaks` (k, 2) with PFA and PFV of rows + extra low, which start at rest."""
     for k in range(rows.shape[0]):
-        row, slow = rows[k], low[k]
-        strongest, fastest, speed, before = 0.0, 0.0, 0.0, 0.0
-        for i in range(row.size):
-            a = row[i] + extra * slow[i]
-            speed += (before + a) * (time_step / 2)
-            before = a
-            strongest, fastest = max(strongest, abs(a)), max(fastest, abs(speed))
-        peaks[k, 0], peaks[k, 1] = strongest, fastest
+        peaks[k, 0], peaks[k, 1] = _find_peaks(rows[k], low[k], extra, time_step)
 
 
 @compiled
@@ -96,12 +101,7 @@ def _meet(rows: Single, low: Single, time_step: float, pfa: FloatArray, pfv: Flo
         row, slow = rows[k], low[k]
         by, extra = 1.0, 0.0  # the motion is by (row + extra slow)
         for turn in range(ROUNDS):
-            strongest, fastest, speed, before = 0.0, 0.0, 0.0, 0.0
-            for i in range(row.size):
-                a = row[i] + extra * slow[i]
-                speed += (before + a) * (time_step / 2)
-                before = a
-                strongest, fastest = max(strongest, abs(a)), max(fastest, abs(speed))
+            strongest, fastest = _find_peaks(row, slow, extra, time_step)
             by = pfa[k] / strongest if strongest > 0 else 0.0
             if pfv[k] <= 0 or turn == ROUNDS - 1 or abs(by * fastest / pfv[k] - 1) < NEAR:
                 break

@@ -1,8 +1,7 @@
 """Benchmark of floors without records: their draws through beams, as a ratio to the same filters by scipy."""
 
 import statistics
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import cache, partial
 
 import numpy as np
@@ -17,6 +16,7 @@ from assess.motion.drawn_ground import build_beam_grid, draw_ground, fit_noise
 from assess.motion.floor_medians import find_medians
 from assess.motion.sweep import Single
 from assess.progress import SILENT
+from tests.benchmarks.generating import spent
 
 AXES, DRAWS, ROUNDS = ("X", "Y"), 200, 5
 FLOORS = {10: "at most 5", 60: "at most 20"}
@@ -33,7 +33,7 @@ def rows() -> Iterator[str]:
     _shake(2)
     _filter()
     for floors, aim in FLOORS.items():
-        pairs = [(_spent(partial(_shake, floors)), _spent(_filter)) for _ in range(ROUNDS)]
+        pairs = [(spent(partial(_shake, floors)), spent(_filter)) for _ in range(ROUNDS)]
         seconds, ratio = statistics.median(own for own, _ in pairs), statistics.median(a / b for a, b in pairs)
         yield f"| {floors} floors without records | {seconds:.2f} | {ratio:.1f} | {aim} |"
 
@@ -80,12 +80,6 @@ def _filter() -> None:
         ground = irfft(transforms, 2 * GRID.count, axis=1, overwrite_x=True)[:, : GRID.count]
         for numerator, denominator in modes:
             lfilter(numerator.astype(np.float32), denominator.astype(np.float32), ground, axis=1)
-
-
-def _spent(work: Callable[[], object]) -> float:
-    start = time.process_time()
-    work()
-    return time.process_time() - start
 
 
 if __name__ == "__main__":

@@ -33,12 +33,13 @@ def rows() -> Iterator[str]:
     name = f"{MOTIONS} motions of {SAMPLES:,} samples"
     yield f"| {name} | processor seconds | over {2 * MOTIONS} inverse FFTs of that length | aim |\n|---|---|---|---|"
     for words, work in (("first floor of a building", make_afresh), ("further floors", make)):
-        pairs = [(_spent(work), _spent(lambda: irfft(values, SAMPLES, axis=1))) for _ in range(ROUNDS)]
+        pairs = [(spent(work), spent(lambda: irfft(values, SAMPLES, axis=1))) for _ in range(ROUNDS)]
         seconds, ratio = statistics.median(own for own, _ in pairs), statistics.median(a / b for a, b in pairs)
         yield f"| {words} | {seconds:.3f} | {ratio:.0f} | {AIM} |"
 
 
-def _spent(work: Callable[[], object]) -> float:
+def spent(work: Callable[[], object]) -> float:
+    """Return the processor time that some work takes [s]."""
     start = time.process_time()
     work()
     return time.process_time() - start

@@ -154,7 +154,7 @@ def test_sizes_may_have_their_unit_as_in_the_workbook(breadth: str, height: str)
 def test_a_size_that_is_no_length_is_refused(size: str) -> None:
     result = rock(breadth=size)
     assert (result.exit_code, "Traceback" in result.output) == (2, False)
-    assert f"'{size}' is no number, expected one such as 40 or 12in" in " ".join(result.output.split())
+    assert f"'{size}' is not a number; expected one such as 40 or 12in" in " ".join(result.output.split())
 
 
 @pytest.mark.parametrize(
