@@ -213,13 +213,37 @@ def test_what_is_changed_while_the_server_is_gone_reaches_the_file(page, served,
 
 
 @browsing
+def test_an_answer_that_breaks_off_loses_no_edit(page, served, office):
+    found = page(served(office))
+    expect(found.get_by_role("grid")).to_be_visible()
+
+    def break_off(route):
+        answer = route.fetch()
+        route.fulfill(status=answer.status, content_type="application/json", body=answer.body()[:20])
+
+    found.route("**/api/edit", break_off, times=1)
+    edit(found, "Items", 2, 3, "Attic")
+    edit(found, "Items", 3, 3, "Cellar")
+    expect(found.locator(STATE)).to_have_text("All changes saved in office.xlsx")
+    expect(found.locator("#notices")).not_to_contain_text(re.compile("not been sent|Not changed"))
+    assert [load_workbook(office)["Items"].cell(row, 4).value for row in (2, 3)] == ["Attic", "Cellar"]
+
+
+WHEN_SENT = """async () => {
+    const [{ store }, { whenSent }] = await Promise.all([import("/store.mjs"), import("/watch.mjs")]);
+    await whenSent(store);
+}"""
+"""The page knows that the server has taken every edit."""
+
+
+@browsing
 def test_what_a_killed_server_had_taken_and_not_saved_is_sent_again(page, served, office):
     server = served(office)
     found = page(server)
     expect(found.get_by_role("grid")).to_be_visible()
     office.chmod(0o444)  # it is killed before it can save
-    with found.expect_response("**/api/edit"):
-        edit(found, "Items", 2, 3, "Attic")
+    edit(found, "Items", 2, 3, "Attic")
+    found.evaluate(WHEN_SENT)
     server.stop(signal.SIGKILL)
     office.chmod(0o644)
     assert load_workbook(office)["Items"].cell(2, 4).value != "Attic"

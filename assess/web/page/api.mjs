@@ -25,16 +25,16 @@ function tell(gone) {
 }
 
 async function request(path, options = {}) {
-  let answer;
+  let answer, body;
   try {
     answer = await fetch(path, { credentials: "same-origin", cache: "no-store", ...options });
+    body = answer.ok ? await answer.json() : await answer.json().catch(() => ({}));
   } catch (error) {
     if (error.name === "AbortError") throw error;
-    tell(true);
+    tell(true); // an answer that breaks off is none
     throw new ApiError(0);
   }
   tell(false);
-  const body = await answer.json().catch(() => ({}));
   if (!answer.ok) throw new ApiError(answer.status, body);
   return body;
 }
