@@ -1054,8 +1054,8 @@ class Provenance:
 
     Parameters
     ----------
-    version, platform : str, mapping of str to str
-        Of `assess`, and of what the numbers were computed with.
+    version, code, platform : str, str, mapping of str to str
+        Of `assess`, the SHA-256 of its code, and versions of what the numbers were computed with.
     workbook, sha256 : str
         Name and hash of the workbook.
     files : mapping of str to str
@@ -1089,6 +1089,7 @@ class Provenance:
     """
 
     version: str
+    code: str
     platform: Mapping[str, str]
     workbook: str
     sha256: str

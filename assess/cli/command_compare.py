@@ -10,6 +10,7 @@ import typer
 from assess.cli.completion import list_of, one_of
 from assess.cli.console import say, say_written, show_progress
 from assess.cli.options import AsJson, read_formats
+from assess.cli.other_code import check_code
 from assess.errors import InputError
 from assess.i18n import LANGUAGES, find_language
 
@@ -22,6 +23,7 @@ EXAMPLES = (
     "assess compare building-report anchored-report",
     "assess compare before/results.json after/results.json --out change --formats html,xlsx --language it",
     "assess compare building-report stronger-report --json > change.json",
+    "assess compare report-of-last-year building-report --as-is",
 )
 FORMATS = ("html", "pdf", "xlsx", "json")
 """Those of `assess.compare.comparison_files`, which takes long to import."""
@@ -45,13 +47,17 @@ def command(
             help="Language of the files: en, it.", show_default="AFTER's workbook's", autocompletion=one_of(LANGUAGES)
         ),
     ] = None,
+    as_is: Annotated[
+        bool, typer.Option("--as-is", help="Compare runs that were computed by different code of assess as they are.")
+    ] = False,
     as_json: AsJson = False,
 ) -> None:
     """Compare two runs of a building, and show first what gets worse.
 
     Pieces are matched by the names of their items, routes by theirs. Written are compare.html, compare.pdf and
     compare.xlsx, and always compare.json, which lists them: a later comparison into the folder replaces these alone.
-    Nothing is assessed again. Chances that were simulated are not set against chances by formula.
+    Nothing is assessed again; for runs by different code of assess the error names the commands that do it. Chances
+    that were simulated are not set against chances by formula.
     """
     wanted = read_formats(formats, FORMATS)
     code = find_language(language) if language else ""
@@ -65,7 +71,10 @@ def command(
 
     check_out(out, wanted)
     with show_progress() as progress:
-        found = compare(*(progress.wait_for(partial(read_run, path)) for path in (before, after)))
+        runs = [progress.wait_for(partial(read_run, path)) for path in (before, after)]
+        if not as_is:
+            check_code(*runs)
+        found = compare(*runs)
         options = ReportOptions(language=code or _find_own_language(found.after))
         written = write_comparison(found, out, wanted, options, progress=progress)
     if as_json:

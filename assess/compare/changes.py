@@ -140,6 +140,11 @@ class Comparison:
     rooms: tuple[StateChange, ...]
 
     @property
+    def has_same_code(self) -> bool:
+        """Whether the same code of the program computed both runs, as far as they tell."""
+        return self.before.code == self.after.code
+
+    @property
     def has_same_basis(self) -> bool:
         """Whether the classes and sums of both runs rest on the same basis."""
         return self.before.main_basis == self.after.main_basis

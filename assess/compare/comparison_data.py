@@ -15,7 +15,7 @@ from assess.compare.past_run import PastChance, PastPiece, PastRun, PastState
 from assess.compare.read_results import COMPARISON
 from assess.version import __version__
 
-SCHEMA = "1.0"
+SCHEMA = "1.1"
 """Version of the shape of compare.json."""
 
 
@@ -35,6 +35,7 @@ def describe(found: Comparison, files: Mapping[str, str | None] | None = None) -
         "schema": SCHEMA,
         "assess": {"version": __version__, **({} if files is None else {"files": dict(files)})},
         COMPARISON: {
+            "same_code": found.has_same_code,
             "same_basis": found.has_same_basis,
             "same_results": found.is_same_file,
             "other_building": found.is_other_building,
@@ -58,6 +59,7 @@ def _run(run: PastRun) -> dict[str, Any]:
         "results_written": f"{run.written:%Y-%m-%dT%H:%M:%SZ}",
         "schema": run.schema,
         "version": run.version,
+        "code": run.code or None,
         "building": run.name,
         "workbook": run.workbook,
         "workbook_sha256": run.workbook_sha256,

@@ -61,6 +61,7 @@ def _list_origins(before: PastRun, after: PastRun) -> Iterator[Fact]:
         _("Version of assess"),
         lambda run: _("{version}, schema {schema}", version=run.version, schema=run.schema),
     )
+    yield fact(_("SHA-256 of the program's code"), lambda run: run.code)
 
 
 def _list_settings(before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[Fact]:

@@ -107,6 +107,11 @@ class View:
 
     def _list_warnings(self) -> Iterator[str]:
         found = self.found
+        if not found.has_same_code:
+            yield _(
+                "The two runs were computed by different code of assess: what differs between them may come from the "
+                "program, not from the furniture."
+            )
         if not found.has_same_basis:
             yield _(
                 "The two runs rest on different bases: BEFORE is {before}, AFTER is {after}. Their chances, classes "

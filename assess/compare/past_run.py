@@ -115,8 +115,8 @@ class PastRun:
         Of that file.
     written : datetime
         When that file was last changed, in UTC.
-    schema, version : str
-        Of results.json and of the program.
+    schema, version, code : str
+        Of results.json and of the program; SHA-256 of its code, "" where an earlier version did not write it.
     platform : mapping of str to str
         Versions of Python and its packages, system and processor.
     settings : mapping of str to object
@@ -152,6 +152,7 @@ class PastRun:
     written: datetime.datetime
     schema: str
     version: str
+    code: str
     platform: Mapping[str, str]
     settings: Mapping[str, Any]
     building: Mapping[str, Any]

@@ -196,6 +196,7 @@ class Reader:
         inputs, place = self.part(origin, "inputs", "assess"), "assess.inputs"
         return {
             "version": self.text(origin, "version", "assess"),
+            "code": self.text(origin, "code", "assess") if "code" in origin else "",
             "platform": self.texts(origin, "platform", "assess"),
             "settings": self.plainly(self.part(origin, "settings", "assess")),
             "uncertainty": self.plainly(self.part(origin, "uncertainty", "assess")),

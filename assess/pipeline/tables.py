@@ -37,7 +37,7 @@ from assess.results import (
 from assess.routes.chances import Falls
 from assess.routes.walls import find_walls
 from assess.units import ACCELERATION, FORCE, LENGTH, VELOCITY, to_edge
-from assess.version import __version__
+from assess.version import __version__, find_code
 
 if TYPE_CHECKING:
     from assess.motion.suite import Suite
@@ -320,6 +320,7 @@ def build_provenance(assessment: Assessment) -> Provenance:
     inventory = assessment.inventory
     return Provenance(
         version=__version__,
+        code=find_code(),
         platform=versions(has_rocked=bool(assessment.joints), has_routes=bool(inventory.routes)),
         workbook=inventory.file_name,
         sha256=inventory.sha256,

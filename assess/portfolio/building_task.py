@@ -22,7 +22,7 @@ from assess.portfolio.building_rows import build_skipped, build_tables
 from assess.portfolio.part_files import Part, find_key, find_place, is_done, read_part, write_part, write_whole
 from assess.portfolio.sources import Source
 from assess.settings import Settings
-from assess.version import __version__
+from assess.version import find_code
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -136,7 +136,7 @@ def _find_key(task: Task, content: str | None) -> str:
     source = task.source
     ground = None if task.ground is None else (type(task.ground).__name__, task.ground.file, task.ground.sha256)
     row = None if source.index is None else {**_fields(source.index), "line": 0}  # a row may move in the index
-    return find_key(source.path, source.kind, content, row, task.settings.as_record(), ground, __version__)
+    return find_key(source.path, source.kind, content, row, task.settings.as_record(), ground, find_code())
 
 
 def _fields(row: Any) -> dict[str, Any]:

@@ -28,7 +28,7 @@ from assess.portfolio.building_task import Summary, Task, run_task
 from assess.portfolio.local_pool import give_up
 from assess.portfolio.part_files import FOLDER
 from assess.progress import SILENT, Progress
-from assess.version import __version__
+from assess.version import __version__, find_code
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -78,7 +78,7 @@ def list_versions() -> tuple[tuple[str, str], ...]:
     import scipy
 
     return (
-        ("assess", __version__),
+        ("assess", f"{__version__} ({find_code()[:12]})"),
         ("Python", ".".join(platform.python_version_tuple()[:2])),
         ("numpy", numpy.__version__),
         ("scipy", scipy.__version__),

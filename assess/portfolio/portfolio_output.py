@@ -24,7 +24,7 @@ from assess.progress import Progress
 from assess.report.ownership import find_reports
 from assess.report.report_options import ReportOptions
 from assess.settings import Settings
-from assess.version import __version__
+from assess.version import __version__, find_code
 
 if TYPE_CHECKING:
     from assess.portfolio.background import Background
@@ -271,6 +271,7 @@ def _describe_run(job: Output, view: "CityView", folder: Path, names: Sequence[s
         "schema": VERSION,
         "assess": {
             "version": __version__,
+            "code": find_code(),
             "settings": job.settings.as_record(),
             "ground": _describe_origin(view.ground),
             "files": {name: find_digest(folder / name) for name in names},

@@ -81,6 +81,7 @@ def describe_run(results: Results, files: Mapping[str, str | None] | None = None
         "schema": VERSION,
         "assess": {
             "version": origin.version,
+            "code": origin.code,
             "seed": results.settings.seed,
             "settings": results.settings.as_record() | {"scenario": origin.scenario},
             "uncertainty": asdict(origin.uncertainty),

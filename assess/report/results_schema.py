@@ -26,7 +26,7 @@ from assess.schedule_fields import ENTRY_FIELDS, STATE_FIELDS, WORK_FIELDS
 from assess.settings import MOST_SCALE, SCENARIOS, Settings
 from assess.workbook.schema import BUILDING, Column
 
-VERSION = "5.2"
+VERSION = "5.3"
 FILE = Path(__file__).with_name("results.schema.json")
 
 Schema = dict[str, Any]
@@ -191,6 +191,7 @@ def _assess() -> Schema:
     return _object(
         {
             "version": TEXT,
+            "code": HASH | {"description": "SHA-256 over the program's modules and tables."},
             "seed": COUNT | {"description": "Of the generated motions."},
             "settings": _of_row(Settings),
             "uncertainty": _of_row(UNCERTAINTY) | {"description": "What the draws of the simulation vary."},

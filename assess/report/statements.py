@@ -234,6 +234,7 @@ def list_making(results: Results) -> Lines:
     made_with = ", ".join(f"{name} {value}" for name, value in provenance.platform.items())
     lines = [
         ("assess", f"{provenance.version} ({made_with})"),
+        (_("SHA-256 of the program's code"), provenance.code),
         (_("Scenario kind"), _(provenance.scenario)),
         (_("Verification"), settings.verify),
         *([(_("Exactly this motion, and every piece exactly as given"), _("yes"))] if settings.ideal else []),

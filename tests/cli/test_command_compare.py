@@ -2,9 +2,11 @@
 
 import json
 import re
+import shlex
 
 import pytest
 
+import assess.version
 from tests.cli.calling import error, run
 from tests.workbooks import write
 
@@ -114,3 +116,61 @@ def test_the_files_speak_the_language_of_the_workbook_or_the_one_asked_for(folde
     for options, code in (((), "en"), (("--language", "italiano"), "it")):
         _compare(folder, "base", "base", "--out", tmp_path, "--formats", "html", *options)
         assert f'<html lang="{code}">' in (tmp_path / "compare.html").read_text(encoding="utf-8")
+
+
+@pytest.fixture
+def older(folder, tmp_path):
+    """Return the folder of a run that says it was computed by other code, or does not say by which."""
+
+    def make(code, run="strong"):
+        record = json.loads((folder / run / "results.json").read_text(encoding="utf-8"))
+        record["assess"].pop("code")
+        record["assess"] |= {"code": code} if code else {}
+        (tmp_path / "older").mkdir(exist_ok=True)
+        (tmp_path / "older" / "results.json").write_text(json.dumps(record), encoding="utf-8")
+        return tmp_path / "older"
+
+    return make
+
+
+@pytest.mark.parametrize("code", ["ab" * 32, ""])
+def test_a_run_by_other_code_is_assessed_again_by_the_command_that_the_error_prints(
+    folder, older, tmp_path, monkeypatch, code
+):
+    before = older(code)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "hall.xlsx").write_bytes((folder / "hall.xlsx").read_bytes())
+    told = run("compare", before, folder / "strong")
+    assert told.exit_code == 2
+    lines = told.stderr.splitlines()
+    assert "were computed by different code of assess" in lines[0]
+    assert not (tmp_path / "compare").exists()
+    (line,) = [line for line in lines if "Assess BEFORE again" in line]
+    command = shlex.split(line.partition(": ")[2])
+    assert command[:2] == ["assess", "run"]
+    assert run(*command[1:], "--formats", "json").exit_code == 0
+    done = _compare(folder, tmp_path / "older-again", "strong", "--out", tmp_path / "out", "--formats", "json")
+    assert done.stdout.startswith("Nothing"), done.stdout
+
+
+def test_runs_by_different_code_are_compared_as_they_are_under_a_sentence_that_says_it(folder, older, tmp_path):
+    done = _compare(folder, older("ab" * 32), "base", "--as-is", "--out", tmp_path / "out", "--formats", "html")
+    first = "The two runs were computed by different code of assess"
+    assert done.stdout.startswith(first)
+    page = (tmp_path / "out" / "compare.html").read_text(encoding="utf-8")
+    assert page.index(first) < page.index("Counts before and after")
+    assert (
+        json.loads((tmp_path / "out" / "compare.json").read_text(encoding="utf-8"))["comparison"]["same_code"] is False
+    )
+
+
+def test_the_code_of_the_program_is_another_where_any_module_or_table_is(tmp_path, monkeypatch):
+    (tmp_path / "deep").mkdir()
+    module, table = tmp_path / "version.py", tmp_path / "deep" / "table.csv"
+    found = set()
+    for text, rows in (("a = 1", "1,2"), ("a = 2", "1,2"), ("a = 1", "1,3")):
+        module.write_text(text, encoding="utf-8")
+        table.write_text(rows, encoding="utf-8")
+        monkeypatch.setattr(assess.version, "__file__", str(module))
+        found.add(assess.version.find_code.__wrapped__())
+    assert len(found) == 3

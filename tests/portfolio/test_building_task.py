@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 import assess
-from assess.portfolio import building_inventory
+from assess.portfolio import building_inventory, building_task
 from assess.portfolio.building_task import Task, run_task
 from assess.portfolio.index_file import IndexRow
 from assess.portfolio.part_files import FOLDER, find_place, read_part
@@ -246,3 +246,9 @@ def test_a_route_that_is_not_known_has_no_chance_and_its_people_no_number(tmp_pa
     building, _ = found["unknown.xlsx"]
     assert building["people_blocked"] is None
     assert (building["routes"], building["routes_not_known"]) == (1, 1)
+
+
+def test_a_part_by_other_code_is_computed_again(task, monkeypatch):
+    assert [run_task(task).is_kept for _ in range(2)] == [False, True]
+    monkeypatch.setattr(building_task, "find_code", lambda: "ab" * 32)
+    assert [run_task(task).is_kept for _ in range(2)] == [False, True]

@@ -288,6 +288,15 @@ def test_a_worker_with_another_version_is_refused(site):
     assert text.endswith("Install the same everywhere.")
 
 
+def test_a_worker_with_other_code_of_the_same_version_is_refused(site):
+    def answer(asked):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(cluster, "find_code", lambda: "ab" * 32)
+            return answer_probe(asked)
+
+    assert "assess 0.1.0 (abababababab) there" in _refuse(site, answer)
+
+
 def test_a_worker_without_assess_or_that_fails_is_refused(site):
     assert "assess is not installed there" in _refuse(site, ModuleNotFoundError("No module named 'assess'"))
     assert "it does not answer (RuntimeError: broken)" in _refuse(site, RuntimeError("broken"))

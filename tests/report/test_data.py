@@ -70,7 +70,7 @@ def test_results_hold_what_was_assessed(results):
     assert first["methods"]["housner_monte_carlo"]["value"] is None
     assert {demand["ensemble"] for floor in found["floors"] for demand in floor["demands"]} == {None}
     settings = found["assess"]["settings"]
-    assert found["schema"] == "5.2"
+    assert found["schema"] == "5.3"
     assert found["assess"]["seed"] == settings["seed"] == 1
     assert (settings["verify"], settings["runs"], settings["scale_motions"]) == ("none", 200, False)
     assert found["assess"]["inputs"]["motions"] == {}

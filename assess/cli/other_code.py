@@ -1,0 +1,58 @@
+"""What to do where two runs were computed by different code of the program: assess the older workbook again."""
+
+import hashlib
+import shlex
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from assess.errors import InputError
+from assess.settings import CLASS_BY, SCENARIOS, Settings
+from assess.version import find_code
+
+if TYPE_CHECKING:
+    from assess.compare.past_run import PastRun
+
+OPTIONS = (
+    "scenario", "class_by", "verify", "runs", "seed", "scale", "anchor", "ideal", "scale_motions", "city", "route_risk",
+)  # fmt: skip
+"""Settings that `assess run` has an option for."""
+_FILLED = (SCENARIOS[0], CLASS_BY[0])
+"""What stands for the workbook's own, where that says nothing else."""
+PDF = "report.pdf"
+
+
+def check_code(before: "PastRun", after: "PastRun") -> None:
+    """Raise InputError where two runs were computed by different code, with the commands that make them comparable."""
+    if before.code == after.code:
+        return
+    fault = (
+        f"{before.path.parent} and {after.path.parent} were computed by different code of assess: what differs between "
+        "them may come from the program, not from the furniture."
+    )
+    runs = {"BEFORE": before, "AFTER": after}
+    ways = [way for name, run in runs.items() if run.code != find_code() for way in _list_ways(name, run)]
+    raise InputError("\n".join((fault, *ways, "To compare them as they are: --as-is.")))
+
+
+def _list_ways(name: str, run: "PastRun") -> Iterator[str]:
+    """Yield the command that assesses the workbook of a run again, and where that workbook is."""
+    folder = run.path.parent
+    places = (folder / run.workbook, folder.parent / run.workbook, Path(run.workbook))
+    found = next((one for one in places if _is_file(one, run.workbook_sha256)), None)
+    default = Settings().as_record()
+    parts = ["assess", "run", str(found or run.workbook), "--out", f"{folder.resolve().name}-again"]
+    for option in OPTIONS:
+        value = run.settings.get(option)
+        if value not in (None, default[option], *_FILLED):
+            parts += [f"--{option.replace('_', '-')}", *(() if value is True else (str(value),))]
+    yield f"Assess {name} again, and compare that: {shlex.join(parts)}"
+    if found is None and (folder / PDF).is_file():
+        yield f"{run.workbook} is attached to {folder / PDF}: save it from there."
+
+
+def _is_file(path: Path, sha256: str) -> bool:
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest() == sha256
+    except OSError:
+        return False
