@@ -34,11 +34,12 @@ def write(
     items: list[dict[str, Any]] | None = None,
     floors: list[dict[str, Any]] | None = None,
     units: Units = "si",
+    spare: int | None = 3,
     **building: Any,
 ) -> Path:
-    """Write a workbook with these rows; a small one where none are given."""
+    """Write a workbook with these rows; a small one where none are given. Few rows beyond them have formulas."""
     rows = {"Building": [building], "Floors": floors or FLOORS, "Items": ITEMS if items is None else items}
-    write_workbook(path, Content(rows=rows), units)
+    write_workbook(path, Content(rows=rows), units, spare=spare)
     return path
 
 

@@ -1,10 +1,10 @@
 """Every number and word of a report, gathered once for HTML, PDF and Excel, in the language in use."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from assess.environment import find_source_date
 from assess.errors import Problem
@@ -118,6 +118,8 @@ class Content(ByBasis):
     annual: AnnualChances | None
     worked: Sequence[WorkedExample]
     making: Sequence[tuple[str, str]]
+    drawn: dict[str, Any] = field(default_factory=dict, compare=False, repr=False)
+    """Figures that one of the reports has drawn already, by name."""
 
     @property
     def methods(self) -> "Sequence[MethodInfo]":

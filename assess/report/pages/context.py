@@ -1,6 +1,6 @@
 """What the templates of a report see: its content, figures, lists, and the words for numbers."""
 
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Callable, Mapping, Sequence, Set
 from typing import Any
 
 from assess.errors import Problem
@@ -13,7 +13,7 @@ from assess.report.counts import build_bars
 from assess.report.embedded import Photos, data_uri, embed_logo
 from assess.report.figures.motion_figures import choose_traced, draw_motion, draw_traced, get_acceleration
 from assess.report.figures.plan import build_plan
-from assess.report.figures.risk_contours import build_contours, draw_contours
+from assess.report.figures.risk_contours import Contours, build_contours, draw_contours
 from assess.report.figures.ways import build_stretches
 from assess.report.findings import (
     annual_chances,
@@ -258,14 +258,29 @@ def _of_methods(content: Content) -> dict[str, Any]:
 
 def _of_figures(content: Content, names: Set[str], progress: Progress) -> dict[str, Any]:
     """Draw the figures of these sections: the map of risk, the motions of the simulation, and the records."""
-    contours = progress.wait_for(lambda: build_contours(content.run)) if "contours" in names else None
-    figures = {"contours": _svg(draw_contours(contours, progress))} if contours else {}
-    traced = [
-        {"image": _svg(one.drawing), "caption": one.caption, "alternative": one.alternative}
-        for one in (draw_traced(content, choose_traced(content), progress) if "verification" in names else ())
-    ]
-    recorded = _recorded(content, progress) if "appendix" in names else []
+
+    def once(section: str, draw: Callable[[], Any], otherwise: Any) -> Any:
+        """Return what a section shows; HTML and annex show the same figures."""
+        if section in names and section not in content.drawn:
+            content.drawn[section] = draw()
+        return content.drawn[section] if section in names else otherwise
+
+    contours, figures = once("contours", lambda: _draw_contours(content, progress), (None, {}))
+    traced = once("verification", lambda: _draw_traced(content, progress), [])
+    recorded = once("appendix", lambda: _recorded(content, progress), [])
     return {"contours": contours, "figures": figures, "traced_figures": traced, "recorded": recorded}
+
+
+def _draw_contours(content: Content, progress: Progress) -> tuple[Contours | None, dict[str, str]]:
+    contours = progress.wait_for(lambda: build_contours(content.run))
+    return contours, {"contours": _svg(draw_contours(contours, progress))} if contours else {}
+
+
+def _draw_traced(content: Content, progress: Progress) -> list[dict[str, Any]]:
+    return [
+        {"image": _svg(one.drawing), "caption": one.caption, "alternative": one.alternative}
+        for one in draw_traced(content, choose_traced(content), progress)
+    ]
 
 
 def _list_recorded(content: Content) -> list[tuple[str, MotionRow]]:

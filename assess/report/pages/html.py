@@ -6,7 +6,7 @@ import re
 import traceback
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -137,6 +137,8 @@ def _environment(options: ReportOptions, filters: Mapping[str, Any] | None = Non
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
+        optimized=False,  # what is compiled holds no result of a filter, so that all renderings share it
+        bytecode_cache=_compiled(),
     )
     environment.filters |= {
         **FILTERS,
@@ -147,6 +149,24 @@ def _environment(options: ReportOptions, filters: Mapping[str, Any] | None = Non
     }
     environment.globals |= GLOBALS
     return environment
+
+
+@cache
+def _compiled() -> Any:
+    """Return where compiled templates are kept while the program runs: a run renders most of them three times."""
+    from jinja2 import BytecodeCache
+
+    class Memory(BytecodeCache):
+        def __init__(self) -> None:
+            self.kept: dict[tuple[str, str], Any] = {}
+
+        def load_bytecode(self, bucket: Any) -> None:
+            bucket.code = self.kept.get((bucket.key, bucket.checksum))
+
+        def dump_bytecode(self, bucket: Any) -> None:
+            self.kept[bucket.key, bucket.checksum] = bucket.code
+
+    return Memory()
 
 
 def _import_errors() -> tuple[type[Exception], type[Exception]]:
