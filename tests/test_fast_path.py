@@ -57,6 +57,7 @@ def test_the_page_is_imported_by_its_own_command_alone():
     assert loaded.split() == ["[]", "[]"]
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/status").is_file(), reason="peak memory is read from /proc")
 def test_20000_items_fit_in_300_mb(tmp_path):

@@ -82,6 +82,7 @@ def _elsewhere(python, folder, *words):
     return _run(str(python), *words, cwd=folder, env=where)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_the_installed_wheel_renders_a_report_elsewhere(installed, tmp_path):
     book = write(tmp_path / "w.xlsx")

@@ -56,12 +56,14 @@ def read_cobie(source: Path | bytes, name: str, progress: Progress = SILENT) -> 
         found.take(row)
     used = {piece.floor.name for piece in found.pieces}
     rows, building, doubts = list_rows(floors, used)
+    kinds = dict.fromkeys(piece.type for piece in found.pieces)
+    origin = fill("COBie file {name}, sheet Type: nominal sizes", name=name)
     return ImportedBuilding(
         source=name,
         building=_describe_building(sheets["Facility"]) | building,
         floors=rows,
         items=list(_list_items(found.pieces)),
-        types=list(_list_types(found.pieces, name)),
+        types=[{"type": kind.name, **kind.sizes_cm(), "source": origin} for kind in kinds],
         skipped=tuple(found.list_skipped()),
         warnings=(*faults, *doubts),
         remarks=(*_note_facilities(sheets["Facility"]), *_note_pieces(found)),
@@ -161,12 +163,6 @@ def _list_items(pieces: Sequence[_Piece]) -> Iterator[dict[str, Any]]:
         }
 
 
-def _list_types(pieces: Sequence[_Piece], name: str) -> Iterator[dict[str, Any]]:
-    for kind in dict.fromkeys(piece.type for piece in pieces):
-        source = fill("COBie file {name}, sheet Type: nominal sizes", name=name)
-        yield {"type": kind.name, **kind.sizes_cm(), "source": source}
-
-
 def _note_facilities(sheet: CobieSheet) -> Iterator[Text]:
     if len(sheet.rows) > 1:
         yield fill("The sheet Facility has {n} rows; the first was taken.", n=len(sheet.rows))
@@ -179,7 +175,8 @@ def _note_pieces(found: _Sorted) -> Iterator[Text]:
             "{n:,} pieces name several spaces; the first that is known was taken.",
             found.with_several_spaces,
         )
-    thin = list(dict.fromkeys(one.type.name for one in found.pieces if _is_thin(one.type)))
+    kinds = [one.type for one in found.pieces]
+    thin = list(dict.fromkeys(one.name for one in kinds if one.breadth < THIN or one.breadth < SLENDER * one.height))
     if thin:
         more = fill(" and {n} more", n=len(thin) - MOST_NAMED) if len(thin) > MOST_NAMED else ""
         yield fill(
@@ -192,7 +189,3 @@ def _note_pieces(found: _Sorted) -> Iterator[Text]:
             "COBie files do not record fixings or positions: fill in Anchored where you have seen the fixing; blank "
             "counts as free-standing. Pieces without a position are not checked against evacuation routes."
         )
-
-
-def _is_thin(kind: CobieType) -> bool:
-    return kind.breadth < THIN or kind.breadth < SLENDER * kind.height

@@ -133,7 +133,8 @@ def _read_sheet(book: Book, sheet: str, own: str) -> CobieSheet:
     rows: list[tuple[int, Row]] = []
     for number, cells in book.cells(own).rows():
         if number > MAX_ROWS:
-            raise _too_long(own)
+            message = fill("the sheet has more than {most:,} rows.", most=MAX_ROWS)
+            raise WorkbookError([Problem("error", own, f"A{MAX_ROWS + 1}", message, fill("Split the file by floors."))])
         if columns:
             rows += _read_row(number, cells, columns)
             continue
@@ -169,11 +170,6 @@ def say(value: object) -> str:
     """Return a cell as a text; "" for one that is blank, an error or a formula without a saved value."""
     text = "" if value is None or value is UNSAVED else read_text(value)
     return "" if text in ERRORS else " ".join(text.split())
-
-
-def _too_long(own: str) -> WorkbookError:
-    message = fill("the sheet has more than {most:,} rows.", most=MAX_ROWS)
-    return WorkbookError([Problem("error", own, f"A{MAX_ROWS + 1}", message, fill("Split the file by floors."))])
 
 
 def _no_header(sheet: str, own: str, found: set[str]) -> WorkbookError:

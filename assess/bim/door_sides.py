@@ -34,7 +34,10 @@ BASEMENT = -1.0
 def find_sides(model: BuildingModel) -> dict[str, Sides]:
     """Return the spaces on both sides of every door, by the door's key; of spaces that overlap the smallest."""
     found: dict[str, Sides] = {}
-    for storey, doors in _by_storey(model.doors).items():
+    by_storey: dict[str, list[Door]] = {}
+    for door in model.doors:
+        by_storey.setdefault(door.storey, []).append(door)
+    for storey, doors in by_storey.items():
         spaces, walls = [one for one in model.spaces if one.storey == storey], model.walls.get(storey, ())
         found.update(zip((door.key for door in doors), _probe(doors, spaces, walls), strict=True))
     return {door.key: found[door.key] for door in model.doors}
@@ -79,13 +82,6 @@ def find_normal(door: Door) -> tuple[float, float]:
     return math.cos(turn), math.sin(turn)
 
 
-def _by_storey(doors: Sequence[Door]) -> dict[str, list[Door]]:
-    found: dict[str, list[Door]] = {}
-    for door in doors:
-        found.setdefault(door.storey, []).append(door)
-    return found
-
-
 def _probe(doors: Sequence[Door], spaces: Sequence[Space], walls: Sequence[Area]) -> Iterator[Sides]:
     search, solids = SpaceSearch(spaces), [to_polygon(one) for one in walls]
     tree = shapely.STRtree(solids)
@@ -104,14 +100,11 @@ def _look(door: Door, sign: int) -> shapely.LineString:
 
 
 def _place_probes(door: Door, way: shapely.LineString, walls: BaseGeometry) -> list[Point]:
-    """Return where spaces are looked for on one side of a door: from its own face, and from that of the wall round it.
-
-    A leaf without an opening is often much thinner than its wall, and at one face of that.
-    """
+    """Return where spaces are looked for on one side of a door: from its face, and from that of the wall round it."""
     face = max(door.thickness, THINNEST) / 2
     away = [face + probe for probe in PROBES]
     far = _find_face(way, walls, face)
-    if far > face:
+    if far > face:  # a leaf without an opening is often much thinner than its wall
         away += [far + probe for probe in PROBES]
     return [_reach(way, one) for one in away]
 

@@ -97,13 +97,15 @@ def _list_edges(polygon: shapely.Polygon) -> Iterator[tuple[Point, Point]]:
 
 
 def _find_reached(plan: FloorPlan, rays: _Rays, doors: Sequence[Door]) -> tuple[list[int], list[bool]]:
-    """Return for each ray the number of the room that it reaches first, and whether it meets furniture.
-
-    The number is -1 where it meets a wall, a window or a door, or no room.
-    """
-    lines = _draw(rays)
+    """Return for each ray the number of the room that it reaches first, -1 if none, and whether it meets furniture."""
+    lines: Any = shapely.linestrings(
+        np.stack([rays.at - INSIDE * rays.outward, rays.at + WIDEST_GAP * rays.outward], axis=1)
+    )
     shut, full = np.zeros(len(lines), dtype=np.bool_), np.zeros(len(lines), dtype=np.bool_)
-    zones = [_door_zone(door) for door in doors]
+    zones = [
+        box_at((one.x, one.y), find_normal(one), one.thickness / 2 + WIDEST_GAP, one.width / 2 + NEXT_TO_DOOR)
+        for one in doors
+    ]
     for shapes, met in ((plan.solids, shut), (zones, shut), (plan.footprints, full)):
         if shapes:
             met[np.unique(shapely.STRtree(shapes).query(lines, predicate="intersects")[0])] = True
@@ -118,15 +120,6 @@ def _find_reached(plan: FloorPlan, rays: _Rays, doors: Sequence[Door]) -> tuple[
         if budget < 0:
             break
     return found.tolist(), full.tolist()
-
-
-def _draw(rays: _Rays) -> Any:
-    return shapely.linestrings(np.stack([rays.at - INSIDE * rays.outward, rays.at + WIDEST_GAP * rays.outward], axis=1))
-
-
-def _door_zone(door: Door) -> shapely.Polygon:
-    along = door.thickness / 2 + WIDEST_GAP
-    return box_at((door.x, door.y), find_normal(door), along, door.width / 2 + NEXT_TO_DOOR)
 
 
 @dataclass(frozen=True, slots=True)

@@ -194,7 +194,12 @@ def _note_draft(model: BuildingModel, network: Network, routes: Rows, lost: Sequ
             doors,
             default=DEFAULT_WIDTH,
         )
-    yield from _note_unseen(network)
+    blind = [plan.storey.name for plan in network.plans.values() if len(plan.spaces) > 1 and not plan.solids]
+    if blind:
+        yield fill(
+            "No walls on {storeys}: openings without doors, of {least:g} m and more, are not found there.",
+            storeys=", ".join(blind[:MOST_NAMED]), least=NARROWEST_OPENING,
+        )  # fmt: skip
     yield from _note_lost(lost)
 
 
@@ -212,16 +217,6 @@ def _note_exits(model: BuildingModel) -> Iterator[Text]:
             "{n} doors of other storeys have a room on one side only: they do not count as exits.",
             others,
         )
-
-
-def _note_unseen(network: Network) -> Iterator[Text]:
-    """Yield on which storeys openings without doors cannot be found."""
-    blind = [plan.storey.name for plan in network.plans.values() if len(plan.spaces) > 1 and not plan.solids]
-    if blind:
-        yield fill(
-            "No walls on {storeys}: openings without doors, of {least:g} m and more, are not found there.",
-            storeys=", ".join(blind[:MOST_NAMED]), least=NARROWEST_OPENING,
-        )  # fmt: skip
 
 
 def _note_lost(lost: Sequence[str]) -> Iterator[Text]:

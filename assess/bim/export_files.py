@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from assess.bim.export_model import PROPERTY_SET, ModelPart, read_elements
+from assess.bim.export_model import PROPERTY_SET, read_elements
 from assess.bim.export_properties import add_properties
 from assess.bim.export_results import ExportPiece, ExportRun
 from assess.bim.export_topics import Topics, list_entries, write_topics
@@ -64,8 +64,15 @@ def build_export(
     """
     check_installed()
     check_model(model, model.name)
-    sharing = _group(found.pieces)
-    part = _read(found, model, progress, list(sharing), with_topics=with_topics)
+    sharing: dict[str, list[ExportPiece]] = {}
+    for one in found.pieces:
+        if one.source_id:
+            sharing.setdefault(one.source_id, []).append(one)
+    placed = None
+    if with_topics:
+        keys = {one.past.item: one.source_id for one in found.pieces if one.source_id}
+        placed = [keys[item] for entry in list_entries(found, keys) for item in entry.items if item in keys]
+    part = run_apart(model.name, progress, read_elements, model.resolve(), model.name, list(sharing), placed)
     elements = {one.key: one for one in part.elements}
     pairs = [(one, elements[one.source_id]) for one in found.pieces if one.source_id in elements]
     worst = [
@@ -73,7 +80,13 @@ def build_export(
         for key, own in sharing.items()
         if key in elements
     ]
-    _check_refused(found, model, part, worst)
+    if part.refused and not worst:
+        key, name = next(iter(part.refused.items()))
+        raise ModelError(
+            fill("None of the Source IDs in {results} is that of furniture in {model}: {id} is an {name}. Fill in "
+                 "Source ID in Items with the GlobalIds of furniture.",
+                 results=found.run.path, model=model.name, id=key, name=name)
+        )  # fmt: skip
     _check_pairs(found, model, worst, with_properties=with_properties)
     return Export(
         model=add_properties(_read_bytes(model), model.name, part, found, worst) if with_properties else None,
@@ -89,34 +102,8 @@ def build_export(
     )
 
 
-def _group(pieces: Sequence[ExportPiece]) -> dict[str, list[ExportPiece]]:
-    found: dict[str, list[ExportPiece]] = {}
-    for one in pieces:
-        if one.source_id:
-            found.setdefault(one.source_id, []).append(one)
-    return found
-
-
 def _list_names(groups: Iterable[Sequence[ExportPiece]]) -> tuple[str, ...]:
     return tuple(one.past.item for own in groups for one in own)
-
-
-def _read(found: ExportRun, model: Path, progress: Progress, wanted: Sequence[str], *, with_topics: bool) -> ModelPart:
-    placed = None
-    if with_topics:
-        keys = {one.past.item: one.source_id for one in found.pieces if one.source_id}
-        placed = [keys[item] for entry in list_entries(found, keys) for item in entry.items if item in keys]
-    return run_apart(model.name, progress, read_elements, model.resolve(), model.name, wanted, placed)
-
-
-def _check_refused(found: ExportRun, model: Path, part: ModelPart, pairs: Sequence[Pair]) -> None:
-    if part.refused and not pairs:
-        key, name = next(iter(part.refused.items()))
-        raise ModelError(
-            fill("None of the Source IDs in {results} is that of furniture in {model}: {id} is an {name}. Fill in "
-                 "Source ID in Items with the GlobalIds of furniture.",
-                 results=found.run.path, model=model.name, id=key, name=name)
-        )  # fmt: skip
 
 
 def _check_pairs(found: ExportRun, model: Path, pairs: Sequence[Pair], *, with_properties: bool) -> None:

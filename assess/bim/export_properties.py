@@ -42,7 +42,11 @@ def add_properties(
     for piece, element in pieces:
         item = piece.past.item
         properties = list_properties(found.run, piece, routes.get(item, ()), planned.get(item))
-        properties += _list_sharing(counts[piece.source_id])
+        alike = counts[piece.source_id]
+        if alike > 1:
+            several = _("{n:,} pieces with this Source ID, the worst", n=alike)
+            own = _("2 pieces with this Source ID, the worse") if alike == 2 else several
+            properties.append(("Of", write_label(own)))
         lines += _write_set(properties, element, part.last_number + len(lines) + 1)
     return append_lines(data, lines, name)
 
@@ -99,7 +103,9 @@ def list_properties(
         *_list_inputs(one),
         *_list_importance(one, routes),
         *(_list_fixing(*planned) if planned else ()),
-        *_list_origin(run),
+        ("Scenario", write_long_text(say_scenario(run))),
+        ("AssessedBy", write_label(say_program(run))),
+        ("Report", write_long_text(say_report(run))),
     ]
 
 
@@ -144,15 +150,3 @@ def _list_fixing(entry: ExportEntry, work: ExportWork) -> Iterator[tuple[str, st
     if work.tension_code_kn is not None:
         yield "FixingTensionCode_kN", write_real(work.tension_code_kn)
     yield "BaseShear_kN", write_real(work.shear_kn)
-
-
-def _list_sharing(pieces: int) -> Iterator[tuple[str, str]]:
-    if pieces > 1:
-        several = _("{n:,} pieces with this Source ID, the worst", n=pieces)
-        yield "Of", write_label(_("2 pieces with this Source ID, the worse") if pieces == 2 else several)
-
-
-def _list_origin(run: PastRun) -> Iterator[tuple[str, str]]:
-    yield "Scenario", write_long_text(say_scenario(run))
-    yield "AssessedBy", write_label(say_program(run))
-    yield "Report", write_long_text(say_report(run))

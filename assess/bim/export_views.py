@@ -6,7 +6,7 @@ have both. Lengths are in metres, in the axes of the model.
 
 import math
 import statistics
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from assess.bim.export_model import ModelDoor, ModelElement, Place, find_middle
 from assess.bim.export_results import ExportPiece, ExportSegment, Point
@@ -89,14 +89,7 @@ def _distance_to_line(point: Point, start: Point, end: Point) -> float:
 
 def find_centre(elements: Mapping[str, ModelElement]) -> Point:
     """Return the middle of the elements whose place is known, (0, 0) where there is none."""
-    middles = list(_list_middles(elements))
+    middles = [middle for one in elements.values() if (middle := _find_middle(one)) is not None]
     if not middles:
         return 0.0, 0.0
-    return statistics.fmean(x for x, _ in middles), statistics.fmean(y for _, y in middles)
-
-
-def _list_middles(elements: Mapping[str, ModelElement]) -> Iterator[Point]:
-    for one in elements.values():
-        middle = _find_middle(one)
-        if middle is not None:
-            yield middle[0], middle[1]
+    return statistics.fmean(one[0] for one in middles), statistics.fmean(one[1] for one in middles)

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from assess.bim.export_results import ExportEntry, ExportPiece, ExportRun, ExportWork
 from assess.compare.past_run import UNCONFIRMED, PastRun
-from assess.details import DETAILS, Detail
+from assess.details import DETAILS
 from assess.i18n import fill, ngettext
 from assess.i18n import gettext as _
 from assess.intensity import SHAKINGS
@@ -91,18 +91,19 @@ def say_scenario(run: PastRun) -> str:
     building, settings = run.building, run.settings
     kind = str(settings.get("scenario") or building.get("scenario_kind") or "")
     kind = "" if kind == AS_FILLED else kind
-    parts = [str(building.get("scenario") or ""), _say_shaking(run), run.site_ground, kind]
+    choice = next((one.choice for one in SHAKINGS.values() if one.name == run.shaking), run.shaking)
+    parts = [
+        str(building.get("scenario") or ""),
+        _("{intensity} (assumed)", intensity=_(choice)) if choice else "",
+        run.site_ground,
+        kind,
+    ]
     pga, scale = building.get("ground_pga_g"), settings.get("scale")
     if isinstance(pga, int | float):
         parts.append(_("ground PGA {pga} g", pga=words.in_g(pga)))
     if isinstance(scale, int | float) and scale != 1:
         parts.append(_("motions times {scale:g}", scale=scale))
     return "; ".join(dict.fromkeys(part for part in parts if part)) or _("floor motions of the workbook")
-
-
-def _say_shaking(run: PastRun) -> str:
-    choice = next((one.choice for one in SHAKINGS.values() if one.name == run.shaking), run.shaking)
-    return _("{intensity} (assumed)", intensity=_(choice)) if choice else ""
 
 
 def say_report(run: PastRun) -> str:
@@ -181,7 +182,10 @@ def list_lines(found: ExportRun, entry: ExportEntry, pieces: Sequence[ExportPiec
     for work in entry.works:
         yield from _list_work(work, is_only=len(entry.works) == 1)
     for detail in dict.fromkeys(work.detail for work in entry.works):
-        yield from _describe_detail(DETAILS[detail])
+        known = DETAILS[detail]
+        title = _capital(_(known.title))
+        yield _("{title}: {what}. One fixing is: {fixing}.", title=title, what=_(known.what), fixing=_(known.fixing))
+        yield _("Known against it: {weakness} ({source}).", weakness=_(known.weakness), source=_(known.source))
     yield say_checks()
     yield _("Entry {place:,} of {n:,} of the schedule. {report}; {program}.", place=entry.place,
             n=len(found.entries), report=say_report(run), program=say_program(run))  # fmt: skip
@@ -211,12 +215,6 @@ def _list_work(work: ExportWork, *, is_only: bool) -> Iterator[str]:
               "base {shear} kN.", pfa=say_force(work.tension_kn), high=say_force(work.tension_high_kn),
               shear=say_force(work.shear_kn))  # fmt: skip
     yield " ".join((force, *_list_remarks(work)))
-
-
-def _describe_detail(detail: Detail) -> Iterator[str]:
-    title = _capital(_(detail.title))
-    yield _("{title}: {what}. One fixing is: {fixing}.", title=title, what=_(detail.what), fixing=_(detail.fixing))
-    yield _("Known against it: {weakness} ({source}).", weakness=_(detail.weakness), source=_(detail.source))
 
 
 def _list_remarks(work: ExportWork) -> Iterator[str]:

@@ -38,7 +38,8 @@ def draw_storey(model: BuildingModel, storey: Storey) -> Drawn | None:
     rooms = [one.area for one in model.spaces if one.storey == storey.key]
     doors = [one for one in model.doors if one.storey == storey.key]
     pieces = [one for one in model.pieces if one.storey == storey.key]
-    points = [*_list_corners(walls, windows, rooms), *(point for door in doors for point in _span(door))]
+    points = [point for area in (*walls, *windows, *rooms) for point in area[0]]
+    points += [point for door in doors for point in _span(door)]
     if not points:
         return None
     frame = _Frame.round([*points, *(corner for one in pieces for corner in _list_reach(one))])
@@ -79,12 +80,6 @@ def name_plans(source: str, storeys: Iterable[str]) -> list[str]:
         taken.add(one.casefold())
         found.append(one)
     return found
-
-
-def _list_corners(*groups: Sequence[Area]) -> Iterator[Point]:
-    for areas in groups:
-        for area in areas:
-            yield from area[0]
 
 
 def _span(door: Door) -> tuple[Point, Point]:

@@ -1,7 +1,7 @@
 """The furniture of a building model: which elements are pieces, where they stand, and what is left out."""
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -233,10 +233,6 @@ def name_type(element: Element) -> str:
     return type_name or say(getattr(element, "ObjectType", None)) or name or element.is_a()
 
 
-def _is_fitted(kind: str) -> bool:
-    return any(word in kind.casefold() for word in FITTED)
-
-
 class _Places:
     """Finds the storey and the room of an element: that which holds it in the model, else the smallest it stands in."""
 
@@ -261,13 +257,8 @@ class _Places:
         if storey not in self.storeys:
             below = [one for one in self.storeys.values() if one.level <= bottom + _NEAR_FLOOR]
             storey = (max(below, key=lambda one: one.level) if below else next(iter(self.storeys.values()))).key
-        return storey, next(self._list_at(storey, x, y, bottom), None)
-
-    def _list_at(self, storey: str, x: float, y: float, bottom: float) -> Iterator[Space]:
-        if storey in self._searches:
-            for space in self._searches[storey].find_all([(x, y)])[0]:
-                if space.bottom - _NEAR_FLOOR <= bottom <= space.top:
-                    yield space
+        there = self._searches[storey].find_all([(x, y)])[0] if storey in self._searches else ()
+        return storey, next((one for one in there if one.bottom - _NEAR_FLOOR <= bottom <= one.top), None)
 
 
 def _to_piece(element: Element, key: str, shape: Shape, places: _Places, name: str = "") -> Piece:
@@ -279,6 +270,7 @@ def _to_piece(element: Element, key: str, shape: Shape, places: _Places, name: s
         key=key, storey=storey, space=space.key if space is not None else "",
         ifc_class=element.is_a(), name=name or say(element.Name), type=kind, x=box.x, y=box.y, breadth=box.breadth,
         width=box.width, height=box.height, angle_deg=box.angle_deg, support_breadth=box.support_breadth,
-        support_width=box.support_width, bottom=shape.bottom - floor, is_fitted=_is_fitted(kind),
+        support_width=box.support_width, bottom=shape.bottom - floor,
+        is_fitted=any(word in kind.casefold() for word in FITTED),
         support_reach=box.base.reach, support_angle_deg=box.base.angle_deg, support_across=box.base.across,
     )  # fmt: skip

@@ -80,13 +80,11 @@ def list_doors(model: Any, storeys: Mapping[str, Storey], unit: float) -> Iterat
 
 
 def _turn_to_leaf(plan: Rectangle, leaf: Shape | None) -> Rectangle:
-    """Return the plan of an opening with the direction of the door's normal, where the wall may be thicker than wide.
-
-    The short side of a rectangle is taken for the thickness of the wall; here the door itself tells it.
-    """
+    """Return the plan of an opening with the direction of the door's normal, which a leaf tells if it is squarish."""
     own = find_rectangle(leaf.points[:, :2]) if leaf is not None else None
     if own is None or plan.long >= CLEARLY_LONGER * plan.short or own.long < CLEARLY_LONGER * own.short:
         return plan
+    # the short side of a rectangle is taken for the thickness of the wall; here the door itself tells it
     is_across = abs(math.sin(math.radians(own.angle_deg - plan.angle_deg))) > 0.9
     return replace(plan, short=plan.long, long=plan.short, angle_deg=own.angle_deg) if is_across else plan
 

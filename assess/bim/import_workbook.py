@@ -116,17 +116,14 @@ def list_rows(imported: ImportedBuilding) -> dict[str, Rows]:
         "Routes": imported.routes,
         "Catalogue": [*imported.types, *(row for row in read_catalogue() if key(row["type"]) not in own)],
     }
-    return {
+    return {  # the Room of a segment lists the names of rooms
         name: [_cut_texts(row, _LONG | {"room"} if name == "Routes" else _LONG) for row in sheet]
         for name, sheet in rows.items()
     }
 
 
 def _cut_texts(row: Mapping[str, Any], long: Collection[str]) -> dict[str, Any]:
-    """Return a row with its names cut to `LONGEST_NAME`, and `long` texts to what a spreadsheet takes in a cell.
-
-    The Room of a segment lists the names of rooms.
-    """
+    """Return a row with its names cut to `LONGEST_NAME`, and `long` texts to what a spreadsheet takes in a cell."""
     return {
         name: clean(value)[0][: LONGEST_CELL if name in long else LONGEST_NAME] if isinstance(value, str) else value
         for name, value in row.items()

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from assess.bim.building_model import BuildingModel, Door, Piece, Space, Stair, Storey
-from assess.bim.door_sides import DoorKind, find_kinds, find_sides
+from assess.bim.door_sides import find_kinds, find_sides
 from assess.bim.import_workbook import name_apart
 from assess.i18n import fill, gettext
 from assess.natural import natural_key
@@ -30,7 +30,8 @@ def name_places(model: BuildingModel, floors: Names) -> dict[str, str]:
     stairs = [one for one in model.stairs if one.storey in floors]
     keys = [*(one.key for one in spaces), *(one.key for one in doors), *(f"{one.key} {one.end}" for one in stairs)]
     short = {one.key: label for one, label in zip(spaces, _label(spaces, floors), strict=True)}
-    names = [*_name_spaces(spaces, short), *_name_doors(model, doors, short, floors), *_name_stairs(stairs, floors)]
+    rooms = [f"{short[one.key]} {one.title}".strip() for one in spaces]
+    names = [*rooms, *_name_doors(model, doors, short, floors), *_name_stairs(stairs, floors)]
     return dict(zip(keys, name_apart(names), strict=True))
 
 
@@ -44,22 +45,13 @@ def _label(spaces: Iterable[Space], floors: Names) -> list[str]:
     ]
 
 
-def _name_spaces(spaces: Iterable[Space], short: Names) -> Iterator[str]:
-    for one in spaces:
-        yield f"{short[one.key]} {one.title}".strip()
-
-
 def _name_doors(model: BuildingModel, doors: Iterable[Door], short: Names, floors: Names) -> Iterator[str]:
     sides, kinds = find_sides(model), find_kinds(model)
     for one in doors:
         rooms = " / ".join(sorted({short[side] for side in sides[one.key] if side in short}, key=natural_key))
-        yield _name_door(kinds[one.key], rooms or floors[one.storey])
-
-
-def _name_door(kind: DoorKind, rooms: str) -> str:
-    if kind == "exit":
-        return gettext("Exit {room}", room=rooms)
-    return gettext("Door {rooms}", rooms=rooms)
+        rooms = rooms or floors[one.storey]
+        is_exit = kinds[one.key] == "exit"
+        yield gettext("Exit {room}", room=rooms) if is_exit else gettext("Door {rooms}", rooms=rooms)
 
 
 def _name_stairs(stairs: Iterable[Stair], floors: Names) -> Iterator[str]:

@@ -78,6 +78,7 @@ def list_building(model: BuildingModel, routes: Drafts = "none") -> ImportedBuil
         "building": model.name, "address": model.address, "latitude": model.latitude, "longitude": model.longitude,
         "azimuth_deg": model.azimuth_deg, "height": _find_height(model, storeys),
     }  # fmt: skip
+    source = gettext("shapes in {name}", name=model.source)
     return ImportedBuilding(
         source=model.source,
         building={name: value for name, value in values.items() if value not in (None, "")},
@@ -85,7 +86,10 @@ def list_building(model: BuildingModel, routes: Drafts = "none") -> ImportedBuil
         items=list(_list_items(model, pieces, types, floors, places)),
         places=[*_list_spaces(model, floors, places), *_list_points(model, floors, places), *draft.places],
         routes=draft.routes,
-        types=list(_list_types(model, types)),
+        types=[
+            {"type": name, "breadth": breadth, "width": width, "height": height, "source": source}
+            for (_, breadth, width, height), name in types.items()
+        ],
         skipped=(*_list_skipped(model), *outside),
         warnings=(*model.warnings, *_note_elevations(storeys, floors), *_warn_of_supports(pieces), *draft.warnings),
         remarks=(*model.remarks, *_note(model, storeys, pieces)),
@@ -179,10 +183,7 @@ def _type_key(one: Sized) -> tuple[str, float, float, float]:
 
 
 def _find_height(model: BuildingModel, storeys: Sequence[Storey]) -> float | None:
-    """Return the height of the roof: the highest storey or ceiling; None where that is no more than the last floor.
-
-    A workbook takes none above `TALLEST` either.
-    """
+    """Return the height of the roof: the highest storey or ceiling; None if not above all floors or above `TALLEST`."""
     datum = {one.key: one.elevation - one.level for one in model.storeys}
     tops = [one.elevation for one in model.storeys]
     tops += [one.top + datum[one.storey] for one in model.spaces if one.storey in datum]
@@ -253,12 +254,6 @@ def _note_supports(one: Sized) -> str:
         return gettext("{body}, which are off the middle: to one side it tips as with a Breadth of {safe:g} cm",
                        body=body, safe=one.safe)  # fmt: skip
     return body
-
-
-def _list_types(model: BuildingModel, types: Mapping[tuple[str, float, float, float], str]) -> Iterator[dict[str, Any]]:
-    source = gettext("shapes in {name}", name=model.source)
-    for (_, breadth, width, height), name in types.items():
-        yield {"type": name, "breadth": breadth, "width": width, "height": height, "source": source}
 
 
 def _list_spaces(model: BuildingModel, floors: Names, places: Names) -> Iterator[dict[str, Any]]:

@@ -63,7 +63,8 @@ def describe(change: Change) -> Text:
         return fill("{what} was added", what=_name(change))
     if change.kind == "missing":
         return fill("{what} is missing in the model; its row stays", what=_name(change))
-    return _with_reason(_describe_kept(change), change.reason)
+    text = _describe_kept(change)
+    return fill("{text}: {reason}", text=text, reason=change.reason) if change.reason else text
 
 
 def _describe_kept(change: Change) -> Text:
@@ -74,10 +75,6 @@ def _describe_kept(change: Change) -> Text:
     return fill(
         "{what} stays {was}; the model has {now}", what=_name(change), was=_say(change.was), now=_say(change.now)
     )
-
-
-def _with_reason(text: Text, reason: Text | str) -> Text:
-    return fill("{text}: {reason}", text=text, reason=reason) if reason else text
 
 
 def _name(change: Change) -> Text:

@@ -170,17 +170,17 @@ class _BuildingUpdate:
         for model, row in pairs:
             self._update_item(model, row)
         self.book.add("Items", self._name_new(new))
-        self._note_missing()
+        known = _by_id(self.rows["Items"])
+        for one, rows in _by_id(self.items.table.rows).items():
+            for row in rows if one not in known else ():
+                self.items.note_row("missing", row)
         update_places(self.book, self.rows["Places"], self._find_floor, self._find_room)
         self.types.update()
 
     # ------------------------------------------------------------ who is who
 
     def _match_items(self) -> tuple[list[Pair], list[Mapping[str, Any]]]:
-        """Return the pieces that both have, and those of the model that the workbook lacks.
-
-        Raises InputError if there are none that both have.
-        """
+        """Return the pieces that both have (InputError if none), and those of the model that the workbook lacks."""
         if not self.rows["Items"]:
             message = fill("{source} holds no furniture that can be imported; {name} stays as it is.",
                            source=self.imported.source, name=self.name)  # fmt: skip
@@ -261,10 +261,7 @@ class _BuildingUpdate:
                 sheet.fill_blank(row, name, self.imported.building.get(name))
 
     def _update_floors(self) -> None:
-        """Update the floors that both have, and add those of the model alone.
-
-        Raises WorkbookError if floors cannot be added: pieces would stand on floors that are not there.
-        """
+        """Update the floors that both have, and add those of the model alone; WorkbookError if they cannot be added."""
         sheet = self.book.sheets.get("Floors")
         own, uses = _by_floor(sheet.table) if sheet else {}, Counter(map(key, self.floors.values()))
         pairs = [(one, row) for one in self.rows["Floors"] if (row := own.get(key(self._find_floor(one["floor"]))))]
@@ -302,7 +299,10 @@ class _BuildingUpdate:
 
     def _update_sizes(self, model: Mapping[str, Any], row: Row) -> None:
         sheet, origin = self.items, model.get("sizes_from")
-        is_measured = _is_measured(sheet, row, origin)
+        has_sizes = any(row.get(name) is not None for name in SIZES)
+        # blank is measured; but a workbook of a handover file, which tells of no origin, is blank and follows the file
+        unsaid = MEASURED if origin and has_sizes and sheet.can_hold("sizes_from") else None
+        is_measured = (row.get("sizes_from") or unsaid) == MEASURED != origin
         for name in SIZES:
             if is_measured:
                 sheet.keep(row, name, model.get(name), fill("it was measured"))
@@ -320,22 +320,6 @@ class _BuildingUpdate:
             room, kind = self._find_room(floor, row.get("room") or ""), self.types.find(row.get("type") or "")
             found.append({**row, "item": name, "floor": floor, "room": room, "type": kind})
         return found
-
-    def _note_missing(self) -> None:
-        known = _by_id(self.rows["Items"])
-        for one, rows in _by_id(self.items.table.rows).items():
-            for row in rows if one not in known else ():
-                self.items.note_row("missing", row)
-
-
-def _is_measured(sheet: SheetUpdate, row: Row, origin: str | None) -> bool:
-    """Tell whether people have measured the sizes of a row: it says so, or says nothing, which is the same.
-
-    Handover files do not tell where sizes come from, so that the workbook of one says nothing either: these follow.
-    """
-    has_sizes = any(row.get(name) is not None for name in SIZES)
-    unsaid = MEASURED if origin and has_sizes and sheet.can_hold("sizes_from") else None
-    return (row.get("sizes_from") or unsaid) == MEASURED != origin
 
 
 def _by_id(rows: Iterable[_Row]) -> dict[str, list[_Row]]:

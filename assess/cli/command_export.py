@@ -74,15 +74,7 @@ def command(
 
 
 def _check_names(files: Mapping[str, Path | None], sources: set[Path], *, replaces: bool) -> None:
-    """Raise unless the files may be written, as far as is known before the work.
-
-    Raises
-    ------
-    InputError
-        If no file is named, two are the same, one is read for this, or one is of another kind or in no folder.
-    OutputError
-        If one exists, and it was not asked for that it be replaced.
-    """
+    """Raise InputError or OutputError unless the files may be written, as far as is known before the work."""
     wanted = {option: path for option, path in files.items() if path is not None}
     if not wanted:
         raise InputError("nothing is to be written: add --out MODEL.ifc, --bcf TOPICS.bcfzip or both.")

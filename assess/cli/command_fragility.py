@@ -118,14 +118,24 @@ def command(
     settings = read_settings(verify="none", runs=runs, seed=seed, scenario=scenario, ideal=ideal)
     if settings.runs == AUTO:
         raise InputError(f"--runs: {AUTO} is for assess run, as every level uses the same motions. Give a number.")
-    wanted = [] if as_json and formats is None and out is None else _read_formats(formats or DEFAULT)
+    from assess.cli.fragility_output import FORMATS
+
+    wanted = (
+        []
+        if as_json and formats is None and out is None
+        else list(dict.fromkeys(read_formats(formats or DEFAULT, FORMATS)))
+    )
     folder = out or Path(f"{path.stem}-fragility")
     if wanted:
-        _check_folder(folder)
+        from assess.report import check_folder
+
+        if folder.exists() and not folder.is_dir():
+            raise InputError(f"--out: {folder} is a file; name a folder")
+        check_folder(folder)
     check_file(plot, "figure")
     with show_progress() as progress:
         curves = _find(path, by, im, span, settings, "nrml" in wanted, jobs, progress)
-    written = _render(curves, wanted)
+    written = [FORMATS[one](curves) for one in wanted]
     say(curves.to_json() if as_json else curves.to_text())
     _write(curves, written, folder, plot)
 
@@ -154,26 +164,6 @@ def _find(
     levels = None if span is None else [one * UNITS[im.value] for one in span]
     found = find_piece_fragilities(assessment, by=by.value, im=im.value, levels=levels, jobs=jobs, progress=progress)
     return Curves(assessment, found)
-
-
-def _read_formats(text: str) -> list[str]:
-    from assess.cli.fragility_output import FORMATS
-
-    return list(dict.fromkeys(read_formats(text, FORMATS)))
-
-
-def _check_folder(folder: Path) -> None:
-    from assess.report import check_folder
-
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f"--out: {folder} is a file; name a folder")
-    check_folder(folder)
-
-
-def _render(curves: "Curves", formats: Sequence[str]) -> "list[Exchange]":
-    from assess.cli.fragility_output import FORMATS
-
-    return [FORMATS[one](curves) for one in formats]
 
 
 def _write(curves: "Curves", written: "Sequence[Exchange]", folder: Path, plot: Path | None) -> None:

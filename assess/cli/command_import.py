@@ -68,7 +68,12 @@ def command(
     reason, on the screen and in a file beside the workbook, which lacks only how the floors shake: choose Shaking in
     Building, or fill in Floors. The exit status is 1 where furniture was left out, or none was found.
     """
-    _check_choices(routes, replaces=force, updates=update)
+    if update and force:
+        raise InputError("--update keeps what is in the workbook, --force replaces it: give one of them.")
+    if update and routes is not Routes.none:
+        raise InputError(
+            f"--update: --routes {routes.value}: routes are drafted into a new workbook only: leave out one of the two."
+        )
     _check_names(source, out, replaces=force, updates=update)
     from assess.bim.import_record import describe
 
@@ -108,13 +113,7 @@ def _build(source: Path, out: Path, progress: Progress, choices: Mapping[str, An
 
 
 def _update(source: Path, out: Path, progress: Progress, choices: Mapping[str, Any]) -> _Made:
-    """Read the model in the language of the workbook: places have names of that language.
-
-    Raises
-    ------
-    OutputError
-        If the workbook was saved meanwhile.
-    """
+    """Read the model in the workbook's language, for the names of places; OutputError if it was saved meanwhile."""
     from assess.bim.import_record import ENDING
     from assess.bim.read_source import read_source
     from assess.bim.update_workbook import update_workbook
@@ -151,32 +150,12 @@ def _describe_written(out: Path, made: _Made, *, is_new: bool) -> str:
     written = f"{', '.join(parts)} and this list beside it" if parts else "this list beside it"
     then = "Choose Shaking in Building or fill in Floors, then run" if is_new else "Now run"
     start = "" if made.data is not None else f"{out} stays as it is; "
-    return f"{start}wrote {written}. {then}: assess check {_quote(out)}"
-
-
-def _quote(path: Path) -> str:
-    return f'"{path}"' if " " in str(path) else str(path)
-
-
-def _check_choices(routes: Routes, *, replaces: bool, updates: bool) -> None:
-    if updates and replaces:
-        raise InputError("--update keeps what is in the workbook, --force replaces it: give one of them.")
-    if updates and routes is not Routes.none:
-        raise InputError(
-            f"--update: --routes {routes.value}: routes are drafted into a new workbook only: leave out one of the two."
-        )
+    quoted = f'"{out}"' if " " in str(out) else str(out)
+    return f"{start}wrote {written}. {then}: assess check {quoted}"
 
 
 def _check_names(source: Path, out: Path, *, replaces: bool, updates: bool) -> None:
-    """Raise unless the workbook may be written, as far as is known before the work.
-
-    Raises
-    ------
-    InputError
-        If the workbook is the file itself or does not end in .xlsx, or is to be updated and is not there.
-    OutputError
-        If the workbook exists, and it was not asked for that it be updated or replaced.
-    """
+    """Raise InputError or OutputError unless the workbook may be written, as far as is known before the work."""
     if out.suffix.lower() != ".xlsx":
         raise InputError(f"--out: {out} does not end in .xlsx: name it {out.stem or 'building'}.xlsx.")
     if out.resolve() == source.resolve() or (out.exists() and source.exists() and out.samefile(source)):

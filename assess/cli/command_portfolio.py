@@ -1,7 +1,7 @@
 """``assess portfolio``: many buildings under one earthquake."""
 
 import shlex
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -134,7 +134,9 @@ def command(
                           route_risk=route_risk, class_by=class_by)  # fmt: skip
     folder = out or Path(f"{source.resolve().stem}-portfolio")
     if example:
-        _check_extras(wanted, scheduler)
+        from assess.portfolio.run_portfolio import check_extras
+
+        check_extras(wanted, scheduler)
         source, shakemap, background = _prepare_example(source, folder, shakemap, ground_motions, background)
     ground = read_ground(shakemap, ground_motions)
     settings = given if runs is not None else _fit_runs(given, ground)
@@ -151,13 +153,6 @@ def command(
             kept = f"the buildings that are done are kept in {plain_line(str(folder))}; the same command goes on"
             raise InterruptedWorkError(kept) from None
     _tell(result, settings)
-
-
-def _check_extras(formats: Sequence[str], scheduler: str | None) -> None:
-    """Raise InputError where the run needs a package that is not installed: before the city is written."""
-    from assess.portfolio.run_portfolio import check_extras
-
-    check_extras(formats, scheduler)
 
 
 def _prepare_example(
@@ -184,10 +179,7 @@ def _fit_runs(settings: Settings, ground: "GroundField | None") -> Settings:
 
 
 def _say_repeat(source: Path, settings: Settings, shakemap: Path | None, ground_motions: Path | None) -> str:
-    """Return the command that assesses one building of the run alone, with {path} in place of its workbook.
-
-    It works in the folder in which this command was given; "" where a name holds that mark itself.
-    """
+    """Return the command that assesses one building alone, {path} being its workbook; "" where a name holds {path}."""
     folder = f"{_quote(source if source.is_dir() else source.parent)}/"
     default = Settings()
     named = {

@@ -1,6 +1,6 @@
 """``assess run``: the main job, a workbook in, reports out."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -167,22 +167,18 @@ def command(
     _check_folder(folder, wanted)
     options = _read_options(language, templates, accessible)
     with show_progress() as progress:
-        inventory = _read_inventory(path, shakemap, ground_motions, progress)
+        from assess.workbook.read import read_inventory
+
+        ground = read_ground(shakemap, ground_motions)
+        inventory = read_inventory(path, ground=ground, progress=progress)
         settings = settings if runs or motions else _fit_runs(settings, inventory)
         results = _assess(inventory, settings, motions, methods or (), jobs, not set(wanted) <= PLAIN, progress)
         written = _write(results, folder, wanted, options, progress)
     for line in describe_result(results):
         say(line)
     say_written(written.values(), written.removed)
-    if open_report:
-        _open(written)
-
-
-def _read_inventory(path: Path, shakemap: Path | None, ground_motions: Path | None, progress: Progress) -> "Inventory":
-    from assess.workbook.read import read_inventory
-
-    ground = read_ground(shakemap, ground_motions)
-    return read_inventory(path, ground=ground, progress=progress)
+    if open_report and (message := open_file(next(written[name] for name in OPENED if name in written))):
+        say(message, err=True)
 
 
 def _fit_runs(settings: Settings, inventory: "Inventory") -> Settings:
@@ -342,9 +338,3 @@ def _describe_routes(routes: "RouteTables") -> str:
         *say_to_fill_in(routes),
     ]
     return " ".join(texts)
-
-
-def _open(written: Mapping[str, Path]) -> None:
-    """Open the first report in the browser or viewer, or say where it is."""
-    if message := open_file(next(written[name] for name in OPENED if name in written)):
-        say(message, err=True)

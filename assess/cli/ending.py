@@ -24,7 +24,9 @@ def run_to_the_end(app: Callable[[], object], words: Sequence[str]) -> None:
         try:
             app()
         finally:
-            _flush(sys.stdout)
+            # None where it was closed before the program began
+            if sys.stdout is not None and not sys.stdout.closed:
+                sys.stdout.flush()
     except OSError as error:
         _drop(sys.stdout)
         if error.errno != errno.EPIPE:  # whoever reads the output may stop, as head does
@@ -45,12 +47,6 @@ def find_blank(words: Sequence[str]) -> str | None:
             before = words[at - 1] if at else ""
             return before if before.startswith("-") else f"word {at + 1} of the command"
     return None
-
-
-def _flush(stream: TextIO | None) -> None:
-    """Write what is left of an output; the stream is None where it was closed before the program began."""
-    if stream is not None and not stream.closed:
-        stream.flush()
 
 
 def _drop(stream: TextIO | None) -> None:

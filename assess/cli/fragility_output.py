@@ -157,7 +157,9 @@ class Curves:
             **_range("breadth_{}_cm", [to_edge(item.breadth, LENGTH["cm"]) for item in one.items]),
             **_range("height_{}_cm", [to_edge(item.height, LENGTH["cm"]) for item in one.items]),
             **_range("breadth_to_height_{}", [item.breadth / item.height for item in one.items]),
-            **_range("centre_of_gravity_{}_percent", [_to_percent(item.centre_of_gravity) for item in one.items]),
+            **_range(
+                "centre_of_gravity_{}_percent", [round(100 * item.centre_of_gravity, DECIMALS) for item in one.items]
+            ),
             **_range("rocks_from_{}_g", [value / GRAVITY for value in thresholds]),
             **_range("pfv_per_pfa_{}_s", ratios),
             "assumed_motion": any(motion.is_assumed for motion in motions),
@@ -243,13 +245,9 @@ def _write_csv(curves: Curves) -> Exchange:
     return Exchange(files, ())
 
 
-def _write_json(curves: Curves) -> Exchange:
-    return Exchange({"fragility.json": f"{curves.to_json()}\n".encode()}, ())
-
-
 FORMATS: Mapping[str, Callable[[Curves], Exchange]] = {
     "csv": _write_csv,
-    "json": _write_json,
+    "json": lambda curves: Exchange({"fragility.json": f"{curves.to_json()}\n".encode()}, ()),
     "pelicun": lambda curves: write_pelicun(curves.assessment, curves.found),
     "nrml": lambda curves: write_nrml(curves.assessment, curves.found),
 }
@@ -320,10 +318,6 @@ def _align(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[str]
     for row in (heads, *rows):
         middle = (f"{text:>{width}}" for text, width in zip(row[1:-1], wide[1:-1], strict=True))
         yield "  ".join([f"{row[0]:<{wide[0]}}", *middle, row[-1]]).rstrip()
-
-
-def _to_percent(share: float) -> float:
-    return round(100 * share, DECIMALS)
 
 
 def _finite(value: float) -> float | None:

@@ -90,18 +90,31 @@ def evaluate_extras(
         If friction lies outside the limits of the workbook, or the vertical channel cannot be used.
     """
     if friction is not None:
-        _check_friction(friction)
+        from assess.workbook.schema import ITEMS
+
+        column = ITEMS.column("friction")
+        low, high = column.low or 0.0, column.high or math.inf
+        if not low <= friction <= high:
+            raise InputError(f"--friction is {friction:g}, expected {low:g} to {high:g}")
     document: dict[str, Any] = {}
     lines: list[str] = []
     body, up, found = _build_body(case, response), None, response
     if vertical is not None:
         name, up = read_vertical(vertical, case)
         found = _follow(case, body, up, 0)
-        document["vertical"] = _describe_vertical(name, up, response)
-        lines += _list_vertical(case, name, up, response)
+        document["vertical"] = {
+            "channel": name,
+            "pfa_g": float(np.abs(up).max()) / GRAVITY,
+            "without": describe_verdict(response),
+        }
+        scaled = "" if case.factor == 1 else f", scaled by {case.factor:.4g} like the horizontal motion"
+        lines.append(f"Vertical {name}: peak {np.abs(up).max() / GRAVITY:.4f} g{scaled}")
+        lines.append(f"         without it, the block {_tell(response)}")
     if wall:
         beside = {where: _follow(case, body, up, away) for where, away in SIDES.items()}
-        document["wall"] = _describe_wall(body, beside)
+        document["wall"] = {"rebound": float(body.rebound)} | {
+            where: describe_verdict(one) for where, one in beside.items()
+        }
         lines += _list_wall(body, beside)
     if friction is not None:
         document["friction"] = _describe_friction(case, response, friction)
@@ -179,21 +192,7 @@ def _put_on_times(vertical: "Motion", horizontal: "Motion") -> "FloatArray":
     return np.asarray(found, dtype=np.float64)
 
 
-def _describe_vertical(name: str, up: "FloatArray", without: "Response") -> dict[str, Any]:
-    return {"channel": name, "pfa_g": float(np.abs(up).max()) / GRAVITY, "without": describe_verdict(without)}
-
-
-def _list_vertical(case: RockCase, name: str, up: "FloatArray", without: "Response") -> Iterator[str]:
-    scaled = "" if case.factor == 1 else f", scaled by {case.factor:.4g} like the horizontal motion"
-    yield f"Vertical {name}: peak {np.abs(up).max() / GRAVITY:.4f} g{scaled}"
-    yield f"         without it, the block {_tell(without)}"
-
-
 # ---------------------------------------------------------------- wall
-
-
-def _describe_wall(body: "Body", beside: Mapping[str, "Response"]) -> dict[str, Any]:
-    return {"rebound": float(body.rebound)} | {where: describe_verdict(one) for where, one in beside.items()}
 
 
 def _list_wall(body: "Body", beside: Mapping[str, "Response"]) -> Iterator[str]:
@@ -225,16 +224,6 @@ def _tell(response: "Response") -> str:
 
 
 # ---------------------------------------------------------------- sliding
-
-
-def _check_friction(friction: float) -> None:
-    """Raise InputError unless a coefficient lies within the limits of the workbook's column of the same name."""
-    from assess.workbook.schema import ITEMS
-
-    column = ITEMS.column("friction")
-    low, high = column.low or 0.0, column.high or math.inf
-    if not low <= friction <= high:
-        raise InputError(f"--friction is {friction:g}, expected {low:g} to {high:g}")
 
 
 def _describe_friction(case: RockCase, response: "Response", friction: float) -> dict[str, Any]:

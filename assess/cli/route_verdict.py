@@ -128,11 +128,8 @@ class Verdict:
         where = f"From {self.reached_at_g:.4g} g"
         if self.below_up_to_g is None:
             where = f"Already at {self.lowest_g:.4g} g, the smallest PFA evaluated,"
-        yield f"{where} {self._name_first()} {_reaches(len(self.first))} {level}{more}."
-
-    def _name_first(self) -> str:
         named = [f"{_quote(one.route)} ({_blame(one)})" for one in self.first]
-        return words.name_first(named, MOST_ROUTES)
+        yield f"{where} {words.name_first(named, MOST_ROUTES)} {_reaches(len(self.first))} {level}{more}."
 
 
 def find_verdict(fragility: Fragility, pfa_g: Sequence[float]) -> Verdict:

@@ -33,13 +33,14 @@ def list_facts(found: Comparison) -> list[Fact]:
     before, after = found.before, found.after
     uncertainty = {"motion": _("Motion uncertainty"), "piece": _("Piece uncertainty")}
     lines = {building_key(column): _(column.label) for column in BUILDING.columns}
+    motions = _say_motions(before, after), _say_motions(after, before)
     return [
         *_list_origins(before, after),
         *_list_settings(before.settings, after.settings),
         *_list_differing(before.uncertainty, after.uncertainty, uncertainty),
         *_list_differing({"shaking": before.shaking}, {"shaking": after.shaking}, {"shaking": _("Assumed shaking")}),
         *_list_differing({"site": before.site_ground}, {"site": after.site_ground}, {"site": _("Ground motion")}),
-        *_list_motions(before, after),
+        *([Fact(_("Recorded motions"), *motions, differs=True)] if before.motions != after.motions else []),
         *_list_differing(before.building, after.building, lines, left_out=("building", "report_date")),
         *_list_differing(before.platform, after.platform, {}),
     ]
@@ -70,12 +71,6 @@ def _list_settings(before: Mapping[str, Any], after: Mapping[str, Any]) -> Itera
         if was != now or name in say.ALWAYS:
             show = say.say_anchor if name == "anchor" else say.say_value
             yield Fact(say.name_setting(name), show(was), show(now), differs=was != now)
-
-
-def _list_motions(before: PastRun, after: PastRun) -> Iterator[Fact]:
-    if before.motions != after.motions:
-        was, now = _say_motions(before, after), _say_motions(after, before)
-        yield Fact(_("Recorded motions"), was, now, differs=True)
 
 
 def _say_motions(run: PastRun, other: PastRun) -> str:

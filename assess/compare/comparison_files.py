@@ -139,38 +139,26 @@ def _write_all(job: _Job, formats: Sequence[str]) -> PdfUnavailableError | None:
 
 
 def _write_one(job: _Job, name: str) -> None:
+    """Write a file; what does is imported only when it is wanted. A PDF without identifiers is listed by its hash."""
     path, data = job.stage / FILES[name], job.stage / FILES["json"]
     if name == "json":
         write_data(job.view.found, path, dict(sorted(job.listed.items())))
     elif name == "pdf":
-        _write_pdf(job, path, data)
+        from assess.compare.comparison_pages import write_print
+        from assess.report.pages.pdf_seal import seal
+
+        write_print(job.view, path, data, job.options, job.progress)
+        if not seal(path, data):
+            job.listed[path.name] = find_digest(path)
+            _write_one(job, "json")
+    elif name == "xlsx":
+        from assess.compare.comparison_sheets import write_tables
+
+        write_tables(job.view, path, job.progress)
     else:
-        _write_table(job, path) if name == "xlsx" else _write_html(job, path)
+        from assess.compare.comparison_pages import write_page
+
+        write_page(job.view, path, job.options, job.progress)
+    if name in ("xlsx", "html"):
         job.listed[path.name] = find_digest(path)
     flush_file(path)
-
-
-# What writes each format is imported only when it is wanted.
-
-
-def _write_table(job: _Job, path: Path) -> None:
-    from assess.compare.comparison_sheets import write_tables
-
-    write_tables(job.view, path, job.progress)
-
-
-def _write_html(job: _Job, path: Path) -> None:
-    from assess.compare.comparison_pages import write_page
-
-    write_page(job.view, path, job.options, job.progress)
-
-
-def _write_pdf(job: _Job, path: Path, data: Path) -> None:
-    """Write the PDF with compare.json inside and its identifiers; one without them is listed by its hash."""
-    from assess.compare.comparison_pages import write_print
-    from assess.report.pages.pdf_seal import seal
-
-    write_print(job.view, path, data, job.options, job.progress)
-    if not seal(path, data):
-        job.listed[path.name] = find_digest(path)
-        _write_one(job, "json")

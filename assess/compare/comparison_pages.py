@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Any
 
 from assess.compare import comparison_words as say
-from assess.compare.changes import ABSENT
 from assess.compare.comparison_facts import list_facts
 from assess.compare.comparison_view import View, say_share
 from assess.compare.past_run import PastPiece
@@ -86,7 +85,7 @@ FILTERS = {
     "say_chance": say.say_chance,
     "say_direction": say.say_direction,
     "say_inputs": say.say_inputs,
-    "standing_label": lambda standing: words.DASH if standing == ABSENT else say.label_standing(standing),
+    "standing_label": say.label_standing,
     "standing_style": say.style_standing,
     "state_name": say.name_state,
 }

@@ -3,11 +3,12 @@
 import datetime
 from collections.abc import Callable, Sequence
 from functools import partial
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
 from assess.compare import comparison_words as say
-from assess.compare.changes import ABSENT, PieceChange, StateChange
+from assess.compare.changes import PieceChange, StateChange
 from assess.compare.comparison_facts import list_facts
 from assess.compare.comparison_view import CountLine, View
 from assess.compare.past_run import NOT_KNOWN, PastChance, PastPiece, PastState
@@ -39,10 +40,10 @@ def write_tables(view: View, path: Path, progress: Progress = SILENT) -> None:
 
 
 def _write_sheets(book: Any, view: View, progress: Progress) -> None:
-    sheets: dict[str, Callable[[Pen, Any, View], None]] = {
+    sheets: dict[str, Callable[[Pen, Any, View], object]] = {
         _("Summary"): _write_summary,
         _("Moved classes"): _write_matrix,
-        _("Items"): _write_items,
+        _("Items"): lambda pen, page, view: pen.listing(page, _list_item_columns(), view.found.pieces),
     }
     if view.found.routes:
         sheets[_("Routes")] = partial(_write_states, label=_("Route"), rows=view.found.routes, with_floor=False)
@@ -132,12 +133,8 @@ def _write_matrix(pen: Pen, page: Any, view: View) -> None:
     pen.put(page, below + 1, 0, note, pen.style("plain"))
 
 
-def _write_items(pen: Pen, page: Any, view: View) -> None:
-    pen.listing(page, _list_item_columns(), view.found.pieces)
-
-
 def _list_item_columns() -> list[Column]:
-    sides = ((_("BEFORE"), _before), (_("AFTER"), _after))
+    sides = ((_("BEFORE"), attrgetter("before")), (_("AFTER"), attrgetter("after")))
     return [
         Column(_("Change"), 20, lambda one: say.name_direction(one.direction)),
         Column(_("Within the sampling interval"), 12, lambda one: _say_flag(one.is_within)),
@@ -149,8 +146,8 @@ def _list_item_columns() -> list[Column]:
             Column(_("Pieces, {run}", run=name), 9, partial(_read, side, lambda one: one.quantity), COUNT)
             for name, side in sides
         ),
-        Column(_("Class, {run}", run=_("BEFORE")), 16, lambda one: _label(one.standing_before)),
-        Column(_("Class, {run}", run=_("AFTER")), 16, lambda one: _label(one.standing_after)),
+        Column(_("Class, {run}", run=_("BEFORE")), 16, lambda one: say.label_standing(one.standing_before)),
+        Column(_("Class, {run}", run=_("AFTER")), 16, lambda one: say.label_standing(one.standing_after)),
         *(
             column
             for name, side in sides
@@ -167,7 +164,7 @@ def _list_item_columns() -> list[Column]:
 def _write_states(
     pen: Pen, page: Any, _view: View, *, label: str, rows: Sequence[StateChange], with_floor: bool
 ) -> None:
-    sides = ((_("BEFORE"), _before), (_("AFTER"), _after))
+    sides = ((_("BEFORE"), attrgetter("before")), (_("AFTER"), attrgetter("after")))
     columns = [
         Column(_("Change"), 20, name_direction),
         Column(_("Within the sampling interval"), 12, lambda one: _say_flag(one.is_within)),
@@ -207,14 +204,6 @@ def name_direction(one: PieceChange | StateChange) -> str:
     return say.name_direction(one.direction)
 
 
-def _before(one: PieceChange | StateChange) -> Any:
-    return one.before
-
-
-def _after(one: PieceChange | StateChange) -> Any:
-    return one.after
-
-
 def _read(side: Side, read: Callable[[Any], Any], one: Any) -> Any:
     found: PastPiece | None = side(one)
     return None if found is None else read(found)
@@ -223,10 +212,6 @@ def _read(side: Side, read: Callable[[Any], Any], one: Any) -> Any:
 def _read_known(state: PastState) -> PastChance | None:
     """Return the chance of a route or room; None where it is not known, as that leaves out what is missing."""
     return None if state.state == NOT_KNOWN else state.chance
-
-
-def _label(standing: str) -> str:
-    return words.DASH if standing == ABSENT else say.label_standing(standing)
 
 
 def _say_flag(flag: bool | None) -> str:

@@ -297,21 +297,15 @@ class View:
             lines += self._count_states(was.rooms, now.rooms, lambda state: _("rooms: {state}", state=state))
             cut_off = Total(was.cut_off_rooms, now.cut_off_rooms, found.has_same_basis)
             lines.append(_line(_("expected rooms that lose every exit"), cut_off, is_count=False, is_worse_up=True))
-        lines += self._count_left_out()
+        for label, before, after in (
+            (_("left out of these averages: routes not known"), was.unknown_routes, now.unknown_routes),
+            (_("left out of these averages: rooms not known"), was.unknown_rooms, now.unknown_rooms),
+        ):
+            lines += [_line(label, Total(before, after, is_comparable=True))] if before or after else []
         if was.unjoined_rooms or now.unjoined_rooms:
             unjoined = Total(len(was.unjoined_rooms), len(now.unjoined_rooms), is_comparable=True)
             lines.append(_line(_("rooms joined to no exit or stair"), unjoined))
         return lines
-
-    def _count_left_out(self) -> list[CountLine]:
-        was, now = self.before, self.after
-        counts = (
-            (_("left out of these averages: routes not known"), was.unknown_routes, now.unknown_routes),
-            (_("left out of these averages: rooms not known"), was.unknown_rooms, now.unknown_rooms),
-        )
-        return [
-            _line(label, Total(before, after, is_comparable=True)) for label, before, after in counts if before or after
-        ]
 
     def _count_states(
         self, before: Sequence[PastState], after: Sequence[PastState], label: Callable[[str], str]

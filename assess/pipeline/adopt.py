@@ -90,7 +90,11 @@ def find_start(cases: Cases, settings: Settings) -> FloatArray:
 
 def adopt(outcomes: Mapping[str, Outcome], cases: Cases, settings: Settings) -> Adoption:
     """Adopt a risk for every case."""
-    formula, simulated = _find_by_formula(outcomes, cases, settings), outcomes[simulation().key]
+    found = outcomes[adopted_formula(settings.class_by).key].value
+    # FEMA P-58 is for pieces of uniform weight, and has no value where such a piece is too stocky to rock: a top-heavy
+    # one can rock all the same, and its chance is taken to be none
+    formula = np.where(np.isnan(found) & (cases.breadth_to_height >= STOCKY), 0.0, found)
+    simulated = outcomes[simulation().key]
     ideal, raised = simulated.detail["ideal"].astype(np.float64), simulated.flags
     names = ("ideal_low", "ideal_high") if settings.ideal else ("low", "high")
     value, (low, high) = ideal if settings.ideal else simulated.value, (_numbers(simulated, name) for name in names)
@@ -120,16 +124,6 @@ def adopt(outcomes: Mapping[str, Outcome], cases: Cases, settings: Settings) -> 
         either_axis=np.zeros_like(can_rock),
         rocks_from=find_start(cases, settings),
     )
-
-
-def _find_by_formula(outcomes: Mapping[str, Outcome], cases: Cases, settings: Settings) -> FloatArray:
-    """Return the chance by the adopted formula, (n,).
-
-    FEMA P-58 is for pieces of uniform weight, and has no value where such a piece is too stocky to rock: a top-heavy
-    one can rock all the same, and its chance is taken to be none.
-    """
-    found = outcomes[adopted_formula(settings.class_by).key].value
-    return np.where(np.isnan(found) & (cases.breadth_to_height >= STOCKY), 0.0, found)
 
 
 def _numbers(outcome: Outcome, name: str) -> FloatArray:

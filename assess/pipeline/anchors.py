@@ -257,10 +257,7 @@ def _list_numbers(values: Sequence[float | None]) -> FloatArray:
 
 
 def _find_code(inventory: Inventory, settings: Settings) -> tuple[FloatArray, float]:
-    """Return F_p/W of each piece and the code's vertical acceleration over g; NaN where S_DS is not known.
-
-    Where the height of a floor, or of the roof, is not known, it is taken to be the roof, where F_p is largest.
-    """
+    """Return F_p/W of each piece and the code's vertical acceleration over g; NaN where S_DS is not known."""
     building, ground = inventory.building, find_ground(inventory)
     peak = building.sds if building.sds is not None else building.ground_pga
     if peak is None:
@@ -269,7 +266,7 @@ def _find_code(inventory: Inventory, settings: Settings) -> tuple[FloatArray, fl
     by_floor = {}
     for floor in inventory.floors:
         place = ground.find_ratio(floor)
-        ratio = 1.0 if place is None else place
+        ratio = 1.0 if place is None else place  # where a height is not known, as at the roof, where F_p is largest
         by_floor[floor.floor] = find_code_demand(
             sds=sds, height_ratio=ratio, resonance=settings.anchor_resonance, strength=settings.anchor_strength,
             importance=settings.anchor_importance, ductility=settings.ductility_reduction, period=building.period,

@@ -273,7 +273,9 @@ class _Annual:
         of_item = {
             item: max(float(one) for one in cases.dispersion[assessment.case_item == item]) for item in falls[0].fell
         }
-        doubtful = self._list_doubtful(rocked)
+        ensembles = zip(self.cases.ensembles, rocked, strict=True)
+        own = [one.own for made, one in ensembles if made.is_unknown or one.is_weak]
+        doubtful = frozenset(self.assessment.case_item[np.concatenate(own)].tolist() if own else ())
         fell = {item: np.array([one.fell[item] for one in falls]) for item in sorted(falls[0].fell)}
         shares = self._average(fell)
         items = {item: integrals[of_item[item]].of_draws(shares[item], at_least=item in doubtful) for item in fell}
@@ -302,12 +304,6 @@ class _Annual:
         every = [(one.own, one.fell[at]) for one in rocked]
         return find_falls(self.assessment, self.cases, pfa, every, self.settings)
 
-    def _list_doubtful(self, rocked: Sequence[RockedLevels]) -> frozenset[int]:
-        """Return the pieces whose motions may be too weak, by their index."""
-        ensembles = zip(self.cases.ensembles, rocked, strict=True)
-        own = [one.own for made, one in ensembles if made.is_unknown or one.is_weak]
-        return frozenset(self.assessment.case_item[np.concatenate(own)].tolist() if own else ())
-
     def _describe(
         self,
         levels: FloatArray,
@@ -317,15 +313,14 @@ class _Annual:
         counted: Sequence[int],
         doubtful: Collection[int],
     ) -> AnnualTables:
-        """Return what stands for the building.
-
-        `counted` are its free-standing pieces that were simulated, `doubtful` those whose motions may be too weak.
-        """
+        """Return what stands for the building; `counted` were simulated, of `doubtful` the motions may be too weak."""
         inventory = self.assessment.inventory
         quantity = {item: inventory.items[item].quantity for item in counted}
         safety = {item: fell[item] for item in counted if inventory.items[item].importance == "life safety"}
-        everything, stocky = sum(quantity.values()), self._count_stocky()
-        unknown = sum(inventory.items[at].quantity for at in self._list_free()) - everything - stocky
+        too_stocky = {int(item) for item in self.assessment.case_item[self.cases.is_stocky]}
+        everything, free = sum(quantity.values()), self._list_free()
+        stocky = sum(inventory.items[at].quantity for at in too_stocky.intersection(free))
+        unknown = sum(inventory.items[at].quantity for at in free) - everything - stocky
         weak = sum(quantity[item] for item in counted if item in doubtful)
         found = replace(
             _describe_curve(self.curve),
@@ -342,12 +337,6 @@ class _Annual:
             life_safety=self._join(safety, items, integrate),
         )
         return _add_falls(found, integrate, quantity, items, fell) if counted else found
-
-    def _count_stocky(self) -> int:
-        """Count the free-standing pieces that are too stocky to rock."""
-        stocky = {int(item) for item in self.assessment.case_item[self.cases.is_stocky]}
-        items = self.assessment.inventory.items
-        return sum(items[at].quantity for at in stocky.intersection(self._list_free()))
 
     def _list_free(self) -> list[int]:
         """Return the pieces that do not count as anchored, by their index."""

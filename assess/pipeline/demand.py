@@ -11,7 +11,7 @@ not given follows from PFA as the beam has it.
 """
 
 import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from assess.errors import Gap, Problem, WorkbookError
@@ -251,7 +251,7 @@ class _Building:
 def _find_basis(ground: Ground, own: Collection[_ByAxis], axis: Axis) -> Basis:
     """Return what shakes the floors along one axis: a motion that is known at grade comes before the ground's."""
     placed = [(ground.find_ratio(served[axis][0].floor), served[axis]) for served in own if served]
-    known = [(place, _take_worst(parallel)) for place, parallel in placed if place is not None]
+    known = [(place, max(parallel, key=lambda one: one.pfa)) for place, parallel in placed if place is not None]
     at_grade = next((one for place, one in known if place <= 0), None)
     motion, record = ground.motion, None
     if at_grade is not None and at_grade.source == "record":
@@ -264,15 +264,10 @@ def _find_basis(ground: Ground, own: Collection[_ByAxis], axis: Axis) -> Basis:
         at_grade="" if at_grade is None else at_grade.floor.floor,
     )  # fmt: skip
     above = [(place, one) for place, one in known if place > 0]
-    return replace(basis, known=[(place, _add_velocity(one, place, basis)) for place, one in above])
-
-
-def _take_worst(parallel: Sequence[Demand]) -> Demand:
-    return max(parallel, key=lambda one: one.pfa)
-
-
-def _add_velocity(one: Demand, place: float, basis: Basis) -> Demand:
-    return one if one.pfv > 0 else replace(one, pfv=one.pfa * basis.find_velocity(place))
+    known = [
+        (place, one if one.pfv > 0 else replace(one, pfv=one.pfa * basis.find_velocity(place))) for place, one in above
+    ]
+    return replace(basis, known=known)
 
 
 def serve_by_profile(floor: Floor, profile: Profile, ground: Ground, ductility_reduction: float) -> _ByAxis:

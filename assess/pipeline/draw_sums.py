@@ -61,7 +61,11 @@ def sum_draws(assessment: Assessment, results: Results, *, progress: Progress = 
         If `progress` is cancelled.
     """
     tables, runs = results.route_tables, assessment.settings.runs
-    chances = {one.route: one.blocked.probability for one in tables.routes if _is_known(one) and one.blocked}
+    chances = {
+        one.route: one.blocked.probability
+        for one in tables.routes
+        if one.state != RouteState.NOT_KNOWN and one.blocked is not None
+    }
     people = {one.route: count_people(tables, one) or 0 for one in tables.routes}
     falls = find_falls(assessment) if (results.main_basis == SIMULATED and assessment.settings.runs != AUTO) else None
     blocked = {} if falls is None else _find_blocked(assessment, falls, chances, progress)
@@ -83,10 +87,6 @@ def count_people(tables: RouteTables, route: RouteRow) -> int | None:
     """Return how many people leave by a route: the largest Occupants of its segments; None where all are blank."""
     given = [tables.segments[at].occupants for at in route.segment_indices]
     return max((one for one in given if one is not None), default=None)
-
-
-def _is_known(route: RouteRow) -> bool:
-    return route.state != RouteState.NOT_KNOWN and route.blocked is not None
 
 
 def _sum_falls(results: Results, runs: int) -> Numbers:

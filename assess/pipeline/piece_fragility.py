@@ -217,9 +217,12 @@ def _find(
 ) -> PieceFragilities:
     inventory, settings = assessment.inventory, assessment.settings
     groups = _group(inventory, rocked, by)
+    chosen = np.isin(assessment.case_item, rocked)
     study = _Study(
         assessment=assessment,
-        cases=_choose_cases(assessment, rocked),
+        cases=choose_motions(
+            assessment.cases, chosen, assessment.case_demand, assessment.demands, inventory, settings, None
+        ),
         groups=groups,
         peaks=np.array([one.pfa if im == "pfa" else one.pfv for one in assessment.case_demand]),
         unit=UNITS[im],
@@ -284,15 +287,6 @@ def _name(item: Item, by: By) -> tuple[str, str]:
 # ---------------------------------------------------------------- rocking
 
 
-def _choose_cases(assessment: Assessment, rocked: NDArray[np.intp]) -> Cases:
-    """Return the cases with the motions under which the items `rocked` are rocked."""
-    chosen = np.isin(assessment.case_item, rocked)
-    inventory, settings = assessment.inventory, assessment.settings
-    return choose_motions(
-        assessment.cases, chosen, assessment.case_demand, assessment.demands, inventory, settings, None
-    )
-
-
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class _Study:
     """The cases of an assessment with their motions, and how often the items of `groups` fall.
@@ -334,7 +328,7 @@ class _Study:
             self._rock(levels, wanted, fallen)
             for number, (group, (_, _, end)) in enumerate(zip(self.groups, spans, strict=True)):
                 top = ranges[number][1]
-                is_enough = self._share(fallen[group, top]) >= NEARLY_ALL
+                is_enough = float(fallen[group, top].mean()) / int(self.assessment.settings.runs) >= NEARLY_ALL
                 ranges[number] = (top + 1, top if is_enough else min(top + MORE_RUNGS, end - first))
         return levels, fallen
 
@@ -344,9 +338,6 @@ class _Study:
         start = self.cases.threshold[own] * GRAVITY * self.peaks[own] / self.cases.pfa[own] / self.unit
         low, high = float((start * self.cases.still[own] / STILL).min()), float(start.max())
         return _find_rung(LOWEST * low), _find_rung(HIGHEST * high) + 1, _find_rung(FARTHEST * high) + 1
-
-    def _share(self, fallen: FloatArray) -> float:
-        return float(fallen.mean()) / int(self.assessment.settings.runs)
 
     def _rock(self, levels: FloatArray, wanted: BoolArray, fallen: FloatArray) -> None:
         """Put into `fallen` (items, l) how often items fall at the levels that are `wanted`, (items, l)."""

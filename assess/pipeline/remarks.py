@@ -8,7 +8,7 @@ from collections.abc import Iterator, Set
 
 from assess.errors import Problem, Severity
 from assess.i18n import Text, fill, join, nfill
-from assess.intensity import RATIO, SHAKINGS, Shaking
+from assess.intensity import RATIO, SHAKINGS
 from assess.model import AXES, Axis, Building, Floor, Inventory
 from assess.motion.assumed import CODE_FACTOR, CODE_POWER
 from assess.motion.record import treat
@@ -443,10 +443,6 @@ def remark_on_shaking(inventory: Inventory, demands: Demands) -> Iterator[Proble
         "in Floors."
     )
     yield Problem("note", "Building", cell, message, fix)
-    yield from _remark_on_scatter(building, used)
-
-
-def _remark_on_scatter(building: Building, used: Shaking) -> Iterator[Problem]:
     given = building.motion_uncertainty
     if given is not None and given < used.scatter:
         why = fill("{scatter:.2f}, the scatter of ln PGV given the assumed intensity, is larger", scatter=used.scatter)

@@ -192,7 +192,9 @@ def _describe(sweep: "_Sweep", values: Sequence[float], beside: NDArray[np.intp]
         limit=assessment.settings.route_risk,
         runs=int(assessment.settings.runs),
         seed=assessment.settings.seed,
-        uncertainty=None if assessment.settings.ideal else _find_uncertainty(sweep.cases),
+        uncertainty=None
+        if assessment.settings.ideal
+        else replace(sweep.cases.uncertainty, motion=float(sweep.cases.dispersion.max(initial=0.0))),
         routes=tuple(_route(sweep, name, items) for name in names),
         generic=name_floors(made for made, _ in ensembles if made.is_assumed),
         unshaped=name_floors(made for made, _ in ensembles if made.is_unknown),
@@ -200,11 +202,6 @@ def _describe(sweep: "_Sweep", values: Sequence[float], beside: NDArray[np.intp]
         stocky=sum(one.quantity for one in too_stocky),
         unplaced=sum(count_unplaced(scene, floor.floor, _list_on(scene, floor.floor)) for floor in inventory.floors),
     )
-
-
-def _find_uncertainty(cases: Cases) -> Uncertainty:
-    """Return the largest dispersion of a floor, and whether pieces are drawn."""
-    return replace(cases.uncertainty, motion=float(cases.dispersion.max(initial=0.0)))
 
 
 def _list_on(scene: Scene, floor: str) -> list[int]:

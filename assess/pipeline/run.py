@@ -269,6 +269,7 @@ def list_first_fixes(assessment: Assessment, routes: RouteTables) -> list[list[i
 def _build_rows(assessment: Assessment, demands: Sequence[Demand], folder: Path, routes: RouteTables) -> Results:
     """Return the results but for their schedule."""
     inventory, example = assessment.inventory, choose_example(assessment)
+    found = list_too_low(assessment.inventory, assessment.filled, assessment.scenario)
     return Results(
         settings=assessment.settings,
         provenance=build_provenance(assessment),
@@ -282,7 +283,7 @@ def _build_rows(assessment: Assessment, demands: Sequence[Demand], folder: Path,
         places=inventory.places,
         catalogue=inventory.catalogue,
         problem_rows=assessment.problems,
-        underestimates=_list_underestimates(assessment),
+        underestimates=tuple(problem.message for problem in found),
         methods=tuple(one.info for one in assessment.methods),
         worked=() if example is None else work_example(example, assessment),
         worked_item=example,
@@ -298,12 +299,6 @@ def _write_series(path: Path, arrays: Arrays, progress: Progress) -> None:
     except OSError as error:
         why = error.strerror or str(error)
         raise OutputError(fill("{path} cannot be written: {why}.", path=path, why=why)) from None
-
-
-def _list_underestimates(assessment: Assessment) -> tuple[str, ...]:
-    """Return the warnings that more shaking is known than is used."""
-    found = list_too_low(assessment.inventory, assessment.filled, assessment.scenario)
-    return tuple(problem.message for problem in found)
 
 
 def _join_methods(further: Sequence[Method]) -> tuple[Method, ...]:

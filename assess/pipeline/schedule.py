@@ -186,7 +186,8 @@ def _describe_work(alike: Sequence[ItemResult], costs: Mapping[str, Cost]) -> Wo
     detail = DETAILS[choose_detail(first)]
     pieces, cost = sum(one.quantity for one in rows), costs.get(detail.key)
     forces = [find_forces(one, detail) for one in rows]
-    high, code = max(one.high for one in forces), _find_largest([one.code for one in forces])
+    high = max(one.high for one in forces)
+    code = max((one.code for one in forces if one.code is not None), default=None)
     return WorkRow(
         floor=first.floor,
         room=first.room,
@@ -206,10 +207,6 @@ def _describe_work(alike: Sequence[ItemResult], costs: Mapping[str, Cost]) -> Wo
         cost=None if cost is None else pieces * cost.unit_cost,
         cost_source="" if cost is None else cost.source,
     )
-
-
-def _find_largest(forces: Sequence[float | None]) -> float | None:
-    return max((one for one in forces if one is not None), default=None)
 
 
 class Forces(NamedTuple):

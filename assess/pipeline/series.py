@@ -167,7 +167,10 @@ def _contours(assessment: Assessment, results: Iterable[ItemResult]) -> Iterator
     free = [one for one in results if not one.is_anchored]
     if not free:
         return
-    height = _commonest([one for one in free if one.adopted.upper >= RiskClass.HIGH] or free)
+    counts: Counter[float] = Counter()
+    for one in [one for one in free if one.adopted.upper >= RiskClass.HIGH] or free:
+        counts[_round(one.item.height_cm)] += one.item.quantity
+    height = max(counts, key=lambda height: (counts[height], height))  # that most pieces (not rows) share
     near = [one for one in free if abs(one.item.height_cm - height) <= ALIKE * height * (1 + ROUNDING)]
     pieces = sorted(near, key=lambda one: (-one.adopted.upper, -one.adopted.probability, natural_key(one.item.item)))
     ratio = _velocity_ratio(pieces[0])
@@ -188,14 +191,6 @@ def _velocity_ratio(worst: ItemResult) -> float:
     if not motion.pfv_cm_s or not motion.pfa_g:
         return math.nan
     return motion.pfv_cm_s * VELOCITY["cm/s"] / (motion.pfa_g * GRAVITY)
-
-
-def _commonest(results: Sequence[ItemResult]) -> float:
-    """Return the height [cm] that most pieces (not rows) share, rounded; of several the largest."""
-    counts: Counter[float] = Counter()
-    for one in results:
-        counts[_round(one.item.height_cm)] += one.item.quantity
-    return max(counts, key=lambda height: (counts[height], height))
 
 
 def _round(height: float) -> float:

@@ -326,7 +326,10 @@ def build_provenance(assessment: Assessment) -> Provenance:
         sha256=inventory.sha256,
         files=dict(inventory.files),
         scenario=assessment.scenario,
-        uncertainty=replace(assessment.cases.uncertainty, motion=_find_dispersion(assessment)),
+        uncertainty=replace(
+            assessment.cases.uncertainty,
+            motion=max((one.dispersion for parallel in assessment.demands.values() for one in parallel), default=0.0),
+        ),
         earthquakes=describe_draws(assessment.inventory, assessment.settings, assessment.cases.earthquakes),
         shaking=_describe_shaking(assessment.demands),
         site_ground=describe_site(inventory.building, assessment.demands),
@@ -339,11 +342,6 @@ def build_provenance(assessment: Assessment) -> Provenance:
         looks=LOOKS,
         profiles=tuple(map(describe_profile, PROFILES.values())),
     )
-
-
-def _find_dispersion(assessment: Assessment) -> float:
-    """Return the largest standard deviation of ln amplitude that is drawn on a floor [-]."""
-    return max((one.dispersion for parallel in assessment.demands.values() for one in parallel), default=0.0)
 
 
 def _describe_shaking(demands: Demands) -> AssumedShaking | None:

@@ -8,7 +8,7 @@ from typing import NoReturn
 
 from assess.errors import Problem, SettingsError
 from assess.i18n import fill, join
-from assess.model import Inventory, Item
+from assess.model import Inventory
 from assess.pipeline.anchors import find_anchors
 from assess.pipeline.assessment import Assessment
 from assess.schedule_results import ScheduleRow
@@ -56,13 +56,10 @@ def anchor_named(inventory: Inventory, names: Sequence[str]) -> Inventory:
         return inventory
     wanted = set(spell_names(inventory, names))
     indices = {at for at, one in enumerate(inventory.items) if one.item in wanted}
-    notes = [_note_anchored(inventory.items[at]) for at in sorted(indices) if inventory.items[at].anchored == "yes"]
+    already = [inventory.items[at].item for at in sorted(indices) if inventory.items[at].anchored == "yes"]
+    said = (fill("Item {name!r} is anchored already: its anchor is taken to hold.", name=name) for name in already)
+    notes = [Problem("note", "Items", "", message) for message in said]
     return replace(_anchor(inventory, indices), problems=(*inventory.problems, *notes))
-
-
-def _note_anchored(item: Item) -> Problem:
-    message = fill("Item {name!r} is anchored already: its anchor is taken to hold.", name=item.item)
-    return Problem("note", "Items", "", message)
 
 
 def anchor_first(assessment: Assessment, rows: Sequence[ScheduleRow]) -> Assessment:

@@ -230,10 +230,6 @@ def _lengths(attributes: Attributes, *names: str) -> list[float] | None:
     return None if None in found else [one for one in found if one is not None]
 
 
-def _path(attributes: Attributes) -> Lines:
-    return PathReader(attributes.get("d", "")).read()
-
-
 def _line(attributes: Attributes) -> Lines:
     given = _lengths(attributes, "x1", "y1", "x2", "y2")
     return [[(given[0], given[1]), (given[2], given[3])]] if given else []
@@ -281,7 +277,7 @@ def _ellipse(attributes: Attributes) -> Lines:
 
 
 _SHAPES: Mapping[str, Callable[[Attributes], Lines]] = {
-    "path": _path, "line": _line, "polyline": _polyline, "polygon": _polygon, "rect": _rect, "circle": _circle,
-    "ellipse": _ellipse,
+    "path": lambda attributes: PathReader(attributes.get("d", "")).read(), "line": _line, "polyline": _polyline,
+    "polygon": _polygon, "rect": _rect, "circle": _circle, "ellipse": _ellipse,
 }  # fmt: skip
 """The elements whose lines are drawn."""

@@ -14,7 +14,7 @@ least one; spread evenly over the storeys, what is left over on the upper ones, 
 height. A blank height counts as `STOREY_HEIGHT` a storey, which is assumed.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from csv import DictReader
 from dataclasses import dataclass
 from functools import cache
@@ -121,7 +121,10 @@ def build_assumed(row: IndexRow) -> AssumedInventory:
     return AssumedInventory(
         rows={
             "Building": [{"building": row.building or row.path, **row.as_building(), "height": height}],
-            "Floors": [_list_floor(level, height, storeys) for level in range(1, storeys + 1)],
+            "Floors": [
+                {"floor": str(level), "elevation": round((level - 1) * height / storeys, 4)}
+                for level in range(1, storeys + 1)
+            ],
             "Items": [_list_item(*one) for one in found],
             "Catalogue": [_list_type(kind) for kind in counts],
         },
@@ -213,10 +216,6 @@ def _name(kind: _Kind, level: int) -> str:
     return f"{kind.piece} {level}"
 
 
-def _list_floor(level: int, height: float, storeys: int) -> dict[str, Any]:
-    return {"floor": str(level), "elevation": round((level - 1) * height / storeys, 4)}
-
-
 def _list_item(kind: _Kind, level: int, quantity: Quantity) -> dict[str, Any]:
     return {
         "item": _name(kind, level),
@@ -239,18 +238,15 @@ def _list_type(kind: _Kind) -> dict[str, Any]:
 
 def _describe(row: IndexRow, use: str, counts: Mapping[_Kind, Quantity], height: float) -> Iterator[Problem]:
     """Yield that the inventory is assumed, and what else is."""
+    pieces = ", ".join(f"{count(one.median, kind.piece)} ({one.low:,} to {one.high:,})" for kind, one in counts.items())
     text = fill(
         "inventory assumed: no piece of this building has been seen. {pieces}, by its use ({use}) and its gross floor "
         "area ({area:,.0f} m2) after the normative quantities of FEMA P-58 (50 %; in brackets 10 % to 90 %). Other "
         "furniture is not counted.",
-        pieces=_say_counts(list(counts.items())), use=use, area=row.floor_area_m2,
+        pieces=pieces, use=use, area=row.floor_area_m2,
     )  # fmt: skip
     fix = fill("Survey the building, and name its workbook in the column path of the index.")
     yield Problem("warning", "", "", text, fix)
     if row.height_m is None:
         note = fill("height_m is blank: {each:g} m a storey assumed, {height:g} m.", each=STOREY_HEIGHT, height=height)
         yield Problem("note", "", "", note, fill("Give it in the index."))
-
-
-def _say_counts(counts: Sequence[tuple[_Kind, Quantity]]) -> str:
-    return ", ".join(f"{count(one.median, kind.piece)} ({one.low:,} to {one.high:,})" for kind, one in counts)

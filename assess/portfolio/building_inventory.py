@@ -49,7 +49,9 @@ def read_building(source: Source, data: bytes | None, ground: GroundField | None
         If no inventory can be assumed, or its place lies outside the ground motion.
     """
     if source.kind == "assumed" and source.index is not None:
-        return _read_assumed(source.path, source.index, ground)
+        assumed = build_assumed(source.index)
+        origin = Origin(path=source.path, inventory="assumed", index=source.index, low=assumed.low, high=assumed.high)
+        return origin, _read_rows(assumed.rows, assumed.problems, {}, ground)
     if source.file is None:
         raise WorkbookError([Problem("error", "", "", fill("it has no workbook."))])
     row = source.index or IndexRow()
@@ -63,18 +65,9 @@ def read_building(source: Source, data: bytes | None, ground: GroundField | None
     return origin, _compare(inventory, row, is_survey=True)
 
 
-def _read_assumed(path: str, row: IndexRow, ground: GroundField | None) -> tuple[Origin, Inventory]:
-    assumed = build_assumed(row)
-    origin = Origin(path=path, inventory="assumed", index=row, low=assumed.low, high=assumed.high)
-    return origin, _read_rows(assumed.rows, assumed.problems, {}, ground)
-
-
 def _read_handover(imported: ImportedBuilding, file: Path, row: IndexRow, ground: GroundField | None) -> Inventory:
-    """Return the inventory of a COBie file; WorkbookError with what was left out where no furniture is found.
-
-    The index names the building: what a building model calls itself is no name that people gave it.
-    """
-    if row.building:
+    """Return the inventory of a COBie file; WorkbookError with what was left out where no furniture is found."""
+    if row.building:  # what a building model calls itself is no name that people gave it
         imported = replace(imported, building={**imported.building, "building": row.building})
     remarks = list_remarks(imported)
     if not imported.items:

@@ -126,6 +126,8 @@ def _to_plain(value: Any, kind: str) -> Any:
 def _build_building(origin: Origin, inventory: Inventory, results: Results, sums: DrawSums) -> Record:
     is_placed = results.building.latitude is not None and results.building.longitude is not None
     own = {one.floor for one in results.motions if one.source in OWN_MOTIONS}
+    routes = results.route_tables.routes
+    is_any_known = any(one.state is not RouteState.NOT_KNOWN and one.blocked is not None for one in routes)
     return {
         "path": origin.path,
         "status": "assessed",
@@ -141,7 +143,7 @@ def _build_building(origin: Origin, inventory: Inventory, results: Results, sums
         **_count_works(results),
         **_count_routes(results.route_tables),
         "people_not_known": sums.people_not_known,
-        "people_blocked": sums.people_expected if _is_any_known(results.route_tables) else None,
+        "people_blocked": sums.people_expected if is_any_known else None,
         "warnings": sum(one.severity == "warning" for one in results.problem_rows),
     }
 
@@ -149,6 +151,7 @@ def _build_building(origin: Origin, inventory: Inventory, results: Results, sums
 def _describe_site(origin: Origin, inventory: Inventory) -> Record:
     building = inventory.building
     source, pga, pgv = _find_shaking(inventory)
+    site = inventory.site_ground if source == "scenarios" else None
     return {
         "building": building.building,
         "latitude": building.latitude,
@@ -158,16 +161,10 @@ def _describe_site(origin: Origin, inventory: Inventory) -> Record:
         "height_m": building.height,
         "floor_area_m2": None if origin.index is None else origin.index.floor_area_m2,
         "ground_source": source,
-        "ground_distance_km": _find_distance(inventory) if source == "scenarios" else None,
+        "ground_distance_km": None if site is None or site.distance is None else site.distance / 1000,
         "ground_pga_g": None if pga is None else to_edge(pga, BUILDING.column("ground_pga").factor),
         "ground_pgv_cm_s": None if pgv is None else to_edge(pgv, BUILDING.column("ground_pgv").factor),
     }
-
-
-def _find_distance(inventory: Inventory) -> float | None:
-    """Return how far the site of the scenarios is [km]."""
-    site = inventory.site_ground
-    return None if site is None or site.distance is None else site.distance / 1000
 
 
 def _find_shaking(inventory: Inventory) -> tuple[str, float | None, float | None]:
@@ -223,11 +220,6 @@ def _count_works(results: Results) -> Record:
     }
 
 
-def _is_any_known(tables: RouteTables) -> bool:
-    """Whether there is a route of which it is known how likely it is blocked."""
-    return any(one.state is not RouteState.NOT_KNOWN and one.blocked is not None for one in tables.routes)
-
-
 _STATES = {
     RouteState.OPEN: "routes_open", RouteState.DOUBTFUL: "routes_doubtful", RouteState.BLOCKED: "routes_blocked",
     RouteState.NOT_KNOWN: "routes_not_known",
@@ -255,7 +247,9 @@ def _list_pieces(origin: Origin, results: Results) -> Iterator[Record]:
         yield {
             "path": origin.path,
             "inventory": origin.inventory,
-            **_describe_piece(one),
+            **{name: getattr(one.item, name) for name in _OF_ITEM},
+            "assumed": join(one.item.assumed),
+            "route": join(one.routes),
             **_describe_risk(one),
             **_describe_work(works.get(one.item.index)),
             "quantity_low": None if origin.low is None else origin.low[one.item.item],
@@ -267,14 +261,6 @@ _OF_ITEM = (
     "item", "floor", "room", "description", "type", "quantity", "breadth_cm", "width_cm", "height_cm", "anchored",
     "is_held", "importance", "row",
 )  # fmt: skip
-
-
-def _describe_piece(one: ItemResult) -> Record:
-    return {
-        **{name: getattr(one.item, name) for name in _OF_ITEM},
-        "assumed": join(one.item.assumed),
-        "route": join(one.routes),
-    }
 
 
 def join(names: Iterable[str]) -> str:

@@ -11,7 +11,6 @@ from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from assess.delivery.disk import find_digest
 from assess.errors import AssessError, Problem, WorkbookError
@@ -135,12 +134,10 @@ def _read_workbook(source: Source) -> bytes | None:
 def _find_key(task: Task, content: str | None) -> str:
     source = task.source
     ground = None if task.ground is None else (type(task.ground).__name__, task.ground.file, task.ground.sha256)
-    row = None if source.index is None else {**_fields(source.index), "line": 0}  # a row may move in the index
+    row = None
+    if source.index is not None:  # a row may move in the index
+        row = {name: getattr(source.index, name) for name in source.index.__slots__} | {"line": 0}
     return find_key(source.path, source.kind, content, row, task.settings.as_record(), ground, find_code())
-
-
-def _fields(row: Any) -> dict[str, Any]:
-    return {name: getattr(row, name) for name in row.__slots__}
 
 
 # ---------------------------------------------------------------- a building
@@ -161,16 +158,12 @@ def _assess_surely(task: Task, key: str, data: bytes | None) -> Part:
         fault = fill("the memory of this machine does not suffice for it.")
         return skip(source, key, [Problem("error", "", "", fault, fill("Run fewer jobs at once."))])
     except Exception as error:  # whatever is wrong with one building, the others are assessed
-        _keep_traceback(task, key)
+        with suppress(OSError):
+            text = traceback.format_exc()
+            write_whole(find_place(task.out, key).with_suffix(".txt"), text.encode("utf-8", "backslashreplace"))
         fault = fill("it cannot be assessed: an unforeseen error ({kind}) in this program.", kind=type(error).__name__)
         fix = fill("Please report it, with the file {file}.", file=f"{find_place(Path(), key).with_suffix('.txt')}")
         return skip(source, key, [Problem("error", "", "", fault, fix)])
-
-
-def _keep_traceback(task: Task, key: str) -> None:
-    with suppress(OSError):
-        text = traceback.format_exc()
-        write_whole(find_place(task.out, key).with_suffix(".txt"), text.encode("utf-8", "backslashreplace"))
 
 
 def _assess(task: Task, key: str, data: bytes | None) -> Part:

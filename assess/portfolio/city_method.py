@@ -7,7 +7,7 @@ from assess.i18n import number
 from assess.methods import adopted_formula
 from assess.motion.spatial_field import SCATTERS, Measure
 from assess.portfolio.city_spread import Spread
-from assess.portfolio.city_totals import PEOPLE_RULE, CityTotals, CityView, Group
+from assess.portfolio.city_totals import PEOPLE_RULE, CityTotals, CityView
 from assess.portfolio.city_words import list_facts, say_interval, say_range, say_whole
 from assess.report import words
 from assess.report.provenance import say_reference
@@ -65,7 +65,11 @@ def _list_method(view: CityView, totals: CityTotals) -> Iterator[str]:
     if group is not None:
         drawn = group.falls
         yield _say_draws(view, drawn)
-        yield from _say_alone(group)
+        alone, together = say_range(drawn.independent_low, drawn.independent_high), say_range(drawn.low, drawn.high)
+        if group.buildings > 1 and alone != together:
+            yield _("If every building had an earthquake of its own, the range would be {alone} in place of {together}"
+                    ": that is not so, and the difference shows why ranges of buildings must not be added up.",
+                    alone=alone, together=together)  # fmt: skip
         yield _("The expected number itself is known within the sampling interval, by the number of draws alone "
                 "(95 %): {interval}.", interval=say_interval(drawn))  # fmt: skip
     yield from _say_dispersion(view)
@@ -99,16 +103,6 @@ def _say_routes(view: CityView, totals: CityTotals) -> Iterator[str]:
             limit=words.percent(view.settings.route_risk), blocked=_share(BLOCKED_FROM))  # fmt: skip
     if any(group.occupants for group in totals.groups):
         yield _(PEOPLE_RULE)
-
-
-def _say_alone(group: Group) -> Iterator[str]:
-    """Yield the range if buildings were independent, where it differs from the range of the city."""
-    drawn = group.falls
-    alone, together = say_range(drawn.independent_low, drawn.independent_high), say_range(drawn.low, drawn.high)
-    if group.buildings > 1 and alone != together:
-        yield _("If every building had an earthquake of its own, the range would be {alone} in place of {together}: "
-                "that is not so, and the difference shows why ranges of buildings must not be added up.",
-                alone=alone, together=together)  # fmt: skip
 
 
 def _say_draws(view: CityView, drawn: Spread) -> str:

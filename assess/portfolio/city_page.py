@@ -95,7 +95,15 @@ def build_context(
         "basis": made.list_basis(view),
         "method": made.list_method(view, totals),
         "references": made.list_references(view, totals),
-        "map": draw_map(content.points, background, title=_say_map(content), isolines=isolines, is_live=is_live),
+        "map": draw_map(
+            content.points,
+            background,
+            title=_(
+                "Map of {placed:,} buildings; the table of the buildings holds the same", placed=len(content.points)
+            ),
+            isolines=isolines,
+            is_live=is_live,
+        ),
         "background": background.file if background else "",
         "has_isolines": bool(isolines),
         "map_views": _list_map_views(content),
@@ -106,10 +114,6 @@ def build_context(
         "skipped": _list_skipped(content),
         "count": len(content.buildings),
     }
-
-
-def _say_map(content: CityContent) -> str:
-    return _("Map of {placed:,} buildings; the table of the buildings holds the same", placed=len(content.points))
 
 
 def _show_group(group: Group, content: CityContent) -> dict[str, Any]:
@@ -162,7 +166,9 @@ def _list_legend(signs: Sequence[tuple[Sign, int]]) -> list[tuple[str, str, str,
 def _list_filters(content: CityContent) -> list[tuple[str, str, list[tuple[str, str]]]]:
     """Return the filters: key, label, and the choices that are in use as value and words."""
     uses = sorted({words.cut(content.spell_use(row), 60) for row in content.buildings if row["use"]})
-    inventories = [one for one in ("surveyed", "handover", "assumed") if _is_used(content, one)]
+    inventories = [
+        one for one in ("surveyed", "handover", "assumed") if any(row["inventory"] == one for row in content.buildings)
+    ]
     return [
         ("use", _("Use"), [(use, use) for use in uses]),
         ("kind", _("Highest class"), [(sign.key, say_sign(sign)) for sign, _count in content.class_legend]),
@@ -170,10 +176,6 @@ def _list_filters(content: CityContent) -> list[tuple[str, str, list[tuple[str, 
         ("inventory", _("Inventory"), [(one, say.name_inventory(one)) for one in inventories]),
         ("storeys", _("Storeys"), [(f"{low}-{high}", _say_storeys(low, high)) for low, high in STOREYS]),
     ]
-
-
-def _is_used(content: CityContent, inventory: str) -> bool:
-    return any(row["inventory"] == inventory for row in content.buildings)
 
 
 def _say_storeys(low: int, high: int) -> str:

@@ -85,9 +85,10 @@ def build_spread(draws: pd.DataFrame, column: str, expected: float, most: float)
     low, high = find_ends(total)
     sampling_low, sampling_high = find_sampling(total, most)
     alone_low, alone_high = find_ends(shuffled)
+    apart = expected - float(total.mean())
     return Spread(
         expected=expected,
-        apart=_clean(expected - float(total.mean()), expected),
+        apart=0.0 if abs(apart) <= 1e-9 * max(1.0, abs(expected)) else apart,  # without the rounding of a sum
         draws=runs,
         low=low,
         high=high,
@@ -96,11 +97,6 @@ def build_spread(draws: pd.DataFrame, column: str, expected: float, most: float)
         independent_low=alone_low,
         independent_high=alone_high,
     )
-
-
-def _clean(value: float, of: float) -> float:
-    """Return a difference without the rounding of a sum."""
-    return 0.0 if abs(value) <= 1e-9 * max(1.0, abs(of)) else value
 
 
 def _shuffle(every: FloatArray, paths: list[str]) -> FloatArray:

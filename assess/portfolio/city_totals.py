@@ -240,7 +240,9 @@ _ADDED = ("unconfirmed", "by_formula", "cannot_rock", "anchored", "left_out", "w
 
 def _build_group(view: CityView, rows: pd.DataFrame, inventory: str, basis: str) -> Group:
     draws = _rows_of(view.draws, rows)
-    not_known = _count_not_known(_rows_of(view.routes, rows))
+    routes = _rows_of(view.routes, rows)
+    unknown = (routes["state"] == RouteState.NOT_KNOWN.value) | routes["probability"].isna()
+    not_known = _count(routes[unknown], "occupants")
     by_class = {risk: _count(rows, column) for risk, column in CLASS_COLUMNS.items()}
     falls = build_spread(draws, "falls", _sum(rows, "expected_falls"), sum(by_class.values()))
     own, occupants = rows[_numbers(rows, "own_motions") > 0], _count(rows, "occupants")
@@ -277,12 +279,6 @@ def _find_range(view: CityView) -> RangeOver:
     if view.ground is None:
         return "own grounds"
     return "known ground" if view.ground.is_known else "earthquakes"
-
-
-def _count_not_known(routes: pd.DataFrame) -> int:
-    """Return how many people use routes whose state is not known, or that have no chance."""
-    unknown = (routes["state"] == RouteState.NOT_KNOWN.value) | routes["probability"].isna()
-    return _count(routes[unknown], "occupants")
 
 
 def _rows_of(table: pd.DataFrame, buildings: pd.DataFrame) -> pd.DataFrame:

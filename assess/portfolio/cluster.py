@@ -149,7 +149,13 @@ def run_on_cluster(
 def _connect(scheduler: str, progress: Progress) -> Iterator["Client"]:
     from distributed import Client
 
-    _find_scheduler(scheduler, progress)  # a Client that fails says so for itself, at length and late
+    # a Client that fails says so for itself, at length and late
+    with ThreadPoolExecutor(1) as thread:  # the caller may have a loop of its own
+        answer = thread.submit(asyncio.run, _ask(scheduler, progress)).result()
+    if isinstance(answer, Exception):
+        raise _describe_silence(scheduler, answer)
+    if not isinstance(answer, dict) or answer.get("type") != "Scheduler":
+        raise _describe_other(scheduler)
     try:
         client = Client(scheduler, timeout=CONNECTING, set_as_default=False)
     except Exception as error:  # whatever dask makes of what it was sent
@@ -159,16 +165,6 @@ def _connect(scheduler: str, progress: Progress) -> Iterator["Client"]:
     finally:
         with suppress(Exception):  # a scheduler that is gone
             client.close(timeout=2)
-
-
-def _find_scheduler(scheduler: str, progress: Progress) -> None:
-    """Raise InputError unless a scheduler of dask answers at the address."""
-    with ThreadPoolExecutor(1) as thread:  # the caller may have a loop of its own
-        answer = thread.submit(asyncio.run, _ask(scheduler, progress)).result()
-    if isinstance(answer, Exception):
-        raise _describe_silence(scheduler, answer)
-    if not isinstance(answer, dict) or answer.get("type") != "Scheduler":
-        raise _describe_other(scheduler)
 
 
 async def _ask(scheduler: str, progress: Progress) -> Any:
@@ -370,13 +366,7 @@ def _fill_window(
 
 
 def _wait(client: "Client", running: "dict[Future, Batch]", scheduler: str, progress: Progress) -> "list[Future]":
-    """Return batches that have ended.
-
-    Raises
-    ------
-    OutputError
-        If the scheduler is gone.
-    """
+    """Return batches that have ended; raises OutputError if the scheduler is gone."""
     while True:
         progress.check()
         done = [future for future in running if future.status not in ("pending",)]

@@ -128,7 +128,13 @@ def write_example_city(folder: Path, buildings: int = BUILDINGS) -> bool:
     with staging(folder.parent) as stage:
         _write_city(stage / NEW, city)
         if not is_filled:
-            _move(stage / NEW, folder)
+            made = stage / NEW
+            with moving():
+                if not folder.exists():
+                    made.replace(folder)
+                else:  # it is empty and stays, as somebody may stand in it
+                    for path in sorted(made.iterdir()):
+                        path.replace(folder / path.name)
         elif _find_digests(folder) != _find_digests(stage / NEW):
             raise _refuse(folder)
     return not is_filled
@@ -141,16 +147,6 @@ def _refuse(folder: Path) -> InputError:
             folder=plain_line(str(folder)),
         )
     )
-
-
-def _move(made: Path, folder: Path) -> None:
-    """Move a city to its place; an empty folder there stays, as somebody may stand in it."""
-    with moving():
-        if not folder.exists():
-            made.replace(folder)
-        else:
-            for path in sorted(made.iterdir()):
-                path.replace(folder / path.name)
 
 
 def _list_files(folder: Path) -> list[str]:

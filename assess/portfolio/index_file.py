@@ -179,15 +179,11 @@ def _read_rows(lines: Iterator[tuple[int, list[str]]]) -> list[IndexRow]:
     if len(rows) > MOST_ROWS:
         raise InputError(fill("more than {most:,} buildings are listed. Split the index.", most=MOST_ROWS))
     found = [_read_row(number, names, cells, faults) for number, cells in rows]
-    _raise([*faults, *_list_repeated(found)])
+    every = [*faults, *_list_repeated(found)]
+    if every:
+        more = (fill("and {n:,} more.", n=len(every) - MOST_FAULTS),) if len(every) > MOST_FAULTS else ()
+        raise InputError(join("\n", (*every[:MOST_FAULTS], *more)))
     return found
-
-
-def _raise(faults: Sequence[Text]) -> None:
-    """Raise InputError with the first faults, if there are any."""
-    if faults:
-        more = (fill("and {n:,} more.", n=len(faults) - MOST_FAULTS),) if len(faults) > MOST_FAULTS else ()
-        raise InputError(join("\n", (*faults[:MOST_FAULTS], *more)))
 
 
 def _read_heading(line: int, heading: Sequence[str]) -> list[str]:

@@ -129,13 +129,7 @@ class _Desk:
             end_worker(worker)
 
     def _wait_until_ready(self, worker: "subprocess.Popen[bytes]") -> bool:
-        """Wait for the first message of a process; return whether it came.
-
-        Raises
-        ------
-        OutputError
-            If one process after another ends without it.
-        """
+        """Wait for the first message of a process; return whether it came. OutputError if many end without it."""
         if worker.stdout is not None and receive(worker.stdout) == READY:
             self._failed_starts = 0
             return True

@@ -103,7 +103,10 @@ def write_output(job: Output, summaries: Mapping[str, Summary]) -> "tuple[Paths,
     names = list_names(job.formats)
     try:
         with stage_for(job.out) as stage, job.progress.stage("rendering", ", ".join(job.formats)):
-            view = _build_view(job, _write_tables(job, summaries, stage / NEW))
+            from assess.portfolio.city_totals import CityView
+
+            frames = {name: writer.frame for name, writer in _write_tables(job, summaries, stage / NEW).items()}
+            view = CityView(**frames, settings=job.settings, ground=_describe_ground(job.ground, frames["buildings"]))
             missing = _write_reports(job, view, stage / NEW)
             names = sorted(path.name for path in (stage / NEW).iterdir())
             write_through(stage / NEW / DATA, _describe_run(job, view, stage / NEW, names))
@@ -178,13 +181,6 @@ def _write_reports(job: Output, view: "CityView", folder: Path) -> PdfUnavailabl
 
 
 # ---------------------------------------------------------------- the view
-
-
-def _build_view(job: Output, writers: "Mapping[str, TableWriter]") -> "CityView":
-    from assess.portfolio.city_totals import CityView
-
-    frames = {name: writer.frame for name, writer in writers.items()}
-    return CityView(**frames, settings=job.settings, ground=_describe_ground(job.ground, frames["buildings"]))
 
 
 def _describe_ground(ground: GroundField | None, buildings: Any) -> "RunGround | None":

@@ -57,20 +57,15 @@ def render_ranking(view: CityView, *, options: ReportOptions | None = None, prog
         def write(book: Any) -> None:
             moment = (find_source_date() or CREATED).replace(tzinfo=None)
             book.set_properties({"title": say.say_title(view), "created": moment})
-            _write_sheets(book, content, progress)
+            names = name_sheets({key: _(title) for key, title, _write in SHEETS})
+            pen = Pen(book, names, progress)
+            pages = {key: book.add_worksheet(name) for key, name in names.items()}
+            for key, _title, write_sheet in SHEETS:
+                set_page(pages[key], say.say_title(view), names[key], "", say.say_ground(view)[:120])
+                write_sheet(pen, pages[key], content)
 
         write_book(path, write, by_row=True, progress=progress)
         return path.read_bytes()
-
-
-def _write_sheets(book: Any, content: CityContent, progress: Progress) -> None:
-    """Write the sheets in order; those without rows have their headings alone."""
-    names = name_sheets({key: _(title) for key, title, _write in SHEETS})
-    pen = Pen(book, names, progress)
-    pages = {key: book.add_worksheet(name) for key, name in names.items()}
-    for key, _title, write in SHEETS:
-        set_page(pages[key], say.say_title(content.view), names[key], "", say.say_ground(content.view)[:120])
-        write(pen, pages[key], content)
 
 
 # ---------------------------------------------------------------- sums

@@ -203,13 +203,7 @@ def _locate(ground: GroundField | None) -> GroundField | None:
 
 @contextmanager
 def _reserving(out: Path) -> Iterator[None]:
-    """Keep other runs from the folder of parts, and remove what killed ones have left.
-
-    Raises
-    ------
-    OutputError
-        If another run works there, or the folder cannot be made.
-    """
+    """Keep other runs from the folder of parts, and remove what killed ones left; raises OutputError if it cannot."""
     try:
         (out / FOLDER).mkdir(parents=True, exist_ok=True)
     except OSError as error:

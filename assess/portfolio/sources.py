@@ -198,10 +198,7 @@ def _take_row(row: IndexRow, root: Path) -> Source:
 
 
 def _judge_text(name: str) -> _Fault:
-    """Return why a path of an index cannot be used, and what to do; "" if it can.
-
-    It is judged before the file system sees it.
-    """
+    """Return why a path of an index is refused before the file system sees it, and what to do; "" if it is not."""
     is_absolute = name.startswith("/") or name[1:2] == ":"
     if is_absolute or ".." in name.split("/") or "\0" in name:
         fault = fill("the path leads out of the folder of the index.")

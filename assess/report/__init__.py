@@ -6,11 +6,11 @@ were. A run replaces and removes only what results.json lists (`assess.report.ow
 """
 
 import os
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from assess.delivery.deliver import Written, deliver, explain_fault, stage_for
 from assess.delivery.disk import find_digest, flush_file
@@ -58,73 +58,17 @@ class Job:
         return path
 
 
-# What writes each format is imported only when it is wanted.
-
-
-def _write_client(job: Job, path: Path) -> None:
-    from assess.report.pages.pdf import write_pdf
-
-    write_pdf(job.content, path, job.options, job.progress, edition="client", data=job.stage / FILES["json"])
-
-
-def _write_annex(job: Job, path: Path) -> None:
-    from assess.report.pages.pdf import write_pdf
-
-    write_pdf(job.content, path, job.options, job.progress, edition="annex", data=job.stage / FILES["json"])
-
-
-def _write_xlsx(job: Job, path: Path) -> None:
-    from assess.report.xlsx import write_xlsx
-
-    write_xlsx(job.content, path, job.progress)
-
-
-def _write_html(job: Job, path: Path) -> None:
-    from assess.report.pages.html import write_html
-
-    write_html(job.content, path, job.options, job.progress)
-
-
-def _write_json(job: Job, _path: Path) -> None:
-    job.write_data()
-
-
-def _write_csv(job: Job, path: Path) -> None:
-    from assess.report.data import write_csv
-
-    write_csv(job.results, path, job.progress)
-
-
-def _write_npz(job: Job, path: Path) -> None:
-    from assess.report.data import write_npz
-
-    write_npz(job.results, path, job.progress)
-
-
-def _write_parquet(job: Job, path: Path) -> None:
-    from assess.report.parquet_file import write_parquet
-
-    write_parquet(job.results, path, job.progress)
-
-
-def _write_docx(job: Job, path: Path) -> None:
-    from assess.report.word import write_word
-
-    write_word(job.content, path, job.options, job.progress)
-
-
-_WRITERS: Mapping[str, tuple[str, Callable[[Job, Path], None]]] = {
-    "pdf": ("report.pdf", _write_client),
-    "annex": ("annex.pdf", _write_annex),
-    "xlsx": ("report.xlsx", _write_xlsx),
-    "html": ("report.html", _write_html),
-    "json": ("results.json", _write_json),
-    "csv": ("items.csv", _write_csv),
-    "docx": ("report.docx", _write_docx),
-    "npz": ("outcomes.npz", _write_npz),
-    "parquet": ("items.parquet", _write_parquet),
+FILES: Mapping[str, str] = {
+    "pdf": "report.pdf",
+    "annex": "annex.pdf",
+    "xlsx": "report.xlsx",
+    "html": "report.html",
+    "json": "results.json",
+    "csv": "items.csv",
+    "docx": "report.docx",
+    "npz": "outcomes.npz",
+    "parquet": "items.parquet",
 }
-FILES: Mapping[str, str] = {name: file for name, (file, _) in _WRITERS.items()}
 """The formats, and the file that each is written to."""
 _PDFS = ("pdf", "annex")
 _LAST = ("json", *_PDFS)
@@ -184,10 +128,12 @@ def write_reports(
     folder, options = Path(folder), options or ReportOptions()
     options = options if options.language else replace(options, language=results.provenance.language)
     check_folder(folder, formats)
+    wanted = {*formats, "json"}
+    ordered = [name for name in FILES if name in wanted - set(_LAST)] + [name for name in _LAST if name in wanted]
     try:
         with stage_for(folder) as stage, options.spoken():
             job = Job(results, options, progress, stage / NEW)
-            missing = _write_all(job, folder, _arrange(formats))
+            missing = _write_all(job, folder, ordered)
             gone = deliver(stage, folder, lambda target: _find_old(target, job.written), FILES["json"], progress)
     except OSError as error:
         raise explain_fault(folder, error, FILES.values()) from None
@@ -199,12 +145,6 @@ def write_reports(
 
 def _find_old(folder: Path, wanted: Collection[str]) -> frozenset[str]:
     return find_reports(folder, wanted, lambda name: name in FILES.values())
-
-
-def _arrange(formats: Sequence[str]) -> list[str]:
-    """Return formats in the order in which they are written: results.json lists the others, and the PDFs carry it."""
-    wanted = {*formats, "json"}
-    return [name for name in FILES if name in wanted - set(_LAST)] + [name for name in _LAST if name in wanted]
 
 
 def check_folder(folder: Path, formats: Sequence[str] = ()) -> None:
@@ -285,8 +225,40 @@ def _seal(paths: Sequence[Path], job: Job) -> None:
 
 def _write_one(job: Job, name: str) -> None:
     """Write a format into the stage, down to the disk, and list it."""
-    file, write = _WRITERS[name]
-    write(job, job.stage / file)
-    flush_file(job.stage / file)
+    path = job.stage / FILES[name]
+    _write(job, name, path)
+    flush_file(path)
     if name not in _LAST:
-        job.listed[file] = find_digest(job.stage / file)
+        job.listed[path.name] = find_digest(path)
+
+
+def _write(job: Job, name: str, path: Path) -> None:
+    """Write a format; what does is imported only when it is wanted."""
+    if name in _PDFS:
+        from assess.report.pages.pdf import write_pdf
+
+        data = job.stage / FILES["json"]
+        edition: Literal["client", "annex"] = "client" if name == "pdf" else "annex"
+        write_pdf(job.content, path, job.options, job.progress, edition=edition, data=data)
+    elif name == "xlsx":
+        from assess.report.xlsx import write_xlsx
+
+        write_xlsx(job.content, path, job.progress)
+    elif name == "html":
+        from assess.report.pages.html import write_html
+
+        write_html(job.content, path, job.options, job.progress)
+    elif name == "json":
+        job.write_data()
+    elif name in ("csv", "npz"):
+        from assess.report.data import write_csv, write_npz
+
+        (write_csv if name == "csv" else write_npz)(job.results, path, job.progress)
+    elif name == "docx":
+        from assess.report.word import write_word
+
+        write_word(job.content, path, job.options, job.progress)
+    else:
+        from assess.report.parquet_file import write_parquet
+
+        write_parquet(job.results, path, job.progress)

@@ -248,7 +248,8 @@ def _describe_building(results: Results) -> dict[str, tuple[str, str]]:
     for column in BUILDING.columns:
         value = getattr(results.building, column.name)
         if column.name == "scenario_kind":
-            value = _scenario_kind(value, results.provenance.scenario)
+            used, chosen = results.provenance.scenario, value or "as filled"
+            value = used if used == chosen else _("{used} (the workbook: {chosen})", used=_(used), chosen=_(chosen))
         if value not in (None, "") and column.kind != "file":
             shown = number(value / column.factor, ".4g") if isinstance(value, float) else str(value)
             shown = (YES if value else NO) if column.kind == "flag" else shown
@@ -258,27 +259,17 @@ def _describe_building(results: Results) -> dict[str, tuple[str, str]]:
     return lines
 
 
-def _scenario_kind(chosen: str, used: str) -> str:
-    if used == (chosen or "as filled"):
-        return used
-    return _("{used} (the workbook: {chosen})", used=_(used), chosen=_(chosen or "as filled"))
-
-
 def _list_floors(results: Results, rows: Sequence[ItemResult]) -> tuple[FloorPage, ...]:
     by_floor: dict[str, list[ItemResult]] = {floor.floor: [] for floor in results.floor_rows}
     for one in rows:
         by_floor[one.item.floor].append(one)
     pages = []
     for floor in order_floors(results.floor_rows):
-        title, own = _title_floor(floor), by_floor[floor.floor]
+        named = f"{floor.floor} – {floor.name}" if floor.name else _("Floor {floor}", floor=floor.floor)
+        title, own = words.cut(named, 60), by_floor[floor.floor]
         found = [one for one in results.motions if one.floor == floor.floor]
         pages.append(FloorPage(floor, title, found, count(title, own), own))
     return tuple(pages)
-
-
-def _title_floor(floor: FloorRow) -> str:
-    named = f"{floor.floor} – {floor.name}" if floor.name else _("Floor {floor}", floor=floor.floor)
-    return words.cut(named, 60)
 
 
 def _work(results: Results, worked: WorkedMethod) -> WorkedExample:

@@ -119,8 +119,6 @@ def _tokenise(line: str) -> list[Token]:
 
 # ---------------------------------------------------------------- where the equations of a line are
 
-_IN_WORDS = ("word", "other", "comma")
-
 
 def _find_stretches(line: str) -> Iterator[tuple[int, int]]:
     """Yield start and end of each stretch that may be an equation: it has a relation or a product, and no words."""
@@ -138,9 +136,10 @@ def _find_stretches(line: str) -> Iterator[tuple[int, int]]:
 
 def _ends_stretch(tokens: list[Token], at: int, depth: int) -> bool:
     token = tokens[at]
-    if token.kind in _IN_WORDS:
+    if token.kind in ("word", "other", "comma"):
         return token.kind != "comma" or depth <= 0
-    return depth <= 0 and (_is_conjunction(tokens, at) or _is_number_of_equation(tokens, at))
+    begins_number = token.kind == "space" and len(token.text) > 2  # that of the equation, as in ``R = k/N   (5)``
+    return depth <= 0 and (_is_conjunction(tokens, at) or begins_number)
 
 
 def _is_conjunction(tokens: list[Token], at: int) -> bool:
@@ -149,11 +148,6 @@ def _is_conjunction(tokens: list[Token], at: int) -> bool:
     is_alone = len(around) == 3 and all(one.kind == "space" for one in around[:2])
     text = tokens[at].text
     return is_alone and len(text) == 1 and "a" <= text <= "z" and around[2].kind in ("name", "word")
-
-
-def _is_number_of_equation(tokens: list[Token], at: int) -> bool:
-    """Tell whether the number of an equation begins or has begun here, as in ``R = k/N   (5)``."""
-    return tokens[at].kind == "space" and len(tokens[at].text) > 2
 
 
 def _bounds(stretch: list[Token]) -> Iterator[tuple[int, int]]:
@@ -295,7 +289,7 @@ class _Parser:
     def atom(self) -> str:
         kind = self.peek().kind
         if kind == "number":
-            return _number(self.take("number"))
+            return self.take("number").replace(",", "{,}")
         if kind == "half":
             return r"\frac{1}{2}" if self.take("half") else ""
         if kind == "name":
@@ -350,10 +344,6 @@ class _Parser:
         return rf"\left{opened}{listed}\right{_CLOSING[opened]}"
 
 
-def _number(text: str) -> str:
-    return text.replace(",", "{,}")
-
-
 def _bare(tex: str) -> str:
     """Return TeX without the brackets around all of it."""
     for opened, closed in _CLOSING.items():
@@ -379,18 +369,10 @@ def write_name(name: str) -> str:
     found = _NAME.fullmatch(name)
     if found is None:
         raise NotationError(name)
-    base = _write_base(found["base"])
+    base = found["base"]
+    base = f"({base})" if base == "B/H" else rf"\mathrm{{{base}}}" if len(base) > 1 else _GREEK.get(base, base)
     index = (found["index"] or "").removeprefix("_").translate(_LOWER)
-    lower = f"_{{{_write_index(index)}}}" if index else ""
+    shown = _GREEK.get(index, index) if len(index) == 1 or index.isdigit() else rf"\mathrm{{{index}}}"
+    lower = f"_{{{shown}}}" if index else ""
     primes = found["primes"].replace("″", "′′")  # as letters: mathtext's own primes are tiny in STIX
     return base + lower + (r"^{\ast}" if found["star"] else "") + (rf"\mathrm{{{primes}}}" if primes else "")
-
-
-def _write_base(base: str) -> str:
-    if base == "B/H":
-        return f"({base})"
-    return rf"\mathrm{{{base}}}" if len(base) > 1 else _GREEK.get(base, base)
-
-
-def _write_index(index: str) -> str:
-    return _GREEK.get(index, index) if len(index) == 1 or index.isdigit() else rf"\mathrm{{{index}}}"

@@ -98,13 +98,11 @@ def find_missing(text: str) -> str:
     return "".join(sign for sign in dict.fromkeys(text) if not sign.isascii() and ord(sign) not in _held())
 
 
-_TEXT = (("Report", "regular"), ("Report Signs", "regular"))
-
-
 @cache
 def _held() -> frozenset[int]:
     """Return the code points of the regular fonts; what another style lacks is taken from them."""
-    fonts = [path for key, path in resources.fonts().items() if key in _TEXT]
+    own = (("Report", "regular"), ("Report Signs", "regular"))
+    fonts = [path for key, path in resources.fonts().items() if key in own]
     return frozenset(code for path in fonts for code in _open_font(str(path)).get_charmap())
 
 

@@ -42,10 +42,13 @@ ROW: Schema = {"type": "integer", "minimum": 1}
 
 def build_schema() -> Schema:
     """Return the schema."""
+    kinds = {"number": _or_null({"type": "number"}), "count": _or_null({"type": "integer"}),
+             "flag": _or_null({"type": "boolean"}), "file": _or_null(TEXT)}  # fmt: skip
+    verification = _of_fields(SIMULATION_FIELDS)["properties"]["verification"]
     top = {
         "schema": {"const": VERSION},
         "assess": _assess(),
-        "building": _object({key: value for column in BUILDING.columns for key, value in _building(column)}),
+        "building": _object({building_key(column): kinds.get(column.kind, TEXT) for column in BUILDING.columns}),
         "floors": _list(_object({
             "floor": TEXT, "name": TEXT, "elevation_m": _or_null({"type": "number"}),
             "demands": _list(_ref("demand")) | {"minItems": len(AXES)},
@@ -62,18 +65,13 @@ def build_schema() -> Schema:
         "title": "assess: results.json",
         "description": "Results of one run. Units are in the names; null is unknown. `schema` rises with each change.",
         **_object(top),
-        "$defs": _definitions(),
-    }
-
-
-def _definitions() -> Schema:
-    verification = _of_fields(SIMULATION_FIELDS)["properties"]["verification"]
-    return {
-        "method": _method(),
-        "demand": _of_fields(MOTION_FIELDS) | {"description": "A motion that serves a floor along an axis."},
-        "item": _item(),
-        "verification": verification | {"description": "What simulation found; null: it was not simulated."},
-        **{name: _of_row(row) | _conditions(row) for row, name in _ROWS.items()},
+        "$defs": {
+            "method": _method(),
+            "demand": _of_fields(MOTION_FIELDS) | {"description": "A motion that serves a floor along an axis."},
+            "item": _item(),
+            "verification": verification | {"description": "What simulation found; null: it was not simulated."},
+            **{name: _of_row(row) | _conditions(row) for row, name in _ROWS.items()},
+        },
     }
 
 
@@ -172,12 +170,6 @@ def _schedule() -> Schema:
         "entries_without_cost": COUNT,
     })  # fmt: skip
     return made | {"description": "What to fix, with what, and what it changes: screening, not design."}
-
-
-def _building(column: Column) -> Iterable[tuple[str, Schema]]:
-    kinds = {"number": _or_null({"type": "number"}), "count": _or_null({"type": "integer"}),
-             "flag": _or_null({"type": "boolean"}), "file": _or_null(TEXT)}  # fmt: skip
-    yield building_key(column), kinds.get(column.kind, TEXT)
 
 
 def building_key(column: Column) -> str:

@@ -39,6 +39,11 @@ def order_rows(rows: Sequence[ItemResult], floors: Sequence[str]) -> list[ItemRe
     return [one for own in ordered for one in own]
 
 
+def by_chance(one: ItemResult) -> tuple[object, ...]:
+    """Return what sorts rows by their class and chance, the worst first, then by name."""
+    return -one.adopted.upper, -one.adopted.probability, natural_key(one.item.item)
+
+
 def find_kind(one: ItemResult) -> tuple[object, ...]:
     """Return what identical rows share: floor, description, type, sizes, anchoring and class."""
     item, adopted = one.item, one.adopted

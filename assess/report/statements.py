@@ -70,7 +70,6 @@ def list_assumptions(results: Results) -> Lines:
 
 
 def _list_for_anchors(results: Results) -> Lines:
-    """Return what was assumed of the weights and brackets of pieces."""
     anchors, lines = [item.anchor for item in results.item_rows], Lines()
     if weights := sum(one.weight_source == "estimate" for one in anchors):
         where = ngettext("Weight unknown in {n:,} row", "Weight unknown in {n:,} rows", weights)
@@ -142,7 +141,6 @@ def _list_couplings(routes: RouteTables, seed: int) -> Lines:
 
 
 def _list_constants(results: Results) -> Lines:
-    """Return the parameters of the methods, and what holds for every number."""
     return [
         *((_(method.title), _list_parameters(results, method)) for method in results.methods if method.parameters),
         (_("Gravity"), f"{number(GRAVITY)} m/s²"),

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext
-from assess.natural import natural_key
 from assess.report import words
 from assess.report.counts import Counts
 from assess.report.findings.apart import say_apart
 from assess.report.findings.at_risk import RouteAtRisk, list_routes_at_risk, say_routes
 from assess.report.findings.ground_source import say_ground
 from assess.report.findings.schedule_words import Entry, list_entries, say_doubtful_brackets
+from assess.report.row_order import by_chance
 from assess.results import ItemResult, Results
 from assess.risk import RiskClass
 
@@ -57,7 +57,7 @@ def build_summary(results: Results, rows: Sequence[ItemResult], total: Counts) -
 
 def list_worst(results: Sequence[ItemResult]) -> list[ItemResult]:
     """Return the free-standing pieces that are most likely to fall, of the run's basis."""
-    return sorted((one for one in results if not (one.is_anchored or one.apart)), key=_worst_first)[:WORST]
+    return sorted((one for one in results if not (one.is_anchored or one.apart)), key=by_chance)[:WORST]
 
 
 def list_risky(results: Sequence[ItemResult], basis: str = "") -> list[ItemResult]:
@@ -66,11 +66,7 @@ def list_risky(results: Sequence[ItemResult], basis: str = "") -> list[ItemResul
     Those of the run's basis, or with `basis` those that stand apart with it.
     """
     found = [one for one in results if not one.is_anchored and one.apart == basis]
-    return sorted((one for one in found if one.adopted.upper >= RiskClass.HIGH), key=_worst_first)
-
-
-def _worst_first(one: ItemResult) -> tuple[object, ...]:
-    return -one.adopted.upper, -one.adopted.probability, natural_key(one.item.item)
+    return sorted((one for one in found if one.adopted.upper >= RiskClass.HIGH), key=by_chance)
 
 
 def say_plainly(
@@ -99,7 +95,12 @@ def _say_falls(total: Counts, fixes: Sequence[Entry]) -> list[str]:
     texts = []
     if total.expected >= 0.05 or total.unconfirmed:
         expected = _("About {expected:.1f} pieces are expected to fall", expected=total.expected)
-        texts.append(f"{expected}{_say_up_to(total.unconfirmed)}{_say_range(total)}.")
+        if n := total.unconfirmed:
+            expected += ", " + ngettext("and up to {n:,} unconfirmed piece", "and up to {n:,} unconfirmed pieces", n)
+        if total.falls_low is not None and total.falls_high is not None:
+            range_ = words.say_span((round(total.falls_low), round(total.falls_high)))
+            expected += "; " + _("{range} in 90 % of such earthquakes", range=range_)
+        texts.append(f"{expected}.")
     first = [one for one in fixes[:FIXES] if one.together is not None]
     if total.expected >= 0.05 and first:
         texts.append(ngettext(
@@ -108,19 +109,6 @@ def _say_falls(total: Counts, fixes: Sequence[Entry]) -> list[str]:
             len(first), share=100 * (first[-1].together or 0.0),
         ))  # fmt: skip
     return texts
-
-
-def _say_range(total: Counts) -> str:
-    if total.falls_low is None or total.falls_high is None:
-        return ""
-    range_ = words.say_span((round(total.falls_low), round(total.falls_high)))
-    return "; " + _("{range} in 90 % of such earthquakes", range=range_)
-
-
-def _say_up_to(unconfirmed: int) -> str:
-    if not unconfirmed:
-        return ""
-    return ", " + ngettext("and up to {n:,} unconfirmed piece", "and up to {n:,} unconfirmed pieces", unconfirmed)
 
 
 def _say_counts(total: Counts) -> str:
@@ -152,7 +140,6 @@ def _say_counts(total: Counts) -> str:
 
 
 def _say_simulated(total: Counts) -> str:
-    """Say the counts of the simulated pieces where others are counted apart."""
     if not total.risky_span[1]:
         return ngettext(
             "The {n:,} simulated free-standing piece has no high or very high chance of overturning in this scenario.",

@@ -168,7 +168,9 @@ def build_couplings(
     `progress` is checked for a cancel. Unconfirmed pieces stand in every draw, or fall in every one.
     """
     keys, whole = tuple(keys), of_all() if of_all else None
-    columns = _list_columns(keys)
+    columns: dict[int, list[int]] = {}
+    for at, (item, _number) in enumerate(keys):
+        columns.setdefault(item, []).append(at)
     known = [item for item in columns if item not in falls.unconfirmed]
     fallen = frozenset(key for key in keys if unconfirmed_fall and key[0] in falls.unconfirmed)
     simulated = {item: columns[item] for item in known if item in falls.fell}
@@ -197,14 +199,6 @@ def build_couplings(
         unverified=int(falls.quantity[alone].sum()),
         unconfirmed=int(falls.quantity[[item for item in columns if item in falls.unconfirmed]].sum()),
     )
-
-
-def _list_columns(keys: Sequence[Key]) -> dict[int, list[int]]:
-    """Return the places of the pieces of each row."""
-    columns: dict[int, list[int]] = {}
-    for at, (item, _number) in enumerate(keys):
-        columns.setdefault(item, []).append(at)
-    return columns
 
 
 @dataclass(frozen=True, slots=True, eq=False)

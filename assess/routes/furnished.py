@@ -31,7 +31,7 @@ def list_unfurnished(inventory: Inventory) -> tuple[Place, ...]:
         if not any((one.floor, name) in taken for name in names[one.place])
     ]
     inside = _find_inside(left, inventory.items)
-    loose = Counter(item.floor for item in inventory.items if not item.room and not _is_placed(item))
+    loose = Counter(item.floor for item in inventory.items if not item.room and (item.x is None or item.y is None))
     return tuple(_leave_out(loose, [one for at, one in enumerate(left) if at not in inside]))
 
 
@@ -83,7 +83,3 @@ def _find_inside(rooms: Sequence[Place], items: Sequence[Item]) -> set[int]:
     tree = STRtree([Point(at) for _floor, at in placed])
     pairs = tree.query([Polygon(rooms[at].outline) for at in outlined], predicate="covers").T.tolist()
     return {outlined[at] for at, piece in pairs if rooms[outlined[at]].floor == placed[piece][0]}
-
-
-def _is_placed(item: Item) -> bool:
-    return item.x is not None and item.y is not None

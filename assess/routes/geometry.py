@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -96,7 +96,9 @@ def build_shapes(
 def _shape(item: Item, at: Point, away: float | None) -> Shape:
     from shapely import Polygon, union_all
 
-    across, turns = item.width or item.breadth, tuple(_turns(item))
+    across, turns = item.width or item.breadth, [turn(item)]
+    if item.axis is None and item.angle_deg is None:  # Breadth may lie along either axis
+        turns.append(turn(item) + 90.0)
     standing = union_all([Polygon(rectangle(at, a, (-item.breadth / 2, item.breadth / 2), across)) for a in turns])
     ways = [one for a in turns for one in fallen(at, a, item.breadth, across, item.height)]
     if away is not None:
@@ -110,13 +112,6 @@ def _shape(item: Item, at: Point, away: float | None) -> Shape:
 def angle_apart(one: float, other: float) -> float:
     """Return how far a direction is from another, -180 to 180 [deg]."""
     return (one - other + 180.0) % 360.0 - 180.0
-
-
-def _turns(item: Item) -> Iterator[float]:
-    """Yield the directions of Breadth that are possible: both axes where neither Axis nor Angle is given."""
-    yield turn(item)
-    if item.axis is None and item.angle_deg is None:
-        yield turn(item) + 90.0
 
 
 # ---------------------------------------------------------------- segments

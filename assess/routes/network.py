@@ -195,10 +195,7 @@ def _below(part: Part, room: str, heights: Mapping[str, float]) -> Part:
 
 
 def _ways_part(part: Part, room: str) -> Part | None:
-    """Keep the segments on simple ways from a room to a way out: those in one ring with an edge that joins the two.
-
-    None where there is no way.
-    """
+    """Keep segments on simple ways from a room to a way out: those in a ring with an edge that joins both; or None."""
     graph: nx.Graph[str] = nx.Graph([(room, BEYOND)])
     joining: dict[frozenset[str], list[tuple[str, str, int]]] = {}
     for edge in part.edges:

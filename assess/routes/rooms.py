@@ -177,7 +177,7 @@ def _ways(scene: Scene, place: Place, part: Part, rows: Sequence[SegmentRow]) ->
 
 def _way(scene: Scene, segments: tuple[int, ...], end: str) -> WayRow:
     def happens(draws: Draws) -> tuple[int, int, int]:
-        return scene.at_best_and_worst(draws, segments, _is_any_blocked)
+        return scene.at_best_and_worst(draws, segments, lambda blocked, _: union(blocked.values()))
 
     standing, if_fallen = scene.bounds(segments, happens)
     lost, fallen = standing[0], if_fallen[0]
@@ -188,10 +188,6 @@ def _way(scene: Scene, segments: tuple[int, ...], end: str) -> WayRow:
         blocked=lost,
         blocked_if_unconfirmed_fall=fallen if lost.unconfirmed else None,
     )
-
-
-def _is_any_blocked(blocked: Blocked, _every: int) -> int:
-    return union(blocked.values())
 
 
 # ---------------------------------------------------------------- floors

@@ -147,19 +147,17 @@ def check_costs(tables: Tables) -> Iterator[Problem]:
         detail = find_detail(row.get("detail"))
         before = found.setdefault(detail.key if detail else "", row)
         if detail is None:
-            yield _report_detail(table, row)
+            listed = join(", ", [one.title for one in DETAILS.values()])
+            message = fill(
+                "Detail {name} is not a known way of fixing: its cost is left out.", name=row.quote("detail")
+            )
+            yield table.problem("detail", row, message, fill("Choose one of: {listed}", listed=listed), "warning")
         elif before is not row and key(before.get("detail")) != key(row.get("detail")):  # which is a duplicate already
             cell = table.cell("detail", before.number)
             message = fill("Detail {name} is the same as that in {cell}.", name=row.quote("detail"), cell=cell)
             yield table.problem("detail", row, message, fill("Give each detail one cost."))
         elif detail.key not in (AT_WALL, AT_BASE) and row.get("unit_cost") is not None:
             yield _report_alternative(table, row)
-
-
-def _report_detail(table: Table, row: Row) -> Problem:
-    listed = join(", ", [one.title for one in DETAILS.values()])
-    message = fill("Detail {name} is not a known way of fixing: its cost is left out.", name=row.quote("detail"))
-    return table.problem("detail", row, message, fill("Choose one of: {listed}", listed=listed), "warning")
 
 
 def _report_alternative(table: Table, row: Row) -> Problem:
@@ -187,10 +185,7 @@ def check_floors(tables: Tables, *, is_shaken: bool = False) -> Iterator[Problem
 
 
 def _check_demands(table: Table, *, has_storeys: bool) -> Iterator[Problem]:
-    """Report floors that nothing can serve; what cannot be read has been reported.
-
-    A motion at grade serves every floor, one above those of which the height is known.
-    """
+    """Report floors that nothing can serve: a motion at grade serves all, one above it only those of known height."""
     rows = table.with_all("floor")
     is_numbered = has_storeys and not any(table.says(row, "elevation") for row in rows)
 
@@ -279,7 +274,13 @@ def check_items(tables: Tables) -> Iterator[Problem]:
                 yield table.habit(name, row, message, fill("Fill it in, or choose a {type} that has one.", **values))
         yield from _check_sizes(table, row, sizes, types.get(key(row.get("type") or "")))
         yield from _check_position(table, row)
-        yield from _check_axis(table, row)
+        axis, turned = row.get("axis"), turned_axis(row)
+        if axis is not None and turned is not None and axis != turned:
+            values = {"axis": axis, "angle": row.get("angle_deg"), "turned": turned}
+            message = fill(
+                "Axis is {axis}, but an Angle of {angle:g} deg lies along {turned}; {axis} is used.", **values
+            )
+            yield table.habit("axis", row, message, fill("Correct one of the two."), "warning")
         yield from _check_bracket(table, row, sizes.get("height"))
         if "width" not in sizes:
             yield from _check_reach(table, row)
@@ -365,15 +366,6 @@ def _check_position(table: Table, row: Row) -> Iterator[Problem]:
     if (x is None) != (y is None) and not (table.spoilt("x", row) or table.spoilt("y", row)):
         fix = fill("Fill in the other, or clear both.")
         yield table.habit("y" if y is None else "x", row, fill("a position needs both X and Y."), fix, "warning")
-
-
-def _check_axis(table: Table, row: Row) -> Iterator[Problem]:
-    """Warn of an axis that the angle contradicts: one of the two is a slip, and one of them may be the milder."""
-    axis, turned = row.get("axis"), turned_axis(row)
-    if axis is not None and turned is not None and axis != turned:
-        values = {"axis": axis, "angle": row.get("angle_deg"), "turned": turned}
-        message = fill("Axis is {axis}, but an Angle of {angle:g} deg lies along {turned}; {axis} is used.", **values)
-        yield table.habit("axis", row, message, fill("Correct one of the two."), "warning")
 
 
 def check_source_ids(tables: Tables) -> Iterator[Problem]:

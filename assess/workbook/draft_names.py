@@ -38,10 +38,6 @@ def is_draft(name: str) -> bool:
     return name.rstrip().endswith(")") and key(name).endswith(_marks())
 
 
-def _find_mark(name: str) -> str:
-    return name[name.rindex("(") :].strip()
-
-
 def check_drafts(tables: Tables) -> Iterator[Problem]:
     """Warn, once a workbook, of routes that still carry the mark."""
     table = tables["Routes"]
@@ -51,17 +47,18 @@ def check_drafts(tables: Tables) -> Iterator[Problem]:
             drafts.setdefault(key(row.get("route")), row)
     if drafts:
         first = next(iter(drafts.values()))
+        name = first.get("route")
         message = nfill(
             "Route {route} was drafted from a building model.",
             "{n} routes were drafted from a building model, such as {route}.",
             len(drafts),
-            route=shorten(first.get("route")),
+            route=shorten(name),
         )
         fix = nfill(
             "Walk it, correct it, and take '{mark}' off its name.",
             "Walk them, correct them, and take '{mark}' off their names.",
             len(drafts),
-            mark=_find_mark(first.get("route")),
+            mark=name[name.rindex("(") :].strip(),
         )
         yield table.problem("route", first, message, fix, "warning")
         yield from _check_widths(table)

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from assess.i18n import gettext
-from assess.methods import LiveCells, Method, MethodInfo, Range, all_methods
+from assess.methods import LiveCells, Method, MethodInfo, all_methods
 from assess.methods._expression import EXCEL, Expression
 from assess.methods._method import ALIKE
 from assess.risk import LIMITS, RiskClass
@@ -71,7 +71,10 @@ def risk_class(
     for limit, label in zip((medium, high, very_high), labels, strict=True):
         words = f"IF({probability}>={limit},{label},{words})"
     cells = {"breadth_to_height": ratio, "pfa": pfa}
-    inside = ",".join(_between(cells[quantity], checked) for quantity, checked in method.valid.items())
+    inside = ",".join(
+        f"{cells[quantity]}>={one.low * (1 - ROUNDING)!r},{cells[quantity]}<={one.high * (1 + ROUNDING)!r}"
+        for quantity, one in method.valid.items()
+    )
     return f'{words}&IF(AND({inside}),"","{OUTSIDE}")'
 
 
@@ -90,7 +93,3 @@ def between(number: str, column: Column, scale: float = 1.0) -> str:
 def worse_axis(x: str, y: str) -> str:
     """Return the axis of the larger peak, X where they are alike to `ALIKE` decimals, as conversions leave them."""
     return f'IF(ROUND({x},{ALIKE})>=ROUND({y},{ALIKE}),"X","Y")'
-
-
-def _between(value: str, inside: Range) -> str:
-    return f"{value}>={inside.low * (1 - ROUNDING)!r},{value}<={inside.high * (1 + ROUNDING)!r}"

@@ -34,7 +34,9 @@ def fill_building(
     row = own.rows[0] if own.rows else Row(0, {})
     unused = {name for name in new.places if own.says(row, name)}
     cells = {new.cell(name, 0) for name in unused}
-    problems = [*problems, *(_from_index(one) for one in found if one.cell not in cells)]
+    new_ones = [one for one in found if one.cell not in cells]
+    of_index = (replace(one, message=fill("of the index: {message}", message=one.message)) for one in new_ones)
+    problems = [*problems, *of_index]
     values = {name: value for name, value in new.rows[0].filled().items() if name not in unused}
     if not values:
         return tables, problems
@@ -49,11 +51,6 @@ def fill_building(
     base = own if own.rows else replace(new, places={}, rows=(row,))
     filled = replace(base, rows=(replace(row, values={**row.values, **values}),))
     return {**tables, BUILDING.name: filled}, problems
-
-
-def _from_index(problem: Problem) -> Problem:
-    message = fill("of the index: {message}", message=problem.message)
-    return replace(problem, message=message)
 
 
 def replace_ground(tables: Tables, ground: GroundField) -> tuple[Tables, list[Problem]]:

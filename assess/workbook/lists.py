@@ -139,8 +139,10 @@ class ListsWriter:
         for row, (name, field) in enumerate(_NEEDED_FACTORS, 4):
             sheet = next(sheet for sheet in SHEETS if sheet.name == name)
             column = sheet.column(field)
-            cell = f"$A${_line(field)}" if sheet.layout == "form" else f"{LETTERS[name, field]}$1"
-            unit = _bracket(f"{gettext(name)}!{cell}")
+            at_head = f"$A${_line(field)}" if sheet.layout == "form" else f"{LETTERS[name, field]}$1"
+            cell = f"{gettext(name)}!{at_head}"
+            start = f'FIND("[",{cell})'
+            unit = f'LOWER(SUBSTITUTE(MID({cell},{start}+1,FIND("]",{cell})-{start}-1)," ",""))'
             factor = QUANTITIES[column.quantity][column.header(self.units).partition("[")[2].rstrip("]")]
             formula = f'=IFERROR(VLOOKUP({unit},units_{column.quantity},2,FALSE),"{gettext(NO_UNIT)}")'
             label = f"{gettext(name)}: {gettext(column.label)}"
@@ -287,11 +289,6 @@ def _in_english(typed: str) -> str:
         said = gettext(name).lower().replace(" ", "").replace("-", "")
         expression = expression if said == kind else f'IF({typed}="{said}","{kind}",{expression})'
     return expression
-
-
-def _bracket(cell: str) -> str:
-    start = f'FIND("[",{cell})'
-    return f'LOWER(SUBSTITUTE(MID({cell},{start}+1,FIND("]",{cell})-{start}-1)," ",""))'
 
 
 def _serving(cells: Mapping[str, str]) -> list[str]:

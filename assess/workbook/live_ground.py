@@ -94,7 +94,10 @@ def list_names(building: Mapping[str, str], run_assess: str, wrong: str) -> Iter
     by_height = f'IF(building_roof>0,{LONGER * CODE_FACTOR!r}*building_roof^{CODE_POWER!r},"")'
     found = f"IF(ISNUMBER(building_roof),{by_height},building_roof)"
     yield "building_period", f'IF(given_period="",{found},given_period)'
-    yield from _list_choices(building, wrong)
+    structure, formula = (find_row(trim(building[name]), f"list_{name}") for name in ("structure", "class_by"))
+    found = f"IFERROR(INDEX(structure_rows,{structure}),{wrong})"
+    yield "structure_row", f'IF({trim(building["structure"])}="",0,{found})'
+    yield "class_by", f'IF({trim(building["class_by"])}="",1,IFERROR({formula},{wrong}))'
     is_wrong = 'AND(ISTEXT(building_period),building_period<>"")'
     yield "building_fault", f"IF({is_wrong},building_period,{wrong})"
     last = len(PERIODS)
@@ -144,13 +147,6 @@ def _list_ground(building: Mapping[str, str], run_assess: str) -> Iterator[tuple
     known = f"IF(ISNUMBER(shaking_at),MAX(own_spread,{by_class}),shaking_at)"
     yield "ground_spread", f"IF(ISNUMBER(own_spread),{known},own_spread)"
     yield "ground_peak", f'IF(known_pga="",{RATIO_SCATTER!r},0)'
-
-
-def _list_choices(building: Mapping[str, str], wrong: str) -> Iterator[tuple[str, str]]:
-    structure, formula = (find_row(trim(building[name]), f"list_{name}") for name in ("structure", "class_by"))
-    found = f"IFERROR(INDEX(structure_rows,{structure}),{wrong})"
-    yield "structure_row", f'IF({trim(building["structure"])}="",0,{found})'
-    yield "class_by", f'IF({trim(building["class_by"])}="",1,IFERROR({formula},{wrong}))'
 
 
 def _find_ratio(axis: str, run_assess: str) -> str:

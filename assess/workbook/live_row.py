@@ -66,12 +66,10 @@ class LiveRow:
         return f"=IF(class_by=2,{by_paper},{found})"
 
     def _paper_class(self, cells: Mapping[str, str]) -> str:
-        """Return the formula for the class by OR; a piece that is anchored has none, whatever its motion.
-
-        Whether a bracket of known capacity holds is for the program to say.
-        """
+        """Return the formula for the class by OR; a piece that is anchored has none, whatever its motion."""
         risk = cells[paper_formula().short_title]
         is_anchored, is_known = is_among(self._own("anchored"), "anchored_words"), self._own("bracket_capacity")
+        # whether a bracket of known capacity holds is for the program to say
         held = f'IF(TRIM({is_known})="",{_say(IS_ANCHORED)},{_say(RUN_ASSESS)})'
         either = f"IF({is_anchored},{held},IF(ISNUMBER({risk}),{_find_class(paper_formula(), cells)},{risk}))"
         is_ready = f"OR(ISNUMBER({risk}),{risk}={_say(RUN_ASSESS)},{risk}={_say(NO_SHAKING)})"

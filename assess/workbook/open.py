@@ -489,15 +489,16 @@ class SheetCells(Part):
         if self._kind == "b":
             return bool(int(text))
         if self._kind == "n":
-            return self._number_or_date(float(text) if any(sign in text for sign in ".eE") else int(text))
+            return read_number(
+                float(text) if any(sign in text for sign in ".eE") else int(text),
+                self._format(self._style),
+                is_1904=self.shared.is_1904,
+            )
         if self._kind == "d":
             from openpyxl.utils.datetime import from_ISO8601
 
             return from_ISO8601(text)  # type: ignore[no-untyped-call]
         return decode_text(text)
-
-    def _number_or_date(self, number: float) -> Any:
-        return read_number(number, self._format(self._style), is_1904=self.shared.is_1904)
 
     def _format(self, style: str) -> str | None:
         number = int(style) if style.isdigit() else 0

@@ -14,7 +14,7 @@ from typing import Any
 from assess.errors import Correction, FurnitureGap, Gap, Problem, Severity
 from assess.i18n import Text, fill
 from assess.units import QUANTITIES, read_unit
-from assess.workbook.habits import CellError, Remark
+from assess.workbook.habits import CellError
 from assess.workbook.held import HeldCells
 from assess.workbook.names import ENGLISH, find_column, find_near_column, is_live, plain, split_header, versions
 from assess.workbook.open import HEADER_ROWS, MAX_COLUMNS, MAX_ROWS, UNSAVED, Cells, SheetCells
@@ -309,7 +309,12 @@ class _Parser:
         body = chain(top, rows)
         best = self._best_row(candidates)
         if best is None:
-            self._report_no_header(is_filled=bool(candidates))
+            if self.own.required or candidates:
+                needed = [column.header() for column in self.own.columns if column.required]
+                message = fill("no header row was found in the first {rows} rows.", rows=HEADER_ROWS)
+                self.report(
+                    self.source.top, message, fill("It needs the headers: {headers}.", headers=", ".join(needed))
+                )
             for _ in body:  # the rest is read for the bounds of the sheet
                 pass
             return []
@@ -400,12 +405,6 @@ class _Parser:
             if best is not None and needed <= {*rows[best]}:
                 break
         return None if best is None else top[best]
-
-    def _report_no_header(self, *, is_filled: bool) -> None:
-        if self.own.required or is_filled:
-            needed = [column.header() for column in self.own.columns if column.required]
-            message = fill("no header row was found in the first {rows} rows.", rows=HEADER_ROWS)
-            self.report(self.source.top, message, fill("It needs the headers: {headers}.", headers=", ".join(needed)))
 
     def _read_headers(self, number: int, cells: Cells) -> None:
         texts = {at: read_text(value) for at, value in sorted(cells.items()) if _shown(value) is not None}
@@ -519,19 +518,16 @@ class _Parser:
             self.report(self.source.address(number, at), error.message, error.fix, group=column.name)
             return None
         for remark in remarks:
-            self._note(column, value, self.source.address(number, at), remark)
+            cell = self.source.address(number, at)
+            group = f"{column.name}: {remark.habit}" if remark.habit else column.name
+            self.report(cell, remark.message, remark.fix, remark.severity, group)
+            if remark.value is not None and self.source.title:
+                self.corrections.append(Correction(self.source.title, cell, str(value), remark.value, remark.why))
         if found is None and column.required:
             message = fill("{label} is blank.", label=column.label)
             fix = fill("Fill it in, or delete the row.")
             self.report(self.source.address(number, at), message, fix, group=column.name)
         return found
-
-    def _note(self, column: Column, value: Any, cell: str, remark: Remark) -> None:
-        """Note a remark on a cell and, in a file, what belongs into the cell."""
-        group = f"{column.name}: {remark.habit}" if remark.habit else column.name
-        self.report(cell, remark.message, remark.fix, remark.severity, group)
-        if remark.value is not None and self.source.title:
-            self.corrections.append(Correction(self.source.title, cell, str(value), remark.value, remark.why))
 
 
 def _shown(value: Any) -> Any:

@@ -196,7 +196,8 @@ class _SheetPatch:
                 edits += one.edit(row)
             self.formulas += one.formulas
             added += [(column, number) for column in one.added]
-            self._refuse_all(one)
+            for refused, why in one.refused:
+                self._refuse(f"{column_letters(refused - 1)}{one.number}", why)
         edits += _insert_rows(places, new_rows)
         edits += _widen(places, added)
         return apply_edits(places.data, edits)
@@ -216,10 +217,6 @@ class _SheetPatch:
             else:
                 found.setdefault(place[1], {})[place[0]] = value
         return found
-
-    def _refuse_all(self, row: "_RowPatch") -> None:
-        for column, why in row.refused:
-            self._refuse(f"{column_letters(column - 1)}{row.number}", why)
 
     def _refuse(self, address: str, message: str) -> None:
         fix = fill("Change this cell in Excel.")

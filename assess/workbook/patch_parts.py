@@ -4,7 +4,7 @@ import posixpath
 from collections.abc import Collection, Mapping, Sequence
 
 from assess.workbook.open import RELATIONS, TYPES, WORKBOOK, Book, Tree
-from assess.workbook.places import Edit, Element, SmallPart, add_attribute, apply_edits, drop_attributes, split_range
+from assess.workbook.places import Edit, SmallPart, add_attribute, apply_edits, drop_attributes, split_range
 
 _BEFORE_CALCULATION = frozenset({
     "fileVersion", "fileSharing", "workbookPr", "workbookProtection", "bookViews", "sheets", "functionGroups",
@@ -25,7 +25,11 @@ def set_recalculation(book: Book) -> dict[str, bytes]:
         return {WORKBOOK: apply_edits(part.data, [edit])}
     root = part.elements[-1]
     prefix, colon, _ = root.name.rpartition(":")
-    before = [one.end for one in part.elements if one.parent == root.name and _bare(one) in _BEFORE_CALCULATION]
+    before = [
+        one.end
+        for one in part.elements
+        if one.parent == root.name and one.name.rpartition(":")[2] in _BEFORE_CALCULATION
+    ]
     at = max(before, default=root.head)
     return {WORKBOOK: apply_edits(part.data, [(at, at, f'<{prefix}{colon}calcPr fullCalcOnLoad="1"/>'.encode())])}
 
@@ -109,7 +113,3 @@ def _list_tables(book: Book, path: str) -> list[tuple[tuple[int, int, int, int],
                 if span is not None:
                     found.append((span, table))
     return found
-
-
-def _bare(one: Element) -> str:
-    return one.name.rpartition(":")[2]

@@ -3,7 +3,7 @@
 Only files inside one folder are touched, by the rules of `assess.workbook.records`.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TypeVar
 
@@ -96,7 +96,14 @@ class PictureReader:
         table = tables["Floors"]
         for row in table.with_all("floor"):
             if table.lacks(row, "plan"):
-                yield from _check_numbers_alone(table, row)
+                given = [name for name in (*PLACED, "plan_turn") if row.get(name) is not None]
+                if given:
+                    message = fill(
+                        "{label} is filled in without {other}.", label=table.label(given[0]), other=table.label("plan")
+                    )
+                    yield table.problem(
+                        given[0], row, message, fill("Name the file of the plan, or clear it."), "warning"
+                    )
             elif row.get("plan") is not None:
                 yield from self._check_plan(table, row, tables)
 
@@ -145,10 +152,7 @@ class PictureReader:
         return read_plan(data, width)
 
     def _read(self, text: str, take: Callable[[bytes], Taken], purpose: str, side: int = 0) -> tuple[Path, Taken]:
-        """Return where a picture is, and what `take` makes of its bytes for a purpose; `side` counts for pixels alone.
-
-        Raises CellError as `find_file`; or if it cannot be opened, or `take` cannot use it.
-        """
+        """Return where a picture is, and what `take` makes of its bytes (`side`: of pixels only); raises CellError."""
         name = shorten(text)
         if self.folder is None:
             message = fill("the picture {name} cannot be used: the workbook was read without a folder.", name=name)
@@ -214,23 +218,17 @@ def _describe_unplaced(table: Table, row: Row, drawing: Drawing) -> Problem:
     return table.problem("plan", row, message, fix, "warning")
 
 
-def _check_numbers_alone(table: Table, row: Row) -> Iterator[Problem]:
-    given = [name for name in (*PLACED, "plan_turn") if row.get(name) is not None]
-    if given:
-        message = fill("{label} is filled in without {other}.", label=table.label(given[0]), other=table.label("plan"))
-        yield table.problem(given[0], row, message, fill("Name the file of the plan, or clear it."), "warning")
-
-
 def _check_place(table: Table, row: Row, plan: FloorPlan, items: Table, places: Table) -> Iterator[Problem]:
     own = [one for one in items.with_all("floor", "x", "y") if one.get("floor") == row.get("floor")]
     if not own:
         return
     outside = [one for one in own if not plan.holds((one.get("x"), one.get("y")))]
     if outside:
+        names = [shorten(one.get("item") or "?") for one in outside[:MOST_NAMED]]
         message = nfill(
             "{n:,} piece of {all:,} lies outside the plan: {names}.",
             "{n:,} pieces of {all:,} lie outside the plan: {names}.",
-            len(outside), all=len(own), names=_name(outside),
+            len(outside), all=len(own), names=", ".join(names) + (", ..." if len(outside) > MOST_NAMED else ""),
         )  # fmt: skip
         fix = fill("Check Plan left X, Plan bottom Y, Plan width and Plan turn, and the positions of these pieces.")
         yield table.problem("plan", row, message, fix, "warning")
@@ -244,8 +242,3 @@ def _check_place(table: Table, row: Row, plan: FloorPlan, items: Table, places: 
         )  # fmt: skip
         fix = fill("Check Plan width: it is that of the whole plan in the building, in the unit of its heading.")
         yield table.problem("plan_width", row, message, fix, "warning")
-
-
-def _name(rows: Sequence[Row]) -> str:
-    names = [shorten(one.get("item") or "?") for one in rows[:MOST_NAMED]]
-    return ", ".join(names) + (", ..." if len(rows) > MOST_NAMED else "")

@@ -315,10 +315,7 @@ def _checks(files: FileReader, pictures: PictureReader) -> tuple[Check, ...]:
 def _check(
     tables: Tables, found: list[Problem], checks: Sequence[Check], *, strict: bool
 ) -> tuple[Tables, list[Problem]]:
-    """Return the tables with names resolved, and without what is faulty, and all problems.
-
-    Raises WorkbookError if `strict` and there is an error.
-    """
+    """Return the tables with names resolved, without what is faulty, and all problems; `strict` raises for errors."""
     tables, notes = correct_names(tables)
     tables, more = check.run_checks(resolve(tables), checks)
     problems = [*found, *notes, *more]

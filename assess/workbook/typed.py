@@ -94,7 +94,9 @@ def _name_column(column: Column, unit: str = "") -> Text:
 
 def _take_number(column: Column, value: object, unit: str, quote: Quote) -> tuple[object, Remark | None]:
     if isinstance(value, Percent) and column.quantity == "share" and is_within(column, 100 * value, unit):
-        return 100 * value, _note_shown(column, value, unit)
+        shown = fill("{number:g}{unit}", number=100 * value, unit=f" {unit}")
+        found = note("percent", _name_column(column, unit), f"{value:.3%}", shown, 100 * value)
+        return 100 * value, replace(found, value=None)
     if not isinstance(value, str) or len(value) > LONGEST:
         return value, None
     if (length := _read_feet(column, value, unit)) is not None:
@@ -137,13 +139,6 @@ def _read_feet(column: Column, value: str, unit: str) -> float | None:
     known = QUANTITIES["length"]
     metres = (feet * known["ft"] + inches * known["in"]) * (-1 if match["sign"] == "-" else 1)
     return float(f"{metres / known[unit]:.12g}")
-
-
-def _note_shown(column: Column, value: Percent, unit: str) -> Remark:
-    """Return the note on a cell that shows a percentage; there is nothing to correct."""
-    typed = fill("{number:g}{unit}", number=100 * value, unit=f" {unit}")
-    found = note("percent", _name_column(column, unit), f"{value:.3%}", typed, 100 * value)
-    return replace(found, value=None)
 
 
 def read_digits(digits: str) -> list[float]:

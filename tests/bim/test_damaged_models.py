@@ -64,7 +64,7 @@ def test_a_damaged_model(tmp_path, models, name, seed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("part", range(PARTS))
+@pytest.mark.parametrize("part", [0, *(pytest.param(at, marks=pytest.mark.long) for at in range(1, PARTS))])
 @pytest.mark.parametrize("name", FOUND)
 def test_many_damaged_models(tmp_path, models, name, part):
     ends = {}

@@ -138,6 +138,7 @@ def _check(found, number, old, now, new):
         assert now in (old, new)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="no signals to send")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

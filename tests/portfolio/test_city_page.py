@@ -7,6 +7,7 @@ import shlex
 from dataclasses import replace
 
 import pytest
+from playwright.sync_api import expect
 
 from assess.portfolio.city_content import build_content
 from assess.portfolio.city_page import render_page
@@ -299,7 +300,7 @@ class TestInBrowser:
         page = open_page()
         at = next(at for at, one in enumerate(data["buildings"]) if one["name"].startswith("=cmd"))
         page.evaluate(f"location.hash = 'building-{at + 1}'")
-        page.wait_for_function("!document.getElementById('one').hidden")
+        expect(page.locator("#one")).to_be_visible()
         assert "<script>alert(1)</script>" in page.locator("#one h1").inner_text()
 
     @pytest.mark.parametrize("width", [390, 800, 1400])
@@ -324,6 +325,6 @@ class TestInBrowser:
         assert page.evaluate("document.documentElement.scrollWidth") <= width
         assert examine(page) == []
         page.locator("#ranked tbody button").first.click()
-        page.wait_for_function("!document.getElementById('one').hidden")
+        expect(page.locator("#one")).to_be_visible()
         assert page.evaluate("document.documentElement.scrollWidth") <= width
         assert examine(page) == []

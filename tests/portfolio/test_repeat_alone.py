@@ -55,6 +55,7 @@ def test_a_building_of_a_portfolio_alone_gives_its_numbers(tmp_path):
     assert found["a.xlsx"] != found["b.xlsx"]
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="the line is one of a POSIX shell")
 def test_the_line_on_the_page_works_as_it_stands_where_the_command_was_given(tmp_path, monkeypatch):

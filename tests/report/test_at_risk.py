@@ -243,7 +243,7 @@ def crowded(tmp_path_factory):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("language", ["en", "it"])
+@pytest.mark.parametrize("language", [pytest.param("en", marks=pytest.mark.long), "it"])
 def test_the_summary_stays_on_one_page(crowded, language, tmp_path):
     written = assess.write_reports(crowded, tmp_path, ("pdf",), ReportOptions(language=language))
     document = pypdfium2.PdfDocument(written["pdf"])

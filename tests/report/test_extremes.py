@@ -21,6 +21,7 @@ def floors(count):
     ]
 
 
+PLAIN = ("one item on one floor", "a floor without items", "an item with no name but its number")
 CASES = {
     "no items": ({"items": []}, ["There are no free-standing pieces.", "There are no pieces.", "2 floors have no"]),
     "one item on one floor": (
@@ -51,7 +52,7 @@ def _read(*paths):
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", [pytest.param(one, marks=[pytest.mark.long] if one in PLAIN else []) for one in CASES])
 def test_it_renders(tmp_path, name):
     given, told = CASES[name]
     written = assess.write_reports(assessed(tmp_path / "w.xlsx", **given), tmp_path / "out")
@@ -66,6 +67,7 @@ def test_it_renders(tmp_path, name):
     assert LONG not in text or name != "names of 300 characters"
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_two_hundred_floors(tmp_path):
     levels = floors(200)
@@ -81,6 +83,7 @@ def test_two_hundred_floors(tmp_path):
     assert sum(page.lstrip().startswith("Summary") for page in pages) == 1
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_thousand_items_take_forty_pages_and_an_appendix(tmp_path):
     book = write_thousand(tmp_path / "w.xlsx")

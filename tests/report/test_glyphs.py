@@ -110,6 +110,7 @@ for accessible in (False, True):
 """
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_machine_without_fonts_writes_the_same_report(tmp_path):
     """WeasyPrint ends the process where a family has no font at all: every family of ours is embedded."""

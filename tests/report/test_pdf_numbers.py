@@ -85,7 +85,7 @@ def assert_rows(text, items, cells):
     return [starts[start] for start in shown]
 
 
-@pytest.fixture(scope="module", params=["formulas", "verified"])
+@pytest.fixture(scope="module", params=[pytest.param("formulas", marks=pytest.mark.long), "verified"])
 def small(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp("numbers")
     items = [dict(one, item=f"{one['item']}-{copy}") for copy in range(8) for one in ITEMS]
@@ -156,6 +156,7 @@ def test_the_counts(small):
     assert re.search(rf"All floors .*{shown} {anchored} {total + sum(apart) + anchored} {falls}", text)
 
 
+@pytest.mark.long
 def test_a_long_list_in_the_appendix(tmp_path):
     items = [dict(one, item=f"{one['item']}-{copy}") for copy in range(40) for one in ITEMS]
     written = assess.write_reports(assessed(tmp_path / "w.xlsx", items, FLOORS), tmp_path / "out", ("annex", "json"))

@@ -25,7 +25,7 @@ def _run(book, out, **environment):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("language", ["English", "Italiano"])
+@pytest.mark.parametrize("language", [pytest.param("English", marks=pytest.mark.long), "Italiano"])
 def test_two_runs_write_the_same_bytes(tmp_path, language):
     book = write(tmp_path / "w.xlsx", building="Town hall", language=language)
     first = _run(book, tmp_path / "a", SOURCE_DATE_EPOCH=EPOCH, PYTHONHASHSEED="1", TZ="Pacific/Kiritimati")

@@ -117,6 +117,7 @@ def test_pictures_of_users_are_valid(tmp_path, jars):
     assert _validate(jars, *_write_both(results, tmp_path)) == [""] * 4
 
 
+@pytest.mark.long
 def test_the_example_is_valid(tmp_path, jars):
     example = assess.run(assess.read_inventory(ROOT / "inventories" / "market-street.xlsx"), UNVERIFIED)
     assert _validate(jars, *_write_both(example, tmp_path)) == [""] * 4

@@ -271,6 +271,7 @@ def _measure_stage(folder):
     return sum(sizes) if sizes else -1
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_killed_process_leaves_the_old_report_whole(tmp_path):
     """Killed at six moments, from the first file on: beside results.json all is old or all is new."""

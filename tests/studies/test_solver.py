@@ -179,6 +179,7 @@ def test_a_solver_that_fails_is_reported():
         follow(LINEAR, 3.0, Solver("RK45", "RK45", 1e-5, math.nan))
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_the_study(tmp_path):
     shares: list[float] = []

@@ -62,6 +62,7 @@ def choose(sheet, label, *buttons):
         sheet.page.locator(".grid-menu").get_by_role("button", name=one, exact=True).click()
 
 
+@pytest.mark.long
 def test_twenty_thousand_rows(page, served, tmp_path):
     sheet = opened(page, served(write_many(tmp_path / "many.xlsx"))).open("Items").settle()
     client = sheet.page.context.new_cdp_session(sheet.page)

@@ -193,10 +193,7 @@ def _draw_convergence(content: Content, traced: Sequence[Traced], names: str, pr
 
 
 def _paint_panels(traced: Sequence[Traced], paint: Callable[[Any, Traced, bool], None], figure: Any) -> Any:
-    """Paint one panel a piece, side by side; places that stay free keep the panels of one width.
-
-    Returns the last panel.
-    """
+    """Paint one panel a piece, and return the last; places that stay free keep the panels of one width."""
     columns = max(3, len(traced))
     panels = figure.subplots(1, columns, sharey=True, squeeze=False)[0]
     for at, axes in enumerate(panels):
@@ -233,7 +230,7 @@ def _paint_convergence(z: float, is_long: bool, axes: Any, one: Traced, is_first
     axes.plot(counts, fallen / counts, color=MOTION, linewidth=1.1, clip_on=False, label=name)[0].set_gid("chance")
     for limit in LIMITS:
         axes.axhline(limit, color="#444444", linewidth=0.6, linestyle="--").set_gid("class-limit")
-    axes.set_yscale("function", functions=(_root, np.square))
+    axes.set_yscale("function", functions=(lambda values: np.sqrt(np.maximum(values, 0)), np.square))
     axes.set_ylim(0, 1)
     axes.set_yticks([0, *LIMITS, 1], [f"{number(100 * tick, 'g')} %" for tick in (0, *LIMITS, 1)])
     axes.set_xscale("log" if is_long else "linear")
@@ -241,10 +238,6 @@ def _paint_convergence(z: float, is_long: bool, axes: Any, one: Traced, is_first
     axes.set_xlabel(_("motions"), fontsize=7)
     if is_first:
         axes.set_ylabel(_("chance of overturning"), fontsize=8)
-
-
-def _root(values: Any) -> Any:
-    return np.sqrt(np.maximum(values, 0))
 
 
 def _paint_all_rotations(traced: Sequence[Traced], figure: Any) -> None:

@@ -5,7 +5,7 @@ letters would be smaller than some programs can draw.
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -172,7 +172,11 @@ class Plan:
 
 def build_plan(page: FloorPage, results: Results, ways: Sequence[Stretch] = ()) -> Plan | None:
     """Return the plan of a floor with its segments, or None where neither a piece nor a segment has a position."""
-    pieces = tuple(_list_pieces(page))
+    pieces = tuple(
+        _piece(one, (one.item.x_m, one.item.y_m))
+        for one in page.results
+        if one.item.x_m is not None and one.item.y_m is not None
+    )
     if not pieces and not ways:
         return None
     own = [place for place in results.places if place.floor == page.floor.floor]
@@ -182,7 +186,7 @@ def build_plan(page: FloorPage, results: Results, ways: Sequence[Stretch] = ()) 
         pieces = tuple(replace(one, fallen=cut_falls(one.fallen, edge[0])) for one in pieces)
     places = [(place, (place.x, place.y)) for place in own if place.x is not None and place.y is not None]
     frame = _frame(pieces, ways, [at for _place, at in places], rooms, underlay)
-    unit = _unit(frame)
+    unit = max((frame[2] - frame[0]) / (WIDE - BESIDE), (frame[3] - frame[1]) / (HIGH - BELOW), 1 / LARGEST)
     signed = tuple(place_signs(ways, [bounds(one.corners) for one in pieces], unit))
     named = _name(pieces, places, rooms, signed, Names(frame, unit, [bounds(one.corners) for one in pieces]))
     return Plan(
@@ -224,12 +228,6 @@ def _name(
         "names": tuple(one for one in segments if not any(overlap(one.box, other) for other in held)),
         "keys": tuple(names.keys),
     }
-
-
-def _list_pieces(page: FloorPage) -> Iterator[Piece]:
-    for one in page.results:
-        if one.item.x_m is not None and one.item.y_m is not None:
-            yield _piece(one, (one.item.x_m, one.item.y_m))
 
 
 def _piece(one: ItemResult, at: Point) -> Piece:
@@ -302,7 +300,6 @@ def _frame(
     rooms: Sequence[Room],
     underlay: Underlay | None,
 ) -> Bounds:
-    """Return the box round what is drawn."""
     drawn: list[Sequence[Point]] = [ring for one in pieces for ring in (one.corners, *one.fallen)]
     drawn += [*(one.corners for one in ways), *(room.outline for room in rooms), places]
     xs, ys = zip(*(point for points in drawn for point in points), strict=True)
@@ -310,10 +307,6 @@ def _frame(
     if underlay is not None:
         box = widen(box, underlay.corners)
     return box[0] - BORDER, box[1] - BORDER, box[2] + BORDER, box[3] + BORDER
-
-
-def _unit(frame: Bounds) -> float:
-    return max((frame[2] - frame[0]) / (WIDE - BESIDE), (frame[3] - frame[1]) / (HIGH - BELOW), 1 / LARGEST)
 
 
 def _risky(pieces: Sequence[Piece]) -> list[tuple[str, Bounds]]:

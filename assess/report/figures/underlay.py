@@ -66,17 +66,13 @@ def build_underlay(results: Results, floor: str) -> Underlay | None:
     file = words.cut(row.file, 60)
     if not row.is_lines:
         return Underlay(file, row, data_uri(content, "image/jpeg"), ())
-    lines = tuple(_turn_all(row, line * row.width_m) for line in unpack(content))
+    lines = tuple(np.column_stack(_turned(row, *(line * row.width_m).T)) for line in unpack(content))
     return Underlay(file, row, "", lines)
 
 
 def _turned(row: PlanRow, x: float, y: float) -> Point:
     cos, sin = math.cos(math.radians(row.turn_deg)), math.sin(math.radians(row.turn_deg))
     return row.left_m + x * cos - y * sin, row.bottom_m + x * sin + y * cos
-
-
-def _turn_all(row: PlanRow, points: FloatArray) -> FloatArray:
-    return np.column_stack(_turned(row, points[:, 0], points[:, 1]))  # type: ignore[arg-type]
 
 
 def cut_lines(lines: Iterable[FloatArray], box: Bounds) -> list[FloatArray]:

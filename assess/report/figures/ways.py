@@ -98,11 +98,12 @@ def build_stretches(routes: RouteTables) -> Mapping[str, Sequence[Stretch]]:
 
 
 def _stretch(number: int, one: SegmentRow, risk: float, styles: Mapping[str, Style]) -> Stretch:
+    state = "unknown" if one.state == RouteState.NOT_KNOWN else str(one.state)
     return Stretch(
         number=number,
         name=words.cut(one.segment, NAMED),
         title=_title(one, risk),
-        style=styles[_style_name(one)],
+        style=styles["standing" if one.is_blocked_standing else state],
         start=(one.start_x_m or 0.0, one.start_y_m or 0.0),
         end=(one.end_x_m or 0.0, one.end_y_m or 0.0),
         corners=_outline(one),
@@ -124,14 +125,6 @@ def _title(one: SegmentRow, risk: float) -> str:
     if one.state == RouteState.OPEN or one.most_likely_piece is None or one.is_blocked_standing:
         return said
     return _("{segment}; most likely by {item}", segment=said, item=words.cut(one.most_likely_piece.item, 40))
-
-
-def _style_name(one: SegmentRow) -> str:
-    if one.is_blocked_standing:
-        return "standing"
-    if one.state == RouteState.NOT_KNOWN:
-        return "unknown"
-    return str(one.state)
 
 
 def _outline(one: SegmentRow) -> Corners:

@@ -85,7 +85,8 @@ def build_annual(results: Results, rows: Sequence[ItemResult]) -> AnnualChances 
     if found is None:
         return None
     if not found.is_evaluated:
-        return AnnualChances(False, (_say_missing(found),), tuple(map(_, found.remarks)), (), (), ())
+        missing = _("Chances a year were not evaluated: {why}.", why=_(found.missing))
+        return AnnualChances(False, (missing,), tuple(map(_, found.remarks)), (), (), ())
     ways = results.route_tables
     routes = (
         AnnualLine(one.route, "", ", ".join(one.floors), one.annual, one.annual_if_anchors_fail)
@@ -104,11 +105,6 @@ def build_annual(results: Results, rows: Sequence[ItemResult]) -> AnnualChances 
         routes=_sort(routes),
         rooms=_sort(AnnualLine(one.room, "", one.floor, one.annual) for one in ways.rooms if one.annual),
     )
-
-
-def _say_missing(found: AnnualTables) -> str:
-    """Return why there are no chances a year, and what to fill in."""
-    return _("Chances a year were not evaluated: {why}.", why=_(found.missing))
 
 
 def _pieces(rows: Sequence[ItemResult]) -> Iterator[AnnualLine]:
@@ -133,7 +129,6 @@ def _say_building(found: AnnualTables) -> Iterator[str]:
 
 
 def _say_falls(found: AnnualTables) -> Iterator[str]:
-    """Say how many pieces are expected to fall a year."""
     if not found.pieces:
         yield _("There is no free-standing piece that was simulated and can rock.")
         return
@@ -168,7 +163,6 @@ def _say_life_safety(found: AnnualTables) -> Iterator[str]:
 
 
 def _say_scatter(found: AnnualTables, results: Results) -> str:
-    """Say how the motions scatter at a ground PGA, and where that comes from."""
     given = results.building.motion_uncertainty
     if given:
         return _(

@@ -4,8 +4,8 @@ from collections.abc import Iterable, Sequence
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext
-from assess.natural import natural_key
 from assess.report import words
+from assess.report.row_order import by_chance
 from assess.results import ItemResult
 from assess.risk import RiskClass
 from assess.workbook.schema import BUILDING
@@ -17,7 +17,7 @@ NAMED = 3
 def list_apart(results: Iterable[ItemResult], basis: str) -> list[ItemResult]:
     """Return the free-standing pieces that stand apart with a basis, the worst by formula first."""
     found = [one for one in results if not one.is_anchored and one.apart == basis]
-    return sorted(found, key=lambda one: (-one.adopted.upper, -one.adopted.probability, natural_key(one.item.item)))
+    return sorted(found, key=by_chance)
 
 
 def list_parts(results: Sequence[ItemResult]) -> list[tuple[str, list[ItemResult]]]:
@@ -34,7 +34,12 @@ def say_apart(results: Sequence[ItemResult]) -> list[str]:
     if unconfirmed := list_apart(results, "unconfirmed"):
         texts.append(f"{_say_unconfirmed(unconfirmed)} {' '.join(list_ways_to_settle(unconfirmed))}")
     if left := list_apart(results, "formula"):
-        texts.append(_say_left(left))
+        text = ngettext(
+            "{n:,} piece was not simulated and is counted apart, by formula only.",
+            "{n:,} pieces were not simulated and are counted apart, by formula only.",
+            _pieces(left),
+        )
+        texts.append(_add_risky(text, left))
     return texts
 
 
@@ -48,15 +53,6 @@ def _say_unconfirmed(unconfirmed: Sequence[ItemResult]) -> str:
         _pieces(unconfirmed), names=names,
     )  # fmt: skip
     return _add_risky(text, unconfirmed)
-
-
-def _say_left(left: Sequence[ItemResult]) -> str:
-    text = ngettext(
-        "{n:,} piece was not simulated and is counted apart, by formula only.",
-        "{n:,} pieces were not simulated and are counted apart, by formula only.",
-        _pieces(left),
-    )
-    return _add_risky(text, left)
 
 
 def _add_risky(text: str, pieces: Sequence[ItemResult]) -> str:

@@ -19,12 +19,20 @@ Lines = list[tuple[str, list[str]]]
 def list_approach(content: "Content") -> Lines:
     """Return paragraphs by heading: motion of the floors, chances and classes, what was assumed uncertain, routes."""
     run, verified = content.run, content.verified
+    sources = "; ".join(content.sources)
+    classes = "; ".join(f"{words.risk_label(risk)} {limits}" for risk, limits in content.class_limits)
+    limits = _("Classes by the chance of overturning: {classes}.", classes=classes)
     lines: Lines = [
-        (_("Motion of the floors"), [_say_sources(content)]),
-        (_("Chance and class"), [verified.adopted, verified.sentence, _say_classes(content)]),
+        (_("Motion of the floors"), [_("Where the motion comes from: {sources}.", sources=sources) if sources else ""]),
+        (_("Chance and class"), [verified.adopted, verified.sentence, limits]),
     ]
     if verified.done:
-        assumed = [say_assumed(run), say_sensitivity(run, content.results), _say_interval()]
+        interval = _(
+            "A range is the 95 % sampling interval of Wilson (1927). It covers the number of draws only, not what is "
+            "unknown about the earthquake or the furniture. On assumed motion it is the chance in the slower and in "
+            "the faster third of the drawn motions: what is not known of the ground and of the building."
+        )
+        assumed = [say_assumed(run), say_sensitivity(run, content.results), interval]
         lines.append((_("What was assumed uncertain"), [text for text in assumed if text]))
     if run.has_routes:
         lines.append((_("Evacuation routes"), [_say_routes(run)]))
@@ -36,24 +44,6 @@ def list_sources(content: "Content") -> list[str]:
     keys = {content.run.formula.key, *({content.run.simulation.key} if content.verified.done else ())}
     found = [say_reference(one.reference) for one in content.methods if one.key in keys]
     return list(dict.fromkeys([*found, *([WILSON] if content.verified.done else [])]))
-
-
-def _say_sources(content: "Content") -> str:
-    text = "; ".join(content.sources)
-    return _("Where the motion comes from: {sources}.", sources=text) if text else ""
-
-
-def _say_classes(content: "Content") -> str:
-    classes = "; ".join(f"{words.risk_label(risk)} {limits}" for risk, limits in content.class_limits)
-    return _("Classes by the chance of overturning: {classes}.", classes=classes)
-
-
-def _say_interval() -> str:
-    return _(
-        "A range is the 95 % sampling interval of Wilson (1927). It covers the number of draws only, not what is "
-        "unknown about the earthquake or the furniture. On assumed motion it is the chance in the slower and in the "
-        "faster third of the drawn motions: what is not known of the ground and of the building."
-    )
 
 
 def _say_routes(run: "Results") -> str:

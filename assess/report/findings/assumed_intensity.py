@@ -62,7 +62,6 @@ def say_factor(results: Results) -> Iterator[str]:
 
 
 def _say_scatter(found: AssumedShaking, results: Results) -> str:
-    """Return what is made of the scatter of PGA given the intensity."""
     scatter = number(found.scatter, "g")
     if uses_scatter(results):
         return _(

@@ -71,17 +71,11 @@ def list_routes_at_risk(results: Results) -> list[RouteAtRisk]:
         RouteAtRisk(
             one,
             routes.risk,
-            _blocker(one),
+            "" if one.most_likely_piece is None or is_blocked_standing(one) else one.most_likely_piece.item,
             ", ".join(say_row(results.result(fix.item_index)) for fix in one.fixes) or say_missing(one.missing),
         )
         for one in found
     ]
-
-
-def _blocker(one: RouteRow) -> str:
-    """Return the piece that most likely blocks a route; of one that is blocked as it stands, none does."""
-    piece = one.most_likely_piece
-    return "" if piece is None or is_blocked_standing(one) else piece.item
 
 
 def say_row(one: ItemResult) -> str:

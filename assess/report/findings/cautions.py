@@ -41,7 +41,6 @@ def build_cautions(results: Results) -> list[Caution]:
 
 
 def _profiled(results: Results) -> Iterator[Caution]:
-    """Name the floors on a code's profile."""
     floors = list_floors(results.motions, "profile")
     if floors:
         names = ", ".join(map(with_status, used_profiles(results)))
@@ -162,6 +161,5 @@ def _name(floors: Sequence[str]) -> str:
 
 
 def _name_some(floors: Sequence[str]) -> str:
-    """Return the first floors, and how many more there are."""
     named = words.name_first([words.cut(floor, LONGEST_FLOOR) for floor in floors], MOST_FLOORS)
     return ngettext("Floor {floors}", "Floors {floors}", len(floors), floors=named)

@@ -78,7 +78,6 @@ class Group:
         return self._describe([row.lowest for row in self.rows])
 
     def _describe(self, verdicts: Sequence[Verdict]) -> str:
-        """Return a method, its class and its values."""
         first = verdicts[0]
         return f"{first.title}: {words.risk_label(first.risk)}, {words.percents([one.value for one in verdicts])}"
 

@@ -17,7 +17,11 @@ from assess.units import GRAVITY
 def say_ground_source(results: Results) -> str:
     """Return on which map, scenarios or assumed intensity the ground motion rests, in a paragraph; "" for none."""
     found = results.provenance.site_ground
-    return say_shaking(results) if found is None else " ".join(_say(found, results))
+    if found is None:
+        return say_shaking(results)
+    texts = [_say_median(found), *_say_strength(found.pga_g, found.pgv_cm_s, results), *say_factor(results)]
+    texts += [_say_scatter(found, results), *(f"{_(text)[:1].upper()}{_(text)[1:]}." for text in found.cautions)]
+    return " ".join(texts)
 
 
 def say_ground(results: Results, *, shortly: bool = False) -> str:
@@ -47,16 +51,7 @@ def say_dispersion(found: SiteGroundInfo) -> str:
 
 
 def _name_measure(found: SiteGroundInfo) -> str:
-    """Return the peak whose scatter is drawn."""
     return "PGA" if found.pgv_cm_s is None else "PGV"
-
-
-def _say(found: SiteGroundInfo, results: Results) -> Iterator[str]:
-    yield _say_median(found)
-    yield from _say_strength(found.pga_g, found.pgv_cm_s, results)
-    yield from say_factor(results)
-    yield _say_scatter(found, results)
-    yield from (f"{_(text)[:1].upper()}{_(text)[1:]}." for text in found.cautions)
 
 
 def _say_median(found: SiteGroundInfo) -> str:

@@ -102,8 +102,8 @@ def list_room_lines(routes: RouteTables) -> list[Line]:
     def kind(one: RoomRow) -> tuple[object, ...]:
         if one.state == RouteState.OPEN:
             return one.state, one.exits
-        lack = one.missing, one.missing_after
-        return one.state, one.exits, say_lost(one), one.decisive_segment, _list_fixed(one), lack
+        lack, fixed = (one.missing, one.missing_after), frozenset(fix.item_index for fix in one.fixes)
+        return one.state, one.exits, say_lost(one), one.decisive_segment, fixed, lack
 
     order = sorted(routes.rooms, key=lambda one: (-one.state.severity, -one.loses_every_exit.probability))
     lines = []
@@ -112,13 +112,10 @@ def list_room_lines(routes: RouteTables) -> list[Line]:
         high = max((one.loses_every_exit for one in own), key=lambda chance: chance.high)
         is_open = own[0].state == RouteState.OPEN
         chance = _("at most {chance}", chance=words.percent(high.high)) if is_open and high.high else say_lost(own[0])
-        line = _line(own[0], routes, rooms, say_room_state(own[0]), chance, _name_exits(own[0]))
-        lines.append(line)
+        names = _name(own[0].exits)
+        exits = _("stairs: {names}", names=names) if own[0].by_stairs else names
+        lines.append(_line(own[0], routes, rooms, say_room_state(own[0]), chance, exits))
     return lines
-
-
-def _list_fixed(one: RoomRow) -> frozenset[int]:
-    return frozenset(fix.item_index for fix in one.fixes)
 
 
 def _group(rows: Iterable[Row], kind: Callable[[Row], object]) -> list[tuple[object, list[Row]]]:
@@ -159,8 +156,3 @@ def say_advice(one: RouteRow | RoomRow) -> str:
 
 def _name(places: Sequence[str]) -> str:
     return words.name_first([words.cut(one, 30) for one in places], 2)
-
-
-def _name_exits(one: RoomRow) -> str:
-    names = _name(one.exits)
-    return _("stairs: {names}", names=names) if one.by_stairs else names

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
-from assess.natural import natural_key
 from assess.report import words
 from assess.report.findings.earthquake_draws import list_draw_assumptions, say_draws
 from assess.report.findings.motions import describe_suite, say_signs
 from assess.report.findings.uncertain import count_scanned, say_source
 from assess.report.findings.verified import Verified, name_some
+from assess.report.row_order import by_chance
 from assess.results import EnsembleRow, ItemResult, MotionRow, Results, SuiteInfo
 from assess.settings import AUTO
 
@@ -55,16 +55,12 @@ def build_trials(results: Results, verified: Verified) -> Trials:
         motions=tuple(_floor_motions(results, motion, ensemble) for motion, ensemble in made),
         misfits=tuple(_misfits(made)),
         changed=(*sorted(verified.raised, key=_by_change), *sorted(verified.lowered, key=_by_change)),
-        fell=sorted(verified.fell, key=_by_chance),
+        fell=sorted(verified.fell, key=by_chance),
     )
 
 
 def _by_change(one: ItemResult) -> tuple[object, ...]:
-    return -abs(one.adopted.risk - one.formula_class), *_by_chance(one)
-
-
-def _by_chance(one: ItemResult) -> tuple[object, ...]:
-    return -one.adopted.upper, -one.adopted.probability, natural_key(one.item.item)
+    return -abs(one.adopted.risk - one.formula_class), *by_chance(one)
 
 
 # ---------------------------------------------------------------- paragraphs
@@ -122,7 +118,6 @@ def _describe_motions(results: Results) -> str:
 
 
 def _describe_draws(results: Results) -> str:
-    """Return what is drawn, and what stands beside it."""
     uncertainty = results.provenance.uncertainty
     if results.settings.ideal:
         return _("The adopted chance is the one if exactly this motion recurred and every piece were exactly as given.")
@@ -148,7 +143,6 @@ def _describe_draws(results: Results) -> str:
 
 
 def _describe_scanned(results: Results) -> list[str]:
-    """Return what is drawn of pieces that were measured by a scan; nothing where there are none."""
     uncertainty = results.provenance.uncertainty
     if not count_scanned(results):
         return []
@@ -176,7 +170,6 @@ def _interval(results: Results) -> str:
 
 
 def _stopping(results: Results, verified: Verified) -> str:
-    """Return the rule by which motions were added, and the pieces that remain open."""
     looks = results.provenance.looks
     text = _(
         "Motions were added until every class was statistically resolved, each piece's interval lying within one "
@@ -198,7 +191,9 @@ def _floor_motions(results: Results, motion: MotionRow, ensemble: EnsembleRow) -
     fit, suite = ensemble.fit, results.provenance.suite
     pfa = pfv = spectrum = words.DASH
     if suite is not None:
-        pfa, pfv = _suite_ratios(suite, motion)
+        factors = [motion.pfa_g / pfa if suite.is_scaled else 1.0 for pfa in suite.pfa_g]
+        pfa = _peak_ratio(suite.pfa_g, factors, motion.pfa_g)
+        pfv = _peak_ratio(suite.pfv_cm_s, factors, motion.pfv_cm_s)
     elif fit is not None:
         pfa, pfv = _ratio(fit.pfa_ratio, fit.pfa_scatter), _ratio(fit.pfv_ratio, fit.pfv_scatter)
         mean = words.deviation(fit.mean_deviation)
@@ -231,12 +226,6 @@ def _ratio(ratio: float | None, scatter: float) -> str:
     return words.DASH if ratio is None else f"{number(ratio, '.2f')} ± {number(ratio * scatter, '.2f')}"
 
 
-def _suite_ratios(suite: SuiteInfo, motion: MotionRow) -> tuple[str, str]:
-    """Return PFA and PFV of the user's own motions, as used, over those of the floor."""
-    factors = [motion.pfa_g / pfa if suite.is_scaled else 1.0 for pfa in suite.pfa_g]
-    return _peak_ratio(suite.pfa_g, factors, motion.pfa_g), _peak_ratio(suite.pfv_cm_s, factors, motion.pfv_cm_s)
-
-
 def _peak_ratio(peaks: Sequence[float], factors: Sequence[float], floor: float | None) -> str:
     if not floor:
         return words.DASH
@@ -246,7 +235,6 @@ def _peak_ratio(peaks: Sequence[float], factors: Sequence[float], floor: float |
 
 
 def _misfits(made: Sequence[tuple[MotionRow, EnsembleRow]]) -> Iterator[str]:
-    """Yield where the motions miss their target by much."""
     for motion, ensemble in made:
         fit = ensemble.fit
         if fit is not None and fit.mean_deviation > LARGE_MISFIT:
@@ -282,7 +270,6 @@ def list_assumptions(results: Results, verified: Verified) -> list[tuple[str, st
 
 
 def _list_uncertainties(results: Results) -> list[tuple[str, str]]:
-    """Return what is assumed of the uncertainty of the motion and of the pieces."""
     uncertainty = results.provenance.uncertainty
     motion = _("{dispersion}, {source}", dispersion=number(uncertainty.motion, ".3g"), source=say_source(results))
     piece = _("base, height, centre of gravity and restitution are drawn, with assumed dispersions")

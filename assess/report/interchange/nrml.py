@@ -198,13 +198,9 @@ def _add_table(model: ET.Element, function: _Function) -> None:
     levels = (curve.levels * function.ratio / GRAVITY).tolist()
     own = ET.SubElement(model, "fragilityFunction", {"id": function.name, "format": "discrete"})
     imls = ET.SubElement(own, "imls", {"imt": "PGA", "noDamageLimit": _write_number(BELOW * levels[0])})
-    imls.text = " ".join(_write_all(levels))
+    imls.text = " ".join(map(_write_number, levels))
     shares = np.maximum.accumulate(curve.shares).tolist()
-    ET.SubElement(own, "poes", {"ls": LIMIT_STATE}).text = " ".join(_write_all(shares))
-
-
-def _write_all(values: Sequence[float]) -> Iterator[str]:
-    return map(_write_number, values)
+    ET.SubElement(own, "poes", {"ls": LIMIT_STATE}).text = " ".join(map(_write_number, shares))
 
 
 def _write_number(value: float) -> str:

@@ -64,7 +64,6 @@ def list_lines(results: Sequence[ItemResult], columns: Sequence[PageColumn]) -> 
 
 
 def _put(column: PageColumn, text: str) -> str:
-    """Return a text as wide as its column."""
     return fit(text, column.places, to_right=column.is_number or column.is_method)
 
 

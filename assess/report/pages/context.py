@@ -41,7 +41,6 @@ from assess.report.pages.page_columns import (
 from assess.report.provenance import say_reference
 from assess.report.report_options import ReportOptions
 from assess.results import MotionRow
-from assess.route_results import RouteTables
 from assess.schedule_fields import schedule_fields
 from assess.schedule_results import WorkRow
 
@@ -101,7 +100,10 @@ def _of_content(
         "logo": embed_logo(content.run),
         "first_photo": Photos(content.run).first_photo,
         "floor_bars": build_bars(content.worst_floors),
-        **_of_marks(content),
+        "marks": words.marks(),
+        "symbols": {"unconfirmed": words.UNCONFIRMED, "by_formula": words.BY_FORMULA},
+        "apart_legend": words.apart_legend(),
+        "has_apart": bool(content.total.unconfirmed or content.total.by_formula),
         "schedule": _of_schedule(content),
         **_of_floors(content, progress if "floors" in names else None),
         **_of_client(content),
@@ -111,18 +113,7 @@ def _of_content(
     }
 
 
-def _of_marks(content: Content) -> dict[str, Any]:
-    """Return the legend of marks, and whether pieces stand apart."""
-    return {
-        "marks": words.marks(),
-        "symbols": {"unconfirmed": words.UNCONFIRMED, "by_formula": words.BY_FORMULA},
-        "apart_legend": words.apart_legend(),
-        "has_apart": bool(content.total.unconfirmed or content.total.by_formula),
-    }
-
-
 def _list_tables(content: Content) -> dict[str, Sequence[PageColumn]]:
-    """Return the columns of the tables of pieces and of motions, by the names of the tables."""
     run = content.run
     return {
         "pieces": list_columns(run, "pieces"),
@@ -218,17 +209,6 @@ def _of_routes(content: Content, *, for_print: bool) -> dict[str, Any]:
         "fixes_bound": route_rows.say_fixes_bound(found),
         "unfixable": route_words.list_unfixable(found),
         "untouched": route_rows.name_untouched(found),
-        **_of_route_page(found),
-        "route_cautions": route_words.list_cautions(found),
-        "route_flags": route_rows.list_flags(found),
-        "floor_names": {page.floor.floor: page.title for page in content.floors},
-        "widths": route_words.list_widths(),
-        "default_width": route_words.say_default_width(),
-    }
-
-
-def _of_route_page(found: RouteTables) -> dict[str, Any]:
-    return {
         "way_lines": route_page.list_route_lines(found),
         "room_lines": route_page.list_room_lines(found),
         "most_way_lines": route_page.MOST_LINES,
@@ -236,6 +216,11 @@ def _of_route_page(found: RouteTables) -> dict[str, Any]:
         "route_lines": route_rows.describe_routes(found),
         "draft_lines": route_rows.say_drafts(found),
         "uncounted": route_rows.say_uncounted(found),
+        "route_cautions": route_words.list_cautions(found),
+        "route_flags": route_rows.list_flags(found),
+        "floor_names": {page.floor.floor: page.title for page in content.floors},
+        "widths": route_words.list_widths(),
+        "default_width": route_words.say_default_width(),
     }
 
 
@@ -284,7 +269,6 @@ def _draw_traced(content: Content, progress: Progress) -> list[dict[str, Any]]:
 
 
 def _list_recorded(content: Content) -> list[tuple[str, MotionRow]]:
-    """Return every recorded motion with the title of its floor."""
     return [
         (page.title, one) for page in content.floors for one in page.motions if one.has_record and not one.is_borrowed
     ]
@@ -320,10 +304,6 @@ def list_missing_figures(content: Content) -> list[Problem]:
 
 def _svg(drawing: bytes) -> str:
     return data_uri(drawing, "image/svg+xml")
-
-
-def _share(value: float) -> str:
-    return f"{number(100 * value, '.0f')} %"
 
 
 FILTERS: Mapping[str, Any] = {
@@ -379,7 +359,7 @@ FILTERS: Mapping[str, Any] = {
     "say_segment_state": route_words.say_segment_state,
     "say_taken": route_words.say_taken,
     "say_way": route_words.say_way,
-    "share": _share,
+    "share": lambda value: f"{number(100 * value, '.0f')} %",
     "size": words.size,
     "style_name": words.style_name,
     "under_record": words.under_record,

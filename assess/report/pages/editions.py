@@ -58,13 +58,9 @@ def list_parts(
         "routes_detail": not content.run.has_routes,
         "assumptions": edition == "annex" and len(content.assumptions) <= MOST_ASSUMPTIONS,
     }
-    return [
-        (name, headings[name]) for name in SECTIONS[edition] if not left_out.get(name) and _has_template(name, options)
-    ]
-
-
-def _has_template(name: str, options: ReportOptions) -> bool:
-    return any((folder / "sections" / f"{name}.html.j2").is_file() for folder in options.folders)
+    folders = [folder / "sections" for folder in options.folders]
+    there = [name for name in SECTIONS[edition] if any((one / f"{name}.html.j2").is_file() for one in folders)]
+    return [(name, headings[name]) for name in there if not left_out.get(name)]
 
 
 def _headings() -> Mapping[str, str]:

@@ -174,15 +174,13 @@ def _of_piece(field: Field, where: Where, method: "MethodInfo | None") -> PageCo
         "adopted_probability": {"text": words.chance, "places": 25, "is_wide": True},
         "verification_record_overturned": {"text": words.under_record},
         "verification_ideal_probability": {"text": words.ideal_chance, "places": 25, "is_wide": True},
-        "adopted_class": {"text": words.risk_words, "sort": _rank},
+        "adopted_class": {
+            "text": words.risk_words,
+            "sort": lambda one: int(one.adopted.risk) - (10 if one.is_anchored else 0),
+        },
         "adopted_flags": {"text": lambda one: ", ".join([*map(_say_flag, one.adopted.flags), *words.list_beside(one)])},
     }
     return replace(column, **composed.get(field.key, {}))
-
-
-def _rank(one: ItemResult) -> int:
-    """Return what the classes are sorted by: anchored pieces below all others."""
-    return int(one.adopted.risk) - (10 if one.is_anchored else 0)
 
 
 def _describe(column: PageColumn, where: Where) -> PageColumn:

@@ -82,11 +82,7 @@ def write_pdf(
     """
     problems = progress.wait_for(lambda: [*list_problems(content.run), *list_missing_figures(content)])
     html = render(with_problems(content, problems), options, for_print=True, edition=edition, progress=progress)
-    _lay_out(progress.wait_for(lambda: _build_job(html, content, path, options, data)), progress)
-
-
-def _build_job(html: str, content: Content, path: Path, options: ReportOptions, data: Path | None) -> bytes:
-    return _pack_job(html, list_attached(content.run, data), path, options)
+    _lay_out(progress.wait_for(lambda: _pack_job(html, list_attached(content.run, data), path, options)), progress)
 
 
 def print_page(
@@ -171,7 +167,6 @@ def _read_data(results: Results, data: Path | None) -> bytes:
 
 
 def _list_unattached(results: Results) -> list[Problem]:
-    """Return a warning where the workbook cannot be attached."""
     if "workbook" in results.series:
         return []
     message = fill(
@@ -207,10 +202,7 @@ def lay_out_page(html: str, path: Path, progress: Progress = SILENT) -> None:
 
 
 def _lay_out(job: bytes, progress: Progress) -> str:
-    """Pass a job to `assess.report.pages.pdf_layout` in a process, which is killed where the work is cancelled.
-
-    Returns what it printed.
-    """
+    """Pass a job to `pdf_layout` in a process, which is killed where the work is cancelled; return what it printed."""
     with tempfile.TemporaryFile() as given, tempfile.TemporaryFile() as printed, tempfile.TemporaryFile() as errors:
         given.write(job)
         given.seek(0)
@@ -219,7 +211,11 @@ def _lay_out(job: bytes, progress: Progress) -> str:
             creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
         )  # fmt: skip
         try:
-            _wait(process, progress)
+            while True:
+                progress.check()
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    process.wait(_CHECKED_EVERY)
+                    break
         finally:
             process.kill()
             process.wait()
@@ -240,14 +236,6 @@ def _command() -> list[str]:
 
     code = f"import sys, runpy; sys.path[:] = {sys.path!r}; runpy.run_path({pdf_layout.__file__!r})['main']()"
     return [sys.executable, "-W", "ignore", "-c", code]
-
-
-def _wait(process: "subprocess.Popen[bytes]", progress: Progress) -> None:
-    while True:
-        progress.check()
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            process.wait(_CHECKED_EVERY)
-            return
 
 
 def _read_text(file: IO[bytes]) -> str:

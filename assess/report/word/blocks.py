@@ -47,7 +47,7 @@ def _write(word: Word, element: Any) -> None:
 
 
 def _write_heading(word: Word, heading: Any) -> None:
-    paragraph = word.file.add_paragraph(style=HEADINGS[heading.tag])
+    paragraph = word.add(HEADINGS[heading.tag])
     Line(word, paragraph).fill(heading)
     around = heading.getparent()
     is_first = around is not None and next(around.iterchildren()) is heading
@@ -62,25 +62,20 @@ def _write_heading(word: Word, heading: Any) -> None:
 
 def _write_paragraph(word: Word, element: Any) -> None:
     styles = [STYLES[name] for name in element.get("class", "").split() if name in STYLES]
-    paragraph = word.file.add_paragraph(style=styles[0] if styles else "Normal")
+    paragraph = word.add(styles[0] if styles else "Normal")
     Line(word, paragraph).fill(element)
     paragraph.paragraph_format.keep_with_next = "lead-in" in element.get("class", "").split() or None
-
-
-def _write_caption(word: Word, element: Any) -> None:
-    Line(word, word.file.add_paragraph(style="Caption")).fill(element)
 
 
 def _write_list(word: Word, element: Any) -> None:
     style = "List Number" if element.tag == "ol" else "List Bullet"
     for item in element.iterchildren("li"):
-        Line(word, word.file.add_paragraph(style=style)).fill(item)
+        Line(word, word.add(style)).fill(item)
 
 
 def _write_terms(word: Word, element: Any) -> None:
-    """Write terms and what they mean, each pair in a paragraph."""
     for term in element.iter("dt"):
-        line = Line(word, word.file.add_paragraph(style="Normal"))
+        line = Line(word, word.add("Normal"))
         line.fill(term)
         meaning = term.getnext()
         if meaning is not None and meaning.tag == "dd":
@@ -90,13 +85,13 @@ def _write_terms(word: Word, element: Any) -> None:
 
 def _write_listing(word: Word, element: Any) -> None:
     for text in "".join(element.itertext()).splitlines():
-        word.file.add_paragraph(text, style="Listing")
+        word.add("Listing", text)
 
 
 def _write_image(word: Word, element: Any) -> None:
     shown = find_picture(word, element)
     if shown is not None:
-        paragraph = word.file.add_paragraph(style="Normal")
+        paragraph = word.add("Normal")
         paragraph.paragraph_format.keep_with_next = True
         add_picture(paragraph, *shown)
 
@@ -104,8 +99,8 @@ def _write_image(word: Word, element: Any) -> None:
 def _write_contents(word: Word, element: Any) -> None:
     """Write the contents: a field that Word fills with pages, which shows the headings until then."""
     for heading in element.iterchildren("h2"):
-        Line(word, word.file.add_paragraph(style="Subtitle")).fill(heading)
-    paragraph = word.file.add_paragraph(style="Normal")
+        Line(word, word.add("Subtitle")).fill(heading)
+    paragraph = word.add("Normal")
     paragraph._p.append(_field_part("begin"))
     code = make("w:r")
     text = make("w:instrText")
@@ -117,12 +112,11 @@ def _write_contents(word: Word, element: Any) -> None:
     top = [one for one in links if sum(1 for above in one.iterancestors("ol")) == 1]
     for at, link in enumerate(top):
         if at:
-            paragraph = word.file.add_paragraph(style="Normal")
+            paragraph = word.add("Normal")
         _add_link(paragraph, link)
         paragraph.paragraph_format.space_after = 0
-        if at < len(top) - 1:
-            continue
-        paragraph._p.append(_field_part("end"))
+        if at == len(top) - 1:
+            paragraph._p.append(_field_part("end"))
     for note in element.iterchildren("p"):
         _write_paragraph(word, note)
 
@@ -147,7 +141,8 @@ def _add_link(paragraph: Any, link: Any) -> None:
 
 _WRITERS: Mapping[str, Callable[[Word, Any], None]] = {
     **dict.fromkeys(HEADINGS, _write_heading),
-    "p": _write_paragraph, "figcaption": _write_caption, "ul": _write_list, "ol": _write_list, "dl": _write_terms,
+    "figcaption": lambda word, element: Line(word, word.add("Caption")).fill(element),
+    "p": _write_paragraph, "ul": _write_list, "ol": _write_list, "dl": _write_terms,
     "table": write_table, "pre": _write_listing, "img": _write_image,
 }  # fmt: skip
 """What writes an element, by its tag; of any other, what stands inside it is written."""

@@ -59,7 +59,10 @@ class Line:
         elif child.tag == "img":
             if "photo" in classes:
                 self.paragraph.add_run().add_break()
-            self._show(child)
+            shown = find_picture(self.word, child)
+            if shown is not None:
+                add_picture(self.paragraph, *shown)
+                self.is_at_space = False
         elif "hidden" not in classes and child.get("aria-hidden") != "true":
             if child.tag in ("p", "div", "li", "ul", "figure") and self.paragraph.runs:
                 self.paragraph.add_run().add_break()
@@ -73,13 +76,6 @@ class Line:
         if said:
             self.is_at_space = said.endswith(" ")
             _dress(self.paragraph.add_run(said), look)
-
-    def _show(self, image: Any) -> None:
-        """Insert a picture as high as a line, or a figure."""
-        shown = find_picture(self.word, image)
-        if shown is not None:
-            add_picture(self.paragraph, *shown)
-            self.is_at_space = False
 
 
 def _look(element: Any, look: Look) -> Look:

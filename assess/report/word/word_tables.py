@@ -50,9 +50,12 @@ def place_cells(rows: Sequence[Any]) -> list[Placed]:
 
 def write_table(word: Word, table: Any) -> None:
     """Write a table of the page; its caption stands above it."""
+    from docx.shared import Pt
+
     for caption in table.findall("caption"):
-        Line(word, word.file.add_paragraph(style="Caption")).fill(caption)
-    rows = [(row, is_head) for part, is_head in _parts(table) for row in part.findall("tr")]
+        Line(word, word.add("Caption")).fill(caption)
+    parts = [(part, part.tag == "thead") for part in table.iterchildren("thead", "tbody", "tfoot")]
+    rows = [(row, is_head) for part, is_head in parts or [(table, False)] for row in part.findall("tr")]
     placed = place_cells([row for row, _is_head in rows])
     columns = max((one.column + one.columns for one in placed), default=0)
     if not columns:
@@ -64,33 +67,17 @@ def write_table(word: Word, table: Any) -> None:
     slots = [list(tr.tc_lst) for tr in made._tbl.tr_lst]
     for tr, (_row, is_head) in zip(made._tbl.tr_lst, rows, strict=True):
         word.progress.check()
-        _set_row(tr, is_head=is_head)
+        properties = tr.get_or_add_trPr()
+        properties.append(make("w:cantSplit"))
+        if is_head:
+            properties.append(make("w:tblHeader"))
     for one in placed:
         row, is_head = rows[one.row]
         slot = _write_slot(word, made, slots, one, is_head=is_head or "part" in row.get("class", "").split())
-        _shrink(slot, scale)
+        for run in slot.paragraphs[0].runs if scale < 1 else ():  # else the words would not fit the page
+            run.font.size = Pt(round(max(SMALLEST, SIZE * scale), 1))
     _set_borders(made)
-    word.file.add_paragraph(style="Small")
-
-
-def _parts(table: Any) -> list[tuple[Any, bool]]:
-    own = [(part, part.tag == "thead") for part in table.iterchildren("thead", "tbody", "tfoot")]
-    return own or [(table, False)]
-
-
-def _set_row(tr: Any, *, is_head: bool) -> None:
-    properties = tr.get_or_add_trPr()
-    properties.append(make("w:cantSplit"))
-    if is_head:
-        properties.append(make("w:tblHeader"))
-
-
-def _shrink(slot: Any, scale: float) -> None:
-    """Set the text of a cell smaller where the words of its table would not fit the page."""
-    from docx.shared import Pt
-
-    for run in slot.paragraphs[0].runs if scale < 1 else ():
-        run.font.size = Pt(round(max(SMALLEST, SIZE * scale), 1))
+    word.add("Small")
 
 
 def _write_slot(word: Word, table: Any, slots: list[list[Any]], one: Placed, *, is_head: bool) -> Any:
@@ -109,7 +96,7 @@ def _write_cell(word: Word, slot: Any, cell: Any, *, is_head: bool) -> None:
     from docx.enum.text import WD_ALIGN_PARAGRAPH
 
     paragraph = slot.paragraphs[0]
-    paragraph.style = word.file.styles["Cell Head" if is_head else "Cell"]
+    word.set_style(paragraph, "Cell Head" if is_head else "Cell")
     if "num" in cell.get("class", "").split():
         paragraph.alignment = WD_ALIGN_PARAGRAPH.RIGHT
     paragraph.paragraph_format.keep_with_next = is_head
@@ -128,13 +115,15 @@ def _find_widths(table: Any, placed: Sequence[Placed], columns: int) -> tuple[li
     for one in placed:
         if one.columns == 1:
             texts[one.column].append(" ".join(one.cell.itertext()))
-    own = [_own_width(col) for col in table.iterfind("colgroup/col")][:columns]
+    names = [col.get("class", "").split() for col in table.iterfind("colgroup/col")][:columns]
+    own = [next((float(found[1]) for name in one if (found := _OWN_WIDTH.match(name))), None) for one in names]
     own += [None] * (columns - len(own))
     shares = [min(MOST, max(LEAST, *map(_reckon, one), LEAST)) for one in texts]
     left = max(100.0 - sum(one or 0.0 for one in own), 10.0)
     rest = sum(share for share, one in zip(shares, own, strict=True) if one is None)
     wanted = [one if one is not None else left * share / rest for share, one in zip(shares, own, strict=True)]
-    needed = [_need(one) for one in texts]
+    longest = [max((len(word) for text in one for word in _WORDS.split(text)), default=0) for one in texts]
+    needed = [min(one, MOST) * CHARACTER + MARGINS for one in longest]
     return _fit([SPACE * one / sum(wanted) for one in wanted], needed), min(1.0, SPACE / sum(needed))
 
 
@@ -147,17 +136,6 @@ def _fit(wanted: list[float], needed: list[float]) -> list[float]:
         return [SPACE * need / sum(needed) for need in needed]
     share = excess / slack if slack else 0.0
     return [width - share * (width - need) for width, need in zip(widths, needed, strict=True)]
-
-
-def _need(texts: list[str]) -> float:
-    """Return the width of the longest word of a column with its margins [mm]."""
-    longest = max((len(word) for text in texts for word in _WORDS.split(text)), default=0)
-    return min(longest, MOST) * CHARACTER + MARGINS
-
-
-def _own_width(col: Any) -> float | None:
-    found = [_OWN_WIDTH.match(name) for name in col.get("class", "").split()]
-    return next((float(one[1]) for one in found if one), None)
 
 
 def _reckon(text: str) -> float:
@@ -204,14 +182,14 @@ def write_tiles(word: Word, tiles: Any) -> None:
         colours = [FILLS[name] for name in tile.get("class", "").split() if name in FILLS]
         for at, part in enumerate(tile.iterchildren("span")):
             paragraph = slot.paragraphs[0] if at == 0 else slot.add_paragraph()
-            paragraph.style = word.file.styles["Cell"]
+            word.set_style(paragraph, "Cell")
             paragraph.alignment = WD_ALIGN_PARAGRAPH.CENTER
             Line(word, paragraph).fill(part)
             _dress_tile(paragraph, part, colours)
         if colours:
             shade(slot._tc.get_or_add_tcPr(), colours[0][0])
     _set_borders(made)
-    word.file.add_paragraph(style="Small")
+    word.add("Small")
 
 
 def _dress_tile(paragraph: Any, part: Any, colours: list[tuple[str, str]]) -> None:

@@ -16,7 +16,7 @@ def write_annual(pen: Pen, page: Any, content: Content) -> None:
     annual, tables = content.annual, content.run.annual
     if annual is None or tables is None:
         return
-    columns = _columns()
+    columns = list(_columns())
     widths = [one.width for one in columns]
     kinds = ((_("piece"), annual.pieces), (_("route"), annual.routes), (_("room"), annual.rooms))
     row = pen.listing(page, columns, [(kind, line) for kind, lines in kinds for line in lines])
@@ -33,18 +33,11 @@ def write_annual(pen: Pen, page: Any, content: Content) -> None:
     page.fit_to_pages(1, 0)
 
 
-def _columns() -> list[Column]:
-    return [
-        Column(_("What"), 9, lambda one: one[0]),
-        Column(_("Name"), 24, lambda one: one[1].name),
-        Column(_("Description"), 32, lambda one: one[1].what),
-        Column(_("Floor, room"), 20, lambda one: one[1].where),
-        *_numbers(),
-    ]
-
-
-def _numbers() -> Iterator[Column]:
-    """Yield the columns of the numbers of a line."""
+def _columns() -> Iterator[Column]:
+    yield Column(_("What"), 9, lambda one: one[0])
+    yield Column(_("Name"), 24, lambda one: one[1].name)
+    yield Column(_("Description"), 32, lambda one: one[1].what)
+    yield Column(_("Floor, room"), 20, lambda one: one[1].where)
     known = (
         (_("Chance a year"), "chance_a_year", RARE),
         (_("Chance in 50 years"), "chance_in_50_years", "0.0%"),

@@ -174,15 +174,12 @@ class ItemFormulas:
         cannot, low = literal(self.terms.bases[CANNOT_ROCK]), f"{self._mark()}&{literal(self.terms.labels[0])}"
         return {
             "edited": f'IF({self._bracket_decides()},{self._edited(*self._bracket_edits())},"")',
-            "can_rock": self._can_rock(),
+            # 1 while its sizes or its motion are no numbers
+            "can_rock": f"IFERROR(IF({self._rocks_at(self.cells['pfa_g'])},1,0),1)",
             "basis": f"IF({is_edited},{again},IF({stands},{cannot},{own}))",
             "class": f"IF({is_edited},{again},IF({stands},{low},{self.cells['class_formula']}))",
             "order_formula": f'IF(OR({is_edited},{stands}),"",{self._order(risk, _rank(risk), risk)})',
         }
-
-    def _can_rock(self) -> str:
-        """Return whether the piece can rock, 1 or 0; 1 while its sizes or its motion are no numbers."""
-        return f"IFERROR(IF({self._rocks_at(self.cells['pfa_g'])},1,0),1)"
 
     def _rocks_at(self, pfa: str) -> str:
         """Return whether the piece may rock at a PFA [g]; an error while its sizes are no numbers."""
@@ -287,11 +284,7 @@ class ItemFormulas:
         return f"IF({fastest}>0,{found},{top})"
 
     def _governing(self, peak: str, *, is_run: bool) -> str:
-        """Return the peak that governs: of the record as run, while that holds; else of the one with the largest
-        peak that rules the formula.
-
-        It is that along the row's axis.
-        """
+        """Return the peak that governs along the row's axis: of the record as run while that holds, else by `_top`."""
         floors = self._on_axis(*(self._top(peak, axis) for axis in AXES))
         if not is_run:
             return floors
@@ -329,10 +322,7 @@ class ItemFormulas:
         return f"IF(ISNUMBER({self.cells['rank']}),{value},{edited})"
 
     def _edited(self, *more: str) -> str:
-        """Return whether the piece, its floor, its axis or the motion along it differs from the one as run.
-
-        `more` are further tests.
-        """
+        """Return whether piece, floor, axis or its motion differ from those as run; `more` are further tests."""
         cells, edited = self.cells, literal(self.terms.edited)
         axis = cells["axis_given"]
         tests = [
@@ -350,10 +340,7 @@ class ItemFormulas:
         return f'IF({cells["edited"]}={edited},"",MAX({_rank(cells["behind"])},{at_least}))'
 
     def _order(self, known: str, rank: str, chance: str) -> str:
-        """Return the number by which pieces stand in order of their class and chance; nothing for anchored ones.
-
-        There is none either where `known` is no number.
-        """
+        """Return what orders pieces by class and chance; nothing for anchored ones, or where `known` is no number."""
         free = f"AND({self.cells['held']}<>{literal(self.terms.yes)},ISNUMBER({known}))"
         return f'IF({free},{CLASS_WEIGHT}*{rank}+{chance}-ROW()*{ROW_WEIGHT},"")'
 

@@ -76,9 +76,11 @@ def item_columns(results: Results) -> list[Column]:
     """Return the columns of Items, in order: at the end those that the workbook had of its own, and hidden workings."""
     known = {one.key: one for one in item_fields(results)}
     item, *front = (column for key in FRONT for column in _front(key, known))
+    is_hidden = not results.has_simulated
     shown = [
         item,
-        *_class(results),
+        Column(_("Class"), 16, class_in_force, key="class", look="live", is_live=True),
+        Column(_("Upper class"), 16, upper_class, key="class_upper", look="live", is_live=True, is_hidden=is_hidden),
         *front,
         *_live(known, results),
         *_in_force(results),
@@ -150,13 +152,6 @@ def _live(known: Mapping[str, Field], results: Results) -> Iterator[Column]:
         yield of_field(known[method.key], label=_(method.short_title), look="plain", is_live=True)
     yield Column(_("Class (formula)"), 16, class_by_formula, key="class_formula", look="live", is_live=True)
     yield Column(_("Class (OR)"), 16, class_by_paper, key="class_or", look="live", is_live=True)
-
-
-def _class(results: Results) -> Iterator[Column]:
-    """Yield the class, and the one by the upper end where there is a simulation."""
-    yield Column(_("Class"), 16, class_in_force, key="class", look="live", is_live=True)
-    is_hidden = not results.has_simulated
-    yield Column(_("Upper class"), 16, upper_class, key="class_upper", look="live", is_live=True, is_hidden=is_hidden)
 
 
 def _in_force(results: Results) -> Iterator[Column]:
@@ -243,7 +238,8 @@ def _workings(results: Results) -> Iterator[Column]:
     )
     yield column("held_yes", _("Held if anchored"), lambda one: int(one.item.anchor.holds is not False))
     yield column("held_partly", _("Held if partly anchored"), lambda one: int(one.item.anchor.holds_high is True))
-    yield column("settle", _("How to settle the class"), _settle)
+    settle = _("How to settle the class")
+    yield column("settle", settle, lambda one: say_unsettled(one) if one.adopted.is_unconfirmed else "")
     yield column("bracket_held", _("Bracket as run"), say_bracket_held)
     yield column("rank", _("Rank"), _if_as_run(lambda one: int(one.adopted.risk)), is_live=True)
     yield column("rank_upper", _("Rank, upper"), _if_as_run(lambda one: int(words.find_highest(one))), is_live=True)
@@ -270,10 +266,6 @@ def _inputs() -> Iterator[tuple[str, str, Read]]:
 
 def _centre(one: ItemResult) -> float:
     return 100 * one.item.centre_of_gravity
-
-
-def _settle(one: ItemResult) -> str:
-    return say_unsettled(one) if one.adopted.is_unconfirmed else ""
 
 
 def _if_as_run(read: Read) -> Read:

@@ -74,7 +74,6 @@ def _method(method: "MethodInfo") -> Iterator[tuple[str, str, str]]:
 
 
 def _ranges(method: "MethodInfo") -> Iterator[str]:
-    """Yield in words between what values a method has been checked."""
     names = {"breadth_to_height": _("B/H"), "pfa": _("PFA"), "height": "H", "pfv": "PFV"}
     for name, one in method.valid.items():
         what = names.get(name, name)

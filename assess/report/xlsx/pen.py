@@ -27,9 +27,9 @@ MOST_LINES = 20
 CHANCE, COUNT = "0.0%", "#,##0"
 A4 = 9
 _LONGEST_NAME = 31
+"""Characters of a sheet's name."""
 _PAGE, _PAGES = "\ue000", "\ue001"
 """Stand for the numbers of the page and of all pages: of the signs for private use."""
-"""Characters of a sheet's name."""
 
 LOOKS: Mapping[str, Mapping[str, Any]] = {
     "title": {"bold": True, "font_size": 15, "font_color": "#1f3a4d"},

@@ -42,11 +42,6 @@ def _said(row: type, key: str, width: int, read: Read) -> Column:
     return of_field(route_fields(row)[key], width=width, read=read, format="")
 
 
-def _chances(row: type, name: str, width: int) -> list[Column]:
-    """Return a chance with the ends of its interval, each a column; blank where there is no chance."""
-    return _of(row, *(f"{name}_{part}" for part in ("probability", "low", "high")), width=width)
-
-
 def _known(row: type, key: str, width: int, is_known: Callable[[Any], bool]) -> Column:
     """Return the column of a number that is blank where it is not known."""
     field = route_fields(row)[key]
@@ -58,7 +53,6 @@ def _yes_or_no(holds: bool) -> str:
 
 
 def _say_flags(flags: Sequence[str]) -> str:
-    """Return the cautions on a segment or a piece beside it in words."""
     return "; ".join(_(FLAGS[flag]) for flag in flags)
 
 
@@ -164,7 +158,7 @@ def _floor_columns() -> list[Column]:
         *_of(FloorRoutesRow, "floor", "segments", "blocked_segments_expected", "unknown_segments"),
         *_of(FloorRoutesRow, "routes", "blocked_routes_expected", "unknown_routes"),
         *_of(FloorRoutesRow, "rooms", "cut_off_rooms_expected", "unknown_rooms"),
-        *_chances(FloorRoutesRow, "any_room_cut_off", 0),
+        *_of(FloorRoutesRow, "any_room_cut_off_probability", "any_room_cut_off_low", "any_room_cut_off_high", width=0),
         *_of(FloorRoutesRow, "uncounted_pieces"),
     ]
 
@@ -354,7 +348,6 @@ def _shared(one: RoomRow) -> list[int]:
 
 
 def _name(routes: RouteTables, segments: Iterable[int]) -> str:
-    """Return the names of segments with their routes."""
     return ", ".join(f"{routes.segments[at].route}: {routes.segments[at].segment}" for at in segments)
 
 

@@ -158,7 +158,10 @@ def _lines(pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequence
         if len(bases) > 1:
             yield _("What was simulated, what was not, and what is unconfirmed are counted apart."), ""
         yield from _follow(pen, content, areas, bases)
-    yield _say_again(pen, areas, content.run.provenance.workbook)
+    file, again = content.run.provenance.workbook, f"COUNTIF({areas['basis']},{literal(pen.terms.again)})"
+    text = _("Rows to be run again, as an input was edited: {n}. They are in no count by class, list or chart. To "
+             "count them, make the same changes in {file} and run it again; a report cannot be run.")  # fmt: skip
+    yield text.format(n=0, file=file), sentence(text, n=again, file=literal(file))
     yield _("Counts and chances follow the sheets Floors, Items and Assumptions when those are edited."), ""
 
 
@@ -179,14 +182,6 @@ def _follow(pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequenc
     lowered = f"SUMPRODUCT({is_lowered}*({areas['basis']}<>{unconfirmed}))"
     text = _("Rows whose class simulation lowers: {n}.")
     yield text.format(n=sum(one.adopted.lowered_from is not None for one in content.results)), sentence(text, n=lowered)
-
-
-def _say_again(pen: Pen, areas: Mapping[str, str], file: str) -> tuple[str, str]:
-    """Return the sentence on rows to be run again, and its formula."""
-    again = f"COUNTIF({areas['basis']},{literal(pen.terms.again)})"
-    text = _("Rows to be run again, as an input was edited: {n}. They are in no count by class, list or chart. To "
-             "count them, make the same changes in {file} and run it again; a report cannot be run.")  # fmt: skip
-    return text.format(n=0, file=file), sentence(text, n=again, file=literal(file))
 
 
 def _say_routes(content: Content) -> Iterator[str]:

@@ -12,7 +12,7 @@ from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 from assess.i18n import gettext as _
 from assess.report.content import Content
 from assess.report.findings import schedule_words
-from assess.report.findings.schedule_words import Change, Work
+from assess.report.findings.schedule_words import Work
 from assess.report.xlsx.pen import COUNT, LINE, Column, Pen, count_lines, of_field, row_height, widen
 from assess.schedule_fields import schedule_fields
 from assess.schedule_results import Schedule, ScheduleRow, WorkRow
@@ -65,7 +65,8 @@ def _write_row(pen: Pen, page: Any, row: int, columns: Sequence[Column], work: W
 def _list_columns(schedule: Schedule) -> list[Column]:
     own = {name: _of_work(name) for name in schedule_fields(WorkRow)}
     screening = schedule_words.say_screening()
-    forces = [_force(own[name], screening) for name in FORCES if name != "tension_code_kn" or _has_code(schedule)]
+    has_code = any(work.tension_code_kn is not None for row in schedule.rows for work in row.works)
+    forces = [own[name] for name in FORCES if name != "tension_code_kn" or has_code]
     return [
         Column(_("Done"), 6, lambda _one: BOX, key="done", align="center"),
         _of_entry("place", 5, align="center"),
@@ -76,7 +77,7 @@ def _list_columns(schedule: Schedule) -> list[Column]:
         Column(_("Description"), 16, lambda one: one.described),
         Column(_("Why, as run"), 34, lambda one: f"{one.risk}; {one.chance}; {one.reason}", key="why"),
         Column(own["detail"].label, 13, lambda one: _(one.detail.title)),
-        *forces,
+        *(replace(one, label=f"{one.label}: {screening}", format=FORCE) for one in forces),
         replace(own["fixings"], align="center", read=lambda one: schedule_words.say_fixings(one.row)),
         own["unit_cost"],
         own["cost"],
@@ -102,14 +103,6 @@ def _of_entry(name: str, width: int, *, only_first: bool = False, align: str = "
         return field.read(one.entry.row) if one.is_first or not only_first else None
 
     return of_field(field, key=name, width=width, read=read, align=align)
-
-
-def _force(column: Column, screening: str) -> Column:
-    return replace(column, label=f"{column.label}: {screening}", format=FORCE)
-
-
-def _has_code(schedule: Schedule) -> bool:
-    return any(work.tension_code_kn is not None for row in schedule.rows for work in row.works)
 
 
 def _name_photos(work: Work) -> str:
@@ -152,15 +145,10 @@ def _write_changes(pen: Pen, page: Any, row: int, schedule: Schedule) -> None:
     for at, text in enumerate(("", _("Before"), _("After"))):
         _put_wide(pen, page, row + 1, at, text, pen.style("head"))
     for at, one in enumerate((change for part in schedule_words.list_changes(schedule) for change in part), row + 2):
-        _write_change(pen, page, at, one)
-
-
-def _write_change(pen: Pen, page: Any, row: int, one: Change) -> None:
-    code = FORCE if one.decimals else COUNT
-    _put_wide(pen, page, row, 0, one.label, pen.style("text"))
-    page.set_row(row, row_height([one.label], [40]))
-    for at, value in enumerate((one.before, one.after), 1):
-        _put_wide(pen, page, row, at, value, pen.style("plain", code))
+        _put_wide(pen, page, at, 0, one.label, pen.style("text"))
+        page.set_row(at, row_height([one.label], [40]))
+        for place, value in enumerate((one.before, one.after), 1):
+            _put_wide(pen, page, at, place, value, pen.style("plain", FORCE if one.decimals else COUNT))
 
 
 def _put_wide(pen: Pen, page: Any, row: int, at: int, value: Any, style: Any) -> None:

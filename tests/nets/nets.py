@@ -1,0 +1,132 @@
+"""The nets: 25 workbooks, what was found of each, and what every output says of it.
+
+Outputs are rendered from results that are kept in a file, so that they are the same on every machine. After a change
+that is meant, ``python -m tests.nets.nets`` writes the outputs anew and shows how they differ; ``--assess`` assesses
+the workbooks anew first. Names of workbooks limit both to these.
+"""
+
+import argparse
+import difflib
+import shutil
+import tempfile
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import assess
+from assess.report.figures import motion_figures, risk_contours
+from assess.results import Results
+from assess.settings import Settings
+from tests.nets.lines import PDFS, QUICK, render
+from tests.nets.make import CITY, MADE, ROOT, make_workbooks
+from tests.nets.stored import read_results, write_results
+
+HERE = Path(__file__).parent
+OWN = HERE / "workbooks"
+USERS = tuple(sorted(path.stem for path in OWN.iterdir() if path.suffix in (".xlsx", ".xlsm")))
+"""What users and their programs wrote."""
+NAMES = (
+    "market-street", *MADE, "everything-it", "routed-imperial", "duplex", "LargeBuilding",
+    *(f"city-{at}" for at in range(1, CITY + 1)), *USERS,
+)  # fmt: skip
+LARGE = frozenset(("market-street",))
+"""Of these the first rows of tables for programs are held."""
+MOST_ROWS = 8
+SETTINGS = Settings(runs=100)
+PRINTED = ("everything", "everything-it", "imperial", "doubted", "city-1")
+"""Of these the words of the PDFs are held."""
+BY_FORMULA = frozenset(("doubted", "LargeBuilding", "city-2", "table-totals"))
+SHAKING = {"shaking": "MMI VIII, severe"}
+"""What is typed in Building where a model tells nothing of it."""
+STORED, SHOWN = HERE / "stored", HERE / "shown"
+DATE = "1767225600"
+"""1 January 2026 as SOURCE_DATE_EPOCH: reports are dated by it."""
+
+
+def find_workbook(name: str, made: Path) -> Path:
+    """Return a workbook; `made` is where `make_workbooks` wrote."""
+    if name == "market-street":
+        return ROOT / "inventories" / "market-street.xlsx"
+    folder = OWN if name in USERS else made
+    return next(path for path in folder.iterdir() if path.stem == name and path.suffix.startswith(".xls"))
+
+
+def assess_workbook(name: str, made: Path) -> Results:
+    """Assess a workbook."""
+    given = SHAKING if name in ("duplex", "LargeBuilding") or name.startswith("city") else None
+    inventory = assess.read_inventory(find_workbook(name, made), building=given, strict=False)
+    return assess.run(inventory, replace(SETTINGS, verify="none") if name in BY_FORMULA else SETTINGS)
+
+
+def read_stored(name: str, box: Path) -> Results:
+    """Return the results that are kept."""
+    return read_results(STORED / f"{name}.npz", box)
+
+
+def store(name: str, results: Results) -> None:
+    """Keep results."""
+    STORED.mkdir(exist_ok=True)
+    write_results(results, STORED / f"{name}.npz")
+
+
+def show(name: str, results: Results, folder: Path, formats: Collection[str] = QUICK) -> Mapping[str, list[str]]:
+    """Return the lines of outputs. Figures are no lines: the page has an empty picture in their places."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SOURCE_DATE_EPOCH", DATE)
+        for module in (motion_figures, risk_contours):
+            patch.setattr(module, "draw", lambda *_, **__: b"")
+        found = render(results, folder, formats)
+    if name in LARGE:
+        found["json"] = [line for line in found["json"] if not _is_far(line)]
+        found["csv"] = found["csv"][: MOST_ROWS + 1]
+    return found
+
+
+def _is_far(line: str) -> bool:
+    return any(part.isdigit() and int(part) >= MOST_ROWS for part in line.partition(" ")[0].split("/"))
+
+
+def find_shown(name: str, kind: str) -> Path:
+    """Return where the lines of an output are kept."""
+    return SHOWN / f"{name}.{kind}.txt"
+
+
+def compare(name: str, kind: str, now: list[str]) -> Iterator[str]:
+    """Yield how the lines of an output differ from what is kept, as diff does, without what stands around."""
+    path = find_shown(name, kind)
+    kept = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+    marks = difflib.unified_diff(kept, [line for text in now for line in text.splitlines()], n=0, lineterm="")
+    yield from (line for line in list(marks)[2:])
+
+
+def rewrite(names: Collection[str] = NAMES, *, anew: bool = False, say: Callable[[str], Any] = print) -> None:
+    """Write the outputs anew, and say what differs."""
+    SHOWN.mkdir(exist_ok=True)
+    with tempfile.TemporaryDirectory() as box:
+        made = Path(box)
+        if anew:
+            make_workbooks(made)
+        for name in names:
+            if anew:
+                store(name, assess_workbook(name, made))
+            folder = Path(tempfile.mkdtemp(dir=box))
+            formats = (*QUICK, *PDFS) if name in PRINTED else QUICK
+            for kind, lines in show(name, read_stored(name, folder), folder / "out", formats).items():
+                difference = list(compare(name, kind, lines))
+                if difference:
+                    say(f"{name}.{kind}: {len(difference)} lines")
+                    for line in difference[:20]:
+                        say(f"  {line[:200]}")
+                    find_shown(name, kind).write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
+            shutil.rmtree(folder)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("names", nargs="*", default=NAMES, help="workbooks")
+    parser.add_argument("--assess", action="store_true", help="assess the workbooks anew")
+    given = parser.parse_args()
+    rewrite(given.names, anew=given.assess)
