@@ -1,8 +1,8 @@
 """One open workbook: its bytes, its cells in memory, what was edited, and the file on the disk that is saved.
 
-The bytes that were opened are the base. Edits change the cells that are held in memory; `Book.write` writes those that
-differ from the base into its bytes, and after `Book.save` what was saved is the base. All methods may be called from
-any thread.
+Edits change the cells that are held in memory; `Book.write` writes those that differ from what was opened into the
+bytes that were opened, so that a cell that is set back has its own rich text again. What differs from what was saved
+last is not saved yet. All methods may be called from any thread.
 """
 
 import secrets
@@ -66,13 +66,14 @@ class Book:
         if not held.cells:
             raise WorkbookError(held.problems)
         tables, _ = parse_held(held)
-        self._data, self._locks = data, Locks(data, self.name)
+        self._opened_data = self._data = data
+        self._locks = Locks(data, self.name)
         self.sheets: dict[str, PageSheet] = find_sheets(held, tables)
         self.language, self.units = held.language, find_units(self.sheets)
-        self._history, self._different = History(), set[CellPlace]()
+        self._history, self._edited, self._different = History(), set[CellPlace](), set[CellPlace]()
         self._saved_version = self._read_version = self.version
-        self._now = self._base = self._snap(held)
-        self._base_live: LiveRows | None = None
+        self._now = self._base = self._opened = self._snap(held)
+        self._opened_live: LiveRows | None = None
         self._written: tuple[int, bytes] = (self.version, data)
         self._missing: list[dict[str, Any]] | None = None
 
@@ -197,13 +198,14 @@ class Book:
             self._missing = None
 
     def _compare(self, places: Contents | set[CellPlace]) -> None:
-        now, base = self._now.cells.cells, self._base.cells.cells
-        for place in places:
-            sheet, *cell = place
-            if _is_same(now[sheet].value((cell[0], cell[1])), base[sheet].value((cell[0], cell[1]))):
-                self._different.discard(place)
-            else:
-                self._different.add(place)
+        now = self._now.cells.cells
+        for places_apart, other in ((self._different, self._base), (self._edited, self._opened)):
+            for place in places:
+                sheet, row, at = place
+                if _is_same(now[sheet].value((row, at)), other.cells.cells[sheet].value((row, at))):
+                    places_apart.discard(place)
+                else:
+                    places_apart.add(place)
         if not self._different:
             self._saved_version = self.version
 
@@ -229,18 +231,19 @@ class Book:
     def _write(self) -> tuple[Snapshot, bytes, list[CellPlace]]:
         with self._saving:
             with self._lock:
-                now, base, data, live = self._now, self._base, self._data, self._base_live
-                different, written = sorted(self._different), self._written
+                now, opened, data, live = self._now, self._opened, self._opened_data, self._opened_live
+                different, edited, written = sorted(self._different), sorted(self._edited), self._written
+                saved = self._data
             if not different:
-                return now, data, different
+                return now, saved, different
             if written[0] == now.version:
                 return now, written[1], different
             if live is None:
-                live = find_live(base)
-            patched = write_changes(data, base, now, different, live)
+                live = find_live(opened)
+            patched = write_changes(data, opened, now, edited, live) if edited else data
             with self._lock:
-                if self._base is base:
-                    self._base_live, self._written = live, (now.version, patched)
+                if self._opened is opened:
+                    self._opened_live, self._written = live, (now.version, patched)
             return now, patched, different
 
     def save(self) -> None:
@@ -273,7 +276,7 @@ class Book:
             self._save_error = self._hindrance = ""
             if different:
                 self._changed_outside, self._saved_version = False, now.version
-                self._data, self._base, self._base_live = data, now, None
+                self._data, self._base = data, now
                 self._compare({*different, *self._different})  # more may have been edited meanwhile
 
     def check_outside(self) -> bool:

@@ -2,9 +2,12 @@
 
 import io
 import re
+import shutil
 import zipfile
+from pathlib import Path
 
 import pytest
+from openpyxl import load_workbook
 
 from assess.pipeline.live_values import with_live
 from assess.web.book import Book
@@ -166,3 +169,21 @@ def test_libreoffice_shows_the_same(rich, tmp_path):
     assert any("pivotTable" in name for name in names)
     assert any("charts/chart" in name for name in names)
     assert any("media/" in name for name in names)
+
+
+def test_undo_after_a_save_brings_rich_text_back(tmp_path):
+    path = tmp_path / "own.xlsx"
+    shutil.copy(Path(__file__).parents[1] / "nets" / "workbooks" / "1904.xlsx", path)
+    before = path.read_bytes()
+    book = Book.open_disk(path)
+    book.edit(1, [["Items", 3, 3, "Plain"]], "x")
+    book.save()
+    assert load_workbook(path)["Items"].cell(3, 4).value == "Plain"
+    book.undo(book.version)
+    assert book.state()["unsaved"]
+    book.save()
+    assert path.read_bytes() == before
+    assert not book.state()["unsaved"]
+    book.redo(book.version)
+    book.save()
+    assert load_workbook(path)["Items"].cell(3, 4).value == "Plain"
