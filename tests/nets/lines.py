@@ -136,7 +136,7 @@ def read_pdf(path: Path) -> list[str]:
     """Return the sentences of a document, without where its lines and pages end."""
     texts = [page.get_textpage().get_text_range().replace("\ufffe", "-") for page in pypdfium2.PdfDocument(path)]
     words = re.sub(r"(Page|Pagina) \d+ (of|di) \d+ ?", "", " ".join(" ".join(texts).split()))
-    return re.split(r"(?<=[.:;]) ", words)
+    return re.split(r"(?<=[.:;]) ", words.strip())
 
 
 READERS: Mapping[str, Callable[[Path], list[str]]] = {
