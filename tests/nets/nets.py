@@ -32,9 +32,8 @@ NAMES = (
     "market-street", *MADE, "everything-it", "routed-imperial", "duplex", "LargeBuilding",
     *(f"city-{at}" for at in range(1, CITY + 1)), *USERS,
 )  # fmt: skip
-LARGE = frozenset(("market-street",))
-"""Of these the first rows of tables for programs are held."""
-MOST_ROWS = 8
+MOST_ROWS = 4
+"""Of results.json and items.csv the first of each list are held: the others are written alike."""
 SETTINGS = Settings(runs=100)
 PRINTED = ("everything", "everything-it", "imperial", "doubted", "city-1")
 """Of these the words of the PDFs are held."""
@@ -79,8 +78,9 @@ def show(name: str, results: Results, folder: Path, formats: Collection[str] = Q
         for module in (motion_figures, risk_contours):
             patch.setattr(module, "draw", lambda *_, **__: b"")
         found = render(results, folder, formats)
-    if name in LARGE:
+    if "json" in found:
         found["json"] = [line for line in found["json"] if not _is_far(line)]
+    if "csv" in found:
         found["csv"] = found["csv"][: MOST_ROWS + 1]
     return found
 

@@ -9,7 +9,6 @@ from assess.risk import RiskClass
 from assess.settings import Settings
 
 SEEDS = range(1, 11)
-pytestmark = pytest.mark.long
 
 
 @pytest.fixture(scope="module")
@@ -21,6 +20,7 @@ def chances(assessment):
     return assessment.adoption.probability[assessment.governing]
 
 
+@pytest.mark.slow
 def test_expected_falls_scatter_by_at_most_2_5_percent_and_no_group_is_split(runs):
     falls = []
     for one in runs:
@@ -35,6 +35,7 @@ def test_expected_falls_scatter_by_at_most_2_5_percent_and_no_group_is_split(run
     assert np.std(falls, ddof=1) <= 0.025 * np.mean(falls)
 
 
+@pytest.mark.slow
 def test_the_ranges_of_what_is_counted_overlap(runs):
     every = [count("", list(build_results(one, figures=False))) for one in runs]
     spans = [[one.risky_span for one in every], *([one.spans[risk] for one in every] for risk in RiskClass)]
@@ -45,6 +46,7 @@ def test_the_ranges_of_what_is_counted_overlap(runs):
     assert max(expected for _, expected, _ in falls) <= min(high for _, _, high in falls)
 
 
+@pytest.mark.long
 def test_each_chance_is_within_7_points_of_that_of_5000_draws(runs, example_inventory):
     many = chances(compute(example_inventory, Settings(verify="all", runs=5000)))
     covered = []
