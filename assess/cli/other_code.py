@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from assess.errors import InputError
+from assess.input_file import read_input
 from assess.settings import CLASS_BY, SCENARIOS, Settings
 from assess.version import find_code
 
@@ -20,6 +21,8 @@ OPTIONS = (
 _FILLED = (SCENARIOS[0], CLASS_BY[0])
 """What stands for the workbook's own, where that says nothing else."""
 PDF = "report.pdf"
+MOST_BYTES = 1 << 28
+"""Size [bytes] above which a workbook is not looked at."""
 
 
 def check_code(before: "PastRun", after: "PastRun") -> None:
@@ -37,22 +40,22 @@ def check_code(before: "PastRun", after: "PastRun") -> None:
 
 def _list_ways(name: str, run: "PastRun") -> Iterator[str]:
     """Yield the command that assesses the workbook of a run again, and where that workbook is."""
-    folder = run.path.parent
-    places = (folder / run.workbook, folder.parent / run.workbook, Path(run.workbook))
+    folder, workbook = run.path.parent, Path(run.workbook).name  # a name alone: results.json may come from anybody
+    places = (folder / workbook, folder.parent / workbook, Path(workbook))
     found = next((one for one in places if _is_file(one, run.workbook_sha256)), None)
     default = Settings().as_record()
-    parts = ["assess", "run", str(found or run.workbook), "--out", f"{folder.resolve().name}-again"]
+    parts = ["assess", "run", str(found or workbook), "--out", f"{folder.resolve().name}-again"]
     for option in OPTIONS:
         value = run.settings.get(option)
         if value not in (None, default[option], *_FILLED):
             parts += [f"--{option.replace('_', '-')}", *(() if value is True else (str(value),))]
     yield f"Assess {name} again, and compare that: {shlex.join(parts)}"
     if found is None and (folder / PDF).is_file():
-        yield f"{run.workbook} is attached to {folder / PDF}: save it from there."
+        yield f"{workbook} is attached to {folder / PDF}: save it from there."
 
 
 def _is_file(path: Path, sha256: str) -> bool:
     try:
-        return hashlib.sha256(path.read_bytes()).hexdigest() == sha256
-    except OSError:
+        return hashlib.sha256(read_input(path, MOST_BYTES)).hexdigest() == sha256
+    except (OSError, ValueError):
         return False

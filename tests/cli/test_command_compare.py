@@ -153,6 +153,18 @@ def test_a_run_by_other_code_is_assessed_again_by_the_command_that_the_error_pri
     assert done.stdout.startswith("Nothing"), done.stdout
 
 
+@pytest.mark.parametrize("name", ["../../hall.xlsx", "/dev/zero", "."])
+def test_a_workbook_is_looked_for_by_its_name_alone(older, folder, name):
+    before = older("ab" * 32)
+    record = json.loads((before / "results.json").read_text(encoding="utf-8"))
+    record["assess"]["inputs"]["workbook"] = name
+    (before / "results.json").write_text(json.dumps(record), encoding="utf-8")
+    told = run("compare", before, folder / "strong")
+    assert told.exit_code == 2
+    assert "/dev" not in told.stderr
+    assert "../.." not in told.stderr
+
+
 def test_runs_by_different_code_are_compared_as_they_are_under_a_sentence_that_says_it(folder, older, tmp_path):
     done = _compare(folder, older("ab" * 32), "base", "--as-is", "--out", tmp_path / "out", "--formats", "html")
     first = "The two runs were computed by different code of assess"
