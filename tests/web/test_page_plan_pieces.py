@@ -183,10 +183,11 @@ def test_what_is_not_known_of_a_piece_is_marked_and_leads_to_its_cell(page, serv
     expect(plan.panel).to_contain_text("0.32 × ? × 1.8")
     plan.panel.get_by_role("button", name="Fill in Width: how far it reaches is not known.").click()
     expect(plan.page.locator(".sheet-cell")).to_have_text(re.compile(rf"![B-Z]{A1}$"))
-    plan.sheet.type("80<Enter>")
+    plan.sheet.type("80", "<Enter>")
     plan.open()
+    expect(piece).not_to_have_class(re.compile("missing"))
     expect(piece.locator(".unknown")).to_have_count(0)
-    assert piece.get_attribute("class").find("missing") == -1
+    assert plan.sheet.settle().values("Items", "width") == {A1: 80}
 
 
 def test_a_type_is_dragged_from_the_catalogue_and_an_unplaced_piece_from_its_list(plan):
