@@ -80,7 +80,7 @@ MOTION_FLAGS: Mapping[str, str] = {
     "shakemap": fill("the ground motion is the median of a ShakeMap at the building: estimated, not recorded there"),
     "scenarios": fill("the ground motion is the median of computed scenarios of one earthquake"),
     "assumed_elevation": fill(
-        "Elevation is blank: assumed as the floor's number, the ground floor being 0, times Height over Storeys"
+        "Elevation is blank: assumed as the floor's number, counted from the ground floor, times Height over Storeys"
     ),
     "drawn_building": fill(
         "no motion of this floor is known: PFA and PFV are medians over drawn buildings on the ground motion"

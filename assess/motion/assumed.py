@@ -13,7 +13,7 @@ walls, 1.5 to 6 for dual systems, 5 to 20 for frames). Assumed: not compared wit
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal
@@ -183,12 +183,25 @@ def find_storey(name: str) -> int | None:
     return int(found[1]) if found else None
 
 
-def assume_elevation(name: str, height: float | None, storeys: int | None) -> float | None:
+def find_lowest_number(floors: Iterable[tuple[str, float | None]]) -> int | None:
+    """Return the number that the ground floor is called by, from the names and the elevations [m] of all floors.
+
+    It is that of the floor with an Elevation of 0, and 0 where there is none. None where floors are not to be placed by
+    their numbers: one has an Elevation above the ground, or floors of several numbers have 0.
+    """
+    known = [(name, elevation) for name, elevation in floors if elevation is not None]
+    at_grade = {find_storey(name) for name, elevation in known if elevation == 0} - {None}
+    if any(elevation > 0 for _, elevation in known) or len(at_grade) > 1:
+        return None
+    return next(iter(at_grade), 0)
+
+
+def assume_elevation(name: str, height: float | None, storeys: int | None, lowest: int = 0) -> float | None:
     """Return the elevation [m] of a floor from its name, and the height [m] and the storeys of its building.
 
-    None where the building or the name does not tell; at most the height.
+    `lowest` is the number of the ground floor. None where the building or the name does not tell; at most the height.
     """
     storey = find_storey(name)
     if storey is None or height is None or storeys is None:
         return None
-    return min(storey * height / storeys, height)
+    return min(max(storey - lowest, 0) * height / storeys, height)

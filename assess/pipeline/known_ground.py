@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from assess.intensity import SHAKINGS, Shaking
 from assess.model import Floor, Inventory
 from assess.motion import assumed
-from assess.motion.assumed import assume_elevation
+from assess.motion.assumed import assume_elevation, find_lowest_number
 from assess.motion.site_ground import SiteGround
 
 _NOTHING = assumed.Building()
@@ -28,8 +28,9 @@ class Ground:
       would.
     * `shaking`: the assumed intensity that `motion` is the median of.
     * `site`: the ShakeMap or the scenarios whose median it is.
-    * `storeys`: storeys above ground, from which the elevations of numbered floors are assumed; None where a floor has
-      its own.
+    * `storeys`: storeys above ground, from which the elevations of numbered floors are assumed; None where a floor
+      above the ground has its own.
+    * `lowest`: the number of the ground floor.
     """
 
     motion: assumed.Ground | None = None
@@ -41,6 +42,7 @@ class Ground:
     shaking: Shaking | None = None
     site: SiteGround | None = None
     storeys: int | None = None
+    lowest: int = 0
 
     @property
     def pga(self) -> float | None:
@@ -71,7 +73,7 @@ class Ground:
         """Return the elevation of a floor [m] with its flags: as filled in, else by Storeys and Height, else None."""
         if floor.elevation is not None:
             return floor.elevation, ()
-        assumed = None if self.is_highest_floor else assume_elevation(floor.floor, self.roof, self.storeys)
+        assumed = None if self.is_highest_floor else assume_elevation(floor.floor, self.roof, self.storeys, self.lowest)
         return assumed, () if assumed is None else ("assumed_elevation",)
 
     def find_ratio(self, floor: Floor) -> float | None:
@@ -91,6 +93,7 @@ def find_ground(inventory: Inventory) -> Ground:
     """Return what the workbook gives, as far as it does."""
     building = inventory.building
     highest = max((floor.elevation for floor in inventory.floors if floor.elevation is not None), default=None)
+    lowest = find_lowest_number((floor.floor, floor.elevation) for floor in inventory.floors)
     by_sds = building.ground_pga is None and building.sds is not None
     pga = building.known_pga
     site = inventory.site_ground if pga is None else None
@@ -105,7 +108,8 @@ def find_ground(inventory: Inventory) -> Ground:
         is_highest_floor=is_highest,
         shaking=shaking,
         site=site,
-        storeys=building.storeys if highest is None else None,
+        storeys=None if lowest is None else building.storeys,
+        lowest=lowest or 0,
     )
 
 

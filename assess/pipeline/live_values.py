@@ -71,13 +71,14 @@ def _list_live(inventory: Inventory, demands: Demands) -> list[Demand]:
     """Return the demands that the sheet knows: of typed peaks, and of the ground where no floor has its own motion."""
     every = [one for parallel in demands.values() for one in parallel]
     ground = find_ground(inventory)
-    is_sure = ground.site is None and ground.storeys is None
-    drawn = [one for one in every if one.drawn is not None]
-    known = [one for one in drawn if one.source == "given" and one.drawn and one.drawn.target.meets == "peaks"]
-    if not is_sure:
+    given = [one for one in every if one.source == "given" and one.drawn]
+    known = [one for one in given if one.drawn and one.drawn.target.meets == "peaks"]
+    if ground.site is not None:
         return known
-    followed = [one for one in drawn if one.source == "given" and one.drawn and one.drawn.record is None]
-    return [*known, *followed, *(every if all(one.source == "beam" for one in every) else ())]
+    followed = [one for one in given if one.drawn and one.drawn.record is None]
+    by_beam = every if all(one.source == "beam" for one in every) else []
+    placed = [one for one in (*followed, *by_beam) if ground.storeys is None or one.floor.elevation is not None]
+    return [*known, *placed]
 
 
 def _build_cases(items: Sequence[Item], motions: Sequence[Demand | None]) -> Cases:

@@ -178,11 +178,11 @@ def _assumed_elevations(inventory: Inventory, demands: Demands) -> Iterator[Prob
     if floors:
         message = nfill(
             "floor {floors} has no Elevation; its number times Height over Storeys, counted from the ground floor as "
-            "0, is assumed. It lies higher where lower storeys are higher than the others.",
+            "{lowest}, is assumed. It lies higher where lower storeys are higher than the others.",
             "{n:,} floors have no Elevation ({floors}); their numbers times Height over Storeys, counted from the "
-            "ground floor as 0, are assumed. Evenly spaced storeys place a floor too low where lower storeys are "
-            "higher.",
-            len(floors), floors=", ".join(floor.floor for floor in floors),
+            "ground floor as {lowest}, are assumed. Evenly spaced storeys place a floor too low where lower storeys "
+            "are higher.",
+            len(floors), floors=", ".join(floor.floor for floor in floors), lowest=find_ground(inventory).lowest,
         )  # fmt: skip
         yield Problem("note", "Floors", floors[0].cell("elevation"), message, fill("Fill in Elevation."))
 

@@ -17,7 +17,7 @@ from assess.web.columns import PageSheet
 from assess.web.evaluation import Evaluation
 from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, say_class
 from assess.workbook.lists import NO_SHAKING, NO_UNIT, RUN_ASSESS, WRONG
-from assess.workbook.live_row import IS_ANCHORED, NO_AXIS, NO_FLOOR
+from assess.workbook.live_row import IS_ANCHORED, NO_AXIS, NO_FLOOR, NO_TYPE
 from assess.workbook.names import key, plain, split_header
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.resolve import build_catalogue, defined, filled_sizes
@@ -194,7 +194,7 @@ class _Words:
         if any(table.spoilt(name, row) for name in sizes):
             return gettext(WRONG)
         if len(filled_sizes(table, row, self.types).keys() & set(sizes)) < len(sizes):
-            return gettext(WRONG) if self._names_no_type(row) else ""
+            return gettext(NO_TYPE) if self._names_no_type(row) else ""
         return gettext(self._explain_motion(row))
 
     def _names_no_type(self, row: Row) -> bool:

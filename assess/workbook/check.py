@@ -10,7 +10,7 @@ from assess.details import AT_BASE, AT_WALL, DETAILS, find_detail
 from assess.errors import Gap, Problem
 from assess.i18n import Text, fill, join, nfill
 from assess.model import AXES, MEASURED, CatalogueType
-from assess.motion.assumed import find_storey
+from assess.motion.assumed import find_lowest_number, find_storey
 from assess.units import ROUNDING
 from assess.workbook.ground_files import SHAKEN
 from assess.workbook.names import find_near_name, key
@@ -187,10 +187,14 @@ def check_floors(tables: Tables, *, is_shaken: bool = False) -> Iterator[Problem
 def _check_demands(table: Table, *, has_storeys: bool) -> Iterator[Problem]:
     """Report floors that nothing can serve: a motion at grade serves all, one above it only those of known height."""
     rows = table.with_all("floor")
-    is_numbered = has_storeys and not any(table.says(row, "elevation") for row in rows)
+    lowest = find_lowest_number((row.get("floor"), row.get("elevation")) for row in rows) if has_storeys else None
+    if any(table.spoilt("elevation", row) for row in rows):
+        lowest = None
 
     def find_level(row: Row) -> float | None:
-        return find_storey(row.get("floor")) if is_numbered else row.get("elevation")
+        elevation: float | None = row.get("elevation")
+        number = find_storey(row.get("floor")) if elevation is None and lowest is not None else None
+        return elevation if number is None or lowest is None else number - lowest
 
     known = [row for row in rows if table.says(row, "pfa_x", "pfa_y", "record_x", "record_y")]
     heights = [level for row in known if (level := find_level(row)) is not None]

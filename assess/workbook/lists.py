@@ -15,7 +15,7 @@ from xlsxwriter.utility import xl_col_to_name
 from assess.i18n import gettext
 from assess.model import ANCHORED, SCANNED, SIZES_FROM
 from assess.rocking.block import MIDDLE
-from assess.units import ALIASES, GRAVITY, QUANTITIES, ROUNDING
+from assess.units import ALIASES, GRAVITY, QUANTITIES
 from assess.workbook import formulas as live
 from assess.workbook import live_ground
 from assess.workbook.cell_texts import list_words, trim
@@ -47,6 +47,7 @@ LISTED = ("length", "acceleration", "velocity", "time", "share")
 
 _NEEDED_FACTORS = (
     ("Items", "breadth"), ("Items", "height"), ("Catalogue", "breadth"), ("Catalogue", "height"),
+    ("Items", "width"), ("Catalogue", "width"),
     ("Floors", "pfa_x"), ("Floors", "pfa_y"), ("Floors", "pfv_x"), ("Floors", "pfv_y"), ("Building", "period"),
     ("Building", "ground_pga"), ("Building", "ground_pgv"), ("Building", "sds"), ("Building", "height"),
     ("Floors", "elevation"),
@@ -58,7 +59,7 @@ _OWN_SCENARIOS = {"asfilled": "as filled", "recorded": "recorded", "given": "giv
 
 _SCENARIO_NAMES = ("scenario_typed", "scenario_kind", "scenario_is_own")
 
-_TYPE_SIZES, CENTRE = ("breadth", "height"), "centre_of_gravity"
+_TYPE_SIZES, CENTRE = ("breadth", "width", "height"), "centre_of_gravity"
 
 _PREFIXES = {"Floors": "floor", "Catalogue": "type"}
 """First words of the names of helper columns."""
@@ -238,9 +239,9 @@ class ListsWriter:
     def _own_pfa(self, row: int, key: str) -> Iterator[str]:
         for axis in "xy":
             pfa, record = (_typed(f"{what}_{axis}", row) for what in ("pfa", "record"))
-            unit, wrong = f"unit_floors_pfa_{axis}", gettext(WRONG)
-            in_g, least = f"{pfa}*{unit}/{GRAVITY!r}", (FLOORS.column(f"pfa_{axis}").low or 0) * (1 - ROUNDING)
-            number = f'IFERROR(IF({in_g}<{least:.12g},"{wrong}",{in_g}),{unit})'
+            unit = f"unit_floors_pfa_{axis}"
+            inside = live.between(f"{pfa}*{unit}", FLOORS.column(f"pfa_{axis}"))
+            number = f'IFERROR(IF({inside},{pfa}*{unit}/{GRAVITY!r},"{gettext(WRONG)}"),{unit})'
             given = f'IF(scenario_kind="recorded","",{_if_number(pfa, number)})'
             aside = f'AND(TRIM({record})<>"",scenario_kind<>"given")'
             yield f'IF(OR({key}=0,scenario_is_own=0),"",IF({aside},"{gettext(RUN_ASSESS)}",{given}))'

@@ -110,7 +110,7 @@ def list_names(building: Mapping[str, str], run_assess: str, wrong: str) -> Iter
         yield f"ratio_{axis}_part", _find_part(ratio, "table_ratios", f"ratio_{axis}_at")
     named = ",".join(f'TRIM({building[name]})<>""' for name in ("ground_pga", "ground_pgv", "sds", *_NAMED))
     yield "ground_named", f"OR({named})"
-    yield "storeys_serve", 'AND(given_storeys<>"",COUNT(floor_z)=0)'
+    yield "storeys_serve", 'AND(given_storeys<>"",COUNTIF(floor_z,">0")=0)'
 
 
 def _read_number(name: str, cell: str, wrong: str) -> str:

@@ -10,6 +10,7 @@ from assess.risk import RiskClass
 from assess.rocking.block import MIDDLE
 from assess.rocking.draws import BASE, CENTRE, CUT, HEIGHT, MARGIN, SCANNED_BASE, SCANNED_HEIGHT
 from assess.settings import Settings
+from assess.units import ROUNDING
 from assess.workbook import formulas as live
 from assess.workbook.cell_texts import find_row, is_among, trim
 from assess.workbook.layout import LETTERS
@@ -19,8 +20,8 @@ from assess.workbook.schema import CLASS_OR, ITEMS, LIVE, NO, WORKINGS, YES
 ROW = "\x00"
 """Stands for the number of the row in the formulas of `LiveRow`, which are the same for every row."""
 
-NO_FLOOR, NO_AXIS = "floor?", "axis?"
-"""What the live columns show without a known floor and with an unknown axis."""
+NO_FLOOR, NO_AXIS, NO_TYPE = "floor?", "axis?", "type?"
+"""What the live columns show without a known floor, with an unknown axis, and where no known type gives the sizes."""
 
 IS_ANCHORED = "anchored"
 """What they show in place of the class of a piece that is anchored."""
@@ -37,14 +38,14 @@ class LiveRow:
         floor, kind, axis, pfv, breadth, height = (cells[label] for label in WORKINGS)
         references = {"breadth_to_height": ratio, "height_cm": height, "pfa_g": pfa, "pfv_cm_s": pfv}
         return dict(zip((*LIVE, *WORKINGS), (
-            _divide(breadth, height),
+            _divide(breadth, height, self._width(kind)),
             self._unless_blank(_served(floor, axis, "pfa", f'IF({axis}={_say(WRONG)},{axis},{_say(NO_AXIS)})')),
             *(_ready(ratio, pfa, _write(method, references)) for method in live.LIVE_METHODS),
             self._class(cells),
             self._paper_class(cells),
             _ready(ratio, pfa, self._can_rock(ratio, pfa, kind, floor)),
             self._unless_blank(f"IFERROR({find_row(trim(self._own('floor')), 'floor_key')},{_say(NO_FLOOR)})"),
-            self._unless_blank(f'IFERROR({find_row(trim(self._own("type")), "type_key")},"")'),
+            self._unless_blank(self._kind()),
             self._unless_blank(f"IF(ISNUMBER({floor}),{self._axis(floor)},{floor})"),
             self._unless_blank(_served(floor, axis, "pfv", '""')),
             *(self._unless_blank(self._size(name, kind)) for name in ("breadth", "height")),
@@ -75,11 +76,22 @@ class LiveRow:
         is_ready = f"OR(ISNUMBER({risk}),{risk}={_say(RUN_ASSESS)},{risk}={_say(NO_SHAKING)})"
         return f"=IF({is_ready},{either},{risk})"
 
+    def _kind(self) -> str:
+        """Expression for the row of its type in the Catalogue; nothing where it names none."""
+        own = self._own("type")
+        return f'IF(TRIM({own})="","",IFERROR({find_row(trim(own), "type_key")},{_say(NO_TYPE)}))'
+
     def _size(self, name: str, kind: str) -> str:
         """Expression for a size [cm]: the row's own, else its type's, else nothing."""
-        own, listed = self._own(name), f'IF(ISNUMBER({kind}),INDEX(type_{name},{kind}),"")'
+        own, listed = self._own(name), f"IF(ISNUMBER({kind}),INDEX(type_{name},{kind}),{kind})"
         number = f"IF(ISNUMBER({own}),{own}*unit_items_{name}*100,{_say(WRONG)})"
         return f'IF(sizes_unit<>"",sizes_unit,IF(TRIM({own})="",{listed},{number}))'
+
+    def _width(self, kind: str) -> str:
+        """Expression for the width [cm] that Breadth must not exceed: the row's own, else its type's, else nothing."""
+        own = self._own("width")
+        listed = f'IF(AND(TRIM({own})="",ISNUMBER({kind})),INDEX(type_width,{kind}),"")'
+        return f'IF(ISNUMBER({own}),IFERROR({own}*unit_items_width*100,""),{listed})'
 
     def _can_rock(self, ratio: str, pfa: str, kind: str, floor: str) -> str:
         """Expression for whether the strongest motion that may be drawn can start it: PFA e^(3 s) >= 0.65 g b/z.
@@ -134,10 +146,14 @@ def _say(hint: str) -> str:
     return f'"{gettext(hint)}"'
 
 
-def _divide(breadth: str, height: str) -> str:
-    """Return the formula for B/H; where one of them is no size what is shown in its place, a wrong one first."""
+def _divide(breadth: str, height: str, width: str) -> str:
+    """Return the formula for B/H; where one of them is no size what is shown in its place, a wrong one first.
+
+    Breadth is the shorter side of the plan: the program refuses one above the width. No number is above a text.
+    """
     size = ITEMS.column("breadth")
-    inside = f"AND({live.between(breadth, size, 100)},{live.between(height, size, 100)})"
+    is_shorter = f"{breadth}*{1 - ROUNDING!r}<={width}"
+    inside = f"AND({live.between(breadth, size, 100)},{live.between(height, size, 100)},{is_shorter})"
     ratio = f"IF({inside},{breadth}/{height},{_say(WRONG)})"
     other = f"IF({height}={_say(WRONG)},{height},IF(ISNUMBER({breadth}),{height},{breadth}))"
     return f"=IF(COUNT({breadth},{height})=2,{ratio},{other})"

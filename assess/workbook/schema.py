@@ -213,7 +213,8 @@ FLOORS = Sheet(
         Column("floor", "Floor", "text", "Short name, used in Items.", required=True, width=9),
         Column("name", "Name", "text", "Longer name for the report.", width=18),
         Column("elevation", "Elevation", "number", "Height of the floor above the ground. Worth most where it has no "
-               "record and no PFA; where no floor has one, floors called by their number are placed by Height and Storeys.", **_LENGTH, low=-200, high=1000),
+               "record and no PFA; where no floor above the ground has one, floors called by their number are placed by "
+               "Height and Storeys.", **_LENGTH, low=-200, high=1000),
         Column("pfa_x", "PFA X", "number", "Peak floor acceleration along X.", **_ACCELERATION),
         Column("pfa_y", "PFA Y", "number", "Peak floor acceleration along Y. One axis alone serves both.",
                **_ACCELERATION),

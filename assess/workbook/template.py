@@ -55,10 +55,11 @@ FIRST_LINES = (
     "The classes: ○ low below 3 %, ◇ medium below 30 %, ▲ high below 70 %, ■ very high from 70 % chance of overturning "
     "in this scenario, not per year. A * behind a class: outside the range in which the formula was checked by tests.",
     "Words in place of a class: shaking?: nothing tells how the floor shakes: fill in its PFA, or choose Shaking in "
-    "Building. run assess: assess run works out the motion of the floor, from a record, from other floors or from the "
-    "ground. check: a cell holds a text, or a number out of range, with which nothing is computed here; assess check "
-    "tells which cell, and its option fix writes a copy in which such cells are corrected where they can be read in "
-    "one way only. floor?, axis?, unit?: the floor, the axis or the unit of a header is not known.",
+    "Building. run assess: assess run works out the motion of the floor, from a record, from other floors or from the"
+    " ground. check: a cell holds a text, or a number out of range, or Breadth is above Width: nothing is computed "
+    "with it here; assess check tells which cell, and its option fix writes a copy in which such cells are corrected "
+    "where they can be read in one way only. floor?, axis?, type?, unit?: the floor, the axis, the type or the unit "
+    "of a header is not known.",
 )
 
 CLASS_NOTE = (

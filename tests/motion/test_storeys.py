@@ -2,7 +2,7 @@
 
 import pytest
 
-from assess.motion.assumed import assume_elevation, find_storey
+from assess.motion.assumed import assume_elevation, find_lowest_number, find_storey
 
 NAMES = {
     "0": 0, "G": 0, "Ground floor": 0, " pt ": 0, "Piano terra": 0, "B1": 0, "b 2": 0, "-2": 0, "Basement": 0,
@@ -31,3 +31,17 @@ def test_storeys_are_of_one_height_and_no_floor_is_above_the_roof():
 @pytest.mark.parametrize(("height", "storeys"), [(None, 4), (12.0, None)])
 def test_without_height_or_storeys_nothing_is_assumed(height, storeys):
     assert assume_elevation("2", height, storeys) is None
+
+
+@pytest.mark.parametrize(
+    ("floors", "lowest"),
+    [({"1": None, "2": None}, 0), ({"1": 0.0, "2": None}, 1), ({"0": 0.0, "1": None}, 0), ({"Hall": 0.0, "1": None}, 0),
+     ({"1": -4.0, "2": None}, 0), ({"B1": -3.0, "2": 0.0}, 2), ({"1": 0.0, "2": 0.0}, None),
+     ({"1": 0.0, "2": 3.0}, None)],
+)  # fmt: skip
+def test_the_ground_floor_begins_the_numbers(floors, lowest):
+    assert find_lowest_number(floors.items()) == lowest
+
+
+def test_floors_are_counted_from_the_number_of_the_ground_floor():
+    assert [assume_elevation(str(one), 12.0, 4, lowest=1) for one in range(6)] == [0, 0, 3, 6, 9, 12]

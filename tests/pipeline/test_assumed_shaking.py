@@ -157,6 +157,27 @@ def test_with_a_ground_pga_too(tmp_path):
     assert demands["3", "X"][0].pfa == pytest.approx(0.2 * GRAVITY * (1 + 1.5 * 0.75))
 
 
+def test_a_ground_floor_at_0_begins_the_numbers_of_the_others(tmp_path):
+    """As the templates fill it in: floor 1 at 0, so that floor 3 lies two of four storeys up."""
+    floors = [{"floor": "1", "elevation": 0}, {"floor": "2"}, {"floor": "3"}]
+    inventory = _read(tmp_path, floors, height=12, storeys=4)
+    demands = build_demands(inventory, "as filled")
+    assert [demands[floor["floor"], "X"][0].height_ratio for floor in floors] == pytest.approx([0, 0.25, 0.5])
+    notes = _notes(assess.run(inventory, UNVERIFIED))
+    assert any(
+        "2 floors have no Elevation (2, 3)" in one and "the ground floor as 1, are assumed" in one for one in notes
+    )
+
+
+def test_a_new_template_needs_no_elevations_beside_height_and_storeys(tmp_path):
+    """Found by a first user: the Elevation of 0 that the template fills in made all others necessary."""
+    floors = [{"floor": "1", "elevation": 0, "pfa_x": 0.2}, {"floor": "2"}]
+    served = _read(tmp_path, floors, height=12, storeys=4, shaking=None)
+    assert build_demands(served, "as filled")["2", "X"][0].height_ratio == pytest.approx(0.25)
+    with pytest.raises(assess.WorkbookError, match="floor '2' has neither a record nor a PFA, no Elevation"):
+        _read(tmp_path, [floors[0] | {"elevation": 4}, floors[1]], height=12, storeys=4, shaking=None)
+
+
 def test_storeys_alone_give_the_height(tmp_path):
     """Three metres each."""
     inventory = _read(tmp_path, NUMBERED, storeys=4)

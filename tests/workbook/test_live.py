@@ -103,7 +103,8 @@ def _convert(sheet: str, row: dict[str, Any], units: Units) -> dict[str, Any]:
     columns = {column.name: column for one in SHEETS if one.name == sheet for column in one.columns}
     scale = {name: column.factor / QUANTITIES[column.quantity][column.header(units).split("[")[1].rstrip("]")]
              for name, column in columns.items() if column.quantity}  # fmt: skip
-    return {name: value * scale[name] if name in scale else value for name, value in row.items()}
+    return {name: value * scale[name] if name in scale and not isinstance(value, str) else value
+            for name, value in row.items()}  # fmt: skip
 
 
 def retype(path: Path, units: Mapping[tuple[str, str], str]) -> Path:
@@ -336,8 +337,13 @@ def test_no_sizes_yet(tmp_path: Path) -> None:
     assert (ratio, pfa, rest) == ("", 0.5, [""] * 6)
 
 
-def test_no_such_type(tmp_path: Path) -> None:
-    assert shown_of(tmp_path, {"breadth": None, "height": None, "type": "none such"})[2:] == [""] * 6
+@pytest.mark.parametrize("engine", ENGINES)
+def test_no_such_type(tmp_path: Path, engine: Engine) -> None:
+    items: Rows = [{"item": "A1", "floor": "1", "type": "none such"}, {"item": "A2", "floor": "1", "type": " "},
+                   {"item": "A3", "floor": "1", "type": "none such", "breadth": 40}]  # fmt: skip
+    shown = engine(poison(fill(tmp_path / "book.xlsx", items, [{"floor": "1", "pfa_x": 0.5}], {})))
+    unknown = ["type?", 0.5, *["type?"] * 6]
+    assert [shown[row] for row in (2, 3, 4)] == [unknown, ["", 0.5, *[""] * 6], unknown]
 
 
 def test_own_sizes_need_no_type(tmp_path: Path) -> None:
@@ -688,6 +694,8 @@ def test_a_text_in_place_of_a_number_shows_no_class(tmp_path: Path, engine: Engi
 REFUSED: list[tuple[dict[str, Any], dict[str, Any]]] = [
     ({"breadth": 45000}, {}), ({"breadth": 0.4}, {}), ({"breadth": -40}, {}), ({"breadth": 0}, {}),
     ({"height": 1.8}, {}), ({"height": 700}, {}), ({}, {"pfa_x": -0.5}), ({}, {"pfa_x": "much"}),
+    ({}, {"pfa_x": 25}), ({"breadth": 200, "width": 100}, {}), ({"type": "narrow"}, {}),
+    ({"type": "narrow", "width": 39.9}, {}),
 ]  # fmt: skip
 
 
@@ -695,8 +703,26 @@ REFUSED: list[tuple[dict[str, Any], dict[str, Any]]] = [
 def test_a_number_that_the_program_refuses_shows_no_class(
     tmp_path: Path, item: dict[str, Any], floor: dict[str, Any]
 ) -> None:
-    """A date that was read out of 4/5 is a breadth of 450 m; metres below a header in cm are a needle."""
-    assert shown_of(tmp_path, item, [{"floor": "1", "pfa_x": 0.5} | floor])[5] == "check"
+    """A date read out of 4/5 is a breadth of 450 m; metres below a header in cm are a needle; 25 of PFA is a percentage."""
+    narrow = [{"type": "narrow", "breadth": 20, "width": 30, "height": 180}]
+    assert shown_of(tmp_path, item, [{"floor": "1", "pfa_x": 0.5} | floor], narrow)[5] == "check"
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_breadth_up_to_the_width_shows_its_class(tmp_path: Path, engine: Engine) -> None:
+    """Beside a width that is blank, no number, or the row's own in place of a narrower type's, Breadth is taken."""
+    rows: Rows = [
+        {"width": 40},
+        {"width": " "},
+        {"width": "wide"},
+        {"type": "narrow", "width": 41},
+        {"type": "unsized"},
+    ]
+    items: Rows = [{"item": f"A{at}", "floor": "1", "breadth": 40, "height": 180, **row} for at, row in enumerate(rows)]
+    catalogue: Rows = [{"type": "narrow", "breadth": 20, "width": 30, "height": 180}, {"type": "unsized"}]
+    path = fill(tmp_path / "book.xlsx", items, [{"floor": "1", "pfa_x": 0.5}], {}, "imperial", catalogue=catalogue)
+    shown = engine(poison(path))
+    assert [shown[row][0] for row in range(2, len(rows) + 2)] == pytest.approx([40 / 180] * len(rows))
 
 
 @pytest.mark.parametrize(
