@@ -25,19 +25,21 @@ def three(tmp_path: Path) -> Path:
     return write(tmp_path, floors=floors_with("a.at2", "b.zip", "c.zip"))
 
 
-def test_bytes(three: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(allowance, "MOST_RECORD_BYTES", 2 * len(at2()) + 500)
-    assert errors_of(three) == {f"Floors!B4: the record files of this workbook have more than 0 MB. {FEWER}"}
-
-
-def test_samples(three: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(allowance, "MOST_RECORD_SAMPLES", 2 * EAST.acceleration.size)
-    assert errors_of(three) == {f"Floors!B4: the record files of this workbook have more than 800 samples. {FEWER}"}
-
-
-def test_archives(three: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(allowance, "MOST_ARCHIVES", 1)
-    assert errors_of(three) == {f"Floors!B4: this workbook names more than 1 zip archives. {FEWER}"}
+@pytest.mark.parametrize(
+    ("limit", "most", "message"),
+    [
+        ("MOST_RECORD_BYTES", 2 * len(at2()) + 500, "the record files of this workbook have more than 0 MB"),
+        (
+            "MOST_RECORD_SAMPLES",
+            2 * EAST.acceleration.size,
+            "the record files of this workbook have more than 800 samples",
+        ),
+        ("MOST_ARCHIVES", 1, "this workbook names more than 1 zip archives"),
+    ],
+)
+def test_records(three: Path, monkeypatch: pytest.MonkeyPatch, limit: str, most: int, message: str) -> None:
+    monkeypatch.setattr(allowance, limit, most)
+    assert errors_of(three) == {f"Floors!B4: {message}. {FEWER}"}
 
 
 def test_a_file_counts_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -16,7 +16,7 @@ from assess.workbook.catalogue import read_catalogue
 from assess.workbook.example import example_content
 from assess.workbook.read import read_inventory
 from assess.workbook.template import write_workbook
-from tests.workbook.books import FLOORS, ITEMS, Sheet, problems_of, write
+from tests.workbook.books import FLOORS, ITEMS, Sheet, problems_of, write, write_book
 from tests.workbook.test_records import floors_with, write_record
 
 CODE: dict[str, Any] = {
@@ -33,50 +33,38 @@ def lenient(path: Path) -> Inventory:
     return read_inventory(path, strict=False)
 
 
-def errors(inventory: Inventory) -> list[str]:
-    return [problem.place for problem in inventory.errors]
-
-
 # ---------------------------------------------------------------- bytes
-
-
-def test_bytes_give_what_their_file_gives(tmp_path: Path) -> None:
-    path = write(tmp_path)
-    by_path, by_bytes = read_inventory(path), read_inventory(path.read_bytes())
-    assert (by_bytes.items, by_bytes.floors, by_bytes.sha256) == (by_path.items, by_path.floors, by_path.sha256)
-    assert by_bytes.read_bytes() == path.read_bytes()
 
 
 def test_the_bytes_that_are_read_are_those_that_are_hashed_and_kept(tmp_path: Path) -> None:
     path = write(tmp_path)
     data = path.read_bytes()
-    inventory = read_inventory(path)
+    inventory, by_bytes = read_inventory(path), read_inventory(data)
+    assert lenient(path) == inventory
+    assert (by_bytes.items, by_bytes.floors, by_bytes.sha256) == (inventory.items, inventory.floors, inventory.sha256)
+    assert by_bytes.read_bytes() == data
     path.write_bytes(b"changed since")
     assert inventory.read_bytes() == data
     assert inventory.sha256 == hashlib.sha256(data).hexdigest()
 
 
-def test_records_are_handed_over_as_bytes(tmp_path: Path) -> None:
-    write_record(tmp_path / "one.csv")
-    data, record = write(tmp_path, floors=floors_with(r"a\one.csv")).read_bytes(), (tmp_path / "one.csv").read_bytes()
+def test_records_are_handed_over_as_bytes_or_lie_in_another_folder(tmp_path: Path) -> None:
+    (tmp_path / "records" / "a").mkdir(parents=True)
+    write_record(tmp_path / "records" / "a" / "one.csv")
+    path = write(tmp_path, floors=floors_with(r"a\one.csv"))
+    data, record = path.read_bytes(), (tmp_path / "records" / "a" / "one.csv").read_bytes()
     inventory = read_inventory(data, records={"a/one.csv": record})
     assert inventory.files == {r"a\one.csv": hashlib.sha256(record).hexdigest()}
     assert inventory.floors[0].records["X"][0].record.channel == "NS"
+    assert read_inventory(path, records=tmp_path / "records").floors[0].records["X"]
     with pytest.raises(WorkbookError, match=r"Floors!B2: the file .* is not among the records that were passed"):
         read_inventory(data)
-
-
-def test_records_lie_in_another_folder(tmp_path: Path) -> None:
-    (tmp_path / "records").mkdir()
-    write_record(tmp_path / "records" / "one.csv")
-    path = write(tmp_path, floors=floors_with("one.csv"))
-    assert read_inventory(path, records=tmp_path / "records").floors[0].records["X"]
 
 
 # ---------------------------------------------------------------- rows in code
 
 
-def test_rows_in_code_are_read_as_a_workbooks(tmp_path: Path) -> None:
+def test_rows_in_code_are_read_as_a_workbooks() -> None:
     inventory = read_inventory(CODE)
     assert [(one.row, one.item, one.floor, one.breadth, one.height) for one in inventory.items] == [
         (1, "A1", "1", 0.4, 1.8),
@@ -132,12 +120,12 @@ WRONG: list[tuple[dict[str, Any], str]] = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("cells", "message"), WRONG)
-def test_rows_in_code_get_the_checks_and_messages_of_a_workbook(cells: dict[str, Any], message: str) -> None:
+def test_rows_in_code_get_the_checks_and_messages_of_a_workbook() -> None:
     sound = [{"item": f"A{at}", "floor": "1", "breadth": 40, "height": 180} for at in (1, 2, 3)]
-    with pytest.raises(WorkbookError) as caught:
-        read_inventory({**CODE, "Items": [*sound[:2], sound[2] | cells]})
-    assert [str(one) for one in caught.value.problems if one.severity == "error"] == [message]
+    for cells, message in WRONG:
+        with pytest.raises(WorkbookError) as caught:
+            read_inventory({**CODE, "Items": [*sound[:2], sound[2] | cells]})
+        assert [str(one) for one in caught.value.problems if one.severity == "error"] == [message]
 
 
 @pytest.mark.parametrize(
@@ -160,11 +148,16 @@ def test_rows_in_code_that_cannot_be_read(rows: dict[str, Any], error: type[Exce
 
 
 def test_a_faulty_row_is_left_out(tmp_path: Path) -> None:
+    """Or a line of the building, alone."""
     items = [*ITEMS, ["A2", "1", 40, 1.8], ["A3", "1", 50, 170], ["A3", "1", 50, 170]]
-    inventory = lenient(write(tmp_path, items))
+    path = write(tmp_path, items, Building=[["Use", "school"], ["Storeys", "many"]])
+    inventory = lenient(path)
     assert [one.item for one in inventory.items] == ["A1", "A3"]
-    assert errors(inventory) == ["Items!D3", "Items!A5"]
-    assert {str(one) for one in inventory.errors} == {str(one) for one in problems_of(write(tmp_path, items))}
+    assert (inventory.building.use, inventory.building.storeys) == ("school", None)
+    assert [one.place for one in inventory.errors] == ["Building!B2", "Items!D3", "Items!A5"]
+    assert {str(one) for one in inventory.errors} == {str(one) for one in problems_of(path)}
+    with pytest.raises(WorkbookError, match="is not an Excel workbook"):
+        read_inventory(b"no workbook", strict=False)
 
 
 def test_rows_that_need_a_row_that_is_left_out_go_with_it(tmp_path: Path) -> None:
@@ -180,13 +173,8 @@ def test_a_faulty_sheet_is_empty(tmp_path: Path) -> None:
     items = [["Item", "Floor", "Breadth [cm]", "Heigth [cm]"], ["A1", "1", 40, 180]]
     inventory = lenient(write(tmp_path, items))
     assert (inventory.items, [one.floor for one in inventory.floors]) == ((), ["1"])
-    assert "Items!D1" in errors(inventory)
+    assert "Items!D1" in [one.place for one in inventory.errors]
     assert lenient(write(tmp_path, [])).items == ()
-
-
-def test_a_faulty_line_of_the_building_is_left_out_alone(tmp_path: Path) -> None:
-    inventory = lenient(write(tmp_path, Building=[["Use", "school"], ["Storeys", "many"]]))
-    assert (inventory.building.use, inventory.building.storeys, len(inventory.items)) == ("school", None, 1)
 
 
 def test_a_segment_that_is_left_out_takes_its_pieces_with_it(tmp_path: Path) -> None:
@@ -196,16 +184,6 @@ def test_a_segment_that_is_left_out_takes_its_pieces_with_it(tmp_path: Path) -> 
     inventory = lenient(write(tmp_path, items, Places=places, Routes=routes))
     assert ([one.item for one in inventory.items], inventory.routes) == (["A2"], ())
     assert [one.place for one in inventory.places] == ["Door"]
-
-
-def test_a_sound_workbook_is_read_alike(tmp_path: Path) -> None:
-    path = write(tmp_path)
-    assert lenient(path) == read_inventory(path)
-
-
-def test_what_is_no_workbook_is_refused_all_the_same(tmp_path: Path) -> None:
-    with pytest.raises(WorkbookError, match="is not an Excel workbook"):
-        read_inventory(b"no workbook", strict=False)
 
 
 # ---------------------------------------------------------------- progress, cancelling, languages
@@ -225,12 +203,10 @@ def test_reading_reports_and_obeys_a_cancel(tmp_path: Path) -> None:
 
 
 def test_errors_can_be_said_in_italian(tmp_path: Path) -> None:
-    sheets: dict[str, Sheet] = {"Piani": [["Piano", "PFA X [g]"], ["1", 0.5]]}
-    from tests.workbook.books import write_book
-
+    floors: Sheet = [["Piano", "PFA X [g]"], ["1", 0.5]]
     items: Sheet = [["Elemento", "Piano", "Profondità [cm]", "Altezza [cm]"], ["A1", "9", 40, 1.8]]
     with pytest.raises(WorkbookError) as caught:
-        read_inventory(write_book(tmp_path / "cartella.xlsx", {**sheets, "Arredi": items}))
+        read_inventory(write_book(tmp_path / "cartella.xlsx", {"Piani": floors, "Arredi": items}))
     assert caught.value.language == "it"
     with speaking(load_catalogue("it")):
         said = [f"{gettext(one.message)} {gettext(one.fix)}" for one in caught.value.problems]
