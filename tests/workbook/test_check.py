@@ -8,7 +8,7 @@ import openpyxl
 import pytest
 
 from tests.cli.calling import run
-from tests.workbook.books import FLOORS, ITEMS, Sheet, errors_of, problems_of, read, write, write_book
+from tests.workbook.books import FLOORS, ITEMS, Sheet, errors_of, problems_of, write, write_book
 
 HEADER = [
     "Item", "Floor", "Type", "Quantity", "Breadth [cm]", "Width [cm]", "Height [cm]", "Axis", "Route", "Notes",
@@ -88,12 +88,13 @@ def faulty(folder: Path) -> Path:
     return path
 
 
-def test_one_run_names_every_fault(tmp_path: Path) -> None:
-    assert errors_of(faulty(tmp_path)) == EXPECTED
-
-
 def test_one_run_of_the_command_names_every_fault_and_writes_nothing(tmp_path: Path) -> None:
     path = faulty(tmp_path)
+    assert errors_of(path) == EXPECTED
+    problems = problems_of(path)
+    assert all(one.cell and (one.fix or one.severity == "note") for one in problems)
+    severities = [one.severity for one in problems]
+    assert severities == sorted(severities, key=["error", "warning", "note"].index)
     before = sorted(tmp_path.rglob("*"))
     done = run("run", str(path), "--out", str(tmp_path / "out"))
     assert done.exit_code == 2
@@ -103,45 +104,31 @@ def test_one_run_of_the_command_names_every_fault_and_writes_nothing(tmp_path: P
     assert sorted(tmp_path.rglob("*")) == before
 
 
-def test_every_fault_has_a_cell_and_a_mend(tmp_path: Path) -> None:
-    for problem in problems_of(faulty(tmp_path)):
-        assert problem.cell
-        assert problem.fix or problem.severity == "note"
+HEADLESS = "no header row was found in the first 20 rows. It needs the headers:"
+START = "Add it, or start from a workbook made with `assess new`."
 
 
-def test_errors_come_first(tmp_path: Path) -> None:
-    severities = [
-        problem.severity
-        for problem in problems_of(write(tmp_path, [[*ITEMS[0], "Own"], ["A1", None, None, None, "x"]]))
-    ]
-    assert severities == ["error", "error", "error", "note"]
-
-
-def test_sheets_missing(tmp_path: Path) -> None:
-    assert errors_of(write_book(tmp_path / "book.xlsx", {"Notes": [["hello"]]})) == {
-        "Items: the sheet is missing. Add it, or start from a workbook made with `assess new`.",
-        "Floors: the sheet is missing. Add it, or start from a workbook made with `assess new`.",
-    }
-
-
-@pytest.mark.parametrize("rows", [[], [[None, None]], [["   "]]])
-def test_sheets_empty(tmp_path: Path, rows: list[list[Any]]) -> None:
-    assert errors_of(write(tmp_path, rows, rows)) == {
-        "Items!A1: no header row was found in the first 20 rows. It needs the headers: Item, Floor.",
-        "Floors!A1: no header row was found in the first 20 rows. It needs the headers: Floor.",
-    }
-
-
-def test_a_sheet_without_headers(tmp_path: Path) -> None:
-    assert errors_of(write(tmp_path, ITEMS, FLOORS, Places=[["Lift", "1"]])) == {
-        "Places!A1: no header row was found in the first 20 rows. It needs the headers: Place, Floor."
-    }
-
-
-def test_no_rows(tmp_path: Path) -> None:
-    assert errors_of(write(tmp_path, ITEMS[:1], FLOORS[:1])) == {
-        "Floors!A2: the table has no rows. Fill in at least one.",
-    }
+@pytest.mark.parametrize(
+    ("sheets", "errors"),
+    [
+        ({"Notes": [["hello"]]}, {f"Items: the sheet is missing. {START}", f"Floors: the sheet is missing. {START}"}),
+        ({"Items": [*ITEMS, ["A2", "2", 40, 180]], "Places": [["Place", "Floor"]]},
+         {f"Floors: the sheet is missing. {START}"}),
+        *(({"Items": rows, "Floors": rows}, {f"Items!A1: {HEADLESS} Item, Floor.", f"Floors!A1: {HEADLESS} Floor."})
+          for rows in ([], [[None, None]], [["   "]])),
+        ({"Items": ITEMS, "Floors": FLOORS, "Places": [["Lift", "1"]]}, {f"Places!A1: {HEADLESS} Place, Floor."}),
+        ({"Items": ITEMS[:1], "Floors": FLOORS[:1]}, {"Floors!A2: the table has no rows. Fill in at least one."}),
+        ({"Items": ITEMS, "I tems": ITEMS, "Floors": FLOORS},
+         {"Items: there are 2 sheets of this name. Delete all but one, or rename them."}),
+        *((dict(zip(names, (ITEMS, FLOORS, [["Route", "Segment"]]), strict=True)),
+           {f"{near}: there is no sheet named {name}. Did you mean {name}? Rename it."})
+          for names, near, name in ((("Itmes", "Floors", "Routes"), "Itmes", "Items"),
+                                    (("Items", "Floor", "Routes"), "Floor", "Floors"),
+                                    (("Items", "Floors", "Route"), "Route", "Routes"))),
+    ],
+)  # fmt: skip
+def test_sheets_that_are_missing_or_empty(tmp_path: Path, sheets: dict[str, Sheet], errors: set[str]) -> None:
+    assert errors_of(write_book(tmp_path / "book.xlsx", sheets)) == errors
 
 
 REQUIRED = [
@@ -156,47 +143,22 @@ REQUIRED = [
 ]
 
 
-@pytest.mark.parametrize(("sheet", "header", "values", "missing"), REQUIRED)
-def test_a_required_column_is_missing(
-    tmp_path: Path, sheet: str, header: list[str], values: list[Any], missing: list[str]
-) -> None:
-    path = write_book(tmp_path / "book.xlsx", {"Items": ITEMS, "Floors": FLOORS, sheet: [header, values]})
-    assert errors_of(path) == {
-        f"{sheet}!A1: the column {label} is missing. Add it to the header row." for label in missing
-    }
-
-
-@pytest.mark.parametrize(("sheet", "near"), [("Items", "Itmes"), ("Floors", "Floor"), ("Routes", "Route")])
-def test_a_sheet_with_a_near_name(tmp_path: Path, sheet: str, near: str) -> None:
-    sheets = {"Items": ITEMS, "Floors": FLOORS, "Routes": [["Route", "Segment"]]}
-    sheets[near] = sheets.pop(sheet)
-    found = errors_of(write_book(tmp_path / "book.xlsx", sheets))
-    assert found == {f"{near}: there is no sheet named {sheet}. Did you mean {sheet}? Rename it."}
-
-
-def test_two_sheets_of_one_name(tmp_path: Path) -> None:
-    path = write_book(tmp_path / "book.xlsx", {"Items": ITEMS, "I tems": ITEMS, "Floors": FLOORS})
-    assert errors_of(path) == {"Items: there are 2 sheets of this name. Delete all but one, or rename them."}
-
-
-def test_a_missing_floors_sheet_is_named_once(tmp_path: Path) -> None:
-    path = write_book(tmp_path / "book.xlsx", {"Items": [*ITEMS, ["A2", "2", 40, 180]], "Places": [["Place", "Floor"]]})
-    assert len(errors_of(path)) == 1
+def test_a_required_column_is_missing(tmp_path: Path) -> None:
+    for sheet, header, values, missing in REQUIRED:
+        path = write_book(tmp_path / "book.xlsx", {"Items": ITEMS, "Floors": FLOORS, sheet: [header, values]})
+        assert errors_of(path) == {
+            f"{sheet}!A1: the column {label} is missing. Add it to the header row." for label in missing
+        }
 
 
 def test_blank_cells_that_are_required(tmp_path: Path) -> None:
-    items = [[*ITEMS[0], "Notes"], [None, "1", 40, 180], ["A2", None, 40, 180], ["A3", "1", None, None, "new"]]
+    items = [[*ITEMS[0], "Notes"], ["\u200e", "1", 40, 180], ["A2", None, 40, 180], ["A3", "1", None, None, "new"]]
     assert errors_of(write(tmp_path, items)) == {
         "Items!A2: Item is blank. Fill it in, or delete the row.",
         "Items!B3: Floor is blank. Fill it in, or delete the row.",
         "Items!C4: Breadth is blank and no Type gives it. Fill it in, or choose a Type that has one.",
         "Items!D4: Height is blank and no Type gives it. Fill it in, or choose a Type that has one.",
     }
-
-
-def test_a_name_of_unseen_marks_alone_is_blank(tmp_path: Path) -> None:
-    path = write(tmp_path, [ITEMS[0], ["\u200e", "1", 40, 180]])
-    assert errors_of(path) == {"Items!A2: Item is blank. Fill it in, or delete the row."}
 
 
 def test_one_fault_is_reported_once(tmp_path: Path) -> None:
@@ -206,8 +168,3 @@ def test_one_fault_is_reported_once(tmp_path: Path) -> None:
         "Items!C2: Breadth is the text 'wide', expected a number [cm]. Type the number alone.",
         "Floors!B2: PFA X is the text 'strong', expected a number [g]. Type the number alone.",
     }
-
-
-def test_sound_workbook(tmp_path: Path) -> None:
-    inventory = read(tmp_path)
-    assert (inventory.items[0].item, inventory.items[0].row, inventory.problems) == ("A1", 2, ())

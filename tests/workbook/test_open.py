@@ -26,27 +26,17 @@ FOREIGN = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("name", "data", "message"), FOREIGN, ids=[name for name, _, _ in FOREIGN])
-def test_no_workbook(tmp_path: Path, name: str, data: bytes, message: str) -> None:
-    path = tmp_path / name
-    path.write_bytes(data)
-    (error,) = errors_of(path)
-    assert error.startswith(message)
-
-
-def test_folder(tmp_path: Path) -> None:
+def test_no_workbook(tmp_path: Path) -> None:
+    for name, data, message in FOREIGN:
+        (tmp_path / name).write_bytes(data)
+        (error,) = errors_of(tmp_path / name)
+        assert error.startswith(message)
+    gone = tmp_path / "gone.xlsx"
+    assert errors_of(gone) == {f"{gone} does not exist. Check the name and the folder."}
     assert errors_of(tmp_path) == {f"{tmp_path} is a folder, not a workbook. Name the .xlsx file in it."}
-
-
-def test_missing(tmp_path: Path) -> None:
-    path = tmp_path / "gone.xlsx"
-    assert errors_of(path) == {f"{path} does not exist. Check the name and the folder."}
-
-
-@pytest.mark.parametrize("name", ["n" * 5000, "zero\0.xlsx"])
-def test_names_that_no_file_can_have(name: str) -> None:
-    (error,) = errors_of(Path(name))
-    assert "cannot be opened" in error or "does not exist" in error
+    for name in ("n" * 5000, "zero\0.xlsx"):
+        (error,) = errors_of(Path(name))
+        assert "cannot be opened" in error or "does not exist" in error
 
 
 def test_too_large(tmp_path: Path) -> None:
@@ -57,11 +47,12 @@ def test_too_large(tmp_path: Path) -> None:
     assert errors_of(path) == {"large.xlsx is larger than 100 MB. Remove pictures and unused sheets."}
 
 
-@pytest.mark.parametrize("share", [0.2, 0.5, 0.9, 0.99])
-def test_truncated(tmp_path: Path, share: float) -> None:
+def test_truncated(tmp_path: Path) -> None:
     path = write(tmp_path)
-    path.write_bytes(path.read_bytes()[: int(share * path.stat().st_size)])
-    assert errors_of(path) == {"book.xlsx is damaged: its zip cannot be read. Open it in Excel and save it again."}
+    whole = path.read_bytes()
+    for share in (0.2, 0.9, 0.99):
+        path.write_bytes(whole[: int(share * len(whole))])
+        assert errors_of(path) == {"book.xlsx is damaged: its zip cannot be read. Open it in Excel and save it again."}
 
 
 def test_password_of_the_zip(tmp_path: Path) -> None:
@@ -81,11 +72,6 @@ def test_strict_open_xml(tmp_path: Path) -> None:
     }
 
 
-def test_any_ending_will_do(tmp_path: Path) -> None:
-    path = write(tmp_path).rename(tmp_path / "book.bak")
-    assert len(read_inventory(path).items) == 1
-
-
 def test_workbook_with_macros(tmp_path: Path) -> None:
     path = change_parts(
         write(tmp_path),
@@ -101,19 +87,16 @@ def test_workbook_with_macros(tmp_path: Path) -> None:
 
 
 def test_zip_bomb(tmp_path: Path) -> None:
-    blanks = (b" " * 2**20 for _ in range(520))
-    path = add_part(write(tmp_path), SHEET, sheet_of(blanks))
-    assert path.stat().st_size < 3 * 2**20
-    assert read_apart(path) == (
-        "book.xlsx unpacks to far more than a furniture list needs, as a zip bomb does; it was not opened. "
+    for at, part in enumerate([SHEET, "xl/sharedStrings.xml", "xl/styles.xml", WORKBOOK, "xl/media/photo.png"]):
+        blanks = (b" " * 2**20 for _ in range(520 if part == SHEET else 300))
+        path = add_part(write(tmp_path), part, sheet_of(blanks) if part == SHEET else blanks)
+        assert path.stat().st_size < 3 * 2**20
+        path.rename(tmp_path / f"{at}.xlsx")
+    assert read_apart(tmp_path) == {
+        str(at): f"{at}.xlsx unpacks to far more than a furniture list needs, as a zip bomb does; it was not opened. "
         "Copy the tables into a new workbook made with `assess new`."
-    )
-
-
-@pytest.mark.parametrize("part", ["xl/sharedStrings.xml", "xl/styles.xml", WORKBOOK, "xl/media/photo.png"])
-def test_bomb_in_another_part(tmp_path: Path, part: str) -> None:
-    path = add_part(write(tmp_path), part, (b" " * 2**20 for _ in range(300)))
-    assert "as a zip bomb does" in read_apart(path)
+        for at in range(5)
+    }
 
 
 def test_too_many_parts(tmp_path: Path) -> None:
@@ -140,15 +123,15 @@ def test_unusual_compression(tmp_path: Path) -> None:
     }
 
 
-@pytest.mark.parametrize("size", [0, 10, 100_000_000])
-def test_a_size_that_lies(tmp_path: Path, size: int) -> None:
+def test_a_size_that_lies(tmp_path: Path) -> None:
     path = write(tmp_path)
     with zipfile.ZipFile(path) as archive:
         place = [one.filename for one in archive.infolist()].index(SHEET)
     data, at = bytearray(path.read_bytes()), -1
     for _ in range(place + 1):
         at = data.index(b"PK\x01\x02", at + 1)
-    data[at + 24 : at + 28] = struct.pack("<I", size)
-    path.write_bytes(data)
-    (error,) = errors_of(path)
-    assert error.startswith("book.xlsx ")
+    for size in (0, 10, 100_000_000):
+        data[at + 24 : at + 28] = struct.pack("<I", size)
+        path.write_bytes(data)
+        (error,) = errors_of(path)
+        assert error.startswith("book.xlsx ")
