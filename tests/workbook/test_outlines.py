@@ -1,43 +1,28 @@
-"""Outlines of places, and what is wrong with them, named by their cells; friction and walls likewise."""
+"""Outlines of places, and what is wrong with them, named by their cells."""
 
 import re
 
 import pytest
 
-import assess
 from assess.units import LENGTH
 from assess.workbook.outlines import OutlineError, parse_outline
-from assess.workbook.schema import ITEMS
-from assess.workbook.template import Content, write_workbook
+from assess.workbook.read import read_inventory
+from tests.workbook.books import errors_of, write
 
 SQUARE = ((0.0, 0.0), (6.0, 0.0), (6.0, 4.0), (0.0, 4.0))
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "0 0; 6 0; 6 4; 0 4",
-        "0 0;6 0;6 4;0 4;",
-        " 0 0 ; 6.0 0 ;\n6 4; 0 4; 0 0",
-        "0  0\n6 0\n6 4\n0 4",
-        "+0 0; 6. .0; 6 4; 0 4",
-        "0,0 0; 6,00 0; 6 4,0; 0,000 4",
-    ],
-)
-def test_an_outline_is_its_corners(text):
-    assert parse_outline(text, 1.0) == SQUARE
-
-
-def test_an_outline_in_feet():
+def test_an_outline_is_its_corners():
+    """Angled, either way round, with corners on a side."""
+    for text in (
+        "0 0; 6 0; 6 4; 0 4", "0 0;6 0;6 4;0 4;", " 0 0 ; 6.0 0 ;\n6 4; 0 4; 0 0", "0  0\n6 0\n6 4\n0 4",
+        "+0 0; 6. .0; 6 4; 0 4", "0,0 0; 6,00 0; 6 4,0; 0,000 4",
+    ):  # fmt: skip
+        assert parse_outline(text, 1.0) == SQUARE
+    for text in ("0 0; 4 0; 4 2; 2 2; 2 4; 0 4", "0 0; 0 4; 6 4; 6 0", "-1.5 -2; 3 -2; 3 0; 3 5; -1.5 5"):
+        assert len(parse_outline(text, 1.0)) >= 4
     found = parse_outline("0 0; 20 0; 0 10", LENGTH["ft"])
     assert [one for corner in found for one in corner] == pytest.approx([0, 0, 6.096, 0, 0, 3.048])
-
-
-@pytest.mark.parametrize(
-    "text", ["0 0; 4 0; 4 2; 2 2; 2 4; 0 4", "0 0; 0 4; 6 4; 6 0", "-1.5 -2; 3 -2; 3 0; 3 5; -1.5 5"]
-)
-def test_angled_rooms_either_way_round_and_corners_on_a_side_are_fine(text):
-    assert len(parse_outline(text, 1.0)) >= 4
 
 
 @pytest.mark.parametrize(
@@ -66,63 +51,17 @@ def test_damaged_outlines(text, fault):
     assert re.search(fault, str(raised.value.message))
 
 
-# --- by cell ---
-
-
-def problems(tmp_path, item=None, place=None):
-    rows = {
-        "Floors": [{"floor": "1", "pfa_x": 0.3}],
-        "Items": [{"item": "a", "floor": "1", "breadth": 40, "width": 90, "height": 180, **(item or {})}],
-        "Places": [{"place": "Office", "floor": "1", "x": 1, "y": 1, **place}] if place else [],
-    }
-    write_workbook(tmp_path / "w.xlsx", Content(rows=rows))
-    inventory = assess.read_inventory(tmp_path / "w.xlsx", strict=False)
-    return {(one.sheet, one.cell): one for one in inventory.errors}, inventory
-
-
-@pytest.mark.parametrize(
-    ("item", "message", "fix"),
-    [
-        ({"friction": 0}, "Friction is 0, expected 0.01 to 2", ""),
-        ({"friction": -0.3}, "Friction is -0.3, expected 0.01 to 2", "minus"),
-        ({"friction": 2.5}, "Friction is 2.5, expected 0.01 to 2", ""),
-        ({"friction": "smooth"}, "Friction is the text 'smooth'", "Type the number"),
-        ({"against_wall": "north"}, "Against wall is 'north', expected one of: yes, no", "Choose from the list"),
-        ({"against_wall": "yess"}, "Against wall is 'yess'", "Did you mean yes"),
-    ],
-)
-def test_friction_and_wall_are_checked_by_cell(tmp_path, item, message, fix):
-    found, inventory = problems(tmp_path, item)
-    ((_, cell), one), *others = found.items()
-    assert not others
-    letter = inventory.letters["Items"][next(iter(item))]
-    assert (one.sheet, cell) == ("Items", f"{letter}2")
-    assert ITEMS.column(next(iter(item))).label in one.message
-    assert one.message.startswith(message)
-    assert fix in one.fix
-
-
-def test_a_damaged_outline_is_an_error_of_its_cell(tmp_path):
-    found, inventory = problems(tmp_path, place={"outline": "0 0; 6 4; 6 0; 0 4"})
-    (one,) = found.values()
-    assert (one.sheet, one.cell) == ("Places", f"{inventory.letters['Places']['outline']}2")
-    assert one.message == "Outline: its sides 1 and 3 cross or touch each other."
-    assert one.fix.startswith("Write the corners in order")
-
-
-def test_what_is_right_is_read(tmp_path):
-    found, inventory = problems(tmp_path, {"against_wall": "yes", "friction": 0.3}, {"outline": "0 0; 6 0; 6 4; 0 4"})
-    assert not found
-    assert inventory.items[0].against_wall is True
+def test_outlines_of_a_workbook(tmp_path):
+    """One that is damaged is an error of its cell, and so is a header without its unit."""
+    floors = [["Floor", "PFA X [g]"], ["1", 0.3]]
+    items = [["Item", "Floor", "Breadth [cm]", "Height [cm]"], ["a", "1", 40, 180]]
+    row = ["Office", "1", 1, 1]
+    outlines = [["Place", "Floor", "X [m]", "Y [m]", "Outline [m]"], [*row, "0 0; 6 0; 6 4; 0 4"],
+                ["Hall", *row[1:], "0 0; 6 4; 6 0; 0 4"]]  # fmt: skip
+    inventory = read_inventory(write(tmp_path, items, floors, Places=outlines), strict=False)
     assert inventory.places[0].outline == SQUARE
-
-
-def test_an_outline_without_a_unit_is_reported_once():
-    rows = {
-        "Floors": [{"floor": "1", "pfa_x": 0.3}],
-        "Items": [],
-        "Places": [{"place": "a", "floor": "1", "Outline": "0 0; 1 1; 2 0"}],
-    }
-    with pytest.raises(assess.WorkbookError, match="Outline has no unit") as raised:
-        assess.read_inventory(rows)
-    assert len([one for one in raised.value.problems if one.severity == "error"]) == 1
+    (one,) = inventory.errors
+    assert (one.place, one.message) == ("Places!E3", "Outline: its sides 1 and 3 cross or touch each other.")
+    assert one.fix.startswith("Write the corners in order")
+    (error,) = errors_of(write(tmp_path, items, floors, Places=[["Place", "Floor", "Outline"], outlines[1][:3]]))
+    assert error.startswith("Places!C1: Outline has no unit")

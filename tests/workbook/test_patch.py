@@ -3,9 +3,7 @@
 import io
 import math
 import re
-import struct
 import zipfile
-import zlib
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -18,24 +16,14 @@ from hypothesis import strategies as st
 
 from assess.errors import WorkbookError
 from assess.workbook.open import Book
-from assess.workbook.patch import Patched, list_formulas, patch_workbook
+from assess.workbook.patch import list_formulas, patch_workbook
 from assess.workbook.plain_rows import column_letters
+from tests.pictures import picture
 from tests.recalculate import libreoffice, needs_libreoffice, stored_cells
 from tests.workbook.books import change_parts, replace
+from tests.workbook.raw import MAIN, RELATIONS, SHEET, zip_bytes
 
-SHEET, BOOK = "xl/worksheets/sheet1.xml", "xl/workbook.xml"
-CHAIN, RELATIONS, TYPES = "xl/calcChain.xml", "xl/_rels/workbook.xml.rels", "[Content_Types].xml"
-MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
-
-
-def png() -> bytes:
-    """A picture of one grey pixel."""
-
-    def chunk(kind: bytes, data: bytes) -> bytes:
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    head = struct.pack(">IIBBBBB", 1, 1, 8, 0, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(b"\0\x80")) + chunk(b"IEND", b"")
+BOOK, CHAIN, TYPES = "xl/workbook.xml", "xl/calcChain.xml", "[Content_Types].xml"
 
 
 def parts_of(data: bytes) -> dict[str, bytes]:
@@ -81,14 +69,8 @@ def minimal(rows: str, *, head: str = "", tail: str = "", root: str = f'<workshe
     packed = io.BytesIO()
     with xlsxwriter.Workbook(packed) as book:
         book.add_worksheet("Items")
-    parts = parts_of(packed.getvalue())
     name = root[1:].partition(" ")[0]
-    parts[SHEET] = f"{root}{head}{rows}{tail}</{name}>".encode()
-    out = io.BytesIO()
-    with zipfile.ZipFile(out, "w") as archive:
-        for part, data in parts.items():
-            archive.writestr(part, data)
-    return out.getvalue()
+    return zip_bytes(parts_of(packed.getvalue()) | {SHEET: f"{root}{head}{rows}{tail}</{name}>".encode()})
 
 
 def data_of(data: bytes) -> str:
@@ -111,7 +93,7 @@ def rich(path: Path) -> Path:
             page.write_formula(row, 4, f"=C{row + 1}/D{row + 1}", None, 0.25)
         page.write_rich_string("G1", "Rich ", bold, "text")
         page.write_comment("A2", "A comment")
-        page.insert_image("H2", "grey.png", {"image_data": io.BytesIO(png())})
+        page.insert_image("H2", "grey.png", {"image_data": io.BytesIO(picture("PNG"))})
         chart = book.add_chart({"type": "column"})
         chart.add_series({"values": "=Items!$D$2:$D$12"})
         page.insert_chart("H8", chart)
@@ -167,19 +149,19 @@ def test_every_other_byte_of_a_rich_workbook_stays(tmp_path: Path) -> None:
     after = patch_workbook(before, {"Items": CHANGES}).data
     assert changed_parts(before, after) == {SHEET}
     assert directory_of(before) == directory_of(after)
+    assert patch_workbook(after, {"Items": CHANGES}).data == after
+    assert patch_workbook(before, {"Items": {}}).data == before
+    assert values_of(after) == values_of(before) | CHANGES
+    assert {**own_values(after), "E2": 0} == {**own_values(before), **CHANGES, "E2": 0}
+    assert refusals(before, {"Other": {"B2": "u", "B3": 5, "E2": 1}}) == {
+        "Other!B2: it is a header of a table. Change this cell in Excel."
+    }
     cells = re.compile(rb'<c r="(\w+)".*?(?:/>|</c>)', re.S)
     old, new = parts_of(before)[SHEET], parts_of(after)[SHEET]
     outside = [re.sub(rb"<dimension[^>]*>", b"", cells.sub(b"", text)) for text in (old, new)]
     assert outside[1].replace(b'<row r="40"></row>', b"") == re.sub(rb'(<row r="5") spans="[^"]*"', rb"\1", outside[0])
     kept = {found[1]: found[0] for found in cells.finditer(old) if found[1].decode() not in CHANGES}
     assert {found[1]: found[0] for found in cells.finditer(new) if found[1].decode() not in CHANGES} == kept
-
-
-def test_it_reads_back(tmp_path: Path) -> None:
-    before = rich(tmp_path / "book.xlsx").read_bytes()
-    after = patch_workbook(before, {"Items": CHANGES}).data
-    assert values_of(after) == values_of(before) | CHANGES
-    assert {**own_values(after), "E2": 0} == {**own_values(before), **CHANGES, "E2": 0}
 
 
 def test_the_format_of_a_cell_stays(tmp_path: Path) -> None:
@@ -190,13 +172,6 @@ def test_the_format_of_a_cell_stays(tmp_path: Path) -> None:
     assert (page["C3"].value, page["C3"].fill.fgColor.rgb) == (None, "FFFFEE00")
     assert page["U9"].number_format == "@", "a new cell takes the format of its column"
     assert own_values(after)["C2"] == 45.5
-
-
-def test_the_same_again_is_the_same(tmp_path: Path) -> None:
-    before = rich(tmp_path / "book.xlsx").read_bytes()
-    once = patch_workbook(before, {"Items": CHANGES}).data
-    assert patch_workbook(once, {"Items": CHANGES}).data == once
-    assert patch_workbook(before, {"Items": {}}).data == before
 
 
 @needs_libreoffice
@@ -214,46 +189,31 @@ def test_libreoffice_reads_it(tmp_path: Path) -> None:
 # ---------------------------------------------------------------- rows and cells in their order
 
 
-@pytest.mark.parametrize(
-    ("rows", "changes", "expected"),
-    [
-        ("<sheetData/>", {"B2": 1}, '<sheetData><row r="2"><c r="B2"><v>1</v></c></row></sheetData>'),
-        ("<sheetData></sheetData>", {"B2": 1}, '<sheetData><row r="2"><c r="B2"><v>1</v></c></row></sheetData>'),
-        ("<sheetData />", {"B2": None}, "<sheetData />"),
-        (
-            '<sheetData><row r="2"/><row r="5" ht="20"/></sheetData>',
-            {"A6": 6, "B3": 3, "A3": 2, "C5": 5, "A1": 1},
-            '<sheetData><row r="1"><c r="A1"><v>1</v></c></row><row r="2"/>'
-            '<row r="3"><c r="A3"><v>2</v></c><c r="B3"><v>3</v></c></row>'
-            '<row r="5" ht="20"><c r="C5"><v>5</v></c></row><row r="6"><c r="A6"><v>6</v></c></row></sheetData>',
-        ),
-        (
-            '<sheetData><row r="1" spans="2:4"><c r="B1" s="0"/><c r="D1"><v>4</v></c></row></sheetData>',
-            {"A1": 1, "B1": 2, "C1": 3, "E1": 5},
-            '<sheetData><row r="1"><c r="A1"><v>1</v></c><c r="B1" s="0"><v>2</v></c><c r="C1"><v>3</v></c>'
-            '<c r="D1"><v>4</v></c><c r="E1"><v>5</v></c></row></sheetData>',
-        ),
-        (
-            '<sheetData><row r="1" spans="2:4"><c r="B1"><v>1</v></c></row></sheetData>',
-            {"C1": 3},
-            '<sheetData><row r="1" spans="2:4"><c r="B1"><v>1</v></c><c r="C1"><v>3</v></c></row></sheetData>',
-        ),
-        (  # rows and cells without their addresses
-            "<sheetData><row><c><v>1</v></c><c><v>2</v></c></row><row><c><v>3</v></c></row></sheetData>",
-            {"B1": 9, "A2": 8},
-            "<sheetData><row><c><v>1</v></c><c><v>9</v></c></row><row><c><v>8</v></c></row></sheetData>",
-        ),
-        (
-            '<sheetData><row r="2" s="3" customFormat="1"><c r="A2" s="1"/></row></sheetData>',
-            {"B2": 1},
-            '<sheetData><row r="2" s="3" customFormat="1"><c r="A2" s="1"/><c r="B2" s="3"><v>1</v></c></row>'
-            "</sheetData>",
-        ),
-    ],
-)
-def test_rows_and_cells_are_put_in_their_order(rows: str, changes: Mapping[str, Any], expected: str) -> None:
-    sheet = parts_of(patch_workbook(minimal(rows), {"Items": changes}).data)[SHEET].decode()
-    assert sheet == f'<worksheet xmlns="{MAIN}">{expected}</worksheet>'
+FIVE = '<sheetData><row r="1" spans="2:4"><c r="B1" s="0"/><c r="D1"><v>4</v></c></row></sheetData>'
+IN_ORDER: list[tuple[str, dict[str, Any], str]] = [
+    ("<sheetData/>", {"B2": 1}, '<sheetData><row r="2"><c r="B2"><v>1</v></c></row></sheetData>'),
+    ("<sheetData></sheetData>", {"B2": 1}, '<sheetData><row r="2"><c r="B2"><v>1</v></c></row></sheetData>'),
+    ("<sheetData />", {"B2": None}, "<sheetData />"),
+    ('<sheetData><row r="2"/><row r="5" ht="20"/></sheetData>', {"A6": 6, "B3": 3, "A3": 2, "C5": 5, "A1": 1},
+     '<sheetData><row r="1"><c r="A1"><v>1</v></c></row><row r="2"/>'
+     '<row r="3"><c r="A3"><v>2</v></c><c r="B3"><v>3</v></c></row>'
+     '<row r="5" ht="20"><c r="C5"><v>5</v></c></row><row r="6"><c r="A6"><v>6</v></c></row></sheetData>'),
+    (FIVE, {"A1": 1, "B1": 2, "C1": 3, "E1": 5},
+     '<sheetData><row r="1"><c r="A1"><v>1</v></c><c r="B1" s="0"><v>2</v></c><c r="C1"><v>3</v></c>'
+     '<c r="D1"><v>4</v></c><c r="E1"><v>5</v></c></row></sheetData>'),
+    (FIVE, {"C1": 3}, FIVE.replace('<c r="D1">', '<c r="C1"><v>3</v></c><c r="D1">')),
+    # rows and cells without their addresses
+    ("<sheetData><row><c><v>1</v></c><c><v>2</v></c></row><row><c><v>3</v></c></row></sheetData>", {"B1": 9, "A2": 8},
+     "<sheetData><row><c><v>1</v></c><c><v>9</v></c></row><row><c><v>8</v></c></row></sheetData>"),
+    ('<sheetData><row r="2" s="3" customFormat="1"><c r="A2" s="1"/></row></sheetData>', {"B2": 1},
+     '<sheetData><row r="2" s="3" customFormat="1"><c r="A2" s="1"/><c r="B2" s="3"><v>1</v></c></row></sheetData>'),
+]  # fmt: skip
+
+
+def test_rows_and_cells_are_put_in_their_order() -> None:
+    for rows, changes, expected in IN_ORDER:
+        sheet = parts_of(patch_workbook(minimal(rows), {"Items": changes}).data)[SHEET].decode()
+        assert sheet == f'<worksheet xmlns="{MAIN}">{expected}</worksheet>'
 
 
 def test_a_prefix_of_names() -> None:
@@ -290,12 +250,16 @@ def test_the_extent_of_the_cells_is_kept_true() -> None:
 AWKWARD = ["", " padded ", "a\nb\tc", "a\rb", "<&>\"'", "_x0041_", "_x005F_", "é€𝄞", "=1+1", "0123", "]]>"]
 
 
-@pytest.mark.parametrize("text", AWKWARD)
-def test_texts(text: str) -> None:
-    after = patch_workbook(minimal("<sheetData/>"), {"Items": {"A1": text}}).data
-    assert own_values(after).get("A1", "") == text
-    coded = re.sub("_(?=x[0-9A-F]{4}_)", "_x005F_", text)  # which openpyxl leaves as it is
-    assert values_of(after).get("A1") == coded
+def test_texts_and_numbers() -> None:
+    before = minimal("<sheetData/>")
+    for text in AWKWARD:
+        after = patch_workbook(before, {"Items": {"A1": text}}).data
+        assert own_values(after).get("A1", "") == text
+        coded = re.sub("_(?=x[0-9A-F]{4}_)", "_x005F_", text)  # which openpyxl leaves as it is
+        assert values_of(after).get("A1") == coded
+    for value in (0, -0.0, 45.0, 0.1, 1 / 3, 1e22, 5e-324, -1.5e300, 2**53 + 1, 10**20):
+        after = patch_workbook(before, {"Items": {"A1": value}}).data
+        assert own_values(after)["A1"] == values_of(after)["A1"] == float(value)
 
 
 def test_characters_that_xml_lacks_are_coded() -> None:
@@ -303,26 +267,17 @@ def test_characters_that_xml_lacks_are_coded() -> None:
     assert b">a_x0007_b_xFFFF__xD800_</t>" in parts_of(after)[SHEET]
 
 
-@pytest.mark.parametrize("value", [0, -0.0, 45.0, 0.1, 1 / 3, 1e22, 5e-324, -1.5e300, 2**53 + 1, 10**20])
-def test_numbers(value: float) -> None:
-    after = patch_workbook(minimal("<sheetData/>"), {"Items": {"A1": value}}).data
-    assert own_values(after)["A1"] == values_of(after)["A1"] == float(value)
-
-
-@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1e308, 10**400, "x" * 32_768])
-def test_values_that_a_cell_cannot_hold(value: Any) -> None:
-    (problem,) = refusals(minimal("<sheetData/>"), {"Items": {"A1": value, "A2": 3}})
-    assert problem.startswith("Items!A1: the ")
-
-
-@pytest.mark.parametrize("address", ["", "A", "1", "A0", "a1", "A1:B2", "$A$1", "XFE1", "A1048577", "A01", "A1\n"])
-def test_addresses_that_are_none(address: str) -> None:
-    (problem,) = refusals(minimal("<sheetData/>"), {"Items": {address: 1}})
-    assert "is no cell of a sheet" in problem
-
-
-def test_sheets_that_are_missing() -> None:
-    assert refusals(minimal("<sheetData/>"), {"Itmes": {"A1": 1}}) == {"Itmes: the sheet is missing."}
+def test_what_cannot_be_changed() -> None:
+    """Values that a cell cannot hold, addresses that are none, and a sheet that is missing."""
+    before = minimal("<sheetData/>")
+    values: list[Any] = [math.nan, math.inf, -math.inf, 1e308, 10**400, "x" * 32_768]
+    for value in values:
+        (problem,) = refusals(before, {"Items": {"A1": value, "A2": 3}})
+        assert problem.startswith("Items!A1: the ")
+    for address in ("", "A", "1", "A0", "a1", "A1:B2", "$A$1", "XFE1", "A1048577", "A01", "A1\n"):
+        (problem,) = refusals(before, {"Items": {address: 1}})
+        assert "is no cell of a sheet" in problem
+    assert refusals(before, {"Itmes": {"A1": 1}}) == {"Itmes: the sheet is missing."}
 
 
 @given(
@@ -372,15 +327,12 @@ def with_chain(data: bytes, chain: str) -> bytes:
     kind = "http://schemas.openxmlformats.org/officeDocument/2006/relationships/calcChain"
     parts = parts_of(data)
     parts[CHAIN] = f'<calcChain xmlns="{MAIN}">{chain}</calcChain>'.encode()
-    override = f'<Override PartName="/{CHAIN}" ContentType="{types}"/></Types>'.encode()
-    parts[TYPES] = parts[TYPES].replace(b"</Types>", override)
-    link = f'<Relationship Id="rId77" Type="{kind}" Target="calcChain.xml"/></Relationships>'.encode()
-    parts[RELATIONS] = parts[RELATIONS].replace(b"</Relationships>", link)
-    out = io.BytesIO()
-    with zipfile.ZipFile(out, "w") as archive:
-        for part, content in parts.items():
-            archive.writestr(part, content)
-    return out.getvalue()
+    for part, end, more in (
+        (TYPES, b"</Types>", f'<Override PartName="/{CHAIN}" ContentType="{types}"/>'),
+        (RELATIONS, b"</Relationships>", f'<Relationship Id="rId77" Type="{kind}" Target="calcChain.xml"/>'),
+    ):
+        parts[part] = parts[part].replace(end, more.encode() + end)
+    return zip_bytes(parts)
 
 
 def test_a_value_in_place_of_a_formula_leaves_the_chain() -> None:
@@ -438,35 +390,22 @@ def test_stored_results_of_formulas() -> None:
     }
 
 
-@pytest.mark.parametrize(
-    ("before", "after"),
-    [
-        ('<calcPr calcId="1" fullCalcOnLoad="1"/>', None),
+def test_programs_are_asked_to_recalculate() -> None:
+    asked = '<calcPr fullCalcOnLoad="1"/>'
+    for before, after in (
+        ('<calcPr calcId="1" fullCalcOnLoad="1"/>', '<calcPr calcId="1" fullCalcOnLoad="1"/>'),
         ('<calcPr calcId="1" fullCalcOnLoad="0"/>', '<calcPr calcId="1" fullCalcOnLoad="1"/>'),
-        ('<calcPr calcId="1" />', '<calcPr calcId="1" fullCalcOnLoad="1"/>'),
-        ("", '<calcPr fullCalcOnLoad="1"/>'),
-        ("<oleSize ref='A1'/>", "<calcPr fullCalcOnLoad=\"1\"/><oleSize ref='A1'/>"),
-    ],
-)
-def test_programs_are_asked_to_recalculate(tmp_path: Path, before: str, after: str | None) -> None:
-    path = tmp_path / "book.xlsx"
-    path.write_bytes(minimal("<sheetData/>"))
-    change_parts(path, {BOOK: lambda data: re.sub(rb"<calcPr[^>]*>", before.encode(), data)})
-    old, new = (parts_of(one)[BOOK].decode() for one in (
-        path.read_bytes(), patch_workbook(path.read_bytes(), {"Items": {"A1": 1}}).data))  # fmt: skip
-    assert new == (old if after is None else old.replace(before, after) if before else old.replace(
-        "</sheets>", f"</sheets>{after}"))  # fmt: skip
+        ('<calcPr calcId="1" />', '<calcPr calcId="1" fullCalcOnLoad="1"/>'), ("", asked),
+        ("<oleSize ref='A1'/>", f"{asked}<oleSize ref='A1'/>"),
+    ):  # fmt: skip
+        parts = parts_of(minimal("<sheetData/>"))
+        text = re.sub("<calcPr[^>]*>", "", parts[BOOK].decode())
+        old, new = (text.replace("</sheets>", f"</sheets>{one}").encode() for one in (before, after))
+        data = zip_bytes(parts | {BOOK: old})
+        assert parts_of(patch_workbook(data, {"Items": {"A1": 1}}).data)[BOOK] == new
 
 
 # ---------------------------------------------------------------- what is not understood is refused
-
-
-def test_headers_of_tables_are_refused(tmp_path: Path) -> None:
-    data = rich(tmp_path / "book.xlsx").read_bytes()
-    assert refusals(data, {"Other": {"B2": "u", "B3": 5, "E2": 1}}) == {
-        "Other!B2: it is a header of a table. Change this cell in Excel."
-    }
-    assert patch_workbook(data, {"Other": {"B3": 5, "E2": 1}})
 
 
 ODD: dict[str, tuple[str, str]] = {
@@ -486,10 +425,10 @@ ODD: dict[str, tuple[str, str]] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(("rows", "expected"), ODD.values(), ids=ODD)
-def test_sheets_that_are_not_understood(rows: str, expected: str) -> None:
-    (problem,) = refusals(minimal(rows), {"Items": {"A1": 1}})
-    assert expected in problem
+def test_sheets_that_are_not_understood() -> None:
+    for rows, expected in ODD.values():
+        (problem,) = refusals(minimal(rows), {"Items": {"A1": 1}})
+        assert expected in problem
 
 
 HOSTILE: dict[str, tuple[Callable[[bytes], bytes], str]] = {
@@ -502,35 +441,23 @@ HOSTILE: dict[str, tuple[Callable[[bytes], bytes], str]] = {
 }
 
 
-@pytest.mark.parametrize(("change", "expected"), HOSTILE.values(), ids=HOSTILE)
-@pytest.mark.parametrize("part", [SHEET, BOOK, RELATIONS, CHAIN])
-def test_hostile_parts(tmp_path: Path, part: str, change: Callable[[bytes], bytes], expected: str) -> None:
-    path = tmp_path / "book.xlsx"
-    path.write_bytes(with_chain(minimal(FORMULAS), '<c r="A1" i="1"/><c r="D1"/>'))
-    change_parts(path, {part: change})
-    problems = refusals(path.read_bytes(), {"Items": {"A1": 1}})
-    assert re.search(f"{expected}|declares XML entities|damaged", " ".join(problems))
-
-
-def test_a_bomb_is_not_unpacked(tmp_path: Path) -> None:
-    path = tmp_path / "book.xlsx"
-    path.write_bytes(minimal("<sheetData/>"))
-    change_parts(path, {"xl/media/bomb.bin": bytes(80_000_000)})
-    (problem,) = refusals(path.read_bytes(), {"Items": {"A1": 1}})
+def test_hostile_parts() -> None:
+    parts = parts_of(with_chain(minimal(FORMULAS), '<c r="A1" i="1"/><c r="D1"/>'))
+    for change, expected in HOSTILE.values():
+        for part in (SHEET, BOOK, RELATIONS, CHAIN):
+            problems = refusals(zip_bytes(parts | {part: change(parts[part])}), {"Items": {"A1": 1}})
+            assert re.search(f"{expected}|declares XML entities|damaged", " ".join(problems))
+    bomb = io.BytesIO()
+    with zipfile.ZipFile(bomb, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in (parts | {"xl/media/bomb.bin": bytes(80_000_000)}).items():
+            archive.writestr(name, data)
+    (problem,) = refusals(bomb.getvalue(), {"Items": {"A1": 1}})
     assert "zip bomb" in problem
 
 
-def test_a_signed_workbook_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "book.xlsx"
-    path.write_bytes(minimal("<sheetData/>"))
-    change_parts(path, {"_xmlsignatures/sig1.xml": b"<Signature/>"})
-    assert refusals(path.read_bytes(), {"Items": {"A1": 1}}) == {
+def test_a_signed_workbook_is_refused() -> None:
+    signed = zip_bytes(parts_of(minimal("<sheetData/>")) | {"_xmlsignatures/sig1.xml": b"<Signature/>"})
+    assert refusals(signed, {"Items": {"A1": 1}}) == {
         "workbook.xlsx is digitally signed; a change would break the signature. Save it from Excel without the "
         "signature."
     }
-
-
-def test_nothing_is_returned_where_one_cell_is_refused() -> None:
-    with pytest.raises(WorkbookError):
-        patch_workbook(minimal(FORMULAS), {"Items": {"A1": 1, "C1": 2}})
-    assert isinstance(patch_workbook(minimal(FORMULAS), {"Items": {"A1": 1}}), Patched)

@@ -114,11 +114,11 @@ def test_files_by_libreoffice(tmp_path: Path) -> None:
     assert (found.item, found.breadth, found.quantity, found.notes) == ("A1", 0.4, 2, "ä\n2")
 
 
-def test_20000_rows(tmp_path: Path) -> None:
-    rows = [[f"A{n}", "1", 30 + n % 50, 180] for n in range(20_000)]
+def test_many_rows(tmp_path: Path) -> None:
+    rows = [[f"A{n}", "1", 30 + n % 50, 180] for n in range(6_000)]
     inventory = read_inventory(write_shared(tmp_path / "book.xlsx", {"Items": [ITEMS[0], *rows], "Floors": FLOORS}))
-    assert len(inventory.items) == 20_000
-    assert inventory.items[-1].row == 20_001
+    assert len(inventory.items) == 6_000
+    assert inventory.items[-1].row == 6_001
 
 
 def test_signs_without_width_round_a_text_are_no_part_of_it(tmp_path: Path) -> None:

@@ -14,9 +14,9 @@ from assess.workbook.lists import NO_SHAKING, NO_UNIT, RUN_ASSESS, WRONG
 from assess.workbook.live_row import NO_AXIS, NO_FLOOR
 from assess.workbook.names import say_live
 from assess.workbook.read import read_inventory
-from assess.workbook.schema import CATALOGUE, CLASS, ITEMS, LIVE, SHEETS, WORKINGS, Column, Sheet
+from assess.workbook.schema import CATALOGUE, CLASS, ITEMS, LIVE, SHEETS, WORKINGS, Sheet
 from assess.workbook.template import CHECKED, ROWS, Content, Units, describe, write_workbook
-from tests.workbook.books import errors_of, problems_of, read_part
+from tests.workbook.books import problems_of, read_part
 
 UNITS: tuple[Units, Units] = ("si", "imperial")
 TABLES = [sheet for sheet in SHEETS if sheet.layout == "table"]
@@ -68,18 +68,15 @@ def test_two_rows_make_an_inventory(tmp_path: Path, path: Path, units: Units) ->
     assert len(inventory.catalogue) == len(read_catalogue(units))
 
 
-def test_sheets(book: Any) -> None:
+def test_tables_can_be_scrolled_sorted_and_printed(book: Any) -> None:
     assert book.sheetnames == ["Help", *NAMES, "Lists"]
-
-
-@pytest.mark.parametrize("sheet", TABLES, ids=[sheet.name for sheet in TABLES])
-def test_tables_can_be_scrolled_sorted_and_printed(book: Any, sheet: Sheet) -> None:
-    page = book[sheet.name]
-    assert page.freeze_panes == ("C2" if sheet is ITEMS else "B2")
-    assert page.auto_filter.ref.startswith("A1:")
-    assert page.print_title_rows == "$1:$1"
-    assert (page.page_setup.orientation, page.page_setup.fitToHeight) == ("landscape", 0)
-    assert "&P" in page.oddFooter.center.text
+    for sheet in TABLES:
+        page = book[sheet.name]
+        assert page.freeze_panes == ("C2" if sheet is ITEMS else "B2")
+        assert page.auto_filter.ref.startswith("A1:")
+        assert page.print_title_rows == "$1:$1"
+        assert (page.page_setup.orientation, page.page_setup.fitToHeight) == ("landscape", 0)
+        assert "&P" in page.oddFooter.center.text
 
 
 def validations(book: Any, sheet: Sheet) -> dict[str, Any]:
@@ -92,34 +89,28 @@ def validations(book: Any, sheet: Sheet) -> dict[str, Any]:
     return found
 
 
-@pytest.mark.parametrize("sheet", SHEETS, ids=NAMES)
-def test_every_column_has_a_message(book: Any, sheet: Sheet) -> None:
-    found = validations(book, sheet)
-    assert [name for name in found if name != CLASS] == [column.name for column in sheet.columns]
-    for column in sheet.columns:
-        message, title = found[column.name].prompt, found[column.name].promptTitle
-        assert 0 < len(message) <= 255
-        assert describe(column).startswith(message.removesuffix("…"))
-        assert title == column.label
-        assert len(title) <= 32
-
-
-@pytest.mark.parametrize("sheet", SHEETS, ids=NAMES)
-def test_choices_drop_down_from_the_sheet_lists(book: Any, sheet: Sheet) -> None:
-    for column in sheet.columns:
-        check = validations(book, sheet)[column.name]
-        listed = column.choices or column.offered
-        if not listed and not column.source:
-            assert check.type != "list"
-            continue
-        assert check.type == "list"
-        name = check.formula1.lstrip("=")
-        assert name == f"list_{column.name if listed else column.source.lower()}"
-        target = book.defined_names[name].attr_text
-        assert target.startswith("Lists!" if listed else f"{column.source}!$A$2:$A$")
-        assert check.errorStyle == ("information" if column.offered else "warning" if column.source else None)
-        if listed:
-            assert _cells(book, target) == list(listed)
+def test_every_column_has_a_message_and_choices_drop_down_from_the_sheet_lists(book: Any) -> None:
+    for sheet in SHEETS:
+        found = validations(book, sheet)
+        assert [name for name in found if name != CLASS] == [column.name for column in sheet.columns]
+        for column in sheet.columns:
+            check = found[column.name]
+            assert 0 < len(check.prompt) <= 255
+            assert describe(column).startswith(check.prompt.removesuffix("…"))
+            assert check.promptTitle == column.label
+            assert len(check.promptTitle) <= 32
+            listed = column.choices or column.offered
+            if not listed and not column.source:
+                assert check.type != "list"
+                continue
+            assert check.type == "list"
+            name = check.formula1.lstrip("=")
+            assert name == f"list_{column.name if listed else column.source.lower()}"
+            target = book.defined_names[name].attr_text
+            assert target.startswith("Lists!" if listed else f"{column.source}!$A$2:$A$")
+            assert check.errorStyle == ("information" if column.offered else "warning" if column.source else None)
+            if listed:
+                assert _cells(book, target) == list(listed)
 
 
 def test_prepared_rows_are_all_checked(book: Any) -> None:
@@ -144,22 +135,15 @@ def test_help_mentions_every_column(book: Any, units: Units) -> None:
             assert rows[sheet.name, column.header(units) + star] == describe(column)
 
 
-def test_names_are_sound(book: Any) -> None:
-    assert book.defined_names
+def test_names_are_sound_and_formulas_use_those_that_exist(book: Any) -> None:
+    names = set(book.defined_names)
+    area = r"(Building|Floors|Items|Places|Routes|Catalogue|Lists)!\$[A-Z]+\$\d+(:\$[A-Z]+\$\d+)?"
     for name, defined in book.defined_names.items():
         assert re.fullmatch(r"[a-z_]+", name)
-        assert re.fullmatch(r"(Building|Floors|Items|Places|Routes|Catalogue|Lists)!\$[A-Z]+\$\d+(:\$[A-Z]+\$\d+)?",
-                            defined.attr_text), name  # fmt: skip
-
-
-def test_formulas_use_names_that_exist(book: Any) -> None:
-    names = set(book.defined_names)
-    for sheet in ("Items", "Lists"):
-        for row in book[sheet].iter_rows(max_row=4):
-            for cell in row:
-                if isinstance(cell.value, str) and cell.value.startswith("="):
-                    words = set(re.findall(r"\b[a-z]+_[a-z_]+\b", re.sub(r'"[^"]*"', "", cell.value)))
-                    assert words <= names, cell.coordinate
+        assert re.fullmatch(area, defined.attr_text), name
+    cells = [cell for sheet in ("Items", "Lists") for row in book[sheet].iter_rows(max_row=4) for cell in row]
+    for cell in (one for one in cells if isinstance(one.value, str) and one.value.startswith("=")):
+        assert set(re.findall(r"\b[a-z]+_[a-z_]+\b", re.sub(r'"[^"]*"', "", cell.value))) <= names, cell.coordinate
 
 
 def test_formulas_are_those_of_excel_2007(path: Path) -> None:
@@ -209,32 +193,12 @@ def test_more_rows_than_prepared(tmp_path: Path) -> None:
         assert str(book["Items"][f"{LETTERS['Items', label]}{count + 1}"].value).startswith("=")
 
 
-def test_stored_live_values(tmp_path: Path) -> None:
-    """A viewer that does not calculate shows them; where none are given the cells look blank."""
-    row = {"item": "A1", "floor": "1", "breadth": 40, "height": 180}
-    content = Content({"Items": [row, row]}, live=[[0.25, 0.5, 0.75, 0.125, 0.25, "■ very high", "▲ high", "yes"]])
-    write_workbook(tmp_path / "book.xlsx", content)
-    page = openpyxl.load_workbook(tmp_path / "book.xlsx", data_only=True)["Items"]
-    shown = [[page[f"{LETTERS['Items', label]}{row}"].value for label in LIVE] for row in (2, 3)]
-    assert shown == [[0.25, 0.5, 0.75, 0.125, 0.25, "■ very high", "▲ high", "yes"], [None] * 8]
-
-
 def test_a_type_of_ones_own_replaces_none(tmp_path: Path) -> None:
     """Rows for the catalogue stand in place of the built-in ones: the user asked for these."""
     rows = {"Catalogue": [{"type": "Mine", "breadth": 40, "height": 180}]}
     write_workbook(tmp_path / "book.xlsx", Content(rows))
     page = openpyxl.load_workbook(tmp_path / "book.xlsx")[CATALOGUE.name]
     assert [page["A2"].value, page["A3"].value] == ["Mine", None]
-
-
-def test_describe() -> None:
-    column = Column(name="a", label="A", kind="choice", help="Help.", choices=("x", "y"), default="both")
-    assert describe(column) == "Help. One of: x, y. Blank: both."
-
-
-def test_a_blank_workbook_has_no_rows_even_with_live_formulas(path: Path) -> None:
-    """The rows of formulas are no items, and their blank results are no faults."""
-    assert not any("formula" in error for error in errors_of(path))
 
 
 @pytest.mark.parametrize("code", LANGUAGES)
