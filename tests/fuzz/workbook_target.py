@@ -269,6 +269,7 @@ class Workbooks:
         except WorkbookError as error:
             check_problems(error)
             inventory, outcome = assess.read_inventory(content, records=records, strict=False), "assessed in part"
+        _check_names(inventory)
         try:
             results = assess.run(inventory, UNVERIFIED, figures=False)
         except WorkbookError as error:
@@ -285,6 +286,13 @@ class Workbooks:
 @functools.cache
 def _validator() -> jsonschema.Draft202012Validator:
     return jsonschema.Draft202012Validator(build_schema())
+
+
+def _check_names(inventory: Inventory) -> None:
+    """Check that no row names one that was left out."""
+    floors, places = {one.floor for one in inventory.floors}, {one.place for one in inventory.places}
+    keep({one.floor for one in (*inventory.items, *inventory.places)} <= floors, "a floor that is not there")
+    keep({name for one in inventory.routes for name in (one.start, one.end) if name} <= places, "a place not there")
 
 
 def _check_results(results: Results, inventory: Inventory, folder: Path) -> None:

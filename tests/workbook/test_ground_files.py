@@ -27,55 +27,36 @@ def _notes(inventory):
 def test_a_shakemap_beside_the_workbook_gives_the_ground_motion(tmp_path):
     inventory = assess.read_inventory(_write(tmp_path, shakemap="grid.xml", **PLACE))
     assert inventory.errors == ()
-    assert inventory.site_ground is not None
     assert inventory.site_ground.pga == pytest.approx(0.1525 * GRAVITY, rel=1e-3)
     assert inventory.building.shakemap == "grid.xml"
     assert inventory.files == {"grid.xml": inventory.site_ground.sha256}
+    for known in ({"ground_pga": 0.3}, {"sds": 0.7}):  # they come before it
+        assert assess.read_inventory(_write(tmp_path, shakemap="grid.xml", **PLACE, **known)).site_ground is None
 
 
 def test_the_uncertainties_beside_it_are_read_and_named(tmp_path):
-    for file in EPICENTRE.parent.iterdir():
-        shutil.copy(file, tmp_path)
+    """Also where the files are handed over as bytes."""
+    files = {path.name: path.read_bytes() for path in EPICENTRE.parent.iterdir()}
+    for name, data in files.items():
+        (tmp_path / name).write_bytes(data)
     path = write(tmp_path / "w.xlsx", floors=FLOORS, shakemap="grid.xml", latitude=37.04, longitude=-121.88)
-    inventory = assess.read_inventory(path)
-    assert sorted(inventory.files) == ["grid.xml", "uncertainty.xml"]
-    assert inventory.site_ground is not None
-    assert inventory.site_ground.shared == pytest.approx(0.182, abs=1e-3)
+    for inventory in (assess.read_inventory(path), assess.read_inventory(path.read_bytes(), records=files)):
+        assert sorted(inventory.files) == ["grid.xml", "uncertainty.xml"]
+        assert inventory.site_ground.shared == pytest.approx(0.182, abs=1e-3)
 
 
-def test_files_that_are_handed_over_as_bytes(tmp_path):
-    rows = {"Items": [{"item": "A", "floor": "1", "breadth": 30, "height": 200}], "Floors": FLOORS}
-    files = {name: (EPICENTRE.parent / name).read_bytes() for name in ("grid.xml", "uncertainty.xml")}
-    building = {"shakemap": "grid.xml", "latitude": 37.04, "longitude": -121.88}
-    found = assess.read_inventory({**rows, "Building": building}, records=files).site_ground
-    assert found is not None
-    assert found.shared == pytest.approx(0.182, abs=1e-3)
-
-
-@pytest.mark.parametrize("known", [{"ground_pga": 0.3}, {"sds": 0.7}])
-def test_ground_pga_and_sds_come_before_it(tmp_path, known):
-    assert assess.read_inventory(_write(tmp_path, shakemap="grid.xml", **PLACE, **known)).site_ground is None
-
-
-@pytest.mark.parametrize(
-    ("building", "place", "match"),
-    [
-        ({}, "Building!B24", r"Latitude, Longitude are blank; .* grid\.xml needs .* Fill in .*\(cells B3, B4\)"),
-        ({"latitude": 37.8}, "Building!B3", "Latitude is given without Longitude"),
-        ({"latitude": 10, "longitude": 10}, "Building!B24", r"grid\.xml: latitude 10\.0000, .* is outside the map"),
-        (PLACE | {"shakemap": "map.xml"}, "Building!B24", r"the file 'map\.xml' was not found next to the workbook"),
-        (PLACE | {"shakemap": "../grid.xml"}, "Building!B24", "outside the workbook's folder"),
-        (PLACE | {"shakemap": "w.xlsx"}, "Building!B24", r"the ShakeMap cannot be used: w\.xlsx: the file is not XML"),
-    ],
-    ids=["no place", "half a place", "outside", "no file", "another folder", "no map"],
-)
-def test_what_is_wrong_is_told_of_its_cell(tmp_path, building, place, match):
-    with pytest.raises(WorkbookError, match=match) as caught:
-        assess.read_inventory(_write(tmp_path, **{"shakemap": "grid.xml"} | building))
-    assert [one.place for one in caught.value.problems if one.severity == "error"] == [place]
-
-
-# ---------------------------------------------------------------- the ground motion of a run
+def test_what_is_wrong_is_told_of_its_cell(tmp_path):
+    blank = r"Latitude, Longitude are blank; .* grid\.xml needs .* Fill in .*\(cells B3, B4\)"
+    for building, match in (
+        ({}, blank),
+        ({"latitude": 10, "longitude": 10}, r"grid\.xml: latitude 10\.0000, .* is outside the map"),
+        (PLACE | {"shakemap": "map.xml"}, r"the file 'map\.xml' was not found next to the workbook"),
+        (PLACE | {"shakemap": "../grid.xml"}, "outside the workbook's folder"),
+        (PLACE | {"shakemap": "w.xlsx"}, r"the ShakeMap cannot be used: w\.xlsx: the file is not XML"),
+    ):
+        with pytest.raises(WorkbookError, match=match) as caught:
+            assess.read_inventory(_write(tmp_path, **{"shakemap": "grid.xml"} | building))
+        assert [one.place for one in caught.value.problems if one.severity == "error"] == ["Building!B24"]
 
 
 def test_a_ground_motion_of_the_run_takes_the_place_of_the_workbooks_own(tmp_path):
@@ -92,25 +73,18 @@ def test_a_ground_motion_of_the_run_takes_the_place_of_the_workbooks_own(tmp_pat
 
 
 def test_a_workbook_that_lacks_only_shaking_is_then_complete(tmp_path):
-    path = _write(tmp_path, **PLACE)
-    with pytest.raises(
-        WorkbookError, match="neither Ground PGA nor Ground PGV nor SDS nor a ShakeMap file nor Shaking"
-    ):
+    """Where the place of the building is known."""
+    path, ground = _write(tmp_path, **PLACE), read_shakemap(BAY)
+    lacking = "neither Ground PGA nor Ground PGV nor SDS nor a ShakeMap file nor Shaking"
+    with pytest.raises(WorkbookError, match=lacking):
         assess.read_inventory(path)
-    assert assess.read_inventory(path, ground=read_shakemap(BAY)).errors == ()
-
-
-def test_it_needs_the_place_of_the_building(tmp_path):
-    with pytest.raises(
-        WorkbookError, match=r"Building!B3: Latitude, Longitude are blank; the ground motion of grid\.xml"
-    ):
-        assess.read_inventory(_write(tmp_path), ground=read_shakemap(BAY))
-    outside = _write(tmp_path, latitude=30, longitude=-120)
-    with pytest.raises(WorkbookError, match=r"Building!B3: no ground motion at the building: grid\.xml: latitude 30"):
-        assess.read_inventory(outside, ground=read_shakemap(BAY))
-
-
-# ---------------------------------------------------------------- blanks from an index
+    assert assess.read_inventory(path, ground=ground).errors == ()
+    blank = r"Building!B3: Latitude, Longitude are blank; the ground motion of grid\.xml"
+    with pytest.raises(WorkbookError, match=blank):
+        assess.read_inventory(_write(tmp_path), ground=ground)
+    outside = r"Building!B3: no ground motion at the building: grid\.xml: latitude 30"
+    with pytest.raises(WorkbookError, match=outside):
+        assess.read_inventory(_write(tmp_path, latitude=30, longitude=-120), ground=ground)
 
 
 def test_values_from_an_index_fill_blanks_only(tmp_path):
@@ -129,22 +103,16 @@ def test_values_from_an_index_fill_blanks_only(tmp_path):
     assert _notes(inventory) == [("Building", f"{labels}: the values come from the index.")]
 
 
-@pytest.mark.parametrize(
-    ("given", "match"),
-    [
+def test_values_from_an_index_are_checked_as_those_of_the_sheet(tmp_path):
+    path = _write(tmp_path, ground_pga=0.2)
+    for given, match in (
         ({"latitude": 137.8}, "of the index: Latitude is 137.8"),
         ({"height": "tall"}, "of the index: Height is the text 'tall'"),
         ({"storeys": 2.5}, "of the index: Storeys"),
         ({"latitude": 37.8}, "Latitude is given without Longitude"),
-    ],
-)
-def test_values_from_an_index_are_checked_as_those_of_the_sheet(tmp_path, given, match):
-    with pytest.raises(WorkbookError, match=match):
-        assess.read_inventory(_write(tmp_path, ground_pga=0.2), building=given)
-
-
-def test_a_workbook_without_the_sheet_building_takes_all_of_them(tmp_path):
+    ):
+        with pytest.raises(WorkbookError, match=match):
+            assess.read_inventory(path, building=given)
     rows = {"Items": [{"item": "A", "floor": "1", "breadth": 30, "height": 200}], "Floors": FLOORS}
     found = assess.read_inventory(rows, building={**PLACE, "building": "Shed"}, ground=read_shakemap(BAY))
-    assert found.building.building == "Shed"
-    assert found.site_ground is not None
+    assert (found.building.building, found.site_ground is None) == ("Shed", False)

@@ -17,7 +17,7 @@ from assess.workbook.habits import count_kinds, group_problems
 from assess.workbook.read import read_inventory
 from assess.workbook.sections import list_ranges
 from tests.cli.calling import run
-from tests.workbook.books import FLOORS, ITEMS, Sheet, errors_of, problems_of, read, remarks, write
+from tests.workbook.books import FLOORS, ITEMS, Sheet, errors_of, read, remarks, write
 from tests.workbooks import UNVERIFIED
 
 HEADER = [
@@ -104,38 +104,6 @@ def test_check_accepts_the_hospital_and_shows_each_habit_in_a_line(typed: Path) 
     assert len(done.stderr.splitlines()) < 40
 
 
-# ---------------------------------------------------------------- mistakes
-
-
-MISTAKES: list[tuple[list[Any], str]] = [
-    (piece("m1", Height="1,500"), "H2: Height is the text '1,500', which can be read as 1.5 cm or as 1500 cm."),
-    (piece("m2", Height=1.8), "H3: Height is 1.8 cm, expected 5 to 600 cm. Did you mean 1.8 m = 180 cm?"),
-    (piece("m3", Breadth="45 kg"), "F4: Breadth is the text '45 kg', expected a number [cm]."),
-    (piece("m4", Width="wide"), "G5: Width is the text 'wide', expected a number [cm]."),
-    (piece("m5", Anchored="x"), "I6: Anchored is 'x', expected one of: no, yes, partly, unknown."),
-    (piece("m6", Floor="9"), "B7: Floor '9' is not in the Floors sheet."),
-    (piece("m6"), "A8: duplicate Item 'm6', also in A7."),
-    (piece("m8", Quantity="1.000"), "E9: Quantity is the text '1.000', which can be read as 1 or as 1000."),
-    (piece("m9", Quantity=0), "E10: Quantity is 0, expected a whole number from 1 to 10000."),
-    (piece("m10", Breadth=95), "F11: Breadth 95 cm is greater than Width 90 cm."),
-    (piece("m11", Type="Wardrobe", Height=None), "H12: Height is blank and no Type gives it."),
-    (piece("m12", Weight="-5 kg"), "J13: Weight is -5 kg, expected 0.1 to 20000 kg. Remove the minus sign."),
-    (piece("m13", Quantity=2, X=1, Y=1), "E14: Quantity is 2 on a row with a position."),
-    (piece("m14", Centre="120 %"), "K15: Centre of gravity is 120 %, expected 5 to 95 %."),
-    (piece("m15", Type="Wradrobe", Height=None), "D16: Type 'Wradrobe' is not in the Catalogue sheet."),
-]
-
-
-def test_fifteen_mistakes_are_each_named_once(tmp_path: Path) -> None:
-    rows, floors = [HEADER, *(row for row, _ in MISTAKES)], [["Floor", "PFA X [g]"], ["0", 0.3]]
-    path = write(tmp_path, rows, floors, Catalogue=[["Type", "Breadth [cm]"], ["Wardrobe", 50]])
-    found = errors_of(path)
-    shown = [str(one) for one in group_problems(problems_of(path)) if one.severity == "error"]
-    assert len(MISTAKES) == len(found) == len(shown) == 15
-    for _, message in MISTAKES:
-        assert sum(one.startswith(f"Items!{message}") for one in found) == 1, message
-
-
 def test_mistakes_of_one_habit_are_one_message(tmp_path: Path) -> None:
     """Names that differ are different mistakes."""
     rows = [
@@ -177,9 +145,6 @@ def test_statements_on_different_floors_stay_apart(tmp_path: Path) -> None:
     problems = read_inventory(Path(__file__).parents[2] / "inventories" / "market-street.xlsx").problems
     shown = [one.cell for one in group_problems(problems) if "have neither a position nor a Route" in one.message]
     assert shown == ["N34", "N68", "N100"]
-
-
-# ---------------------------------------------------------------- rows that are no entries
 
 
 def read_merged(folder: Path, merged: str, items: Sheet, floors: Sheet = FLOORS, sheet: str = "Items") -> Inventory:
@@ -238,9 +203,6 @@ def test_numbers_of_rows_are_told_as_ranges() -> None:
     assert list_ranges([3]) == "3"
     assert list_ranges([1, 2, 3, 5, 6, 9]) == "1 to 3, 5 to 6, 9"
     assert re.fullmatch(r"(\d+, ){10}\.\.\.", list_ranges(range(1, 100, 2)))
-
-
-# ---------------------------------------------------------------- types and labels
 
 
 TYPES: Sheet = [["Type", "Height [cm]"], ["Locker", 180]]

@@ -65,9 +65,6 @@ def test_lines_of_a_heading() -> None:
     assert [count_text_lines(text, 20) for text in ("", "a b", "twenty letters or so, and more")] == [1, 1, 2]
 
 
-# ---------------------------------------------------------------- rows that are prepared
-
-
 def test_who_fills_in_more_rows_than_prepared_learns_what_to_do(path: Path, pages: list[Any]) -> None:
     last, page = ROWS["Items"] + 1, pages[3]
     assert len(read_part(path, "xl/worksheets/sheet4.xml")) < 1.2e6, "it opens the faster the less it holds"

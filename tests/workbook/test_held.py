@@ -134,9 +134,6 @@ def test_a_value_that_was_read_is_written_back() -> None:
     assert {place: again.value(place) for place in places} == old
 
 
-# ---------------------------------------------------------------- the files that it names
-
-
 @pytest.fixture
 def named(tmp_path: Path) -> Path:
     """The folder of a workbook that names a record, two photos, a logo and a plan."""

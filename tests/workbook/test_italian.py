@@ -48,9 +48,6 @@ def example(folder: Path, language: str) -> Path:
     return path
 
 
-# ---------------------------------------------------------------- the words themselves
-
-
 def test_labels_can_be_told_apart_and_fit_the_spreadsheet() -> None:
     """Each label names one column: in its own language, and against those of the other."""
     with speaking(load_catalogue("it")):
@@ -76,9 +73,6 @@ def test_labels_can_be_told_apart_and_fit_the_spreadsheet() -> None:
 def test_every_language_can_be_chosen_for_the_report() -> None:
     choices = SHEETS[0].column("language").choices
     assert tuple(find_language(choice) for choice in choices) == LANGUAGES
-
-
-# ---------------------------------------------------------------- written by assess new
 
 
 def test_the_example_says_the_same_in_both_languages(tmp_path: Path) -> None:
@@ -147,9 +141,6 @@ def test_drop_downs_hold_the_italian_choices(book: Any) -> None:
                 assert find_sheet(target) == (column.source, "it")
 
 
-# ---------------------------------------------------------------- read
-
-
 def test_a_workbook_typed_by_hand(tmp_path: Path) -> None:
     items: Rows = [
         ["ELEMENTO", "piano", "profondita [mm]", " Altezza[cm]", "Ancorato", "Importanza", "Tipo", "Asse", "Colore"],
@@ -203,9 +194,6 @@ def test_language_of_the_report(tmp_path: Path) -> None:
     ):  # fmt: skip
         inventory = read(tmp_path, Edificio=[["Edificio", "Municipio"], ["Lingua del rapporto", typed]])
         assert (inventory.building.language, inventory.report_language) == (chosen, code)
-
-
-# ---------------------------------------------------------------- what is wrong
 
 
 def test_errors_name_the_workbooks_own_sheets_cells_and_labels(tmp_path: Path) -> None:
@@ -324,9 +312,6 @@ def test_sheets_and_columns_that_are_missing_or_twice(
     tmp_path: Path, sheets: dict[str, Rows], errors: set[str]
 ) -> None:
     assert errors_of(write_book(tmp_path / "book.xlsx", sheets)) == errors
-
-
-# ---------------------------------------------------------------- nothing is loaded without need
 
 
 def test_an_english_workbook_loads_no_catalogue(tmp_path: Path) -> None:

@@ -6,14 +6,7 @@ from pathlib import Path
 import pytest
 
 from assess.units import GRAVITY
-from tests.workbook.books import (
-    ITEMS,
-    Sheet,
-    errors_of,
-    read,
-    remarks,
-    write,
-)
+from tests.workbook.books import ITEMS, Sheet, errors_of, read, remarks, write
 
 UNITS = {
     "PFA X": (0.5 * GRAVITY, {

@@ -105,31 +105,9 @@ def rich(path: Path) -> Path:
         page.merge_range("A20:C21", "merged")
         other.add_table("B2:D5", {"columns": [{"header": name} for name in "xyz"], "data": [[1, 2, 3]] * 3})
         book.define_name("Sizes", "=Items!$C$2:$C$12")
-    return add_threads(path)
-
-
-def add_threads(path: Path) -> Path:
-    """Add a threaded comment and the person who wrote it, as Excel keeps them, and a part no program knows."""
-    space = 'xmlns="http://schemas.microsoft.com/office/spreadsheetml/2018/threadedcomments"'
-    who = "{00000000-0000-0000-0000-000000000001}"
-    types = "application/vnd.ms-excel"
-    office = "http://schemas.microsoft.com/office/2017/10/relationships"
-    thread = f'<ThreadedComments {space}><threadedComment ref="A2" personId="{who}" id="{who}"><text>Hello</text>' \
-             "</threadedComment></ThreadedComments>"  # fmt: skip
-    person = f'<personList {space}><person displayName="Ann" id="{who}" userId="Ann" providerId="None"/></personList>'
     return change_parts(path, {
-        "xl/threadedComments/threadedComment1.xml": thread.encode(),
-        "xl/persons/person.xml": person.encode(),
         "xl/unknown.bin": bytes(range(256)),
-        TYPES: replace("</Types>", f'<Default Extension="bin" ContentType="application/octet-stream"/>'
-                       f'<Override PartName="/xl/threadedComments/threadedComment1.xml" '
-                       f'ContentType="{types}.threadedcomments+xml"/><Override PartName="/xl/persons/person.xml" '
-                       f'ContentType="{types}.person+xml"/></Types>'),
-        "xl/worksheets/_rels/sheet1.xml.rels": replace(
-            "</Relationships>", f'<Relationship Id="rId90" Type="{office}/threadedComment" '
-            'Target="../threadedComments/threadedComment1.xml"/></Relationships>'),
-        RELATIONS: replace("</Relationships>", f'<Relationship Id="rId90" Type="{office}/person" '
-                           'Target="persons/person.xml"/></Relationships>'),
+        TYPES: replace("</Types>", '<Default Extension="bin" ContentType="application/octet-stream"/></Types>'),
     })  # fmt: skip
 
 
@@ -139,9 +117,6 @@ CHANGES: dict[str, Any] = {f"C{row}": 30.0 + row for row in range(2, 8)} | {
     "A40": "new",
     "U5": True,
 }
-
-
-# ---------------------------------------------------------------- everything else stays
 
 
 def test_every_other_byte_of_a_rich_workbook_stays(tmp_path: Path) -> None:
@@ -184,9 +159,6 @@ def test_libreoffice_reads_it(tmp_path: Path) -> None:
     assert {cell: found["Items", cell] for cell in CHANGES} == CHANGES
     assert found["Items", "E2"] == pytest.approx(32 / 181)
     assert found["Items", "E5"] == 7
-
-
-# ---------------------------------------------------------------- rows and cells in their order
 
 
 FIVE = '<sheetData><row r="1" spans="2:4"><c r="B1" s="0"/><c r="D1"><v>4</v></c></row></sheetData>'
@@ -244,8 +216,6 @@ def test_the_extent_of_the_cells_is_kept_true() -> None:
     assert b'<dimension ref="B3"/>' in parts_of(patch_workbook(before, {"Items": {"B3": 1}}).data)[SHEET]
     assert b'<dimension ref="A2:B3"/>' in parts_of(patch_workbook(before, {"Items": {"A2": 1}}).data)[SHEET]
 
-
-# ---------------------------------------------------------------- values
 
 AWKWARD = ["", " padded ", "a\nb\tc", "a\rb", "<&>\"'", "_x0041_", "_x005F_", "é€𝄞", "=1+1", "0123", "]]>"]
 
@@ -309,8 +279,6 @@ def test_any_sheet(old: dict[tuple[int, int], Any], new: dict[tuple[int, int], A
     assert {cell: value for cell, value in own_values(after).items() if value != ""} == expected
     assert patch_workbook(after, {"Items": changes}).data == after
 
-
-# ---------------------------------------------------------------- formulas
 
 FORMULAS = (
     '<sheetData><row r="1"><c r="A1"><f>1+1</f><v>2</v></c><c r="B1"><f t="shared" ref="B1:B3" si="0">A1</f><v>2</v></c>'
@@ -403,9 +371,6 @@ def test_programs_are_asked_to_recalculate() -> None:
         old, new = (text.replace("</sheets>", f"</sheets>{one}").encode() for one in (before, after))
         data = zip_bytes(parts | {BOOK: old})
         assert parts_of(patch_workbook(data, {"Items": {"A1": 1}}).data)[BOOK] == new
-
-
-# ---------------------------------------------------------------- what is not understood is refused
 
 
 ODD: dict[str, tuple[str, str]] = {

@@ -6,7 +6,6 @@ from typing import Any
 import pytest
 
 import assess
-from assess.errors import WorkbookError
 from assess.model import FloorPlan, Inventory
 from assess.plans import Drawing, read_plan
 from assess.plans.linework import unpack
@@ -16,7 +15,6 @@ from assess.workbook.template import Units
 from tests.pictures import picture
 from tests.plans.drawings import PLAN_SVG, dxf
 from tests.workbook.books import errors_of, remarks
-from tests.workbook.books import write as write_cells
 from tests.workbooks import address, write
 
 PLACED = {"plan_left": 1.0, "plan_bottom": 2.0, "plan_width": 16.0}
@@ -49,25 +47,17 @@ def _plan(inventory: Inventory) -> FloorPlan:
     return plan
 
 
-@pytest.mark.parametrize(
-    ("name", "is_lines"), [("p.png", False), ("p.jpg", False), ("p.svg", True), ("p.dxf", True), ("unitless.dxf", True)]
-)
-def test_every_format_is_placed_by_its_numbers(folder: Path, name: str, is_lines: bool) -> None:
-    inventory = _read(folder, {"plan": name, **PLACED, "plan_turn": 90})
-    plan = _plan(inventory)
-    assert (plan.path, plan.is_lines) == (folder / name, is_lines)
-    assert (plan.left, plan.bottom, plan.width, plan.turn_deg) == (1.0, 2.0, 16.0, 90.0)
-    assert plan.height == pytest.approx(12.0, rel=1e-3)
-    assert plan.holds((0.5, 2.5))
-    assert not plan.holds((1.5, 2.5))  # it lies to the left of its lower left corner once turned
-    if is_lines:
-        assert unpack(plan.content)
-    else:
-        assert plan.content.startswith(b"\xff\xd8\xff")
-    assert remarks(inventory, "warning") == set()
-
-
-def test_the_columns_in_feet(folder: Path) -> None:
+def test_every_format_is_placed_by_its_numbers(folder: Path) -> None:
+    for name in ("p.png", "p.jpg", "p.svg", "p.dxf", "unitless.dxf"):
+        inventory = _read(folder, {"plan": name, **PLACED, "plan_turn": 90})
+        plan, is_lines = _plan(inventory), name[-3:] in ("svg", "dxf")
+        assert (plan.path, plan.is_lines) == (folder / name, is_lines)
+        assert (plan.left, plan.bottom, plan.width, plan.turn_deg) == (1.0, 2.0, 16.0, 90.0)
+        assert plan.height == pytest.approx(12.0, rel=1e-3)
+        assert plan.holds((0.5, 2.5))
+        assert not plan.holds((1.5, 2.5))  # it lies to the left of its lower left corner once turned
+        assert unpack(plan.content) if is_lines else plan.content.startswith(b"\xff\xd8\xff")
+        assert remarks(inventory, "warning") == set()
     plan = _plan(_read(folder, {"plan": "p.png", **PLACED}, units="imperial"))
     assert (plan.left, plan.width) == pytest.approx((0.3048, 16 * 0.3048))
 
@@ -88,30 +78,26 @@ def test_a_plan_without_its_numbers_is_not_drawn(folder: Path) -> None:
         f"{_cell('plan')}: the plan is not drawn: Plan bottom Y, Plan width are blank. Fill in X and Y of its lower left "
         "corner, and its width in the building."
     }
-
-
-def test_numbers_without_a_plan(folder: Path) -> None:
     assert remarks(_read(folder, PLACED), "warning") == {
         f"{_cell('plan_left')}: Plan left X is filled in without Plan. Name the file of the plan, or clear it."
     }
 
 
-@pytest.mark.parametrize(
-    ("floor", "cell", "message"),
-    [
-        ({"plan": "text.png"}, "plan", "the picture 'text.png' cannot be used: it is no PNG, JPEG, SVG or DXF file."),
-        ({"plan": "p.png", "plan_width": 0}, "plan_width", "Plan width is 0 m, expected 0.5 to 5000 m"),
-        ({"plan": "p.png", "plan_width": -16}, "plan_width", "Plan width is -16 m, expected 0.5 to 5000 m"),
-        ({"plan": "p.png", "plan_turn": 999}, "plan_turn", "Plan turn is 999 deg, expected -360 to 360 deg"),
-        ({"plan": "../p.png"}, "plan", "the file '../p.png' is outside the workbook's folder."),
-    ],
-)
-def test_errors_by_cell(folder: Path, floor: dict[str, Any], cell: str, message: str) -> None:
-    with pytest.raises(WorkbookError) as caught:
-        _read(folder, {**PLACED, **floor})
-    (problem,) = caught.value.problems
-    assert f"{problem.sheet}!{problem.cell}" == _cell(cell)
-    assert problem.message.startswith(message)
+def test_errors_by_cell(folder: Path) -> None:
+    (folder / "logo.svg").write_bytes(b"<svg onload='x'/>")
+    (folder / "large.png").write_bytes(picture("PNG") + bytes(10 * 2**20))
+    useless = "the picture '{}' cannot be used: "
+    for floor, message in (
+        ({"plan": "text.png"}, useless + "it is no PNG, JPEG, SVG or DXF file."),
+        ({"plan": "logo.svg"}, useless + "it holds no lines that can be drawn."),
+        ({"plan": "large.png"}, useless + "it is larger than 10 MB."),
+        ({"plan": "../p.png"}, "the file '{}' is outside the workbook's folder."),
+        ({"plan": "p.png", "plan_width": 0}, "Plan width is {} m, expected 0.5 to 5000 m"),
+        ({"plan": "p.png", "plan_turn": 999}, "Plan turn is {} deg, expected -360 to 360 deg"),
+    ):
+        (error,) = errors_of(_write(folder, {**PLACED, **floor}))
+        (*_, cell), (*_, value) = floor, floor.values()
+        assert error.startswith(f"{_cell(cell)}: {message.format(value)}")
 
 
 def test_what_is_left_out_is_noted(folder: Path) -> None:
@@ -134,16 +120,6 @@ def test_a_plan_in_another_unit(folder: Path) -> None:
     (warning,) = remarks(_read(folder, plan, *items), "warning")
     assert f"{_cell('plan_width')}: the plan is 160 x 120 m, while the pieces on it lie within 3 m." in warning
     assert remarks(_read(folder, {**plan, "plan_width": 30.0}, *items), "warning") == set()
-
-
-def test_the_earlier_heading_places_a_plan(folder: Path) -> None:
-    heading = ["Floor", "PFA X [g]", "Plan image", "Plan left X [m]", "Plan bottom Y [ft]", "Plan width [cm]"]
-    path = write_cells(folder, floors=[heading, ["1", 0.5, "p.png", 1, 10, 1600]])
-    plan = _plan(read_inventory(path))
-    assert (plan.left, plan.bottom, plan.width) == pytest.approx((1, 3.048, 16))
-
-
-# ---------------------------------------------------------------- what all plans may take
 
 
 def _write_floors(folder: Path, plans: list[str]) -> Path:
@@ -179,9 +155,6 @@ def test_too_many_drawings(folder: Path, monkeypatch: pytest.MonkeyPatch, name: 
     (error,) = errors_of(_write_floors(folder, ["p.svg", "p.svg", "p.png", "q.svg"]))
     assert error.startswith(f"Floors!{address('plan', 5, 'Floors')}: this workbook names more than ")
     assert error.endswith(" MB. Save the walls and doors alone, or name fewer.")
-
-
-# ---------------------------------------------------------------- photos
 
 
 def test_photos_are_read_once_and_kept_small(folder: Path) -> None:

@@ -10,7 +10,7 @@ from assess.errors import WorkbookError
 from assess.pipeline.new_content import fill_content
 from assess.workbook.open import UNSAVED, Book, read_file
 from assess.workbook.plain_rows import RowCutter
-from assess.workbook.read import hold_sheets, read_inventory
+from assess.workbook.read import hold_sheets
 from assess.workbook.template import Content, write_workbook
 from tests.conftest import EXAMPLE
 from tests.workbook.books import change_parts, read_part, write
@@ -81,26 +81,14 @@ def test_prepared_rows_are_not_parsed(monkeypatch: pytest.MonkeyPatch, tmp_path:
 
 def test_a_new_workbook_with_all_its_prepared_rows(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     path = tmp_path / "new.xlsx"
-    for content in (
-        Content(),
-        fill_content("si", "", is_example=True),
-        fill_content("imperial", "Hospital", is_example=True),
-    ):
+    for content in (Content(), fill_content("imperial", "Hospital", is_example=True)):
         write_workbook(path, content)
         assert look(path.read_bytes()) == parse_alone(monkeypatch, path.read_bytes())
 
 
 def test_the_worked_example(monkeypatch: pytest.MonkeyPatch) -> None:
-    found = read_inventory(EXAMPLE)
-    with monkeypatch.context() as patch:
-        patch.setattr(RowCutter, "cut", lambda self, piece: piece)
-        patch.setattr(RowCutter, "finish", lambda self: b"")
-        alone = read_inventory(EXAMPLE)
-    assert [*map(str, found.problems)] == [*map(str, alone.problems)]
-    assert (found.items, found.building, found.places, found.routes) == (
-        alone.items, alone.building, alone.places, alone.routes,
-    )  # fmt: skip
-    assert look(read_file(EXAMPLE)) == parse_alone(monkeypatch, read_file(EXAMPLE))
+    data = read_file(EXAMPLE)
+    assert look(data) == parse_alone(monkeypatch, data)
 
 
 HIDDEN = {
@@ -121,16 +109,15 @@ HIDDEN = {
 }
 
 
-@pytest.mark.parametrize("name", HIDDEN)
 @pytest.mark.parametrize("is_first", [True, False])
-def test_a_value_hidden_in_a_prepared_row_is_read(compare, name: str, is_first: bool) -> None:
-    cell, at, value = HIDDEN[name]
+def test_a_value_hidden_in_a_prepared_row_is_read(compare, is_first: bool) -> None:
     own = PREPARED.format(n=5)
-    row = f'<row r="5">{cell + own if is_first and name != "no address" else own + cell}</row>'
-    _, rows, last_row, *_ = compare(body(prepared(2, 3, 4), row, prepared(6, 7)))
-    assert dict(rows)[5][at] == value
-    assert dict(rows)[5][1] is UNSAVED
-    assert last_row == 7
+    for name, (cell, at, value) in HIDDEN.items():
+        row = f'<row r="5">{cell + own if is_first and name != "no address" else own + cell}</row>'
+        _, rows, last_row, *_ = compare(body(prepared(2, 3, 4), row, prepared(6, 7)))
+        assert dict(rows)[5][at] == value, name
+        assert dict(rows)[5][1] is UNSAVED
+        assert last_row == 7
 
 
 SAME = {
@@ -179,14 +166,13 @@ SAME = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", SAME)
-def test_it_reads_as_through_the_parser(compare, name: str) -> None:
-    assert compare(SAME[name])
-
-
-def test_a_prefix_for_all(compare) -> None:
-    xml = body(prepared(2, 3)).replace(b"<", b"<x:").replace(b"<x:/", b"</x:").replace(b"xmlns=", b"xmlns:x=")
-    assert compare(xml)[1]
+def test_it_reads_as_through_the_parser(compare, tmp_path: Path) -> None:
+    for name, xml in SAME.items():
+        assert compare(xml), name
+    assert compare(
+        body(prepared(2, 3)).replace(b"<", b"<x:").replace(b"<x:/", b"</x:").replace(b"xmlns=", b"xmlns:x=")
+    )[1]
+    compare(read_part(write(tmp_path), SHEET).encode())
 
 
 def test_many_pieces(compare, tmp_path: Path) -> None:
@@ -216,7 +202,3 @@ def test_damage_anywhere(compare, tmp_path: Path) -> None:
         at = draw.randrange(len(whole))
         compare(whole[:at])
         compare(whole[:at] + bytes([draw.choice(signs)]) + whole[at + 1 :])
-
-
-def test_what_other_programs_write(compare, tmp_path: Path) -> None:
-    compare(read_part(write(tmp_path), SHEET).encode())

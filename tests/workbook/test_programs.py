@@ -11,16 +11,7 @@ from assess.errors import WorkbookError
 from assess.workbook.patch import patch_workbook
 from assess.workbook.read import read_inventory
 from tests.recalculate import libreoffice, needs_libreoffice
-from tests.workbook.books import (
-    FLOORS,
-    ITEMS,
-    change_parts,
-    read_part,
-    replace,
-    write,
-    write_book,
-    write_shared,
-)
+from tests.workbook.books import FLOORS, ITEMS, change_parts, read_part, replace, write, write_book, write_shared
 from tests.workbook.raw import zip_bytes
 
 SHEET = "xl/worksheets/sheet1.xml"  # Items

@@ -9,15 +9,7 @@ from assess import model
 from assess.model import axis_of
 from assess.units import GRAVITY
 from assess.workbook.schema import SHEETS
-from tests.workbook.books import (
-    ITEMS,
-    Sheet,
-    errors_of,
-    read,
-    read_item,
-    remarks,
-    write,
-)
+from tests.workbook.books import ITEMS, Sheet, errors_of, read, read_item, remarks, write
 
 TYPES: Sheet = [["Type", "Breadth [in]", "Width [in]", "Height [in]", "Source"], ["Locker", 12, 24, 72, "catalogue"]]
 
@@ -126,15 +118,6 @@ def test_friction_of_the_building(tmp_path: Path) -> None:
     assert read_now.friction_of(read_now.items[0]) == 0.3
 
 
-def test_one_row_a_piece_on_the_plan(tmp_path: Path) -> None:
-    path = write(
-        tmp_path, [[*ITEMS[0], "Quantity", "X [m]", "Y [m]"], [*ITEMS[1], 2, 1, 3], ["A2", "1", 40, 180, 1, 1, 3]]
-    )
-    assert errors_of(path) == {
-        "Items!E2: Quantity is 2 on a row with a position. Write one row a piece, or clear X and Y."
-    }
-
-
 def test_half_a_position(tmp_path: Path) -> None:
     header = [*ITEMS[0], "X [m]", "Y [m]", "Width [cm]"]
     inventory = read(tmp_path, [header, [*ITEMS[1], 1, None, 90], ["A2", "1", 40, 180, None, 2, 90]])
@@ -188,21 +171,6 @@ def test_places_and_routes(tmp_path: Path) -> None:
     assert inventory.items[0].route == "R1"
     assert inventory.items[0].segment == "a", "spelt as in Routes"
     assert remarks(inventory, "note") == set()
-
-
-def test_names_of_places_and_routes_that_do_not_fit(tmp_path: Path) -> None:
-    items: Sheet = [[*ITEMS[0], "Route", "Segment"], [*ITEMS[1], "R2", None], ["A2", "1", 40, 180, "R1", "c"],
-             ["A3", "1", 40, 180, None, "a"]]  # fmt: skip
-    path = write(tmp_path, items, Places=[*PLACES, ["hall", "9", None, None]], Routes=[*ROUTES, ["R3", "a", "8"]])
-    listed = "Choose one of the {0} sheet, or add it there."
-    assert errors_of(path) == {
-        f"Items!E2: Route 'R2' is not in the Routes sheet. {listed.format('Routes')}",
-        "Items!F3: Route 'R1' has no segment 'c'. Add it to Routes, or clear the cell.",
-        "Items!F4: a Segment is named without its Route. Fill in Route.",
-        "Places!A4: duplicate Place 'hall', also in A2. Give each its own name.",
-        f"Places!B4: Floor '9' is not in the Floors sheet. {listed.format('Floors')}",
-        f"Routes!C4: Floor '8' is not in the Floors sheet. {listed.format('Floors')}",
-    }
 
 
 def test_every_field_of_the_model_has_a_column() -> None:

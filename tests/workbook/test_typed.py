@@ -31,67 +31,42 @@ def meant(column: Column, value: object, unit: str | None = None) -> tuple[objec
     return found, remark.habit if remark else ""
 
 
-NUMBERS: list[tuple[Column, str, str, object, str]] = [
-    (HEIGHT, "cm", "45 cm", 45, "unit"),
-    (HEIGHT, "cm", "1.80 m", 180, "unit"),
-    (HEIGHT, "cm", "1,80m", 180, "unit"),
-    (HEIGHT, "cm", "450 mm", 45, "unit"),
-    (HEIGHT, "cm", "1'800 MM.", 180, "unit"),
-    (HEIGHT, "in", "6 ft", 72, "unit"),
-    (HEIGHT, "m", "180 cm", 1.8, "unit"),
-    (HEIGHT, "cm", "1.8 metres", 180, "unit"),
-    (HEIGHT, "cm", "40,5", 40.5, "comma"),
-    (HEIGHT, "cm", " 180", 180, "text"),
-    (HEIGHT, "cm", "180\u00a0", 180, "text"),
-    (HEIGHT, "cm", "1\u202f800,5", 1800.5, "thousands"),
-    (HEIGHT, "cm", "1.234,5", 1234.5, "thousands"),
-    (HEIGHT, "cm", "1,234.5", 1234.5, "thousands"),
-    (HEIGHT, "cm", "1.234.567", 1234567, "thousands"),
-    (HEIGHT, "cm", "1 234,567", 1234.567, "thousands"),
-    (HEIGHT, "cm", "１８０", 180, "signs"),
-    (HEIGHT, "cm", "1.8e2", 180, "text"),
-    (HEIGHT, "cm", "'200", 200, "text"),
-    (HEIGHT, "cm", "\u2019200", 200, "signs"),
-    (HEIGHT, "cm", "' 1.80 m", 180, "unit"),
-    (X, "m", "'-1.5", -1.5, "text"),
-    (X, "m", "\u22121,5", -1.5, "comma"),
-    (X, "m", "\u2013 3", -3, "signs"),
-    (X, "m", "+3", 3, "text"),
-    (HEIGHT, "in", "5' 11\"", 71, "unit"),
-    (HEIGHT, "in", "5\u2019 11\u201d", 71, "unit"),
-    (HEIGHT, "in", "5\u2032-11\u2033", 71, "unit"),
-    (HEIGHT, "cm", "1'4\"", 40.64, "unit"),
-    (HEIGHT, "cm", "5 ft 11 in", 180.34, "unit"),
-    (HEIGHT, "ft", "5 feet 6 inches", 5.5, "unit"),
-    (HEIGHT, "in", "5' 1,5''", 61.5, "unit"),
-    (HEIGHT, "in", "6'", 72, "unit"),
-    (HEIGHT, "in", "5.5'", 66, "unit"),
-    (HEIGHT, "ft", '66"', 5.5, "unit"),
-    (X, "ft", "-1' 6\"", -1.5, "unit"),
-    (WEIGHT, "kg", "12 kg", 12, "unit"),
-    (WEIGHT, "kg", "10 lbs", 4.5359237, "unit"),
-    (FRICTION, "", "0,15", 0.15, "comma"),
-    (FRICTION, "", "0,150", 0.15, "comma"),
-    (FRICTION, "", ",150", 0.15, "comma"),
-    (FRICTION, "", "0.150", 0.15, "text"),
-    (FRICTION, "", "012,500", 12.5, "comma"),
-    (FRICTION, "", "1234,500", 1234.5, "comma"),
-    (FRICTION, "", "40 %", 0.4, "percent"),
-    (CENTRE, "%", "45 %", 45, "unit"),
-    (QUANTITY, "", "12", 12, "text"),
-    (PFA, "g", "15 %", 0.15, "percent"),
-    (PFA, "g", "15 %g", 0.15, "percent"),
-    (PFA, "m/s2", "15 % g", float(f"{0.15 * GRAVITY:.12g}"), "percent"),
-    (PFA, "g", "1.5 m/s²", float(f"{1.5 / GRAVITY:.12g}"), "unit"),
-    (PFA, "g", "0.15 G", 0.15, "unit"),
-    (ANGLE, "deg", "15°", 15, "unit"),
-    (PERIOD, "s", "0,9 s", 0.9, "unit"),
-]
+NUMBERS: dict[tuple[Column, str, str], dict[str, float]] = {
+    (HEIGHT, "cm", "unit"): {"45 cm": 45, "1.80 m": 180, "1,80m": 180, "450 mm": 45, "1'800 MM.": 180,
+        "1.8 metres": 180, "' 1.80 m": 180, "1'4\"": 40.64, "5 ft 11 in": 180.34},
+    (HEIGHT, "in", "unit"): {"6 ft": 72, "5' 11\"": 71, "5\u2019 11\u201d": 71, "5\u2032-11\u2033": 71,
+        "5' 1,5''": 61.5, "6'": 72, "5.5'": 66},
+    (HEIGHT, "m", "unit"): {"180 cm": 1.8},
+    (HEIGHT, "cm", "comma"): {"40,5": 40.5},
+    (HEIGHT, "cm", "text"): {" 180": 180, "180\u00a0": 180, "1.8e2": 180, "'200": 200},
+    (HEIGHT, "cm", "thousands"): {"1\u202f800,5": 1800.5, "1.234,5": 1234.5, "1,234.5": 1234.5,
+        "1.234.567": 1234567, "1 234,567": 1234.567},
+    (HEIGHT, "cm", "signs"): {"１８０": 180, "\u2019200": 200},
+    (X, "m", "text"): {"'-1.5": -1.5, "+3": 3},
+    (X, "m", "comma"): {"\u22121,5": -1.5},
+    (X, "m", "signs"): {"\u2013 3": -3},
+    (HEIGHT, "ft", "unit"): {"5 feet 6 inches": 5.5, '66"': 5.5},
+    (X, "ft", "unit"): {"-1' 6\"": -1.5},
+    (WEIGHT, "kg", "unit"): {"12 kg": 12, "10 lbs": 4.5359237},
+    (FRICTION, "", "comma"): {"0,15": 0.15, "0,150": 0.15, ",150": 0.15, "012,500": 12.5, "1234,500": 1234.5},
+    (FRICTION, "", "text"): {"0.150": 0.15},
+    (FRICTION, "", "percent"): {"40 %": 0.4},
+    (CENTRE, "%", "unit"): {"45 %": 45},
+    (QUANTITY, "", "text"): {"12": 12},
+    (PFA, "g", "percent"): {"15 %": 0.15, "15 %g": 0.15},
+    (PFA, "m/s2", "percent"): {"15 % g": float(f"{0.15 * GRAVITY:.12g}")},
+    (PFA, "g", "unit"): {"1.5 m/s²": float(f"{1.5 / GRAVITY:.12g}"), "0.15 G": 0.15},
+    (ANGLE, "deg", "unit"): {"15°": 15},
+    (PERIOD, "s", "unit"): {"0,9 s": 0.9},
+}  # fmt: skip
+"""By column, unit of its header and habit: texts, and the numbers that they are taken for."""
 
 
 def test_numbers_as_they_are_typed() -> None:
-    found = {(column.name, unit, text): meant(column, text, unit) for column, unit, text, *_ in NUMBERS}
-    assert found == {(column.name, unit, text): (number, habit) for column, unit, text, number, habit in NUMBERS}
+    for (column, unit, habit), numbers in NUMBERS.items():
+        assert {text: meant(column, text, unit) for text in numbers} == {
+            text: (number, habit) for text, number in numbers.items()
+        }
 
 
 NO_NUMBERS = [
@@ -174,9 +149,6 @@ def test_a_cell_that_shows_a_percentage(tmp_path: Path) -> None:
     assert meant(HEIGHT, Percent(0.45))[0] == 0.45
 
 
-# ---------------------------------------------------------------- choices
-
-
 SHAKING = BUILDING.column("shaking")
 CHOICES = [
     (ANCHORED, "N", "no", "no"), (ANCHORED, "y", "yes", "yes"), (ANCHORED, "Ye", "yes", "yes"),
@@ -201,9 +173,6 @@ def test_choices_as_they_are_typed() -> None:
         assert find_meant(text, column.choices, "en") == (choice, word), (column.name, text)
     anchored = translate(ITEMS, "it").column("anchored").choices
     assert [find_meant(text, anchored, "it")[1] for text in ("s", "N", "in p", "y")] == ["sì", "no", "in parte", "sì"]
-
-
-# ---------------------------------------------------------------- dates
 
 
 DATES = [
@@ -235,9 +204,6 @@ def test_dates_that_are_wrong() -> None:
         with pytest.raises(CellError) as caught:
             meant(DATE, text)
         assert str(caught.value.message).endswith(why)
-
-
-# ---------------------------------------------------------------- through the workbook
 
 
 def test_every_cell_that_is_taken_has_a_note_and_a_correction(tmp_path: Path) -> None:
