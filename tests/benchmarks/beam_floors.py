@@ -16,7 +16,7 @@ from assess.motion.drawn_ground import build_beam_grid, draw_ground, fit_noise
 from assess.motion.floor_medians import find_medians
 from assess.motion.sweep import Single
 from assess.progress import SILENT
-from tests.benchmarks.generating import spent
+from tests.benchmarks.measuring import spent
 
 AXES, DRAWS, ROUNDS = ("X", "Y"), 200, 5
 FLOORS = {10: "at most 5", 60: "at most 20"}

@@ -4,7 +4,6 @@ Each row is a command in a process of its own: time of the processor, and memory
 hold one of them.
 """
 
-import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
@@ -18,6 +17,7 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 from assess.pictures import MOST_PIXELS
 from assess.workbook.open import MAX_ROWS
 from assess.workbook.template import Content, write_workbook
+from tests.benchmarks.measuring import measure
 from tests.motion.writers import Signal, at2, sac, wave
 from tests.workbook.books import write_shared
 
@@ -143,27 +143,6 @@ def cases() -> Iterator[tuple[str, Callable[[Path], Path], list[str]]]:
     yield "a logo of 50 million pixels (PNG): run, PDF, HTML and Excel", with_picture, reports
 
 
-_CHILD = """
-import resource, subprocess, sys
-done = subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-used = resource.getrusage(resource.RUSAGE_CHILDREN)
-print(used.ru_utime + used.ru_stime, used.ru_maxrss)
-sys.exit(done.stderr[-2000:] if done.returncode else 0)
-"""
-
-
-def measure(command: list[str]) -> tuple[float, float]:
-    """Return time of the processor [s] and memory at the peak [MB] of a command.
-
-    A small process starts it: the memory of the one that starts counts at the beginning.
-    """
-    done = subprocess.run([sys.executable, "-c", _CHILD, *command], capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise RuntimeError(done.stderr)
-    seconds, peak = map(float, done.stdout.split())
-    return seconds, peak / (1e6 if sys.platform == "darwin" else 1e3)
-
-
 def main() -> None:
     """Print the table."""
     print("| what | processor [s] | memory at the peak [MB] |\n|---|---|---|")
@@ -174,7 +153,7 @@ def main() -> None:
             folder = Path(box)
             book = build(folder)
             out = ["--out", str(folder / "out")] if command[0] == "run" else []
-            seconds, peak = measure([sys.executable, "-m", "assess", command[0], str(book), *command[1:], *out])
+            _, seconds, peak = measure([sys.executable, "-m", "assess", command[0], str(book), *command[1:], *out])
         print(f"| {name} | {seconds:.1f} | {peak:.0f} |", flush=True)
 
 

@@ -14,6 +14,7 @@ import assess
 from assess.motion.formats import LARGEST_FILE
 from assess.progress import Progress
 from assess.report import FORMATS
+from tests.benchmarks.measuring import list_items
 from tests.benchmarks.report import write_thousand
 from tests.benchmarks.routes import FLOORS, write_tower
 from tests.workbooks import UNVERIFIED, write
@@ -54,8 +55,8 @@ def rows(folder: Path) -> Iterator[str]:
     What is compiled is compiled anew where NUMBA_CACHE_DIR names an empty folder.
     """
     market, tower = ROOT / "inventories" / "market-street.xlsx", write_tower(folder / "tower.xlsx")
-    many, thousands = write(folder / "many.xlsx", _items(ITEMS)), write_thousand(folder / "5000.xlsx", 5000)
-    long = write(folder / "long.xlsx", _items(1), [{"floor": "1", "record_x": _write_record(folder / "long.csv")}])
+    many, thousands = write(folder / "many.xlsx", list_items(ITEMS)), write_thousand(folder / "5000.xlsx", 5000)
+    long = write(folder / "long.xlsx", list_items(1), [{"floor": "1", "record_x": _write_record(folder / "long.csv")}])
     yield "| stage | job | longest time between two looks, processor [s] | wall [s] | aim |"
     yield "|---|---|---|---|---|"
     for book, name in ((many, f"{ITEMS:,} items"), (long, f"a record of {LARGEST_FILE / 1e6:.0f} MB")):
@@ -80,14 +81,6 @@ def _row(stage: str, name: str, work: Callable[..., Any]) -> str:
     looks.look()
     processor, wall = looks.most
     return f"| {stage} | {name} | {processor:.2f} | {wall:.2f} | at most {AIM} s |"
-
-
-def _items(count: int) -> list[dict[str, object]]:
-    return [
-        {"item": f"i{at}", "floor": "1", "room": f"room {at % 97}", "description": "Bookcase, steel",
-         "breadth": 20 + at % 70, "width": 120, "height": 100 + at % 130, "axis": "X"}
-        for at in range(count)
-    ]  # fmt: skip
 
 
 def _write_record(path: Path) -> str:

@@ -1,8 +1,7 @@
 """Benchmark of motions: 200 for one floor and axis, in processor time and as a ratio to Fourier transforms."""
 
 import statistics
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 from scipy.fft import irfft
@@ -10,6 +9,7 @@ from scipy.fft import irfft
 from assess.motion import noise
 from assess.motion.generate import build_generator
 from assess.motion.target import Grid, recorded_target
+from tests.benchmarks.measuring import spent
 from tests.motion.motions import read_motion
 
 STEP, SAMPLES, MOTIONS, ROUNDS = 0.005, 12_000, 200, 7
@@ -36,13 +36,6 @@ def rows() -> Iterator[str]:
         pairs = [(spent(work), spent(lambda: irfft(values, SAMPLES, axis=1))) for _ in range(ROUNDS)]
         seconds, ratio = statistics.median(own for own, _ in pairs), statistics.median(a / b for a, b in pairs)
         yield f"| {words} | {seconds:.3f} | {ratio:.0f} | {AIM} |"
-
-
-def spent(work: Callable[[], object]) -> float:
-    """Return the processor time that some work takes [s]."""
-    start = time.process_time()
-    work()
-    return time.process_time() - start
 
 
 if __name__ == "__main__":

@@ -21,6 +21,7 @@ from assess.web.route_states import describe_routes
 from assess.web.what_if_answer import try_out
 from assess.workbook.read import read_inventory
 from assess.workbook.template import Content, write_workbook
+from tests.benchmarks.measuring import list_items, timed
 from tests.workbooks import FLOORS, UNVERIFIED
 
 MARKET = Path(__file__).parents[2] / "inventories" / "market-street.xlsx"
@@ -39,7 +40,7 @@ def rows(folder: Path) -> Iterator[str]:
     )
     for count, aim in AIMS.items():
         path = folder / f"live-{count}.xlsx"
-        write_workbook(path, Content({"Floors": FLOORS, "Items": _list_items(count)}))
+        write_workbook(path, Content({"Floors": FLOORS, "Items": list_items(count)}))
         yield _compare(f"{count:,} pieces", path, f"at most {aim:,} ms")
     yield _compare("121 pieces, 3 recorded floors", MARKET, "")
     yield "\n| 121 pieces, 80 segments | median [ms] | aim |\n|---|---|---|"
@@ -52,14 +53,6 @@ def rows(folder: Path) -> Iterator[str]:
     yield f"| states of routes after an edit | {_median(lambda: _route_states(book, next(scale))):.0f} | |"
 
 
-def _list_items(count: int) -> list[dict[str, object]]:
-    return [
-        {"item": f"i{at}", "floor": str(1 + at % 2), "room": f"room {at % 97}", "description": "Bookcase, steel",
-         "breadth": 20 + at % 70, "width": 120, "height": 100 + at % 130, "axis": "XY"[at % 2]}
-        for at in range(count)
-    ]  # fmt: skip
-
-
 def _hold(path: Path) -> Book:
     return Book.hold(path.name, path.read_bytes(), path.parent)
 
@@ -70,7 +63,7 @@ def _compare(name: str, path: Path, aim: str) -> str:
     found = []
     for at in range(ROUNDS + 1):
         reading, answer = _answer(book, view, 100 + at)
-        found.append((answer, reading, _milliseconds(lambda: _anew(data, path.parent))))
+        found.append((answer, reading, 1e3 * timed(lambda: _anew(data, path.parent))))
     own, reading, anew = (statistics.median(times) for times in zip(*found[1:], strict=True))
     ratio = statistics.median(one / other for one, _, other in found[1:])
     rival = "the bytes"
@@ -103,13 +96,7 @@ def _route_states(book: Book, height: int) -> None:
 
 
 def _median(work: Callable[[], object]) -> float:
-    return statistics.median([_milliseconds(work) for _ in range(ROUNDS)][1:])
-
-
-def _milliseconds(work: Callable[[], object]) -> float:
-    start = time.perf_counter()
-    work()
-    return 1e3 * (time.perf_counter() - start)
+    return statistics.median([1e3 * timed(work) for _ in range(ROUNDS)][1:])
 
 
 if __name__ == "__main__":

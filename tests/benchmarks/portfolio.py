@@ -21,7 +21,8 @@ from assess.pipeline.run import run
 from assess.workbook.example import example_content
 from assess.workbook.read import read_inventory
 from assess.workbook.template import Content, write_workbook
-from tests.benchmarks.workbooks_read import _milliseconds, _read_cells
+from tests.benchmarks.measuring import spent
+from tests.benchmarks.workbooks_read import read_cells
 
 READ, SIMULATED, MANY, RUNS = 24, 6, 300, 200
 """Workbooks that are read, that are simulated, formulas only whose memory is measured, and motions."""
@@ -49,7 +50,7 @@ def rows(folder: Path) -> Iterator[str]:
         run(inventory, verify="none", figures=False, jobs=1)
     run(same[0], verify="all", runs=RUNS, figures=False, jobs=1)  # compiles, and makes the motions of one height
     yield "| a workbook of 12 to 40 pieces | processor [ms], median | longest | aim [ms] |\n|---|---|---|---|"
-    yield _row("openpyxl, read-only: its cells", _time(_read_cells, own), None)
+    yield _row("openpyxl, read-only: its cells", _time(read_cells, own), None)
     yield _row("read and checked", _time(read_inventory, own), None)
     yield _row("run, formulas only", _time(lambda one: _run(one, "none"), inventories), None)
     yield _row("read and run, formulas only", _time(lambda one: _run(one, "none"), own), FORMULA_AIM)
@@ -87,7 +88,7 @@ def _run(source: Any, verify: str) -> None:
 
 
 def _time(work: Callable[[Any], object], sources: Sequence[Any]) -> list[float]:
-    return [_milliseconds(lambda one=one: work(one)) for one in sources]  # type: ignore[misc]
+    return [1e3 * spent(lambda one=one: work(one)) for one in sources]  # type: ignore[misc]
 
 
 def _row(name: str, times: Sequence[float], aim: int | None) -> str:

@@ -3,24 +3,17 @@
 import json
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pypdfium2
 
 from assess.workbook.template import Content, write_workbook
+from tests.benchmarks.measuring import measure
 
 ROOT = Path(__file__).parents[2]
 MOST = 2
 """How many times the sum of its parts a PDF may take."""
-
-MEASURE = (
-    "import resource, subprocess, sys\n"
-    "subprocess.run(sys.argv[1:], check=True, capture_output=True)\n"
-    "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)"
-)
-"""Run from a small process: a child's peak counts that of the process which started it."""
 
 IMPORTS = "import numpy, openpyxl, babel.messages.pofile, jinja2.sandbox, matplotlib.figure, weasyprint"
 PARTS = """
@@ -59,7 +52,7 @@ def rows(folder: Path) -> Iterator[str]:
         ("1,000 items on 10 floors, not verified, pdf", thousand, ["--verify", "none", "--formats", "pdf"]),
     ):
         out = folder / "report"
-        seconds, peak = measure([assess, "run", str(book), "--out", str(out), *options])
+        seconds, _, peak = measure([assess, "run", str(book), "--out", str(out), *options])
         yield f"| {name} | {seconds:.1f} | {peak:.0f} | {len(pypdfium2.PdfDocument(out / 'report.pdf'))} |"
     yield ""
     yield from _of_parts(seconds, thousand)
@@ -75,13 +68,6 @@ def _of_parts(whole: float, book: Path) -> Iterator[str]:
     yield "|---|---|---|---|---|---|---|---|"
     yield (f"| parts alone | {imports:.1f} | {figures:.1f} | {layout:.1f} | {imports + figures + layout:.1f} | "
            f"{whole:.1f} | {ratio:.2f} | at most {MOST} |")  # fmt: skip
-
-
-def measure(command: list[str]) -> tuple[float, float]:
-    """Return the seconds and the peak memory [MB] of a whole process."""
-    start = time.perf_counter()
-    done = subprocess.run([sys.executable, "-c", MEASURE, *command], check=True, capture_output=True, text=True)
-    return time.perf_counter() - start, float(done.stdout)
 
 
 def write_thousand(path: Path, count: int = 1000, floors: int = 10) -> Path:

@@ -14,6 +14,7 @@ from assess.motion.target import Grid, recorded_target
 from assess.rocking import block, ensemble, kernel
 from assess.rocking.ensemble import rock_blocks
 from assess.units import GRAVITY
+from tests.benchmarks.measuring import timed
 from tests.motion.motions import TWELFTH, cut
 from tests.rocking.pairs import ground, read_table
 from tests.rocking.reference import of_sizes, scaled
@@ -62,19 +63,13 @@ def _blocks() -> tuple[Array, Array]:
 def _rock(breadth: Array, height: Array, motions: Array, threads: int) -> float:
     """Return the median of the seconds it takes, compiled before."""
     work = lambda: rock_blocks(breadth, height, motions, STEP, threads=threads)  # noqa: E731
-    return statistics.median([_timed(work) for _ in range(ROUNDS + 1)][1:])
+    return statistics.median([timed(work) for _ in range(ROUNDS + 1)][1:])
 
 
 def _steps(breadth: Array, height: Array, motions: Array) -> int:
     blocks = ensemble.Bodies.of(breadth, height, math.nan, block.MIDDLE, 1.0).to_kernel(STEP)
     outcome = np.zeros((BLOCKS, MOTIONS, 3))
     return int(kernel.rock(blocks, ensemble.divide(motions, 1), 0, MOTIONS, outcome, np.zeros((0, 3))))
-
-
-def _timed(work: Callable[[], object]) -> float:
-    start = time.perf_counter()
-    work()
-    return time.perf_counter() - start
 
 
 def _against(

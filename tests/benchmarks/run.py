@@ -10,7 +10,6 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 from eqsig import sdof
@@ -33,6 +32,7 @@ from tests.benchmarks import (
     verified,
     workbooks_read,
 )
+from tests.benchmarks.measuring import list_items, measure, timed
 from tests.motion.motions import cut
 from tests.workbooks import write
 
@@ -45,7 +45,7 @@ def main() -> None:
     """Print the table."""
     with tempfile.TemporaryDirectory() as box:
         folder = Path(box)
-        thousand = write(folder / "1000.xlsx", _items(1000))
+        thousand = write(folder / "1000.xlsx", list_items(1000))
         out = ["--out", str(folder / "out")]
         assess = str(Path(sys.executable).with_name("assess"))
         run = [assess, "run"]
@@ -65,7 +65,7 @@ def main() -> None:
             print(row)
         if sys.argv[1:] == [START]:
             return
-        twenty = write(folder / "20000.xlsx", _items(20_000))
+        twenty = write(folder / "20000.xlsx", list_items(20_000))
         print("\n| one run | seconds | peak memory [MB] |\n|---|---|---|")
         out += ["--verify", "none"]
         print(
@@ -97,14 +97,6 @@ def main() -> None:
         print(row)
 
 
-def _items(count: int) -> list[dict[str, object]]:
-    return [
-        {"item": f"i{at}", "floor": str(1 + at % 2), "room": f"room {at % 97}", "description": "Bookcase, steel",
-         "breadth": 20 + at % 70, "width": 120, "height": 100 + at % 130, "axis": "XY"[at % 2], "notes": "by the door"}
-        for at in range(count)
-    ]  # fmt: skip
-
-
 def _compare(name: str, command: list[str], rival: str, aim: int) -> str:
     pairs = [(_seconds(command), _seconds([sys.executable, "-c", rival])) for _ in range(ROUNDS + 1)][1:]
     ours, theirs = (statistics.median(times) for times in zip(*pairs, strict=True))
@@ -129,8 +121,8 @@ def _spectrum() -> str:
     motion = cut("a", 0, (SAMPLES - 1) * STEP).acceleration
     pairs = [
         (
-            _timed(lambda: [response_spectrum(motion, STEP, PERIODS) for _ in range(50)]) / 50,
-            _timed(lambda: sdof.pseudo_response_spectra(motion, STEP, PERIODS, 0.05)),
+            timed(lambda: [response_spectrum(motion, STEP, PERIODS) for _ in range(50)]) / 50,
+            timed(lambda: sdof.pseudo_response_spectra(motion, STEP, PERIODS, 0.05)),
         )
         for _ in range(ROUNDS + 1)
     ][1:]
@@ -145,22 +137,16 @@ def _ensemble() -> str:
     target = recorded_target(cut("a", 0, grid.duration), grid)
     generator = build_generator(target, grid, seed=1, axis="X", threads=2)
     ours = statistics.median(
-        _timed(lambda: build_generator(target, grid, seed=1, axis="X", threads=2)) for _ in range(ROUNDS)
+        timed(lambda: build_generator(target, grid, seed=1, axis="X", threads=2)) for _ in range(ROUNDS)
     )
     made = generator.realise()
-    theirs = _timed(lambda: [sdof.pseudo_response_spectra(motion, STEP, PERIODS, 0.05) for motion in made])
+    theirs = timed(lambda: [sdof.pseudo_response_spectra(motion, STEP, PERIODS, 0.05) for motion in made])
     name, rival = "100 realisations, two threads", "eqsig: the 100 spectra of these motions"
     return f"| {name} | {ours:.2f} | {rival} | {theirs:.1f} | {theirs / ours:.1f} | at most 2 s |"
 
 
-def _timed(work: Callable[[], object]) -> float:
-    start = time.perf_counter()
-    work()
-    return time.perf_counter() - start
-
-
 def _once(name: str, command: list[str]) -> str:
-    seconds, peak = report.measure(command)
+    seconds, _, peak = measure(command)
     return f"| {name} | {seconds:.1f} | {peak:.0f} |"
 
 

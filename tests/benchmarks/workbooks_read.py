@@ -7,9 +7,8 @@ openpyxl hands over the cells.
 import statistics
 import sys
 import tempfile
-import time
 import zipfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import openpyxl
@@ -20,6 +19,7 @@ from assess.pipeline.live_values import with_live
 from assess.workbook.example import example_content
 from assess.workbook.read import read_inventory
 from assess.workbook.template import ROWS, write_workbook
+from tests.benchmarks.measuring import spent
 
 AIM, ROUNDS = 40, 20
 """Longest median time to read it [ms of processor time], and how often it is read."""
@@ -31,7 +31,7 @@ def rows(folder: Path) -> Iterator[str]:
     """Yield a table in Markdown; the workbook is written into `folder`."""
     path, content = folder / "example.xlsx", example_content()
     write_workbook(path, with_live(content))
-    pairs = [(_milliseconds(lambda: read_inventory(path)), _milliseconds(lambda: _read_cells(path)))
+    pairs = [(1e3 * spent(lambda: read_inventory(path)), 1e3 * spent(lambda: read_cells(path)))
              for _ in range(ROUNDS + 1)][1:]  # fmt: skip
     ours, theirs = (statistics.median(times) for times in zip(*pairs, strict=True))
     ratio = statistics.median(own / other for own, other in pairs)
@@ -42,19 +42,13 @@ def rows(folder: Path) -> Iterator[str]:
     yield f"| {name} | {ours:.0f} | openpyxl, read-only | {theirs:.0f} | {ratio:.2f} | at most {AIM} ms |"
 
 
-def _read_cells(path: Path) -> int:
+def read_cells(path: Path) -> int:
     """Return how many cells of a workbook hold a value."""
     book = openpyxl.load_workbook(path, read_only=True, data_only=True)
     rows = (row for page in book.worksheets for row in page.iter_rows(values_only=True))
     count = sum(value is not None for row in rows for value in row)
     book.close()
     return count
-
-
-def _milliseconds(work: Callable[[], object]) -> float:
-    start = time.process_time()
-    work()
-    return 1e3 * (time.process_time() - start)
 
 
 if __name__ == "__main__":
