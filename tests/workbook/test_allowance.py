@@ -6,7 +6,6 @@ import pytest
 
 from assess.workbook import allowance
 from tests.motion.writers import EAST, at2, zipped
-from tests.pictures import picture
 from tests.workbook.books import errors_of, read, write
 
 FEWER = "Name fewer files, with the channels that are needed, cut to the shaking."
@@ -46,13 +45,3 @@ def test_a_file_counts_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setattr(allowance, "MOST_RECORD_SAMPLES", EAST.acceleration.size)
     (tmp_path / "a.at2").write_bytes(at2())
     assert len(read(tmp_path, floors=floors_with("a.at2", "a.at2#1", "a.at2")).floors) == 3
-
-
-def test_pixels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in "ab":
-        (tmp_path / f"{name}.png").write_bytes(picture("PNG"))
-    rows = [["Floor", "PFA X [g]", "Plan image"], *([n, 0.3, one] for n, one in enumerate(["a.png", "a.png", "b.png"]))]
-    monkeypatch.setattr(allowance, "MOST_PICTURE_PIXELS", 1200)
-    assert errors_of(write(tmp_path, [["Item", "Floor", "Breadth [cm]", "Height [cm]"], ["A", 0, 40, 180]], rows)) == {
-        "Floors!C4: the pictures of this workbook have more than 0 million pixels. Save them smaller, or name fewer."
-    }

@@ -7,28 +7,83 @@ from typing import Any
 import openpyxl
 import pytest
 
-from assess.i18n import LANGUAGES, load_catalogue, speaking
-from assess.workbook.schema import CLASS, SHEETS
-from assess.workbook.template import CHECKED, ROWS, count_heading_lines, count_text_lines, fit_width, write_workbook
+from assess.i18n import LANGUAGES, gettext, load_catalogue, speaking
+from assess.workbook.layout import list_columns
+from assess.workbook.names import say_choices, translate
+from assess.workbook.schema import CLASS, LISTS, SHEETS, Sheet
+from assess.workbook.template import (
+    CHECKED,
+    ROWS,
+    count_heading_lines,
+    count_text_lines,
+    describe,
+    fit_width,
+    write_workbook,
+)
 from tests.workbook.books import read_part
 
 LETTER, LINE = 1.1, 15
 """Width of a bold letter [digits] and height of a line [points]: those of Calibri 11, somewhat on the safe side."""
 
 
-@pytest.fixture(scope="module", params=[(code, units) for code in LANGUAGES for units in ("si", "imperial")])
-def path(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    code, units = request.param
-    path = tmp_path_factory.mktemp(f"{code}-{units}") / "blank.xlsx"
+@pytest.fixture(scope="module", params=LANGUAGES)
+def code(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+@pytest.fixture(scope="module", params=["si", "imperial"])
+def path(request: pytest.FixtureRequest, code: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp(f"{code}-{request.param}") / "blank.xlsx"
     with speaking(load_catalogue(code)):
-        write_workbook(path, units=units)
+        write_workbook(path, units=request.param)
     return path
 
 
 @pytest.fixture(scope="module")
-def pages(path: Path) -> list[Any]:
+def book(path: Path) -> Any:
+    return openpyxl.load_workbook(path)
+
+
+@pytest.fixture(scope="module")
+def pages(book: Any) -> list[Any]:
     """Return Help, and the sheets of `SHEETS`."""
-    return openpyxl.load_workbook(path).worksheets[: len(SHEETS) + 1]
+    return list(book.worksheets[: len(SHEETS) + 1])
+
+
+def _checks(page: Any, sheet: Sheet) -> dict[str, Any]:
+    """Return the check of each column, by field name."""
+    found, names = {}, list_columns(sheet)
+    for check in page.data_validations.dataValidation:
+        first = next(iter(check.sqref.ranges))
+        found[names[(first.min_row if sheet.layout == "form" else first.min_col) - 1]] = check
+    return found
+
+
+def test_every_column_has_a_message_and_choices_drop_down(book: Any, code: str) -> None:
+    with speaking(load_catalogue(code)):
+        names = {sheet.name: translate(sheet, code).name for sheet in SHEETS}
+        for sheet in SHEETS:
+            found = _checks(book[names[sheet.name]], sheet)
+            assert [name for name in found if name != CLASS] == [column.name for column in sheet.columns]
+            for column in sheet.columns:
+                check = found[column.name]
+                assert 0 < len(check.prompt) <= 255
+                assert describe(column).startswith(check.prompt.removesuffix("…"))
+                assert check.promptTitle == gettext(column.label)
+                assert len(check.promptTitle) <= 32
+                listed = [*say_choices(column.choices, code)] or [gettext(one) for one in column.offered]
+                assert (check.type == "list") == bool(listed or column.source)
+                if check.type != "list":
+                    continue
+                name = check.formula1.lstrip("=")
+                assert name == f"list_{column.name if listed else column.source.lower()}"
+                target, _, area = book.defined_names[name].attr_text.partition("!")
+                assert check.errorStyle == ("information" if column.offered else "warning" if column.source else None)
+                if listed:
+                    assert target == gettext(LISTS)
+                    assert [cell.value for row in book[target][area.replace("$", "")] for cell in row] == listed
+                else:
+                    assert (target, area[:6]) == (names[column.source], "$A$2:$")
 
 
 def test_no_header_of_a_table_is_cut(pages: list[Any]) -> None:

@@ -15,7 +15,7 @@ from assess.errors import WorkbookError
 from assess.i18n import LANGUAGES, find_language, gettext, load_catalogue, speaking
 from assess.model import Inventory
 from assess.workbook.layout import LETTERS, list_columns
-from assess.workbook.names import find_sheet, fold, plain, say_choices, say_live, translate
+from assess.workbook.names import fold, plain, say_choices, say_live, translate
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import CLASS, LISTS, LIVE, SHEETS, WORKINGS
 from assess.workbook.template import describe
@@ -121,24 +121,6 @@ def test_everything_shown_is_italian(book: Any) -> None:
     assert not texts & english
     formula = book["Arredi"][f"{LETTERS['Items', CLASS]}2"].value
     assert all(f'"{word}"' in formula for word in ("○ basso", "◇ medio", "▲ alto", "■ molto alto"))
-
-
-def test_drop_downs_hold_the_italian_choices(book: Any) -> None:
-    for sheet, italian in zip(SHEETS, ITALIAN, strict=True):
-        for check in book[italian.name].data_validations.dataValidation:
-            first = next(iter(check.sqref.ranges))
-            name = list_columns(sheet)[(first.min_row if sheet.layout == "form" else first.min_col) - 1]
-            if name == CLASS:  # says what to do where no formula stands
-                continue
-            column = sheet.column(name)
-            if not column.choices and not column.source:
-                continue
-            target, _, area = book.defined_names[check.formula1.lstrip("=")].attr_text.partition("!")
-            if column.choices:
-                held = [cell.value for row in book[target][area.replace("$", "")] for cell in row]
-                assert (target, tuple(held)) == ("Elenchi", say_choices(column.choices, "it"))
-            else:
-                assert find_sheet(target) == (column.source, "it")
 
 
 def test_a_workbook_typed_by_hand(tmp_path: Path) -> None:

@@ -1,27 +1,30 @@
+"""Names of rows and columns: slips of them, and what they may not hold or share."""
+
 import assess
 from assess.workbook.names import find_near_name
-from tests.workbook.books import errors_of
+from tests.workbook.books import errors_of, remarks
 from tests.workbook.books import write as write_cells
 from tests.workbooks import write
 
 
 def test_a_name_that_a_look_up_reads_as_a_pattern_is_warned_of(tmp_path):
     names = ["B*", "what?", "~1"]
-    items = [{"item": name, "floor": name, "breadth": 30, "height": 180} for name in names]
+    items = [{"item": f"A{at}", "floor": name, "breadth": 30, "height": 180} for at, name in enumerate(names)]
     path = write(tmp_path / "w.xlsx", items, [{"floor": name, "pfa_x": 0.3} for name in names])
-    warnings = [one for one in assess.read_inventory(path).problems if one.severity == "warning"]
-    assert {one.place for one in warnings} >= {"Floors!A2", "Floors!A3", "Floors!A4"}
-    for name, one in zip(names, [one for one in warnings if one.sheet == "Floors"], strict=True):
-        assert f"Floor '{name}' holds *, ? or ~, which Excel's look-ups read as patterns." in one.message
+    found = sorted(remarks(assess.read_inventory(path), "warning"))
+    for row, (name, warning) in enumerate(zip(names, found, strict=True), 2):
+        message = f"Floor '{name}' holds *, ? or ~, which Excel's look-ups read as patterns."
+        assert warning.startswith(f"Floors!A{row}: {message}")
 
 
-def test_an_axis_that_the_angle_contradicts_is_warned_of(tmp_path):
-    items = [{"item": "a", "floor": "1", "breadth": 30, "height": 180, "axis": "X", "angle_deg": 90}]
-    (warning,) = [one for one in assess.read_inventory(write(tmp_path / "w.xlsx", items)).problems
-                  if one.severity == "warning"]  # fmt: skip
-    assert (
-        str(warning) == "Items!K2: Axis is X, but an Angle of 90 deg lies along Y; X is used. Correct one of the two."
-    )
+def test_source_ids_that_are_copied_are_named_and_capitals_count(tmp_path):
+    ids = ["2OBrcmyk58NupXoVOHUuXp", "", "2oBrcmyk58NupXoVOHUuXp", "2OBrcmyk58NupXoVOHUuXp", ""]
+    sizes = {"floor": "1", "breadth": 40, "height": 180}
+    path = write(tmp_path / "w.xlsx", [{"item": f"A{at}", "source_id": one, **sizes} for at, one in enumerate(ids)])
+    assert remarks(assess.read_inventory(path), "warning") == {
+        "Items!AA5: Source ID '2OBrcmyk58NupXoVOHUuXp' is that of row 2, too. Clear it where the row was copied: which "
+        "of the two is in the model is not known."
+    }
 
 
 def test_a_missing_column_of_sizes_is_said_once(tmp_path):
@@ -32,15 +35,8 @@ def test_a_missing_column_of_sizes_is_said_once(tmp_path):
     }
 
 
-TYPES = (
-    "tray cabinet",
-    "locker",
-    "locker 2 doors",
-    "coat stand",
-    "conference table",
-    "steel shelving",
-    "bookcase tall",
-)
+TYPES = ("tray cabinet", "locker", "locker 2 doors", "coat stand", "conference table", "steel shelving",
+         "bookcase tall")  # fmt: skip
 
 
 def test_each_word_of_a_slip_is_near():

@@ -178,13 +178,6 @@ def test_a_photo_that_is_no_picture(folder: Path) -> None:
     }
 
 
-def test_too_many_photos(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(allowance, "MOST_PHOTOS", 1)
-    path = _write(folder, {}, {**PIECE, "item": "B", "photo": "p.png"}, {**PIECE, "item": "C", "photo": "p.jpg"})
-    (warning,) = remarks(read_inventory(path), "warning")
-    assert warning.startswith(f"Items!{address('photo', 4)}: this workbook names more than 1 photos")
-
-
 def test_series_hold_plans_and_photos_and_results_json_does_not(folder: Path) -> None:
     inventory = _read(folder, {"plan": "p.svg", **PLACED}, {**PIECE, "item": "B", "photo": "p.jpg"})
     results = assess.run(inventory, assess.Settings(verify="none"))

@@ -179,3 +179,27 @@ def test_every_field_of_the_model_has_a_column() -> None:
     for sheet in (one for one in SHEETS if one.name != "Floors"):
         own = {one.name for one in dataclasses.fields(kinds[sheet.name])} - {"row", "assumed", "extra", "more", "cells"}
         assert {column.name for column in sheet.columns} - {"photo", "source_id"} == own
+
+
+def test_weights_and_brackets_are_read_in_any_unit(tmp_path: Path) -> None:
+    sizes = ["Breadth [cm]", "Height [cm]", "Anchored"]
+    for units, cells, expected in (
+        (("kg", "cm", "kN"), [120, 170, 1.5], (120, 1.7, 1500)),
+        (("lb", "in", "lbf"), [100, 60, 250], (45.359237, 1.524, 1112.0554)),
+    ):
+        labels = zip(("Weight", "Bracket height", "Bracket capacity"), units, strict=True)
+        header = [*sizes, *(f"{label} [{unit}]" for label, unit in labels)]
+        found = read_item(tmp_path, header, [40, 180, "yes", *cells])
+        assert (found.weight, found.bracket_height, found.bracket_capacity) == pytest.approx(expected, rel=1e-6)
+
+
+def test_cells_of_a_row_that_contradict_each_other_are_warned_of(tmp_path: Path) -> None:
+    header = [*ITEMS[0], "Axis", "Angle [deg]", "Anchored", "Bracket capacity [kN]"]
+    rows: Sheet = [[*ITEMS[1], "X", 90], ["A2", "1", 40, 180, None, None, "no", 1]]
+    messages = sorted(remarks(read(tmp_path, [header, *rows]), "warning"))
+    assert messages[0] == (
+        "Items!E2: Axis is X, but an Angle of 90 deg lies along Y; X is used. Correct one of the two."
+    )
+    assert [one.startswith("Items!H3: Bracket capacity is given, but Anchored is no.") for one in messages[1:]] == [
+        True
+    ]

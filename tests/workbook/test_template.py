@@ -14,7 +14,7 @@ from assess.workbook.lists import NO_SHAKING, NO_UNIT, RUN_ASSESS, WRONG
 from assess.workbook.live_row import NO_AXIS, NO_FLOOR
 from assess.workbook.names import say_live
 from assess.workbook.read import read_inventory
-from assess.workbook.schema import CATALOGUE, CLASS, ITEMS, LIVE, SHEETS, WORKINGS, Sheet
+from assess.workbook.schema import CATALOGUE, CLASS, ITEMS, LIVE, SHEETS, WORKINGS
 from assess.workbook.template import CHECKED, ROWS, Content, Units, describe, write_workbook
 from tests.workbook.books import problems_of, read_part
 
@@ -79,40 +79,6 @@ def test_tables_can_be_scrolled_sorted_and_printed(book: Any) -> None:
         assert "&P" in page.oddFooter.center.text
 
 
-def validations(book: Any, sheet: Sheet) -> dict[str, Any]:
-    """Return the check of each column, by field name."""
-    found, names = {}, list_columns(sheet)
-    for check in book[sheet.name].data_validations.dataValidation:
-        first = next(iter(check.sqref.ranges))
-        place = first.min_row if sheet.layout == "form" else first.min_col
-        found[names[place - 1]] = check
-    return found
-
-
-def test_every_column_has_a_message_and_choices_drop_down_from_the_sheet_lists(book: Any) -> None:
-    for sheet in SHEETS:
-        found = validations(book, sheet)
-        assert [name for name in found if name != CLASS] == [column.name for column in sheet.columns]
-        for column in sheet.columns:
-            check = found[column.name]
-            assert 0 < len(check.prompt) <= 255
-            assert describe(column).startswith(check.prompt.removesuffix("…"))
-            assert check.promptTitle == column.label
-            assert len(check.promptTitle) <= 32
-            listed = column.choices or column.offered
-            if not listed and not column.source:
-                assert check.type != "list"
-                continue
-            assert check.type == "list"
-            name = check.formula1.lstrip("=")
-            assert name == f"list_{column.name if listed else column.source.lower()}"
-            target = book.defined_names[name].attr_text
-            assert target.startswith("Lists!" if listed else f"{column.source}!$A$2:$A$")
-            assert check.errorStyle == ("information" if column.offered else "warning" if column.source else None)
-            if listed:
-                assert _cells(book, target) == list(listed)
-
-
 def test_prepared_rows_are_all_checked(book: Any) -> None:
     for sheet in TABLES:
         for check in book[sheet.name].data_validations.dataValidation:
@@ -120,11 +86,6 @@ def test_prepared_rows_are_all_checked(book: Any) -> None:
             last = 1 + CHECKED.get(sheet.name, ROWS[sheet.name])
             first = ROWS[sheet.name] + 2 if sheet is ITEMS and list_columns(sheet)[area.min_col - 1] == CLASS else 2
             assert (area.min_row, area.max_row) == (first, last)
-
-
-def _cells(book: Any, target: str) -> list[Any]:
-    sheet, _, area = target.partition("!")
-    return [cell.value for row in book[sheet][area.replace("$", "")] for cell in row]
 
 
 def test_help_mentions_every_column(book: Any, units: Units) -> None:

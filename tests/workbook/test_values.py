@@ -36,16 +36,13 @@ WRONG: dict[str, list[tuple[str, Any, str]]] = {
         ("Height [cm]", 1800, "Height is 1800 cm, expected 5 to 600 cm. Did you mean 1800 mm = 180 cm?"),
         ("Height [cm]", 0, f"Height is 0 cm, expected 5 to 600 cm. {CLEAR}"),
         ("Height [cm]", 4.99, "Height is 4.99 cm, expected 5 to 600 cm. Did you mean 4.99 ft = 152.1 cm?"),
-        ("Height [cm]", -180, f"Height is -180 cm, expected 5 to 600 cm. {MINUS}"),
         ("Height [cm]", 1e30, f"Height is 1e+30 cm, expected 5 to 600 cm. {CHECK}"),
         ("Height [cm]", True, "Height is TRUE, expected a number [cm]. Type the number."),
         ("Height [cm]", time(1, 30), "Height holds a date or time (01:30:00), expected a number [cm]. "
                                      "Set the cell's format to General and type the number again."),
-        ("Height [cm]", "180 kg", f"Height is the text '180 kg', expected a number [cm]. {ALONE}"),
         ("Height [cm]", "1,80", "Height is 1.8 cm, expected 5 to 600 cm. Did you mean 1.8 m = 180 cm?"),
         ("Height [cm]", "1,800", "Height is the text '1,800', which can be read as 1.8 cm or as 1800 cm. "
                                  "Type the number without a separator between thousands."),
-        ("Height [cm]", "#N/A", "Height holds the error #N/A. Correct the formula in the cell, or type the number."),
         ("Height [cm]", "x" * 100, f"Height is the text '{'x' * 60}…', expected a number [cm]. {ALONE}"),
         ("Height [m]", 180, "Height is 180 m, expected 0.05 to 6 m. Did you mean 180 cm = 1.8 m?"),
         ("Height [in]", 1.8, "Height is 1.8 in, expected 1.969 to 236.2 in. Did you mean 1.8 ft = 21.6 in?"),
@@ -63,9 +60,7 @@ WRONG: dict[str, list[tuple[str, Any, str]]] = {
         ("Centre of gravity [%]", 0.02, f"Centre of gravity is 0.02 %, expected 5 to 95 %. {CHECK}"),
         ("Centre of gravity [%]", -50, f"Centre of gravity is -50 %, expected 5 to 95 %. {MINUS}"),
         ("Angle [deg]", 400, f"Angle is 400 deg, expected -360 to 360 deg. {CHECK}"),
-        ("Quantity", -1, "Quantity is -1, expected a whole number from 1 to 10000. Type a whole number."),
         ("Quantity", "two", f"Quantity is the text 'two', expected a number. {ALONE}"),
-        ("Axis", "XY", f"Axis is 'XY', expected one of: X, Y. {LIST}"),
         ("Anchored", "partially", "Anchored is 'partially', expected one of: no, yes, partly, unknown. Did you mean"),
         ("Against wall", "north", f"Against wall is 'north', expected one of: yes, no. {LIST}"),
         ("Importance", "#REF!", "Importance holds the error #REF!. Correct the formula in the cell."),
@@ -109,7 +104,7 @@ WRONG: dict[str, list[tuple[str, Any, str]]] = {
         ("Unit cost", "40 €", "Unit cost is the text '40 €', expected a number."),
     ],
 }  # fmt: skip
-"""By sheet: a header, a value below it, and how its error begins."""
+"""By sheet: a header, a value below it, and how its error begins; more of them stand in test_check."""
 CELLS = {"Items": "D2", "Floors": "C2", "Building": "B2", "Catalogue": "D2", "Costs": "B2"}
 
 
