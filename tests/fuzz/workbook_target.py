@@ -291,7 +291,8 @@ def _validator() -> jsonschema.Draft202012Validator:
 def _check_names(inventory: Inventory) -> None:
     """Check that no row names one that was left out."""
     floors, places = {one.floor for one in inventory.floors}, {one.place for one in inventory.places}
-    keep({one.floor for one in (*inventory.items, *inventory.places)} <= floors, "a floor that is not there")
+    named = {one.floor for one in inventory.items} | {one.floor for one in inventory.places}
+    keep(named <= floors, "a floor that is not there")
     keep({name for one in inventory.routes for name in (one.start, one.end) if name} <= places, "a place not there")
 
 

@@ -38,9 +38,12 @@ PARTS = [SHEET, STRINGS, WORKBOOK, RELATIONS, STYLES, TYPES]
 
 def test_entities(tmp_path: Path) -> None:
     for name, entities in ENTITIES.items():
+
+        def declare(data: bytes, declared: bytes = entities.encode()) -> bytes:
+            return declared + data.split(b"?>")[-1]
+
         for at, part in enumerate(PARTS):
-            path = write_shared(tmp_path / f"{name}-{at}.xlsx", SHEETS)
-            change_parts(path, {part: lambda data, declared=entities: declared.encode() + data.split(b"?>")[-1]})
+            change_parts(write_shared(tmp_path / f"{name}-{at}.xlsx", SHEETS), {part: declare})
     found = read_apart(tmp_path)
     assert len(found) == len(ENTITIES) * len(PARTS)
     assert found == {

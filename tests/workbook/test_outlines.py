@@ -7,7 +7,7 @@ import pytest
 from assess.units import LENGTH
 from assess.workbook.outlines import OutlineError, parse_outline
 from assess.workbook.read import read_inventory
-from tests.workbook.books import errors_of, write
+from tests.workbook.books import Sheet, errors_of, write
 
 SQUARE = ((0.0, 0.0), (6.0, 0.0), (6.0, 4.0), (0.0, 4.0))
 
@@ -56,7 +56,7 @@ def test_outlines_of_a_workbook(tmp_path):
     floors = [["Floor", "PFA X [g]"], ["1", 0.3]]
     items = [["Item", "Floor", "Breadth [cm]", "Height [cm]"], ["a", "1", 40, 180]]
     row = ["Office", "1", 1, 1]
-    outlines = [["Place", "Floor", "X [m]", "Y [m]", "Outline [m]"], [*row, "0 0; 6 0; 6 4; 0 4"],
+    outlines: Sheet = [["Place", "Floor", "X [m]", "Y [m]", "Outline [m]"], [*row, "0 0; 6 0; 6 4; 0 4"],
                 ["Hall", *row[1:], "0 0; 6 4; 6 0; 0 4"]]  # fmt: skip
     inventory = read_inventory(write(tmp_path, items, floors, Places=outlines), strict=False)
     assert inventory.places[0].outline == SQUARE
