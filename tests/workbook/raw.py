@@ -15,7 +15,7 @@ SHEETS = {"Items": ITEMS, "Floors": FLOORS}
 MOST_MEMORY = 300
 """MB at the peak, 70 of them for Python and its libraries."""
 
-SECONDS = 300
+SECONDS = 600
 
 SHEET = "xl/worksheets/sheet1.xml"  # Items
 WORKBOOK = "xl/workbook.xml"

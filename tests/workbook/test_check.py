@@ -131,7 +131,7 @@ def test_sheets_that_are_missing_or_empty(tmp_path: Path, sheets: dict[str, Shee
     assert errors_of(write_book(tmp_path / "book.xlsx", sheets)) == errors
 
 
-REQUIRED = [
+REQUIRED: list[tuple[str, list[Any], list[Any], list[str]]] = [
     ("Items", ["Floor", "Breadth [cm]", "Height [cm]"], ["1", 40, 180], ["Item"]),
     ("Items", ["Breadth [cm]", "Height [cm]"], [40, 180], ["Item", "Floor"]),
     ("Floors", ["PFA X [g]"], [0.5], ["Floor"]),
