@@ -8,11 +8,13 @@ from typing import Any
 import assess
 from assess.bim.export_files import Export, build_export
 from assess.bim.export_results import read_export
-from assess.bim.import_workbook import ImportedBuilding, build_workbook
+from assess.bim.import_workbook import ImportedBuilding, list_rows
 from assess.bim.read_source import read_source
 from assess.progress import SILENT
 from assess.report.data import write_json
 from assess.settings import Settings
+from assess.workbook.template import Content, write_workbook
+from tests.bim.ifc_files import ModelWriter
 
 MODELS = Path(__file__).parents[2] / "samples" / "models"
 DUPLEX, OFFICE = MODELS / "duplex.ifc", MODELS / "LargeBuilding.ifc"
@@ -74,10 +76,26 @@ def write_results(
         source="model.ifc", building=building, floors=floors, items=items, places=places, routes=routes
     )
     book = folder / "building.xlsx"
-    book.write_bytes(build_workbook(imported))
+    write_workbook(book, Content(list_rows(imported)), spare=1)
     out = folder / "results.json"
     write_json(assess.run(assess.read_inventory(book), settings), out)
     return out
+
+
+def write_flat(path: Path) -> Path:
+    """Write a small model with the pieces of `CUPBOARDS` where they stand in Duplex, and the door of their room."""
+    writer = ModelWriter("IFC2X3")
+    storeys = {name: writer.storey(name, level) for name, level in (("1", 0.0), ("2", 3.1))}
+    for row in CUPBOARDS:
+        one = writer.piece(
+            row.get("description", "Cupboard"),
+            (0, 0, 0, row["breadth"] / 100, row["width"] / 100, row["height"] / 100),
+            within=storeys[row["floor"]], at=(row["x"], row["y"], 0.0 if row["floor"] == "1" else 3.1), x=(0, 1, 0),
+        )  # fmt: skip
+        one.GlobalId = row["source_id"]
+    door = writer.element("IfcDoor", "Door", (0, 0, 0, 0.9, 0.1, 2.1), within=storeys["2"], at=(1.85, -11.55, 3.1))
+    door.GlobalId = DOOR_B202
+    return writer.write(path)
 
 
 def import_results(folder: Path, model: Path) -> Path:
@@ -86,7 +104,7 @@ def import_results(folder: Path, model: Path) -> Path:
     for name, data in imported.files.items():
         (folder / name).write_bytes(data)
     book, out = folder / "building.xlsx", folder / "results.json"
-    book.write_bytes(build_workbook(imported))
+    write_workbook(book, Content(list_rows(imported)), spare=1)
     inventory = assess.read_inventory(book, building={"ground_pga": 0.5, "height": 6.0})
     write_json(assess.run(inventory, FORMULA, class_by="proposed OR"), out)
     return out

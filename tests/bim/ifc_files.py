@@ -7,6 +7,9 @@ from typing import Any
 import ifcopenshell
 import ifcopenshell.guid
 
+from assess.bim.building_model import BuildingModel
+from assess.bim.ifc_model import read_model
+
 
 @dataclass
 class ModelWriter:
@@ -152,3 +155,8 @@ def one_room(
     storey = model.storey()
     room = model.space(storey, tuple(scale * one for one in (3, 2, 0, 6, 4, 3)), "101", "Office")
     return model, storey, room
+
+
+def read(model: ModelWriter, folder: Path) -> BuildingModel:
+    """Return a model as it is read from its file."""
+    return read_model(model.write(folder / "a.ifc"), "a.ifc")

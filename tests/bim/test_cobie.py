@@ -7,7 +7,8 @@ from assess.bim.cobie import convert, read_cobie
 from assess.bim.import_workbook import ImportedBuilding
 from assess.errors import WorkbookError
 from assess.workbook.read import read_inventory
-from tests.bim.cobie_files import COMPONENTS, FLOORS, TYPES, one_type, write_cobie
+from tests.bim.cobie_files import COMPONENTS, FLOORS, TYPES, make_sheets, one_type, write_cobie
+from tests.workbook.books import write_book
 
 SHAKEN = {"ground_pga": 0.3}
 
@@ -31,12 +32,9 @@ def test_moveable_components_become_pieces_with_room_floor_and_identifier(tmp_pa
     ]  # fmt: skip
     assert found.building == {"building": "East wing", "address": "1 Main Street", "use": "Hospital", "height": 8.0}
     assert found.floors == [{"floor": "Ground", "elevation": 0.0}, {"floor": "Upper", "elevation": 4.0}]
-
-
-def test_fixed_types_are_listed_with_their_number_and_count_as_no_furniture(tmp_path: Path) -> None:
-    found = _read(tmp_path)
     assert _skipped(found) == [("Door B", 1, "AssetType is Fixed", False)]
-    assert found.is_complete
+    assert found.is_complete, "what is fixed is no furniture"
+    assert any("do not record fixings or positions: fill in Anchored" in one for one in found.remarks)
 
 
 def test_the_workbook_of_a_conversion_is_an_inventory(tmp_path: Path) -> None:
@@ -96,60 +94,39 @@ def test_pieces_that_no_unit_makes_furniture_are_left_out_and_the_unit_is_not_do
     assert [one.type for one in found.skipped] == ["Bookcase A"]
 
 
-def test_what_cobie_files_do_not_record_is_remarked(tmp_path: Path) -> None:
-    text = (
-        "COBie files do not record fixings or positions: fill in Anchored where you have seen the fixing; blank counts"
-    )
-    assert any(one.startswith(text) for one in _read(tmp_path).remarks)
+BLANK, ODD = "AssetType is blank, so that it is not known whether they are furniture", "expected 50 to 6000 mm"
+LEFT_OUT: list[tuple[dict[str, Any], str]] = [
+    *(({"NominalHeight": blank}, "no NominalHeight") for blank in ("n/a", None, "", 0, "0.0", "N/A", "-")),
+    ({"NominalLength": "n/a", "NominalWidth": 0, "NominalHeight": None},
+     "no NominalLength, NominalWidth, NominalHeight"),
+    ({"NominalHeight": -2000}, f"NominalHeight is -2000 mm, {ODD}"),
+    ({"NominalHeight": "-2000"}, f"NominalHeight is -2000 mm, {ODD}"),
+    ({"NominalHeight": 20}, f"NominalHeight is 20 mm, {ODD}"),
+    ({"NominalHeight": 20000000}, f"NominalHeight is 2e+07 mm, {ODD}"),
+    ({"NominalHeight": "1e400"}, "NominalHeight is the text '1e400', expected a number"),
+    ({"NominalHeight": "nan"}, "NominalHeight is the text 'nan', expected a number"),
+    ({"NominalHeight": "tall"}, "NominalHeight is the text 'tall', expected a number"),
+    ({"NominalHeight": "#VALUE!"}, "NominalHeight holds the error #VALUE!"),
+    ({"NominalHeight": True}, "NominalHeight is TRUE, expected a number"),
+    ({"AssetType": "n/a"}, BLANK),
+    ({"AssetType": "Loose"}, "AssetType is 'Loose', expected Fixed or Moveable"),
+]  # fmt: skip
 
 
-@pytest.mark.parametrize("blank", ["n/a", None, "", 0, "0.0", "N/A", "-"])
-def test_a_type_without_a_height_is_named_with_its_number(tmp_path: Path, blank: Any) -> None:
-    found = _read(tmp_path, **one_type(NominalHeight=blank))
-    assert _skipped(found) == [("Bookcase A", 1, "no NominalHeight", True)]
-    assert not found.items
-    assert not found.is_complete
-
-
-def test_a_type_without_any_size_says_so_in_one_line(tmp_path: Path) -> None:
-    found = _read(tmp_path, **one_type(NominalLength="n/a", NominalWidth=0, NominalHeight=None))
-    assert _skipped(found) == [("Bookcase A", 1, "no NominalLength, NominalWidth, NominalHeight", True)]
-
-
-@pytest.mark.parametrize(
-    ("size", "reason"),
-    [
-        (-2000, "NominalHeight is -2000 mm, expected 50 to 6000 mm"),
-        ("-2000", "NominalHeight is -2000 mm, expected 50 to 6000 mm"),
-        (20, "NominalHeight is 20 mm, expected 50 to 6000 mm"),
-        (20000000, "NominalHeight is 2e+07 mm, expected 50 to 6000 mm"),
-        ("1e400", "NominalHeight is the text '1e400', expected a number"),
-        ("nan", "NominalHeight is the text 'nan', expected a number"),
-        ("tall", "NominalHeight is the text 'tall', expected a number"),
-        ("#VALUE!", "NominalHeight holds the error #VALUE!"),
-        (True, "NominalHeight is TRUE, expected a number"),
-    ],
-)
-def test_a_size_that_cannot_be_is_the_reason(tmp_path: Path, size: Any, reason: str) -> None:
-    ((kind, number, why, is_furniture),) = _skipped(_read(tmp_path, **one_type(NominalHeight=size)))
+@pytest.mark.parametrize(("values", "reason"), LEFT_OUT)
+def test_a_type_that_cannot_be_taken_is_named_with_its_number_and_the_reason(
+    tmp_path: Path, values: dict[str, Any], reason: str
+) -> None:
+    found = _read(tmp_path, **one_type(**values))
+    ((kind, number, why, is_furniture),) = _skipped(found)
     assert (kind, number, is_furniture) == ("Bookcase A", 1, True)
     assert why.startswith(reason)
+    assert (found.items, found.is_complete) == ([], False)
 
 
-@pytest.mark.parametrize("typed", ["Movable", "MOVEABLE", " moveable "])
-def test_spellings_of_moveable(tmp_path: Path, typed: str) -> None:
-    assert len(_read(tmp_path, **one_type(AssetType=typed)).items) == 1
-
-
-@pytest.mark.parametrize(
-    ("typed", "reason"),
-    [
-        ("n/a", "AssetType is blank, so that it is not known whether they are furniture"),
-        ("Loose", "AssetType is 'Loose', expected Fixed or Moveable"),
-    ],
-)
-def test_an_asset_type_that_does_not_tell_is_reported(tmp_path: Path, typed: str, reason: str) -> None:
-    assert _skipped(_read(tmp_path, **one_type(AssetType=typed))) == [("Bookcase A", 1, reason, True)]
+def test_spellings_of_moveable(tmp_path: Path) -> None:
+    for typed in ("Movable", "MOVEABLE", " moveable "):
+        assert len(_read(tmp_path, **one_type(AssetType=typed)).items) == 1
 
 
 # ---------------------------------------------------------------- components, spaces and floors
@@ -170,11 +147,6 @@ def test_components_that_lead_nowhere_are_reported(tmp_path: Path, change: Any, 
     assert (own, number, is_furniture) == (kind, 1, True)
     assert why.startswith(reason)
     assert len(found.items) == 1
-
-
-def test_names_are_compared_without_letter_case(tmp_path: Path) -> None:
-    found = _read(tmp_path, components=({**COMPONENTS[0], "TypeName": "BOOKCASE  a", "Space": "g01"},))
-    assert [(one["type"], one["room"]) for one in found.items] == [("Bookcase A", "G01")]
 
 
 def test_of_several_spaces_the_first_known_is_taken_and_said(tmp_path: Path) -> None:
@@ -216,11 +188,14 @@ def test_thin_pieces_are_named_as_what_may_hang_on_a_wall(tmp_path: Path) -> Non
     assert any("Thinner than 10 cm" in text and "Bookcase A" in text for text in found.remarks)
 
 
-def test_components_of_one_name_are_told_apart(tmp_path: Path) -> None:
+def test_components_of_one_name_are_told_apart_and_names_compared_without_letter_case(tmp_path: Path) -> None:
     components = tuple({**COMPONENTS[0], "ExtIdentifier": f"id{at}"} for at in range(3))
-    found = _read(tmp_path, components=components)
-    assert [one["item"] for one in found.items] == ["Bookcase A:1", "Bookcase A:1 (2)", "Bookcase A:1 (3)"]
-    assert [one["source_id"] for one in found.items] == ["id0", "id1", "id2"]
+    other = {**COMPONENTS[1], "TypeName": "BOOKCASE  a", "Space": "g01"}
+    found = _read(tmp_path, components=(*components, other))
+    names = ["Bookcase A:1", "Bookcase A:1 (2)", "Bookcase A:1 (3)", "Bookcase A:2"]
+    assert [one["item"] for one in found.items] == names
+    assert [one["source_id"] for one in found.items[:3]] == ["id0", "id1", "id2"]
+    assert {(one["type"], one["room"]) for one in found.items} == {("Bookcase A", "G01")}
 
 
 def test_a_type_named_as_one_of_the_catalogue_takes_its_place(tmp_path: Path) -> None:
@@ -232,16 +207,10 @@ def test_a_type_named_as_one_of_the_catalogue_takes_its_place(tmp_path: Path) ->
     assert kind.source == "COBie file COBie.xlsx, sheet Type: nominal sizes"
 
 
-def test_a_file_without_furniture_gives_its_floors(tmp_path: Path) -> None:
-    found = _read(tmp_path, types=(), components=())
-    assert (len(found.floors), found.items, found.is_complete) == (2, [], False)
-
-
-def test_several_facilities_are_remarked(tmp_path: Path) -> None:
-    from tests.bim.cobie_files import make_sheets
-    from tests.workbook.books import write_book
-
-    sheets = make_sheets()
+def test_a_file_without_furniture_and_with_several_facilities_gives_its_floors(tmp_path: Path) -> None:
+    sheets = make_sheets(types=(), components=())
     sheets["Facility"].append(sheets["Facility"][1])
     path = write_book(tmp_path / "c.xlsx", sheets)
-    assert read_cobie(path, path.name).remarks[0] == "The sheet Facility has 2 rows; the first was taken."
+    found = read_cobie(path, path.name)
+    assert (len(found.floors), found.items, found.is_complete) == (2, [], False)
+    assert found.remarks[0] == "The sheet Facility has 2 rows; the first was taken."

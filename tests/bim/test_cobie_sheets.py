@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from openpyxl import load_workbook
 
 from assess.bim import cobie_sheets
 from assess.bim.cobie import convert, is_cobie, read_cobie
@@ -84,55 +85,56 @@ def test_an_inventory_workbook_is_named_as_one(tmp_path: Path) -> None:
     assert _error(path) == "w.xlsx is an inventory workbook already, not a COBie file. Check it with `assess check`."
 
 
-def test_missing_sheets_are_named(tmp_path: Path) -> None:
-    sheets = make_sheets()
+def _drop_sheets(sheets: Sheets) -> None:
     del sheets["Type"], sheets["Space"]
-    path = write_book(tmp_path / "c.xlsx", sheets)
-    assert _error(path).startswith("c.xlsx is no COBie file: it has no sheet named Space, Type. Export it")
 
 
-def test_a_missing_column_is_named(tmp_path: Path) -> None:
-    sheets = make_sheets()
+def _rename_column(sheets: Sheets) -> None:
     sheets["Type"][0] = [one if one != "NominalHeight" else "Size" for one in sheets["Type"][0]]
-    path = write_book(tmp_path / "c.xlsx", sheets)
-    assert _error(path).startswith("Type: the header row lacks NominalHeight. Name the columns as COBie 2.4 does")
 
 
-def test_a_sheet_without_a_header_row(tmp_path: Path) -> None:
-    path = write_book(tmp_path / "c.xlsx", {**make_sheets(), "Space": [["a"], ["b"]]})
-    assert _error(path).startswith("Space: the sheet has no header row with Name, FloorName.")
+def _drop_header(sheets: Sheets) -> None:
+    sheets["Space"] = [["a"], ["b"]]
+
+
+def _drop_facility(sheets: Sheets) -> None:
+    del sheets["Facility"][1:]
 
 
 @pytest.mark.parametrize(
-    ("unit", "fault"),
+    ("change", "message"),
     [
-        (None, "Facility!G2: LinearUnits is blank, so that no size can be read."),
-        ("n/a", "Facility!G2: LinearUnits is blank, so that no size can be read."),
-        ("cubits", "Facility!G2: LinearUnits is 'cubits', which is not read."),
-        ("miles", "Facility!G2: LinearUnits is 'miles', which is not read."),
+        (_drop_sheets, "c.xlsx is no COBie file: it has no sheet named Space, Type. Export it"),
+        (_rename_column, "Type: the header row lacks NominalHeight. Name the columns as COBie 2.4 does"),
+        (_drop_header, "Space: the sheet has no header row with Name, FloorName."),
+        (_drop_facility, "Facility!G2: LinearUnits is blank"),
     ],
 )
-def test_a_unit_that_is_not_known_is_an_error(tmp_path: Path, unit: str | None, fault: str) -> None:
-    path = write_cobie(tmp_path / "c.xlsx", facility={"LinearUnits": unit})
-    expected = f"{fault} Write the unit of NominalHeight: millimeters, centimeters, meters, inches or feet."
-    assert _error(path) == expected
-
-
-def test_without_a_row_of_the_facility_the_unit_is_missing(tmp_path: Path) -> None:
+def test_what_a_file_lacks_is_named(tmp_path: Path, change: Callable[[Sheets], None], message: str) -> None:
     sheets = make_sheets()
-    del sheets["Facility"][1:]
-    assert _error(write_book(tmp_path / "c.xlsx", sheets)).startswith("Facility!G2: LinearUnits is blank")
+    change(sheets)
+    assert _error(write_book(tmp_path / "c.xlsx", sheets)).startswith(message)
+
+
+def test_a_unit_that_is_not_known_is_an_error(tmp_path: Path) -> None:
+    blank = "Facility!G2: LinearUnits is blank, so that no size can be read."
+    for unit, fault in (
+        (None, blank), ("n/a", blank), ("cubits", "Facility!G2: LinearUnits is 'cubits', which is not read."),
+    ):  # fmt: skip
+        path = write_cobie(tmp_path / "c.xlsx", facility={"LinearUnits": unit})
+        expected = f"{fault} Write the unit of NominalHeight: millimeters, centimeters, meters, inches or feet."
+        assert _error(path) == expected
 
 
 # ---------------------------------------------------------------- damaged, large, hostile
 
 
-@pytest.mark.parametrize("share", [0.0, 0.3, 0.9, 0.99])
-def test_a_file_cut_off(tmp_path: Path, share: float) -> None:
+def test_a_file_cut_off(tmp_path: Path) -> None:
     path = write_cobie(tmp_path / "c.xlsx")
     data = path.read_bytes()
-    path.write_bytes(data[: int(share * len(data))])
-    assert "c.xlsx is" in _error(path)
+    for share in (0.0, 0.3, 0.9, 0.99):
+        path.write_bytes(data[: int(share * len(data))])
+        assert "c.xlsx is" in _error(path)
 
 
 def test_rows_without_end_are_an_error_before_they_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -189,17 +191,16 @@ HOSTILE = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("name", HOSTILE)
-def test_names_stay_text(tmp_path: Path, name: str) -> None:
-    from openpyxl import load_workbook
-
-    rows: dict[str, Any] = one_type(Name=name)
-    rows["components"] = ({**COMPONENTS[0], "Name": name, "TypeName": name, "Space": name},)
-    rows["spaces"] = ({"Name": name, "FloorName": "Ground"},)
-    path = write_shared(tmp_path / "c.xlsx", make_sheets(**rows), strings_to_formulas=False, strings_to_urls=False)
+def test_names_stay_text(tmp_path: Path) -> None:
+    """One building in which each space, type and component has such a name."""
+    types = [one_type(Name=name)["types"][0] for name in HOSTILE]
+    components = [{**COMPONENTS[0], "Name": name, "TypeName": name, "Space": name} for name in HOSTILE]
+    spaces = [{"Name": name, "FloorName": "Ground"} for name in HOSTILE]
+    sheets = make_sheets(types=types, components=components, spaces=spaces)
+    path = write_shared(tmp_path / "c.xlsx", sheets, strings_to_formulas=False, strings_to_urls=False)
     (tmp_path / "w.xlsx").write_bytes(convert(path.read_bytes(), "c.xlsx"))
-    (item,) = read_inventory(tmp_path / "w.xlsx", building={"ground_pga": 0.3}).items
-    clean = name.replace("\u202e", "").replace("\u0007", "\ufffd")
-    assert item.item == item.room == item.type == clean[:120]
-    cells = [cell for row in load_workbook(tmp_path / "w.xlsx")["Items"].iter_rows(max_row=2) for cell in row]
+    items = read_inventory(tmp_path / "w.xlsx", building={"ground_pga": 0.3}).items
+    clean = [name.replace("\u202e", "").replace("\u0007", "\ufffd")[:120] for name in HOSTILE]
+    assert [(one.item, one.room, one.type) for one in items] == [(name, name, name) for name in clean]
+    cells = [cell for row in load_workbook(tmp_path / "w.xlsx")["Items"].iter_rows() for cell in row]
     assert not [cell.value for cell in cells if cell.data_type == "f" and "HYPERLINK" in str(cell.value)]

@@ -2,16 +2,12 @@
 
 from collections import Counter
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
 from assess.bim.building_model import BuildingModel, Space, Storey
 from assess.bim.door_sides import find_ground, find_kinds, find_sides
-from assess.bim.ifc_model import read_model
 from tests.bim.office_models import door, rectangle
-
-MODELS = Path(__file__).parents[2] / "samples" / "models"
 
 
 def room(key: str, *corners: float, storey: str = "0") -> Space:
@@ -34,18 +30,10 @@ def count(found: BuildingModel) -> dict[str, Counter[str]]:
     return counts
 
 
-# ---------------------------------------------------------------- published models
-
-
-def test_large_building_10_of_18_doors_lead_out():
-    found = read_model(MODELS / "LargeBuilding.ifc", "LargeBuilding.ifc")
-    assert count(found) == {"Level 1": {"exit": 10, "inside": 8}}
-
-
-def test_duplex_4_of_6_doors_of_its_ground_storey_lead_out():
-    found = read_model(MODELS / "duplex.ifc", "duplex.ifc")
-    assert count(found) == {"Level 1": {"exit": 4, "inside": 2}, "Level 2": {"inside": 8}}
-    assert find_ground(found).name == "Level 1"
+def test_doors_of_published_models(large, duplex):
+    assert count(large) == {"Level 1": {"exit": 10, "inside": 8}}
+    assert count(duplex) == {"Level 1": {"exit": 4, "inside": 2}, "Level 2": {"inside": 8}}
+    assert find_ground(duplex).name == "Level 1"
 
 
 # ---------------------------------------------------------------- sides

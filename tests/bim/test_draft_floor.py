@@ -1,16 +1,12 @@
 """The plan of a storey: where rooms are entered in it."""
 
-from pathlib import Path
-
 import pytest
 from shapely import MultiPoint, Point
 
 from assess.bim.building_model import BuildingModel, Space, Storey
 from assess.bim.draft_floor import APART, build_plan, build_rooms, find_room_points
-from assess.bim.ifc_model import read_model
 from tests.bim.office_models import door, piece, rectangle
 
-MODELS = Path(__file__).parents[2] / "samples" / "models"
 STOREY = Storey("0", "Level 0", 0.0, 0.0)
 
 
@@ -18,16 +14,14 @@ def model(*spaces: Space, **more: object) -> BuildingModel:
     return BuildingModel(source="a.ifc", schema="IFC4", storeys=(STOREY,), spaces=spaces, **more)
 
 
-@pytest.mark.parametrize("name", ["duplex.ifc", "LargeBuilding.ifc"])
-def test_each_room_is_entered_in_its_free_floor(name):
-    found = read_model(MODELS / name, name)
-    points = find_room_points(found)
-    assert points.keys() == {space.key for space in found.spaces}
-    for storey in found.storeys:
-        points_of = [(one.x, one.y) for one in found.doors if one.storey == storey.key]
-        points_of += [(one.x, one.y) for one in found.stairs if one.storey == storey.key]
+def test_each_room_is_entered_in_its_free_floor(published):
+    points = find_room_points(published)
+    assert points.keys() == {space.key for space in published.spaces}
+    for storey in published.storeys:
+        points_of = [(one.x, one.y) for one in published.doors if one.storey == storey.key]
+        points_of += [(one.x, one.y) for one in published.stairs if one.storey == storey.key]
         taken = MultiPoint(points_of)
-        for key, room in build_rooms(build_plan(found, storey), ()).items():
+        for key, room in build_rooms(build_plan(published, storey), ()).items():
             at = Point(points[key])
             assert room.free.buffer(0.01).covers(at), room.space.name
             assert taken.is_empty or at.distance(taken) > APART - 0.02, room.space.name

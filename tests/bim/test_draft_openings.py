@@ -57,41 +57,22 @@ def test_rooms_that_touch_or_overlap_are_open_to_each_other():
     assert [one[0] for one in find(model(spaces=overlapping))] == [{"a", "b"}]
 
 
-def test_rooms_drawn_to_the_middle_of_a_wall_are_not():
-    spaces = room("a", 0, 0, 4.1, 4), room("b", 4.1, 0, 8, 4)
-    assert find(model(rectangle(4.0, -0.1, 4.2, 4.1), spaces=spaces)) == []
-
-
-def test_a_thin_wall_inside_the_gap_shuts_it():
-    assert find(model(rectangle(4.08, -0.1, 4.12, 4.1))) == []
-
-
-def test_a_window_shuts_a_gap():
-    shut = model(*walls_but(1.0, 2.0), windows={"0": (rectangle(4.05, 1.0, 4.15, 2.0),)})
-    assert find(shut) == []
-
-
-def test_a_door_is_no_opening_besides():
-    assert find(model(*walls_but(1.05, 1.95), doors=(door("d", 4.1, 1.5, 0.0),))) == []
-
-
-def test_rooms_far_apart_are_not_joined():
+def test_what_is_shut_or_far_apart_or_a_door_is_no_opening():
+    to_the_middle = room("a", 0, 0, 4.1, 4), room("b", 4.1, 0, 8, 4)
+    thin_wall, gap = rectangle(4.08, -0.1, 4.12, 4.1), walls_but(1.05, 1.95)
+    assert find(model(rectangle(4.0, -0.1, 4.2, 4.1), spaces=to_the_middle)) == []
+    assert find(model(thin_wall)) == []
+    assert find(model(*walls_but(1.0, 2.0), windows={"0": (rectangle(4.05, 1.0, 4.15, 2.0),)})) == []
+    assert find(model(*gap, doors=(door("d", 4.1, 1.5, 0.0),))) == []
     assert find(model(spaces=(room("a", 0, 0, 4, 4), room("b", 4.8, 0, 8, 4)))) == []
+    assert find(replace(model(), walls={})) == [], "without walls nothing is known"
 
 
-def test_without_walls_nothing_is_known():
-    assert find(replace(model(), walls={})) == []
-
-
-def test_the_part_without_furniture_is_passed():
-    counter = piece("counter", 4.1, 1.2, breadth=0.6, width=2.4, height=0.9, angle_deg=0.0)
-    assert find(model(pieces=(counter,))) == [({"a", "b"}, 4.1, 3.2, 1.6)]
-
-
-def test_an_opening_full_of_furniture_is_one_still():
+def test_the_part_without_furniture_is_passed_and_an_opening_full_of_it_is_one_still():
     """Whether it can be passed is for the person who walks the draft to say."""
-    counter = piece("counter", 4.1, 2.0, breadth=0.6, width=4.2, height=0.9, angle_deg=0.0)
-    assert find(model(pieces=(counter,))) == [({"a", "b"}, 4.1, 2.0, 4.0)]
+    for y, width, found in ((1.2, 2.4, (3.2, 1.6)), (2.0, 4.2, (2.0, 4.0))):
+        counter = piece("counter", 4.1, y, breadth=0.6, width=width, height=0.9, angle_deg=0.0)
+        assert find(model(pieces=(counter,))) == [({"a", "b"}, 4.1, *found)]
 
 
 def test_a_room_in_a_corner_is_entered_from_both_sides():

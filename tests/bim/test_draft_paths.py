@@ -44,19 +44,17 @@ def test_a_way_goes_round_furniture_so_that_a_standing_piece_does_not_narrow_it(
     assert 5.1 < way.length < 8
 
 
-def test_a_way_goes_closer_to_furniture_where_it_must():
-    tables = box(0, 2, 2.6, 3), box(3.4, 2, 6, 3)  # 0.8 m between them
-    room = build(box(0, 0, 6, 5), link("one", 3.0, -0.05), link("two", 3.0, 5.05), pieces=tables)
+@pytest.mark.parametrize(
+    ("pieces", "least", "most"),
+    [
+        ((box(0, 2, 2.6, 3), box(3.4, 2, 6, 3)), 0.35, 0.45),  # 0.8 m between them
+        ((box(0, 2, 6, 3),), 0.0, 0.01),  # no other way: what stands in it is for the assessment to find
+    ],
+)
+def test_a_way_goes_closer_to_furniture_or_through_it_where_it_must(pieces, least, most):
+    room = build(box(0, 0, 6, 5), link("one", 3.0, -0.05), link("two", 3.0, 5.05), pieces=pieces)
     way = follow(find_ways(room, "room a", (1.0, 1.0)), "one", "two")
-    assert 0.35 <= way.distance(MultiPolygon(tables)) < 0.45
-
-
-def test_a_way_goes_through_furniture_where_there_is_no_other():
-    """What stands in the way is for the assessment to find."""
-    barrier = box(0, 2, 6, 3)
-    room = build(box(0, 0, 6, 5), link("one", 3.0, -0.05), link("two", 3.0, 5.05), pieces=(barrier,))
-    way = follow(find_ways(room, "room a", (1.0, 1.0)), "one", "two")
-    assert way.intersects(barrier)
+    assert least <= way.distance(MultiPolygon(pieces)) < most
 
 
 def test_a_way_goes_round_walls_inside_a_room():
@@ -82,9 +80,8 @@ def test_a_way_through_a_door_does_not_cut_the_wall():
     assert MultiPolygon([box(0, 0, 8, 5), *openings]).buffer(0.01).covers(way)
 
 
-@pytest.mark.parametrize("count", [40, 400])
-def test_a_large_room_full_of_desks_is_crossed_between_them(count):
-    desks = tuple(box(x, y, x + 1.6, y + 0.8) for x in range(2, 40, 3) for y in range(2, 40, 2))[:count]
+def test_a_large_room_full_of_desks_is_crossed_between_them():
+    desks = tuple(box(x, y, x + 1.6, y + 0.8) for x in range(2, 40, 3) for y in range(2, 40, 2))
     room = build(box(0, 0, 42, 42), link("one", 1.0, -0.05), link("two", 41.0, 42.05), pieces=desks)
     way = follow(find_ways(room, "room a", (1.0, 41.0)), "one", "two")
     assert way.distance(MultiPolygon(desks)) >= 0.35

@@ -7,7 +7,6 @@ import pytest
 
 import assess
 from assess.bim.building_model import BuildingModel
-from assess.bim.ifc_model import read_model
 from assess.bim.import_workbook import build_workbook
 from assess.bim.model_rows import list_building
 from assess.model import Inventory
@@ -17,7 +16,6 @@ from assess.workbook.read import read_inventory
 from tests.bim.office_models import build_office
 from tests.workbooks import UNVERIFIED
 
-MODELS = Path(__file__).parents[2] / "samples" / "models"
 SHAKEN = {"shaking": "MMI VIII, severe"}
 
 
@@ -32,22 +30,20 @@ def build(model: BuildingModel, folder: Path) -> Inventory:
 
 
 @pytest.fixture(scope="module")
-def duplex(tmp_path_factory) -> Results:
-    model = read_model(MODELS / "duplex.ifc", "duplex.ifc")
-    return assess.run(build(model, tmp_path_factory.mktemp("duplex")), UNVERIFIED)
+def results(duplex, tmp_path_factory) -> Results:
+    return assess.run(build(duplex, tmp_path_factory.mktemp("duplex")), UNVERIFIED)
 
 
-@pytest.mark.parametrize("name", ["duplex.ifc", "LargeBuilding.ifc"])
-def test_a_draft_is_a_workbook_without_errors(name, tmp_path):
-    inventory = build(read_model(MODELS / name, name), tmp_path)
+def test_a_draft_is_a_workbook_without_errors(published, tmp_path):
+    inventory = build(published, tmp_path)
     assert inventory.errors == ()
     assert len(inventory.routes) > 0
     drafted = [one for one in inventory.problems if "drafted from a building model" in one.message]
     assert [one.severity for one in drafted] == ["warning"]
 
 
-def test_every_segment_on_a_storey_is_on_the_plan(duplex):
-    segments = duplex.route_tables.segments
+def test_every_segment_on_a_storey_is_on_the_plan(results):
+    segments = results.route_tables.segments
     flights = [one for one in segments if one.floor is None]
     assert len(flights) == 2
     for one in segments:
@@ -55,27 +51,27 @@ def test_every_segment_on_a_storey_is_on_the_plan(duplex):
         assert one in flights or 0 < one.length_m < 12
 
 
-def test_no_piece_stands_in_the_draft_of_the_duplex(duplex):
+def test_no_piece_stands_in_the_draft_of_the_duplex(results):
     """Ways go round furniture: what blocks them has to fall."""
-    assert not any(one.is_blocked_standing for one in duplex.route_tables.segments)
-    assert not any("with nothing fallen" in one for one in duplex.problems["message"])
-    assert any(one.pieces for one in duplex.route_tables.segments)
+    assert not any(one.is_blocked_standing for one in results.route_tables.segments)
+    assert not any("with nothing fallen" in one for one in results.problems["message"])
+    assert any(one.pieces for one in results.route_tables.segments)
 
 
-def test_rooms_of_both_storeys_have_a_way_to_an_exit(duplex):
-    rooms = {one.room: one for one in duplex.route_tables.rooms}
+def test_rooms_of_both_storeys_have_a_way_to_an_exit(results):
+    rooms = {one.room: one for one in results.route_tables.rooms}
     assert not any(one.by_stairs for one in rooms.values())
     assert all(one.exits for one in rooms.values())
     upstairs = next(one for name, one in rooms.items() if "A203" in name)
     assert upstairs.exits == ("Exit A101",)
-    assert duplex.route_tables.unjoined_rooms == ("R301 Roof",)
+    assert results.route_tables.unjoined_rooms == ("R301 Roof",)
 
 
-def test_states_and_the_mark_in_the_results(duplex):
-    assert len(duplex.route_tables.routes) == 6
-    assert all(one.route.endswith(" (draft)") for one in duplex.route_tables.routes)
-    assert {one.state for one in duplex.route_tables.routes} <= set(RouteState)
-    assert any("drafted from a building model" in one for one in duplex.problems["message"])
+def test_states_and_the_mark_in_the_results(results):
+    assert len(results.route_tables.routes) == 6
+    assert all(one.route.endswith(" (draft)") for one in results.route_tables.routes)
+    assert {one.state for one in results.route_tables.routes} <= set(RouteState)
+    assert any("drafted from a building model" in one for one in results.problems["message"])
 
 
 def test_rooms_upstairs_are_not_known_until_the_width_of_the_stair_is_filled_in(tmp_path):

@@ -2,6 +2,7 @@
 
 import math
 import shutil
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +13,10 @@ from ifcopenshell.util.element import get_psets
 
 from assess.bim.export_model import PROPERTY_SET
 from assess.errors import InputError, ModelError
+from assess.i18n import load_catalogue, speaking
 from tests.bim.export_runs import (
-    BUILDING,
     CUPBOARD_1,
+    CUPBOARD_2,
     CUPBOARDS,
     DESKS,
     DOOR_B202,
@@ -30,6 +32,7 @@ from tests.bim.export_runs import (
     piece,
     read_rows,
     write_adopted,
+    write_flat,
     write_results,
 )
 from tests.bim.ifc_files import ModelWriter
@@ -49,6 +52,19 @@ def exported(simulated, tmp_path_factory):
     return out
 
 
+@pytest.fixture(scope="module")
+def flat(tmp_path_factory):
+    """Return a small model with the same pieces."""
+    return write_flat(tmp_path_factory.mktemp("flat") / "flat.ifc")
+
+
+def read_exported(results: Path, model: Path) -> dict[str, dict[str, Any]]:
+    """Return the property sets that an export writes, and leave the model beside the results as out.ifc."""
+    out = results.with_name("out.ifc")
+    out.write_bytes(export(results, model, with_topics=False).model)
+    return read_sets(out)
+
+
 def read_sets(path: Path, name: str = PROPERTY_SET) -> dict[str, dict[str, Any]]:
     """Return the property sets of a name by the GlobalIds of the elements that have one."""
     model = ifcopenshell.open(str(path))
@@ -56,8 +72,9 @@ def read_sets(path: Path, name: str = PROPERTY_SET) -> dict[str, dict[str, Any]]
     return {key: own[name] for key, own in sets.items() if name in own}
 
 
+@cache
 def complain(path: Path) -> list[str]:
-    """Return what ifcopenshell's validation finds wrong with a model."""
+    """Return what ifcopenshell's validation finds wrong with a model, which stays as it is."""
     logger = ifcopenshell.validate.json_logger()
     ifcopenshell.validate.validate(str(path), logger)
     return sorted(str(one["message"]) for one in logger.statements)
@@ -106,39 +123,40 @@ def test_the_upper_class_stands_there_where_it_differs(simulated, exported):
     assert differs < len(sets)
 
 
-def test_a_class_by_which_programs_filter_tells_what_it_could_be(simulated, tmp_path):
+def test_a_class_by_which_programs_filter_tells_what_it_could_be(simulated, flat, tmp_path):
     """Twenty draws leave the class of one of the two open; as which one is chance, the file is edited."""
     results = write_adopted(simulated, tmp_path, {"class": "low", "class_upper": "medium", "probability": 0.0})
-    out = tmp_path / "out.ifc"
-    out.write_bytes(export(results, DUPLEX, with_topics=False).model)
-    sets = read_sets(out)
+    sets = read_exported(results, flat)
     assert (sets[CUPBOARD_1]["RiskClass"], sets[CUPBOARD_1]["ClassUpper"]) == ("low, could be medium", "medium")
     assert sets[HELD]["RiskClass"] == "depends on its anchor (free-standing: low, could be medium)"
     assert sets[SOFA]["RiskClass"] == "unconfirmed (low), could be medium"
 
 
-def test_an_unconfirmed_class_of_the_formula_is_called_so(simulated, tmp_path):
-    """Where motions may be too weak the formula's class stands; no motion here is, so that the file is edited."""
-    results = write_adopted(simulated, tmp_path, {"method": "fema_p58"})
-    out = tmp_path / "out.ifc"
-    out.write_bytes(export(results, DUPLEX, with_topics=False).model)
-    assert read_sets(out)[SOFA]["RiskClass"] == "unconfirmed (formula: high)"
+def test_classes_of_the_formula_are_called_so(simulated, flat, tmp_path):
+    """Where motions may be too weak, or a piece was left out of the simulation; here none is: files are edited."""
+    sets = read_exported(write_adopted(simulated, tmp_path, {"method": "fema_p58"}), flat)
+    assert sets[SOFA]["RiskClass"] == "unconfirmed (formula: high)"
+    sets = read_exported(write_adopted(simulated, tmp_path, {"basis": "formula"}), flat)
+    assert sets[CUPBOARD_1]["RiskClass"] == "very high by formula only"
 
 
-def test_an_assumed_shaking_is_called_assumed(tmp_path):
+def test_by_formula_alone_there_is_no_interval_and_an_assumed_shaking_is_called_assumed(flat, tmp_path):
     floors = [{"floor": "1", "elevation": 0.0}, {"floor": "2", "elevation": 3.1}]
     results = write_results(tmp_path, CUPBOARDS, floors, building={"shaking": "MMI VIII, severe", "height": 6.2})
-    out = tmp_path / "out.ifc"
-    out.write_bytes(export(results, DUPLEX, with_topics=False).model)
-    assert read_sets(out)[CUPBOARD_1]["Scenario"] == "MMI VIII, severe (assumed)"
+    found = read_exported(results, flat)[CUPBOARD_1]
+    assert found["Scenario"] == "MMI VIII, severe (assumed)"
+    assert (found["Basis"], "by formula" in found["RiskClass"]) == ("formula", False)
+    assert {"ProbabilityLow", "ProbabilityHigh"}.isdisjoint(found)
 
 
-def test_texts_come_back_with_their_accents(exported):
+def test_texts_come_back_with_their_accents_and_in_the_language_in_use(simulated, exported, flat):
     found = read_sets(exported)[CUPBOARD_1]
     assert found["Item"] == "Armadio è 1"
     assert found["Description"] == "Armadio d'angolo \\ 2 m"
     assert found["Scenario"].startswith("Forte – 475 anni 🏢")
     assert found["Report"].startswith("Palazzo Duè, building.xlsx, revision B, 2026-05-04, results.json SHA-256 ")
+    with speaking(load_catalogue("it")):
+        assert read_exported(simulated, flat)[CUPBOARD_1]["RiskClass"] == "molto alto"
 
 
 def test_a_piece_of_the_schedule_has_what_an_engineer_needs(exported):
@@ -151,6 +169,7 @@ def test_a_piece_of_the_schedule_has_what_an_engineer_needs(exported):
     assert "FixOrder" not in sets[HELD]
 
 
+@pytest.mark.slow
 def test_the_model_has_no_fault_that_it_did_not_have(exported):
     assert complain(exported) == complain(DUPLEX)
     model = ifcopenshell.open(str(exported))
@@ -168,14 +187,13 @@ def test_the_same_export_gives_the_same_bytes(simulated, exported):
     assert export(simulated, DUPLEX, with_topics=False).model == exported.read_bytes()
 
 
+@pytest.mark.slow
 def test_a_model_in_millimetres_with_windows_line_ends(tmp_path):
     items = [piece(name, "1", key, x, y) for name, (key, x, y) in DESKS.items()]
-    results = write_results(tmp_path, items, FLOORS[:1])
-    out = tmp_path / "office.ifc"
-    out.write_bytes(export(results, OFFICE, with_topics=False).model)
-    sets = read_sets(out)
+    sets = read_exported(write_results(tmp_path, items, FLOORS[:1]), OFFICE)
     assert {key: one["Item"] for key, one in sets.items()} == {key: name for name, (key, _x, _y) in DESKS.items()}
     assert {one["Breadth_cm"] for one in sets.values()} == {54.5}
+    out = tmp_path / "out.ifc"
     added = out.read_bytes()[OFFICE.read_bytes().rindex(b"ENDSEC;") :]
     assert added.count(b"\n") == added.count(b"\r\n")
     assert complain(out) == complain(OFFICE)
@@ -190,42 +208,12 @@ def test_an_ifc4_model_with_and_without_owner_histories(tmp_path, has_owner):
         desk.OwnerHistory = None
     model = writer.write(tmp_path / "model.ifc")
     results = write_results(tmp_path, [piece("Desk", "1", desk.GlobalId, 2, 3)], FLOORS[:1])
+    assert read_exported(results, model)[desk.GlobalId]["Item"] == "Desk"
     out = tmp_path / "out.ifc"
-    out.write_bytes(export(results, model, with_topics=False).model)
-    assert read_sets(out)[desk.GlobalId]["Item"] == "Desk"
     written = ifcopenshell.open(str(out))
     (found,) = written.by_type("IfcPropertySet")
     assert (found.OwnerHistory is not None) == has_owner
     assert complain(out) == complain(model)
-
-
-def test_by_formula_alone_there_is_no_interval(tmp_path):
-    out = tmp_path / "out.ifc"
-    results = write_results(tmp_path)
-    out.write_bytes(export(results, DUPLEX, with_topics=False).model)
-    found = read_sets(out)[CUPBOARD_1]
-    assert (found["Basis"], found["RiskClass"]) == ("formula", "very high")
-    assert {"ProbabilityLow", "ProbabilityHigh"}.isdisjoint(found)
-
-
-def test_where_others_were_simulated_a_class_by_formula_says_so(tmp_path):
-    """As the simulation leaves no piece out here, the file is edited."""
-    results = write_results(tmp_path, settings=SIMULATED)
-    text = results.read_text(encoding="utf-8")
-    results.write_text(text.replace('"basis": "simulated"', '"basis": "formula"', 1), encoding="utf-8")
-    out = tmp_path / "out.ifc"
-    out.write_bytes(export(results, DUPLEX, with_topics=False).model)
-    assert read_sets(out)[CUPBOARD_1]["RiskClass"] == "very high by formula only"
-
-
-def test_the_texts_are_in_the_language_in_use(tmp_path):
-    from assess.i18n import load_catalogue, speaking
-
-    results = write_results(tmp_path)
-    out = tmp_path / "out.ifc"
-    with speaking(load_catalogue("it")):
-        out.write_bytes(export(results, DUPLEX, with_topics=False).model)
-    assert read_sets(out)[CUPBOARD_1]["RiskClass"] == "molto alto"
 
 
 # ---------------------------------------------------------------- what cannot be written
@@ -277,51 +265,34 @@ def test_nothing_is_written_on_what_is_no_furniture(tmp_path):
     assert found.topics.unplaced > 0, "entries of such pieces"
 
 
-def test_a_workbook_of_walls_alone_is_refused(tmp_path):
-    results = write_results(tmp_path, [piece("Wall", "1", NO_PIECES["IfcWall"], 1, 1)])
-    message = r"is that of furniture in duplex.ifc: 2O2Fr\$t4X7Zf8NOew3FKau is an IfcWall. Fill in Source ID in Items"
-    with pytest.raises(ModelError, match=message):
-        export(results, DUPLEX)
-
-
-@pytest.mark.parametrize(
-    "name", ["IfcBuildingElementProxy", "IfcElementAssembly", "IfcTransportElement", "IfcFlowTerminal", "IfcTank"]
-)
-def test_what_an_import_takes_by_name_may_be_a_piece(tmp_path, name):
+def test_what_an_import_takes_by_name_may_be_a_piece(tmp_path):
     writer = ModelWriter("IFC4")
-    one = writer.element(name, "Thing", (0, 0, 0, 0.6, 1.2, 2.0), within=writer.storey(), at=(2, 3, 0))
-    model = writer.write(tmp_path / "model.ifc")
-    found = export(write_results(tmp_path, [piece("Thing", "1", one.GlobalId, 2, 3)], FLOORS[:1]), model)
-    assert (found.written, found.is_complete) == (1, True)
+    storey, items = writer.storey(), []
+    for name in ("BuildingElementProxy", "ElementAssembly", "TransportElement", "FlowTerminal", "Tank"):
+        one = writer.element(f"Ifc{name}", name, (0, 0, 0, 0.6, 1.2, 2.0), within=storey, at=(2, 3, 0))
+        items.append(piece(name, "1", one.GlobalId, 2 + len(items), 3))
+    found = export(write_results(tmp_path, items, FLOORS[:1]), writer.write(tmp_path / "model.ifc"))
+    assert (found.written, found.is_complete) == (5, True)
 
 
-@pytest.mark.slow
-def test_of_two_pieces_with_one_source_id_the_worse_is_written(tmp_path):
-    """The first stands on the ground floor and is low, the second very high."""
+def test_of_pieces_with_one_source_id_the_worst_is_written(flat, tmp_path):
+    """The first stands on the ground floor and is low, the second very high; of another key there are three."""
     items = [
         piece("Low", "1", CUPBOARD_1, 2.91, -11.41, height=40.0),
         piece("Tall", "2", CUPBOARD_1, 2.91, -11.41),
-        CUPBOARDS[1],
-    ]
+        *(piece(f"C{at}", "2", CUPBOARD_2, 2.91 + at, -11.41, height=height)
+          for at, height in enumerate((60.0, 200.0, 90.0))),
+        CUPBOARDS[2],
+    ]  # fmt: skip
     results = write_results(tmp_path, items)
-    found = export(results, DUPLEX)
-    assert (found.written, found.is_complete, found.repeated) == (2, False, ("Low", "Tall"))
-    out = tmp_path / "out.ifc"
-    out.write_bytes(found.model)
-    sets = read_sets(out)
+    found = export(results, flat)
+    assert (found.written, found.is_complete, found.repeated) == (3, False, ("Low", "Tall", "C0", "C1", "C2"))
+    sets = read_exported(results, flat)
     assert (sets[CUPBOARD_1]["Item"], sets[CUPBOARD_1]["RiskClass"]) == ("Tall", "very high")
     assert sets[CUPBOARD_1]["Of"] == "2 pieces with this Source ID, the worse"
-    assert "Of" not in sets[CUPBOARDS[1]["source_id"]]
-    assert complain(out) == complain(DUPLEX)
-
-
-def test_of_three_pieces_it_is_the_worst(tmp_path):
-    items = [piece(f"C{at}", "2", CUPBOARD_1, 2.91 + at, -11.41, height=height)
-             for at, height in enumerate((60.0, 200.0, 90.0))]  # fmt: skip
-    out = tmp_path / "out.ifc"
-    out.write_bytes(export(write_results(tmp_path, items), DUPLEX).model)
-    found = read_sets(out)[CUPBOARD_1]
-    assert (found["Item"], found["Of"]) == ("C1", "3 pieces with this Source ID, the worst")
+    assert (sets[CUPBOARD_2]["Item"], sets[CUPBOARD_2]["Of"]) == ("C1", "3 pieces with this Source ID, the worst")
+    assert "Of" not in sets[HELD]
+    assert complain(tmp_path / "out.ifc") == complain(flat)
 
 
 def test_a_model_that_was_exported_before_is_refused(simulated, exported):
@@ -331,54 +302,41 @@ def test_a_model_that_was_exported_before_is_refused(simulated, exported):
     assert export(simulated, exported, with_properties=False).topics.count > 0
 
 
-@pytest.mark.slow
-def test_pieces_of_another_workbook_can_join_a_model(tmp_path):
+def test_pieces_of_another_workbook_can_join_a_model(flat, tmp_path):
     """Two workbooks of one building: the sets of the second join those of the first."""
-    first = export(write_results(tmp_path / "a", CUPBOARDS[:2]), DUPLEX, with_topics=False)
     joined = tmp_path / "joined.ifc"
-    joined.write_bytes(first.model)
+    joined.write_bytes(export(write_results(tmp_path / "a", CUPBOARDS[:2]), flat, with_topics=False).model)
     second = export(write_results(tmp_path / "b", CUPBOARDS[2:]), joined, with_topics=False)
     joined.write_bytes(second.model)
     assert len(read_sets(joined)) == 4
-    assert complain(joined) == complain(DUPLEX)
+    assert complain(joined) == complain(flat)
 
 
-def test_results_of_another_building_are_refused(tmp_path):
-    items = [piece(name, "1", key, x, y) for name, (key, x, y) in DESKS.items()]
-    results = write_results(tmp_path, items, FLOORS[:1])
-    with pytest.raises(
-        ModelError, match=r"None of the Source IDs in .*results.json is that of an element of duplex.ifc"
-    ):
-        export(results, DUPLEX)
+def test_results_that_are_not_of_this_model_are_refused(tmp_path):
+    desks = [piece(name, "1", key, x, y) for name, (key, x, y) in DESKS.items()]
+    for items, error, message in (
+        ([piece("Wall", "1", NO_PIECES["IfcWall"], 1, 1)], ModelError,
+         r"is that of furniture in duplex.ifc: 2O2Fr\$t4X7Zf8NOew3FKau is an IfcWall. Fill in Source ID in Items"),
+        (desks, ModelError, r"None of the Source IDs in .*results.json is that of an element of duplex.ifc"),
+        ([piece("A", "1", None, 1, 1)], InputError, r"results.json holds no Source ID"),
+    ):  # fmt: skip
+        with pytest.raises(error, match=message):
+            export(write_results(tmp_path, items, FLOORS[:1]), DUPLEX)
 
 
-def test_results_without_identifiers_are_refused(tmp_path):
-    results = write_results(tmp_path, [piece("A", "1", None, 1, 1)], FLOORS[:1], building=BUILDING)
-    with pytest.raises(InputError, match=r"results.json holds no Source ID"):
-        export(results, DUPLEX)
-
-
-@pytest.mark.parametrize(
-    ("data", "message"),
-    [
-        (b"", "model.ifc .*is empty"),
-        (b"hello", "does not begin as an IFC file"),
-        (DUPLEX.read_bytes()[:-1000], "END-ISO-10303-21;, is missing"),
-        (b"PK\x03\x04", "packed as a zip file"),
-    ],
-)
-def test_a_damaged_model_is_refused(tmp_path, simulated, data, message):
+def test_a_damaged_or_missing_model_is_refused(tmp_path, simulated):
     model = tmp_path / "model.ifc"
-    model.write_bytes(data)
-    with pytest.raises(ModelError, match=message):
-        export(simulated, model)
-
-
-def test_a_missing_model_is_refused(tmp_path, simulated):
+    for data, message in (
+        (b"", "model.ifc .*is empty"), (b"hello", "does not begin as an IFC file"),
+        (DUPLEX.read_bytes()[:-1000], "END-ISO-10303-21;, is missing"), (b"PK\x03\x04", "packed as a zip file"),
+    ):  # fmt: skip
+        model.write_bytes(data)
+        with pytest.raises(ModelError, match=message):
+            export(simulated, model)
     with pytest.raises(ModelError, match=r"gone.ifc cannot be read: No such file or directory"):
         export(simulated, tmp_path / "gone.ifc")
 
 
-def test_a_model_under_a_name_with_accents(tmp_path, simulated):
-    model = Path(shutil.copy(DUPLEX, tmp_path / "modèle è.ifc"))
+def test_a_model_under_a_name_with_accents(tmp_path, simulated, flat):
+    model = Path(shutil.copy(flat, tmp_path / "modèle è.ifc"))
     assert export(simulated, model, with_topics=False).written == 4

@@ -11,10 +11,11 @@ import ifcopenshell
 import pytest
 from lxml import etree
 
-from assess.bim import export_topics
-from assess.bim.export_topics import PRIORITIES, find_date
+from assess.bim import export_topics as topics_module
+from assess.bim.export_results import read_export
+from assess.bim.export_topics import Topics, find_date
+from assess.bim.export_words import MOST_KINDS, name_kinds
 from assess.i18n import load_catalogue, speaking
-from assess.risk import RiskClass
 from tests.bim.export_runs import (
     BUILDING,
     CUPBOARD_1,
@@ -32,6 +33,7 @@ from tests.bim.export_runs import (
     piece,
     read_rows,
     write_adopted,
+    write_flat,
     write_results,
 )
 
@@ -82,8 +84,30 @@ def results(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
+def flat(tmp_path_factory):
+    """Return a small model with the same pieces."""
+    return write_flat(tmp_path_factory.mktemp("flat") / "duplex.ifc")
+
+
+@pytest.fixture(scope="module")
+def pair(tmp_path_factory):
+    """Return results in which each cupboard blocks the way out, and both surely fall: only fixing both opens it."""
+    items = [CUPBOARDS[0] | {"description": "Armadio"}, CUPBOARDS[1] | {"description": "Libreria"}]
+    floors = [{"floor": "2", "elevation": 3.1, "pfa_x": 2.5, "pfa_y": 2.5, "pfv_x": 400.0, "pfv_y": 400.0}]
+    return write_results(tmp_path_factory.mktemp("pair"), items, floors, SIMULATED, places=PLACES, routes=ROUTES)
+
+
+def export_topics(results: Path, model: Path = DUPLEX) -> Topics:
+    return export(results, model, with_properties=False).topics
+
+
+def read_topics(results: Path, model: Path = DUPLEX) -> "Bcf":
+    return Bcf(export_topics(results, model).data)
+
+
+@pytest.fixture(scope="module")
 def made(results):
-    return export(results, DUPLEX, with_properties=False).topics
+    return export_topics(results)
 
 
 @pytest.fixture(scope="module")
@@ -95,15 +119,13 @@ def find(bcf: Bcf, key: str) -> Read:
     return next(one for one in bcf.topics if key in one.selected)
 
 
-@pytest.mark.parametrize(
-    ("end", "schema"), [("markup.bcf", "markup"), (".bcfv", "visinfo"), ("bcf.version", "version")]
-)
-def test_every_file_is_valid_by_its_schema(bcf, end, schema):
-    rules = etree.XMLSchema(etree.parse(str(SCHEMAS / f"{schema}.xsd")))
-    files = {name: data for name, data in bcf.files.items() if name.endswith(end)}
-    assert len(files) == (1 if schema == "version" else len(bcf.topics))
-    for data in files.values():
-        rules.assertValid(etree.fromstring(data))
+def test_every_file_is_valid_by_its_schema(bcf):
+    for end, schema in (("markup.bcf", "markup"), (".bcfv", "visinfo"), ("bcf.version", "version")):
+        rules = etree.XMLSchema(etree.parse(str(SCHEMAS / f"{schema}.xsd")))
+        files = {name: data for name, data in bcf.files.items() if name.endswith(end)}
+        assert len(files) == (1 if schema == "version" else len(bcf.topics))
+        for data in files.values():
+            rules.assertValid(etree.fromstring(data))
 
 
 def test_the_file_is_laid_out_as_the_documentation_asks(bcf):
@@ -169,29 +191,24 @@ def test_an_unconfirmed_piece_is_no_class_in_its_title(bcf):
     assert "block" not in topic.text("Title")
 
 
-def test_titles_and_labels_have_the_upper_class_as_well(results, tmp_path):
+def test_titles_and_labels_have_the_upper_class_as_well(results, flat, tmp_path):
     changed = write_adopted(results, tmp_path, {"class": "medium", "class_upper": "high", "probability": 0.2})
-    for topic in Bcf(export(changed, DUPLEX, with_properties=False).topics.data).topics:
+    for topic in read_topics(changed, flat).topics:
         assert {"medium", "high"} <= set(topic.labels)
         assert ", could be high: " in topic.text("Title")
         assert topic.text("Priority") == "Major"
 
 
-def test_a_topic_of_unlike_pieces_has_the_highest_class_of_any(tmp_path):
+def test_a_topic_of_unlike_pieces_has_the_highest_class_of_any(pair, flat, tmp_path):
     """One is high; the other medium, but could be very high."""
     classes = [
         {"class": "medium", "class_upper": "very high", "probability": 0.5},
         {"class": "high", "class_upper": "high", "probability": 0.5},
     ]
-    changed = write_adopted(write_pair(tmp_path), tmp_path, *classes)
-    (topic,) = Bcf(export(changed, DUPLEX, with_properties=False).topics.data).topics
+    (topic,) = read_topics(write_adopted(pair, tmp_path, *classes), flat).topics
     assert topic.labels[:4] == ["earthquake", "high", "very high", "2"]
     assert topic.text("Title").startswith("high, could be very high: ")
     assert topic.text("Priority") == "Critical"
-
-
-def test_priorities_follow_the_upper_class():
-    assert [PRIORITIES[risk] for risk in RiskClass] == ["Minor", "Normal", "Major", "Critical"]
 
 
 def test_the_camera_looks_down_at_the_piece_from_inside_its_room(bcf):
@@ -208,67 +225,55 @@ def test_the_camera_looks_down_at_the_piece_from_inside_its_room(bcf):
     assert 45 <= float(topic.view.findtext("PerspectiveCamera/FieldOfView")) <= 60
 
 
-def test_the_same_export_gives_the_same_bytes(results, made):
-    assert export(results, DUPLEX, with_properties=False).topics.data == made.data
-
-
-def test_a_later_run_of_the_same_pieces_has_the_same_topics(bcf, tmp_path):
+def test_a_later_run_of_the_same_pieces_has_the_same_topics(results, flat, tmp_path):
     """So that a program for BCF brings a topic up to date, and keeps what was answered to it."""
+    first, same = export_topics(results, flat).data, export_topics(results, flat).data
+    assert first == same
     later = write_results(tmp_path, settings=SIMULATED, places=PLACES, routes=ROUTES,
                           building=BUILDING | {"revision": "C"})  # fmt: skip
-    again = Bcf(export(later, DUPLEX, with_properties=False).topics.data)
-    assert {one.folder for one in again.topics} == {one.folder for one in bcf.topics}
+    again = read_topics(later, flat)
+    assert {one.folder for one in again.topics} == {one.folder for one in Bcf(first).topics}
     assert "revision C" in again.topics[0].text("Description")
 
 
-def test_topics_are_in_the_language_in_use(results):
+def test_topics_are_in_the_language_in_use(results, flat):
     with speaking(load_catalogue("it")):
-        found = Bcf(export(results, DUPLEX, with_properties=False).topics.data)
-    assert "molto alto" in find(found, CUPBOARD_1).labels
+        assert "molto alto" in find(read_topics(results, flat), CUPBOARD_1).labels
 
 
-def test_beyond_the_most_topics_the_entries_are_counted(results, monkeypatch):
-    monkeypatch.setattr(export_topics, "MOST", 1)
-    found = export(results, DUPLEX, with_properties=False).topics
+def test_entries_beyond_the_most_and_those_without_a_piece_in_the_model_are_counted(
+    results, flat, tmp_path, monkeypatch
+):
+    items = [CUPBOARDS[0], piece("Loose", "2", None, 3, -14, height=210.0)]
+    found = export_topics(write_results(tmp_path, items), flat)
+    assert (found.count, found.unplaced) == (1, 1)
+    monkeypatch.setattr(topics_module, "MOST", 1)
+    found = export_topics(results, flat)
     assert (found.count, found.beyond > 0) == (1, True)
     assert [one.index for one in Bcf(found.data).topics] == [1]
 
 
-def test_entries_without_a_piece_in_the_model_are_counted(tmp_path):
-    items = [CUPBOARDS[0], piece("Loose", "2", None, 3, -14, height=210.0)]
-    found = export(write_results(tmp_path, items), DUPLEX, with_properties=False).topics
-    assert (found.count, found.unplaced) == (1, 1)
-
-
-def test_of_an_entry_that_is_partly_in_the_model_the_rest_is_named(tmp_path):
+def test_of_an_entry_that_is_partly_in_the_model_the_rest_is_named(flat, tmp_path):
     items = [CUPBOARDS[0] | {"item": "C1"}, CUPBOARDS[0] | {"item": "C2", "source_id": None, "x": 3.71}]
-    (topic,) = Bcf(export(write_results(tmp_path, items), DUPLEX, with_properties=False).topics.data).topics
+    (topic,) = read_topics(write_results(tmp_path, items), flat).topics
     assert topic.selected == [CUPBOARD_1]
     assert "Not in this model: C2." in topic.text("Description")
     assert topic.text("Title").startswith("very high: C1 (")
 
 
-def test_pieces_with_one_source_id_have_topics_of_their_own(tmp_path):
+def test_pieces_with_one_source_id_have_topics_of_their_own(flat, tmp_path):
     """Cupboards of other sizes, in entries of their own, both on one element of the model."""
     items = [CUPBOARDS[0], CUPBOARDS[1] | {"source_id": CUPBOARD_1, "height": 240.0, "room": "B203"}]
-    found = Bcf(export(write_results(tmp_path, items), DUPLEX, with_properties=False).topics.data)
+    found = read_topics(write_results(tmp_path, items), flat)
     assert [one.selected for one in found.topics] == [[CUPBOARD_1]] * 2
     assert len({one.folder for one in found.topics}) == 2
     assert all(not one.text("Description").count("Not in this model") for one in found.topics)
 
 
-def write_pair(folder: Path) -> Path:
-    """Each cupboard blocks the way out by itself, and both surely fall: only fixing both opens it."""
-    items = [CUPBOARDS[0] | {"description": "Armadio"}, CUPBOARDS[1] | {"description": "Libreria"}]
-    floors = [{"floor": "2", "elevation": 3.1, "pfa_x": 2.5, "pfa_y": 2.5, "pfv_x": 400.0, "pfv_y": 400.0}]
-    return write_results(folder, items, floors, SIMULATED, places=PLACES, routes=ROUTES)
-
-
-def test_pieces_that_only_help_together_are_one_topic(tmp_path):
-    results = write_pair(tmp_path)
-    (entry,) = json.loads(results.read_text(encoding="utf-8"))["schedule"]["entries"]
+def test_pieces_that_only_help_together_are_one_topic(pair):
+    (entry,) = json.loads(pair.read_text(encoding="utf-8"))["schedule"]["entries"]
     assert (entry["only_together"], len(entry["works"])) == (True, 2)
-    (topic,) = Bcf(export(results, DUPLEX, with_properties=False).topics.data).topics
+    (topic,) = read_topics(pair).topics
     assert set(topic.selected) == {*BOTH, DOOR_B202}
     title, text = topic.text("Title"), topic.text("Description")
     assert "Armadio è 1 and Armadio è 2 together" in title
@@ -280,8 +285,6 @@ def test_pieces_that_only_help_together_are_one_topic(tmp_path):
 
 
 def test_of_many_kinds_the_first_are_named():
-    from assess.bim.export_words import MOST_KINDS, name_kinds
-
     kinds = [f"Kind {at}" for at in range(MOST_KINDS + 2)]
     assert name_kinds([*kinds, kinds[0]]) == "Kind 0; Kind 1; Kind 2 and 2 more"
 
@@ -297,7 +300,7 @@ def test_a_workbook_that_is_shifted_by_whole_metres_still_finds_its_door(tmp_pat
     """As one of a model that lies far from its origin is."""
     results = write_results(tmp_path, move(CUPBOARDS, 1200), settings=SIMULATED, places=move(PLACES, 1200),
                             routes=ROUTES)  # fmt: skip
-    found = export(results, DUPLEX, with_properties=False).topics
+    found = export_topics(results)
     assert found.is_placed
     assert DOOR_B202 in find(Bcf(found.data), CUPBOARD_1).selected
 
@@ -308,22 +311,18 @@ def test_a_door_that_a_segment_passes_is_found(tmp_path):
     routes = [{"route": "Scala", "segment": "a", "floor": "2", "start": "B202", "end": "out"}]
     items = [CUPBOARDS[0] | {"edge_distance": 0.0, "route": "Scala"}]
     results = write_results(tmp_path, items, places=places, routes=routes)
-    found = Bcf(export(results, DUPLEX, with_properties=False).topics.data)
+    found = read_topics(results)
     assert find(found, CUPBOARD_1).selected == [CUPBOARD_1, DOOR_B202]
 
 
-def test_where_positions_do_not_agree_no_door_is_taken(tmp_path):
+def test_where_positions_do_not_agree_no_door_is_taken_and_one_that_was_moved_does_not_shift_the_others(tmp_path):
     items = [CUPBOARDS[0], CUPBOARDS[1] | {"x": 9.0, "y": 4.0}, CUPBOARDS[3] | {"x": 1.0, "y": 30.0}]
     results = write_results(tmp_path, items, places=PLACES, routes=ROUTES)
-    found = export(results, DUPLEX, with_properties=False).topics
+    found = export_topics(results)
     assert (found.is_placed, found.doors) == (False, 0)
     assert find(Bcf(found.data), CUPBOARD_1).point("CameraViewPoint")
-
-
-def test_a_piece_moved_in_the_workbook_does_not_shift_the_others(tmp_path):
-    items = [CUPBOARDS[0], CUPBOARDS[1], CUPBOARDS[3] | {"x": 1.0, "y": 30.0}]
-    results = write_results(tmp_path, items, places=PLACES, routes=ROUTES)
-    found = Bcf(export(results, DUPLEX, with_properties=False).topics.data)
+    items[1] = CUPBOARDS[1]
+    found = read_topics(write_results(tmp_path, items, places=PLACES, routes=ROUTES))
     assert DOOR_B202 in find(found, CUPBOARD_1).selected
 
 
@@ -332,7 +331,7 @@ def test_pieces_without_shapes_are_seen_at_their_origin(tmp_path):
     model.by_guid(CUPBOARD_1).Representation = None
     bare = tmp_path / "bare.ifc"
     model.write(str(bare))
-    (topic,) = Bcf(export(write_results(tmp_path, CUPBOARDS[:1]), bare, with_properties=False).topics.data).topics
+    (topic,) = read_topics(write_results(tmp_path, CUPBOARDS[:1]), bare).topics
     assert math.dist(topic.point("CameraViewPoint")[:2], (2.91, -11.41)) < 4.5
 
 
@@ -340,8 +339,6 @@ def test_pieces_without_shapes_are_seen_at_their_origin(tmp_path):
 
 
 def test_without_a_date_of_the_report_the_topics_have_that_of_the_results(tmp_path, monkeypatch):
-    from assess.bim.export_results import read_export
-
     items = CUPBOARDS[:1]
     results = write_results(tmp_path, items, FLOORS, building=BUILDING | {"report_date": None})
     run = read_export(results).run

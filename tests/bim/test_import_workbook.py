@@ -6,6 +6,7 @@ from assess.bim.import_workbook import (
     Skipped,
     build_workbook,
     list_remarks,
+    list_rows,
     name_apart,
     say_skipped,
 )
@@ -52,14 +53,10 @@ def test_the_workbook_speaks_the_language_in_use() -> None:
     assert read_inventory(data, building=SHAKEN).language == "it"
 
 
-def test_long_names_are_cut_and_told_apart() -> None:
-    long = "x" * 500
-    first, second = name_apart([long, long])
+def test_long_names_and_those_alike_in_another_letter_case_are_told_apart() -> None:
+    first, second = name_apart(["x" * 500] * 2)
     assert (len(first), len(second)) == (LONGEST_NAME, LONGEST_NAME)
     assert second.endswith("x (2)")
-
-
-def test_names_that_are_alike_in_another_letter_case_are_told_apart() -> None:
     assert name_apart(["Desk", "desk", "Desk (2)", "Desk"]) == ["Desk", "desk (2)", "Desk (2) (2)", "Desk (3)"]
 
 
@@ -84,8 +81,6 @@ def test_of_many_types_the_first_are_named_and_the_rest_counted() -> None:
 
 
 def test_the_rooms_of_a_segment_are_not_cut():
-    from assess.bim.import_workbook import ImportedBuilding, list_rows
-
     rooms = "; ".join(f"{number} Waiting area and reception" for number in range(30))
     rows = list_rows(ImportedBuilding(source="a", routes=[{"route": "A", "segment": "1", "room": rooms}]))
     assert rows["Routes"][0]["room"] == rooms

@@ -7,14 +7,10 @@ from assess.bim.ifc_model import read_model
 from assess.bim.import_workbook import build_workbook
 from assess.bim.model_rows import list_building
 from assess.workbook.read import read_inventory
-from tests.bim.ifc_files import ModelWriter, one_room
+from tests.bim.ifc_files import ModelWriter, one_room, read
 
 SHELF = (0, 0, 0, 0.4, 0.8, 1.9)
 SHAKEN = {"shaking": "MMI VIII, severe"}
-
-
-def read(model: ModelWriter, folder) -> BuildingModel:
-    return read_model(model.write(folder / "a.ifc"), "a.ifc")
 
 
 def check(model: BuildingModel, folder):
@@ -93,18 +89,13 @@ def test_elements_that_share_an_identifier_stay_apart(tmp_path):
     assert ids == [pieces[0].GlobalId, f"{pieces[0].GlobalId} #{pieces[1].id()}"]
 
 
-def test_a_storey_without_identifier_is_known_by_its_number(tmp_path):
+def test_a_storey_without_identifier_is_known_by_its_number_and_a_latitude_beyond_the_pole_is_none(tmp_path):
     model, storey, room = one_room()
     model.piece("Shelf", SHELF, within=room, at=(2, 1, 0))
+    model.site.RefLatitude, model.site.RefLongitude = (92, 0, 0), (9, 0, 0)
     path = model.write(tmp_path / "a.ifc")
     path.write_text(path.read_text().replace(f"'{storey.GlobalId}'", "$"))
     found = read_model(path, "a.ifc")
     assert [one.key for one in found.storeys] == [f"#{storey.id()}"]
+    assert found.latitude is None, "beyond the pole"
     assert [(one.floor, one.room) for one in check(found, tmp_path).items] == [("Level 1", "101 Office")]
-
-
-def test_a_latitude_beyond_the_pole_is_none(tmp_path):
-    model, _, room = one_room()
-    model.piece("Shelf", SHELF, within=room, at=(2, 1, 0))
-    model.site.RefLatitude, model.site.RefLongitude = (92, 0, 0), (9, 0, 0)
-    assert read(model, tmp_path).latitude is None

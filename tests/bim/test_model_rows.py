@@ -3,18 +3,15 @@
 import re
 from collections import Counter
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
 from assess.bim.building_model import BuildingModel, Door, Piece, Space, Stair, Storey
 from assess.bim.floor_drawing import name_plan, name_plans
-from assess.bim.ifc_model import read_model
 from assess.bim.model_rows import find_kind, find_sizes, list_building
 from assess.plans import read_plan
 from assess.workbook.outlines import parse_outline
 
-MODELS = Path(__file__).parents[2] / "samples" / "models"
 STOREY = Storey("s", "Level 1", 0.0, 0.0)
 ROOM = ((0.0, 0.0), (6.0, 0.0), (6.0, 4.0), (0.0, 4.0))
 SPACE = Space("r", "s", "101", "Office", (ROOM,), 0.0, 3.0)
@@ -145,33 +142,24 @@ LONG = ((0.0, 0.0), (12.0, 0.0), (12.0, 2.0), (0.0, 2.0))
 ANGLED = ((0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (7.5, 9.0), (7.5, 1.5), (0.0, 1.5))
 
 
-@pytest.mark.parametrize(
-    ("title", "kind"),
-    [
-        ("Office", "room"), ("Corridor", "corridor"), ("Flur EG", "corridor"), ("Corridor1/Lobby", "corridor"),
-        ("Hallway", "corridor"), ("Eingangshalle", "room"), ("Lecture hall", "room"), ("Dining hall", "room"),
-        ("Town hall office", "room"), ("Gangster room", "room"), ("Hall", "room"), ("Passages archive", "room"),
-        ("Stair 2", "room"),
-    ],
-)  # fmt: skip
-def test_corridors_have_a_word_for_it_and_are_slender(title, kind):
-    for area in (LONG, ANGLED):
-        assert find_kind(replace(SPACE, title=title, area=(area,))) == kind
-    assert find_kind(replace(SPACE, title=title), doors=2) == "room"
-    assert find_kind(replace(SPACE, title=title), doors=3) == kind
+CORRIDORS = "Corridor", "Flur EG", "Corridor1/Lobby", "Hallway"
+ROOMS = "Office", "Eingangshalle", "Lecture hall", "Dining hall", "Town hall office", "Gangster room", "Hall", "Stair 2"
+STAIRS = "Scala A", "Treppenhaus", "Stair 2", "S-101 STAIR"
 
 
-@pytest.mark.parametrize(
-    ("title", "kind"),
-    [
-        ("Scala A", "stair"), ("Treppenhaus", "stair"), ("Stair 2", "stair"), ("S-101 STAIR", "stair"),
-        ("Upstairs office", "room"), ("Scaleworks", "room"), ("Office", "room"),
-    ],
-)  # fmt: skip
-def test_stairs_have_a_word_for_it_and_hold_an_end_of_a_stair(title, kind):
-    assert find_kind(replace(SPACE, title=title), holds_stair=True) == kind
-    assert find_kind(replace(SPACE, title=title)) == "room"
-    assert find_kind(replace(SPACE, title="Scale lab")) == "room"
+def test_corridors_have_a_word_for_it_and_are_slender():
+    for title in (*CORRIDORS, *ROOMS, "Passages archive"):
+        kind = "corridor" if title in CORRIDORS else "room"
+        for area in (LONG, ANGLED):
+            assert find_kind(replace(SPACE, title=title, area=(area,))) == kind, title
+        assert find_kind(replace(SPACE, title=title), doors=2) == "room"
+        assert find_kind(replace(SPACE, title=title), doors=3) == kind
+
+
+def test_stairs_have_a_word_for_it_and_hold_an_end_of_a_stair():
+    for title in (*STAIRS, "Upstairs office", "Scaleworks", "Office", "Scale lab"):
+        assert find_kind(replace(SPACE, title=title), holds_stair=True) == ("stair" if title in STAIRS else "room")
+        assert find_kind(replace(SPACE, title=title)) == "room"
 
 
 def test_the_room_in_which_a_stair_ends_is_the_smallest_that_holds_it():
@@ -185,17 +173,10 @@ def test_the_room_in_which_a_stair_ends_is_the_smallest_that_holds_it():
     }  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("name", "kinds"),
-    [
-        ("duplex.ifc", {"corridor": 4, "stair": 1}),
-        ("LargeBuilding.ifc", {}),
-    ],
-)
-def test_kinds_of_rooms_of_published_models(name, kinds):
-    rows = list_building(read_model(MODELS / name, name)).places
-    found = Counter(row["kind"] for row in rows if "outline" in row)
-    assert {kind: number for kind, number in found.items() if kind != "room"} == kinds
+def test_kinds_of_rooms_of_published_models(duplex, large):
+    for model, kinds in ((duplex, {"corridor": 4, "stair": 1}), (large, {})):
+        found = Counter(row["kind"] for row in list_building(model).places if "outline" in row)
+        assert {kind: number for kind, number in found.items() if kind != "room"} == kinds
 
 
 def test_fitted_furniture_is_of_unknown_fixing_and_says_so():
@@ -239,9 +220,8 @@ def test_the_roof_is_the_highest_storey_or_ceiling():
     assert list_building(model(storeys=(STOREY, roof))).building["height"] == 7.5
 
 
-@pytest.mark.parametrize("name", ["duplex.ifc", "LargeBuilding.ifc"])
-def test_plans_of_published_models_are_read_as_reports_read_them(name):
-    found = list_building(read_model(MODELS / name, name))
+def test_plans_of_published_models_are_read_as_reports_read_them(published):
+    found = list_building(published)
     floors = [row for row in found.floors if "plan" in row]
     assert {row["plan"] for row in floors} == set(found.files)
     for row in floors:
@@ -258,18 +238,12 @@ def test_plans_of_published_models_are_read_as_reports_read_them(name):
             assert row["plan_bottom"] < item["y"] < row["plan_bottom"] + box[1]
 
 
-@pytest.mark.parametrize(
-    ("source", "storey", "name"),
-    [
+def test_names_of_plans_are_plain_and_each_its_own():
+    for source, storey, name in (
         ("duplex.ifc", "Level 1", "duplex-Level-1.svg"), ("a b.ifc", "Erdgeschoß / Süd", "a-b-Erdgescho-Sud.svg"),
         ("模型.ifc", "一階", "plan.svg"), ("x" * 200, "y", "x" * 60 + ".svg"), ("../../a.ifc", "..", "a.svg"),
-    ],
-)  # fmt: skip
-def test_names_of_plans_are_plain(source, storey, name):
-    assert name_plan(source, storey) == name
-
-
-def test_plans_of_storeys_that_no_latin_letters_tell_apart_have_names_of_their_own() -> None:
+    ):  # fmt: skip
+        assert name_plan(source, storey) == name
     assert name_plans("a.ifc", ["一层", "二层", "Level-1", "level 1"]) == [
         "a.svg", "a-2.svg", "a-Level-1.svg", "a-level-1-2.svg"
     ]  # fmt: skip

@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from assess.bim.import_workbook import ImportedBuilding, build_workbook
-from assess.bim.update_workbook import Updated, describe, update_workbook
+from assess.bim.import_workbook import ImportedBuilding
+from assess.bim.update_workbook import update_workbook
 from assess.errors import WorkbookError
 from assess.workbook.patch import patch_workbook
 from tests.bim.update_books import (
@@ -17,27 +17,19 @@ from tests.bim.update_books import (
     building,
     changed,
     faults,
-    first_book,
     inventory,
     kinds,
     piece,
     resaved,
     row,
     table,
+    texts,
     typed,
     update,
     without,
+    write_first,
 )
 from tests.workbooks import address
-
-
-@pytest.fixture(scope="module")
-def book() -> bytes:
-    return first_book()
-
-
-def texts(found: Updated) -> list[str]:
-    return [str(describe(one)) for one in found.changes]
 
 
 def renamed(data: bytes, names: dict[str, str]) -> bytes:
@@ -58,30 +50,41 @@ NEW_ON_2 = piece(7, "Level 2", "B201 Office")
 # ---------------------------------------------------------------- floors
 
 
-def test_a_renamed_floor_keeps_its_name(book: bytes) -> None:
-    data = renamed(book, {"Level 1": "EG"})
-    found = update(data, changed(p3={"breadth": 60.0}))
+RENAMED = "it seems to have been renamed"
+
+
+def test_what_people_renamed_keeps_its_name_for_new_pieces_too(book: bytes) -> None:
+    """A floor, a room, and a place, which is found by its position."""
+    data = renamed(book, {"Level 1": "EG", "A102 Office": "Archive", "Exit A101": "Main entrance"})
+    found = update(data, building(items=[*changed(p3={"breadth": 60.0}).items, piece(7, "Level 1", "A102 Office")]))
     assert texts(found) == [
-        "Floors A2 Floor of EG stays 'EG'; the model has 'Level 1': it seems to have been renamed",
+        f"Floors A2 Floor of EG stays 'EG'; the model has 'Level 1': {RENAMED}",
+        f"Items {address('room', 4)} Room of A102-03 stays 'Archive'; the model has 'A102 Office': {RENAMED}",
         f"Items {address('breadth', 4)} Breadth [cm] of A102-03: 54.5 -> 60",
+        "Items A8 A102-07 was added",
+        f"Places A4 Place of Main entrance stays 'Main entrance'; the model has 'Exit A101': {RENAMED}",
     ]
+    added = inventory(found.data).items[-1]
+    assert (added.floor, added.room) == ("EG", "Archive")
     assert faults(found.data) == []
 
 
 def test_floors_that_were_renumbered_are_not_mixed_up() -> None:
     """People call 0 and 1 what the model calls 1 and 2: pieces stay, new ones go to the floor that is meant."""
 
-    def rename(rows: Any) -> list[dict[str, Any]]:
-        return [{**one, "floor": one["floor"].removeprefix("Level ")} for one in rows]
+    def rename(rows: Any, new: str = "") -> list[dict[str, Any]]:
+        return [{**one, "floor": one["floor"].replace("Level ", new)} for one in rows]
 
     model = building(floors=rename(FLOORS), items=rename(ITEMS), places=rename(PLACES))
-    data = renamed(build_workbook(model), {"1": "0", "2": "1"})
+    data = renamed(write_first(model), {"1": "0", "2": "1"})
     assert kinds(update(data, model)) == ["kept", "kept"]
     moved = {**ITEMS[2], "floor": "2", "room": "B201 Office"}
     items = rename([*ITEMS[:2], moved, *ITEMS[3:], NEW_ON_2])
     found = update(data, replace(model, items=items))
     assert [one.floor for one in inventory(found.data).items] == ["0", "0", "1", "0", "1", "1", "1"]
     assert [one.get("floor") for one in table(found.data, "Floors").rows] == ["0", "1"]
+    anew = building(floors=rename(FLOORS, "L0"), items=rename(ITEMS, "L0"), places=rename(PLACES, "L0"))
+    assert kinds(update(data, anew)) == ["kept", "kept"], "names that the model gives anew"
 
 
 def test_a_new_floor_is_added_with_its_pieces(book: bytes) -> None:
@@ -91,14 +94,6 @@ def test_a_new_floor_is_added_with_its_pieces(book: bytes) -> None:
     added = row(found.data, 3, "Floors")
     assert (added.get("elevation"), added.get("plan"), added.get("plan_left")) == (6.2, "house-Level-3.svg", 0.0)
     assert faults(found.data) == []
-
-
-def test_a_floor_that_the_model_renamed_keeps_the_name_of_the_workbook(book: bytes) -> None:
-    def rename(rows: Any) -> list[dict[str, Any]]:
-        return [{**one, "floor": {"Level 1": "L01"}.get(one["floor"], one["floor"])} for one in rows]
-
-    found = update(book, building(floors=rename(FLOORS), items=rename(ITEMS), places=rename(PLACES)))
-    assert kinds(found) == ["kept"]
 
 
 def test_an_elevation_that_people_corrected_stays(book: bytes) -> None:
@@ -142,18 +137,6 @@ def test_where_floors_cannot_be_added_nothing_is_written(book: bytes) -> None:
 
 
 # ---------------------------------------------------------------- rooms and types
-
-
-def test_a_renamed_room_keeps_its_name_for_new_pieces_too(book: bytes) -> None:
-    data = renamed(book, {"A102 Office": "Archive"})
-    found = update(data, building(items=[*ITEMS, piece(7, "Level 1", "A102 Office")]))
-    assert texts(found) == [
-        f"Items {address('room', 4)} Room of A102-03 stays 'Archive'; the model has 'A102 Office': it seems to have "
-        "been renamed",
-        "Items A8 A102-07 was added",
-    ]
-    assert inventory(found.data).items[-1].room == "Archive"
-    assert faults(found.data) == []
 
 
 def test_a_piece_that_the_model_moved_to_a_room_of_its_own_follows(book: bytes) -> None:
@@ -202,7 +185,7 @@ def test_types_told_apart_by_a_number_are_found_by_their_sizes() -> None:
     """The numbers follow the order of the pieces: "Desk" of today may be "Desk (2)" of the workbook."""
     small, large = ({"type": "Desk", "breadth": 60.0, "width": width, "height": 75.0} for width in (120.0, 160.0))
     first = building(types=[small, {**large, "type": "Desk (2)"}])
-    data = typed(build_workbook(first), "Catalogue", 2, weight=30)
+    data = typed(write_first(first), "Catalogue", 2, weight=30)
     again = building(types=[large, {**small, "type": "Desk (2)"}])
     assert update(data, again).changes == ()
     third = {**small, "width": 140.0}
@@ -229,15 +212,6 @@ def test_places_of_people_and_those_that_the_model_lost_stay(book: bytes) -> Non
     assert found.changes == ()
 
 
-def test_a_renamed_place_is_found_by_its_position(book: bytes) -> None:
-    data = renamed(book, {"Exit A101": "Main entrance", "Level 1": "EG"})
-    found = update(data)
-    assert texts(found)[1:] == [
-        "Places A4 Place of Main entrance stays 'Main entrance'; the model has 'Exit A101': it seems to have been "
-        "renamed"
-    ]
-
-
 def test_a_place_that_people_put_on_another_floor_is_listed(book: bytes) -> None:
     data = typed(book, "Places", 6, place="Exit B", floor="Level 2", x=50, y=50)
     new = {"place": "exit b", "floor": "Level 1", "x": 20.0, "y": 2.0, "kind": "exit"}
@@ -245,27 +219,18 @@ def test_a_place_that_people_put_on_another_floor_is_listed(book: bytes) -> None
     assert texts(found) == ["Places B6 Floor of Exit B stays 'Level 2'; the model has 'Level 1'"]
 
 
-def test_routes_are_peoples_own() -> None:
-    segment = {"route": "R", "segment": "a", "floor": "Level 1", "start": "A101 Hall", "end": "Exit A101"}
-    data = build_workbook(building(routes=[segment]))
-    found = update(data, building(routes=[{**segment, "segment": "b", "clear_width": 1.2}, segment | {"route": "S"}]))
-    assert found.changes == ()
-
-
-def test_points_of_another_draft_move_no_points_of_routes() -> None:
+def test_routes_are_peoples_own_and_points_of_another_draft_move_none_of_theirs() -> None:
     """Drafts number their points: "L1 point 1" of the model may be another one than that of a reviewed route."""
     point = {"place": "L1 point 1", "floor": "Level 1", "x": 5.0, "y": 2.0}
     segment = {"route": "R", "segment": "a", "floor": "Level 1", "start": "L1 point 1", "end": "Exit A101"}
-    data = build_workbook(building(places=[*PLACES, point], routes=[segment]))
+    data = write_first(building(places=[*PLACES, point], routes=[segment]))
     others = [{**point, "x": 9.0}, {**point, "place": "L1 point 2"}]
-    assert update(data, building(places=[*PLACES, *others])).changes == ()
+    other = [{**segment, "segment": "b", "clear_width": 1.2}, segment | {"route": "S"}]
+    assert update(data, building(places=[*PLACES, *others], routes=other)).changes == ()
 
 
 def test_without_a_sheet_of_places_these_are_left_out(book: bytes) -> None:
-    def drop(workbook: Any) -> None:
-        del workbook["Places"]
-
-    found = update(resaved(book, drop))
+    found = update(resaved(book, lambda one: one.remove(one["Places"])))
     assert texts(found)[0] == "Places A101 Hall of the model was left out: the workbook lacks the sheet"
     assert kinds(found) == ["left_out"] * len(PLACES)
 

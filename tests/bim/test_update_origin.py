@@ -6,15 +6,10 @@ from typing import Any
 
 import pytest
 
-from assess.bim.import_workbook import ImportedBuilding, build_workbook
+from assess.bim.import_workbook import ImportedBuilding
 from assess.bim.read_source import read_source
-from assess.bim.update_workbook import Updated, describe
 from tests.bim.ifc_files import ModelWriter
-from tests.bim.update_books import FLOORS, ITEMS, PLACES, building, first_book, piece, row, typed, update
-
-
-def texts(found: Updated) -> list[str]:
-    return [str(describe(one)) for one in found.changes]
+from tests.bim.update_books import FLOORS, ITEMS, PLACES, building, piece, row, texts, typed, update, write_first
 
 
 def shift(model: ImportedBuilding, x: float, y: float) -> ImportedBuilding:
@@ -36,34 +31,31 @@ def shift(model: ImportedBuilding, x: float, y: float) -> ImportedBuilding:
 
 
 @pytest.mark.parametrize("by", [(100.0, 0.0), (-200.0, 1300.0), (0.0, 0.0)])
-def test_another_origin_of_the_model_is_no_change(by: tuple[float, float]) -> None:
+def test_another_origin_of_the_model_is_no_change(book: bytes, by: tuple[float, float]) -> None:
     own = {"item": "Own", "floor": "Level 1", "breadth": 40, "height": 180, "x": 5, "y": 5}
-    book = typed(first_book(), row=12, **own)
-    found = update(book, shift(building(), *by))
-    assert (found.changes, found.data) == ((), book)
+    data = typed(book, row=12, **own)
+    found = update(data, shift(building(), *by))
+    assert (found.changes, found.data) == ((), data)
     assert found.moved == (-by[0], -by[1])
 
 
-def test_new_rows_and_moved_pieces_get_the_origin_of_the_workbook() -> None:
+def test_new_rows_and_moved_pieces_get_the_origin_of_the_workbook(book: bytes) -> None:
     place = {"place": "B202", "floor": "Level 2", "x": 9.0, "y": 2.0, "kind": "room", "outline": "6 0; 12.5 0; 12.5 4"}
     items = [{**ITEMS[0], "x": 7.0}, *ITEMS[1:], piece(7, "Level 3", "C301")]
     floor = {"floor": "Level 3", "elevation": 6.2, "plan": "house-Level-3.svg", "plan_left": -0.5, "plan_bottom": -0.5}
     model = building(floors=[*FLOORS, floor], items=items, places=[*PLACES, place])
-    found, same = (update(first_book(), one) for one in (shift(model, 100, -100), model))
+    found, same = (update(book, one) for one in (shift(model, 100, -100), model))
     assert texts(found) == texts(same)
     assert len(found.changes) == 4
     assert found.data == same.data
 
 
-def test_a_building_that_was_moved_by_no_whole_step_is_moved() -> None:
-    found = update(first_book(), shift(building(), 103.0, 0.0))
+def test_a_building_that_moved_by_no_whole_step_and_half_of_its_pieces_are_moved(book: bytes) -> None:
+    found = update(book, shift(building(), 103.0, 0.0))
     assert found.moved == (0.0, 0.0)
     assert row(found.data).get("x") == 104
-
-
-def test_where_half_of_the_pieces_moved_it_is_they_that_moved() -> None:
     moved = shift(building(), 100, 0).items
-    found = update(first_book(), building(items=[*moved[:3], *ITEMS[3:]]))
+    found = update(book, building(items=[*moved[:3], *ITEMS[3:]]))
     assert found.moved == (0.0, 0.0)
     assert [one.now for one in found.changes] == [101, 102, 103]
 
@@ -80,7 +72,7 @@ def test_a_new_piece_beyond_a_line_of_the_grid_moves_nothing_else(tmp_path: Path
         return replace(found, items=[{**one, "source_id": ids[one["description"]]} for one in found.items])
 
     first = write()
-    found = update(build_workbook(first), write(-1.0))
+    found = update(write_first(first), write(-1.0))
     assert found.moved == (-100.0, 0.0)
     assert [one.kind for one in found.changes if one.sheet == "Items"] == ["added"]
     assert row(found.data, 4).get("x") == pytest.approx(-1.0)

@@ -6,13 +6,12 @@ from typing import Any
 
 import pytest
 
+from assess.bim.building_model import BuildingModel
 from assess.bim.floor_drawing import draw_storey, is_drawn
-from assess.bim.ifc_model import read_model
 from assess.bim.import_workbook import ImportedBuilding
-from assess.bim.update_workbook import Updated, describe, update_workbook
-from tests.bim.update_books import FLOORS, ITEMS, building, first_book, piece, table, typed
+from assess.bim.update_workbook import Updated, update_workbook
+from tests.bim.update_books import FLOORS, ITEMS, building, first_book, piece, table, texts, typed
 
-MODEL = Path(__file__).parents[2] / "samples" / "models" / "duplex.ifc"
 HEAD = b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 21.000 14.000"><style>.wall{fill:#4d4d4d}</style>'
 NEW = {name: HEAD + name.encode() for name in ("house-Level-1.svg", "house-Level-2.svg", "house-Level-3.svg")}
 """Plans as the model gives them today."""
@@ -43,43 +42,38 @@ def named(found: Updated) -> list[str]:
     return [row.get("plan") for row in table(found.data, "Floors").rows]
 
 
-def texts(found: Updated) -> list[str]:
-    return [str(describe(one)) for one in found.changes]
-
-
-def test_plans_that_are_not_there_are_written_and_none_else(tmp_path: Path) -> None:
-    found = update(tmp_path, first_book(), model())
+def test_plans_that_are_not_there_or_of_the_import_before_are_written_and_none_else(
+    tmp_path: Path, book: bytes
+) -> None:
+    found = update(tmp_path, book, model())
     assert found.plans == {name: NEW[name] for name in list(NEW)[:2]}
     assert not found.is_changed
-
-
-def test_plans_of_the_import_before_are_replaced(tmp_path: Path) -> None:
     put(tmp_path, Level_1=OLD["house-Level-1.svg"], Level_2=NEW["house-Level-2.svg"])
-    found = update(tmp_path, first_book(), model())
+    found = update(tmp_path, book, model())
     assert (found.plans, found.changes) == ({"house-Level-1.svg": NEW["house-Level-1.svg"]}, ())
 
 
-def test_a_plan_of_people_under_the_name_of_an_import_stays_and_is_listed(tmp_path: Path) -> None:
+def test_a_plan_of_people_under_the_name_of_an_import_stays_and_is_listed(tmp_path: Path, book: bytes) -> None:
     put(tmp_path, Level_1=b"<svg>survey</svg>", Level_2=OLD["house-Level-2.svg"])
     floors = [{**one, "plan_left": -1.5} for one in FLOORS]
-    found = update(tmp_path, first_book(), model(floors=floors))
+    found = update(tmp_path, book, model(floors=floors))
     assert texts(found)[0] == "Floors A2 Level 1 stays as it is: house-Level-1.svg is not a plan of the import"
     assert [row.get("plan_left") for row in table(found.data, "Floors").rows] == [-0.5, -1.5]
     assert list(found.plans) == ["house-Level-2.svg"]
 
 
-def test_where_floors_name_another_plan_that_of_the_import_is_not_written(tmp_path: Path) -> None:
+def test_where_floors_name_another_plan_that_of_the_import_is_not_written(tmp_path: Path, book: bytes) -> None:
     put(tmp_path, Level_1=OLD["house-Level-1.svg"])
-    data = typed(first_book(), "Floors", 2, plan="survey.png")
+    data = typed(book, "Floors", 2, plan="survey.png")
     found = update(tmp_path, data, model())
     assert list(found.plans) == ["house-Level-2.svg"]
 
 
 @pytest.mark.parametrize("mine", [b"<svg>mine</svg>", OLD["house-Level-1.svg"]])
-def test_a_file_that_floors_do_not_name_keeps_its_name(tmp_path: Path, mine: bytes) -> None:
+def test_a_file_that_floors_do_not_name_keeps_its_name(tmp_path: Path, book: bytes, mine: bytes) -> None:
     """Not even a plan of an import is known to be nobody's then."""
     put(tmp_path, Level_1=mine, Level_3=mine)
-    data = typed(first_book(), "Floors", 2, plan=None)
+    data = typed(book, "Floors", 2, plan=None)
     imported = model(floors=[*FLOORS, THIRD], items=[*ITEMS, piece(7, "Level 3", "C301")])
     found = update(tmp_path, data, building(floors=imported.floors, items=imported.items, files=NEW))
     assert named(found) == ["house-Level-1-2.svg", "house-Level-2.svg", "house-Level-3-2.svg"]
@@ -103,12 +97,12 @@ def test_no_plan_takes_the_name_of_another_floor(tmp_path: Path) -> None:
     assert (tmp_path / "house-EG.svg").read_bytes() == b"mine"
 
 
-def test_a_plan_of_a_floor_that_the_model_lost_is_not_replaced(tmp_path: Path) -> None:
+def test_a_plan_of_a_floor_that_the_model_lost_is_not_replaced(tmp_path: Path, book: bytes) -> None:
     """The model calls Level 2 now what was Level 1, whose plan would get the name of that of the floor that is gone."""
     put(tmp_path, Level_1=OLD["house-Level-1.svg"], Level_2=OLD["house-Level-2.svg"])
     floors = [{**FLOORS[0], "floor": "Level 2", "plan": "house-Level-2.svg"}]
     items = [{**one, "floor": "Level 2"} for one in ITEMS[:4]]
-    found = update(tmp_path, first_book(), building(floors=floors, items=items, places=[], files=NEW))
+    found = update(tmp_path, book, building(floors=floors, items=items, places=[], files=NEW))
     assert named(found) == ["house-Level-2-2.svg", "house-Level-2.svg"]
     assert (tmp_path / "house-Level-2.svg").read_bytes() == OLD["house-Level-2.svg"]
 
@@ -117,17 +111,16 @@ LINKS = pytest.mark.skipif(os.name == "nt", reason="Windows lets few users make 
 
 
 @pytest.mark.parametrize("kind", ["folder", pytest.param("link", marks=LINKS)])
-def test_what_is_no_file_is_not_replaced(tmp_path: Path, kind: str) -> None:
+def test_what_is_no_file_is_not_replaced(tmp_path: Path, book: bytes, kind: str) -> None:
     path = tmp_path / "house-Level-1.svg"
     path.mkdir() if kind == "folder" else path.symlink_to(tmp_path / "away.svg")
-    found = update(tmp_path, first_book(), model())
+    found = update(tmp_path, book, model())
     assert texts(found) == ["Floors A2 Level 1 stays as it is: house-Level-1.svg is not a plan of the import"]
     assert list(found.plans) == ["house-Level-2.svg"]
 
 
-def test_a_plan_as_it_is_drawn_is_known_again_and_one_that_a_program_saved_is_not() -> None:
-    read = read_model(MODEL, MODEL.name)
-    drawn = next(plan for one in read.storeys if (plan := draw_storey(read, one)) is not None)
+def test_a_plan_as_it_is_drawn_is_known_again_and_one_that_a_program_saved_is_not(duplex: BuildingModel) -> None:
+    drawn = next(plan for one in duplex.storeys if (plan := draw_storey(duplex, one)) is not None)
     assert is_drawn(drawn.svg)
     assert not is_drawn(b'<?xml version="1.0"?>\n' + drawn.svg)
     assert not is_drawn(drawn.svg.replace(b"viewBox", b'width="21" viewBox'))

@@ -11,17 +11,15 @@ import xlsxwriter
 from openpyxl.worksheet.table import Table as ExcelTable
 
 from assess.bim.import_workbook import ImportedBuilding
-from assess.bim.update_workbook import Updated, describe, update_workbook
+from assess.bim.update_workbook import update_workbook
 from tests.bim.update_books import (
     FLOORS,
-    IDS,
     ITEMS,
     PLACES,
     TYPES,
     building,
     changed,
     faults,
-    first_book,
     in_units,
     inventory,
     kinds,
@@ -30,6 +28,7 @@ from tests.bim.update_books import (
     resaved,
     row,
     table,
+    texts,
     typed,
     update,
 )
@@ -38,15 +37,6 @@ from tests.workbook.books import write_book
 from tests.workbooks import address
 
 NEW = piece(7, "Level 2", "B201 Office", breadth=44.5)
-
-
-@pytest.fixture(scope="module")
-def book() -> bytes:
-    return first_book()
-
-
-def texts(found: Updated) -> list[str]:
-    return [str(describe(one)) for one in found.changes]
 
 
 def grown(*new: dict[str, Any], **more: Any) -> ImportedBuilding:
@@ -65,14 +55,11 @@ def test_a_new_piece_goes_into_the_next_prepared_row(book: bytes) -> None:
     assert one.more["source_id"] == NEW["source_id"]
 
 
-def test_a_new_piece_gets_a_name_that_no_row_has(book: bytes) -> None:
+def test_a_new_piece_gets_a_name_that_no_row_has_and_goes_below_rows_of_people(book: bytes) -> None:
     data = typed(book, row=3, item="b201-07")
     found = update(data, grown(NEW, {**NEW, "source_id": "other"}))
     assert texts(found) == ["Items A8 B201-07 (2) was added", "Items A9 B201-07 (3) was added"]
     assert faults(found.data) == []
-
-
-def test_rows_of_people_below_come_first(book: bytes) -> None:
     data = typed(book, row=12, item="Own", floor="Level 1", breadth=40, height=180)
     assert texts(update(data, grown())) == ["Items A13 B201-07 was added"]
 
@@ -87,14 +74,14 @@ def test_live_formulas_stay_and_work_in_new_rows(book: bytes, tmp_path: Path) ->
     assert formulas == {
         cell.coordinate: cell.value for line in new.iter_rows() for cell in line if cell.data_type == "f"
     }
-    book_ = formualizer.load_workbook(str(path))
-    book_.evaluate_all()
+    evaluated = formualizer.load_workbook(str(path))
+    evaluated.evaluate_all()
     stored, ratio = stored_cells(path), address("B/H", 8)
     assert stored["Items", ratio] == pytest.approx(44.5 / 200)
     for label in ("B/H", "PFA used [g]", "OR", "Class (formula)", "Can rock"):
         at = address(label, 8)
         cell = new[at]
-        result = book_.get_value("Items", cell.row, cell.column)
+        result = evaluated.get_value("Items", cell.row, cell.column)
         expected = stored["Items", at]
         assert result == (expected if isinstance(expected, str) else pytest.approx(expected)), label
 
@@ -116,37 +103,27 @@ def test_libreoffice_shows_what_the_update_stored(book: bytes, tmp_path: Path) -
 
 
 def test_more_rows_than_are_prepared_are_added_below(book: bytes) -> None:
-    new = [{**NEW, "item": f"N{at}", "source_id": f"new {at}"} for at in range(250)]
+    new = [{**NEW, "item": f"N{at}", "source_id": f"new {at}"} for at in range(20)]
     found = update(book, grown(*new))
-    assert kinds(found) == ["added"] * 250
-    assert len(inventory(found.data).items) == 256
+    assert kinds(found) == ["added"] * 20
+    assert len(inventory(found.data).items) == 26
 
 
 # ---------------------------------------------------------------- where they cannot go
 
 
-@pytest.mark.parametrize(
-    ("fields", "why"),
-    [
-        ({"item": "Total", "quantity": 6}, "row 9, the last that holds something, is not a complete entry"),
-        ({"notes": "Checked by Ann"}, "row 9, the last that holds something, is not a complete entry"),
-        ({"item": "Next ward"}, "row 9, the last that holds something, is not a complete entry"),
-    ],
-)
-def test_below_something_else_nothing_is_added_and_all_is_listed(book: bytes, fields: dict[str, Any], why: str) -> None:
-    data = typed(book, row=9, **fields)
-    model = changed(p1={"breadth": 60.0})
-    found = update(data, building(items=[*model.items, NEW]))
-    assert texts(found)[1:] == ["Items B201-07 of the model was left out"]
-    (problem,) = found.problems
-    assert str(problem) == (
-        f"Items!A9: 1 new row of the model was not added: {why}. Move what stands below the last complete row of this "
-        "sheet elsewhere, then import again."
-    )
-    assert row(found.data).get("breadth") == pytest.approx(0.6), "what is there already is updated all the same"
+def test_below_something_else_nothing_is_added_and_all_is_listed(book: bytes) -> None:
+    model = building(items=[*changed(p1={"breadth": 60.0}).items, NEW])
+    for fields in ({"item": "Total", "quantity": 6}, {"notes": "Checked by Ann"}, {"item": "Next ward"}):
+        found = update(typed(book, row=9, **fields), model)
+        assert texts(found)[1:] == ["Items B201-07 of the model was left out"]
+        (problem,) = found.problems
+        assert str(problem) == (
+            "Items!A9: 1 new row of the model was not added: row 9, the last that holds something, is not a complete "
+            "entry. Move what stands below the last complete row of this sheet elsewhere, then import again."
+        )
+        assert row(found.data).get("breadth") == pytest.approx(0.6), "what is there already is updated all the same"
 
-
-def test_below_a_total_of_a_formula_nothing_is_added(book: bytes) -> None:
     def total(workbook: Any) -> None:
         workbook["Items"][address("quantity", 10)] = "=SUM(G2:G8)"
 
@@ -202,7 +179,6 @@ def test_a_workbook_that_another_program_saved(book: bytes) -> None:
     assert update(data).changes == ()
     found = update(data, building(items=[*changed(p3={"breadth": 60.0}).items, NEW]))
     assert kinds(found) == ["changed", "added"]
-    assert [one.breadth for one in inventory(found.data).items][2] == pytest.approx(0.6)
 
 
 def in_own_order(path: Path, *, is_table: bool = False) -> bytes:
@@ -277,18 +253,8 @@ def test_a_table_of_excel_with_a_row_of_totals(tmp_path: Path, label: str | None
 
 def test_headings_blank_rows_and_typed_units(tmp_path: Path) -> None:
     """As people fill in: a title, wards as headings, units in cells, a name with stray spaces."""
-    head = [
-        "Item",
-        "Floor",
-        "Room",
-        "Breadth [cm]",
-        "Width [cm]",
-        "Height [cm]",
-        "Anchored",
-        "X [m]",
-        "Y [m]",
-        "Source ID",
-    ]
+    head = ["Item", "Floor", "Room", "Breadth [cm]", "Width [cm]", "Height [cm]", "Anchored", "X [m]", "Y [m]"]
+    head += ["Source ID"]
     rows: list[list[Any]] = [["Furniture of the house, as of May"], [], head, ["GROUND FLOOR"]]
     for at, one in enumerate(ITEMS):
         rows += [[], ["UPPER FLOOR"]] if at == 4 else []
@@ -306,13 +272,7 @@ def test_headings_blank_rows_and_typed_units(tmp_path: Path) -> None:
 
 
 def test_new_types_places_and_pieces_make_a_sound_workbook(book: bytes) -> None:
-    kind = {
-        "type": "Safe made to measure",
-        "breadth": 50.0,
-        "width": 60.0,
-        "height": 150.0,
-        "source": "shapes in house.ifc",
-    }
+    kind = {**TYPES[0], "type": "Safe made to measure", "width": 60.0}
     place = {"place": "B202 Store", "floor": "Level 2", "x": 9.0, "y": 2.0, "kind": "room"}
     new = {**NEW, "type": "Safe made to measure", "room": "B202 Store"}
     found = update(book, grown(new, types=[*TYPES, kind], places=[*PLACES, place]))
@@ -328,7 +288,3 @@ def test_pieces_of_one_new_source_id_are_all_added(book: bytes) -> None:
     assert kinds(found) == ["added", "added"]
     again = update_workbook(found.data, grown(NEW, {**NEW, "item": "Other"}), "house.xlsx")
     assert (kinds(again), again.data) == (["kept"], found.data)
-
-
-def test_source_ids_are_those_of_the_fixture(book: bytes) -> None:
-    assert [one.get("source_id") for one in table(book).rows] == IDS

@@ -1,6 +1,7 @@
 """A small building model as it is imported, and workbooks of it as people leave them."""
 
 import io
+import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -8,8 +9,8 @@ from typing import Any
 
 import openpyxl
 
-from assess.bim.import_workbook import ImportedBuilding, build_workbook, list_rows
-from assess.bim.update_workbook import Updated, update_workbook
+from assess.bim.import_workbook import ImportedBuilding, list_rows, store_live
+from assess.bim.update_workbook import Updated, describe, update_workbook
 from assess.i18n import load_catalogue, speaking
 from assess.model import Inventory
 from assess.units import QUANTITIES
@@ -133,7 +134,15 @@ def update(data: bytes, imported: ImportedBuilding | None = None) -> Updated:
 
 def first_book(**more: Any) -> bytes:
     """The workbook of the first import."""
-    return build_workbook(building(**more))
+    return write_first(building(**more))
+
+
+def write_first(imported: ImportedBuilding) -> bytes:
+    """The workbook of an import as `build_workbook` writes it, with fewer prepared rows."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "house.xlsx")
+        write_workbook(path, store_live(Content(list_rows(imported)), "si"), spare=12)
+        return path.read_bytes()
 
 
 def table(data: bytes, sheet: str = "Items") -> Table:
@@ -154,6 +163,11 @@ def inventory(data: bytes) -> Inventory:
 def faults(data: bytes) -> list[str]:
     """The errors of a workbook, but for the plans that are not beside it."""
     return [str(one) for one in inventory(data).errors if "picture" not in one.message]
+
+
+def texts(found: Updated) -> list[str]:
+    """What was done, in words."""
+    return [str(describe(one)) for one in found.changes]
 
 
 def kinds(found: Updated) -> list[str]:

@@ -1,0 +1,36 @@
+"""What many tests of building models look at, made once for all of them."""
+
+from pathlib import Path
+
+import pytest
+
+from assess.bim.building_model import BuildingModel
+from assess.bim.ifc_model import read_model
+from tests.bim.update_books import first_book
+
+MODELS = Path(__file__).parents[2] / "samples" / "models"
+
+
+@pytest.fixture(scope="session")
+def duplex() -> BuildingModel:
+    """Return a published model of two storeys in IFC2X3."""
+    return read_model(MODELS / "duplex.ifc", "duplex.ifc")
+
+
+@pytest.fixture(scope="session")
+def large() -> BuildingModel:
+    """Return a published model in millimetres."""
+    return read_model(MODELS / "LargeBuilding.ifc", "LargeBuilding.ifc")
+
+
+@pytest.fixture(params=["duplex", "large"])
+def published(request: pytest.FixtureRequest) -> BuildingModel:
+    """Return each of both."""
+    model: BuildingModel = request.getfixturevalue(request.param)
+    return model
+
+
+@pytest.fixture(scope="session")
+def book() -> bytes:
+    """Return the workbook of the first import of the house."""
+    return first_book()
