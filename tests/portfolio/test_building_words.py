@@ -1,42 +1,19 @@
 """What a building's row says: no number stands without what is missing from it."""
 
-import pytest
-
 from assess.portfolio.piece_words import label_piece, mark_own_motions, name_skipped, say_blocked, say_falls, say_people
 
 
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [
-        ((1.6, 0, 0), "1.6"),
-        ((1.6, 25, 0), "1.6 and up to 25 unconfirmed"),
-        ((0.0, 25, 3), "0.0 and up to 25 unconfirmed, 3 by formula only"),
-    ],
-)
-def test_pieces_that_could_fall_as_well_stand_beside_the_falls(given, said):
-    assert say_falls(*given) == said
-
-
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [
-        ((42.0, 100, 58), "42.0 of 42; 58 on routes not known"),
-        ((3.0, 20, 0), "3.0 of 20"),
-        ((0.0, 30, 30), "not known: 30 on routes not known"),
-        ((None, 30, 30), "not known: 30 on routes not known"),
-        ((None, None, None), "–"),
-    ],
-)
-def test_people_are_out_of_those_on_routes_that_are_known(given, said):
-    assert say_people(*given) == said
-
-
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [((0, 0, 0), "–"), ((2, 0, 2), "not known"), ((3, 1, 1), "1; 1 not known"), ((3, 0, 0), "0")],
-)
-def test_a_building_without_routes_has_not_0_blocked_ones(given, said):
-    assert say_blocked(*given) == said
+def test_what_is_not_known_stands_beside_the_number():
+    for given, falls in (((1.6, 0, 0), "1.6"), ((1.6, 25, 0), "1.6 and up to 25 unconfirmed"),
+                         ((0.0, 25, 3), "0.0 and up to 25 unconfirmed, 3 by formula only")):  # fmt: skip
+        assert say_falls(*given) == falls
+    for people, said in (((42.0, 100, 58), "42.0 of 42; 58 on routes not known"), ((3.0, 20, 0), "3.0 of 20"),
+                         ((0.0, 30, 30), "not known: 30 on routes not known"),
+                         ((None, 30, 30), "not known: 30 on routes not known"), ((None, None, None), "–")):  # fmt: skip
+        assert say_people(*people) == said
+    for routes, blocked in (((0, 0, 0), "–"), ((2, 0, 2), "not known"), ((3, 1, 1), "1; 1 not known"),
+                            ((3, 0, 0), "0")):  # fmt: skip
+        assert say_blocked(*routes) == blocked
 
 
 def test_motions_of_its_own_are_marked_and_a_skipped_building_is_named():

@@ -17,6 +17,7 @@ from assess.portfolio.building_signs import (
     sign_of_routes,
     sign_of_share,
 )
+from assess.portfolio.city_content import build_content
 from assess.portfolio.city_map import GROUND, SEA, Isoline, MapPoint, build_frame, draw_map, find_bar
 from tests.portfolio.city_samples import NASTY, make_view
 
@@ -76,23 +77,18 @@ def test_a_city_on_the_date_line_is_not_spread_over_the_globe():
     assert frame.wide / frame.scale < 60
 
 
-@pytest.mark.parametrize("latitude", [89.99, -90.0, 0.0])
-def test_one_building_anywhere_has_a_map_with_a_round_scale(latitude):
-    frame = build_frame([(10.0, latitude)])
-    assert find_bar(frame) in (0.5, 0.2, 1.0)
-    assert len(_places(_draw([_point(0, latitude, 10.0)]))) == 1
-
-
-def test_no_building_with_a_place_gives_no_map():
+def test_one_building_anywhere_has_a_map_with_a_round_scale_and_none_gives_no_map():
+    for latitude in (89.99, -90.0, 0.0):
+        frame = build_frame([(10.0, latitude)])
+        assert find_bar(frame) in (0.5, 0.2, 1.0)
+        assert len(_places(_draw([_point(0, latitude, 10.0)]))) == 1
     assert draw_map([], None, title="Map") == ""
 
 
 def test_every_sign_has_a_shape_of_its_own():
     for signs in (BY_CLASS, BY_SHARE, BY_ROUTES):
-        looks = [
-            (one.path, one.is_open, one.is_dashed, one.fill if one.key == "anchored" else "") for one in signs.values()
-        ]
-        assert len(set(looks)) == len(looks)
+        looks = {(one.path, one.is_open, one.is_dashed, one.key == "anchored" and one.fill) for one in signs.values()}
+        assert len(looks) == len(signs)
         order = [one.severity for one in signs.values()]
         assert order == sorted(set(order))
 
@@ -134,19 +130,12 @@ def test_the_sign_by_share_is_the_band_of_expected_falls_over_pieces_in_the_clas
     assert (sign.path, sign.fill, sign.symbol) == (like.path, like.fill, like.symbol)
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"unconfirmed": 1, "by_formula": 1},
-        {"by_formula": 1, "anchored": 3},
-        {"anchored": 4},
-        {},
-        {"status": "skipped", "low": None, "medium": None, "high": None, "very_high": None, "expected_falls": None},
-    ],
-)
-def test_a_building_with_nothing_in_the_classes_has_the_same_sign_in_both_views(changes):
-    assert find_share(ROW | changes) is None
-    assert sign_of_share(ROW | changes) == sign_of_class(ROW | changes)
+def test_a_building_with_nothing_in_the_classes_has_the_same_sign_in_both_views():
+    unknown = dict.fromkeys(("low", "medium", "high", "very_high", "expected_falls"))
+    for changes in ({"unconfirmed": 1, "by_formula": 1}, {"by_formula": 1, "anchored": 3}, {"anchored": 4}, {},
+                    {"status": "skipped", **unknown}):  # fmt: skip
+        assert find_share(ROW | changes) is None
+        assert sign_of_share(ROW | changes) == sign_of_class(ROW | changes)
 
 
 def test_the_background_is_cut_to_what_is_shown():
@@ -177,8 +166,6 @@ def test_lines_of_equal_shaking_carry_their_value_and_names_are_escaped():
 
 
 def test_buildings_of_a_view_are_marked_by_their_sums():
-    from assess.portfolio.city_content import build_content
-
     content = build_content(make_view(24, draws=20))
     placed = [row for row in content.buildings if row["latitude"] is not None]
     assert len(content.points) == len(placed) == 24 - 2 - 1  # two skipped without a place, one assessed without

@@ -33,13 +33,14 @@ def city():
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     folder = tmp_path_factory.mktemp("bay") / "city"
-    write_example_city(folder, 30)
+    write_example_city(folder, 28)
     return folder
 
 
 def test_it_has_at_least_200_buildings_of_all_uses_and_a_few_without_a_survey(city):
     assert len(city) == BUILDINGS >= 200
     assert len({one.path or one.name for one in city}) == BUILDINGS
+    assert list_buildings(12) == city[:12], "a larger city has the same buildings, and more"
     uses = Counter(one.use for one in city if one.path)
     assert set(uses) == {"Office", "School", "Hospital", "Library", "Home"}
     assert min(uses.values()) >= 10
@@ -62,15 +63,11 @@ def test_every_building_stands_on_land_and_inside_the_shakemap(city):
     assert all(south < one.latitude < north and west < one.longitude < east for one in city)
 
 
-def test_a_larger_city_has_the_same_buildings_and_more(city):
-    assert list_buildings(12) == city[:12]
-
-
 def test_the_folder_holds_a_workbook_a_building_the_index_and_real_ground_motion(folder):
     with (folder / INDEX).open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert tuple(rows[0]) == HEADS
-    assert len(rows) == 30
+    assert len(rows) == 28
     assert {row["path"] for row in rows} - {""} == {
         path.relative_to(folder).as_posix() for path in folder.rglob("*.xlsx")
     }
@@ -82,7 +79,7 @@ def test_the_folder_holds_a_workbook_a_building_the_index_and_real_ground_motion
     said = (folder / README).read_text(encoding="utf-8")
     assert "The ground motion is real" in said
     assert "The buildings are made up" in said
-    assert "30 buildings" in said
+    assert "28 buildings" in said
 
 
 def test_it_is_the_same_to_the_byte(folder, tmp_path):
@@ -122,31 +119,18 @@ def test_a_city_that_cannot_be_written_leaves_nothing(tmp_path, monkeypatch):
 
 
 def test_a_workbook_lacks_the_shaking_alone(folder):
-    for path in sorted(folder.rglob("*.xlsx"))[:12]:
+    lack = "neither Ground PGA nor Ground PGV nor SDS nor a ShakeMap file nor Shaking"
+    for path in sorted(folder.rglob("*.xlsx"))[:12:4]:
         with pytest.raises(WorkbookError) as caught:
             assess.read_inventory(path)
-        errors = [one for one in caught.value.problems if one.severity == "error"]
+        errors = [str(one) for one in caught.value.problems if one.severity == "error"]
         assert errors
-        assert all(
-            "neither Ground PGA nor Ground PGV nor SDS nor a ShakeMap file nor Shaking" in str(one) for one in errors
-        ), errors
+        assert all(lack in one for one in errors), errors
 
 
-def test_with_a_ground_motion_a_workbook_is_assessed(folder, tmp_path):
-    inventory = _read_shaken(sorted(folder.rglob("office-*.xlsx"))[0], tmp_path / "shaken.xlsx")
+def test_with_a_ground_motion_a_workbook_is_assessed(folder):
+    inventory = assess.read_inventory(sorted(folder.rglob("office-*.xlsx"))[0], building={"ground_pga": 0.2})
     assert 12 <= sum(item.quantity for item in inventory.items) <= 40
     found = assess.run(inventory, UNVERIFIED)
     assert len(found.items) == len(inventory.items)
     assert "made up" in inventory.building.scenario
-
-
-def _read_shaken(path, shaken):
-    """Read a workbook with a Ground PGA typed into it."""
-    import openpyxl
-
-    book = openpyxl.load_workbook(path)
-    for row in book["Building"].iter_rows(max_col=2):
-        if str(row[0].value).startswith("Ground PGA"):
-            row[1].value = 0.2
-    book.save(shaken)
-    return assess.read_inventory(shaken)

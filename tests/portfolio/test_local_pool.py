@@ -19,7 +19,7 @@ from assess.portfolio.sources import find_sources
 from assess.progress import Progress
 from assess.resources import city_file
 from assess.settings import Settings
-from tests.portfolio.staged import HOLDS, KILLS, KILLS_ONCE, StagedGround, write_city
+from tests.portfolio.staged import HOLDS, StagedGround, write_city
 from tests.waiting import wait_until
 
 pytestmark = [
@@ -41,35 +41,6 @@ def _is_alive(number):
     except ProcessLookupError:
         return False
     return Path(f"/proc/{number}/stat").read_text().split()[2] != "Z" if Path("/proc/self").exists() else True
-
-
-@pytest.mark.parametrize("jobs", [1, 3])
-def test_every_task_is_done_once(tmp_path, jobs):
-    tasks = _list_tasks(tmp_path, [40.0, 41.0] * 4)
-    found = list(run_local(tasks, jobs))
-    assert sorted(one.path for one in found) == [one.source.path for one in tasks]
-    assert {one.status for one in found} == {"assessed"}
-
-
-def test_a_process_that_dies_is_replaced_and_its_building_done(tmp_path):
-    tasks = _list_tasks(tmp_path, [40.0, KILLS_ONCE, 40.0, 40.0])
-    found = list(run_local(tasks, 2))
-    assert (tmp_path / "killed").exists()
-    assert sorted((one.path, one.status) for one in found) == [(one.source.path, "assessed") for one in tasks]
-
-
-def test_a_building_that_kills_each_process_is_skipped_and_harms_no_other(tmp_path):
-    tasks = _list_tasks(tmp_path, [40.0, KILLS, 40.0, KILLS, 40.0])
-    found = {one.path: one for one in run_local(tasks, 2)}
-    assert [found[one.source.path].status for one in tasks] == [
-        "assessed",
-        "skipped",
-        "assessed",
-        "skipped",
-        "assessed",
-    ]
-    (problem,) = found["b01.xlsx"].part.rows("problems")
-    assert "every process that assessed it was ended by the system" in problem[4]
 
 
 def test_a_cancel_ends_the_processes_at_once(tmp_path):

@@ -23,10 +23,8 @@ def _paths(found):
 
 def test_a_folder_is_searched_with_those_in_it_and_without_what_is_no_building(tmp_path):
     _put(tmp_path, "b.xlsx", "a/deep/c.XLSM", "a/notes.txt", ".hidden/d.xlsx", ".e.xlsx", "~$b.xlsx")
-    _put(
-        tmp_path, "run/report.xlsx", "run/results.json", "mine/report.xlsx", "city/ranking.xlsx", "city/portfolio.json"
-    )
-    _put(tmp_path, "change/compare.xlsx", "change/compare.json", "out/b.xlsx")
+    _put(tmp_path, "run/report.xlsx", "run/results.json", "mine/report.xlsx", "city/ranking.xlsx")
+    _put(tmp_path, "city/portfolio.json", "change/compare.xlsx", "change/compare.json", "out/b.xlsx")
     found = find_sources(tmp_path, tmp_path / "out")
     assert _paths(found) == ["a/deep/c.XLSM", "b.xlsx", "mine/report.xlsx"]
     assert [one.kind for one in found] == ["workbook"] * 3
@@ -34,7 +32,7 @@ def test_a_folder_is_searched_with_those_in_it_and_without_what_is_no_building(t
     assert found[0].file == tmp_path / "a" / "deep" / "c.XLSM"
 
 
-@pytest.mark.parametrize("ending", [".xls", ".xlsb", ".ods", ".numbers", ".XLS"])
+@pytest.mark.parametrize("ending", [".xls", ".ods", ".XLS"])
 def test_a_workbook_of_another_format_is_a_building_that_is_refused_with_what_to_do(tmp_path, ending):
     _put(tmp_path, f"sub/old{ending}", "~$old.xls", ".hidden.ods")
     (found,) = find_sources(tmp_path)
@@ -46,11 +44,6 @@ def test_a_workbook_of_another_format_is_a_building_that_is_refused_with_what_to
     (listed,) = find_sources(index)
     assert listed.refused == found.refused
     assert listed.fix == "Save it as .xlsx (Excel Workbook) and name that file."
-
-
-def test_equal_bytes_at_two_paths_are_two_buildings(tmp_path):
-    _put(tmp_path, "one.xlsx", "two.xlsx")
-    assert _paths(find_sources(tmp_path)) == ["one.xlsx", "two.xlsx"]
 
 
 @posix
@@ -119,9 +112,7 @@ def test_an_index_names_buildings_below_its_folder_alone(tmp_path):
     outside = "the path leads out of the folder of the index"
     refused = {path: str(one.refused) for path, one in found.items() if one.refused}
     assert all(found[path].fix for path in refused)
-    assert sorted(refused) == sorted(
-        ["../secret.xlsx", "gone.xlsx", f"{tmp_path.as_posix()}/secret.xlsx", "C:/x.xlsx", "a.pdf"]
-    )
+    assert refused.keys() == {"../secret.xlsx", "gone.xlsx", f"{tmp_path.as_posix()}/secret.xlsx", "C:/x.xlsx", "a.pdf"}
     assert outside in refused["../secret.xlsx"]
     assert outside in refused["C:/x.xlsx"]
     assert refused["gone.xlsx"] == "there is no such file."

@@ -63,22 +63,12 @@ def test_the_line_on_the_page_works_as_it_stands_where_the_command_was_given(tmp
     monkeypatch.chdir(tmp_path)
     Path("my city").mkdir()
     for name in ("it's one.xlsx", "-two.xlsx"):
-        write(
-            Path("my city", name), ITEMS, [{"floor": "1", "elevation": 0}], height=12, latitude=37.79, longitude=-122.4
-        )
+        place = {"latitude": 37.79, "longitude": -122.4}
+        write(Path("my city", name), ITEMS, [{"floor": "1", "elevation": 0}], height=12, **place)
     Path("my city", "old.xls").write_bytes(b"x")
     shutil.copyfile(resources.city_file("grid.xml"), "-a grid.xml")
-    asked = [
-        "--shakemap=-a grid.xml",
-        "--verify",
-        "none",
-        "--scale",
-        "1.2",
-        "--formats",
-        "parquet,html",
-        "--out",
-        "out",
-    ]
+    asked = ["--verify", "none", "--scale", "1.2", "--formats", "parquet,html", "--out", "out"]
+    asked = ["--shakemap=-a grid.xml", *asked]
     done = CliRunner().invoke(app, ["portfolio", "my city", "--jobs", "1", *asked])
     assert done.exit_code == 1, done.output
     page = Path("out/city.html").read_text(encoding="utf-8")

@@ -23,6 +23,7 @@ from assess.progress import Report
 from assess.settings import Settings
 from tests.portfolio.staged import FILLS, HOLDS, KILLS, KILLS_ONCE, StagedGround, read_results, write_city
 from tests.waiting import wait_until
+from tests.workbook.books import write_book
 
 ROOT = Path(__file__).parents[2]
 FORMULAS = Settings(verify="none")
@@ -59,19 +60,12 @@ def test_a_plain_loop_one_process_and_two_give_the_same_bytes(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_second_run_assesses_nothing_and_gives_the_same_bytes(tmp_path):
+def test_a_second_run_assesses_nothing_but_damaged_parts_and_gives_the_same_bytes(tmp_path):
     write_city(tmp_path / "city", [40.0, 41.0])
     assert _run(tmp_path).kept == 0
     before = read_results(tmp_path / "out")
     assert _run(tmp_path).kept == 2
     assert read_results(tmp_path / "out") == before
-
-
-@pytest.mark.slow
-def test_a_damaged_part_is_computed_again(tmp_path):
-    write_city(tmp_path / "city", [40.0, 41.0])
-    _run(tmp_path)
-    before = read_results(tmp_path / "out")
     for path, size in zip(sorted((tmp_path / "out" / FOLDER).glob("*/*.part")), (0, 300), strict=True):
         path.write_bytes(path.read_bytes()[:size])
     assert _run(tmp_path).kept == 0
@@ -100,18 +94,21 @@ def test_a_building_that_is_gone_vanishes_and_a_new_one_changes_no_other(tmp_pat
 
 @posix
 @pytest.mark.slow
-def test_a_process_that_is_killed_changes_no_byte(tmp_path):
-    write_city(tmp_path / "city", [40.0, KILLS_ONCE, 40.0, 41.0])
-    _run(tmp_path)
+def test_a_process_that_is_killed_changes_no_byte_and_a_workbook_that_kills_each_is_skipped(tmp_path):
+    write_city(tmp_path / "city", [40.0, KILLS_ONCE, KILLS, 41.0, KILLS])
+    result = _run(tmp_path)
     assert (tmp_path / "killed").exists()
+    assert [path for path, _ in result.skipped] == ["b02.xlsx", "b04.xlsx"]
+    assert all("every process that assessed it was ended by the system" in why for _, why in result.skipped)
+    states = list(read_table(tmp_path / "out", "buildings")["status"])
+    assert states == ["assessed", "assessed", "skipped", "assessed", "skipped"]
     _run(tmp_path, "undisturbed")
     assert read_results(tmp_path / "out") == read_results(tmp_path / "undisturbed")
 
 
 @posix
 @pytest.mark.slow
-@pytest.mark.parametrize("all_of_them", [False, True], ids=["the command", "the command and its processes"])
-def test_a_run_that_is_killed_goes_on_where_it_was(tmp_path, all_of_them):
+def test_a_run_that_is_killed_goes_on_where_it_was(tmp_path):
     write_city(tmp_path / "city", [40.0, 41.0, 42.0, HOLDS])
     (tmp_path / "hold").touch()
     code = (
@@ -121,9 +118,6 @@ def test_a_run_that_is_killed_goes_on_where_it_was(tmp_path, all_of_them):
     parts = tmp_path / "out" / FOLDER
     with subprocess.Popen([sys.executable, "-c", code], cwd=ROOT) as command:
         wait_until(lambda: len(list(parts.glob("*/*.part"))) == 3 and list(tmp_path.glob("held-*")))
-        if all_of_them:
-            for held in tmp_path.glob("held-*"):
-                os.kill(int(held.name.partition("-")[2]), signal.SIGKILL)
         command.send_signal(signal.SIGKILL)
     assert not (tmp_path / "out" / "buildings.parquet").exists()
     (tmp_path / "hold").unlink()
@@ -131,16 +125,6 @@ def test_a_run_that_is_killed_goes_on_where_it_was(tmp_path, all_of_them):
     _run(tmp_path, "undisturbed")
     assert read_results(tmp_path / "out") == read_results(tmp_path / "undisturbed")
     assert sorted(read_table(tmp_path / "out", "buildings")["path"]) == ["b00.xlsx", "b01.xlsx", "b02.xlsx", "b03.xlsx"]
-
-
-@posix
-@pytest.mark.slow
-def test_a_workbook_that_kills_its_process_is_skipped_with_the_reason(tmp_path):
-    write_city(tmp_path / "city", [40.0, KILLS, 41.0])
-    result = _run(tmp_path)
-    assert [path for path, _ in result.skipped] == ["b01.xlsx"]
-    assert "ended by the system" in result.skipped[0][1]
-    assert list(read_table(tmp_path / "out", "buildings")["status"]) == ["assessed", "skipped", "assessed"]
 
 
 @posix
@@ -184,17 +168,17 @@ def test_a_cancel_writes_nothing_and_keeps_what_is_done(tmp_path):
 
 @pytest.mark.slow
 def test_bad_workbooks_are_named_and_the_others_assessed(tmp_path):
-    write_city(tmp_path / "city", [40.0] * 18)
+    write_city(tmp_path / "city", [40.0] * 4)
     (tmp_path / "city" / "cut.xlsx").write_bytes((tmp_path / "city" / "b00.xlsx").read_bytes()[:5000])
     (tmp_path / "city" / "text.xlsx").write_text("no workbook", encoding="utf-8")
     reports: list[Report] = []
     result = _run(tmp_path, progress=reports.append)
     assert [path for path, _ in result.skipped] == ["cut.xlsx", "text.xlsx"]
-    assert list(read_table(tmp_path / "out", "buildings")["status"]).count("assessed") == 18
+    assert list(read_table(tmp_path / "out", "buildings")["status"]).count("assessed") == 4
     details = [one.detail for one in reports if one.stage == "buildings"]
-    assert details[0] == "0 of 20 buildings; 0 skipped"
-    assert details[-1] == "20 of 20 buildings; 2 skipped"
-    assert sum(read_table(tmp_path / "out", "pieces").groupby("path").size() == 3) == 18
+    assert details[0] == "0 of 6 buildings; 0 skipped"
+    assert details[-1] == "6 of 6 buildings; 2 skipped"
+    assert sum(read_table(tmp_path / "out", "pieces").groupby("path").size() == 3) == 4
 
 
 @posix
@@ -292,3 +276,20 @@ def test_an_index_adds_a_building_without_a_survey(tmp_path):
     assert [path for path, _ in result.skipped] == ["School"]
     assert rows.loc["Tower", "falls_low_inventory"] < rows.loc["Tower", "expected_falls"]
     assert rows.loc["Tower", "expected_falls"] < rows.loc["Tower", "falls_high_inventory"]
+
+
+def test_why_a_building_was_skipped_begins_a_sentence_and_does_not_name_its_file_again(tmp_path):
+    city = write_city(tmp_path / "city", [40.0])
+    (city / "sub").mkdir()
+    (city / "sub" / "text.xlsx").write_bytes(b"text")
+    (city / "empty.xlsx").write_bytes(b"")
+    (city / "old.xls").write_bytes(b"")
+    write_book(city / "other.xlsx", {"Sheet": [["hi"]]})
+    found = dict(_run(tmp_path, jobs=1).skipped)
+    missing = "the sheet is missing. Add it, or start from a workbook made with `assess new`."
+    assert found.pop("other.xlsx") in (f"Items: {missing}", f"Floors: {missing}")
+    assert found == {
+        "sub/text.xlsx": "It is not an Excel workbook (.xlsx). Save it from Excel as .xlsx.",
+        "empty.xlsx": "It is empty (0 bytes). Download or copy it again.",
+        "old.xls": "Workbooks ending in .xls are not read. Save it as .xlsx (Excel Workbook) and remove this file.",
+    }
