@@ -149,9 +149,13 @@ def test_cases_are_those_of_the_risks(kept):
 
 
 @pytest.mark.slow
-def test_threads_change_nothing(buildings, kept, tmp_path):
-    (two,) = rock(buildings[2], options(tmp_path, jobs=2))
+def test_threads_and_a_part_that_was_cut_off_change_nothing(buildings, kept, copied):
+    folder, part = copied
+    _cut(part)
+    (two,) = rock(buildings[2], options(folder, jobs=2))
     assert_same(two, kept[1])
+    with np.load(part) as again_kept:
+        assert (again_kept["fallen"] == two.fallen).all()
 
 
 # ---------------------------------------------------------------- what is loaded
@@ -227,30 +231,17 @@ def test_a_part_that_is_not_whole_or_not_ours_is_made_again(tmp_path, damage):
 
 
 @pytest.mark.slow
-def test_a_channel_whose_part_was_cut_off_is_rocked_again(buildings, kept, copied):
-    folder, part = copied
-    _cut(part)
-    (again,) = rock(buildings[2], options(folder))
-    assert_same(again, kept[1])
-    with np.load(part) as again_kept:
-        assert (again_kept["fallen"] == again.fallen).all()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("more", [{"seed": 4}, {"runs": 5}], ids=str)
-def test_another_seed_or_number_of_motions_is_not_loaded(buildings, kept, copied, more):
-    folder, part = copied
-    (other,) = rock(buildings[2], replace(options(folder), **more))
-    assert len(look(folder)) == 2
-    assert (other.fallen != kept[1].fallen).any()
-    assert (other.fell_in_record == kept[1].fell_in_record).all()
-    assert part.is_file()
-
-
-@pytest.mark.slow
-def test_another_record_is_not_loaded_and_the_same_elsewhere_is(buildings, kept, copied, tmp_path_factory):
+def test_another_seed_number_of_motions_record_or_code_is_not_loaded(
+    buildings, kept, copied, tmp_path_factory, monkeypatch
+):
     """A part is that of what a file holds, not of the name or the place of the file."""
-    folder, _ = copied
+    folder, part = copied
+    for at, more in enumerate(({"seed": 4}, {"runs": 5})):
+        (other,) = rock(buildings[2], replace(options(folder), **more))
+        assert len(look(folder)) == 2 + at
+        assert (other.fallen != kept[1].fallen).any()
+        assert (other.fell_in_record == kept[1].fell_in_record).all()
+        assert part.is_file()
     (channel,) = buildings[2].channels
     moved = tmp_path_factory.mktemp("records") / "moved.smc"
     text = channel.file.read_bytes()
@@ -261,22 +252,17 @@ def test_another_record_is_not_loaded_and_the_same_elsewhere_is(buildings, kept,
     edited = moved.with_name("edited.smc")
     edited.write_bytes(_weaken(text))
     (other,) = rock(replace(buildings[2], channels=(replace(channel, file=edited),)), options(folder))
-    assert len(look(folder)) == 2
+    assert len(look(folder)) == 4
     assert other.pfv[0] != kept[1].pfv[0]
+    monkeypatch.setattr("assess.studies.study_files._state", lambda: ("another version",))
+    rock(buildings[2], options(folder))
+    assert len(look(folder)) == 5
 
 
 def _weaken(text: bytes) -> bytes:
     """Change one digit of a sample near the end of a record."""
     at = next(one for one in range(len(text) - 2000, len(text)) if text[one : one + 1] in b"12345678")
     return text[:at] + bytes([text[at] + 1]) + text[at + 1 :]
-
-
-@pytest.mark.slow
-def test_other_code_is_not_loaded(buildings, copied, monkeypatch):
-    folder, _ = copied
-    monkeypatch.setattr("assess.studies.study_files._state", lambda: ("another version",))
-    rock(buildings[2], options(folder))
-    assert len(look(folder)) == 2
 
 
 # ---------------------------------------------------------------- a run that is killed

@@ -105,12 +105,12 @@ def test_error_of_one_group_is_unknown():
     assert alone.largest_error == alone.error
 
 
-@pytest.mark.parametrize("fell", [[0, 0, 0], [1, 1, 1]], ids=str)
-def test_error_of_what_never_or_always_happened_is_unknown(fell):
-    found = find_score(outcomes([0.1, 0.2, 0.3], fell))
-    assert math.isnan(found.error)
-    assert math.isnan(found.error_by_source)
-    assert not found.is_clear
+def test_error_of_what_never_or_always_happened_is_unknown():
+    for fell in ([0, 0, 0], [1, 1, 1]):
+        found = find_score(outcomes([0.1, 0.2, 0.3], fell))
+        assert math.isnan(found.error)
+        assert math.isnan(found.error_by_source)
+        assert not found.is_clear
 
 
 def test_error_is_the_scatter_of_the_mean():
@@ -279,7 +279,7 @@ def made_up_page(chance, fell):
     return [" ".join(render_block("calibration", block, **values)) for block in ("summary", "page")]
 
 
-def test_the_page_says_that_low_chances_did_not_come_true():
+def test_the_page_says_where_chances_did_not_come_true():
     summary, page = made_up_page(0.01, lambda _: np.zeros(SHAPE, dtype=bool))
     assert "+1.0 ± - points on recorded floors" in summary
     assert "Of 7,392 cases of class low the floor motions themselves overturned 0." in summary
@@ -288,16 +288,10 @@ def test_the_page_says_that_low_chances_did_not_come_true():
         "Of 2,016 cases of class low, with a mean chance of 1.0 %, the floor motions themselves overturned 0." in page
     )
     assert "In no other class is the difference beyond twice its error." in page
-
-
-def test_the_page_says_where_chances_are_wrong():
     _, page = made_up_page(0.5, lambda at: np.arange(96).reshape(SHAPE) % 4 < 3 - at % 2)
     assert "In class high the difference is beyond twice its error, -12." in page
     assert "points: chances are too low there." in page
     assert "more than twice its error: a bias" in page
-
-
-def test_the_page_sees_no_bias_within_the_error():
     _, page = made_up_page(0.5, lambda at: np.full(SHAPE, at % 2 == 0))
     assert page.count("within twice its error: no bias is seen") == 2
     assert page.count("In no class is the difference beyond twice its error.") == 2

@@ -41,10 +41,8 @@ def test_groups_worked_by_hand():
 
 def test_groups_have_no_dimension():
     # lengths and times scaled so that g stays: sizes by s, velocities by root s, accelerations by 1
-    s, one = (
-        3.7,
-        {"breadth": np.array([0.3]), "height": np.array([1.8]), "pfa": np.array([3.0]), "pfv": np.array([0.4])},
-    )
+    s = 3.7
+    one = {name: np.array([value]) for name, value in (("breadth", 0.3), ("height", 1.8), ("pfa", 3.0), ("pfv", 0.4))}
     other = {"breadth": one["breadth"] * s, "height": one["height"] * s, "pfa": one["pfa"], "pfv": one["pfv"] * s**0.5}
     np.testing.assert_allclose(find_groups(**one), find_groups(**other))
 
@@ -56,7 +54,7 @@ def errors(probit, columns, runs):
     return np.sqrt(np.diag(np.linalg.inv(columns.T @ (weight[:, None] * columns))))
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("known", [KNOWN, Probit(0.4, 0.5, 3.0), Probit(-2.0, 4.0, 0.3)])
 def test_known_coefficients_come_back_within_their_errors(known, seed):
     given = counts(known, seed)
@@ -142,9 +140,8 @@ def test_a_fit_without_a_group_is_that_to_the_others():
         assert probit == fit_probit(others)
 
 
-@pytest.mark.parametrize(
-    ("change", "match"),
-    [
+def test_counts_that_cannot_be_fitted_are_reported():
+    for change, match in (
         ({"fallen": np.zeros(600, dtype=int)}, "all fell, or none"),
         ({"fallen": GIVEN.runs}, "all fell, or none"),
         ({"fallen": GIVEN.runs + 1}, "more have fallen than ran"),
@@ -153,11 +150,9 @@ def test_a_fit_without_a_group_is_that_to_the_others():
         ({"pfv": np.ones(3)}, "different lengths"),
         ({name: np.ones(600) for name in ("breadth", "height", "pfa", "pfv")}, "do not vary"),
         ({"fallen": np.where(design(GIVEN)[:, 1] > 0.2, GIVEN.runs, 0)}, "separates all that fell"),
-    ],
-)
-def test_counts_that_cannot_be_fitted_are_reported(change, match):
-    with pytest.raises(InputError, match=match):
-        fit_probit(dataclasses.replace(GIVEN, **change))
+    ):
+        with pytest.raises(InputError, match=match):
+            fit_probit(dataclasses.replace(GIVEN, **change))
 
 
 def test_chances_that_depend_on_nothing_leave_both_slopes_at_zero():

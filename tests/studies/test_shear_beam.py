@@ -74,13 +74,12 @@ def test_shares_of_all_modes_are_one():
     assert find_shares(3, 0.0) == pytest.approx(0)
 
 
-@pytest.mark.parametrize(("period", "count"), [(0.01, 1), (0.5, 6), (1.0, 13), (4.0, 50)])
-def test_modes_are_counted_up_to_the_highest_frequency(period, count):
+def test_modes_are_counted_up_to_the_highest_frequency():
     """Mode n has the frequency (2n - 1)/T1, up to 25 Hz."""
-    assert count_modes(period) == count
+    assert [count_modes(period) for period in (0.01, 0.5, 1.0, 4.0)] == [1, 6, 13, 50]
 
 
-@pytest.mark.parametrize(("period", "place"), [(0.0, 0.5), (-1.0, 0.5), (np.inf, 0.5), (1.0, -0.1), (1.0, 1.1)])
-def test_what_is_no_floor_of_a_beam_is_refused(ground, period, place):
-    with pytest.raises(ValueError, match="expected above 0 and 0 to 1"):
-        shake_beam(ground, STEP, period, place)
+def test_what_is_no_floor_of_a_beam_is_refused(ground):
+    for period, place in ((0.0, 0.5), (-1.0, 0.5), (np.inf, 0.5), (1.0, -0.1), (1.0, 1.1)):
+        with pytest.raises(ValueError, match="expected above 0 and 0 to 1"):
+            shake_beam(ground, STEP, period, place)

@@ -115,10 +115,7 @@ def test_a_block_starts_where_the_sine_passes_its_threshold(case):
     assert case.start(3.0, 0.57) == math.inf
     assert case.start(0.99, 0.0) == math.inf
     assert not follow(case, 0.99, RK45).impacts
-
-
-def test_a_half_sine_has_one_lobe():
-    assert replace(LINEAR, pulse="half_sine").start(3.0, 0.3) == math.inf
+    assert replace(case, pulse="half_sine").start(3.0, 0.3) == math.inf  # it has one lobe
 
 
 def test_free_motion_of_the_linear_equation():
@@ -162,13 +159,10 @@ def test_a_loose_solver_moves_a_limit():
     assert not found.above.overturned
 
 
-def test_a_limit_that_is_not_there_is_not_found():
+def test_limits_that_are_not_found_are_counted():
     found = find_limit(replace(LIMITS[0], printed="4.5"), RK45)
     assert math.isnan(found.limit)
     assert found.changes == 0
-
-
-def test_limits_that_are_not_found_are_counted():
     assert render_block("solver", "missing", missing={"DOP853": 0, "RK45": 0}, side=SIDE) == []
     shown = render_block("solver", "missing", missing={"DOP853": 0, "RK45": 1, "RK45 loose": 2}, side=SIDE)
     assert shown == ["Not found within 0.16 alpha g of the listed limits, and left out: 1 by RK45, 2 by RK45 loose."]

@@ -29,13 +29,8 @@ def test_every_study_has_a_template_with_its_summary():
         assert "{% block summary %}" in text
 
 
-@pytest.mark.parametrize(
-    ("values", "shown"), [([1.004, 1.0], "1.00"), ([0.5, 2.25, 1.0], "0.50 to 2.25"), ([-0.1], "-0.10")]
-)
-def test_a_span_of_equal_numbers_is_one_number(values, shown):
-    assert study._span(values, 2) == shown
-
-
-def test_an_unknown_share_is_a_dash():
+def test_a_span_of_equal_numbers_is_one_number_and_an_unknown_share_a_dash():
+    for values, shown in (([1.004, 1.0], "1.00"), ([0.5, 2.25, 1.0], "0.50 to 2.25"), ([-0.1], "-0.10")):
+        assert study._span(values, 2) == shown
     assert (study.percent(math.nan), study.percent(0.255)) == ("-", "26 %")
     assert (study._points(math.nan), study._points(0.255, "+")) == ("-", "+25.5")

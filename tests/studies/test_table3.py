@@ -95,17 +95,13 @@ def test_a_chance_that_stays_low_has_no_median():
     assert find_median(lambda ratio, pfa: np.ones_like(pfa), 0.3) == 0
 
 
-def test_what_the_page_says_of_the_methods():
+def test_medians_of_the_methods():
     found = judged()
     off = {name: abs(one.bias) for name, one in found.items()}
     assert min(off, key=lambda name: off[name]) in (BRANCH, BOUND)
     assert math.exp(found[USED].bias) == pytest.approx(0.64, abs=0.005)
     assert math.exp(found[BRANCH].bias) == pytest.approx(0.92, abs=0.005)
     assert np.all(found[USED].medians < found[START].medians)
-    ratios = np.array([one.ratio for one in BLOCKS])
-    order = np.argsort(ratios, kind="stable")
-    assert all(np.all(np.diff(one.medians[order])[np.diff(ratios[order]) > 0] > 0) for one in found.values())
-    assert len({round(one.rank_correlation, 12) for one in found.values()}) == 1
 
 
 def test_bias_and_scatter_by_hand():
@@ -136,33 +132,23 @@ def test_the_files(tmp_path):
     finding = run_study(STUDY, Options(out=tmp_path))
     shown = "\n".join(finding.page)
     assert "Kaneko-Hayashi, for any PFV, at 0.92 or above." in finding.summary[0]
-    assert "2 very high, 7 high at the mean; 9 very high at the largest; 9 high at the least" in shown
-    assert "For 9 of 9 blocks the median is below g B/H" in shown
-    assert "fell below g B/H at least once: AL1, W1, W2, IB4" in shown
-    assert (
-        "Kaneko-Hayashi's PFA branch holds for floor frequencies F_f = PFA/(2 pi PFV) up to F_b, 0.9 to 2.3 Hz" in shown
-    )
-    assert "So the median is at least 0.92 of the measured mean." in shown
-    assert "| Kaneko-Hayashi, PFV unknown | at least 0.92 | 0.12 | at most 0.26/0.66/0.95 |" in shown
-    assert "The median of a method is the PFA at which its chance first reaches one half." in shown
-    assert len(" ".join(line for line in shown.splitlines() if not line.startswith("|")).split()) <= 250
-
-
-def test_every_method_is_evaluated_or_named_with_the_reason(tmp_path):
-    shown = "\n".join(STUDY.run(Options(out=tmp_path)).page).partition("Not evaluated")[2]
+    for words in (
+        "2 very high, 7 high at the mean; 9 very high at the largest; 9 high at the least",
+        "For 9 of 9 blocks the median is below g B/H", "fell below g B/H at least once: AL1, W1, W2, IB4",
+        "holds for floor frequencies F_f = PFA/(2 pi PFV) up to F_b, 0.9 to 2.3 Hz",
+        "| Kaneko-Hayashi, PFV unknown | at least 0.92 | 0.12 | at most 0.26/0.66/0.95 |",
+    ):  # fmt: skip
+        assert words in shown
     left_out = {"ishiyama": "Ishiyama", "fema_p58": "FEMA P-58", "japan_rule": "Japanese rule",
                 "housner_monte_carlo": "direct integration"}  # fmt: skip
     assert {one.key for one in all_methods()} == {"proposed_or", "kaneko_hayashi", "static", *left_out}
-    assert all(name in shown for name in left_out.values())
-
-
-def test_the_tables(tmp_path):
-    run_study(STUDY, Options(out=tmp_path))
-    with (tmp_path / "table3.csv").open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert len(rows) == 9 * 5
-    with (tmp_path / "table3-printed.csv").open(encoding="utf-8", newline="") as file:
-        printed = list(csv.DictReader(file))
-    assert len(printed) == 27
+    assert all(name in shown.partition("Not evaluated")[2] for name in left_out.values())
+    rows, printed = (read_table(tmp_path / f"{name}.csv") for name in ("table3", "table3-printed"))
+    assert (len(rows), len(printed)) == (9 * 5, 27)
     assert all(abs(float(row["or_printed"]) - float(row["or_equation_9"])) <= 0.0051 for row in printed)
     assert (tmp_path / "table3.svg").is_file()
+
+
+def read_table(path):
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
