@@ -6,6 +6,7 @@ import pytest
 
 from assess.bim.building_model import BuildingModel
 from assess.bim.ifc_model import read_model
+from tests.bim.export_runs import PLACES, ROUTES, SIMULATED, write_flat, write_results
 from tests.bim.update_books import first_book
 
 MODELS = Path(__file__).parents[2] / "samples" / "models"
@@ -34,3 +35,15 @@ def published(request: pytest.FixtureRequest) -> BuildingModel:
 def book() -> bytes:
     """Return the workbook of the first import of the house."""
     return first_book()
+
+
+@pytest.fixture(scope="session")
+def simulated(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the results of the cupboards, which block the way out of their room together."""
+    return write_results(tmp_path_factory.mktemp("simulated"), settings=SIMULATED, places=PLACES, routes=ROUTES)
+
+
+@pytest.fixture(scope="session")
+def flat(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a small model with the same pieces."""
+    return write_flat(tmp_path_factory.mktemp("flat") / "duplex.ifc")

@@ -55,11 +55,12 @@ def test_each_side_has_a_space_or_none(at, kind, sides):
     assert (find_sides(found), find_kinds(found)) == ({"d": sides}, {"d": kind})
 
 
-def test_of_spaces_in_each_other_the_smallest_counts():
+def test_of_spaces_in_each_other_the_smallest_counts_and_those_of_other_storeys_are_on_no_side():
     """Some programs export a whole storey as a space, too."""
-    zone = room("zone", -1, -1, 9, 5)
-    found = model(door("d", 4.05, 2.0, 0.0), spaces=(zone, room("a", 0, 0, 4, 4), room("b", 4.1, 0, 8, 4)))
-    assert find_sides(found) == {"d": ("b", "a")}
+    leaf, a, b = door("d", 4.05, 2.0, 0.0), room("a", 0, 0, 4, 4), room("b", 4.1, 0, 8, 4)
+    assert find_sides(model(leaf, spaces=(room("zone", -1, -1, 9, 5), a, b))) == {"d": ("b", "a")}
+    found = model(leaf, spaces=(a, replace(b, storey="1")), elevations=(0.0, 3.0))
+    assert find_sides(found) == {"d": ("", "a")}
 
 
 @pytest.mark.parametrize("x", [4.03, 4.97, 4.5])
@@ -89,12 +90,6 @@ def test_a_room_is_found_behind_a_thick_finish():
     found = model(replace(door("d", 4.25, 2.0, 0.0), thickness=0.1),
                   spaces=(room("a", 0, 0, 4, 4), room("b", 4.7, 0, 8, 4)))  # fmt: skip
     assert find_sides(found) == {"d": ("b", "a")}
-
-
-def test_spaces_of_other_storeys_are_on_no_side():
-    found = model(door("d", 4.05, 2.0, 0.0), spaces=(room("a", 0, 0, 4, 4), room("b", 4.1, 0, 8, 4, storey="1")),
-                  elevations=(0.0, 3.0))  # fmt: skip
-    assert find_sides(found) == {"d": ("", "a")}
 
 
 # ---------------------------------------------------------------- the ground storey

@@ -98,19 +98,11 @@ def test_from_a_closet_it_steps_back_through_the_wall_before_the_piece():
     assert 0 < point[2] < 2.6, "under the ceiling"
 
 
-def test_pieces_far_apart_and_in_several_rooms_are_all_in_the_picture():
+def test_pieces_far_apart_and_a_door_behind_the_camera_are_all_in_the_picture():
     room = ((0.0, -5.0, 0.0), (5.0, 0.0, 2.6))
     look([wardrobe(2.0, -0.3, room=room), wardrobe(25.0, -18.3), wardrobe(-30.0, 2.0)])
-
-
-def test_without_rooms_the_camera_sees_all_from_above():
-    assert look([wardrobe(2.0, -0.3), wardrobe(9.0, -3.3)])[2] > 2.0
-
-
-def test_a_door_behind_the_camera_is_taken_into_the_picture():
-    """The wardrobe faces the door of its room."""
-    room = ((0.0, -4.0, 0.0), (4.0, 0.0, 2.6))
-    door = ModelDoor("door", "", ((1.0, -4.0),), 0.0, ((1.0, -4.1, 0.0), (1.9, -4.0, 2.0)))
+    assert look([wardrobe(2.0, -0.3), wardrobe(9.0, -3.3)])[2] > 2.0, "without rooms from above"
+    door = ModelDoor("door", "", ((1.0, -5.0),), 0.0, ((1.0, -5.1, 0.0), (1.9, -5.0, 2.0)))
     look([wardrobe(2.0, -0.3, room=room)], [door])
 
 

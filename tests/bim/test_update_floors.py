@@ -175,8 +175,7 @@ def test_sizes_of_a_type_follow_and_its_weight_stays(book: bytes) -> None:
 
 
 def test_a_type_that_comes_with_the_program_stays(book: bytes) -> None:
-    own = {"type": "Bookcase tall", "breadth": 77.0, "height": 222.0}
-    found = update(book, building(types=[*TYPES, own]))
+    found = update(book, building(types=[*TYPES, {"type": "Bookcase tall", "breadth": 77.0, "height": 222.0}]))
     assert kinds(found) == ["kept", "kept"]
     assert texts(found)[0].endswith("the model has 77: the type comes with the program")
 
@@ -208,8 +207,7 @@ def test_places_follow_and_their_kind_stays(book: bytes) -> None:
 
 def test_places_of_people_and_those_that_the_model_lost_stay(book: bytes) -> None:
     data = typed(book, "Places", 6, place="Assembly point", floor="Level 1", x=-9, y=0, kind="exit")
-    found = update(data, building(places=PLACES[1:]))
-    assert found.changes == ()
+    assert update(data, building(places=PLACES[1:])).changes == ()
 
 
 def test_a_place_that_people_put_on_another_floor_is_listed(book: bytes) -> None:

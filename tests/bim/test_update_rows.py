@@ -284,7 +284,8 @@ def test_new_types_places_and_pieces_make_a_sound_workbook(book: bytes) -> None:
 
 
 def test_pieces_of_one_new_source_id_are_all_added(book: bytes) -> None:
-    found = update_workbook(book, grown(NEW, {**NEW, "item": "Other"}), "house.xlsx")
+    model = grown(NEW, {**NEW, "item": "Other"})
+    found = update_workbook(book, model, "house.xlsx")
     assert kinds(found) == ["added", "added"]
-    again = update_workbook(found.data, grown(NEW, {**NEW, "item": "Other"}), "house.xlsx")
+    again = update_workbook(found.data, model, "house.xlsx")
     assert (kinds(again), again.data) == (["kept"], found.data)

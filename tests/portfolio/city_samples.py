@@ -13,6 +13,7 @@ from assess.settings import Settings
 DTYPES = {"text": "object", "number": "float64", "count": "Int64", "flag": "boolean"}
 NASTY = "=cmd|' /C calc'!A0 </script><script>alert(1)</script> \u2028 \u202e"
 """A name that attacks a spreadsheet, a page and whoever reads it."""
+DRAWN = ("path", "draw", "falls", "people_blocked", "routes_blocked")
 TYPES = ("Bookcase tall", "Steel shelving", "Storage cabinet steel", "Wardrobe", "Desk", "Patient wardrobe")
 
 
@@ -32,17 +33,11 @@ def make_view(count=40, *, draws=200, pieces=12, verify="all", seed=1):
         path = one.path or one.name
         name = NASTY if at == 3 else one.name
         if at % 11 == 10:
-            buildings.append(_skip(path))
-            problems.append(
-                {
-                    "path": path,
-                    "severity": "error",
-                    "sheet": "Items",
-                    "cell": "H14",
-                    "message": "height is 1.8 cm, expected 5 to 600.",
-                    "fix": "Did you type metres?",
-                }
-            )
+            buildings.append({"path": path, "status": "skipped", "inventory": None, "warnings": 0})
+            problems.append({
+                "path": path, "severity": "error", "sheet": "Items", "cell": "H14",
+                "message": "height is 1.8 cm, expected 5 to 600.", "fix": "Did you type metres?",
+            })  # fmt: skip
             continue
         own = _list_pieces(path, one, pieces, random, simulated=verify == "all")
         rows += own
@@ -53,54 +48,24 @@ def make_view(count=40, *, draws=200, pieces=12, verify="all", seed=1):
                 falls += row["quantity"] * (shared + 0.5 * random.standard_normal(draws) > 1.1 * limit)
         has_routes = at % 3 != 0
         people = np.minimum(40, falls * 5) if has_routes else np.zeros(draws, dtype=int)
-        buildings.append(
-            _assess(
-                path,
-                name,
-                one,
-                own,
-                falls,
-                people,
-                has_routes=has_routes,
-                basis="simulated" if verify == "all" else "formula",
-                is_placed=at != 5,
-            )
-        )
+        basis = "simulated" if verify == "all" else "formula"
+        buildings.append(_assess(path, name, one, own, falls, basis=basis, is_placed=at != 5))
         if has_routes:
-            routes.append(
-                {
-                    "path": path,
-                    "route": "Way out",
-                    "state": "blocked" if at % 2 else "doubtful",
-                    "probability": float((people > 0).mean()),
-                    "probability_low": 0.1,
-                    "probability_high": 0.5,
-                    "occupants": 40,
-                    "blockers": "1-01",
-                    "to_fill_in": None,
-                }
-            )
+            buildings[-1] |= {"routes": 1, "routes_blocked": 1, "occupants": 40, "people_blocked": float(people.mean())}
+            routes.append({
+                "path": path, "route": "Way out", "state": "blocked" if at % 2 else "doubtful",
+                "probability": float((people > 0).mean()), "probability_low": 0.1, "probability_high": 0.5,
+                "occupants": 40, "blockers": "1-01", "to_fill_in": None,
+            })  # fmt: skip
         if verify == "all":
-            drawn += [
-                {
-                    "path": path,
-                    "draw": k,
-                    "falls": int(falls[k]),
-                    "people_blocked": int(people[k]),
-                    "routes_blocked": int(people[k] > 0),
-                }
-                for k in range(draws)
-            ]
+            counts = enumerate(zip(falls.tolist(), people.tolist(), strict=True))
+            drawn += [dict(zip(DRAWN, (path, k, n, m, int(m > 0)), strict=True)) for k, (n, m) in counts]
     facts = ((fill("Event"), fill("Loma Prieta, magnitude 6.9")), (fill("Map status"), fill("RELEASED")))
     ground = RunGround(kind="shakemap", file="grid.xml", sha256="0" * 64, facts=facts)
     tables = {"buildings": buildings, "pieces": rows, "routes": routes, "problems": problems, "draws": drawn}
     return CityView(
         **{name: frame(name, own) for name, own in tables.items()}, settings=Settings(verify=verify), ground=ground
     )
-
-
-def _skip(path):
-    return {"path": path, "status": "skipped", "inventory": None, "warnings": 0}
 
 
 def _list_pieces(path, one, count, random, *, simulated):
@@ -124,7 +89,7 @@ def _list_pieces(path, one, count, random, *, simulated):
     return rows
 
 
-def _assess(path, name, one, own, falls, people, *, has_routes, basis, is_placed):
+def _assess(path, name, one, own, falls, *, basis, is_placed):
     free = [row for row in own if not row["is_held"]]
     by_class = {
         word: sum(row["quantity"] for row in free if row["risk_class"] == word)
@@ -148,8 +113,6 @@ def _assess(path, name, one, own, falls, people, *, has_routes, basis, is_placed
         "falls_low_inventory": None if surveyed else expected * 0.3,
         "falls_high_inventory": None if surveyed else expected * 1.9, "falls_avoided": expected * 0.6,
         "works": sum(row["quantity"] for row in works), "cost": 90.0 * len(works) if surveyed else None,
-        "works_without_cost": 0 if surveyed else len(works), "routes": int(has_routes), "routes_open": 0,
-        "routes_doubtful": 0, "routes_blocked": int(has_routes), "routes_not_known": 0,
-        "occupants": 40 if has_routes else 0, "people_blocked": float(people.mean()) if has_routes else 0.0,
-        "warnings": 0,
+        "works_without_cost": 0 if surveyed else len(works), "routes": 0, "routes_open": 0, "routes_doubtful": 0,
+        "routes_blocked": 0, "routes_not_known": 0, "occupants": 0, "people_blocked": 0.0, "warnings": 0,
     }  # fmt: skip

@@ -46,11 +46,8 @@ def test_lines_of_the_loma_prieta_map_agree_with_it():
         assert ground.at(latitude, longitude).pga / GRAVITY == pytest.approx(float(one.label[:-2]), rel=0.1)
 
 
-def test_no_places_no_lines():
+def test_without_places_or_a_shakemap_there_are_no_lines():
     assert build_isolines(Slope(), []) == ()
-
-
-def test_a_city_without_a_shakemap_has_no_lines():
     view = make_view(12, draws=5)
     assert list_isolines(view, Slope())
     assert list_isolines(view, None) == ()

@@ -79,29 +79,18 @@ def test_falls_have_a_range_over_earthquakes_where_they_were_simulated(totals):
     assert (formula.low, formula.draws, formula.apart) == (None, 0, 40.0)
 
 
-def test_people_on_routes_without_joint_outcomes_stand_apart(totals):
+def test_people_on_routes_without_joint_outcomes_and_of_an_unknown_state_stand_apart(totals):
     """Of 12 expected people 10 are in the draws."""
-    people = find(totals, "surveyed", "simulated").people
-    assert (people.expected, people.apart, people.high) == (12, pytest.approx(2), 20)
-
-
-def test_people_on_routes_that_are_not_known_are_told_apart(totals):
     group = find(totals, "surveyed", "simulated")
+    assert (group.people.expected, group.people.apart, group.people.high) == (12, pytest.approx(2), 20)
     assert (group.occupants, group.people_not_known, group.people_known) == (100, 30, 70)
-    assert group.routes[RouteState.NOT_KNOWN] == 2
-    assert group.routes[RouteState.OPEN] == 2
+    assert (group.routes[RouteState.NOT_KNOWN], group.routes[RouteState.OPEN]) == (2, 2)
 
 
-def test_pieces_are_counted_by_class_and_outside_them(totals):
+def test_pieces_are_counted_by_class_and_costs_that_are_not_known_are_not_taken_as_nothing(totals):
     group = find(totals, "surveyed", "simulated")
     assert (group.pieces, group.counted, group.unconfirmed, group.anchored) == (20, 16, 2, 2)
-    assert group.by_class == {
-        RiskClass.LOW: 8, RiskClass.MEDIUM: 6, RiskClass.HIGH: 2, RiskClass.VERY_HIGH: 0
-    }  # fmt: skip
-
-
-def test_costs_that_are_not_known_are_counted_not_taken_as_nothing(totals):
-    group = find(totals, "surveyed", "simulated")
+    assert list(group.by_class.items()) == list(zip(RiskClass, (8, 6, 2, 0), strict=True))
     assert (group.cost, group.works, group.works_without_cost) == (150, 4, 3)
     blank = build_totals(view([{"path": "a", "cost": None, "draws": 0, "basis": "formula"}]))
     assert blank.groups[0].cost is None
@@ -141,12 +130,9 @@ def test_buildings_with_most_people_on_blocked_routes_come_first_then_most_falls
     assert [one.path for one in found] == ["people", "few people", "falls", "a tenth of a person"]
     assert found[0].people_not_known == 0
     assert (found[0].people_blocked, found[0].expected_falls, found[0].occupants) == (30, 0.5, 50)
-
-
-def test_ten_buildings_are_named_in_the_order_of_paths_where_alike():
-    rows = [{"path": f"{at:02d}", "basis": "formula"} for at in reversed(range(25))]
-    found = build_totals(view(rows)).groups[0].first_buildings
-    assert [one.path for one in found] == [f"{at:02d}" for at in range(FIRST)]
+    alike = [{"path": f"{at:02d}", "basis": "formula"} for at in reversed(range(25))]
+    found = build_totals(view(alike)).groups[0].first_buildings
+    assert [one.path for one in found] == [f"{at:02d}" for at in range(FIRST)], "in the order of paths where alike"
 
 
 def test_types_with_most_expected_falls_come_first_and_blank_ones_by_size():

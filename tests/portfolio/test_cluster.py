@@ -269,33 +269,26 @@ def test_a_worker_with_another_version_is_refused(site):
     assert text.endswith("Install the same everywhere.")
 
 
-def test_a_worker_with_other_code_of_the_same_version_is_refused(site):
+def test_a_worker_without_assess_with_other_code_or_that_fails_is_refused(site):
     def answer(asked):
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(cluster, "find_code", lambda: "ab" * 32)
             return answer_probe(asked)
 
     assert "assess 0.1.0 (abababababab) there" in _refuse(site, answer)
-
-
-def test_a_worker_without_assess_or_that_fails_is_refused(site):
     assert "assess is not installed there" in _refuse(site, ModuleNotFoundError("No module named 'assess'"))
     assert "it does not answer (RuntimeError: broken)" in _refuse(site, RuntimeError("broken"))
 
 
-def test_a_worker_that_sees_another_folder_is_refused(site, tmp_path):
+def test_a_worker_that_sees_another_folder_or_not_the_workbooks_is_refused(site, tmp_path):
     other = tmp_path / "other"
     other.mkdir()
-    missing = replace(site, probe=other / "probe")
+    missing, unseen = replace(site, probe=other / "probe"), replace(site, seen=(tmp_path / "gone.xlsx",))
     assert "it does not share the folder" in _refuse(site, lambda _: answer_probe(missing))
     (other / "probe").write_text("token of another run", encoding="ascii")
     assert "it sees another folder of this name" in _refuse(site, lambda _: answer_probe(missing))
     (other / "probe").write_text("token", encoding="ascii")  # a copy, on which it writes where nobody reads
     assert "it does not share the folder" in _refuse(site, lambda _: answer_probe(missing))
-
-
-def test_a_worker_that_does_not_see_the_workbooks_is_refused(site, tmp_path):
-    unseen = replace(site, seen=(tmp_path / "gone.xlsx",))
     text = _refuse(site, lambda _: answer_probe(unseen))
     assert "gone.xlsx. Put it in a folder that all machines share." in text
 

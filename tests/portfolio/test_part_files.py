@@ -19,6 +19,7 @@ def test_a_part_comes_back_as_it_was_and_has_the_same_bytes(tmp_path):
     assert read_part(tmp_path, KEY) == PART
     write_part(tmp_path, PART)
     assert find_place(tmp_path, KEY).read_bytes() == data
+    assert len(PART.rows("buildings")[0]) == len(TABLES["buildings"])
     assert PART.rows("draws") == [[PART.path, 0, 0, 0, 0], [PART.path, 1, 2, 0, 1]]
 
 
@@ -62,9 +63,6 @@ def test_a_part_is_done_while_the_files_that_its_workbook_names_are_what_they_we
     assert not is_done(part, tmp_path)
     (tmp_path / "sub" / "motion.txt").unlink()
     assert not is_done(part, tmp_path)
-
-
-def test_what_was_skipped_is_tried_again(tmp_path):
     assert not is_done(Part(path="a", key=KEY, status="skipped", tables=PART.tables), tmp_path)
     assert not is_done(None, tmp_path)
 
@@ -87,7 +85,3 @@ def test_a_disk_that_is_full_leaves_nothing(tmp_path):
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
     assert list((tmp_path / FOLDER).glob("*/*")) == []
-
-
-def test_rows_have_the_columns_of_their_tables():
-    assert {name: len(rows[0]) for name, rows in PART.tables.items() if rows} == {"buildings": len(TABLES["buildings"])}

@@ -52,42 +52,31 @@ def outcomes(chance, fell, floor=None, source=None):
 def test_score_by_hand():
     found = find_score(outcomes([0.1, 0.2, 0.6], [0, 0, 1], floor=[0, 0, 1]))
     assert (found.cases, found.fallen, found.floors) == (3, 1, 2)
-    assert found.chance == pytest.approx(0.3)
-    assert found.share == pytest.approx(1 / 3)
+    assert (found.chance, found.share) == pytest.approx((0.3, 1 / 3))
     assert found.difference == pytest.approx(0.3 - 1 / 3)
     assert find_score(outcomes([], [])) is None
 
 
-def test_classes_take_their_own_cases():
+def test_classes_and_points_of_the_figure_take_every_case_once():
     """The limits 0.03, 0.3 and 0.7 belong to the higher class."""
     found = by_class(outcomes([0.0, 0.02, 0.03, 0.29, 0.3, 0.69, 0.7, 1.0], [0, 1, 0, 0, 1, 0, 1, 1]))
     assert [(one.cases, one.fallen) for one in found.values()] == [(2, 1), (2, 0), (2, 1), (2, 2)]
     assert list(found) == list(RiskClass)
     assert found[RiskClass.LOW].difference == pytest.approx(0.01 - 0.5)
     assert list(by_class(outcomes([0.5], [1]))) == [RiskClass.HIGH]
-
-
-def test_points_of_the_figure_take_every_case_once():
     chance = np.round(np.arange(0, 1.001, 0.01), 2)
-    found = list(by_chance(outcomes(chance, chance > 0.5)))
-    assert sum(one.cases for one in found) == chance.size
-    assert [one.cases for one in found] == [3, 7, *[10] * 8, 11]
-    assert found[0].chance == pytest.approx(0.01)
-    assert found[-1].share == 1
-
-
-def test_error_of_independent_cases_is_that_of_a_mean():
-    """With a group for each value the jackknife is the standard deviation over the root of n."""
-    values = np.array([0.1, -0.3, 0.5, 0.2, 0.0, -0.4])
-    assert find_error(values, np.arange(6)) == pytest.approx(values.std(ddof=1) / math.sqrt(6))
+    points = list(by_chance(outcomes(chance, chance > 0.5)))
+    assert [one.cases for one in points] == [3, 7, *[10] * 8, 11]
+    assert (points[0].chance, points[-1].share) == pytest.approx((0.01, 1))
 
 
 def test_error_knows_that_cases_of_a_group_are_not_independent():
     """Each value ten times over is no more than the value once, and the names of the groups do not matter."""
-    values = np.array([0.1, -0.3, 0.5, 0.2])
-    one = find_error(values, np.arange(4))
-    assert find_error(np.repeat(values, 10), np.repeat([9, 2, 5, 70], 10)) == pytest.approx(one)
-    assert find_error(np.repeat(values, 10), np.arange(40)) < 0.4 * one
+    values = np.array([0.1, -0.3, 0.5, 0.2, 0.0, -0.4])
+    one = find_error(values, np.arange(6))
+    assert one == pytest.approx(values.std(ddof=1) / math.sqrt(6)), "that of a mean"
+    assert find_error(np.repeat(values, 10), np.repeat([9, 2, 5, 70, 1, 3], 10)) == pytest.approx(one)
+    assert find_error(np.repeat(values, 10), np.arange(60)) < 0.4 * one
 
 
 def test_error_of_unequal_groups_by_hand():
@@ -97,15 +86,11 @@ def test_error_of_unequal_groups_by_hand():
     assert find_error(values, groups) == pytest.approx(math.sqrt(2 / 3 * np.sum((without - without.mean()) ** 2)))
 
 
-def test_error_of_one_group_is_unknown():
+def test_error_of_one_group_and_of_what_never_or_always_happened_is_unknown():
     assert math.isnan(find_error(np.array([0.1, 0.2]), np.array([3, 3])))
     alone = find_score(outcomes([0.1, 0.9], [0, 1], floor=[0, 1], source=[0, 0]))
     assert math.isnan(alone.error_by_source)
-    assert alone.error > 0
-    assert alone.largest_error == alone.error
-
-
-def test_error_of_what_never_or_always_happened_is_unknown():
+    assert alone.largest_error == alone.error > 0
     for fell in ([0, 0, 0], [1, 1, 1]):
         found = find_score(outcomes([0.1, 0.2, 0.3], fell))
         assert math.isnan(found.error)
@@ -178,21 +163,21 @@ def test_cases_are_of_their_floor_and_of_its_site_and_axis():
 # ---------------------------------------------------------------- the floor motions
 
 
-def test_recorded_floors_are_all_channels_of_the_buildings():
+def test_floors_are_all_channels_of_the_buildings_and_beams_on_every_ground_motion():
     channels = [one for building in all_buildings() for one in building.channels]
-    floors = list_recorded()
+    floors, beams = list_recorded(), list_beams()
     assert [(one.file, one.axis) for one in floors] == [(one.file, one.axis) for one in channels]
     assert floors[3].read().pfa == channels[3].read().pfa
-
-
-def test_beams_stand_on_every_ground_motion():
-    beams = list_beams()
     grounds = {one.file.name for one in beams}
     assert len(beams) == len(set(map(str, beams))) == 8 * len(grounds)
     assert grounds == {
         "891018_1.cra-1.0210k.smc", "1103.HN2.NP.BE_a.smc", "1103.HN2.NP.BW_a.smc", "1103.HN3.NP.BE_a.smc",
         "1103.HN3.NP.BW_a.smc", "np01002p_4225a_a.smc", "np01002p_4225c_a.smc",
     }  # fmt: skip
+    seeds = {draw_seed(one, 1) for one in floors + beams}
+    assert len(seeds) == len(floors + beams)
+    assert not seeds & {draw_seed(one, 2) for one in floors + beams}
+    assert draw_seed(floors[0], 1) == draw_seed(list_recorded()[0], 1)
 
 
 def test_floors_of_beams_swing_on_after_the_ground_motion():
@@ -208,14 +193,6 @@ def test_floors_of_beams_swing_on_after_the_ground_motion():
     spectrum = np.abs(np.fft.rfft(after * np.hanning(after.size), 2**15))
     multiple = 4.0 * np.fft.rfftfreq(2**15, floor.time_step)[spectrum.argmax()]
     assert min(abs(multiple - odd) for odd in (1, 3, 5)) < 0.1
-
-
-def test_seeds_are_of_the_floor_motion():
-    floors = list_recorded() + list_beams()
-    seeds = {draw_seed(one, 1) for one in floors}
-    assert len(seeds) == len(floors)
-    assert not seeds & {draw_seed(one, 2) for one in floors}
-    assert draw_seed(floors[0], 1) == draw_seed(list_recorded()[0], 1)
 
 
 # ---------------------------------------------------------------- what falls

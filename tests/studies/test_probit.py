@@ -63,14 +63,18 @@ def test_known_coefficients_come_back_within_their_errors(known, seed):
     assert np.all(np.abs(apart) < 4 * errors(known, design(given), given.runs))
 
 
-def test_without_pfv_it_is_the_best_in_pfa_alone():
-    found = fit_probit(GIVEN, with_pfv=False)
-    columns, best = design(GIVEN), np.array(dataclasses.astuple(found))
-    assert best[2] == 0
+def test_it_is_the_best_there_is_and_without_pfv_the_best_in_pfa_alone():
+    columns, random = design(GIVEN), np.random.default_rng(4)
+    best, in_pfa = (np.array(dataclasses.astuple(fit_probit(GIVEN, with_pfv=both))) for both in (True, False))
     least, gradient = loss(best, columns, GIVEN.fallen, GIVEN.runs)
+    assert np.abs(gradient).max() < 1e-4 * GIVEN.runs.sum()
+    for _ in range(50):
+        near = best + random.normal(0, 0.05, 3)
+        assert loss(near, columns, GIVEN.fallen, GIVEN.runs)[0] >= least
+    assert in_pfa[2] == 0
+    more, gradient = loss(in_pfa, columns, GIVEN.fallen, GIVEN.runs)
     assert np.abs(gradient[:2]).max() < 1e-4 * GIVEN.runs.sum()
-    both = np.array(dataclasses.astuple(fit_probit(GIVEN)))
-    assert least > loss(both, columns, GIVEN.fallen, GIVEN.runs)[0]
+    assert more > least
 
 
 @settings(deadline=None, max_examples=60)
@@ -81,17 +85,6 @@ def test_gradient_is_that_of_finite_differences(b):
     for at, step in enumerate(1e-6 * np.eye(3)):
         ends = [loss(b + sign * step, columns, GIVEN.fallen, GIVEN.runs)[0] for sign in (1, -1)]
         assert gradient[at] == pytest.approx((ends[0] - ends[1]) / 2e-6, rel=1e-5, abs=0.05)
-
-
-def test_it_is_the_best_there_is():
-    found = fit_probit(GIVEN)
-    columns, best = design(GIVEN), np.array(dataclasses.astuple(found))
-    least, gradient = loss(best, columns, GIVEN.fallen, GIVEN.runs)
-    assert np.abs(gradient).max() < 1e-4 * GIVEN.runs.sum()
-    random = np.random.default_rng(4)
-    for _ in range(50):
-        near = best + random.normal(0, 0.05, 3)
-        assert loss(near, columns, GIVEN.fallen, GIVEN.runs)[0] >= least
 
 
 def test_a_slope_is_never_negative():
