@@ -155,7 +155,7 @@ def test_of_several_spaces_the_first_known_is_taken_and_said(tmp_path: Path) -> 
     assert "1 piece names several spaces; the first that is known was taken." in found.remarks
 
 
-def test_elevations_from_another_datum_are_kept_and_warned_of(tmp_path: Path) -> None:
+def test_elevations_from_another_datum_and_basements_are_kept_and_warned_of(tmp_path: Path) -> None:
     """Counted from the lowest floor, the pieces of upper floors handed over alone would shake as at the ground."""
     floors = tuple({**one, "Elevation": 100_000 + one["Elevation"]} for one in FLOORS)
     found = _read(tmp_path, floors=floors)
@@ -163,12 +163,7 @@ def test_elevations_from_another_datum_are_kept_and_warned_of(tmp_path: Path) ->
     assert found.building["height"] == 108.0
     (warning,) = found.warnings
     assert warning.startswith("The lowest floor, Ground, is at 100 m in the file. If it lies at the ground, subtract")
-    assert warning.endswith("else it shakes as the top of a taller building.")
-
-
-def test_basements_are_kept_below_the_ground_and_warned_of(tmp_path: Path) -> None:
-    floors = ({"Name": "Cellar", "Category": "Floor", "Elevation": -3500}, *FLOORS)
-    found = _read(tmp_path, floors=floors)
+    found = _read(tmp_path, floors=({"Name": "Cellar", "Category": "Floor", "Elevation": -3500}, *FLOORS))
     assert [row["elevation"] for row in found.floors] == [-3.5, 0.0, 4.0]
     assert found.warnings[0].startswith(
         "Below the ground by their elevation, so that they shake as the ground does: Cell"
