@@ -14,7 +14,7 @@ from assess.bim.export_model import ModelDoor, ModelElement
 from assess.bim.export_results import ExportPiece
 from assess.compare.past_run import PastChance, PastPiece
 from assess.risk import RiskClass
-from tests.bim.export_runs import DUPLEX, OFFICE, export, import_results
+from tests.bim.export_runs import DUPLEX, OFFICE, export, import_results, read_rows
 from tests.bim.test_export_topics import Bcf
 
 WIDE = math.tan(math.radians(FIELD_OF_VIEW / 2))
@@ -40,17 +40,29 @@ def read_corners(element):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("model", [DUPLEX, OFFICE], ids=["duplex", "office"])
-def test_all_that_a_topic_selects_is_in_the_picture(tmp_path: Path, model: Path):
-    found = export(import_results(tmp_path, model), model, with_properties=False).topics
+def test_a_whole_building_comes_back_to_its_model_and_all_that_a_topic_selects_is_in_the_picture(
+    tmp_path: Path, model: Path
+):
+    """All pieces of an import are found again, and the topics of those on drafted routes select doors of the model."""
+    results = import_results(tmp_path, model)
+    found = export(results, model)
+    assert (found.is_complete, found.written) == (True, len(read_rows(results)))
+    assert (found.topics.unplaced, found.topics.is_placed) == (0, True)
     elements = ifcopenshell.open(str(model))
-    topics = Bcf(found.data).topics
+    topics = Bcf(found.topics.data).topics
     assert len(topics) > 5
+    doors = 0
     for topic in topics:
         camera = [np.array(topic.point(f"Camera{name}")) for name in ("ViewPoint", "Direction", "UpVector")]
         assert float(topic.view.findtext("PerspectiveCamera/FieldOfView")) == FIELD_OF_VIEW
-        for key in topic.selected:
-            element = elements.by_guid(key)
+        selected = [elements.by_guid(key) for key in topic.selected]
+        for element in selected:
             assert in_view(read_corners(element), *camera), (topic.text("Title"), element)
+        has_door = any(one.is_a("IfcDoor") for one in selected)
+        assert not has_door or "block route" in topic.text("Title")
+        assert any(one.is_a("IfcFurnishingElement") for one in selected)
+        doors += has_door
+    assert doors == found.topics.doors > 0
 
 
 # ---------------------------------------------------------------- rooms of all sizes

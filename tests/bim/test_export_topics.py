@@ -13,9 +13,10 @@ from lxml import etree
 
 from assess.bim import export_topics as topics_module
 from assess.bim.export_results import read_export
-from assess.bim.export_topics import Topics, find_date
+from assess.bim.export_topics import PRIORITIES, Topics, find_date
 from assess.bim.export_words import MOST_KINDS, name_kinds
 from assess.i18n import load_catalogue, speaking
+from assess.risk import RiskClass
 from tests.bim.export_runs import (
     BUILDING,
     CUPBOARD_1,
@@ -29,9 +30,7 @@ from tests.bim.export_runs import (
     SIMULATED,
     SOFA,
     export,
-    import_results,
     piece,
-    read_rows,
     write_adopted,
     write_results,
 )
@@ -169,6 +168,7 @@ def test_titles_and_labels_have_the_upper_class_as_well(simulated, flat, tmp_pat
         assert {"medium", "high"} <= set(topic.labels)
         assert ", could be high: " in topic.text("Title")
         assert topic.text("Priority") == "Major"
+    assert [PRIORITIES[risk] for risk in RiskClass] == ["Minor", "Normal", "Major", "Critical"]
 
 
 def test_a_topic_of_unlike_pieces_has_the_highest_class_of_any(pair, flat, tmp_path):
@@ -317,25 +317,3 @@ def test_without_a_date_of_the_report_the_topics_have_that_of_the_results(tmp_pa
     assert find_date(run) == run.written
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
     assert find_date(run).isoformat() == "1970-01-02T00:00:00+00:00"
-
-
-# ---------------------------------------------------------------- from the import to the topics
-
-
-@pytest.mark.slow
-def test_a_whole_building_comes_back_to_its_model(tmp_path):
-    """All pieces of an import are found again, and the topics of those on drafted routes select doors of the model."""
-    results = import_results(tmp_path, DUPLEX)
-    found = export(results, DUPLEX)
-    assert (found.is_complete, found.written) == (True, len(read_rows(results)))
-    assert (found.topics.unplaced, found.topics.is_placed) == (0, True)
-    model = ifcopenshell.open(str(DUPLEX))
-    doors = {one.GlobalId for one in model.by_type("IfcDoor")}
-    topics = Bcf(found.topics.data).topics
-    with_door = [one for one in topics if doors & set(one.selected)]
-    assert len(with_door) == found.topics.doors > 0
-    assert all("block route" in one.text("Title") for one in with_door)
-    for topic in topics:
-        pieces = [model.by_guid(key) for key in topic.selected if key not in doors]
-        assert pieces
-        assert all(one.is_a("IfcFurnishingElement") for one in pieces)

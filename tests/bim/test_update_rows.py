@@ -32,7 +32,7 @@ from tests.bim.update_books import (
     typed,
     update,
 )
-from tests.recalculate import libreoffice, needs_libreoffice, stored_cells
+from tests.recalculate import stored_cells
 from tests.workbook.books import write_book
 from tests.workbooks import address
 
@@ -88,22 +88,6 @@ def test_live_formulas_stay_and_work_in_new_rows(book: bytes, tmp_path: Path) ->
         result = evaluated.get_value("Items", cell.row, cell.column)
         expected = stored["Items", at]
         assert result == (expected if isinstance(expected, str) else pytest.approx(expected)), label
-
-
-@needs_libreoffice
-@pytest.mark.libreoffice
-def test_libreoffice_shows_what_the_update_stored(book: bytes, tmp_path: Path) -> None:
-    data = line(book, shaking="MMI VIII, severe")
-    path = tmp_path / "new.xlsx"
-    path.write_bytes(update(data, grown()).data)
-    shown = stored_cells(libreoffice(path, tmp_path / "shown.xlsx", recalculates=False))
-    again = stored_cells(libreoffice(path, tmp_path / "again.xlsx"))
-    for number in range(2, 9):
-        for label in ("B/H", "OR", "Class (formula)"):
-            at = "Items", address(label, number)
-            expected = again[at]
-            assert shown[at] == (expected if isinstance(expected, str) else pytest.approx(expected)), at
-    assert again["Items", address("B/H", 8)] == pytest.approx(44.5 / 200)
 
 
 # ---------------------------------------------------------------- where they cannot go

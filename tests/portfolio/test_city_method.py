@@ -79,16 +79,12 @@ def test_no_fall_seen_is_not_said_to_be_none_expected():
     assert "is expected" not in said
 
 
-def test_copies_are_counted_before_the_numbers_and_their_paths_told_apart():
-    rows = [{"path": "a", "building": "School"}, {"path": "b", "building": "School", "same_as": "a"}]
+def test_copies_are_counted_before_the_numbers_and_skipped_buildings_not_in_the_title():
+    rows = [{"path": "a", "building": "School"}, {"path": "b", "building": "School", "same_as": "a"},
+            {"path": "c", "status": "skipped"}]  # fmt: skip
     city = view(rows, draws={"a": DRAWS, "b": DRAWS})
     assert "1 workbook has the same content as another" in " ".join(list_cautions(city, build_totals(city)))
     content = build_content(city)
     assert content.name_building("School", "b") == "School (b)"
     assert content.name_building("Town hall", "c") == "Town hall"
-
-
-def test_skipped_buildings_are_not_counted_in_the_title():
-    rows = [{"path": "a", "building": "Home (made up)"}, {"path": "b", "status": "skipped"}]
-    city = view(rows, draws={"a": DRAWS})
-    assert say_title(city) == "Furniture in an earthquake: 1 of 2 buildings"
+    assert say_title(city) == "Furniture in an earthquake: 2 of 3 buildings"

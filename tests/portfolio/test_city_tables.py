@@ -53,8 +53,8 @@ def test_many_rows_take_several_files_and_come_back_in_order(tmp_path, monkeypat
 def test_the_same_rows_give_the_same_bytes(tmp_path):
     for name in ("one", "two"):
         (tmp_path / name).mkdir()
-        _write("pieces", _rows(3000), tmp_path / name)
-    assert (tmp_path / "one" / "pieces.parquet").read_bytes() == (tmp_path / "two" / "pieces.parquet").read_bytes()
+        (path,) = _write("pieces", _rows(3000), tmp_path / name)
+    assert (tmp_path / "one" / path.name).read_bytes() == path.read_bytes()
 
 
 def test_a_folder_whose_name_is_no_sql_is_read(tmp_path):
