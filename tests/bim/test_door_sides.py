@@ -36,9 +36,6 @@ def test_doors_of_published_models(large, duplex):
     assert find_ground(duplex).name == "Level 1"
 
 
-# ---------------------------------------------------------------- sides
-
-
 @pytest.mark.parametrize(
     ("at", "kind", "sides"),
     [
@@ -90,9 +87,6 @@ def test_a_room_is_found_behind_a_thick_finish():
     found = model(replace(door("d", 4.25, 2.0, 0.0), thickness=0.1),
                   spaces=(room("a", 0, 0, 4, 4), room("b", 4.7, 0, 8, 4)))  # fmt: skip
     assert find_sides(found) == {"d": ("b", "a")}
-
-
-# ---------------------------------------------------------------- the ground storey
 
 
 @pytest.mark.parametrize(

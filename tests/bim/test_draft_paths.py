@@ -27,9 +27,6 @@ def follow(ways: Ways, start: str, end: str) -> LineString:
     return LineString([ways.at(name) for name in nx.dijkstra_path(graph, start, end, weight="cost")])
 
 
-# ---------------------------------------------------------------- rooms
-
-
 def test_a_way_is_straight_where_nothing_is_in_it():
     room = build(box(0, 0, 6, 5), link("one", 1.0, -0.05), link("two", 5.0, 5.05))
     way = follow(find_ways(room, "room a", (3.0, 2.5)), "one", "two")
@@ -86,9 +83,6 @@ def test_a_large_room_full_of_desks_is_crossed_between_them():
     way = follow(find_ways(room, "room a", (1.0, 41.0)), "one", "two")
     assert way.distance(MultiPolygon(desks)) >= 0.35
     assert way.length < 1.3 * 58
-
-
-# ---------------------------------------------------------------- corridors
 
 
 BAR, ELL = box(0, 0, 20, 1.8), box(0, 0, 20, 1.8).union(box(18.2, 0, 20, 12))

@@ -65,9 +65,6 @@ def test_a_whole_building_comes_back_to_its_model_and_all_that_a_topic_selects_i
     assert doors == found.topics.doors > 0
 
 
-# ---------------------------------------------------------------- rooms of all sizes
-
-
 def wardrobe(x, y, *, room=None, faces=270.0):
     """Return a wardrobe of 2 m with its middle at x, y of the ground floor."""
     past = PastPiece(

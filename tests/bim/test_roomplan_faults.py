@@ -112,9 +112,6 @@ def test_an_outline_that_crosses_itself_is_no_crash():
     assert len(model.spaces) == 1
 
 
-# --- limits ---
-
-
 def test_a_million_objects_are_refused_before_they_are_read():
     many = b'{"objects": [' + b",".join([b'{"a": [0, 0, 0]}'] * 1_000_000) + b"]}"
     assert "holds more than 4,000,000 values" in refused(many)

@@ -28,9 +28,6 @@ def _count(row: IndexRow) -> dict[str, tuple[int, int, int]]:
     return {kind: (one[0], one[1], one[2]) for kind, one in sums.items()}
 
 
-# ---------------------------------------------------------------- quantities
-
-
 def test_an_office_of_1000_m2():
     """The check value: by 0.0005, 0.002 and 0.004 bookcases, 0.0005, 0.0008 and 0.002 files a square foot."""
     assert _count(OFFICE) == {"bookcase": (5, 22, 43), "lateral file": (5, 9, 22)}
@@ -73,9 +70,6 @@ def test_a_small_building_has_a_piece_where_many_buildings_have_one():
     assert _count(replace(OFFICE, floor_area_m2=50.0))["lateral file"] == (0, 1, 1)
 
 
-# ---------------------------------------------------------------- refused
-
-
 def test_uses_without_quantities_are_refused_with_the_reason():
     for use in ("School", "Home", "apartment", "retail", "Shop", "warehouse", "hospitality", "Library", "xyz"):
         match = f"^no inventory can be assumed for the use '{use}': FEMA P-58 gives quantities of furniture for "
@@ -99,9 +93,6 @@ def test_uses_without_quantities_are_refused_with_the_reason():
 def test_what_is_needed(blank, message):
     with pytest.raises(InputError, match=message):
         build_assumed(replace(OFFICE, **blank))
-
-
-# ---------------------------------------------------------------- marked, and assessed
 
 
 def test_everything_is_marked_as_assumed():

@@ -70,8 +70,6 @@ def test_a_row_without_a_workbook_is_assumed_with_its_range():
     assert inventory.problems[0].message.startswith("inventory assumed: no piece of this building has been seen.")
 
 
-# ---------------------------------------------------------------- an index that contradicts its workbook
-
 SURVEYED = {"building": "Town hall", "latitude": 37.77509, "longitude": -122.41, "use": "School", "storeys": 3,
             "height": 10}  # fmt: skip
 SAME = {"building": "TOWN  HALL", "latitude": 37.78, "longitude": -122.405, "use": "school", "storeys": 3,

@@ -88,11 +88,18 @@ def test_a_record_that_changes_has_its_building_assessed_again(tmp_path):
     assert [run_task(task).is_kept for _ in range(2)] == [False, True]
 
 
-def test_the_index_fills_in_blanks_alone(task):
-    row = IndexRow(path=task.source.path, building="Hall", latitude=1.5, longitude=1.5, use="Office", floor_area_m2=90)
-    (building,) = _rows(replace(task, source=replace(task.source, index=row)), "buildings")
+def test_the_index_fills_in_blanks_alone_and_what_contradicts_is_a_warning(task):
+    row = IndexRow(
+        path=task.source.path, building="Hall", latitude=41.0, longitude=10.0, use="Office", floor_area_m2=90
+    )
+    other = replace(task, source=replace(task.source, index=row))
+    (building,) = _rows(other, "buildings")
     assert (building["building"], building["use"], building["floor_area_m2"]) == ("Hall", "Office", 90.0)
     assert building["latitude"] == 40.0
+    (warning,) = [one for one in _rows(other, "problems") if "the index says" in one["message"]]
+    assert (warning["severity"], warning["sheet"]) == ("warning", "Building")
+    assert warning["message"] == "the index says Latitude 41; the workbook says 40: the workbook holds."
+    assert building["warnings"] == 1 + _rows(task, "buildings")[0]["warnings"]
 
 
 def test_a_workbook_that_cannot_be_used_is_skipped_with_its_problems(task):
@@ -118,20 +125,12 @@ def test_a_use_is_spelled_as_the_workbook_offers_it(task):
     assert _rows(task, "buildings")[0]["use"] == "Hospital"
 
 
-def test_an_index_that_contradicts_its_workbook_is_a_warning_of_the_building(task):
-    row = IndexRow(path=task.source.path, latitude=41.0, longitude=10.0)
-    other = replace(task, source=replace(task.source, index=row))
-    (warning,) = [one for one in _rows(other, "problems") if "the index says" in one["message"]]
-    assert (warning["severity"], warning["sheet"]) == ("warning", "Building")
-    assert warning["message"] == "the index says Latitude 41; the workbook says 40: the workbook holds."
-    assert _rows(other, "buildings")[0]["warnings"] == 1 + _rows(task, "buildings")[0]["warnings"]
-
-
 def test_missing_sheets_are_told_before_the_place_that_the_ground_motion_needs(task):
     write_book(task.source.file, {"Sheet": [["hi"]]})
     errors = [one for one in _rows(task, "problems") if one["severity"] == "error"]
-    assert [one["message"] for one in errors[:2]] == ["the sheet is missing."] * 2
-    assert {one["sheet"] for one in errors[:2]} == {"Floors", "Items"}
+    assert {(one["message"], one["sheet"]) for one in errors[:2]} == {
+        ("the sheet is missing.", sheet) for sheet in ("Floors", "Items")
+    }
     assert "Latitude, Longitude are blank" in errors[2]["message"]
 
 

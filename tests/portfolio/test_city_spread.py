@@ -81,9 +81,6 @@ def test_one_more_building_changes_no_draw_of_another(city):
     assert more[51:].tobytes() == numbers[50:60, :300].tobytes()
 
 
-# --- what is reported ---
-
-
 def test_a_sum_over_buildings_is_made_draw_by_draw_in_any_order_of_rows():
     spread = build_spread(tabulate(np.array([[0, 1, 2, 3], [0, 10, 20, 30]])), "falls", 16.5, 100)
     assert (spread.low, spread.high, spread.draws) == (0, 33, 4)

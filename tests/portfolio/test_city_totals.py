@@ -115,9 +115,6 @@ def test_a_city_of_skipped_buildings_has_no_sums():
     assert (found.groups, found.skipped) == ((), 1)
 
 
-# --- what to start with ---
-
-
 def test_buildings_with_most_people_on_blocked_routes_come_first_then_most_falls():
     rows = [
         {"path": "few people", "people_blocked": 1.6, "expected_falls": 1.0},

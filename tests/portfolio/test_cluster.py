@@ -198,24 +198,22 @@ def _fail(tmp_path, scheduler):
 
 
 HTTP = b"HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\n\r\n"
-ANSWERS = {"HTTP": HTTP, "zeros": bytes(2000), "nothing": b""}
 
 
-@pytest.mark.parametrize("data", ANSWERS.values(), ids=ANSWERS)
-def test_what_is_not_a_scheduler_is_told_in_one_line(tmp_path, data):
-    with _serving(data) as address:
-        line = _fail(tmp_path, address)
-    assert line.startswith(f"error  --scheduler {address}: what is there does not answer as a dask scheduler")
-    assert line.endswith("a scheduler prints its address when it starts.")
-
-
-def test_an_address_where_nobody_is_and_one_of_a_worker_are_told_in_one_line(tmp_path):
+def test_what_is_not_a_scheduler_is_told_in_one_line(tmp_path):
+    """A server of the web, one that says nothing, nobody, and a worker."""
+    said = "what is there does not answer as a dask scheduler"
+    for data in (HTTP, bytes(2000), b""):
+        with _serving(data) as address:
+            line = _fail(tmp_path, address)
+        assert line.startswith(f"error  --scheduler {address}: {said}")
+        assert line.endswith("a scheduler prints its address when it starts.")
     assert re.fullmatch(rf"error  --scheduler 127\.0\.0\.1:1 {UNREACHED}", _fail(tmp_path, "127.0.0.1:1"))
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     with _scheduler() as (_, found), _workers(found, 1, "--nthreads", "1", "--worker-port", str(port)):
         wait_until(lambda: _answers(port))
-        assert "what is there does not answer as a dask scheduler" in _fail(tmp_path, f"tcp://127.0.0.1:{port}")
+        assert said in _fail(tmp_path, f"tcp://127.0.0.1:{port}")
 
 
 def test_an_address_of_another_form_is_refused_at_once():
