@@ -152,7 +152,7 @@ def test_rooms_of_a_basement_go_up():
 def test_rooms_that_reach_a_stair_alone_are_drafted_to_it():
     found = draft(build_office(1, 3, storeys=2, exits=False))
     assert found.unreached == ()
-    assert {row["route"] for row in found.routes} >= {"To Stair 1 s0, foot (draft)"}
+    assert "To Stair 1 s0, foot (draft)" in {row["route"] for row in found.routes}
 
 
 def test_the_nearest_exit_is_taken_and_each_step_leads_on_to_the_next():

@@ -198,8 +198,7 @@ def test_in_ifc2x3_an_appliance_is_known_by_its_type(tmp_path):
     model.element("IfcFlowTerminal", "Mirror", SHELF, within=room, at=(3, 1, 0))
     model.typed("IfcElectricApplianceType", "Fridge", fridge)
     found = read(model, tmp_path)
-    assert [one.name for one in found.pieces] == ["Fridge:1"]
-    assert [one.type for one in found.left_out] == ["Mirror"]
+    assert ([one.name for one in found.pieces], [one.type for one in found.left_out]) == (["Fridge:1"], ["Mirror"])
 
 
 def test_types_are_named_as_programs_show_them(tmp_path):

@@ -36,13 +36,6 @@ def _draw(points, background=None, **more):
     return ET.fromstring(text.replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" ', 1))
 
 
-def test_without_a_background_nothing_looks_like_water():
-    drawn = draw_map([_point(0, 37.8, -122.4)], None, title="Map")
-    assert 'class="sea"' not in drawn
-    assert SEA not in drawn
-    assert drawn.count(GROUND) == 2, "the map, and what lies beside it when it is moved"
-
-
 def _places(svg):
     found = [one.get("transform") for one in svg.find(f"{SVG}g[@class='marks']")]
     return [tuple(map(float, re.match(r"translate\((\S+) (\S+)\)", one).groups())) for one in found]
@@ -83,6 +76,10 @@ def test_one_building_anywhere_has_a_map_with_a_round_scale_and_none_gives_no_ma
         assert find_bar(frame) in (0.5, 0.2, 1.0)
         assert len(_places(_draw([_point(0, latitude, 10.0)]))) == 1
     assert draw_map([], None, title="Map") == ""
+    drawn = draw_map([_point(0, 37.8, -122.4)], None, title="Map")
+    assert 'class="sea"' not in drawn, "without a background nothing looks like water"
+    assert SEA not in drawn
+    assert drawn.count(GROUND) == 2, "the map, and what lies beside it when it is moved"
 
 
 def test_every_sign_has_a_shape_of_its_own():
@@ -150,10 +147,7 @@ def test_the_background_is_cut_to_what_is_shown():
     assert max(map(abs, numbers)) < 1100
     assert land.count("M") == 2  # the square's part with its hole; nothing of what lies far away
     assert svg.find(f"{SVG}path[@class='lines']") is not None
-
-
-def test_a_background_that_crosses_itself_is_drawn_all_the_same():
-    bow = ((-122.4, 37.0), (-122.0, 37.4), (-122.0, 37.0), (-122.4, 37.4), (-122.4, 37.0))
+    bow = ((-122.4, 37.0), (-122.0, 37.4), (-122.0, 37.0), (-122.4, 37.4), (-122.4, 37.0))  # it crosses itself
     svg = _draw([_point(0, 37.0, -122.3), _point(1, 37.4, -121.9)], Background("b", ((bow,),)))
     assert svg.find(f"{SVG}path[@class='land']").get("d").startswith("M")
 

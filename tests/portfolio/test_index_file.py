@@ -150,8 +150,5 @@ def test_a_slip_is_told_once_and_together_with_those_of_names(tmp_path):
         "line 5: give a path, or the name of a building without a survey.",
         "lines 2 and 3 list the same workbook, a.xlsx: keep one of them.",
     ]
-
-
-def test_a_missing_index_is_named(tmp_path):
-    with pytest.raises(InputError, match=r"index\.csv: the index cannot be read: No such file"):
-        read_index(tmp_path / "index.csv")
+    with pytest.raises(InputError, match=r"gone\.csv: the index cannot be read: No such file"):
+        read_index(tmp_path / "gone.csv")

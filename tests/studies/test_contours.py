@@ -25,10 +25,7 @@ def test_the_channel_of_the_highest_risk_as_recorded_is_drawn():
         assert one.compared.trials is max(own, key=lambda other: other.pfv[RECORDED])
         assert one.risk[DIRECT].shape == (len(LEVELS), one.breadth.size) == (17, 17)
         assert one.find_falls(DIRECT).size == one.find_rises(DIRECT).size == 0
-
-
-def test_where_nothing_falls_as_recorded_it_is_that_of_the_largest_pfa():
-    judged = make_compared(lambda b, _h, _a, _v: 0 * b, OPTIONS)
+    judged = make_compared(lambda b, _h, _a, _v: 0 * b, OPTIONS)  # nothing falls: that of the largest PFA
     for one in choose_contours(judged):
         own = [other.trials for other in judged if other.building == one.compared.building]
         assert one.compared.trials.pfa[RECORDED] == max(other.pfa[RECORDED] for other in own)
@@ -57,11 +54,7 @@ def test_equation_9_is_irregular_where_its_coefficients_say():
     assert one.find_falls(PRINTED) == pytest.approx(-steps[steps < 0])
     assert one.find_falls(PRINTED).size > 0
     assert one.find_falls("proposed_or").size == one.find_rises("proposed_or").size == 0
-
-
-def test_what_is_drawn_between_is_the_formula_itself():
-    one = choose_contours(make_compared(lambda b, _h, _a, _v: 0 * b, OPTIONS))[0]
-    breadth, pfa, risk = one.refine("kaneko_hayashi")
+    breadth, pfa, risk = one.refine("kaneko_hayashi")  # what is drawn between is the formula itself
     method = next(method for method in all_methods() if method.key == "kaneko_hayashi")
     at, block = 40, 90
     cases = Cases.of(breadth=breadth[block], height=HEIGHT, pfa=pfa[at], pfv=one.compared.ratio * pfa[at])
