@@ -192,7 +192,6 @@ HOSTILE = (
 
 
 def test_names_stay_text(tmp_path: Path) -> None:
-    """One building in which each space, type and component has such a name."""
     types = [one_type(Name=name)["types"][0] for name in HOSTILE]
     components = [{**COMPONENTS[0], "Name": name, "TypeName": name, "Space": name} for name in HOSTILE]
     spaces = [{"Name": name, "FloorName": "Ground"} for name in HOSTILE]

@@ -69,7 +69,6 @@ def test_what_is_shut_or_far_apart_or_a_door_is_no_opening():
 
 
 def test_the_part_without_furniture_is_passed_and_an_opening_full_of_it_is_one_still():
-    """Whether it can be passed is for the person who walks the draft to say."""
     for y, width, found in ((1.2, 2.4, (3.2, 1.6)), (2.0, 4.2, (2.0, 4.0))):
         counter = piece("counter", 4.1, y, breadth=0.6, width=width, height=0.9, angle_deg=0.0)
         assert find(model(pieces=(counter,))) == [({"a", "b"}, 4.1, *found)]

@@ -134,7 +134,6 @@ def test_a_route_to_a_stair_ends_with_its_flight():
 
 
 def test_rooms_of_a_basement_go_up():
-    """Two storeys below the ground and one above."""
     office = build_office(1, 3, storeys=3)
     lowered = replace(office, storeys=tuple(replace(one, elevation=one.elevation - 3.5) for one in office.storeys))
     out = [door("way out", -0.05, 6.1, 0.0, "1")]
@@ -215,7 +214,6 @@ def test_names_are_each_their_own_and_one_with_a_semicolon_leaves_the_room_blank
 
 
 def test_every_route_is_marked_and_short_in_any_language():
-    """Names that are alike where they are cut stay apart."""
     office = build_office(1, 4)
     names = {one: f"{'x' * 70} {name}" for one, name in name_all(office).items()}
     for language in ("en", "it"):
@@ -328,7 +326,6 @@ def test_any_model_gives_a_draft_that_holds_together(model):
 
 @pytest.mark.slow
 def test_rooms_that_lie_in_each_other_are_bounded():
-    """So are many doors at one place."""
     count = 60
     spaces = tuple(Space(f"r{at}", "0", "", "", rectangle(0, 0, 20 + at * 0.01, 20), 0.0, 3.0) for at in range(count))
     doors = tuple(door(f"d{at}", 20.0, at * 20 / count, 0.0) for at in range(count))

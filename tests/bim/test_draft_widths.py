@@ -68,7 +68,6 @@ def test_two_columns_before_an_exit_bound_the_segment_to_it():
 
 @pytest.mark.parametrize("turn", [-60.0, -40.0, 0.0, 40.0, 60.0])
 def test_a_door_that_is_reached_at_an_angle_is_as_wide_as_it_is(turn):
-    """The wall beside it bounds one side alone."""
     ends = (10.05 - 4 * math.cos(math.radians(turn)), 3.0 - 2.5 * math.sin(math.radians(turn))), (10.05, 3.0)
     whole = hall(walls={"0": (rectangle(10, 0, 10.1, 6),)})  # a wall that is not cut at the door does not close it
     for found in (measure(hall(), *ends), measure(whole, *ends)):

@@ -43,7 +43,6 @@ def test_a_draft_is_a_workbook_without_errors(published, tmp_path):
 
 
 def test_every_segment_on_a_storey_is_on_the_plan_and_no_piece_stands_in_it(results):
-    """Ways go round furniture: what blocks them has to fall."""
     segments = results.route_tables.segments
     flights = [one for one in segments if one.floor is None]
     assert len(flights) == 2

@@ -262,7 +262,6 @@ def test_a_model_that_was_exported_before_is_refused(simulated, exported):
 
 
 def test_pieces_of_another_workbook_can_join_a_model(flat, tmp_path):
-    """Two workbooks of one building: the sets of the second join those of the first."""
     joined = tmp_path / "joined.ifc"
     joined.write_bytes(export(write_results(tmp_path / "a", CUPBOARDS[:2]), flat, with_topics=False).model)
     second = export(write_results(tmp_path / "b", CUPBOARDS[2:]), joined, with_topics=False)

@@ -172,7 +172,6 @@ def test_titles_and_labels_have_the_upper_class_as_well(simulated, flat, tmp_pat
 
 
 def test_a_topic_of_unlike_pieces_has_the_highest_class_of_any(pair, flat, tmp_path):
-    """One is high; the other medium, but could be very high."""
     classes = [
         {"class": "medium", "class_upper": "very high", "probability": 0.5},
         {"class": "high", "class_upper": "high", "probability": 0.5},
@@ -234,7 +233,6 @@ def test_of_an_entry_that_is_partly_in_the_model_the_rest_is_named(flat, tmp_pat
 
 
 def test_pieces_with_one_source_id_have_topics_of_their_own(flat, tmp_path):
-    """Cupboards of other sizes, in entries of their own, both on one element of the model."""
     items = [CUPBOARDS[0], CUPBOARDS[1] | {"source_id": CUPBOARD_1, "height": 240.0, "room": "B203"}]
     found = read_topics(write_results(tmp_path, items), flat)
     assert [one.selected for one in found.topics] == [[CUPBOARD_1]] * 2

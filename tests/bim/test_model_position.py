@@ -61,7 +61,6 @@ def test_a_size_beyond_reason_leaves_the_plan_as_it_is(tmp_path, size):
 
 @pytest.mark.parametrize("elevation", [1655.0, 1e20])
 def test_an_elevation_that_no_workbook_takes_is_left_blank(tmp_path, elevation):
-    """Above the sea, for one."""
     model = ModelWriter()
     storey = model.storey("Level 1", elevation, z=0.0)
     model.piece("Shelf", SHELF, within=storey, at=(2, 1, 0))

@@ -193,7 +193,6 @@ def test_types_told_apart_by_a_number_are_found_by_their_sizes() -> None:
 
 
 def test_places_follow_and_their_kind_stays(book: bytes) -> None:
-    """Those of people and those that the model lost stay as they are."""
     data = typed(book, "Places", 2, kind="corridor")
     data = typed(data, "Places", 6, place="Assembly point", floor="Level 1", x=-9, y=0, kind="exit")
     outline = "0 0; 7 0; 7 4; 0 4"

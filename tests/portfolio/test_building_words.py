@@ -24,6 +24,5 @@ def test_motions_of_its_own_are_marked_and_a_skipped_building_is_named():
 
 
 def test_an_unconfirmed_class_is_not_said_to_be_that_of_the_formula():
-    """Where nothing is known of the building it is that of the simulation."""
     row = {"risk_class": "high", "risk_class_upper": "very high", "is_held": False, "basis": "unconfirmed"}
     assert label_piece(row, "simulated") == ("◌ unconfirmed (high)", "apart-unconfirmed")

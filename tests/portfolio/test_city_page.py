@@ -101,7 +101,6 @@ def test_the_list_holds_the_share_beside_the_expected_falls(html, data, view):
 
 
 def test_what_is_not_known_of_a_building_stands_beside_its_numbers(view):
-    """Each is told in the list; a skipped one is told with its name and whole reason."""
     rows = view.buildings.copy()
     first = build_content(view).buildings[0]["path"]
     changed = {"unconfirmed": 25, "own_motions": 2, "occupants": 100, "people_not_known": 58, "routes": 3,

@@ -83,7 +83,6 @@ def test_every_record_comes_along(buildings):
 
 
 def test_channels_hang_along_the_axes_that_their_files_say(buildings):
-    """All channels of an axis look along one line, and those of the other across it, within 1 degree."""
     for building in buildings:
         azimuths = {
             axis: [read_records(one.file)[0].azimuth_deg for one in building.channels if one.axis == axis]

@@ -131,7 +131,6 @@ def make_tried(floors, chance, seed):
 
 
 def test_right_chances_are_found_right():
-    """In each class, and over all cases: within three errors."""
     found = calibrate(make_tried(list_beams(), lambda rng, shape: np.round(rng.random(shape), 2), 8))
     assert found.whole.cases == 56 * 96
     assert abs(found.whole.difference) < 3 * found.whole.error < 0.03
