@@ -180,9 +180,8 @@ def test_a_hidden_group_hides_its_pieces():
 
 
 def test_a_round_wall_is_not_drawn():
-    assert [str(one) for one in read(change(b"<wall id=", b"<wall arcExtent='1.5' id=")).remarks] == [
-        "1 round wall is not drawn."
-    ]
+    (remark,) = read(change(b"<wall id=", b"<wall arcExtent='1.5' id=")).remarks
+    assert str(remark) == "1 round wall is not drawn."
 
 
 def test_an_empty_home_is_a_model_of_nothing():
