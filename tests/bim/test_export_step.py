@@ -6,7 +6,7 @@ from typing import Any
 import ifcopenshell
 import ifcopenshell.guid
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from assess.bim.export_step import (
@@ -48,6 +48,7 @@ def test_texts_are_ascii_on_one_line(text, written):
     assert write_text(text) == written
 
 
+@settings(max_examples=40)
 @given(st.text(st.characters(codec="utf-8"), max_size=40))
 def test_every_text_comes_back(text):
     assert read_back(write_label(text)) == plain_line(text)
@@ -58,6 +59,7 @@ def test_a_label_is_no_longer_than_the_schema_allows():
     assert (len(value), value[-2:]) == (LONGEST_LABEL, "è…")
 
 
+@settings(max_examples=40)
 @given(st.floats(min_value=-1e12, max_value=1e12))
 def test_every_number_comes_back(number):
     text = write_real(number)
