@@ -64,7 +64,11 @@ def test_half_sines_by_every_solver(limit, solver, within):
         assert follow(limit.case, exact + side, solver).overturned == (side > 0)
 
 
-@pytest.mark.parametrize("limit", LIMITS[:6], ids=name)
+@pytest.mark.parametrize(
+    "limit",
+    [pytest.param(one, marks=() if at in (0, 3) else pytest.mark.slow) for at, one in enumerate(LIMITS[:6])],
+    ids=name,
+)
 def test_one_sines_by_every_solver(limit):
     """DOP853 and the kernel share nothing but the equation; the others are as near as the page tells."""
     exact, kernel = find_limit(limit, EXACT), find_limit(limit, KERNEL)
