@@ -226,7 +226,8 @@ def test_nothing_is_written_on_what_is_no_furniture_or_not_in_the_model(tmp_path
 
 def test_what_an_import_takes_by_name_may_be_a_piece(tmp_path):
     writer = ModelWriter("IFC4")
-    storey, items = writer.storey(), []
+    storey = writer.storey()
+    items: list[dict[str, Any]] = []
     for name in ("BuildingElementProxy", "ElementAssembly", "TransportElement", "FlowTerminal", "Tank"):
         one = writer.element(f"Ifc{name}", name, (0, 0, 0, 0.6, 1.2, 2.0), within=storey, at=(2, 3, 0))
         items.append(piece(name, "1", one.GlobalId, 2 + len(items), 3))

@@ -83,7 +83,9 @@ def pair(tmp_path_factory):
 
 
 def export_topics(results: Path, model: Path = DUPLEX) -> Topics:
-    return export(results, model, with_properties=False).topics
+    found = export(results, model, with_properties=False).topics
+    assert found is not None
+    return found
 
 
 def read_topics(results: Path, model: Path = DUPLEX) -> "Bcf":
@@ -284,8 +286,8 @@ def test_where_positions_do_not_agree_no_door_is_taken_and_one_that_was_moved_do
     assert (found.is_placed, found.doors) == (False, 0)
     assert find(Bcf(found.data), CUPBOARD_1).point("CameraViewPoint")
     items[1] = CUPBOARDS[1]
-    found = read_topics(write_results(tmp_path, items, places=PLACES, routes=ROUTES))
-    assert DOOR_B202 in find(found, CUPBOARD_1).selected
+    moved = read_topics(write_results(tmp_path, items, places=PLACES, routes=ROUTES))
+    assert DOOR_B202 in find(moved, CUPBOARD_1).selected
 
 
 def test_pieces_without_shapes_are_seen_at_their_origin(tmp_path):

@@ -131,8 +131,8 @@ def test_remarks_and_warnings_say_what_a_scan_does_not_know():
     assert [str(one) for one in read(scan).remarks] == [
         "2 pieces were recognised with low confidence: check what they are: Storage (1), Chair (1)."
     ]
-    for objects in ([], None):
-        model = read(office(objects=objects))
+    for bare in (office(objects=[]), office(objects=None)):
+        model = read(bare)
         assert (len(model.pieces), len(model.spaces)) == (0, 1)
         assert [str(one) for one in model.remarks] == ["The scan holds no objects: fill in Items by hand."]
 

@@ -124,7 +124,7 @@ def test_a_piece_that_was_moved_gets_its_position_room_and_floor(book: bytes) ->
 
 def test_what_people_typed_stays(book: bytes) -> None:
     data = typed(book, **TYPED)
-    every = {"breadth": 61.0, "width": 81.0, "height": 210.0, "x": 7.0, "y": 7.0, "angle_deg": 10.0}
+    every: dict[str, Any] = {"breadth": 61.0, "width": 81.0, "height": 210.0, "x": 7.0, "y": 7.0, "angle_deg": 10.0}
     every |= {"room": "A102 Office"}
     found = update(data, changed(p1=every | {"notes": "other", "anchored": "unknown", "item": "Z", "description": "Z"}))
     before, after = ({**row(one).values} for one in (data, found.data))

@@ -1,5 +1,7 @@
 """A made-up city as tables: what the outputs are tested on, without assessing hundreds of buildings."""
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 
@@ -27,7 +29,8 @@ def frame(name, rows):
 def make_view(count=40, *, draws=200, pieces=12, verify="all", seed=1):
     """Return a city of `count` buildings: some assumed, skipped, without a place, with a nasty name."""
     random = np.random.default_rng(seed)
-    buildings, rows, routes, problems, drawn = [], [], [], [], []
+    buildings: list[dict[str, Any]] = []
+    rows, routes, problems, drawn = [], [], [], []
     shared = random.standard_normal(draws)
     for at, one in enumerate(list_buildings(count)):
         path = one.path or one.name
@@ -51,7 +54,8 @@ def make_view(count=40, *, draws=200, pieces=12, verify="all", seed=1):
         basis = "simulated" if verify == "all" else "formula"
         buildings.append(_assess(path, name, one, own, falls, basis=basis, is_placed=at != 5))
         if has_routes:
-            buildings[-1] |= {"routes": 1, "routes_blocked": 1, "occupants": 40, "people_blocked": float(people.mean())}
+            buildings[-1] |= {"routes": 1, "routes_blocked": 1, "occupants": 40}
+            buildings[-1]["people_blocked"] = float(people.mean())
             routes.append({
                 "path": path, "route": "Way out", "state": "blocked" if at % 2 else "doubtful",
                 "probability": float((people > 0).mean()), "probability_low": 0.1, "probability_high": 0.5,

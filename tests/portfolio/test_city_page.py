@@ -175,7 +175,7 @@ def open_page(browser, html, tmp_path):
         pages.append(page)
         page.on("console", lambda message: complaints.append(message.text))
         page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("request", lambda one: one.url[:5] in ("file:", "data:") or complaints.append(one.url))
+        page.on("request", lambda one: complaints.extend([one.url] * (one.url[:5] not in ("file:", "data:"))))
         page.goto((tmp_path / "city.html").as_uri())
         return page
 
