@@ -1,7 +1,5 @@
 """What was not simulated, or not to be relied on, stands apart: in counts, lists, sums, pages, files and at the end."""
 
-import csv
-import json
 import re
 import shutil
 from dataclasses import replace
@@ -15,7 +13,6 @@ from assess.report.content import build_content
 from assess.report.counts import build_bars, count
 from assess.report.figures.plan import build_plan
 from assess.report.findings.apart import list_parts, list_ways_to_settle
-from assess.report.words import risk_notes
 from assess.results import BASES
 from assess.risk import RiskClass, classify
 from assess.settings import Settings
@@ -123,31 +120,7 @@ def test_bars_and_plans_give_them_no_class(mixed):
     assert piece.fill not in {risk.fill for risk in RiskClass}
 
 
-def test_by_the_formulas_alone_nothing_stands_apart(formulas):
-    content = build_content(formulas)
-    assert {one.apart for one in formulas} == {""}
-    assert (content.total.free, content.total.unconfirmed, content.total.by_formula) == (7, 0, 0)
-    assert content.summary.apart == []
-    text = read_text(render(formulas))
-    for apart in ("unconfirmed and counted apart", "is unconfirmed", "are unconfirmed", "◌"):
-        assert apart not in text.partition("What the marks mean")[0]
-    assert "by formula only" not in text
-    assert "like this one" not in text.partition("Methods")[0]
-
-
 # ---------------------------------------------------------------- pages
-
-
-def test_the_summary_names_them_and_what_settles_them(mixed, page):
-    text = read_text(page)
-    assert "simulated free-standing pieces, " in text
-    assert "and up to 4 unconfirmed pieces; " in text
-    assert text.count("4 pieces are unconfirmed and counted apart") == 1
-    assert "(wide, broad). 4 of them would be high or very high." in text
-    assert "To settle this, fill in Storeys or Period T1 in the sheet Building, or records of the floors." in text
-    assert "1 piece was not simulated and is counted apart, by formula only." in text
-    assert re.search(r"◌ unconfirmed</span><span class=\"tile-number\">4<", page)
-    assert re.search(r"ƒ by formula only</span><span class=\"tile-number\">1<", page)
 
 
 def test_a_class_of_the_table_of_all_pieces_never_mixes_bases(mixed, page):
@@ -166,39 +139,11 @@ def test_a_class_of_the_table_of_all_pieces_never_mixes_bases(mixed, page):
     }  # fmt: skip
 
 
-def test_floors_have_columns_of_their_own_for_them(page):
-    table = page[page.index('<table class="counts">') :].partition("</table>")[0]
-    head, *rows = re.findall(r"<tr.*?</tr>", table, re.DOTALL)
-    assert "unconfirmed" in head
-    assert "by formula only" in head
-    cells = [re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", row) for row in rows]
-    second = next(row for row in cells if row[0] == "Floor 2")
-    assert second[2:] == ["0", "0", "0", "0", "4", "1", "1", "6", "0.0 and up to 4"]
-
-
-def test_the_command_ends_with_a_count_of_each(mixed, formulas):
-    lines = list(describe_result(mixed))
-    text = "\n".join(lines)
-    assert sum(int(re.findall(r"(\d+) piece", line)[0]) for line in lines[:4]) == 2
-    assert "  cannot rock      1 of the low ones: too stocky, or no motion can start them" in lines
-    assert re.search(r"^  unconfirmed +4, not counted above: .*fill in Storeys or Period T1", text, re.MULTILINE)
-    assert re.search(r"^  by formula +1, not counted above: not simulated$", text, re.MULTILINE)
-    assert "with a dispersion of 0.4 (standard deviation of ln amplitude; assumed)." in lines[-1]
-    assert "unconfirmed" not in " ".join(describe_result(formulas))
-
-
 def test_classes_are_said_to_stay_unconfirmed_only_where_pieces_were_simulated(mixed, formulas):
     drawn = "neither T1, Height, Storeys nor an Elevation is known, so that buildings of every period and floors of"
     for results, is_said in ((mixed, True), (formulas, False)):
         (text,) = (one.message for one in results.problem_rows if drawn in one.message)
         assert text.endswith("; classes stay unconfirmed.") == is_said
-
-
-def test_of_an_unconfirmed_piece_no_report_says_that_its_class_was_lowered(mixed, page):
-    assert any(one.adopted.risk < one.formula_class for one in mixed if one.apart == "unconfirmed")
-    assert {one.adopted.lowered_from for one in mixed if one.apart} == {None}
-    assert "lowered by simulation (" not in read_text(page)
-    assert "class lowered" not in " ".join(describe_result(mixed))
 
 
 def test_weak_motions_are_settled_by_stronger_ones(tmp_path):
@@ -212,35 +157,6 @@ def test_weak_motions_are_settled_by_stronger_ones(tmp_path):
 
 
 # ---------------------------------------------------------------- files
-
-
-def test_files_hold_the_basis_and_the_chance_if_exactly_this_motion_recurred(mixed, tmp_path):
-    written = assess.write_reports(mixed, tmp_path, ["json", "csv"])
-    found = json.loads(written["json"].read_text(encoding="utf-8"))
-    assert found["assess"]["uncertainty"] == {"motion": 0.4, "piece": True}
-    assert (found["assess"]["settings"]["ideal"], found["assess"]["settings"]["scale"]) == (False, 1.0)
-    with written["csv"].open(encoding="utf-8-sig", newline="") as file:
-        rows = {row["item"]: row for row in csv.DictReader(file)}
-    for record in found["items"]:
-        name, one = record["item"], mixed[record["item"]]
-        assert record["adopted"]["basis"] == rows[name]["adopted_basis"] == EXPECTED[name]
-        assert record["centre_of_gravity"] == 0.5
-        if EXPECTED[name] == "formula":
-            assert record["verification"] is None
-            continue
-        ideal, simulation = record["verification"]["ideal"], one.governing.simulation
-        if EXPECTED[name] == "unconfirmed":
-            assert (ideal, rows[name]["verification_ideal_probability"]) == (None, ""), "no motion that could recur"
-            thirds = [record["verification"][f"if_{one}"] for one in ("slower", "faster")]
-            assert thirds == [simulation.if_slower, simulation.if_faster]
-            continue
-        assert ideal == {
-            "runs": 20, "overturned": simulation.ideal.overturned, "probability": simulation.ideal.probability,
-            "low": simulation.ideal.low, "high": simulation.ideal.high,
-        }  # fmt: skip
-        assert float(rows[name]["verification_ideal_probability"]) == ideal["overturned"] / 20
-    motions = [one for floor in found["floors"] for one in floor["demands"] if one["ensemble"]]
-    assert {one["source"]: one["ensemble"]["unknown_building"] for one in motions} == {"record": False, "given": True}
 
 
 # ---------------------------------------------------------------- what was assumed
@@ -271,47 +187,6 @@ def test_the_summary_says_what_was_varied_and_what_it_changes(mixed):
     assert f"With a dispersion of 0.6, {up}." in text
     assert "base × N(0.97, 0.05), its height × N(1, 0.02), its centre of gravity N(as given, 0.05)" in text
     assert "have the same random phases on all floors along an axis; the signs of modes from floor to floor are" in text
-
-
-def test_a_dispersion_of_the_workbook_is_not_called_assumed(tmp_path):
-    results = _assess(tmp_path, ITEMS[1:2], {"motion_uncertainty": 0.6, "piece_uncertainty": "no"}, runs=10)
-    text = read_text(render(results))
-    assert "with a dispersion of 0.6 (standard deviation of ln amplitude; as filled in)." in text
-    assert "Sizes, centre of gravity and restitution are exactly as given." in text
-    assert "With a dispersion of 0.2, " in text
-    assert "With a dispersion of 0.6, " not in text
-    assert "Each piece draws its base" not in text
-
-
-def test_a_row_says_that_exactly_this_motion_would_give_a_higher_class(mixed):
-    table = mixed.cases_table
-    outcome = table.outcomes[mixed.simulation.key]
-    at = mixed["still"].governing.index
-    table = replace(
-        table, adopted=table.adopted | {"basis": np.where(np.arange(len(table)) == at, 1, table.adopted["basis"])}
-    )
-    basis = np.where(np.arange(len(table)) == at, BASES.index("simulated"), table.adopted["basis"])
-    ideal = np.where(np.arange(len(table)) == at, 0.5, outcome.detail["ideal"])
-    upper = np.where(np.arange(len(table)) == at, int(RiskClass.HIGH), table.adopted["upper"])
-    higher = table.adopted["ideal_higher"] | (np.arange(len(table)) == at)
-    formula = table.outcomes[mixed.formula.key]
-    outcomes = {
-        mixed.simulation.key: replace(outcome, detail=outcome.detail | {"ideal": ideal}),
-        mixed.formula.key: replace(formula, value=np.where(np.arange(len(table)) == at, 0.1, formula.value)),
-    }
-    changed = replace(
-        table,
-        outcomes=table.outcomes | outcomes,
-        adopted=table.adopted | {"basis": basis, "upper": upper, "ideal_higher": higher},
-    )
-    results = replace(mixed, cases_table=changed)
-    text = read_text(render(results))
-    assert "○ low, high if exactly this motion recurred, lowered by simulation (formula: medium)" in text
-    assert risk_notes(results["still"]) == [
-        "high if exactly this motion recurred",
-        "lowered by simulation (formula: medium)",
-    ]
-    assert "Would be of a higher class if exactly this motion recurred and the piece were exactly as given" in text
 
 
 CONDITIONS = (

@@ -1,12 +1,9 @@
-import csv
 import json
-import math
 
 import jsonschema
 import pytest
 
-from assess.fields import item_fields
-from assess.report.data import SCHEMA, write_csv, write_json
+from assess.report.data import SCHEMA, write_json
 from assess.report.results_schema import build_schema
 from tests.workbooks import ITEMS, assessed
 
@@ -56,27 +53,6 @@ def test_schema_refuses_an_unknown_field_and_a_probability_above_one(results):
         jsonschema.validate(wrong, schema)
 
 
-def test_results_hold_what_was_assessed(results):
-    run, found = results
-    assert [item["item"] for item in found["items"]] == [item["item"] for item in ITEMS]
-    first = found["items"][0]
-    assert (first["breadth_cm"], first["width_cm"], first["height_cm"]) == (30.0, 80.0, 200.0)
-    assert first["axis"] == "Y", "of the larger PFV"
-    assert first["axis_given"] is None
-    assert (first["pfa_g"], first["pfv_cm_s"]) == (0.2, 45.0)
-    assert {axis["axis"] for axis in first["axes"]} == {"X", "Y"}
-    assert first["adopted"]["probability"] == first["methods"]["fema_p58"]["value"]
-    assert first["verification"] is None
-    assert first["methods"]["housner_monte_carlo"]["value"] is None
-    assert {demand["ensemble"] for floor in found["floors"] for demand in floor["demands"]} == {None}
-    settings = found["assess"]["settings"]
-    assert found["schema"] == "5.3"
-    assert found["assess"]["seed"] == settings["seed"] == 1
-    assert (settings["verify"], settings["runs"], settings["scale_motions"]) == ("none", 200, False)
-    assert found["assess"]["inputs"]["motions"] == {}
-    assert found["assess"]["inputs"]["sha256"] == run.provenance.sha256
-
-
 def test_by_the_formula_of_the_paper_the_larger_pfa_governs(tmp_path):
     run = assessed(tmp_path / "w.xlsx", class_by="proposed OR")
     write_json(run, tmp_path / "r.json")
@@ -101,32 +77,3 @@ def test_a_pfv_that_is_not_given_is_a_number(tmp_path):
     assert found["items"][0]["pfv_cm_s"] == demands[0]["pfv_cm_s"]
     assert found["items"][0]["methods"]["fema_p58"]["value"] is not None
     assert "pfv_unknown" not in found["items"][0]["methods"]["fema_p58"]["flags"]
-
-
-def test_csv_is_the_same_table(results, tmp_path):
-    run, found = results
-    write_csv(run, tmp_path / "items.csv")
-    assert (tmp_path / "items.csv").read_bytes().startswith(b"\xef\xbb\xbf")
-    with (tmp_path / "items.csv").open(encoding="utf-8-sig", newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert len(rows) == len(found["items"])
-    assert list(rows[0]) == [field.key for field in item_fields(run)]
-    for row, item in zip(rows, found["items"], strict=True):
-        assert float(row["proposed_or"]) == item["methods"]["proposed_or"]["value"]
-        assert float(row["proposed_or_raw"]) == item["methods"]["proposed_or"]["raw"]
-        assert row["adopted_class"] == item["adopted"]["class"]
-        assert {value for name, value in row.items() if name.startswith("verification_")} == {""}
-        assert math.isclose(float(row["breadth_to_height"]), item["breadth_to_height"], abs_tol=0)
-
-
-def test_csv_defuses_formulas_and_leaves_negative_numbers(tmp_path):
-    items = [{"item": "=1+1", "floor": "1", "room": "@SUM(A1)", "description": "-2+3", "breadth": 30, "height": 200,
-              "edge_distance": -0.4, "notes": "+1"}]  # fmt: skip
-    write_csv(assessed(tmp_path / "w.xlsx", items), tmp_path / "items.csv")
-    with (tmp_path / "items.csv").open(encoding="utf-8-sig", newline="") as file:
-        (row,) = csv.DictReader(file)
-    assert row["item"] == "'=1+1"
-    assert row["room"] == "'@SUM(A1)"
-    assert row["description"] == "'-2+3"
-    assert row["notes"] == "'+1"
-    assert row["edge_distance_m"] == "-0.4"

@@ -8,7 +8,6 @@ import re
 import pytest
 
 import assess
-from assess.i18n import load_catalogue, speaking
 from assess.methods._fitted_model import Polynomial, build_method
 from assess.report.findings.disagreements import MOST_REASONS, NAMED, find_disagreements, group_disagreements, span
 from assess.report.words import name_ranges
@@ -140,23 +139,6 @@ class TestKnownRows:
 
 
 class TestExampleBuilding:
-    def test_by_the_formulas(self, example):
-        both = found(example)
-        assert both.summary == (
-            "On 9 of 121 rows, methods differ by more than one class; most often Proposed OR formula lies above "
-            "Kaneko-Hayashi formula (on 9)."
-        )
-        first, second = both.groups
-        assert (len(first.rows), first.named[:2], first.left) == (8, ["25-01", "25-02"], 0)
-        assert first.highest == "Proposed OR formula: ▲ high, 34.5 to 36.3 %"
-        assert first.reasons[0].startswith("PFA 0.136 to 0.165 g is 0.59 to 0.66 times g·B/H, ")
-        assert second.named == ["G-04"]
-        assert any("jumps between acceleration and velocity" in reason for reason in second.reasons)
-
-    def test_in_another_language_the_numbers_follow(self, example):
-        with speaking(load_catalogue("it")):
-            assert "0,136" in found(example).groups[0].reasons[0]
-
     def test_a_long_group_names_some_and_counts_the_others(self, example):
         (long, *_) = group_disagreements(rows_of(example) * 2)
         assert (len(long.rows), len(long.named), long.left) == (16, NAMED, 4)

@@ -55,10 +55,6 @@ def test_a_building_alone_names_neither(placed):
     assert not list_draw_assumptions(results)
 
 
-def test_publications_stand_in_the_references_only_where_they_were_used(placed):
-    assert [JAYARAM in " ".join(build_content(one).references) for one in (placed, alone(placed))] == [True, False]
-
-
 def test_the_share_of_a_shakemap_is_not_that_of_a_publication(placed):
     results = changed(placed, is_shared_given=True, shared=0.25)
     assert "a share of 0.250 of its variance (as the ShakeMap gives it)" in say_draws(results)
@@ -92,13 +88,6 @@ def test_nothing_is_said_of_draws_that_were_not_made(placed):
     assert say_draws(replace(placed, settings=replace(SETTINGS, ideal=True))) == ""
     fixed = replace(placed.provenance, uncertainty=replace(placed.provenance.uncertainty, motion=0.0))
     assert say_draws(replace(placed, provenance=fixed)) == ""
-
-
-def test_the_assumptions_have_a_line_of_the_draws(placed):
-    ((label, text),) = list_draw_assumptions(placed)
-    assert (label, text) in build_content(placed).assumptions
-    assert label.startswith("Draws of an earthquake")
-    assert text == say_draws(placed)
 
 
 def test_results_json_holds_how_earthquakes_were_drawn(placed):

@@ -91,13 +91,6 @@ def test_the_client_reads_no_more_pages_than_a_client_reads(results, written):
         assert text in pages[0]
 
 
-def test_both_editions_number_their_pages_and_have_bookmarks(written):
-    for name in ("pdf", "annex"):
-        pages, toc = _read(written[name])
-        assert all(f"Page {at} of {len(pages)}" in text for at, text in enumerate(pages, 1))
-        assert {level for level, _title, _page in toc} == {0, 1}
-
-
 def test_the_annex_has_every_piece_and_what_the_classes_rest_on(results, written):
     pages, toc = _read(written["annex"])
     text = " ".join(pages)
@@ -107,10 +100,6 @@ def test_the_annex_has_every_piece_and_what_the_classes_rest_on(results, written
     assert [title for title in parts if title in wanted] == wanted
     assert parts[-2:] == ["All pieces", "Comparison of the methods"]
     assert "Default friction" in text, "the cover has no room for it"
-
-
-def test_every_source_of_the_client_can_be_cited(written):
-    assert UNCITABLE.findall(" ".join(_read(written["pdf"])[0])) == []
 
 
 def test_both_carry_workbook_and_results_and_are_known_when_they_change(results, tmp_path):

@@ -7,11 +7,10 @@ import openpyxl
 import pytest
 
 import assess
-from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED
+from assess.motion.scenario import UNVERIFIED
 from assess.report.content import build_content
 from assess.report.data import SCHEMA
 from assess.report.findings.motions import ENVELOPES, describe_origin, describe_source
-from assess.report.pages.html import write_equation
 from assess.results import MAY_BE_LOWER, MOTION_FLAGS
 from tests.report.reading import read_text
 from tests.shaking import write_records
@@ -30,8 +29,6 @@ FLOORS = [
 ]
 PLACED = [{"floor": name, "elevation": z} for name, z in (("1", 0), ("2", 3), ("3", 12), ("4", 16))]
 """Floors of which only the elevation is known."""
-WORKED_OUT = "ASCE 7-22, 13.3.1.1, Eq. 13.3-5: z/h 0.800, amplification 3.000 of ground PGA 0.250 g"
-"""Floor 4: 16/20 = 0.8, 1 + 2.5 x 0.8 = 3."""
 
 
 def _reports(folder, scenario=None, formats=("html", "xlsx", "json"), floors=FLOORS, **building):
@@ -112,41 +109,6 @@ def test_json_of_a_codes_profile(coded):
     assert all("code_profile" in item["adopted"]["flags"] for item in found["items"])
 
 
-def test_html_says_what_was_used_and_what_to_beware_of(mixed):
-    text = read_text(mixed["html"].read_text(encoding="utf-8"))
-    assert text.count("Floor 2: no motion is known there; it is interpolated between the floors above") == 1
-    assert text.count("Floor 2: interpolated between floors; it may be lower than the truth.") == 1
-    assert text.count("The floors' motion comes from mixed sources") == 2
-    assert "All 2 cautions on the motion of the floors" in text
-    assert "linear over elevation, PFA and PFV each: interpolated between floors 1 and 3" in text
-    assert "interpolated between floors 1 and 3: 2 X" in text
-    assert "given PFA and PFV: 4 X; given PFA: 4 Y; drawn buildings on the ground motion: 5 X, 5 Y." in text
-    said = "recorded motion (1, 3); given peaks (4); interpolated between floors (2)"
-    assert f"mixed sources: {said}; drawn buildings on the ground motion (5)." in text
-
-
-def test_html_says_what_a_profile_gives(coded):
-    text = read_text(coded["html"].read_text(encoding="utf-8"))
-    assert text.count(f"Floors 1, 2, 3, 4: the motion is that of ASCE 7-22. {ENVELOPES}") == 1
-    assert text.count("Floors 1, 2, 3, 4: the motion is a code's design profile, an envelope.") == 1  # the summary
-    assert text.count(WORKED_OUT) == 2  # one an axis
-
-
-def test_the_methods_list_every_profile_with_clause_and_equation(coded):
-    text, rows = read_text(coded["html"].read_text(encoding="utf-8")), _rows(coded, "Methods")
-    for profile in PROFILES.values():
-        own = {what: words for title, what, words in rows if title == profile.title}
-        assert own["Clause"].startswith(profile.clause)
-        assert own["Equation"] == profile.equation
-        assert own["Source"] == profile.reference
-        for what in ("Clause", "Status"):
-            assert own[what] in text
-        assert read_text(str(write_equation(own["Equation"]))) in text
-        assert (profile.reference in text) == (profile.key == "ASCE 7-22"), "references name what was used"
-        status = VERIFIED if profile.verified else UNVERIFIED
-        assert own["Status"] == f"{status[0].upper()}{status[1:]}. {profile.remark}"
-
-
 def test_above_1_g_a_drawn_building_is_said_to_stay_elastic(tmp_path):
     motions = _content(tmp_path, PLACED, ground_pga=0.65, height=20, period=1.0).run.motions
     said = {(one.floor, describe_source(one).partition(", ")[2]) for one in motions}
@@ -167,25 +129,6 @@ def test_the_assumptions_give_what_the_profile_started_from(tmp_path):
     assert "R_μ of ASCE 7-22" not in assumed
 
 
-def test_excel_says_it_on_floors(mixed):
-    floors, demands = {row[0]: row for row in _rows(mixed, "Floors")}, _json(mixed)["floors"]
-    between, _, _, given, beam = (floors[name] for name in "23145")
-    (used,) = (one for one in demands[1]["demands"] if one["axis"] == "X")
-    assert between[2:5] == [used["pfa_g"], used["pfv_cm_s"], "interpolated between floors 1 and 3"]
-    assert given[2:5] == [0.6, 60, "given PFA and PFV"]
-    assert (given[5], given[7]) == (0.5, "given PFA")
-    assert beam[4] == beam[7] == "drawn buildings on the ground motion"
-
-
-def test_excel_says_it_on_summary_floors_and_motions(coded):
-    summary = [row[0] for row in _rows(coded, "Summary")]
-    assert f"Floors 1, 2, 3, 4: the motion is that of ASCE 7-22. {ENVELOPES}" in summary
-    floors = {row[0]: row for row in _rows(coded, "Floors")}
-    assert floors["4"][4] == floors["4"][7] == "design profile of ASCE 7-22: z/h 0.800, amplification 3.000"
-    motions = [row for row in _rows(coded, "Motions") if row[0] == "4"]
-    assert [row[4:8] for row in motions] == [[WORKED_OUT, 0.8, pytest.approx(3.0), pytest.approx(0.75)]] * 2
-
-
 def test_in_excel_a_pfv_that_is_not_known_by_itself_follows_pfa(mixed):
     """The values are what LibreOffice would compute: the formula holds the ratio as run."""
     floors = {row[0]: row for row in _rows(mixed, "Floors")}
@@ -199,13 +142,6 @@ def test_in_excel_a_pfv_that_is_not_known_by_itself_follows_pfa(mixed):
         row = [*floors].index(floor)
         assert cell == f"{'C' if axis == 'X' else 'F'}{row + 1}"
         assert pfa * float(ratio) == pytest.approx(one["pfv_cm_s"])
-
-
-def test_a_report_of_given_floors_alone_says_nothing_of_profiles_on_its_summary(tmp_path):
-    written = _reports(tmp_path, None, ("html", "xlsx"), [floor | {"pfa_x": 0.2} for floor in PLACED])
-    text = read_text(written["html"].read_text(encoding="utf-8"))
-    assert text.count(ENVELOPES) == 1  # in the methods
-    assert not any("profile" in str(row[0]) for row in _rows(written, "Assumptions"))
 
 
 def test_an_unverified_profile_says_so_where_it_is_used(tmp_path):
@@ -228,17 +164,6 @@ def test_interpolation_is_said_to_be_possibly_too_low(mixed):
     text = read_text(mixed["html"].read_text(encoding="utf-8"))
     assert text.count(f"the floors above and below. This {MAY_BE_LOWER}.") == 1
     assert MAY_BE_LOWER in MOTION_FLAGS["interpolated"]
-
-
-def test_that_more_is_known_than_is_used_stands_on_summary_and_floors(tmp_path):
-    floors = [PLACED[0] | {"pfa_x": 0.3}, *PLACED[1:]]
-    message = "PFA X 0.300 g of floor '1' is not used: the scenario"
-    written = _reports(tmp_path, "ASCE 7-22", floors=floors, ground_pga=0.25, height=20)
-    text = read_text(written["html"].read_text(encoding="utf-8"))
-    assert text.count(f"More is known than is used: {message}") == 1
-    assert text.count("More is known than is used: 1 warning, see the data-quality log.") == 1
-    assert text.count(message) >= 2  # the floors, and the data-quality log
-    assert any(message in str(row[0]) for row in _rows(written, "Summary"))
 
 
 def test_of_many_such_warnings_the_first_are_given_and_the_rest_counted(tmp_path):
@@ -272,12 +197,6 @@ def test_basements_alone_print_no_negative_roof(tmp_path):
     floors = [{"floor": name, "elevation": -3 * at} for at, name in enumerate("1234", 1)]
     assumed = dict(_content(tmp_path, floors, "ASCE 7-22", ground_pga=0.2).assumptions)
     assert assumed["Roof height h of the profile"] == "0 m, no floor above the ground, Height is blank"
-
-
-def test_units_in_headings_do_not_break(mixed):
-    html = mixed["html"].read_text(encoding="utf-8")
-    assert '<th scope="col" class="num">PFV <span class="unit">[cm/s]</span></th>' in html
-    assert ".unit { white-space: nowrap; }" in html
 
 
 def _many(folder, count, known):

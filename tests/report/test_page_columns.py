@@ -9,7 +9,6 @@ import assess
 from assess import fields
 from assess.fields import EVERYWHERE, Field, item_fields
 from assess.i18n import load_catalogue, speaking
-from assess.report.content import build_content
 from assess.report.pages.compact import list_lines
 from assess.report.pages.page_columns import ROUTE_TABLES, list_columns, route_columns, say_value
 from assess.resources import templates
@@ -93,12 +92,3 @@ def test_templates_read_no_field_of_a_piece_into_a_cell():
 )
 def test_a_value_is_shown_by_the_kind_and_the_format_of_its_field(field, value, text):
     assert say_value(replace(Field(key="k", read=str), **field), value) == text
-
-
-def test_lines_hold_the_same_columns_as_the_table(results):
-    content = build_content(results)
-    columns = list_columns(results, "pieces")
-    block = list_lines(content.results, columns)[0]
-    assert [one.heading for one in columns if one.places and one.heading in block.head] != []
-    left_out = {one.key for one in columns if not one.places}
-    assert left_out <= {"verification_record_overturned", "adopted_class", "adopted_flags"}

@@ -22,7 +22,7 @@ from assess.settings import Settings
 from assess.units import GRAVITY
 from tests.report.reading import read_text, write_html
 from tests.shaking import write_records
-from tests.workbooks import RECORDS, UNVERIFIED, write
+from tests.workbooks import RECORDS, write
 
 SCRIPT = "<b>$x$</b>"
 FLOORS = [{"floor": "1", "pfa_x": 0.2, "pfv_x": 40}, {"floor": "2", "pfa_x": 0.15, "pfv_x": 30}]
@@ -115,23 +115,6 @@ def page_of_assumed(assumed, tmp_path_factory):
 
 
 class TestExtent:
-    @pytest.mark.parametrize(
-        ("class_by", "title"), [("best formula", "FEMA P-58 contents"), ("proposed OR", "Proposed OR formula")]
-    )
-    def test_a_report_without_simulation_says_so_everywhere(self, tmp_path, class_by, title):
-        results = assess.run(write(tmp_path / "w.xlsx", ITEMS, FLOORS, class_by=class_by), UNVERIFIED)
-        page = write_html(results, tmp_path)
-        text = read_text(page)
-        assert "Status Not simulated: classes come from a published formula; no rocking has been simulated" in text
-        assert "there are no intervals, as no rocking has been simulated in this run." in text
-        assert f"Adopted risk: {title}. The other methods are shown for comparison." in text
-        assert "Not simulated. The risks in this report come from published formulas." in text
-        assert f"Chance: the adopted risk, here from: {title}. Raw: as printed" in text
-        assert "Under the record" not in text
-        assert 'data-status="Chance of overturning in this scenario, not per year. Not simulated."' in page
-        assert _figures(page) == []
-        assert describe_verification(results) == "Not simulated."
-
     def test_a_partly_simulated_report_names_both_parts(self, lowered, page_of_lowered):
         text = read_text(page_of_lowered)
         status = "Partly simulated: rocking of 3 of 5 rows simulated, 40 motions of the user's own"
@@ -145,20 +128,6 @@ class TestExtent:
             "in which one of these was checked: FEMA P-58 contents, Proposed OR formula; and those on a route." in text
         )
         assert "no rocking has been simulated" not in text
-
-    def test_a_simulated_report_has_chance_formula_and_record_side_by_side(self, some, page_of_some):
-        text = read_text(page_of_some)
-        assert "Status Simulated: rocking of 4 of 4 rows simulated, 40 motions of the user's own" in text
-        assert "; the sampling interval covers the number of draws only." in text
-        assert "ercentages without a range" not in text
-        one = some.result(0)
-        assert one.adopted.probability == 0.25
-        assert words.chance(one).replace(words.NO_BREAK, " ") == "25.0 % (14.2 to 40.2 %)"
-        paper = one.governing.methods[some.paper_formula.key]
-        formulas = f"{100 * one.formula.value:.1f} % {100 * paper.value:.1f} % ({paper.detail['raw']:.3f}) "
-        assert formulas in text
-        assert "– 25.0 % (14.2 to 40.2 %) ◇ medium, could be high, lowered by simulation (formula: very high)" in text
-        assert "All rows were chosen." in text
 
     @pytest.mark.slow
     def test_footers_of_the_pdf_give_the_status(self, some, tmp_path):
@@ -189,12 +158,6 @@ class TestChanges:
         assert "class lowered: 3 pieces in 3 rows (1 of them anchored)" in describe_verification(lowered)
         assert build_content(lowered).total.lowered == 3 - 1
         assert "Lowered by simulation: 2; could be of a higher class: 2." in text
-
-    def test_the_legend_of_the_marks_stands_once_on_the_summary(self, lowered, page_of_lowered):
-        summary = page_of_lowered[page_of_lowered.index('<section id="summary"') :].partition("</section>")[0]
-        assert summary.count("? could be a higher class; ↓ lowered by simulation.") == 1
-        assert re.findall(r'<text class="class-marks"[^>]*>([^<]*)<', page_of_lowered) == ["?↓", "?↓"]  # the plan
-        assert [words.class_marks(one) for one in lowered][:2] == ["?↓", "?↓"]
 
     @pytest.mark.parametrize(
         ("class_by", "raised"),
@@ -257,23 +220,6 @@ class TestChanges:
 
 
 class TestMotions:
-    def test_an_assumed_motion_is_cautioned(self, assumed, page_of_assumed):
-        text, content = read_text(page_of_assumed), build_content(assumed)
-        unknown = "neither T1, Height, Storeys nor an Elevation is known; buildings of every period were drawn"
-        assert text.count(f"Floor 1: assumed motion, and {unknown}, and no class is confirmed.") == 1
-        assert text.count("Floor 1: assumed motion, nothing known of the building; no class is confirmed.") == 1
-        assert "On each floor and axis 20 motions were generated (seed 1)." in text
-        assert "or of drawn earthquakes in drawn buildings where no record is known" in text
-        assert "At each impact a piece keeps 0.9 of its angular velocity, as set in the workbook." in text
-        assert "Wilson EB (1927)" in text
-        (motion,) = content.trials.motions
-        assert (motion.kind, motion.motions, motion.rows) == ("assumed motion, nothing known of the building", "20", 1)
-        assert (motion.spectrum, motion.pfa, motion.pfv) == ("–", "–", "–"), "they follow no target"
-        said = dict(content.assumptions)
-        assert said["Restitution (angular velocity after an impact over that before)"] == "0.9, the workbook's"
-        assert said["Motions of the simulation"].endswith("generated with seed 1")
-        assert said["Interval of a simulated chance"] == "Wilson's, z = 1.96: 95 %"
-
     @pytest.mark.parametrize(
         ("floors", "building", "ways"),
         [
@@ -318,15 +264,6 @@ class TestMotions:
         assert "is that of Proposed OR formula, unconfirmed" not in text
         assert "as it overturns under the record itself" not in text
         assert words.ideal_chance(one) == "–"
-
-    def test_a_recorded_floor_is_said_to_meet_its_record(self, recorded):
-        (motion,) = build_content(recorded).trials.motions
-        (fit,) = [one.ensemble.fit for one in recorded.motions if one.ensemble]
-        assert (motion.kind, motion.motions, motion.rows) == ("recorded motion", "20", 1)
-        assert motion.spectrum == (
-            f"{100 * fit.mean_deviation:.1f} %; {100 * fit.worst_deviation:+.1f} % at {fit.worst_period_s:.2f} s"
-        )
-        assert motion.pfv.startswith(f"{fit.pfv_ratio:.2f} ± ")
 
     def test_a_large_misfit_is_reported(self, recorded):
         def worsen(motion):

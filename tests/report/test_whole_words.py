@@ -87,12 +87,6 @@ def test_no_word_of_the_inventory_is_broken_over_lines(pages):
     assert {"Physiotherapy", "Echocardiography", "Mezzanine", "Electrocardiograph"} <= seen
 
 
-def test_no_table_runs_past_the_margin(pages):
-    for page in pages:
-        for table in of(page, boxes.TableBox):
-            assert table.position_x + table.margin_width() <= page.content_box_x() + page.width + 0.5
-
-
 def test_columns_of_the_excel_report_hold_the_longest_word(results, tmp_path):
     written = assess.write_reports(results, tmp_path, ("xlsx",))["xlsx"]
     book = openpyxl.load_workbook(written)

@@ -2,21 +2,18 @@
 
 from dataclasses import replace
 
-import openpyxl
 import pytest
 
-import assess
 from assess.i18n import Catalogue, speaking
 from assess.report import words
 from assess.report.content import build_content
 from assess.report.counts import build_bars, count
 from assess.report.findings.route_words import name_few
 from assess.report.statements import list_assumptions
-from assess.report.summary import describe, say_plainly
+from assess.report.summary import say_plainly
 from assess.risk import LIMITS, RiskClass, classify
-from assess.settings import Settings
 from tests.report.reading import write_html
-from tests.workbooks import ITEMS, assessed
+from tests.workbooks import assessed
 
 FLOORS = [{"floor": "1", "pfa_x": 0.4, "pfv_x": 40, "pfa_y": 0.4, "pfv_y": 40}]
 PIECE = {"item": "a", "floor": "1", "breadth": 30, "width": 80, "height": 200}
@@ -63,45 +60,6 @@ def test_numbers_are_those_of_the_language():
 def test_a_noun_without_a_plural_is_a_slip():
     with pytest.raises(KeyError, match="sheep"):
         words.plural(2, "sheep")
-
-
-def test_an_imperial_workbook_is_shown_in_short_numbers(tmp_path):
-    items = [{"item": "a", "floor": "1", "breadth": 30.48, "width": 91.44, "height": 182.88}]
-    results = assessed(tmp_path / "w.xlsx", items, FLOORS, "us", height=18.288)
-    (one,) = results
-    assert words.size(one) == "30.5 × 91.4 × 182.9"
-    content = build_content(results)
-    assert content.building["height"][1] == "18.29 m"
-    assert ("Units", "Lengths are in cm and m, accelerations in g, velocities in cm/s, whatever the workbook's units "
-            "are.") in content.assumptions  # fmt: skip
-
-
-@pytest.fixture(scope="module")
-def rocked(tmp_path_factory):
-    """Only the piece of high class was simulated; it is partly anchored."""
-    items = [PIECE | {"item": "thin", "anchored": "partly", "description": "Bookcase with a very long description"},
-             PIECE | {"item": "stout", "floor": "2", "breadth": 60, "axis": "X"}]  # fmt: skip
-    floors = [*FLOORS, {"floor": "2", "pfa_x": 0.16, "pfv_x": 30}]
-    return assessed(
-        tmp_path_factory.mktemp("w") / "w.xlsx", items, floors, settings=Settings(verify="high", runs=20), period=1.0
-    )
-
-
-def test_a_class_by_formula_is_marked_beside_simulated_ones(rocked, tmp_path):
-    assert [one.apart for one in rocked] == ["", "formula"]
-    html = write_html(rocked, tmp_path / "some")
-    assert (
-        html.count('<span class="badge apart-formula">ƒ medium</span><span class="note"> by formula only</span>') == 1
-    )
-    assert 'class="badge apart' not in write_html(assessed(tmp_path / "w.xlsx"), tmp_path / "none")
-
-
-def test_a_partly_anchored_piece_says_so_in_short_tables(rocked, tmp_path):
-    thin, stout = rocked
-    assert describe(thin, 28) == "Bookcase wi…, partly anchored"
-    assert "partly" not in describe(stout)
-    html = write_html(rocked, tmp_path)
-    assert html.count("thin: Bookcase wi…, partly anchored") == 2  # the worst, the floor
 
 
 @pytest.mark.parametrize(
@@ -161,19 +119,6 @@ def test_long_names_are_cut_without_a_remark_where_there_is_no_room(tmp_path):
     items = [PIECE | {"item": long, "room": long, "description": long}]
     html = write_html(assessed(tmp_path / "w.xlsx", items, [FLOORS[0] | {"name": long}]), tmp_path)
     assert "whole in report.xlsx" not in html
-
-
-@pytest.mark.filterwarnings("ignore:.*extension is not supported")
-def test_what_is_avoided_is_the_same_number_in_every_report(tmp_path):
-    results = assessed(tmp_path / "w.xlsx", ITEMS)
-    fix = build_content(results).summary.fixes[0]
-    written = assess.write_reports(results, tmp_path / "out", ("xlsx", "html"))
-    assert f">{fix.saved:.3f}<" in written["html"].read_text(encoding="utf-8")
-    page = openpyxl.load_workbook(written["xlsx"])["Work list"]
-    column = next(cell.column for cell in page[1] if cell.value == "Falls avoided")
-    (cell,) = (row[column - 1] for row in page.iter_rows(min_row=2) if row[1].value == 1)
-    assert cell.number_format == "0.000"
-    assert cell.value == pytest.approx(fix.saved)
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,6 @@
 """Sheets of the Excel report: what they are, how they are printed and read, with few rows, many floors, long texts."""
 
-import os
 import re
-import subprocess
-import sys
 import zipfile
 from html import unescape
 from threading import Event
@@ -17,7 +14,7 @@ from assess.progress import Progress
 from assess.report.content import build_content
 from assess.report.xlsx import write_xlsx
 from tests.recalculate import compare_formulas, stored_cells, write_report
-from tests.workbooks import ITEMS, assessed, write
+from tests.workbooks import ITEMS, assessed
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
@@ -117,30 +114,6 @@ def test_long_names_are_whole_in_rows_that_grow(tmp_path):
     assert [row[1:3] for row in book["Notes"].iter_rows(min_row=2, values_only=True)] == [("A1", "https://example.org")]
 
 
-def test_the_quality_log_says_how_to_fix_it(tmp_path):
-    rows = list(openpyxl.load_workbook(_report(tmp_path, [ITEMS[0] | {"height": 400}]))["Quality log"].values)
-    assert rows[0] == ("Kind", "Place", "What", "How to fix it")
-    assert any(row[0] == "warning" and "Items" in row[1] and row[2] for row in rows)
-    kinds = {row[0] for row in rows[1:]}
-    assert {"input", "program", "setting", "platform"} <= kinds
-    assert any(row[:2] == ("setting", "seed") and row[2] == "1" for row in rows)
-
-
-def test_methods_tell_limits_classes_and_sources(tmp_path):
-    rows = list(openpyxl.load_workbook(_report(tmp_path))["Methods"].values)
-    assert [row[1] for row in rows if row[0] == "Classes"] == ["○ low", "◇ medium", "▲ high", "■ very high"]
-    for what in ("Equation", "Assumption", "Departure from the source", "Source", "Limit", "Checked for"):
-        assert any(row[1] == what for row in rows), what
-    assert any(row[0] == "References" for row in rows)
-
-
-def test_without_routes_there_is_one_sheet_that_says_so(tmp_path):
-    book = openpyxl.load_workbook(_report(tmp_path))
-    assert not {"Route pieces", "Route rooms"} & set(book.sheetnames)
-    said = [row[0] for row in book["Routes"].iter_rows(min_row=2, values_only=True)]
-    assert said == ["The workbook names no routes."]
-
-
 def test_a_cancelled_report_leaves_nothing(tmp_path):
     content, cancel, rows = build_content(assessed(tmp_path / "w.xlsx")), Event(), []
 
@@ -154,17 +127,3 @@ def test_a_cancelled_report_leaves_nothing(tmp_path):
     with pytest.raises(CancelledError):
         write_xlsx(content, tmp_path / "r.xlsx", Fifth(cancel=cancel))
     assert [path.name for path in tmp_path.iterdir()] == ["w.xlsx"]
-
-
-def test_two_processes_write_the_same_bytes(tmp_path):
-    write(tmp_path / "w.xlsx")
-    code = (
-        "import sys; from pathlib import Path; import assess; from tests.recalculate import write_report;"
-        "from assess.settings import Settings;"
-        "write_report(assess.run(assess.read_inventory(Path(sys.argv[1])), Settings(verify='none')), Path(sys.argv[2]))"
-    )
-    for name, seed, zone in (("a", "1", "UTC"), ("b", "2", "Pacific/Auckland")):
-        environment = os.environ | {"SOURCE_DATE_EPOCH": "1700000000", "PYTHONHASHSEED": seed, "TZ": zone}
-        command = [sys.executable, "-c", code, str(tmp_path / "w.xlsx"), str(tmp_path / f"{name}.xlsx")]
-        subprocess.run(command, check=True, env=environment)
-    assert (tmp_path / "a.xlsx").read_bytes() == (tmp_path / "b.xlsx").read_bytes()

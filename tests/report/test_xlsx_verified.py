@@ -220,14 +220,6 @@ def test_items_show_what_the_program_found(report):
     assert any(one.governing.motion.axis != one.by_formula.motion.axis for one in report.results)
 
 
-def test_what_the_record_did_stands_in_words(report):
-    shown = report.read(report.edit(), "Under the record")
-    assert all((shown[one.item.item] is None) == (one.item.floor != "2" or not one.is_simulated)
-               for one in report.results)  # fmt: skip
-    kinds = {str(value).split(" (")[0].lstrip("<0123456789. ") for value in shown.values() if value}
-    assert kinds - {"stays at rest"} == {"overturns", "of critical"}
-
-
 def test_counts_are_those_of_the_adopted_classes(report):
     assert _summary(report, report.edit()) == _expected(report)
 
@@ -426,63 +418,6 @@ def test_an_unconfirmed_class_is_never_said_to_be_lowered(report):
     assert f"Rows whose class simulation lowers: {lowered}." in lines
 
 
-WEAKER = 0.9
-
-
-def _weaken(report):
-    """Return the edits that make every floor's PFA 10 % weaker."""
-    sheet = openpyxl.load_workbook(report.path)["Floors"]
-    return [(("Floors", row, column), WEAKER * sheet.cell(row, column).value) for row in range(2, 2 + len(FLOORS))
-            for column in (3, 6) if isinstance(sheet.cell(row, column).value, float | int)]  # fmt: skip
-
-
-def _risky(report, book):
-    """Return the pieces of high class and above that the Summary counts, by basis and floor."""
-    return {place: counts[2] + counts[3] for place, counts in _summary(report, book)[0].items()}
-
-
-def test_weaker_floors_raise_no_count_of_high_or_above(report, by_formula):
-    for one in (report, by_formula):
-        edits = _weaken(one)
-        assert len(edits) >= 4
-        before, after = _risky(one, one.edit()), _risky(one, one.edit(*edits))
-        assert any(before.values())
-        assert all(after[place] <= number for place, number in before.items())
-    assert any(after.values()), "rows that were not simulated follow by the formula"
-
-
-def test_what_is_simulated_leaves_all_counts_where_every_floor_is_edited(report):
-    book = report.edit(*_weaken(report))
-    simulated = {one.item.item for one in report.results}
-    assert report.again(book) == simulated
-    shown, apart = _summary(report, book)
-    assert not any(any(counts) for counts in shown.values())
-    assert sum(counts[0] for counts in apart.values()) == sum(
-        one.item.quantity for one in report.results if one.item.item in simulated
-    )
-
-
-@pytest.mark.libreoffice
-@needs_libreoffice
-def test_weaker_floors_raise_no_count_in_libreoffice(report, tmp_path):
-    book = openpyxl.load_workbook(report.path)
-    for (sheet, row, column), value in _weaken(report):
-        book[sheet].cell(row, column).value = value
-    book.save(tmp_path / "weaker.xlsx")
-    again = openpyxl.load_workbook(libreoffice(tmp_path / "weaker.xlsx", tmp_path / "again.xlsx"), data_only=True)
-
-    class Recalculated:
-        @staticmethod
-        def get_value(sheet, row, column):
-            return again[sheet].cell(row, column).value
-
-    before, after = _risky(report, report.edit()), _risky(report, Recalculated)
-    assert any(before.values())
-    assert all(after[place] <= number for place, number in before.items())
-    waiting = _summary(report, Recalculated)[1]
-    assert sum(counts[0] for counts in waiting.values()) > 0
-
-
 def test_the_sheet_verification_holds_the_fit_of_every_floor_and_axis(report):
     rows = list(openpyxl.load_workbook(report.path)["Verification"].iter_rows(values_only=True))
     heads, found = rows[0], {row[:2]: row for row in rows[1:]}
@@ -519,11 +454,6 @@ def test_a_suite_and_parallel_records_hold_too(tmp_path):
     assert [row[:2] for row in rows] == served
     assert {row[4:8] for row in rows} == {("suite own, scaled", 2, None, None)}
     assert compare_formulas(tmp_path / "report.xlsx") > 12 * len(_items())
-
-
-def test_the_restitution_used_stands_among_the_assumptions(report):
-    rows = openpyxl.load_workbook(report.path)["Assumptions"].iter_rows(values_only=True)
-    assert any("Restitution" in str(row[0]) and "0.9" in str(row[1]) for row in rows)
 
 
 def test_the_workings_are_hidden_and_stand_last(report):
