@@ -84,7 +84,7 @@ def write_routed(path: Path, **sheets: Any) -> Path:
     """Write the building; `sheets` take the place of its own by their names."""
     rows = {"Building": [BUILDING], "Floors": FLOORS, "Items": ITEMS, "Places": PLACES,
             "Routes": ROUTES}  # fmt: skip
-    write_workbook(path, Content(rows=rows | sheets), "si")
+    write_workbook(path, Content(rows=rows | sheets), spare=3)
     return path
 
 

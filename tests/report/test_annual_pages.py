@@ -1,9 +1,7 @@
 """Chances a year in the files of a run: results.json, items.csv, the pages and the sheet Annual."""
 
 import json
-from contextlib import closing
 
-import openpyxl
 import pytest
 
 import assess
@@ -38,8 +36,6 @@ def test_results_json_has_them(folder):
     assert found["routes"]["routes"][0]["annual"]["rate"] == pytest.approx(row.rate)
     assert found["routes"]["rooms"][0]["annual"]["rate"] == pytest.approx(row.rate)
     assert list(found["assess"]["inputs"]["records"]) == ["hazard.csv"]
-
-
 
 
 def read_section(folder):

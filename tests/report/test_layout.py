@@ -39,7 +39,7 @@ def results(tmp_path_factory):
     path = tmp_path_factory.mktemp("layout") / "w.xlsx"
     building = [{"building": f"{LONG} hall", "revision": "B", "azimuth_deg": 45, "prepared_by": LONG}]
     rows = {"Building": building, "Floors": FLOORS, "Items": PIECES, "Places": PLACES, "Routes": ROUTES}
-    write_workbook(path, Content(rows=rows), "si")
+    write_workbook(path, Content(rows=rows), spare=3)
     return assess.run(path, UNVERIFIED)
 
 

@@ -48,7 +48,7 @@ def outputs(tmp_path_factory):
               "y": 1}],
     }  # fmt: skip
     path = folder / "w.xlsx"
-    write_workbook(path, Content(rows=rows))
+    write_workbook(path, Content(rows=rows), spare=3)
     _unescape_controls(path)
     results = assess.run(path)
     return results, assess.write_reports(results, folder / "out", ("xlsx", "html", "json", "csv"))

@@ -38,7 +38,7 @@ ROUTES = [{"route": "R", "segment": "a", "floor": "1", "start": "Hall", "end": "
 
 def _assess(path, pieces=PIECES, places=PLACES, routes=ROUTES, **building):
     rows = {"Building": [building], "Floors": FLOORS, "Items": pieces, "Places": places, "Routes": routes}
-    write_workbook(path, Content(rows=rows), "si")
+    write_workbook(path, Content(rows=rows), spare=3)
     return assess.run(assess.read_inventory(path), UNVERIFIED)
 
 
@@ -398,7 +398,7 @@ def test_outlines_over_a_drawing_are_as_grey_as_it(tmp_path):
     strokes = []
     for name, floor in (("drawn", drawn), ("plain", plain)):
         rows = {"Floors": [floor], "Items": PIECES[:1], "Places": [room]}
-        write_workbook(tmp_path / f"{name}.xlsx", Content(rows=rows), "si")
+        write_workbook(tmp_path / f"{name}.xlsx", Content(rows=rows), spare=3)
         page = render(assess.run(assess.read_inventory(tmp_path / f"{name}.xlsx"), UNVERIFIED))
         strokes += re.findall(r'<g class="rooms" fill="none" stroke="(#\w+)"', page)
         assert ("In grey: the plan" in page) == (name == "drawn")

@@ -40,7 +40,7 @@ class Written:
 
 @pytest.fixture(
     scope="module",
-    params=["none", "all", "high", "none by OR", "all by OR", pytest.param("example", marks=pytest.mark.slow)],
+    params=["none by OR", "high", "all by OR", pytest.param("example", marks=pytest.mark.slow)],
 )
 def written(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp("same")

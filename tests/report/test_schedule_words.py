@@ -39,7 +39,7 @@ def assess_these(folder, items=ITEMS, costs=(), **building):
     path = folder / "w.xlsx"
     building = {"motion_uncertainty": 0.4} | building
     rows = {"Building": [building], "Floors": FLOORS, "Items": items, "Costs": list(costs)}
-    write_workbook(path, Content(rows=rows))
+    write_workbook(path, Content(rows=rows), spare=3)
     return assess.run(assess.read_inventory(path), Settings(verify="none"))
 
 

@@ -72,7 +72,7 @@ def _write(folder, **last):
     (folder / "p.png").write_bytes(picture("PNG"))
     path = folder / "w.xlsx"
     rows = {"Building": [BUILDING], "Floors": [*FLOORS[:-1], FLOORS[-1] | last], "Items": ITEMS, "Routes": ROUTES}
-    write_workbook(path, Content(rows=rows))
+    write_workbook(path, Content(rows=rows), spare=3)
     book = openpyxl.load_workbook(path)
     book["Items"].cell(1, 40, "99")
     book["Items"].cell(90, 40, "stray")

@@ -37,7 +37,7 @@ def _assess(folder: Path, pieces=(PIECE,), places=(), **floor):
     (folder / "p.png").write_bytes(picture("PNG", size=(1600, 1200)))
     (folder / "p.svg").write_bytes(PLAN_SVG)
     rows = {"Floors": [{"floor": "1", "pfa_x": 0.4, **floor}], "Items": pieces, "Places": places}
-    write_workbook(folder / "w.xlsx", Content(rows=rows), "si")
+    write_workbook(folder / "w.xlsx", Content(rows=rows), spare=3)
     return assess.run(assess.read_inventory(folder / "w.xlsx"), UNVERIFIED)
 
 
@@ -180,7 +180,7 @@ def test_no_two_names_overlap_on_the_floors_of_the_worked_example(tmp_path):
     spec.loader.exec_module(script)
     content = script.content()
     floors = [{"floor": one["floor"], "pfa_x": 0.4} for one in content.rows["Floors"]]
-    write_workbook(tmp_path / "w.xlsx", Content(content.rows | {"Floors": floors}), "si")
+    write_workbook(tmp_path / "w.xlsx", Content(content.rows | {"Floors": floors}), spare=3)
     plans = _plans(assess.run(assess.read_inventory(tmp_path / "w.xlsx"), UNVERIFIED))
     assert len(plans) == 4
     for plan in plans:

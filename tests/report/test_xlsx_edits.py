@@ -9,33 +9,24 @@ import openpyxl
 import openpyxl.utils
 import pytest
 
+import assess
 from assess.risk import RiskClass
 from tests.recalculate import libreoffice, needs_libreoffice, stored_cells, write_report
-from tests.workbooks import UNVERIFIED, assessed
+from tests.workbooks import UNVERIFIED, assessed, write
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
 FLOORS = [{"floor": "1", "pfa_x": 0.3, "pfv_x": 30.0, "pfa_y": 0.2}, {"floor": "2", "pfa_x": 0.5, "pfv_x": 40.0}]
 SIZES = [(20, 200), (30, 200), (36, 92), (45, 90), (60, 60), (28, 180), (33, 170)]
 ITEMS = [
-    {
-        "item": f"{floor}-{at}",
-        "floor": floor,
-        "breadth": breadth,
-        "width": 120,
-        "height": height,
-        "quantity": 1 + at % 2,
-    }
-    | ({"anchored": "yes"} if at == 3 else {})
-    for floor in "12"
-    for at, (breadth, height) in enumerate(SIZES)
-]
+    {"item": f"{floor}-{at}", "floor": floor, "breadth": breadth, "width": 120, "height": height,
+     "quantity": 1 + at % 2} | ({"anchored": "yes"} if at == 3 else {})
+    for floor in "12" for at, (breadth, height) in enumerate(SIZES)
+]  # fmt: skip
 LIMITS = (0.03, 0.3, 0.7)
 EDITS = {
     "nothing": ({}, {}, LIMITS),
-    "a PFA": ({"pfa_x": 0.85}, {}, LIMITS),
-    "a size": ({}, {"breadth": 70, "height": 90}, LIMITS),
-    "the class limits": ({}, {}, (0.1, 0.4, 0.6)),
+    "a PFA and a size": ({"pfa_x": 0.85}, {"breadth": 70, "height": 90}, LIMITS),
     "all of them": ({"pfa_x": 0.12}, {"breadth": 40, "height": 250}, (0.01, 0.2, 0.45)),
 }
 EDITED_ITEM, EDITED_FLOOR = 1, 0
@@ -244,3 +235,42 @@ def test_the_velocity_of_a_floor_that_hardly_moves_follows_an_edit(tmp_path):
     ratio = results.motions[0].pfv_cm_s / results.motions[0].pfa_g
     assert ratio == pytest.approx(105 * 1.816 / 1.535, rel=1e-3)
     assert book.get_value("Floors", 2, 4) == pytest.approx(0.5 * ratio, abs=1e-9)
+
+
+def test_an_axis_that_borrows_its_motion_follows_the_edit(tmp_path):
+    items = [ITEMS[0] | {"axis": "X"}, ITEMS[1] | {"axis": "Y"}, ITEMS[2]]
+    write_report(
+        assessed(tmp_path / "w.xlsx", items, [{"floor": "1", "pfa_y": 0.9, "pfv_y": 12.0}]), tmp_path / "r.xlsx"
+    )
+    again = assessed(tmp_path / "edited.xlsx", items, [{"floor": "1", "pfa_y": 0.2, "pfv_y": 80.0}])
+    book = formualizer.load_workbook(str(tmp_path / "r.xlsx"))
+    book.set_value("Floors", 2, 6, 0.2)
+    book.set_value("Floors", 2, 7, 80.0)
+    book.evaluate_all()
+    at = {cell.value: cell.column for cell in openpyxl.load_workbook(tmp_path / "r.xlsx")["Items"][1]}
+    for row, one in enumerate(again, 2):
+        for label, key in (("OR", "proposed_or"), ("Kaneko-Hayashi", "kaneko_hayashi"), ("FEMA P-58", "fema_p58")):
+            expected = pytest.approx(one.governing.methods[key].value, abs=1e-9)
+            assert book.get_value("Items", row, at[label]) == expected
+
+
+def test_a_size_that_is_no_number_shows_check_and_leaves_the_counts_alive(path):
+    book, sheets = formualizer.load_workbook(str(path)), openpyxl.load_workbook(path)
+    at = {cell.value: cell.column for cell in sheets["Items"][1]}
+    book.set_value("Items", 2, at["Breadth [cm]"], "abc")
+    book.evaluate_all()
+    for label in ("B/H", "OR as printed", "OR", "Kaneko-Hayashi", "Class (formula)"):
+        assert book.get_value("Items", 2, at[label]) == "check"
+    top = next(cell.row for cell in sheets["Summary"]["A"] if cell.value == "Floor")
+    assert book.get_value("Summary", top + 1, 9) == sum(one["quantity"] for one in ITEMS[1:7])
+
+
+def test_unknown_columns_come_back(tmp_path):
+    path = write(tmp_path / "w.xlsx", ITEMS, FLOORS)
+    book = openpyxl.load_workbook(path)
+    book["Items"].cell(1, 30, "Inventory tag")
+    book["Items"].cell(2, 30, "T-17")
+    book.save(path)
+    write_report(assess.run(assess.read_inventory(path), UNVERIFIED), tmp_path / "r.xlsx")
+    sheet = openpyxl.load_workbook(tmp_path / "r.xlsx")["Items"]
+    assert [row[0].value for row in sheet.iter_cols() if row[1].value == "T-17"] == ["Inventory tag"]

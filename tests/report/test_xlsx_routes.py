@@ -7,17 +7,15 @@ from assess.i18n import Catalogue, load_catalogue, speaking
 from assess.route_results import RouteState
 from assess.settings import Settings
 from tests.recalculate import compare_formulas, write_report
-from tests.report.routed import DOUBTED, ITEMS, KNOWN, assess_routed
+from tests.report.routed import DOUBTED, ITEMS, assess_routed
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
 
-@pytest.fixture(scope="module", params=["formulas", "verified", "unconfirmed"])
-def written(request, tmp_path_factory):
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
     folder = tmp_path_factory.mktemp("routes")
-    simulated = {"settings": Settings(verify="all", runs=20)}
-    more = {"formulas": {}, "verified": {**simulated, **KNOWN}, "unconfirmed": {**simulated, **DOUBTED}}[request.param]
-    results = assess_routed(folder / "w.xlsx", **more)
+    results = assess_routed(folder / "w.xlsx", Settings(verify="all", runs=20), **DOUBTED)
     write_report(results, folder / "r.xlsx")
     return results, openpyxl.load_workbook(folder / "r.xlsx"), folder / "r.xlsx"
 

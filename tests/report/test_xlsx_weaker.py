@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -78,46 +79,36 @@ def _rank(shown: str) -> int:
     return -1 if shown == AGAIN else LABELS.index(shown.removeprefix(ANCHORED).rstrip("*"))
 
 
-@pytest.fixture(scope="module", params=["none", "high", "all", pytest.param("example", marks=pytest.mark.slow)])
-def book(request, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("weaker")
-    if request.param == "example":
-        results = assess.run(assess.read_inventory(EXAMPLE), Settings())
-    else:
-        results = assess_rich(folder, Settings(verify=request.param, runs=40))
-    write_report(results, folder / "r.xlsx")
-    return Book(results, folder / "r.xlsx")
-
-
 @pytest.fixture(scope="module")
-def by_formula(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("by_formula")
-    results = assess_rich(folder, Settings(verify="none"))
-    write_report(results, folder / "r.xlsx")
-    return Book(results, folder / "r.xlsx")
+def books(tmp_path_factory):
+    """Return a report of a run by the formulas, by that of the paper, and of one that simulates every piece."""
+    runs = {
+        "by_formula": Settings(verify="none"),
+        "by_paper": Settings(verify="none", class_by="proposed OR"),
+        "simulated": Settings(verify="all", runs=40),
+        "partly": Settings(verify="high", runs=40),
+    }
+
+    @cache
+    def make(name: str) -> Book:
+        folder = tmp_path_factory.mktemp(name)
+        is_example = name == "example"
+        results = assess.run(EXAMPLE, Settings()) if is_example else assess_rich(folder, runs[name])
+        write_report(results, folder / "r.xlsx")
+        return Book(results, folder / "r.xlsx")
+
+    return make
 
 
-@pytest.fixture(scope="module")
-def by_paper(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("by_paper")
-    results = assess_rich(folder, Settings(verify="none", class_by="proposed OR"))
-    write_report(results, folder / "r.xlsx")
-    return Book(results, folder / "r.xlsx")
-
-
-@pytest.fixture(scope="module")
-def simulated(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("simulated")
-    results = assess_rich(folder, Settings(verify="all", runs=40))
-    write_report(results, folder / "r.xlsx")
-    return Book(results, folder / "r.xlsx")
+@pytest.fixture(params=["by_formula", "partly", pytest.param("example", marks=pytest.mark.slow)])
+def book(request, books):
+    return books(request.param)
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("factor", [0.9, 0.5])
-def test_weaker_floors_raise_no_count_and_no_class(book, tmp_path, factor, engine):
+def test_weaker_floors_raise_no_count_and_no_class(book, tmp_path, engine):
     """Of each class and above: of a class alone there may be more, as those of higher classes fall into it."""
-    edits = book.scaled(factor)
+    edits = book.scaled(0.7)
     assert len(edits) >= len(book.results.floor_rows)
     stored, cells = stored_cells(book.path), recalculate(book.path, edits, engine, tmp_path)
     before, after = book.counts(stored), book.counts(cells)
@@ -161,8 +152,8 @@ def test_stronger_floors_lower_no_class_of_a_row_that_follows(book, tmp_path, en
 # ---------------------------------------------------------------- brackets
 
 
-def test_what_counts_as_anchored_is_what_the_bracket_says(by_formula, simulated):
-    for one in (by_formula, simulated):
+def test_what_counts_as_anchored_is_what_the_bracket_says(books):
+    for one in map(books, ("by_formula", "simulated")):
         rows = one.items(stored_cells(one.path))
         for floor in "12":
             for kind in "bs":
@@ -200,13 +191,20 @@ SINGLE: dict[str, tuple[int, str, Any, str]] = {
 }
 
 
-@pytest.mark.parametrize("edit", SINGLE)
 @pytest.mark.parametrize("kind", ["by_formula", "simulated"])
-def test_an_edited_anchor_or_bracket(kind, edit, tmp_path, request):
-    one = request.getfixturevalue(kind)
-    at, key, value, expected = SINGLE[edit]
-    cells = recalculate(one.path, [(*one.cell(f"1-b{at}", key), value)], "formualizer", tmp_path)
-    _check_single(one, cells, {f"1-b{at}": expected})
+def test_edited_anchors_and_brackets(kind, books, tmp_path):
+    """As many edits at once as there are rows of the kind: one on each floor."""
+    one, left = books(kind), list(SINGLE.values())
+    while left:
+        edits, expected = [], {}
+        for edit in tuple(left):
+            at, key, value, state = edit
+            item = next((name for name in (f"1-b{at}", f"2-b{at}") if name not in expected), None)
+            if item:
+                edits.append((*one.cell(item, key), value))
+                expected[item] = state
+                left.remove(edit)
+        _check_single(one, recalculate(one.path, edits, "formualizer", tmp_path), expected)
 
 
 def _check_single(book: Book, cells: Cells, expected: dict[str, str]) -> None:
@@ -253,9 +251,9 @@ def test_a_bracket_of_a_piece_of_unknown_width(tmp_path, verify):
 @pytest.mark.parametrize("kind", ["by_formula", "simulated"])
 @pytest.mark.libreoffice
 @needs_libreoffice
-def test_single_cells_in_libreoffice(kind, tmp_path, request):
+def test_single_cells_in_libreoffice(kind, books, tmp_path):
     """A cell of many rows at once: each row answers for itself."""
-    one = request.getfixturevalue(kind)
+    one = books(kind)
     chosen = {at: (key, value, expected) for at, key, value, expected in SINGLE.values()}
     edits: list[Edit] = [(*one.cell(f"1-b{at}", key), value) for at, (key, value, _) in chosen.items()]
     expected = {f"1-b{at}": state for at, (_, _, state) in chosen.items()}
@@ -271,12 +269,12 @@ def test_single_cells_in_libreoffice(kind, tmp_path, request):
 
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize(("name", "column"), [("by_formula", "D"), ("by_paper", "C")])
-def test_a_row_by_formula_goes_by_the_largest_of_parallel_records(name, column, request, tmp_path, engine):
+def test_a_row_by_formula_goes_by_the_largest_of_parallel_records(name, column, books, tmp_path, engine):
     """The record in the floor's own line is edited below the other one, which then governs.
 
     Which is the largest is by PFV in FEMA P-58, and by PFA in OR.
     """
-    book, at = request.getfixturevalue(name), "CD".index(column)
+    book, at = books(name), "CD".index(column)
     sheet = openpyxl.load_workbook(book.path, data_only=True)["Floors"]
     lines = {row[0].row: (row[2].value, row[3].value) for row in sheet.iter_rows(min_row=2) if row[0].value == "2"}
     (first, largest), (_, other) = lines.items()
