@@ -172,11 +172,8 @@ def _tried(results, **chances):
     return replace(results, cases_table=replace(table, outcomes=table.outcomes | {results.simulation.key: changed}))
 
 
-def test_the_summary_says_what_was_varied_and_what_it_changes(mixed):
+def test_the_summary_says_what_other_dispersions_change(mixed):
     text = read_text(render(_tried(mixed, **{"0.2": 0.0, "0.6": 1.0})))
-    assert "; the sampling interval covers the number of draws only; on assumed motion the range is what is not" in text
-    assert "with a dispersion of 0.4 (standard deviation of ln amplitude; assumed)." in text
-    assert "Sizes, centre of gravity and restitution of each piece are varied." in text
     felled, still = mixed["felled"], mixed["still"]
     assert felled.fell_in_record, "so that it is high at least"
     assert not still.adopted.can_rock, "so that it is low at any of them"
@@ -185,8 +182,6 @@ def test_the_summary_says_what_was_varied_and_what_it_changes(mixed):
     assert f"With a dispersion of 0.2, {down}." in text
     up = "1 piece would be in a higher class" if is_high else "no piece would change class"
     assert f"With a dispersion of 0.6, {up}." in text
-    assert "base × N(0.97, 0.05), its height × N(1, 0.02), its centre of gravity N(as given, 0.05)" in text
-    assert "have the same random phases on all floors along an axis; the signs of modes from floor to floor are" in text
 
 
 CONDITIONS = (

@@ -6,7 +6,7 @@ import pytest
 
 from assess.report.content import build_content
 from assess.report.data import describe_run
-from assess.report.findings.earthquake_draws import list_draw_assumptions, list_references, say_draws
+from assess.report.findings.earthquake_draws import list_references, say_draws
 from assess.results import EarthquakeDraws, SuiteInfo
 from assess.settings import Settings
 from tests.workbooks import assessed
@@ -43,16 +43,6 @@ def test_a_building_of_a_city_names_the_correlation_and_its_sources(placed):
     assert "exp(-3h/40.7 km) (Jayaram and Baker 2009)" in text
     assert "Motion k has the same random phases in every building" in text
     assert [key for key in (JAYARAM, BOORE) for one in list_references(placed) if key in one] == [JAYARAM, BOORE]
-
-
-def test_a_building_alone_names_neither(placed):
-    results = alone(placed)
-    text = " ".join(build_content(results).trials.paragraphs)
-    assert "one normal number ε for the whole building" in text
-    assert "of a city" not in text
-    assert "Jayaram" not in text
-    assert not list_references(results)
-    assert not list_draw_assumptions(results)
 
 
 def test_the_share_of_a_shakemap_is_not_that_of_a_publication(placed):

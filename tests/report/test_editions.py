@@ -118,35 +118,32 @@ def test_both_carry_workbook_and_results_and_are_known_when_they_change(results,
 
 # ---------------------------------------------------------------- one number and its source
 
+GRADE = [
+    {"floor": "G", "elevation": 0.0, "pfa_x": 0.135, "pfa_y": 0.12},
+    {"floor": "1", "elevation": 4.0, "pfa_x": 0.2, "pfa_y": 0.2},
+]
+RECORDED = [{"floor": "1", "elevation": 4.0, "record_x": "slow.csv"}]
+OF_ANCHORS, KNOWN = "used for the code's force on anchors only", "the motion at grade is known"
 
-def test_a_ground_motion_that_is_not_used_says_what_is(tmp_path):
-    floors = [
-        {"floor": "G", "elevation": 0.0, "pfa_x": 0.135, "pfa_y": 0.12},
-        {"floor": "1", "elevation": 4.0, "pfa_x": 0.2, "pfa_y": 0.2},
-    ]
-    items = [dict(ITEMS[0], floor="1")]
-    results = assessed(tmp_path / "w.xlsx", items, floors, ground_pga=0.139, sds=0.4)
-    said = build_content(results).building["ground_pga"][1]
-    reason = "the motion at grade is known"
-    assert said == f"0.135 g on floor G, given PFA; 0.139 g of the workbook is not used: {reason}"
-    of_anchors = "used for the code's force on anchors only"
-    assert build_content(results).building["sds"][1] == f"0.4 g, {of_anchors}: {reason}"
-    alone = assessed(tmp_path / "w.xlsx", items, floors, ground_pga=0.139)
-    said = build_content(alone).building["ground_pga"][1]
-    assert said == f"0.135 g on floor G, given PFA; 0.139 g of the workbook is {of_anchors}: {reason}"
-    above = assessed(tmp_path / "w.xlsx", items, floors[1:], ground_pga=0.139, sds=0.4)
-    assert build_content(above).building["ground_pga"][1] == "0.139 g", "PFV follows from it"
-    assert build_content(above).building["sds"][1] == f"0.4 g, {of_anchors}: Ground PGA is given"
+
+@pytest.mark.parametrize(
+    ("floors", "building", "pga", "sds"),
+    [
+        (GRADE, {"sds": 0.4}, f"0.135 g on floor G, given PFA; 0.139 g of the workbook is not used: {KNOWN}",
+         f"0.4 g, {OF_ANCHORS}: {KNOWN}"),
+        (GRADE, {}, f"0.135 g on floor G, given PFA; 0.139 g of the workbook is {OF_ANCHORS}: {KNOWN}", None),
+        (GRADE[1:], {"sds": 0.4}, "0.139 g", f"0.4 g, {OF_ANCHORS}: Ground PGA is given"),
+        (RECORDED, {}, f"0.139 g, {OF_ANCHORS}: every floor has a record", None),
+        (RECORDED, {"sds": 0.4}, "0.139 g in the workbook, not used: every floor has a record", None),
+        ([*GRADE[1:], {"floor": "2", "elevation": 8.0}], {}, "0.139 g", None),
+    ],
+)  # fmt: skip
+def test_a_ground_motion_that_is_not_used_says_what_is(tmp_path, floors, building, pga, sds):
     write_records(tmp_path, "slow")
-    recorded = [{"floor": "1", "elevation": 4.0, "record_x": "slow.csv"}]
-    unused = assessed(tmp_path / "w.xlsx", items, recorded, ground_pga=0.139)
-    assert build_content(unused).building["ground_pga"][1] == f"0.139 g, {of_anchors}: every floor has a record"
-    unused = assessed(tmp_path / "w.xlsx", items, recorded, ground_pga=0.139, sds=0.4)
-    said = build_content(unused).building["ground_pga"][1]
-    assert said == "0.139 g in the workbook, not used: every floor has a record"
-    drawn = assessed(tmp_path / "w.xlsx", items, [*floors[1:], {"floor": "2", "elevation": 8.0}], ground_pga=0.139)
-    assert any(one.source == "beam" for one in drawn.motions)
-    assert build_content(drawn).building["ground_pga"][1] == "0.139 g"
+    results = assessed(tmp_path / "w.xlsx", [dict(ITEMS[0], floor="1")], floors, ground_pga=0.139, **building)
+    said = build_content(results).building
+    assert said["ground_pga"][1] == pga
+    assert sds is None or said["sds"][1] == sds
 
 
 # ---------------------------------------------------------------- alike pieces

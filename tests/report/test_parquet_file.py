@@ -63,13 +63,6 @@ def test_the_types_are_those_of_the_fields_whatever_is_filled_in(tmp_path):
     assert len(rows) == 3
 
 
-def test_the_same_results_give_the_same_bytes(tmp_path):
-    results = assess_rows(*FULL)
-    for name in "ab":
-        write_parquet(results, tmp_path / name)
-    assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
-
-
 def test_a_run_writes_it_and_lists_it(tmp_path):
     files = assess.write_reports(assess_rows(*FULL), tmp_path / "out", ("parquet",))
     assert {one.name for one in (tmp_path / "out").iterdir()} == {"items.parquet", "results.json"}

@@ -80,16 +80,6 @@ def test_workbook_and_results_are_attached_byte_for_byte(report):
     assert dates == [b"D:20231114221320Z"] * 6
 
 
-def test_its_outline_holds_the_parts_and_what_is_in_them(report):
-    _, _, document = report
-    outline = [(mark.level, mark.get_title()) for mark in document.get_toc()]
-    parts = [title for level, title in outline if level == 0]
-    pages = "\n".join(document[at].get_textpage().get_text_range() for at in range(len(document)))
-    assert len(parts) >= 6
-    assert any(level == 1 for level, _ in outline)
-    assert all(title.split()[0] in pages for _, title in outline)
-
-
 def test_every_font_is_embedded_and_of_the_report(report):
     _, _, document = report
     fonts = {}

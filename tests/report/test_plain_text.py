@@ -1,10 +1,11 @@
-"""Text of the workbook stays text in all five outputs: never a formula, markup, a path or a hidden character."""
+"""Text of the workbook stays text in all outputs: never a formula, markup, a path or a hidden character."""
 
 import csv
 import json
 import re
 import zipfile
 
+import docx
 import formualizer
 import openpyxl
 import pypdfium2
@@ -51,7 +52,7 @@ def outputs(tmp_path_factory):
     write_workbook(path, Content(rows=rows), spare=3)
     _unescape_controls(path)
     results = assess.run(path)
-    return results, assess.write_reports(results, folder / "out", ("xlsx", "html", "json", "csv"))
+    return results, assess.write_reports(results, folder / "out", ("xlsx", "html", "json", "csv", "docx"))
 
 
 def _unescape_controls(path):
@@ -138,6 +139,20 @@ def test_html(outputs):
     assert PATH in text
     assert not re.search(r"(?:href|src)=\"(?!data:|#)", text)
     assert _no_hidden(text)
+
+
+def test_word(outputs):
+    _, written = outputs
+    texts = [
+        cell.text for table in docx.Document(str(written["docx"])).tables for row in table.rows for cell in row.cells
+    ]
+    shown = " ".join(" ".join(texts).split())
+    assert SCRIPT in shown
+    assert FORMULA in shown
+    with zipfile.ZipFile(written["docx"]) as archive:
+        parts = {name: archive.read(name).decode() for name in archive.namelist() if name.endswith((".xml", ".rels"))}
+    assert not any('TargetMode="External"' in text for text in parts.values())
+    assert all(_no_hidden(text) for text in parts.values())
 
 
 @pytest.mark.slow

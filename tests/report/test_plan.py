@@ -123,15 +123,6 @@ def test_y_points_upwards(assessment):
             assert all(plan.low[0] < x < plan.high[0] and plan.low[1] < y < plan.high[1] for x, y in corners)
 
 
-def test_ticks_and_bar_are_round_and_inside(assessment):
-    plan, _second = _plans(assessment)
-    along_x, along_y = plan.ticks
-    assert set(along_x) >= {1.0, 2.0, 3.0}
-    assert min(along_x) >= plan.low[0]
-    assert max(along_y) <= plan.high[1]
-    assert plan.bar in (0.5, 1.0, 2.0)
-
-
 def test_names_of_places_cover_neither_pieces_nor_each_other(tmp_path):
     places = [{"place": f"Place {at}", "floor": "1", "x": 3.0 + 0.01 * at, "y": 6.0} for at in range(3)]
     plan = _plans(_assess(tmp_path / "w.xlsx", PIECES, places, ()))[0]
@@ -164,18 +155,6 @@ def test_a_label_goes_where_it_covers_nothing():
     assert free.lead is moved.lead is None
 
 
-def test_no_plan_without_positions(tmp_path):
-    pieces = [{"item": "A", "floor": "1", "breadth": 30, "height": 200}]
-    assert _plans(_assess(tmp_path / "w.xlsx", pieces, (), ())) == [None, None]
-
-
-def test_a_floor_with_one_piece_is_drawn_at_a_sensible_scale(assessment):
-    _first, plan = _plans(assessment)
-    assert plan.unit >= 1 / 90
-    assert 50 < plan.size[0] <= 660
-    assert 50 < plan.size[1] <= 780
-
-
 def _links(drawing, name):
     return [link for link in drawing.iter(f"{SVG}a") if link.get("class").split()[0] == name]
 
@@ -193,15 +172,6 @@ def test_ids_are_unique_and_links_lead_somewhere(html):
     assert set(re.findall(r"url\(#([^)]+)\)", html)) <= set(ids)
 
 
-def test_colours_are_those_of_the_classes_and_each_has_its_symbol(html):
-    first, _second = _drawings(html)
-    risky, anchored, low = _links(first, "piece")
-    assert risky.find(f"{SVG}path").get("fill") == assess.risk.RiskClass.VERY_HIGH.fill
-    assert risky.find(f"{SVG}text").text == "■"
-    assert anchored.find(f"{SVG}text").text == "⚓"
-    assert low.find(f"{SVG}text").text == "○"
-
-
 @pytest.mark.slow
 def test_the_pdf_draws_the_plan_without_links(assessment, tmp_path):
     html = render(assessment, for_print=True)
@@ -215,16 +185,6 @@ def test_the_pdf_draws_the_plan_without_links(assessment, tmp_path):
     fill = assess.risk.RiskClass.VERY_HIGH.fill
     assert tuple(int(fill[at : at + 2], 16) for at in (1, 3, 5)) in colours
     assert (0xD0, 0xD0, 0xD0) in colours
-
-
-def test_hundreds_of_pieces_stay_small(tmp_path):
-    pieces = [
-        {"item": f"A{at}", "floor": "1", "breadth": 30, "width": 80, "height": 200, "x": at % 30, "y": at // 30}
-        for at in range(600)
-    ]
-    assessment = _assess(tmp_path / "w.xlsx", pieces, (), ())
-    (drawing,) = re.findall(r'<svg[^>]*class="floor-plan".*?</svg>', render(assessment), re.S)
-    assert len(drawing) < 600 * 600
 
 
 # ---------------------------------------------------------------- routes

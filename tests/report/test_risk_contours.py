@@ -1,7 +1,6 @@
 """The map of risk over breadth and PFA: what is chosen, what is computed, what is drawn."""
 
 import math
-import shutil
 import xml.etree.ElementTree as ET
 
 import numpy as np
@@ -24,7 +23,7 @@ from assess.report.figures.risk_map import (
 )
 from assess.settings import Settings
 from assess.units import GRAVITY
-from tests.workbooks import RECORDS, assessed
+from tests.workbooks import assessed
 
 FLOORS = [{"floor": "1", "pfa_x": 0.5, "pfv_x": 60}, {"floor": "2", "pfa_x": 0.3}]
 TALL = {"breadth": 40, "height": 200}
@@ -148,17 +147,6 @@ def test_one_piece_and_many(tmp_path):
     assert len(_ids(many, "piece")) == 3 * len({one.item.breadth_cm for one in many.pieces})
     assert 3 <= len(_ids(many, "name")) <= 3 * MOST_NAMES
     assert len(draw_contours(many)) < 250_000
-
-
-@pytest.mark.slow
-def test_recorded_and_verified(tmp_path):
-    shutil.copy(RECORDS / "made-up-sweep.csv", tmp_path)
-    floors = [{"floor": "1", "record_x": "made-up-sweep.csv#north"}]
-    run = assessed(tmp_path / "w.xlsx", _items(TALL), floors, settings=Settings(verify="all", runs=5))
-    chosen = build_contours(run)
-    motion = run.result(0).governing.motion
-    assert f"{motion.pfv_cm_s / motion.pfa_g:.0f} cm/s for each g" in " ".join(chosen.caption)
-    assert len(_ids(chosen, "piece")) == 3
 
 
 def test_a_strange_name_and_a_chance_that_is_everywhere_one(tmp_path):

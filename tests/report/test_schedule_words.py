@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import openpyxl
 import pytest
 
 import assess
@@ -14,7 +13,6 @@ from assess.report.words import say_bracket
 from assess.schedule_results import NOTHING
 from assess.settings import Settings
 from assess.workbook.template import Content, write_workbook
-from tests.report.reading import write_html
 
 FLOORS = [
     {"floor": "2", "pfa_x": 0.5, "pfa_y": 0.5, "elevation": 4},
@@ -161,13 +159,6 @@ def test_an_anchored_piece_whose_bracket_may_fail_is_named(tmp_path, anchored, c
     assert (said in build_content(results).summary.plainly) is bool(words)
 
 
-@pytest.mark.parametrize(
-    ("force", "said"), [(None, "–"), (0, "0.00"), (0.004, "< 0.01"), (0.005, "0.01"), (1.234, "1.23")]
-)
-def test_forces(force, said):
-    assert say.say_force(force) == said
-
-
 # ---------------------------------------------------------------- sums
 
 
@@ -178,14 +169,3 @@ def test_without_costs_and_without_work(tmp_path):
 
 
 # ---------------------------------------------------------------- pages and sheet
-
-
-def test_a_building_with_nothing_to_fix_says_so(tmp_path):
-    low = {"item": "a", "floor": "1", "breadth": 90, "width": 90, "height": 90}
-    results = assess_these(tmp_path, [low])
-    assert results.schedule.rows == ()
-    page = write_html(results, tmp_path)
-    assert "No free-standing piece reaches medium, and no route needs one fixed." in page
-    written = assess.write_reports(results, tmp_path / "out", ("xlsx",))
-    sheet = openpyxl.load_workbook(written["xlsx"])["Work list"]
-    assert sheet["A2"].value == "No free-standing piece reaches medium, and no route needs one fixed."

@@ -176,44 +176,6 @@ def test_libreoffice_agrees(report, tmp_path):
     assert not [place for place, value in stored.items() if not same(value, found.get(place))]
 
 
-def test_items_show_what_the_program_found(report):
-    book = report.edit()
-    shown = {label: report.read(book, label) for label in report.places}
-    for one in report.results:
-        found = {label: values[one.item.item] for label, values in shown.items()}
-        adopted, mark = one.adopted, ANCHORED if one.is_anchored else ""
-        assert found["Basis"] == BASES[adopted.basis]
-        for label, key in (("OR", "proposed_or"), ("FEMA P-58", "fema_p58")):
-            value = one.governing.methods[key].value
-            assert found[label] == ("" if value is None else pytest.approx(value, abs=1e-9))
-        assert found["Axis"] == one.governing.motion.axis
-        chances = [found[label] for label in CHANCES]
-        if not adopted.can_rock:
-            assert (found["Class"], found["Upper class"]) == (mark + RiskClass.LOW.label,) * 2
-            assert not any([*chances, found["Notes on the class"]])
-            continue
-        assert found["Runs"] == 30
-        assert found["Class"] == mark + adopted.risk.label
-        assert found["Upper class"] == mark + adopted.upper.label
-        if adopted.basis == "unconfirmed":
-            assert chances == [None] * 4
-            how = "use stronger motions" if one.item.floor == "2" else "fill in Storeys or Period T1 in Building"
-            assert found["Notes on the class"].startswith(f"to settle it, {how}")
-            assert "lowered" not in found["Notes on the class"]
-            continue
-        assert ("lowered" in found["Notes on the class"]) == (adopted.lowered_from is not None)
-        assert ("could be" in found["Notes on the class"]) == (adopted.upper > adopted.risk)
-        ideal = one.governing.simulation.ideal.probability
-        assert chances == [pytest.approx(value, abs=1e-12)
-                           for value in (adopted.probability, adopted.low, adopted.high, ideal)]  # fmt: skip
-    assert {one.adopted.basis for one in report.results} == set(BASES) - {"formula"}
-    assert any(one.governing.motion.axis != one.by_formula.motion.axis for one in report.results)
-
-
-def test_counts_are_those_of_the_adopted_classes(report):
-    assert _summary(report, report.edit()) == _expected(report)
-
-
 @pytest.mark.parametrize(("name", "edited"), [("report", ("Floors", 3, 6)), ("by_paper", ("Floors", 3, 3))])
 def test_the_list_on_the_summary_follows_an_edit(name, edited, request):
     """It holds simulated pieces alone; those to be run again leave it."""
@@ -385,53 +347,6 @@ def test_an_unconfirmed_class_is_that_of_the_formula_or_of_the_faster_draws(repo
     fewer = report.edit((report.cell(kept[0].item.item, "Friction"), 0.9))
     lines = [str(fewer.get_value("Summary", row, 1)) for row in range(1, 10)]
     assert any(line.startswith(f"Unconfirmed pieces: {pieces - kept[0].item.quantity};") for line in lines)
-
-
-def test_a_lowered_class_says_so_wherever_it_stands(report):
-    simulated = [one for one in report.results if one.adopted.is_simulated and not one.is_anchored]
-    lowered = {one.item.item: one.adopted for one in simulated if one.adopted.lowered_from is not None}
-    assert lowered
-    shown = report.read(report.edit(), "Notes on the class")
-    book = openpyxl.load_workbook(report.path)
-    work = {row[5]: row[7] for row in book["Work list"].iter_rows(min_row=2, values_only=True)}
-    for item, adopted in lowered.items():
-        assert f"lowered by simulation (formula: {adopted.lowered_from.label})" in shown[item]
-        if item in work:
-            assert work[item].startswith(f"{adopted.risk.label}")
-            assert f"lowered by simulation (formula: {adopted.lowered_from.word})" in work[item]
-    assert set(lowered) & set(work)
-    summary = openpyxl.load_workbook(report.path, data_only=True)["Summary"]
-    assert any("lowered by simulation" in str(row[8]) for row in summary.iter_rows(values_only=True))
-
-
-def test_an_unconfirmed_class_is_never_said_to_be_lowered(report):
-    kept = [one for one in report.results if one.adopted.is_unconfirmed]
-    assert any(one.adopted.risk < one.formula_class for one in kept), "though it is lower than the formula's"
-    assert {one.adopted.lowered_from for one in kept} == {None}
-    book = report.edit()
-    notes = report.read(book, "Notes on the class")
-    assert not any("lowered" in notes[one.item.item] for one in kept)
-    lowered = sum(one.adopted.lowered_from is not None for one in report.results)
-    lines = [str(book.get_value("Summary", row, 1)) for row in range(1, 12)]
-    assert f"Rows whose class simulation lowers: {lowered}." in lines
-
-
-def test_the_sheet_verification_holds_the_fit_of_every_floor_and_axis(report):
-    rows = list(openpyxl.load_workbook(report.path)["Verification"].iter_rows(values_only=True))
-    heads, found = rows[0], {row[:2]: row for row in rows[1:]}
-    assert set(found) == {(floor, axis) for floor in "123" for axis in "XY"}
-    for motion in (one for one in report.results.motions if one.ensemble):
-        row, ensemble = dict(zip(heads, found[motion.floor, motion.axis], strict=True)), motion.ensemble
-        assert row["Motions"] == ensemble.motions == 30
-        assert row["Motion"] == ("recorded" if motion.floor == "2" else "assumed")
-        assert row["Seed"] == 1
-        assert row["Rows"] == ensemble.cases
-        assert (ensemble.fit is None) == (motion.floor != "2"), "what is drawn follows no target"
-        fit = ensemble.fit and (ensemble.fit.worst_deviation, ensemble.fit.pfa_ratio)
-        assert (row["Worst deviation"], row["PFA over the target's"]) == (pytest.approx(fit) if fit else (None, None))
-        assert row["Rows that overturn under the record"] == ensemble.fell_in_record
-        assert (ensemble.fell_in_record is None) == (motion.floor != "2")
-    assert found["2", "Y"][-1] >= 2
 
 
 def test_a_suite_and_parallel_records_hold_too(tmp_path):
