@@ -39,6 +39,9 @@ By hand: a stocky one pulls at its bracket where k z > B/2, with z = 0.8 m and B
 """
 VERY_STOCKY = {"breadth": 150, "width": 160, "height": 100}
 """It does not rock: in a run that simulates every piece its class is that of the formula."""
+BASES = {"simulated": "simulated", "formula": "formula (not simulated)", "unconfirmed": "unconfirmed",
+         "cannot rock": "cannot rock"}  # fmt: skip
+"""What the Excel report calls the bases of classes."""
 
 
 def list_items() -> list[dict[str, Any]]:

@@ -2,11 +2,16 @@
 
 import html
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 import assess
 from assess.report.content import build_content
+from assess.report.figures import motion_figures, risk_contours
 from assess.report.fonts import print_fonts
 from assess.report.pages import html as pages
 from assess.report.pages.editions import Edition
@@ -15,17 +20,27 @@ from assess.report.report_options import ReportOptions
 from assess.results import Results
 
 
-def write_html(results: Results, folder: Path, options: ReportOptions | None = None) -> str:
+@contextmanager
+def no_figures() -> Iterator[None]:
+    """Leave figures out of pages, which take most of the time: they have empty pictures in their places."""
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (motion_figures, risk_contours):
+            patch.setattr(module, "draw", lambda *_, **__: b"")
+        yield
+
+
+def write_html(results: Results, folder: Path, *, figures: bool = False) -> str:
     """Write the HTML report and return it."""
-    return assess.write_reports(results, folder, ("html",), options)["html"].read_text(encoding="utf-8")
+    with nullcontext() if figures else no_figures():
+        return assess.write_reports(results, folder, ("html",))["html"].read_text(encoding="utf-8")
 
 
 def render(
     results: Results, options: ReportOptions | None = None, *, for_print: bool = False, edition: Edition = "all"
 ) -> str:
-    """Return the HTML of a report in its language, with `for_print` as the PDF is laid out from it."""
+    """Return the HTML of a report in its language; with `for_print` as the PDF is laid out from it, with figures."""
     options = options or ReportOptions(language=results.provenance.language)
-    with options.spoken():
+    with options.spoken(), nullcontext() if for_print else no_figures():
         return pages.render(build_content(results), options, for_print=for_print, edition=edition)
 
 

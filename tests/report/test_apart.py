@@ -5,6 +5,7 @@ import shutil
 from dataclasses import replace
 
 import numpy as np
+import pypdfium2
 import pytest
 
 import assess
@@ -156,9 +157,6 @@ def test_weak_motions_are_settled_by_stronger_ones(tmp_path):
     assert "--motions" in " ".join(describe_result(results))
 
 
-# ---------------------------------------------------------------- files
-
-
 # ---------------------------------------------------------------- what was assumed
 
 
@@ -184,10 +182,7 @@ def test_the_summary_says_what_other_dispersions_change(mixed):
     assert f"With a dispersion of 0.6, {up}." in text
 
 
-CONDITIONS = (
-    "Assumed: exactly this motion, and every piece exactly as given",
-    "Every floor's motion times 1.2",
-)
+CONDITIONS = ("Assumed: exactly this motion, and every piece exactly as given", "Every floor's motion times 1.2")
 
 
 @pytest.fixture(scope="module")
@@ -200,16 +195,12 @@ def test_other_conditions_are_named_at_the_head_of_the_page(exactly, page):
     assert text.partition("Overturning of furniture in an earthquake: assessment")[0].endswith(
         f"{' · '.join(CONDITIONS)} "
     )
-    assert "exactly this motion recurs and that every piece is exactly as given: nothing is varied." in text
-    assert "In an earthquake like this one (dispersion 0.4), " in text
     assert [f"{one}." for one in CONDITIONS] == list(describe_result(exactly))[-3:-1]
     assert 'class="conditions"' not in page
 
 
 @pytest.mark.slow
 def test_other_conditions_are_named_on_every_page_of_the_pdf(exactly, mixed, tmp_path):
-    import pypdfium2
-
     for results, expected in ((exactly, True), (mixed, False)):
         written = assess.write_reports(results, tmp_path / str(expected), ("pdf", "annex"))
         pages = []

@@ -11,7 +11,6 @@ import assess
 from assess.methods._fitted_model import Polynomial, build_method
 from assess.report.findings.disagreements import MOST_REASONS, NAMED, find_disagreements, group_disagreements, span
 from assess.risk import RiskClass, classify
-from assess.settings import Settings
 from tests.methods.test_fitted import PROBIT, SURFACE
 from tests.workbooks import UNVERIFIED, assessed
 
@@ -118,16 +117,6 @@ class TestKnownRows:
 
     def test_methods_that_agree_are_left_out(self, tmp_path):
         assert found(run(tmp_path, [(30, 200, 0.8, 150)])).groups == ()
-
-    @pytest.mark.slow
-    def test_simulation_counts_once_it_ran(self, tmp_path):
-        settings = Settings(verify="all", runs=20)
-        certain = {"motion_uncertainty": 0, "piece_uncertainty": "no"}
-        row, reasons = one(tmp_path, 45, 180, 0.24, 35, settings=settings, period=1.0, **certain)
-        simulated = row.result.governing.simulation
-        assert (row.lowest.method.role, row.lowest.value) == ("simulation", simulated.probability)
-        assert f"Draws that overturn it: {simulated.overturned} of 20." in reasons
-        assert "the integrated motions are those of drawn earthquakes in drawn buildings" in reasons
 
 
 class TestExampleBuilding:

@@ -14,13 +14,6 @@ LONG = "N" * 299 + "Z"
 BARE = {"item": "A1", "floor": "1", "breadth": 30, "height": 200}
 
 
-def floors(count):
-    return [
-        {"floor": f"F{at}", "name": f"Level {at}", "elevation": 3.0 * at, "pfa_x": 0.1 + 0.001 * at}
-        for at in range(count)
-    ]
-
-
 CASES = {
     "no items": ({"items": []}, ["There are no free-standing pieces.", "There are no pieces.", "2 floors have no"]),
     "an item with no name but its number": ({"items": [BARE]}, ["A1: no description", "1 floor has no"]),
@@ -55,22 +48,6 @@ def test_it_renders(tmp_path, name):
     assert "Items" in book.sheetnames
     book.close()
     assert LONG not in text or name != "names of 300 characters"
-
-
-@pytest.mark.long
-@pytest.mark.slow
-def test_two_hundred_floors(tmp_path):
-    levels = floors(200)
-    items = [dict(ITEMS[0], item=f"P{at}", floor=f"F{at}") for at in range(200)]
-    written = assess.write_reports(
-        assessed(tmp_path / "w.xlsx", items, levels), tmp_path / "out", ("pdf", "annex", "html", "xlsx")
-    )
-    pages = _read(written["pdf"], written["annex"])
-    assert len(pages) < 120
-    text = " ".join(" ".join(pages).split())
-    for floor in levels:
-        assert f"{floor['floor']} – {floor['name']}" in text
-    assert sum(page.lstrip().startswith("Summary") for page in pages) == 1
 
 
 @pytest.mark.long

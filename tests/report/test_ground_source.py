@@ -1,20 +1,25 @@
-"""Reports of a building under a ShakeMap: source, scatter and provenance stand where the numbers are."""
+"""What reports say of the motion of the ground: of a ShakeMap, an assumed intensity, and drawn earthquakes."""
 
 import json
-import re
 import shutil
 from dataclasses import replace
-from html import unescape
 
 import openpyxl
 import pytest
 
 import assess
+from assess.intensity import MIDORIKAWA
+from assess.report.content import build_content
+from assess.report.data import describe_run
+from assess.report.findings.assumed_intensity import say_shaking, say_shaking_shortly
+from assess.report.findings.earthquake_draws import list_references, say_draws
 from assess.report.findings.ground_source import say_ground, say_ground_source
 from assess.report.findings.uncertain import say_source
+from assess.results import EarthquakeDraws
 from assess.settings import Settings
 from tests.cli.calling import run
 from tests.motion.grids import BAY
+from tests.report.reading import read_text
 from tests.workbooks import assessed, write
 
 FLOORS = [{"floor": "1", "elevation": 0}, {"floor": "2", "elevation": 6}]
@@ -41,36 +46,7 @@ def written(tmp_path_factory):
     return folder / "out"
 
 
-def _plain(html):
-    return " ".join(unescape(re.sub(r"<[^>]+>", " ", html)).split())
-
-
-def test_the_html_report_says_so_on_cover_summary_and_among_the_assumptions(written):
-    html = (written / "report.html").read_text(encoding="utf-8")
-    cover = _plain(html[html.index('<header class="cover">') : html.index("</header>")])
-    assert f"{SENTENCE} {SCATTER}" in cover
-    assert html.count("Ground motion: ShakeMap grid.xml") > 1
-    text = _plain(html)
-    assert "dispersion of 0.41 (standard deviation of ln amplitude; the root of 0.4² + 0.0904²: Motion" in text
-    for fact in ("19891018000415", "1, 3.5.1277", "2014-10-25T13:28:48Z", "363 m/s; its effect is in the map"):
-        assert fact in text
-    assert f"SHA-256 {_hash(written)}" in text
-    assert "0.308 g at 0.3 s" in text
-
-
-def _hash(folder):
-    return json.loads((folder / "results.json").read_text(encoding="utf-8"))["assess"]["site_ground"]["sha256"]
-
-
-def test_the_excel_report_says_so(written):
-    book = openpyxl.load_workbook(written / "report.xlsx")
-    texts = [str(cell.value) for row in book["Summary"].iter_rows(max_row=12) for cell in row if cell.value]
-    assert any(one.startswith(f"{SENTENCE} {SCATTER}") for one in texts)
-    assert "ShakeMap grid.xml" in (book["Summary"].oddHeader.center.text or "")
-    book.close()
-
-
-def test_the_json_holds_map_scatter_and_provenance(written):
+def test_reports_name_source_scatter_and_provenance_where_the_numbers_are(written):
     found = json.loads((written / "results.json").read_text(encoding="utf-8"))
     site = found["assess"]["site_ground"]
     assert (site["kind"], site["file"], site["scenarios"]) == ("shakemap", "grid.xml", 0)
@@ -82,6 +58,17 @@ def test_the_json_holds_map_scatter_and_provenance(written):
     assert found["assess"]["uncertainty"]["motion"] == pytest.approx(0.41, abs=1e-3)
     assert {one["pfa_source"] for one in found["items"]} == {"ShakeMap, beam"}
     assert all("shakemap" in one["adopted"]["flags"] for one in found["items"])
+    html = (written / "report.html").read_text(encoding="utf-8")
+    cover = html[html.index('<header class="cover">') : html.index("</header>")]
+    assert f"{SENTENCE} {SCATTER}" in read_text(cover)
+    text = read_text(html)
+    assert "dispersion of 0.41 (standard deviation of ln amplitude; the root of 0.4² + 0.0904²: Motion" in text
+    for fact in ("19891018000415", "363 m/s; its effect is in the map", f"SHA-256 {site['sha256']}"):
+        assert fact in text
+    book = openpyxl.load_workbook(written / "report.xlsx")
+    texts = [str(cell.value) for row in book["Summary"].iter_rows(max_row=12) for cell in row if cell.value]
+    assert any(one.startswith(f"{SENTENCE} {SCATTER}") for one in texts)
+    assert "ShakeMap grid.xml" in (book["Summary"].oddHeader.center.text or "")
 
 
 def test_where_the_scatter_is_not_in_the_results_they_say_so(tmp_path):
@@ -150,3 +137,112 @@ def test_scenarios_set_the_number_of_draws(tmp_path):
     found = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
     assert found["assess"]["settings"]["runs"] == 201
     assert found["assess"]["site_ground"]["scenarios"] == 3
+
+
+# ---------------------------------------------------------------- an assumed intensity
+
+CHOICE = "MMI VII, very strong"
+
+
+def test_where_the_scatter_is_left_out_it_is_not_said_to_be_in(tmp_path):
+    simulated = assessed(tmp_path / "w.xlsx", floors=FLOORS, shaking=CHOICE, settings=Settings(runs=25))
+    assert say_shaking(simulated).endswith("by 0.88 (standard deviation of ln PGV), which is drawn.")
+    ideal = replace(simulated, settings=Settings(runs=25, ideal=True))
+    plain = assessed(tmp_path / "w.xlsx", floors=FLOORS, shaking=CHOICE)
+    for results, wanted in (
+        (ideal, "the simulation leaves this scatter out"),
+        (plain, "The formula takes the median; the scatter is not in it."),
+    ):
+        paragraph, sentence = say_shaking(results), say_shaking_shortly(results)
+        assert wanted in paragraph
+        assert "which is drawn" not in paragraph
+        assert "scatter is not in the results" in sentence
+    scaled = replace(plain, settings=replace(plain.settings, scale=0.5))
+    assert say_shaking_shortly(scaled).endswith("The results are for these medians times 0.5.")
+    assert " The results are for these medians times 0.5. PGV scatters" in say_shaking(scaled)
+
+
+def test_a_factor_leaves_the_medians_as_they_are(tmp_path):
+    settings = Settings(verify="none", scale=0.5)
+    results = assessed(tmp_path / "w.xlsx", floors=FLOORS, shaking=CHOICE, settings=settings)
+    assert results.provenance.shaking.pga_g == pytest.approx(0.2152, rel=1e-3)
+
+
+def test_a_derived_pga_and_an_open_class_are_among_the_assumptions(tmp_path):
+    results = assessed(tmp_path / "w.xlsx", floors=FLOORS, shaking="JMA 7")
+    content = build_content(results)
+    assumed = dict(content.assumptions)
+    assert assumed["PGA of the assumed shaking"].startswith("from PGV by the ratio that is drawn")
+    shaking = results.provenance.shaking
+    assert shaking.pgv_cm_s / shaking.pga_g == pytest.approx(105)
+    assert "open above: taken as 7" in assumed["Class of the assumed shaking"]
+    assert "(Midorikawa et al. 1999)" in assumed["Shaking"]
+    assert MIDORIKAWA in content.references
+
+
+# ---------------------------------------------------------------- drawn earthquakes
+
+ITEMS = [{"item": "A", "floor": "1", "axis": "X", "breadth": 40, "width": 90, "height": 180}]
+SETTINGS = Settings(city=True, runs=20)
+JAYARAM, BOORE = "doi:10.1002/eqe.922", "doi:10.1193/070113EQS184M"
+
+
+@pytest.fixture(scope="module")
+def placed(tmp_path_factory):
+    path = tmp_path_factory.mktemp("city") / "w.xlsx"
+    return assessed(path, ITEMS, [{"floor": "1", "pfa_x": 0.45}], settings=SETTINGS, period=0.8, motion_uncertainty=0.4,
+                    latitude=37.79, longitude=-122.4)  # fmt: skip
+
+
+def changed(results, **changes):
+    """Return the results with other draws of the earthquake."""
+    draws = replace(results.provenance.earthquakes, **changes)
+    return replace(results, provenance=replace(results.provenance, earthquakes=draws))
+
+
+def alone(results):
+    """Return the results as of a building alone."""
+    return replace(results, provenance=replace(results.provenance, earthquakes=None))
+
+
+def test_a_building_of_a_city_names_the_correlation_and_its_sources(placed):
+    text = " ".join(build_content(placed).trials.paragraphs)
+    assert "one normal number ε for the whole building" in text
+    assert "what is drawn, of ln PGA, has a part that is common to all places" in text
+    assert "a share of 0.331 of its variance (Boore et al. 2014)" in text
+    assert "exp(-3h/40.7 km) (Jayaram and Baker 2009)" in text
+    assert "Motion k has the same random phases in every building" in text
+    assert [key for key in (JAYARAM, BOORE) for one in list_references(placed) if key in one] == [JAYARAM, BOORE]
+
+
+def test_a_building_of_a_city_without_a_place_is_fully_correlated(placed):
+    text = say_draws(changed(placed, is_placed=False))
+    assert "Latitude and Longitude are not filled in" in text
+    assert "buildings without a place are fully correlated" in text
+    assert "Jayaram" not in text
+    assert list_references(changed(placed, is_placed=False)) == []
+
+
+def test_scenarios_are_told_with_their_share_also_for_a_building_alone(placed):
+    results = changed(placed, is_city=False, is_placed=False, scenarios=250, scenario_share=0.36)
+    assert say_draws(results) == (
+        "A share of 0.36 of the variance of ε is that of 250 scenarios of the ground, draw by draw in their order; the "
+        "rest is drawn."
+    )
+
+
+def test_nothing_is_said_of_draws_that_were_not_made(placed):
+    assert say_draws(replace(placed, settings=replace(SETTINGS, ideal=True))) == ""
+    fixed = replace(placed.provenance, uncertainty=replace(placed.provenance.uncertainty, motion=0.0))
+    assert say_draws(replace(placed, provenance=fixed)) == ""
+
+
+def test_results_json_holds_how_earthquakes_were_drawn(placed):
+    found = describe_run(placed)["assess"]
+    assert found["settings"]["city"] is True
+    assert found["earthquakes"] == {
+        "is_city": True, "is_placed": True, "shared": pytest.approx(0.3308, abs=1e-4), "is_shared_given": False,
+        "measure": "PGA", "range_km": 40.7, "scenarios": 0, "scenario_share": 0.0,
+    }  # fmt: skip
+    assert describe_run(alone(placed))["assess"]["earthquakes"] is None
+    assert EarthquakeDraws(**found["earthquakes"]) == placed.provenance.earthquakes

@@ -1,4 +1,6 @@
-"""The PDF as it is laid out: nothing runs past the margin, no word of a head is broken, sections keep their heads."""
+"""The PDF as it is laid out: nothing runs past the margin, words stay whole, sections keep their heads."""
+
+from itertools import pairwise
 
 import pytest
 
@@ -6,7 +8,7 @@ import assess
 from assess.report.report_options import ReportOptions
 from assess.workbook.template import Content, write_workbook
 from tests.report.reading import lay_out, render
-from tests.workbooks import UNVERIFIED
+from tests.workbooks import UNVERIFIED, assessed
 
 pytestmark = pytest.mark.slow
 
@@ -138,3 +140,45 @@ def test_the_approval_block_has_room_for_signatures(pages):
         table.element, "getparent") else _of(table, boxes.TableRowBox)[1:]  # fmt: skip
     assert len(rows) == 3
     assert all(row.height >= 14 / 25.4 * 96 - 1 for row in rows)
+
+
+# ---------------------------------------------------------------- words of the workbook
+
+LEVELS = [
+    {"floor": name, "name": title, "elevation": at, "pfa_x": 0.5, "pfv_x": 40, "pfa_y": 0.5, "pfv_y": 45}
+    for name, title, at in (("Second", "Second floor", 8), ("Mezzanine", "", 4), ("Basement", "", -3))
+]  # fmt: skip
+ROOMS = ["Physiotherapy", "Echocardiography waiting area", "Gastroenterology", "Sterilisation"]
+WHAT = ["Refrigerator for vaccines", "Electrocardiograph on a trolley", "Bookcase, partly anchored",
+        "Uninterruptible power supply"]  # fmt: skip
+HOSPITAL = [
+    {"item": f"{LEVELS[at % 3]['floor']}-{at:02}", "floor": LEVELS[at % 3]["floor"], "room": ROOMS[at % 4],
+     "description": WHAT[at % 4], "breadth": 30 + 5 * (at % 4), "width": 80, "height": 180,
+     "anchored": "yes" if at % 7 == 0 else "no", "importance": "life safety" if at % 5 == 0 else None}
+    for at in range(24)
+]  # fmt: skip
+TABLES = {"items", "pieces", "named"}
+
+
+def _broken(cell):
+    """Return where a line of a cell ends within a word: not at a space, hyphen or slash."""
+    words = "".join(cell.element.itertext()).split()
+    lines = ["".join(one.text for one in _of(line, boxes.TextBox)).split() for line in _of(cell, boxes.LineBox)]
+    ends = [(one[-1], other[0]) for one, other in pairwise(line for line in lines if line)]
+    return [
+        (last, first)
+        for last, first in ends
+        if last[-1] not in "-/" and any(last.rstrip("\N{HYPHEN}") + first in word for word in words)
+    ]
+
+
+def test_no_word_of_the_inventory_is_broken_over_lines(tmp_path):
+    results = assessed(tmp_path / "w.xlsx", HOSPITAL, LEVELS, building="General Hospital")
+    seen = set()
+    for page in lay_out(render(results, for_print=True)):
+        for table in _of(page, boxes.TableBox):
+            names = TABLES & set(table.element.get("class", "").split())
+            for cell in _of(table, boxes.TableCellBox) if names else ():
+                assert _broken(cell) == [], "".join(cell.element.itertext())
+                seen |= set("".join(cell.element.itertext()).split())
+    assert {"Physiotherapy", "Echocardiography", "Mezzanine", "Electrocardiograph"} <= seen

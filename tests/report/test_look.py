@@ -1,6 +1,8 @@
-"""How a report looks: its language, and a firm's own templates."""
+"""How a report looks: its language, its logo, and a firm's own templates."""
 
+import base64
 import re
+import struct
 
 import pytest
 from typer.testing import CliRunner
@@ -9,9 +11,12 @@ import assess
 from assess.cli.app import app
 from assess.errors import InputError
 from assess.i18n import load_catalogue
+from assess.report.pages.context import LIMITS
 from assess.report.report_options import ReportOptions
-from tests.report.reading import render
-from tests.workbooks import ITEMS, assessed, write
+from tests.nets.nets import find_shown
+from tests.pictures import picture
+from tests.report.reading import read_text, render
+from tests.workbooks import assessed, write
 
 HEAD = """msgid ""
 msgstr ""
@@ -121,26 +126,20 @@ def test_a_language_that_is_not_there_is_told():
         ReportOptions(language="xx")
 
 
-def test_an_italian_report_holds_no_english_sentence(tmp_path):
+def test_an_italian_report_holds_no_english_sentence(assessment):
     """Every text of the catalogue that is more than a word or two, and is another in Italian, is said in Italian."""
-    stool = {"item": "A6", "x": 1.0, "y": 2.0, "floor": "1", "breadth": 90, "width": 90, "height": 45, "friction": 0.2}
-    items = [*ITEMS[:4], stool]
-    found = assessed(tmp_path / "w.xlsx", items, period=0.9, ground_pga=0.2, language="Italiano")
-    assert found.provenance.language == "it"
-    html = render(found, ReportOptions(language="it"))
-    assert '<html lang="it">' in html
-    text = " ".join(re.sub(r"<(style|script)>.*?</\1>|<[^>]*>", " ", html, flags=re.DOTALL).split())
     english = {
-        one: texts
+        one
         for one, texts in load_catalogue("it").messages.items()
         if len(one.split()) >= 3 and one not in texts and "{" not in one and "<" not in one
     }
     assert len(english) > 200
-    titles = str([str(method.reference) for method in found.methods])  # publications keep their titles
-    left = [one for one in english if one in text and one not in titles]
-    assert left == []
-    assert re.search(r"\d,\d %", text)
-    assert not re.search(r"\d\.\d %", text)
+    titles = str([str(method.reference) for method in assessment.methods])  # publications keep their titles
+    for kind in ("html", "docx", "annex"):
+        text = " ".join(find_shown("everything-it", kind).read_text(encoding="utf-8").split())
+        assert [one for one in english if one in text and one not in titles] == []
+        assert re.search(r"\d,\d %", text)
+        assert not re.search(r"\d\.\d %", text)
 
 
 def test_the_files_for_programs_are_the_same_in_every_language(assessment, tmp_path):
@@ -149,3 +148,17 @@ def test_the_files_for_programs_are_the_same_in_every_language(assessment, tmp_p
     italian = assess.write_reports(assessment, tmp_path / "it", formats, ReportOptions(language="it"))
     for name in formats:
         assert english[name].read_bytes() == italian[name].read_bytes()
+
+
+def test_a_long_list_is_cut_with_a_word(assessment, monkeypatch):
+    monkeypatch.setattr("assess.report.pages.context.LIMITS", LIMITS | {"most_rows": 3})
+    assert "5 rows, the first 3 of which are shown: the Excel report holds all" in read_text(render(assessment))
+
+
+def test_a_logo_is_embedded(tmp_path):
+    for size, shown in (((40, 30), (40, 30)), ((4000, 50), (1334, 17))):
+        (tmp_path / "logo.png").write_bytes(picture("PNG", size=size))
+        html = render(assessed(tmp_path / "w.xlsx", logo="logo.png", organisation="Us & Co"))
+        found = re.search(r'<img class="logo" src="data:image/png;base64,([^"]+)" alt="Logo of Us &amp; Co">', html)
+        assert found
+        assert struct.unpack(">II", base64.b64decode(found[1])[16:24]) == shown

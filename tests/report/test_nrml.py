@@ -71,16 +71,6 @@ def test_each_floor_has_the_chances_of_its_amplification(small):
         assert words in description
 
 
-def test_what_was_found_is_written(small):
-    assessment, found = small
-    _, chances = read(write_nrml(assessment, found))
-    assert list(chances) == ["Shelf|1", "Shelf|2", "60_x_180_cm|1"]
-    sized = found.curves[1].curve
-    near = chances["60_x_180_cm|1"](sized.levels / GRAVITY / 1.2)
-    expected = lognormal_chance(sized.levels, sized.median, sized.dispersion) if sized.is_lognormal else sized.shares
-    assert near == pytest.approx(expected, abs=1e-4)
-
-
 def test_a_stronger_earthquake_changes_no_chance(small):
     """The ground grows with the floors, so that the ratio stays."""
     assessment, found = small

@@ -118,23 +118,6 @@ def test_no_name_of_a_piece_is_broken_at_its_hyphen(open_page, width):
     assert set(names.evaluate_all(LINES_OF_TEXT)) == {1}
 
 
-def test_figures_and_equations_fit(open_page):
-    page = open_page(PHONE)
-    pictures = page.locator("main img, main svg")
-    assert pictures.count() > 10
-    assert page.locator("svg.math").count() > 30
-    widths = pictures.evaluate_all("all => all.map(one => one.getBoundingClientRect().width)")
-    assert max(widths) <= PHONE
-
-
-def test_the_report_brings_its_own_face(open_page):
-    page = open_page(PHONE)
-    page.evaluate("document.fonts.ready")
-    loaded = "[...document.fonts].map(one => [one.family.replaceAll(/['\"]/g, ''), one.weight, one.status])"
-    assert sorted(page.evaluate(loaded)) == [["Report", "bold", "loaded"], ["Report", "normal", "loaded"]]
-    assert page.evaluate("getComputedStyle(document.body).fontFamily").startswith("Report,")
-
-
 @pytest.mark.parametrize("width", [DESK, PHONE])
 def test_axe_finds_nothing_serious(open_page, width):
     """Also none of less weight: whatever axe-core is sure of."""

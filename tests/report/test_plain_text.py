@@ -4,6 +4,7 @@ import csv
 import json
 import re
 import zipfile
+from html.parser import HTMLParser
 
 import docx
 import formualizer
@@ -12,8 +13,10 @@ import pypdfium2
 import pytest
 
 import assess
+from assess.report.pages.html import hash_script
 from assess.workbook.schema import SHEETS
 from assess.workbook.template import Content, write_workbook
+from tests.report.reading import no_figures
 
 FORMULA = '=HYPERLINK("http://x","y")'
 SCRIPT = "<script>alert(1)</script>"
@@ -52,7 +55,8 @@ def outputs(tmp_path_factory):
     write_workbook(path, Content(rows=rows), spare=3)
     _unescape_controls(path)
     results = assess.run(path)
-    return results, assess.write_reports(results, folder / "out", ("xlsx", "html", "json", "csv", "docx"))
+    with no_figures():
+        return results, assess.write_reports(results, folder / "out", ("xlsx", "html", "json", "csv", "docx"))
 
 
 def _unescape_controls(path):
@@ -130,14 +134,39 @@ def test_excel(outputs):
     assert _no_hidden(raw)
 
 
+class _Tags(HTMLParser):
+    """Collects the tags that are open, and those that are closed in the wrong order."""
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.wrong = [], []
+
+    def handle_starttag(self, tag, attrs):
+        if tag not in ("meta", "img", "br", "col", "link", "input"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            self.wrong.append(tag)
+
+
 def test_html(outputs):
+    """It is well formed, fetches nothing and runs its own script alone."""
     _, written = outputs
     text = written["html"].read_text(encoding="utf-8")
-    assert text.lower().count("<script") == 1  # the report's own
+    tags = _Tags()
+    tags.feed(text)
+    assert (tags.wrong, tags.open) == ([], [])
+    assert text.lower().count("<script") == 1
+    (script,) = re.findall(r"<script>(.*?)</script>", text, flags=re.DOTALL)
+    assert f"script-src '{hash_script(script)}'" in text
+    assert "default-src 'none'" in text
+    assert "url(" not in re.sub(r"url\((data:|#)", "", text)
+    assert not re.search(r"(?:href|src)=\"(?!data:|#)", text)
+    assert all('scope="' in head for head in re.findall(r"<th[ >][^>]*", text))
     assert "&lt;script&gt;alert(1)&lt;/script&gt;" in text
     assert "=HYPERLINK(&#34;http://x&#34;,&#34;y&#34;)" in text
     assert PATH in text
-    assert not re.search(r"(?:href|src)=\"(?!data:|#)", text)
     assert _no_hidden(text)
 
 

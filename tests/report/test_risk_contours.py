@@ -63,6 +63,9 @@ def mixed(tmp_path_factory):
 def test_the_height_that_most_risky_pieces_share(mixed):
     assert mixed.height_cm == 200
     assert [one.item.item for one in mixed.pieces] == ["i0", "i1"], "free-standing, within 10 %, the worst first"
+    for one in mixed.pieces:
+        assert mixed.breadth_cm[0] < one.item.breadth_cm < mixed.breadth_cm[-1]
+        assert mixed.pfa_g[0] < one.governing.motion.pfa_g < mixed.pfa_g[-1]
 
 
 def test_of_heights_as_common_the_larger(tmp_path):
@@ -76,7 +79,7 @@ def test_without_risky_pieces_the_commonest_height(tmp_path):
     assert chosen.height_cm == 90
 
 
-@pytest.mark.parametrize(("height", "rounded"), [(5.2, 5), (14, 14), (49.4, 49), (55, 60), (204.9, 200)])
+@pytest.mark.parametrize(("height", "rounded"), [(5.2, 5), (49.4, 49), (204.9, 200)])
 def test_every_piece_lies_on_the_map_of_its_own_height(tmp_path, height, rounded):
     chosen = _chosen(tmp_path, {"breadth": 5, "height": height})
     assert (chosen.height_cm, len(chosen.pieces)) == (rounded, 1)
@@ -121,12 +124,6 @@ def test_without_a_pfv_that_goes_with_a_pfa_there_is_no_map_by_it(tmp_path, monk
     assert [method.key for method, _risk in chosen.panels] == ["proposed_or", "kaneko_hayashi"]
     assert len(_ids(chosen, "piece")) == 2
     assert "the panel Kaneko-Hayashi formula shows the largest chance that any PFV gives" in " ".join(chosen.caption)
-
-
-def test_the_map_holds_all_pieces(mixed):
-    for one in mixed.pieces:
-        assert mixed.breadth_cm[0] < one.item.breadth_cm < mixed.breadth_cm[-1]
-        assert mixed.pfa_g[0] < one.governing.motion.pfa_g < mixed.pfa_g[-1]
 
 
 # --- what is drawn ---

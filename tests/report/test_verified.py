@@ -7,7 +7,6 @@ import xml.etree.ElementTree as ET
 from dataclasses import replace
 
 import numpy as np
-import pypdfium2
 import pytest
 
 import assess
@@ -106,12 +105,12 @@ def page_of_lowered(lowered, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def page_of_some(some, tmp_path_factory):
-    return write_html(some, tmp_path_factory.mktemp("html"))
+    return write_html(some, tmp_path_factory.mktemp("html"), figures=True)
 
 
 @pytest.fixture(scope="module")
 def page_of_assumed(assumed, tmp_path_factory):
-    return write_html(assumed, tmp_path_factory.mktemp("html"))
+    return write_html(assumed, tmp_path_factory.mktemp("html"), figures=True)
 
 
 class TestExtent:
@@ -123,16 +122,6 @@ class TestExtent:
         assert "Not simulated: chance and class come from the formula: 4 pieces in 1 row." in text
         assert "The rocking of 3 of 5 rows was integrated step by step" in text
         assert "no rocking has been simulated" not in text
-
-    @pytest.mark.slow
-    def test_footers_of_the_pdf_give_the_status(self, some, tmp_path):
-        written = assess.write_reports(some, tmp_path, ("pdf", "annex"))
-        footer = "not per year. Simulated: 4 of 4 rows; the sampling interval covers the number of draws only."
-        for name in ("pdf", "annex"):
-            document = pypdfium2.PdfDocument(written[name])
-            pages = [" ".join(document[at].get_textpage().get_text_range().split()) for at in range(len(document))]
-            document.close()
-            assert all(footer in page for page in pages)
 
 
 class TestChanges:
@@ -277,15 +266,12 @@ class TestFigures:
     def test_the_record_is_the_target(self, tmp_path):
         shutil.copy(RECORDS / "made-up-sweep.csv", tmp_path)
         floors = [{"floor": "1", "record_x": "made-up-sweep.csv#north"}]
-        own = _figures(write_html(_assess(tmp_path, [1.0] * 3, ITEMS[:1], floors, verify="all"), tmp_path))
+        own = _figures(
+            write_html(_assess(tmp_path, [1.0] * 3, ITEMS[:1], floors, verify="all"), tmp_path, figures=True)
+        )
         assert len(_ids(own[0], "wanted")) == 1, "the record's own"
-        results = assess.run(write(tmp_path / "x.xlsx", ITEMS[:1], floors), Settings(verify="all", runs=100), jobs=1)
-        figures = _figures(write_html(results, tmp_path))
-        assert _subpaths(figures[0], "spectra") == 100
-        (wanted,) = _ids(figures[0], "wanted")
-        assert "stroke-dasharray" not in next(path.get("style") for path in wanted.iter() if path.get("d"))
-        assert sum(len(ET.tostring(one)) for one in figures) < 450_000
-        assert len(ET.tostring(figures[0])) < 250_000
+        assert "stroke-dasharray" not in ET.tostring(_ids(own[0], "wanted")[0], encoding="unicode")
+        assert sum(len(ET.tostring(one)) for one in own) < 450_000
 
 
 def _subpaths(figure, name):

@@ -5,7 +5,6 @@ import itertools
 import re
 import zipfile
 from importlib import util
-from pathlib import Path
 from threading import Event
 
 import docx
@@ -162,10 +161,3 @@ def test_a_cancelled_one_leaves_nothing(tmp_path):
     with pytest.raises(CancelledError):
         assess.write_reports(results, tmp_path / "out", "docx", progress=Progress(cancel=stop))
     assert list((tmp_path / "out").glob("*")) == []
-
-
-def test_the_command_writes_it(tmp_path):
-    path = write(tmp_path / "w.xlsx", ITEMS, FLOORS)
-    done = run("run", str(path), "--verify", "none", "--formats", "docx", "--out", str(tmp_path / "out"))
-    assert done.exit_code == 0
-    assert {one.name for one in Path(tmp_path / "out").iterdir()} == {"report.docx", "results.json"}

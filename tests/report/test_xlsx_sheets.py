@@ -2,7 +2,9 @@
 
 import re
 import zipfile
+from collections.abc import Mapping
 from html import unescape
+from itertools import pairwise
 from threading import Event
 
 import openpyxl
@@ -10,11 +12,18 @@ import openpyxl.utils
 import pytest
 
 from assess.errors import CancelledError
+from assess.i18n import Catalogue, speaking
 from assess.progress import Progress
 from assess.report.content import build_content
 from assess.report.xlsx import write_xlsx
-from tests.recalculate import compare_formulas, stored_cells, write_report
-from tests.workbooks import ITEMS, assessed
+from assess.report.xlsx.item_formulas import literal, sentence
+from assess.report.xlsx.pen import name_sheets, refer
+from assess.route_results import RouteState
+from assess.settings import Settings
+from tests.nets.nets import find_shown
+from tests.recalculate import compare_formulas, libreoffice, needs_libreoffice, poison, same, stored_cells, write_report
+from tests.report.routed import DOUBTED, assess_routed
+from tests.workbooks import FLOORS, ITEMS, assessed
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
@@ -127,3 +136,138 @@ def test_a_cancelled_report_leaves_nothing(tmp_path):
     with pytest.raises(CancelledError):
         write_xlsx(content, tmp_path / "r.xlsx", Fifth(cancel=cancel))
     assert [path.name for path in tmp_path.iterdir()] == ["w.xlsx"]
+
+
+def test_columns_hold_the_longest_word(tmp_path):
+    words = ("Electrocardiograph-1", "Mezzanine", "Gastroenterology", "Uninterruptible")
+    names = ("item", "floor", "room", "description")
+    items = [ITEMS[0] | dict(zip(names, words, strict=True))]
+    sheet = openpyxl.load_workbook(_report(tmp_path, items, [{"floor": "Mezzanine", "pfa_x": 0.5}]))["Items"]
+    letters = {cell.value: cell.column_letter for cell in sheet[1]}
+    for name, word in zip(names, words, strict=True):
+        assert sheet.column_dimensions[letters[name.capitalize()]].width > len(word.split("-")[0]), name
+
+
+# ---------------------------------------------------------------- routes
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("routes")
+    results = assess_routed(folder / "w.xlsx", Settings(verify="all", runs=20), **DOUBTED)
+    write_report(results, folder / "r.xlsx")
+    return results, openpyxl.load_workbook(folder / "r.xlsx"), folder / "r.xlsx"
+
+
+def _colour(state):
+    return f"FF{state.fill.removeprefix('#').upper()}"
+
+
+def test_states_have_sign_and_colour(written):
+    results, book, _ = written
+    for at, one in enumerate(results.route_tables.segments, 2):
+        cell = book["Routes"].cell(at, 6)
+        assert cell.value.startswith(f"{one.state.symbol} ")
+        assert cell.fill.fgColor.rgb == _colour(one.state)
+    worst = max((one.state for one in results.route_tables.segments), key=lambda state: state.severity)
+    assert worst in (RouteState.BLOCKED, RouteState.NOT_KNOWN)
+    assert _colour(worst) in {cell.fill.fgColor.rgb for row in book["Routes"].iter_rows() for cell in row}
+
+
+def test_the_sheets_are_set_up(written):
+    _, book, _ = written
+    for name, frozen, area in (("Routes", "C2", "A1:AF6"), ("Route pieces", "A2", "A1:P4"),
+                               ("Route rooms", "B2", "A1:Z3")):  # fmt: skip
+        sheet = book[name]
+        assert sheet.freeze_panes == frozen
+        assert sheet.auto_filter.ref == area
+        assert sheet.print_title_rows == "$1:$1"
+        assert sheet.page_setup.orientation == "landscape"
+        assert sheet["A1"].fill.fgColor.rgb == "FF1F3A4D"
+    assert book["Routes"]["G2"].number_format == "0.0%"
+    assert book["Routes"]["U2"].number_format == "0.00"
+
+
+def test_no_text_is_a_formula(written):
+    _, book, path = written
+    for name in ("Routes", "Route pieces", "Route rooms"):
+        for row in book[name].iter_rows():
+            assert all(cell.data_type != "f" and cell.hyperlink is None for cell in row)
+    assert book["Routes"]["AF2"].value == "=1+1"
+    assert compare_formulas(path) > len(ITEMS)
+
+
+# ---------------------------------------------------------------- in another language
+
+
+class _Marked(Mapping[str, tuple[str, ...]]):
+    """Every text between marks, among them an apostrophe, which names of sheets have to double."""
+
+    def __getitem__(self, key):
+        return (f"l'{key} à",) * 2
+
+    def __iter__(self):
+        return iter(())
+
+    def __len__(self):
+        return 0
+
+
+MARKED = Catalogue("xx", _Marked())
+
+
+@pytest.fixture(scope="module")
+def verified(tmp_path_factory):
+    path = tmp_path_factory.mktemp("language") / "w.xlsx"
+    return assessed(path, ITEMS, FLOORS, settings=Settings(verify="all", runs=10))
+
+
+def test_formulas_agree_and_every_heading_is_translated(verified, tmp_path):
+    with speaking(MARKED):
+        write_report(verified, tmp_path / "r.xlsx")
+    stored = stored_cells(tmp_path / "r.xlsx")
+    assert not [place for place, value in stored.items() if isinstance(value, str) and value.startswith("#")]
+    for sheet in openpyxl.load_workbook(tmp_path / "r.xlsx"):
+        assert sheet.title.startswith("l'"), sheet.title
+        heads = [str(cell.value) for cell in sheet[1] if cell.value]
+        assert heads
+        assert all(head.startswith("l'") for head in heads), heads
+    assert compare_formulas(tmp_path / "r.xlsx") > 12 * len(ITEMS)
+
+
+@pytest.mark.libreoffice
+@needs_libreoffice
+def test_libreoffice_agrees_in_another_language(verified, tmp_path):
+    path = tmp_path / "r.xlsx"
+    with speaking(MARKED):
+        write_report(verified, path)
+    stored = stored_cells(path)
+    poison(path)
+    found = stored_cells(libreoffice(path, tmp_path / "again.xlsx"))
+    assert not [place for place, value in stored.items() if not same(value, found.get(place))]
+
+
+def test_names_of_sheets_hold_excels_rules():
+    names = name_sheets({
+        "a": "Qualità: log?", "b": "qualità  log", "c": "'x'", "d": "y" * 40, "e": "Y" * 40, "f": "[]",
+    })  # fmt: skip
+    assert names == {
+        "a": "Qualità  log", "b": "qualità  log 2", "c": "x", "d": "y" * 31, "e": "Y" * 29 + " 2", "f": "f",
+    }  # fmt: skip
+    assert refer("L'arredo") == "'L''arredo'!"
+
+
+def test_a_sentence_with_holes_is_an_expression():
+    assert literal('a "b"') == '"a ""b"""'
+    assert sentence("{all} of {some}.", some="A1", all="B2") == 'B2&" of "&A1&"."'
+
+
+def test_headings_in_italian_stay_apart():
+    """Columns are told apart by their headings: two with the same translation would be one."""
+    for name in ("everything-it", "italiano", "ospedale-san-carlo"):
+        lines = find_shown(name, "xlsx").read_text(encoding="utf-8").splitlines()
+        heads = [after for before, after in pairwise(lines) if before.startswith("# ") and after.startswith("1: A ")]
+        assert len(heads) > 8
+        for line in heads:
+            texts = [cell.partition(" ")[2] for cell in line.removeprefix("1: ").split(" | ")]
+            assert len(texts) == len(set(texts)), line

@@ -138,10 +138,9 @@ def _check_waiting(book: Book, rows: dict[str, dict[str, Any]], cells: Cells) ->
         assert not (waiting | known) & set(names)
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_stronger_floors_lower_no_class_of_a_row_that_follows(book, tmp_path, engine):
+def test_stronger_floors_lower_no_class_of_a_row_that_follows(book, tmp_path):
     stored = stored_cells(book.path)
-    cells = recalculate(book.path, book.scaled(1.5), engine, tmp_path)
+    cells = recalculate(book.path, book.scaled(1.5), "formualizer", tmp_path)
     rows = book.items(cells)
     for item, row in book.items(stored).items():
         if rows[item]["class"] != AGAIN:
