@@ -61,14 +61,18 @@ def list_items() -> list[dict[str, Any]]:
     return [{name: value for name, value in item.items() if value not in ("", None)} for item in items]
 
 
+def write_wave(path: Path, time: Any, acceleration: Any) -> None:
+    """Write a record [s], [cm/s2]."""
+    rows = "\n".join(f"{at:.2f},{value:.4f}" for at, value in zip(time, acceleration, strict=True))
+    path.write_text(f"time [s],x [cm/s2]\n{rows}\n", encoding="utf-8")
+
+
 def write_records(folder: Path) -> None:
     """Write a burst of fast shaking, and one slow pulse."""
     time = np.arange(0, 12, 0.01)
-    fast = 680 * np.sin(2 * np.pi * 6 * time) * np.exp(-(((time - 5) / 2) ** 2))
     pulse = np.where((time > 4) & (time < 5), 412 * np.sin(2 * np.pi * (time - 4)), 0) + np.sin(4 * np.pi * time)
-    for name, values in (("fast.csv", fast), ("pulse.csv", pulse)):
-        rows = "\n".join(f"{at:.2f},{value:.4f}" for at, value in zip(time, values, strict=True))
-        (folder / name).write_text(f"time [s],x [cm/s2]\n{rows}\n", encoding="utf-8")
+    write_wave(folder / "fast.csv", time, 680 * np.sin(2 * np.pi * 6 * time) * np.exp(-(((time - 5) / 2) ** 2)))
+    write_wave(folder / "pulse.csv", time, pulse)
 
 
 def assess_rich(folder: Path, settings: Settings) -> Results:

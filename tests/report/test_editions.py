@@ -78,6 +78,7 @@ def test_every_section_has_a_heading_and_a_template_or_is_left_out(results):
         assert found == parts
 
 
+@pytest.mark.slow
 def test_the_client_reads_no_more_pages_than_a_client_reads(results, written):
     pages, toc = _read(written["pdf"])
     assert len(pages) <= MOST_PAGES + len(build_content(results).shown_floors)
@@ -91,6 +92,7 @@ def test_the_client_reads_no_more_pages_than_a_client_reads(results, written):
         assert text in pages[0]
 
 
+@pytest.mark.slow
 def test_the_annex_has_every_piece_and_what_the_classes_rest_on(results, written):
     pages, toc = _read(written["annex"])
     text = " ".join(pages)
@@ -102,6 +104,7 @@ def test_the_annex_has_every_piece_and_what_the_classes_rest_on(results, written
     assert "Default friction" in text, "the cover has no room for it"
 
 
+@pytest.mark.slow
 def test_both_carry_workbook_and_results_and_are_known_when_they_change(results, written):
     for name in ("pdf", "annex"):
         document = pypdfium2.PdfDocument(written[name])

@@ -12,6 +12,7 @@ from assess import resources
 from assess.report import fonts
 from assess.report.figures.draw import draw
 from assess.report.fonts import FIGURE_FAMILY, figure_families, find_missing, find_undrawn
+from tests.report.reading import write_html
 
 FOLDER = Path(assess.__file__).with_name("fonts")
 SIGNS = "■▲◇○⚓✕●◆△□"
@@ -50,7 +51,7 @@ def test_signs_that_the_text_face_lacks_are_in_the_other():
 
 
 def test_a_page_names_every_face(example, tmp_path):
-    html = assess.write_reports(example, tmp_path, "html")["html"].read_text(encoding="utf-8")
+    html = write_html(example, tmp_path)
     assert html.count("@font-face") == 2, "each once, as data"
     assert html.count("src: url(data:font/woff2;base64,") == 2
     assert "font-src data:" in html

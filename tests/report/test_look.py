@@ -100,15 +100,8 @@ def test_a_fault_in_a_template_writes_nothing(assessment, tmp_path):
 @pytest.mark.parametrize(
     ("name", "told"),
     [
-        (
-            "sections/limit.html.j2",
-            r"limit.html.j2 replaces no standard template. Did you mean sections/limits.html",
-        ),
-        (
-            ".hidden",
-            "holds no template: expected some of city.html.j2, city_summary.html.j2, compare.html.j2, macros.html.j2, "
-            "plan.svg.j2, report.html.j2, script, sections",
-        ),
+        ("sections/limit.html.j2", r"replaces no standard template. Did you mean sections/limits.html"),
+        (".hidden", "holds no template: expected some of city.html.j2, city_summary.html.j2, compare.html.j2, macros"),
     ],
 )
 def test_a_folder_without_templates_is_told(tmp_path, name, told):

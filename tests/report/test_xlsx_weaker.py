@@ -18,7 +18,7 @@ from assess.risk import RiskClass
 from assess.settings import Settings
 from tests.conftest import EXAMPLE
 from tests.recalculate import needs_libreoffice, stored_cells, write_report
-from tests.report.parallel import BRACKETS, HELD, Cells, Edit, assess_rich, read_items, recalculate
+from tests.report.parallel import BRACKETS, HELD, Cells, Edit, assess_rich, read_items, recalculate, write_wave
 from tests.workbooks import assessed
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
@@ -291,9 +291,7 @@ def test_of_several_motions_the_strongest_that_can_start_the_piece_governs(tmp_p
     """The motion of the larger PFV has too small a PFA to rock the stockier pieces: along an axis, or of a record."""
     time = np.arange(0, 20, 0.01)
     for name, pfa, cycles in (("fast.csv", 500, 4), ("slow.csv", 60, 0.25)):
-        values = pfa * np.sin(2 * np.pi * cycles * time) * np.exp(-(((time - 10) / 4) ** 2))
-        rows = "\n".join(f"{at:.2f},{value:.4f}" for at, value in zip(time, values, strict=True))
-        (tmp_path / name).write_text(f"time [s],x [cm/s2]\n{rows}\n", encoding="utf-8")
+        write_wave(tmp_path / name, time, pfa * np.sin(2 * np.pi * cycles * time) * np.exp(-(((time - 10) / 4) ** 2)))
     floors = [
         {"floor": "1", "pfa_x": 0.06, "pfv_x": 40.0, "pfa_y": 0.5, "pfv_y": 20.0},
         {"floor": "2", "record_x": "fast.csv; slow.csv", "record_y": "slow.csv"},
