@@ -147,6 +147,14 @@ def test_classes_are_said_to_stay_unconfirmed_only_where_pieces_were_simulated(m
         assert text.endswith("; classes stay unconfirmed.") == is_said
 
 
+def test_the_command_ends_with_a_count_of_each(mixed):
+    lines = list(describe_result(mixed))
+    assert sum(int(re.findall(r"(\d+) piece", line)[0]) for line in lines[:4]) == 2
+    text = "\n".join(lines)
+    assert re.search(r"^  unconfirmed +4, not counted above: .*fill in Storeys or Period T1", text, re.MULTILINE)
+    assert re.search(r"^  by formula +1, not counted above: not simulated$", text, re.MULTILINE)
+
+
 def test_weak_motions_are_settled_by_stronger_ones(tmp_path):
     inventory = assess.read_inventory(write(tmp_path / "w.xlsx", ITEMS[3:4], FLOORS[1:2], period=1.0))
     results = assess.run(inventory, Settings(), suite=_pulses(*[0.01] * 20), jobs=1)

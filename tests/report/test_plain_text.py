@@ -142,7 +142,7 @@ class _Tags(HTMLParser):
         self.open, self.wrong = [], []
 
     def handle_starttag(self, tag, attrs):
-        if tag not in ("meta", "img", "br", "col", "link", "input"):
+        if tag not in ("meta", "img", "br", "wbr", "col", "link", "input"):
             self.open.append(tag)
 
     def handle_endtag(self, tag):
