@@ -275,13 +275,6 @@ def test_the_page_never_scrolls_sideways(open_page, width):
         assert page.locator(selector).first.is_visible()
 
 
-def test_head_of_the_table_stays_in_sight(open_page):
-    page = open_page(height=400)
-    page.locator("#row-5").scroll_into_view_if_needed()
-    page.evaluate("window.scrollBy(0, document.querySelector('#row-5').getBoundingClientRect().top - 120)")
-    assert -1 <= page.locator("#pieces thead th").first.bounding_box()["y"] < 60
-
-
 def test_a_picture_is_taken(report, tmp_path):
     script = Path(assess.__file__).parents[1] / "docs" / "screenshot.py"
     subprocess.run([sys.executable, script, report, tmp_path / "report.png"], check=True)

@@ -64,15 +64,6 @@ def _contrast(one, other):
     return (light + 0.05) / (dark + 0.05)
 
 
-def test_the_measures_themselves():
-    assert _contrast("#000000", "#ffffff") == pytest.approx(21)
-    assert _contrast("#777777", "#fff") == pytest.approx(4.48, abs=0.01)
-    assert _lab("#ffffff") == pytest.approx([100, 0, 0], abs=0.01)
-    assert _lab("#ff0000") == pytest.approx([53.24, 80.09, 67.20], abs=0.01)
-    for sight in SIGHT:
-        assert _lab("#808080", sight) == pytest.approx([53.59, 0, 0], abs=0.05)
-
-
 @pytest.mark.parametrize("sight", SIGHT)
 def test_classes_are_told_apart(sight):
     for one, other in combinations(CLASSES, 2):

@@ -9,7 +9,7 @@ import pytest
 
 import assess
 from assess.methods._fitted_model import Polynomial, build_method
-from assess.report.findings.disagreements import MOST_REASONS, NAMED, find_disagreements, group_disagreements, span
+from assess.report.findings.disagreements import MOST_REASONS, find_disagreements, span
 from assess.risk import RiskClass, classify
 from tests.methods.test_fitted import PROBIT, SURFACE
 from tests.workbooks import UNVERIFIED, assessed
@@ -120,10 +120,6 @@ class TestKnownRows:
 
 
 class TestExampleBuilding:
-    def test_a_long_group_names_some_and_counts_the_others(self, example):
-        (long, *_) = group_disagreements(rows_of(example) * 2)
-        assert (len(long.rows), len(long.named), long.left) == (16, NAMED, 4)
-
     def test_the_most_frequent_pair_is_counted_where_there_are_others(self, example):
         rows = [row for row in example if row.item.item != "42-25"]
         row, key = example["42-25"], example.formula.key

@@ -1,7 +1,5 @@
 """Equations: what of a line is one, its TeX, and that every equation of a method is typeset."""
 
-import base64
-import hashlib
 import re
 import unicodedata
 
@@ -12,7 +10,7 @@ from assess.methods import all_methods
 from assess.motion.scenario import PROFILES
 from assess.report.equations import NotationError, Part, split_line, write_tex
 from assess.report.figures.math_figures import draw_math
-from assess.report.pages.html import hash_script, lower_indices, write_equation
+from assess.report.pages.html import lower_indices, write_equation
 
 NAMED = {
     "alpha": "α", "beta": "β", "gamma": "γ", "varepsilon": "ε", "zeta": "ζ", "eta": "η", "theta": "θ", "lambda": "λ",
@@ -158,8 +156,3 @@ def test_a_page_holds_each_letter_of_its_equations_once():
     assert len(letters) == 7  # B H = 0 . 5 2
     assert all('role="img"' in line for line in lines)
     assert 'aria-label="B/H = 0.25"' in lines[1]
-
-
-def test_hash():
-    digest = base64.b64encode(hashlib.sha256(b"x();").digest()).decode()
-    assert hash_script("x();") == f"sha256-{digest}"

@@ -162,12 +162,6 @@ def test_where_the_scatter_is_left_out_it_is_not_said_to_be_in(tmp_path):
     assert " The results are for these medians times 0.5. PGV scatters" in say_shaking(scaled)
 
 
-def test_a_factor_leaves_the_medians_as_they_are(tmp_path):
-    settings = Settings(verify="none", scale=0.5)
-    results = assessed(tmp_path / "w.xlsx", floors=FLOORS, shaking=CHOICE, settings=settings)
-    assert results.provenance.shaking.pga_g == pytest.approx(0.2152, rel=1e-3)
-
-
 def test_a_derived_pga_and_an_open_class_are_among_the_assumptions(tmp_path):
     results = assessed(tmp_path / "w.xlsx", floors=FLOORS, shaking="JMA 7")
     content = build_content(results)

@@ -80,8 +80,3 @@ def test_without_its_package_it_says_what_to_install(monkeypatch, tmp_path):
     done = call("run", "none.xlsx", "--formats", "csv,parquet", "--out", tmp_path / "out")
     assert done.exit_code == 2
     assert not (tmp_path / "out").exists()
-
-
-def test_a_file_that_cannot_be_written_is_an_error_of_the_output(tmp_path):
-    with pytest.raises(OSError, match="folder"):
-        write_parquet(assess_rows(ITEM), tmp_path / "no folder" / "items.parquet")

@@ -4,7 +4,6 @@ import ctypes
 import re
 import subprocess
 from dataclasses import replace
-from importlib.metadata import version
 from threading import Event
 
 import pypdfium2
@@ -15,7 +14,7 @@ import assess
 from assess.errors import CancelledError
 from assess.progress import Progress
 from assess.report.content import build_content
-from assess.report.pages.pdf import find_weasyprint, list_attached, list_problems, write_pdf
+from assess.report.pages.pdf import list_attached, list_problems, write_pdf
 from assess.report.report_options import ReportOptions
 from assess.results import Series
 from tests.workbooks import assessed
@@ -158,7 +157,3 @@ def test_a_cancelled_layout_ends_at_once(tmp_path, monkeypatch):
     (process,) = started
     assert process.returncode not in (None, 0)
     assert not (tmp_path / "a.pdf").exists()
-
-
-def test_weasyprint_is_found():
-    assert find_weasyprint() == version("weasyprint")

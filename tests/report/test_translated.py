@@ -153,12 +153,3 @@ def test_the_verification_is_said(spoken, tmp_path):
             assert not _left(" ".join(line), "sin"), line
         for one in results:
             assert not _left(f"{words.risk_words(one)} {words.under_record(one)} {words.chance(one)}")
-
-
-def test_words_are_said(spoken):
-    with speaking(spoken):
-        for noun in ("piece", "row", "floor", "motion", "impact"):
-            assert [_left(words.plural(count, noun)) for count in (1, 2)] == [set(), set()]
-        assert words.clip("1" * 500, 3) == "111… (⟦500 xxxxxxxxxx; xxxxx xx xxxxxx.xxxx⟧)"
-        assert not _left(words.marks())
-        assert not _left("".join(words.risk_label(risk) for risk in assess.risk.RiskClass))

@@ -247,25 +247,6 @@ def test_a_bracket_of_a_piece_of_unknown_width(tmp_path, verify):
     assert found == {"a": "again", "b": "again", "c": "free", "d": "held", "e": "free"}
 
 
-@pytest.mark.parametrize("kind", ["by_formula", "simulated"])
-@pytest.mark.libreoffice
-@needs_libreoffice
-def test_single_cells_in_libreoffice(kind, books, tmp_path):
-    """A cell of many rows at once: each row answers for itself."""
-    one = books(kind)
-    chosen = {at: (key, value, expected) for at, key, value, expected in SINGLE.values()}
-    edits: list[Edit] = [(*one.cell(f"1-b{at}", key), value) for at, (key, value, _) in chosen.items()]
-    expected = {f"1-b{at}": state for at, (_, _, state) in chosen.items()}
-    follows = "free" if kind == "by_formula" else "again"
-    edits += [(*one.cell("1-1", "breadth_cm"), 30.5), (*one.cell("2-2", "height_cm"), 189.0)]
-    edits += [(*one.cell("2-s2", "width_cm"), 170.0), (*one.cell("2-b0", "friction"), 0.4)]
-    more = {"1-1": follows, "2-2": follows, "2-s2": "again", "2-b0": "held" if kind == "by_formula" else "again"}
-    cells = recalculate(one.path, edits, "libreoffice", tmp_path)
-    states = {item: _state(row) for item, row in one.items(cells).items()}
-    as_run = {item: _state(row) for item, row in one.items(stored_cells(one.path)).items()}
-    assert states == as_run | expected | more
-
-
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize(("name", "column"), [("by_formula", "D"), ("by_paper", "C")])
 def test_a_row_by_formula_goes_by_the_largest_of_parallel_records(name, column, books, tmp_path, engine):
