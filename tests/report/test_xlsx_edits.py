@@ -3,6 +3,7 @@
 import dataclasses
 import re
 import zipfile
+from typing import Any
 
 import formualizer
 import openpyxl
@@ -18,7 +19,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
 FLOORS = [{"floor": "1", "pfa_x": 0.3, "pfv_x": 30.0, "pfa_y": 0.2}, {"floor": "2", "pfa_x": 0.5, "pfv_x": 40.0}]
 SIZES = [(20, 200), (30, 200), (36, 92), (45, 90), (60, 60), (28, 180), (33, 170)]
-ITEMS = [
+ITEMS: list[dict[str, Any]] = [
     {"item": f"{floor}-{at}", "floor": floor, "breadth": breadth, "width": 120, "height": height,
      "quantity": 1 + at % 2} | ({"anchored": "yes"} if at == 3 else {})
     for floor in "12" for at, (breadth, height) in enumerate(SIZES)
