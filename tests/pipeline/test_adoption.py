@@ -265,26 +265,14 @@ def _adoption(probability, basis=None):
     return Adoption(probability, unknown, unknown, classes, classes, given, no, no, no, unknown)
 
 
-def test_the_larger_probability_governs():
+def test_the_larger_chance_governs_then_the_larger_pfa_then_the_first():
     assert governing(0.2, 0.25, pfa=[2, 1]) == [1]
-
-
-def test_then_the_larger_pfa_then_the_first():
     assert governing(0.2, 0.2, pfa=[1, 2]) == [1]
     assert governing(0.2, 0.2, pfa=[1, 1]) == [0]
-
-
-def test_of_no_chance_the_motion_under_which_it_can_rock_governs():
+    assert governing(0.5, 0.5 + 1e-13, pfa=[1, 1]) == governing(0.5, 0.5, pfa=[1, 1 + 1e-13]) == [0], "rounding"
     assert governing(0.0, 0.0, pfa=[2, 1], basis=["cannot rock", "simulated"]) == [1]
-
-
-def test_rounding_does_not_decide():
-    assert governing(0.5, 0.5 + 1e-13, pfa=[1, 1]) == [0]
-    assert governing(0.5, 0.5, pfa=[1, 1 + 1e-13]) == [0]
-
-
-def test_each_item_has_its_own():
-    assert governing(0.0, 0.4, 0.01, 0.9, 0.0, items=[0, 0, 1, 2, 2]) == [1, 2, 3]
+    assert governing(0.0, 0.4, 0.01, 0.9, 0.0, items=[0, 0, 1, 2, 2]) == [1, 2, 3], "each item has its own"
+    assert governing() == []
 
 
 # --- which pieces are verified ---
@@ -297,54 +285,27 @@ OTHER, PAPER = "kaneko_hayashi", paper_formula().key
 def chosen(verify, formula, kaneko_hayashi=None, extrapolated=None, items=None, routes=None):
     count = len(formula)
     kaneko_hayashi = [0.0] * count if kaneko_hayashi is None else kaneko_hayashi
-    flags = {"extrapolated": np.array(extrapolated or [False] * count)}
+    flags = {"extrapolated": np.array(extrapolated or [False] * count, dtype=np.bool_)}
     outcomes = {
         FORMULA: Outcome(np.array(formula), flags=flags),
         OTHER: Outcome(np.array(kaneko_hayashi)),
         PAPER: Outcome(np.zeros(count), flags={"extrapolated": np.zeros(count, dtype=np.bool_)}),
     }
     item = np.arange(count) if items is None else np.array(items)
-    return choose_items(verify, SELECTING, outcomes, item, np.array(routes or [False] * (item[-1] + 1))).tolist()
+    on_routes = np.array(routes or [False] * len({*item.tolist()}), dtype=np.bool_)
+    return choose_items(verify, SELECTING, outcomes, item, on_routes).tolist()
 
 
-def test_none_and_all():
+def test_which_pieces_are_simulated():
     assert chosen("none", [0.9, 0.1], routes=[True, False]) == [False, False]
     assert chosen("all", [0.9, 0.1]) == [True, True]
-
-
-def test_high_and_very_high_by_either_formula():
-    assert chosen("high", [0.0, 0.2999, 0.3, 0.7]) == [False, False, True, True]
-    assert chosen("high", [0.0] * 4, [0.0, 0.2999, 0.3, 0.7]) == [False, False, True, True]
+    assert chosen("high", []) == []
+    for formulas in (([0.0, 0.2999, 0.3, 0.7],), ([0.0] * 4, [0.0, 0.2999, 0.3, 0.7])):
+        assert chosen("high", *formulas) == [False, False, True, True], "by either formula"
     assert chosen("high", [0.5, 0.0], [np.nan, np.nan]) == [True, False], "unknown is no class"
-
-
-def test_outside_the_checked_range_and_on_routes():
     assert chosen("high", [0.0, 0.0], extrapolated=[False, True]) == [False, True]
     assert chosen("high", [0.0, 0.0], routes=[True, False]) == [True, False]
-
-
-def test_under_any_motion_of_the_piece():
-    assert chosen("high", [0.0, 0.5, 0.0, 0.0], items=[0, 0, 1, 1]) == [True, False]
-    assert chosen("high", [0.0] * 4, [0.0, 0.0, 0.0, 0.5], items=[0, 0, 1, 1]) == [False, True]
-    assert chosen("high", [0.0] * 4, extrapolated=[True, False, False, False], items=[0, 0, 1, 1]) == [True, False]
-
-
-def test_no_items():
-    assert (
-        choose_items("high", SELECTING, _nothing(), np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.bool_)).tolist()
-        == []
-    )
-    assert governing_of_nothing() == []
-
-
-def _nothing():
-    empty = np.zeros(0)
-    return {
-        FORMULA: Outcome(empty, flags={"extrapolated": empty.astype(np.bool_)}),
-        OTHER: Outcome(empty),
-        PAPER: Outcome(empty, flags={"extrapolated": empty.astype(np.bool_)}),
-    }
-
-
-def governing_of_nothing():
-    return find_governing(_adoption(np.zeros(0)), np.zeros(0, dtype=np.intp), np.zeros(0)).tolist()
+    under_any = {"items": [0, 0, 1, 1]}
+    assert chosen("high", [0.0, 0.5, 0.0, 0.0], **under_any) == [True, False]
+    assert chosen("high", [0.0] * 4, [0.0, 0.0, 0.0, 0.5], **under_any) == [False, True]
+    assert chosen("high", [0.0] * 4, extrapolated=[True, False, False, False], **under_any) == [True, False]

@@ -1,12 +1,10 @@
 """What cannot rock is low on every basis; and under no motion that may be drawn does any such piece overturn."""
 
-import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-import assess
 from assess.pipeline.adopt import find_can_rock
 from assess.pipeline.run import compute
 from assess.risk import RiskClass
@@ -14,7 +12,8 @@ from assess.rocking.block import stocky_limit
 from assess.rocking.draws import MARGIN, Uncertainty
 from assess.settings import Settings
 from assess.units import GRAVITY
-from tests.workbooks import UNVERIFIED, assessed, write
+from tests.pipeline.rows import assessed, read
+from tests.workbooks import UNVERIFIED
 
 RECORDS = Path(__file__).parents[2] / "inventories" / "records" / "575-market"
 DRAWS = 10_000
@@ -54,31 +53,28 @@ def at_the_limit(pfa, dispersion, peak):
 @pytest.mark.slow
 @pytest.mark.parametrize("beta", [0.0, 0.4])
 @pytest.mark.parametrize("floor", FLOORS)
-def test_in_10_000_draws_no_piece_that_cannot_rock_overturns(tmp_path, floor, beta):
-    for record in RECORDS.glob("*.smc"):
-        shutil.copy(record, tmp_path)
+def test_in_10_000_draws_no_piece_that_cannot_rock_overturns(floor, beta):
     building = {"motion_uncertainty": beta} | BUILDINGS[floor]
     one = {"floor": "1"} | FLOORS[floor]
     any_piece = {"item": "a", "floor": "1", "axis": "X", "breadth": 40, "height": 180}
-    first = compute(assess.read_inventory(write(tmp_path / "first.xlsx", [any_piece], [one], **building)), UNVERIFIED)
+    first = compute(read([any_piece], [one], RECORDS, **building), UNVERIFIED)
     pfa, spread, peak = (float(values[0]) for values in (first.cases.pfa, first.cases.dispersion, first.cases.peak))
     assert spread == beta
     items = list(at_the_limit(pfa / GRAVITY, np.array(spread), np.array(peak)))
     assert len(items) >= 4
-    path = write(tmp_path / "w.xlsx", items, [one], **building)
-    found = compute(assess.read_inventory(path), Settings(verify="all", runs=DRAWS))
+    found = compute(read(items, [one], RECORDS, **building), Settings(verify="all", runs=DRAWS))
     assert not find_can_rock(found.cases, found.settings).any()
     assert {int(joint.fell.sum()) for joint in found.joints.values()} == {0}
 
 
-def test_a_king_bed_and_a_coffee_table_are_low_with_formulas_only(tmp_path):
+def test_a_king_bed_and_a_coffee_table_are_low_with_formulas_only():
     """At 0.4 g the formula of the paper calls neither low; the bed is too stocky, and so is the table."""
     items = [
         {"item": "bed", "floor": "1", "breadth": 193, "width": 203, "height": 60},
         {"item": "table", "floor": "1", "breadth": 60, "width": 120, "height": 40},
         {"item": "bookcase", "floor": "1", "breadth": 30, "width": 80, "height": 180},
     ]
-    results = assessed(tmp_path / "w.xlsx", items, [{"floor": "1", "pfa_x": 0.4, "pfa_y": 0.4}])
+    results = assessed(items, [{"floor": "1", "pfa_x": 0.4, "pfa_y": 0.4}])
     for name in ("bed", "table"):
         adopted = results[name].adopted
         assert (adopted.basis, adopted.risk, adopted.upper, adopted.probability) == (
@@ -91,13 +87,13 @@ def test_a_king_bed_and_a_coffee_table_are_low_with_formulas_only(tmp_path):
     assert results.schedule.before.count(RiskClass.LOW) == 2
 
 
-def test_a_top_heavy_piece_too_broad_for_the_formula_is_low_with_a_mark(tmp_path):
+def test_a_top_heavy_piece_too_broad_for_the_formula_is_low_with_a_mark():
     """At B/H 1.5 FEMA P-58, which is for pieces of uniform weight, has no value; at 80 % of its height it can rock."""
     items = [{"item": "a", "floor": "1", "breadth": 150, "width": 160, "height": 100, "centre_of_gravity": 80}]
     floors = [{"floor": "1", "pfa_x": 0.5, "pfv_x": 60.0}]
-    one = assessed(tmp_path / "w.xlsx", items, floors)["a"]
+    one = assessed(items, floors)["a"]
     assert one.formula.value is None
     assert (one.adopted.basis, one.adopted.probability, one.adopted.risk) == ("formula", 0.0, RiskClass.LOW)
     assert "extrapolated" in one.formula.flags, "outside of what the formula was checked for"
-    checked = assessed(tmp_path / "v.xlsx", items, floors, settings=Settings(verify="high", runs=20))["a"]
+    checked = assessed(items, floors, settings=Settings(verify="high", runs=20))["a"]
     assert checked.is_simulated

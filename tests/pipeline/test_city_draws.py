@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import assess
 from assess.errors import InputError
 from assess.i18n import fill
 from assess.motion.ground_scenarios import read_scenarios
@@ -16,7 +15,7 @@ from assess.pipeline.draw_sums import sum_draws
 from assess.pipeline.run import build_results, compute
 from assess.rocking.draws import Earthquakes
 from assess.settings import Settings
-from tests.workbooks import write
+from tests.pipeline.rows import read
 
 CITY = Settings(city=True, runs=40, seed=5)
 ITEMS = [{"item": "A", "floor": "1", "axis": "X", "breadth": 40, "width": 90, "height": 180}]
@@ -30,58 +29,56 @@ MAP = SiteGround(
 SCENARIOS = replace(MAP, kind="scenarios", file="gmf-data.csv", shared=None, scenarios=(-1.0, 0.0, 1.0))
 
 
-def inventory(folder, ground=None, name="w.xlsx", **building):
-    read = assess.read_inventory(write(folder / name, ITEMS, FLOORS, **{"period": 0.8} | building))
-    return replace(read, site_ground=ground)
+def inventory(ground=None, **building):
+    return replace(read(ITEMS, FLOORS, **{"period": 0.8} | building), site_ground=ground)
 
 
-def assessed(folder, settings=CITY, **building):
-    assessment = compute(inventory(folder, **building), settings)
+def assessed(settings=CITY, **building):
+    assessment = compute(inventory(**building), settings)
     return assessment, build_results(assessment, figures=False)
 
 
 # --- which earthquake ---
 
 
-def test_a_building_alone_takes_one_number_for_every_place(tmp_path):
-    found = find_earthquakes(inventory(tmp_path, **PLACE), Settings())
+def test_a_building_alone_takes_one_number_for_every_place():
+    found = find_earthquakes(inventory(**PLACE), Settings())
     assert found == Earthquakes(place=None, shared=SCATTERS["PGA"].shared)
 
 
-def test_a_building_of_a_city_draws_by_its_place(tmp_path):
-    found = find_earthquakes(inventory(tmp_path, **PLACE), CITY)
+def test_a_building_of_a_city_draws_by_its_place():
+    found = find_earthquakes(inventory(**PLACE), CITY)
     assert found.place == (37.79, -122.40)
-    assert find_earthquakes(inventory(tmp_path), CITY).place is None
+    assert find_earthquakes(inventory(), CITY).place is None
 
 
-def test_the_share_of_all_places_is_that_of_the_map_where_it_tells(tmp_path):
-    found = find_earthquakes(inventory(tmp_path, MAP, **PLACE), CITY)
+def test_the_share_of_all_places_is_that_of_the_map_where_it_tells():
+    found = find_earthquakes(inventory(MAP, **PLACE), CITY)
     assert found == Earthquakes(place=(37.79, -122.40), shared=0.2)
-    blank = find_earthquakes(inventory(tmp_path, replace(MAP, shared=None), **PLACE), CITY)
+    blank = find_earthquakes(inventory(replace(MAP, shared=None), **PLACE), CITY)
     assert blank.shared == SCATTERS["PGA"].shared
 
 
 @pytest.mark.parametrize("settings", [Settings(), CITY])
-def test_scenarios_carry_the_variance_of_the_ground_and_the_building_s_own_is_drawn(settings, tmp_path):
+def test_scenarios_carry_the_variance_of_the_ground_and_the_building_s_own_is_drawn(settings):
     """Of a motion that scatters by the root of 0.4^2 of its own and 0.3^2 of the ground."""
-    found = find_earthquakes(inventory(tmp_path, SCENARIOS, motion_uncertainty=0.4, **PLACE), settings)
+    found = find_earthquakes(inventory(SCENARIOS, motion_uncertainty=0.4, **PLACE), settings)
     assert found.given == (-1.0, 0.0, 1.0)
     assert found.given_share == pytest.approx(0.3**2 / (0.4**2 + 0.3**2))
 
 
 @pytest.mark.parametrize("own", [{}, {"motion_uncertainty": 0.0}], ids=["blank", "none"])
-def test_scenarios_of_a_building_without_uncertainty_of_its_own_decide_alone(own, tmp_path):
-    found = find_earthquakes(inventory(tmp_path, SCENARIOS, **own, **PLACE), CITY)
+def test_scenarios_of_a_building_without_uncertainty_of_its_own_decide_alone(own):
+    found = find_earthquakes(inventory(SCENARIOS, **own, **PLACE), CITY)
     assert found.given_share == 1
     assert found.draw(1, 0, 4).tolist() == [-1, 0, 1, -1]
 
 
-def test_scenarios_that_serve_no_floor_decide_nothing(tmp_path):
+def test_scenarios_that_serve_no_floor_decide_nothing():
     """Floor 1 has a PFA of its own: its motion scatters as the building's own does, by numbers of its own."""
     own = {"motion_uncertainty": 0.4} | PLACE
     without, beside = (
-        compute(inventory(tmp_path, ground, **own), Settings(verify="none", city=True)).cases
-        for ground in (None, SCENARIOS)
+        compute(inventory(ground, **own), Settings(verify="none", city=True)).cases for ground in (None, SCENARIOS)
     )
     assert beside.earthquakes == without.earthquakes
     assert beside.earthquakes.given == ()
@@ -111,39 +108,39 @@ def test_more_scenarios_than_draws_are_refused():
         choose_runs(5001)
 
 
-def test_a_run_refuses_draws_that_do_not_fit(tmp_path):
-    read = inventory(tmp_path, SCENARIOS, **PLACE)
+def test_a_run_refuses_draws_that_do_not_fit():
+    several = inventory(SCENARIOS, **PLACE)
     with pytest.raises(InputError, match=r"runs is 40, expected a multiple of 3"):
-        compute(read, CITY)
+        compute(several, CITY)
     with pytest.raises(InputError, match=r"all buildings of a city need the same draws\. Set runs to a number"):
-        compute(inventory(tmp_path), Settings(city=True, runs="auto"))
-    check_draws(read, replace(CITY, verify="none"))
+        compute(inventory(), Settings(city=True, runs="auto"))
+    check_draws(several, replace(CITY, verify="none"))
 
 
 # --- numbers ---
 
 
-def test_pieces_of_different_places_draw_independently_in_a_city_only(tmp_path):
-    one, other = (inventory(tmp_path, name=f"{n}.xlsx", **place) for n, place in enumerate((PLACE, OTHER)))
+def test_pieces_of_different_places_draw_independently_in_a_city_only():
+    one, other = (inventory(**place) for place in (PLACE, OTHER))
     assert number_pieces(one, Settings()) == number_pieces(other, Settings())
     assert number_pieces(one, CITY) != number_pieces(other, CITY)
-    nowhere = inventory(tmp_path)
+    nowhere = inventory()
     assert number_pieces(nowhere, CITY) == number_pieces(nowhere, Settings())
 
 
 @pytest.mark.slow
-def test_a_building_has_the_same_draws_alone_and_after_others(tmp_path):
-    before = sum_draws(*assessed(tmp_path, **PLACE)).falls
-    other = sum_draws(*assessed(tmp_path, **OTHER)).falls
-    again = sum_draws(*assessed(tmp_path, **PLACE)).falls
+def test_a_building_has_the_same_draws_alone_and_after_others():
+    before = sum_draws(*assessed(**PLACE)).falls
+    other = sum_draws(*assessed(**OTHER)).falls
+    again = sum_draws(*assessed(**PLACE)).falls
     assert before.tobytes() == again.tobytes()
     assert not np.array_equal(before, other)
 
 
-def test_a_place_changes_what_is_drawn_but_a_building_alone_ignores_it(tmp_path):
-    alone = [assessed(tmp_path, replace(CITY, city=False), **place)[1]["A"] for place in (PLACE, OTHER)]
+def test_a_place_changes_what_is_drawn_but_a_building_alone_ignores_it():
+    alone = [assessed(replace(CITY, city=False), **place)[1]["A"] for place in (PLACE, OTHER)]
     assert alone[0].adopted == alone[1].adopted
-    assert sum_draws(*assessed(tmp_path, **PLACE)).falls.sum() > 0
+    assert sum_draws(*assessed(**PLACE)).falls.sum() > 0
 
 
 def test_draw_k_takes_scenario_k_and_again_from_the_first(tmp_path):
@@ -151,11 +148,11 @@ def test_draw_k_takes_scenario_k_and_again_from_the_first(tmp_path):
     lines = ["# three events", "site_id,event_id,gmv_PGA", "0,0,0.15", "0,1,0.3", "0,2,0.6"]
     (tmp_path / "gmf-data.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
     (tmp_path / "sites.csv").write_text("site_id,lon,lat\n0,-122.40,37.79\n", encoding="utf-8")
-    path = write(
-        tmp_path / "w.xlsx", ITEMS, [{"floor": "1", "elevation": 0}], period=0.8, height=12, motion_uncertainty=0.0,
-        piece_uncertainty="no", **PLACE,
+    given = read(
+        ITEMS, [{"floor": "1", "elevation": 0}], ground=read_scenarios(tmp_path), period=0.8, height=12,
+        motion_uncertainty=0.0, piece_uncertainty="no", **PLACE,
     )  # fmt: skip
-    assessment = compute(assess.read_inventory(path, ground=read_scenarios(tmp_path)), Settings(runs=60))
+    assessment = compute(given, Settings(runs=60))
     earthquakes = assessment.cases.earthquakes
     assert earthquakes.draw(1, 0, 6) == pytest.approx([-1.2247, 0, 1.2247] * 2, abs=1e-4)
     assert assessment.cases.dispersion == pytest.approx([0.566], abs=0.001)

@@ -2,6 +2,8 @@
 
 import io
 import re
+import tempfile
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -29,10 +31,17 @@ HABITS: dict[str, dict[str, Any]] = {
 }
 
 
+@cache
+def uncorrected() -> bytes:
+    """Return the example of `assess new`."""
+    with tempfile.TemporaryDirectory() as folder:
+        write_workbook(Path(folder) / "book.xlsx", with_live(example_content()))
+        return (Path(folder) / "book.xlsx").read_bytes()
+
+
 def example(path: Path, changes: dict[str, dict[str, Any]]) -> Path:
     """The example of `assess new` with some cells as people type them."""
-    write_workbook(path, with_live(example_content()))
-    path.write_bytes(patch_workbook(path.read_bytes(), changes).data)
+    path.write_bytes(patch_workbook(uncorrected(), changes).data)
     return path
 
 

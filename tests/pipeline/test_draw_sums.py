@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 
-import assess
 from assess.pipeline.draw_sums import count_people, sum_draws
 from assess.pipeline.run import build_results, compute
 from assess.report.counts import count
 from assess.settings import Settings
-from assess.workbook.template import Content, write_workbook
+from tests.pipeline.rows import read_sheets
 
 RUNS = 60
 SETTINGS = Settings(runs=RUNS, seed=3)
@@ -49,17 +48,17 @@ ITEMS = [
 FLOORS = [{"floor": "1", "pfa_x": 0.45, "pfa_y": 0.4}, {"floor": "2", "pfa_x": 0.5}]
 
 
-def assessed(folder, settings=SETTINGS, items=ITEMS, **building):
-    path = folder / "w.xlsx"
-    rows = {"Building": [{"period": 0.8, **building}], "Floors": FLOORS, "Items": items}
-    write_workbook(path, Content(rows=rows | {"Places": PLACES, "Routes": ROUTES}), "si")
-    assessment = compute(assess.read_inventory(path), settings)
+def assessed(settings=SETTINGS, items=ITEMS, **building):
+    inventory = read_sheets(
+        Building=[{"period": 0.8, **building}], Floors=FLOORS, Items=items, Places=PLACES, Routes=ROUTES
+    )
+    assessment = compute(inventory, settings)
     return assessment, build_results(assessment, figures=False)
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory):
-    return assessed(tmp_path_factory.mktemp("sums"))
+def run():
+    return assessed()
 
 
 def test_mean_over_draws_is_the_expected_number_of_falls(run):
@@ -70,9 +69,9 @@ def test_mean_over_draws_is_the_expected_number_of_falls(run):
     assert sums.falls.max() <= counts.free
 
 
-def test_pieces_of_a_row_fall_together_and_anchored_ones_are_not_counted(tmp_path):
+def test_pieces_of_a_row_fall_together_and_anchored_ones_are_not_counted():
     only = [one for one in ITEMS if one["item"] in ("four", "held")]
-    sums = sum_draws(*assessed(tmp_path, items=only))
+    sums = sum_draws(*assessed(items=only))
     assert set(sums.falls.tolist()) == {0, 4}
 
 
@@ -95,8 +94,8 @@ def test_people_of_a_route_are_the_most_of_any_segment_not_their_sum(run):
     assert [count_people(tables, one) for one in tables.routes] == [35, 12, 5]
 
 
-def test_without_simulation_there_are_no_draws_but_expected_numbers(tmp_path):
-    assessment, results = assessed(tmp_path, Settings(verify="none"))
+def test_without_simulation_there_are_no_draws_but_expected_numbers():
+    assessment, results = assessed(Settings(verify="none"))
     sums, tables = sum_draws(assessment, results), results.route_tables
     assert sums.falls is sums.people_blocked is sums.routes_blocked is None
     assert sums.routes_expected == pytest.approx(tables.blocked_routes_expected)
@@ -104,9 +103,9 @@ def test_without_simulation_there_are_no_draws_but_expected_numbers(tmp_path):
     assert sums.people_apart == sums.people_expected > 0
 
 
-def test_a_route_with_a_piece_that_is_not_confirmed_has_no_joint_outcome(tmp_path):
+def test_a_route_with_a_piece_that_is_not_confirmed_has_no_joint_outcome():
     """Neither T1 nor the height is known: lower simulated classes are not confirmed."""
-    assessment, results = assessed(tmp_path, Settings(runs=RUNS, seed=3, scale=0.35), period=None)
+    assessment, results = assessed(Settings(runs=RUNS, seed=3, scale=0.35), period=None)
     sums, chances = sum_draws(assessment, results), {one.route: one.blocked for one in results.route_tables.routes}
     assert chances["A"].unconfirmed
     assert "A" not in sums.joint_routes
@@ -115,14 +114,14 @@ def test_a_route_with_a_piece_that_is_not_confirmed_has_no_joint_outcome(tmp_pat
     assert sums.people_not_known == sum({"A": 35, "B": 12, "C": 5}[one] for one in {"A", "B", "C"} - known)
 
 
-def test_a_number_of_draws_of_its_own_for_each_piece_gives_no_sums_by_draw(tmp_path):
-    sums = sum_draws(*assessed(tmp_path, Settings(runs="auto", seed=3)))
+def test_a_number_of_draws_of_its_own_for_each_piece_gives_no_sums_by_draw():
+    sums = sum_draws(*assessed(Settings(runs="auto", seed=3)))
     assert sums.falls is None
     assert sums.people_expected > 0
 
 
-def test_ideal_runs_count_verdicts_without_uncertainty(tmp_path):
-    assessment, results = assessed(tmp_path, Settings(runs=RUNS, seed=3, ideal=True))
+def test_ideal_runs_count_verdicts_without_uncertainty():
+    assessment, results = assessed(Settings(runs=RUNS, seed=3, ideal=True))
     sums = sum_draws(assessment, results)
     assert sums.falls.mean() == pytest.approx(count("", tuple(results)).expected, rel=1e-12)
     assert np.array_equal(sums.falls, np.round(sums.falls))

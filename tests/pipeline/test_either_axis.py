@@ -8,24 +8,22 @@ from assess.pipeline.either_axis import is_square, unite_axes
 from assess.pipeline.run import compute
 from assess.risk import wilson_interval
 from assess.settings import Settings
-from tests.workbooks import write
+from tests.pipeline import rows as rows_in_code
 
 SIZES = {"breadth": 30, "height": 180}
 FLOORS = [{"floor": "1", "pfa_x": 0.21, "pfa_y": 0.2}]
 SETTINGS = Settings(runs=80)
 
 
-def read(folder, *items, floors=FLOORS, **building):
+def read(*items, **building):
     rows = [{"floor": "1", **SIZES, **item} for item in items]
-    return assess.read_inventory(write(folder / "w.xlsx", rows, floors, **({"period": 0.8} | building)))
+    return rows_in_code.read(rows, FLOORS, **({"period": 0.8} | building))
 
 
 @pytest.fixture(scope="module")
-def done(tmp_path_factory):
+def done():
     items = {"item": "square", "width": 35}, {"item": "long", "width": 40}, {"item": "along", "width": 35, "axis": "X"}
-    return compute(
-        read(tmp_path_factory.mktemp("square"), *items, {"item": "unknown"}, motion_uncertainty=0.1), SETTINGS
-    )
+    return compute(read(*items, {"item": "unknown"}, motion_uncertainty=0.1), SETTINGS)
 
 
 def cases_of(assessment, index):
@@ -65,8 +63,8 @@ def test_other_pieces_keep_what_they_and_those_alike_have(done):
             assert done.adoption.probability[case] == pytest.approx(np.mean(shares))
 
 
-def test_two_alike_have_one_chance_of_a_fall_along_either_axis(tmp_path):
-    found = compute(read(tmp_path, {"item": "a", "width": 35}, {"item": "b", "width": 35, "quantity": 3}), SETTINGS)
+def test_two_alike_have_one_chance_of_a_fall_along_either_axis():
+    found = compute(read({"item": "a", "width": 35}, {"item": "b", "width": 35, "quantity": 3}), SETTINGS)
     assert list(found.either_axis) == [0, 1]
     shares = [found.either_axis[at].mean() for at in (0, 1)]
     assert shares[0] != shares[1], "which of them fall together is each one's own"
@@ -74,9 +72,9 @@ def test_two_alike_have_one_chance_of_a_fall_along_either_axis(tmp_path):
     assert chances == pytest.approx([np.average(shares, weights=[1, 3])] * 2)
 
 
-def test_without_any_uncertainty_it_is_nearly_the_product(tmp_path):
+def test_without_any_uncertainty_it_is_nearly_the_product():
     """Phases of the two axes are independent: 1 - (1 - P_X)(1 - P_Y), where nothing is drawn."""
-    inventory = read(tmp_path, {"item": "a", "width": 35}, motion_uncertainty=0, piece_uncertainty="no")
+    inventory = read({"item": "a", "width": 35}, motion_uncertainty=0, piece_uncertainty="no")
     found = compute(inventory, Settings(runs=400))
     p_x, p_y = (verdicts(found, case).mean() for case in cases_of(found, 0))
     expected = 1 - (1 - p_x) * (1 - p_y)
@@ -84,8 +82,8 @@ def test_without_any_uncertainty_it_is_nearly_the_product(tmp_path):
     assert found.adoption.probability[0] == pytest.approx(expected, abs=3 * np.sqrt(expected * (1 - expected) / 400))
 
 
-def test_where_an_axis_is_not_simulated_nothing_is_united(tmp_path):
-    inventory = read(tmp_path, {"item": "square", "width": 35})
+def test_where_an_axis_is_not_simulated_nothing_is_united():
+    inventory = read({"item": "square", "width": 35})
     assert compute(inventory, Settings(verify="none")).either_axis == {}
 
 
@@ -99,6 +97,6 @@ def test_an_unconfirmed_axis_is_not_united(done):
     assert united == {}
 
 
-def test_results_say_so(tmp_path):
-    results = assess.run(read(tmp_path, {"item": "square", "width": 35}), SETTINGS, figures=False)
+def test_results_say_so():
+    results = assess.run(read({"item": "square", "width": 35}), SETTINGS, figures=False)
     assert "either_axis" in results["square"].adopted.flags

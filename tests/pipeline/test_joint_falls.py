@@ -7,12 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-import assess
 from assess.methods import simulation
 from assess.pipeline.adopt import build_falls
 from assess.pipeline.run import build_results, compute
 from assess.settings import Settings
-from assess.workbook.template import Content, write_workbook
+from tests.pipeline.rows import read_sheets
 from tests.shaking import write_records
 
 RUNS = 100
@@ -39,10 +38,9 @@ FLOORS = [{"floor": "1", "record_x": "slow.csv"}, {"floor": "2", "pfa_y": 0.2}]
 def shaken(folder: Path, settings: Settings = SETTINGS, **building: Any):
     """Assess a room that two cabinets on two floors, shaken along different axes, can cut off together."""
     write_records(folder, "slow")
-    path = folder / "w.xlsx"
-    rows = {"Building": [{"period": 1.0, "piece_uncertainty": "no", **building}], "Floors": FLOORS, "Items": ITEMS}
-    write_workbook(path, Content(rows=rows | {"Places": PLACES, "Routes": ROUTES}), "si")
-    return compute(assess.read_inventory(path), settings)
+    given = {"period": 1.0, "piece_uncertainty": "no", **building}
+    sheets = {"Building": [given], "Floors": FLOORS, "Items": ITEMS, "Places": PLACES, "Routes": ROUTES}
+    return compute(read_sheets(folder, **sheets), settings)
 
 
 def falls_of(assessment, settings: Settings | None = None):

@@ -1,10 +1,8 @@
 """Signs between floors: which records are compared, and what they do to the motions that are generated."""
 
-import json
 from dataclasses import replace
 from functools import cache
 
-import jsonschema
 import numpy as np
 import pytest
 
@@ -17,14 +15,10 @@ from assess.motion.target import Grid, octaves, put_on_grid
 from assess.pipeline.demand import build_demands, scale_demands
 from assess.pipeline.ensembles import build_ensembles, find_clock, find_phase_signs
 from assess.progress import SILENT
-from assess.report.content import build_content
-from assess.report.findings.motions import say_signs
-from assess.report.results_schema import build_schema
-from assess.report.statements import list_limits
 from tests.conftest import EXAMPLE
 from tests.motion.test_generate import measure
+from tests.pipeline.rows import read
 from tests.shaking import RECORDS, TIMES
-from tests.workbooks import write
 
 BAND = (0.8, 1.6)
 """Hz; there the records of floors 42 and 34 have a coherence of -0.96."""
@@ -124,10 +118,10 @@ def test_without_a_minus_the_noise_is_that_of_all_floors():
 # --- which records are compared ---
 
 
-def small(folder, floors, **building):
+def small(folder, floors):
     """Return the demands and signs of a building, by floor and axis; its records are columns of one table."""
     items = [{"item": f"i{one['floor']}", "floor": one["floor"], "breadth": 30, "height": 200} for one in floors]
-    inventory = assess.read_inventory(write(folder / "w.xlsx", items, floors, **building))
+    inventory = read(items, floors, folder)
     demands = build_demands(inventory, "as filled")
     every = [one for parallel in demands.values() for one in parallel]
     found = build_ensembles(every, demands, inventory.building, seed=1)
@@ -163,7 +157,7 @@ def test_a_floor_on_the_record_of_the_ground_has_its_signs(tmp_path, factor):
     floors = [{"floor": "1", "record_x": "both.csv#top", "elevation": 8}, {"floor": "2", "elevation": 12},
               {"floor": "0", "record_x": "both.csv#middle", "elevation": 0}]  # fmt: skip
     items = [{"item": f"i{one['floor']}", "floor": one["floor"], "breadth": 30, "height": 200} for one in floors]
-    inventory = assess.read_inventory(write(tmp_path / "w.xlsx", items, floors, height=12))
+    inventory = read(items, floors, tmp_path, height=12)
     demands = scale_demands(build_demands(inventory, "as filled"), factor)
     chosen = [demands[floor, "X"][0] for floor in "02"]
     ground, above = build_ensembles(chosen, demands, inventory.building, seed=1)
@@ -240,36 +234,3 @@ def test_a_factor_on_all_motions_changes_no_sign():
         found.append(list(find_phase_signs(every, grid, azimuth).values()))
     assert len(found[0]) == 9
     assert found[0] == found[1] == found[2]
-
-
-# --- what results and reports say ---
-
-
-@pytest.fixture(scope="module")
-def signed(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("signed")
-    write_table(folder / "both.csv", AGAINST)
-    items = [{"item": f"i{floor}", "floor": floor, "breadth": 30, "height": 200, "axis": "X"} for floor in "210"]
-    return assess.run(write(folder / "w.xlsx", items, FLOORS, height=12), runs=10, figures=False)
-
-
-def test_results_hold_signs(signed, tmp_path):
-    found = {one.floor: one.ensemble.signs for one in signed.motions if one.ensemble}
-    assert set(found["2"]) == {1}
-    assert found["1"][AT[0.8]] == -1
-    assert found["0"] is None
-    written = assess.write_reports(signed, tmp_path, ("json",))
-    document = json.loads(written["json"].read_text(encoding="utf-8"))
-    jsonschema.validate(document, build_schema())
-    demands = {one["floor"]: one["demands"][0] for one in document["floors"]}
-    assert demands["1"]["ensemble"]["signs"] == list(found["1"])
-    assert demands["0"]["ensemble"]["signs"] is None
-
-
-def test_reports_say_between_which_floors_signs_are_known(signed, example):
-    text = say_signs(signed)
-    assert "Between floors that have records of one earthquake on one clock (2 X, 1 X), the sign of each octave" in text
-    assert text in list_limits(signed)
-    assert any(text in one for one in build_content(signed).trials.paragraphs)
-    assert say_signs(example).endswith("What falls together on several floors is therefore an estimate.")
-    assert "signs of modes from floor to floor are not known" in say_signs(example)

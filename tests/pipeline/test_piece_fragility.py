@@ -20,7 +20,7 @@ from assess.rocking.draws import draw_bodies, name_number
 from assess.rocking.ensemble import rock_blocks
 from assess.settings import Settings
 from assess.units import GRAVITY
-from assess.workbook.template import Content, write_workbook
+from tests.pipeline.rows import read_sheets
 from tests.shaking import write_records
 
 RUNS = 20
@@ -40,16 +40,12 @@ def assessed(
     building: dict[str, Any] | None = None,
 ) -> Assessment:
     catalogue = [{"type": one, "breadth": 40, "width": 80, "height": 180} for one in ("Cabinet", "Shelf")]
-    rows = {
-        "Catalogue": catalogue,
-        "Building": [building or {}],
-        "Floors": floors or [{"floor": "1", **SLOW}],
-        "Items": list(items) or [CABINET],
-    }
     write_records(folder, "pulse", "slow")
-    path = folder / "w.xlsx"
-    write_workbook(path, Content(rows=rows), "si")
-    return compute(assess.read_inventory(path), settings)
+    inventory = read_sheets(
+        folder, Catalogue=catalogue, Building=[building or {}], Floors=floors or [{"floor": "1", **SLOW}],
+        Items=list(items) or [CABINET],
+    )  # fmt: skip
+    return compute(inventory, settings)
 
 
 def found(assessment: Assessment, *pfa_g: float, **named: Any):
@@ -103,24 +99,14 @@ def test_one_piece_falls_as_often_as_it_does_alone(tmp_path, building, ideal):
     assert one.thresholds == (pytest.approx(40 / 180 * GRAVITY),) * 2
 
 
-def test_the_motions_own_scatter_and_the_workbooks_do_not_enter(tmp_path):
-    own = [counts(assessed(tmp_path, building={"motion_uncertainty": one}), *LEVELS) for one in (0, 0.8)]
-    assert own[0] == own[1]
-
-
-def test_a_blank_axis_takes_the_worse_at_each_level(tmp_path):
-    assessment = assessed(tmp_path, {**CABINET, "axis": None}, building=EXACT)
+@pytest.mark.parametrize(("axis", "floor"), [(None, SLOW), ("X", {"record_x": "slow.csv; pulse.csv"})])
+def test_a_blank_axis_and_parallel_records_take_the_worse_at_each_level(tmp_path, axis, floor):
+    assessment = assessed(tmp_path, {**CABINET, "axis": axis}, building=EXACT, floors=[{"floor": "1", **floor}])
     along = [[one.sum() for one in rocked(assessment, pfa)] for pfa in LEVELS]
-    assert counts(assessment, *LEVELS) == [[max(both) for both in along]]
+    (one,) = found(assessment, *LEVELS).curves
+    assert one.curve.fallen.tolist() == [max(both) for both in along]
+    assert len(one.motions) == 2
     assert any(x != y for x, y in along)
-
-
-def test_parallel_records_take_the_worse_at_each_level(tmp_path):
-    assessment = assessed(tmp_path, building=EXACT, floors=[{"floor": "1", "record_x": "slow.csv; pulse.csv"}])
-    along = [[one.sum() for one in rocked(assessment, pfa)] for pfa in LEVELS]
-    assert counts(assessment, *LEVELS) == [[max(both) for both in along]]
-    assert len(found(assessment, *LEVELS).curves[0].motions) == 2
-    assert any(one != other for one, other in along)
 
 
 def test_a_square_piece_falls_along_either_axis(tmp_path):
@@ -292,12 +278,6 @@ def test_stocky_pieces_are_left_out(tmp_path):
         found(assessed(tmp_path, stout), 0.3)
 
 
-def test_where_nothing_falls_nothing_is_fitted(tmp_path):
-    (one,) = found(assessed(tmp_path), 0.02, 0.03).curves
-    assert (one.curve.kind, one.curve.fallen.tolist()) == ("none fell", [0, 0])
-    assert math.isnan(one.curve.median)
-
-
 def test_progress_is_reported_and_a_cancel_ends_it(tmp_path):
     assessment = assessed(tmp_path)
     reports: list[Report] = []
@@ -314,24 +294,15 @@ def test_progress_is_reported_and_a_cancel_ends_it(tmp_path):
         found(assessment, 0.3, progress=Progress(listen, cancel))
 
 
-@pytest.mark.parametrize(
-    ("named", "message"),
-    [
-        ({"by": "room"}, "^by is 'room', expected one of: item, type$"),
-        ({"im": "psa"}, "^im is 'psa', expected one of: pfa, pfv$"),
-        ({"levels": []}, "^levels: expected one or more finite numbers above 0, each larger than the one before$"),
-        ({"levels": [2.0, 1.0]}, "^levels: expected one or more"),
-        ({"levels": [1.0, 1.0]}, "^levels: expected one or more"),
-        ({"levels": [0.0, 1.0]}, "^levels: expected one or more"),
-        ({"levels": [1.0, math.inf]}, "^levels: expected one or more"),
-        ({"levels": [math.nan]}, "^levels: expected one or more"),
-    ],
-)
-def test_what_cannot_be_used(tmp_path, named, message):
-    with pytest.raises(assess.InputError, match=message):
-        find_piece_fragilities(assessed(tmp_path), **named)
-
-
-def test_the_number_of_draws_is_a_number(tmp_path):
+def test_what_cannot_be_used(tmp_path):
+    assessment = assessed(tmp_path)
+    expected = "^levels: expected one or more finite numbers above 0, each larger than the one before$"
+    for levels in ([], [2.0, 1.0], [1.0, 1.0], [0.0, 1.0], [1.0, math.inf], [math.nan]):
+        with pytest.raises(assess.InputError, match=expected):
+            find_piece_fragilities(assessment, levels=levels)
+    with pytest.raises(assess.InputError, match=r"^by is 'room', expected one of: item, type$"):
+        find_piece_fragilities(assessment, by="room")
+    with pytest.raises(assess.InputError, match=r"^im is 'psa', expected one of: pfa, pfv$"):
+        find_piece_fragilities(assessment, im="psa")
     with pytest.raises(assess.InputError, match="a fixed number of generated motions"):
         found(assessed(tmp_path, settings=replace(SETTINGS, runs="auto")))

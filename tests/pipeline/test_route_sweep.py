@@ -20,7 +20,7 @@ from assess.progress import Progress, Report
 from assess.rocking.ensemble import rock_blocks
 from assess.settings import Settings
 from assess.units import GRAVITY
-from assess.workbook.template import Content, write_workbook
+from tests.pipeline.rows import read_sheets
 from tests.shaking import write_records
 
 RUNS = 20
@@ -45,16 +45,12 @@ def assessed(
     floor: dict[str, Any] | None = None,
     building: dict[str, Any] | None = None,
 ) -> Assessment:
-    rows = {
-        "Building": [building or {}],
-        "Floors": [{"floor": "1", **(floor or {"record_x": "pulse.csv"})}],
-        "Items": list(items) or [CABINET],
-        "Routes": [CORRIDOR, {**CORRIDOR, "route": "B"}],
-    }
     write_records(folder, "pulse", "slow")
-    path = folder / "w.xlsx"
-    write_workbook(path, Content(rows=rows), "si")
-    return compute(assess.read_inventory(path), settings)
+    inventory = read_sheets(
+        folder, Building=[building or {}], Floors=[{"floor": "1", **(floor or {"record_x": "pulse.csv"})}],
+        Items=list(items) or [CABINET], Routes=[CORRIDOR, {**CORRIDOR, "route": "B"}],
+    )  # fmt: skip
+    return compute(inventory, settings)
 
 
 def fragility(assessment: Assessment, *pfa_g: float, **named: Any):
@@ -103,6 +99,8 @@ def test_below_the_threshold_of_every_piece_nothing_falls(tmp_path):
     found = fragility(assessed(tmp_path), 0.02, 0.03)
     assert chances(found) == [0, 0]
     assert found.routes[0].blocked[0].high > 0, "as only so many motions were tried"
+    none = fragility(assessed(tmp_path, {**CABINET, "route": None}), 0.5)
+    assert chances(none) == chances(none, "B") == [0]
 
 
 def test_a_blank_axis_takes_the_worse_at_each_value(tmp_path):
@@ -250,17 +248,14 @@ def test_the_pieces_to_blame_are_those_without_which_it_stays_below(tmp_path):
     assert fragility(assessed(tmp_path, CABINET, far), 0.02).routes[0].causes == ()
 
 
-def test_progress_is_reported(tmp_path):
+def test_progress_is_reported_and_a_cancel_ends_it(tmp_path):
+    assessment, cancel = assessed(tmp_path, *ITEMS), Event()
     reports: list[Report] = []
-    fragility(assessed(tmp_path, *ITEMS), 0.2, jobs=1, progress=Progress(reports.append))
+    fragility(assessment, 0.2, jobs=1, progress=Progress(reports.append))
     own = [one for one in reports if one.stage == "rocking"]
     assert {one.detail for one in own} == {"4 rows on 1 floor"}
     assert [one.share for one in own] == sorted(one.share for one in own)
     assert (own[0].share, own[-1].share) == (0, 1)
-
-
-def test_a_cancel_ends_it(tmp_path):
-    assessment, cancel = assessed(tmp_path, *ITEMS), Event()
 
     def listen(report: Report) -> None:
         assert not cancel.is_set(), "nothing is reported once it is cancelled"
@@ -268,11 +263,6 @@ def test_a_cancel_ends_it(tmp_path):
 
     with pytest.raises(assess.CancelledError):
         fragility(assessment, 0.2, progress=Progress(listen, cancel))
-
-
-def test_nothing_to_rock(tmp_path):
-    found = fragility(assessed(tmp_path, {**CABINET, "route": None}), 0.5)
-    assert chances(found) == chances(found, "B") == [0]
 
 
 def test_what_it_cannot_do(tmp_path):
@@ -288,36 +278,24 @@ def test_what_it_cannot_do(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("chances", "level", "pfa"),
-    [
-        ([0.0, 0.2, 0.4], 0.1, 0.15),
-        ([0.0, 0.2, 0.4], 0.2, 0.2),
-        ([0.0, 0.2, 0.4], 0.35, 0.275),
-        ([0.7, 0.7, 0.9], 0.8, 0.25),
-        ([0.0, 0.2, 0.6], 0.7, math.inf),
-        ([0.3, 0.2, 0.6], 0.25, -math.inf),
-        ([0.3, 0.2, 0.6], 0.3, 0.1),
-        ([0.0, 0.16, 0.1], 0.12, 0.175),
-    ],
-)
-def test_where_a_chance_reaches_a_level(chances, level, pfa):
-    assert find_passing([0.1, 0.2, 0.3], chances, level) == pytest.approx((pfa, pfa))
-
-
-@pytest.mark.parametrize(
     ("chances", "level", "between"),
     [
-        ([0.0, 1.0, 1.0], 0.03, (0.1, 0.2)),
+        ([0.0, 0.2, 0.4], 0.1, (0.15, 0.15)),
+        ([0.0, 0.2, 0.4], 0.2, (0.2, 0.2)),
+        ([0.0, 0.2, 0.4], 0.35, (0.275, 0.275)),
+        ([0.7, 0.7, 0.9], 0.8, (0.25, 0.25)),
+        ([0.0, 0.2, 0.6], 0.7, (math.inf, math.inf)),
+        ([0.3, 0.2, 0.6], 0.25, (-math.inf, -math.inf)),
+        ([0.3, 0.2, 0.6], 0.3, (0.1, 0.1)),
+        ([0.0, 0.16, 0.1], 0.12, (0.175, 0.175)),
+        ([0.0, 1.0, 1.0], 0.03, (0.1, 0.2)),  # nothing is read off a jump
         ([0.0, 1.0, 1.0], 1.0, (0.1, 0.2)),
         ([0.0, 0.2, 0.41], 0.3, (0.2, 0.3)),
         ([0.0, 0.4, 0.2], 0.3, (0.1, 0.2)),
     ],
 )
-def test_nothing_is_read_off_a_jump(chances, level, between):
-    assert find_passing([0.1, 0.2, 0.3], chances, level) == between
-
-
-def test_jumps():
+def test_where_a_chance_reaches_a_level(chances, level, between):
+    assert find_passing([0.1, 0.2, 0.3], chances, level) == pytest.approx(between)
     assert find_jumps([0.0, 0.3, 0.5, 0.7, 0.9, 0.6]) == [0, 4], "20 percentage points are none"
     assert find_jumps([0.5]) == []
 
@@ -332,9 +310,7 @@ def test_a_stair_without_a_clear_width_is_named(tmp_path):
             "Building": [{}], "Floors": [{"floor": name, "record_x": "pulse.csv"} for name in "12"],
             "Items": [CABINET], "Places": places, "Routes": [CORRIDOR, {**flight, "clear_width": width}],
         }  # fmt: skip
-        path = tmp_path / "stairs.xlsx"
-        write_workbook(path, Content(rows=rows), "si")
-        assessment = compute(assess.read_inventory(path), SETTINGS)
+        assessment = compute(read_sheets(tmp_path, **rows), SETTINGS)
         (route,) = fragility(assessment, 0.01).routes
         assert (route.is_evaluated, route.unevaluated) == (True, named)
         (row,) = build_results(assessment, figures=False).route_tables.routes

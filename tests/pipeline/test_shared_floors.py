@@ -1,11 +1,8 @@
 """Floors and buildings that share their motions: the same results as each alone."""
 
-import shutil
-
 import numpy as np
 import pytest
 
-import assess
 from assess.methods import simulation
 from assess.motion import beam_motions, shared_motions
 from assess.motion.beam import swing_modes
@@ -14,7 +11,7 @@ from assess.motion.kept import Kept
 from assess.pipeline.run import compute
 from assess.settings import Settings
 from tests.motion.motions import MARKET
-from tests.workbooks import write
+from tests.pipeline import rows
 
 CHANNEL = "891018_1.cra-1.0210a.smc"
 RUNS = 20
@@ -48,13 +45,13 @@ def swung(monkeypatch):
     return found
 
 
-def read(folder, *floors, **building):
+def read(*floors, **building):
     items = [
         {"item": f"{row['floor']} {height}", "floor": row["floor"], "breadth": 35, "height": height}
         for row in floors
         for height in (120, 200)
     ]
-    return assess.read_inventory(write(folder / "w.xlsx", items, list(floors), **{"period": 0.5, **building}))
+    return rows.read(items, list(floors), MARKET, **{"period": 0.5, **building})
 
 
 def chances(inventory, **settings):
@@ -62,42 +59,41 @@ def chances(inventory, **settings):
     return found.outcomes[simulation().key].value
 
 
-def test_floors_without_a_record_share_their_beams_and_each_is_as_alone(swung, tmp_path):
+def test_floors_without_a_record_share_their_beams_and_each_is_as_alone(swung):
     lower, upper = ({"floor": name, "elevation": z, "pfa_x": pfa} for name, z, pfa in (("1", 3, 0.3), ("2", 9, 0.55)))
     building = {"height": 9}
     alone, made = [], []
     for floor in (lower, upper):
         swung.clear()
         beam_motions.KEPT.forget()
-        alone.append(chances(read(tmp_path, floor, **building)))
+        alone.append(chances(read(floor, **building)))
         made.append(len(swung))
     swung.clear()
     beam_motions.KEPT.forget()
-    both = chances(read(tmp_path, lower, upper, **building))
+    both = chances(read(lower, upper, **building))
     assert len(swung) == made[0] == made[1] > 0
     np.testing.assert_array_equal(both, np.concatenate(alone))
     assert 0 < both.mean() < 1
 
 
-def test_another_building_before_changes_nothing(swung, tmp_path):
-    first = chances(read(tmp_path, {"floor": "1", "pfa_x": 0.4}))
+def test_another_building_before_changes_nothing(swung):
+    first = chances(read({"floor": "1", "pfa_x": 0.4}))
     beam_motions.KEPT.forget()
-    chances(read(tmp_path, {"floor": "9", "pfa_x": 0.8}, period=1.0))
-    np.testing.assert_array_equal(chances(read(tmp_path, {"floor": "1", "pfa_x": 0.4})), first)
+    chances(read({"floor": "9", "pfa_x": 0.8}, period=1.0))
+    np.testing.assert_array_equal(chances(read({"floor": "1", "pfa_x": 0.4})), first)
 
 
-def test_t1_is_not_rounded_into_one(swung, tmp_path):
-    chances(read(tmp_path, {"floor": "1", "pfa_x": 0.4}))
+def test_t1_is_not_rounded_into_one(swung):
+    chances(read({"floor": "1", "pfa_x": 0.4}))
     once = len(swung)
-    chances(read(tmp_path, {"floor": "1", "pfa_x": 0.8}))
+    chances(read({"floor": "1", "pfa_x": 0.8}))
     assert len(swung) == once
-    chances(read(tmp_path, {"floor": "1", "pfa_x": 0.4}, period=0.5001))
+    chances(read({"floor": "1", "pfa_x": 0.4}, period=0.5001))
     assert len(swung) == 2 * once
 
 
-def test_a_scaled_record_has_the_motions_of_the_record(built, tmp_path):
-    shutil.copy(MARKET / CHANNEL, tmp_path)
-    inventory = read(tmp_path, {"floor": "1", "record_x": CHANNEL})
+def test_a_scaled_record_has_the_motions_of_the_record(built):
+    inventory = read({"floor": "1", "record_x": CHANNEL})
     for scale in (1.0, 1.3, 0.7):
         compute(inventory, Settings(runs=RUNS, verify="all", scale=scale))
     assert sorted(built) == ["X", "Y"]

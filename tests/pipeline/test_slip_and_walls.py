@@ -1,20 +1,12 @@
 """Friction and walls through a whole run: what is reported beside the chance, and that no chance or class changes."""
 
-import csv
-import io
-import json
-import re
 from dataclasses import replace
 
-import jsonschema
-import openpyxl
 import pytest
 
 import assess
-from assess.fields import item_fields
-from assess.report.results_schema import build_schema
 from assess.settings import Settings
-from assess.workbook.template import Content, write_workbook
+from tests.pipeline.rows import read_sheets
 from tests.shaking import write_records
 
 SETTINGS = Settings(runs=40)
@@ -27,29 +19,22 @@ OUTLINE = "0 1.1; 8 1.1; 8 6; 0 6"
 
 
 def pieces(floor="1", axis="X", **more):
-    rows = [
-        {
-            "item": f"{name} {floor}",
-            "floor": floor,
-            "breadth": b,
-            "width": max(b, 90),
-            "height": h,
-            "axis": axis,
-            **more,
-        }
+    top_heavy = {"top-heavy": {"centre_of_gravity": 60}}
+    return [
+        {"item": f"{name} {floor}", "floor": floor, "breadth": b, "width": max(b, 90), "height": h, "axis": axis}
+        | more
+        | top_heavy.get(name, {})
         for name, (b, h) in SIZES.items()
     ]
-    return [row | ({"centre_of_gravity": 60} if row["item"].startswith("top") else {}) for row in rows]
 
 
 def run(folder, items=None, places=(), settings=SETTINGS, routes=(), **building):
     write_records(folder, "pulse")
-    rows = {
+    sheets = {
         "Building": [{"period": 0.8} | building], "Floors": FLOORS, "Items": items or [*pieces(), *pieces("2")],
-        "Places": places, "Routes": routes,
+        "Places": list(places), "Routes": list(routes),
     }  # fmt: skip
-    write_workbook(folder / "w.xlsx", Content(rows=rows))
-    return assess.run(assess.read_inventory(folder / "w.xlsx"), settings, figures=False)
+    return assess.run(read_sheets(folder, **sheets), settings, figures=False)
 
 
 @pytest.fixture(scope="module")
@@ -141,15 +126,12 @@ def test_slip_grows_with_less_friction_and_with_the_motion(tmp_path):
         assert after.governing.sliding.slip_median_cm > before.governing.sliding.slip_median_cm
 
 
-def test_slip_does_not_depend_on_other_pieces(smooth, tmp_path):
-    alone = run(tmp_path, pieces("2")[2:3], friction=0.2)
-    assert alone["low 2"].governing.sliding == smooth["low 2"].governing.sliding
-
-
-def test_a_stocky_piece_that_slides_alone_is_not_simulated(tmp_path):
-    (one,) = found = run(tmp_path, pieces("2")[3:4], friction=0.2)
+def test_slip_does_not_depend_on_other_pieces_and_needs_no_simulation(smooth, tmp_path):
+    alone = run(tmp_path, pieces("2")[3:4], friction=0.2)
+    (one,) = alone
+    assert one.governing.sliding == smooth["stocky 2"].governing.sliding
     assert one.governing.sliding.slip_84_cm > 1
-    assert (one.governing.simulation, found.has_simulated) == (None, False)
+    assert (one.governing.simulation, alone.has_simulated) == (None, False)
 
 
 # --- walls ---
@@ -173,12 +155,8 @@ def test_the_outline_of_the_room_tells_the_side(tmp_path):
     assert [one.item.falls_toward_deg for one in found] == [90, 270, None]
     assert [one.governing.motion.axis for one in found] == ["Y"] * 3
     notes = [one for one in found.problem_rows if "against a wall" in one.message]
-    assert [(one.severity, one.cell) for one in notes] == [("note", f"{_letter(found, 'against_wall')}4")]
+    assert [(one.severity, one.sheet) for one in notes] == [("note", "Items")]
     assert "within 0.30 m" in notes[0].message
-
-
-def _letter(results, field):
-    return results.provenance.letters["Items"][field]
 
 
 @pytest.mark.parametrize(("outline", "wall", "blocks"), [
@@ -199,61 +177,3 @@ def test_a_piece_that_falls_away_from_the_corridor_does_not_block_it(tmp_path, o
     assert bool(segment.pieces) is blocks
     (one,) = found
     assert one.adopted.probability > 0.3, "its own chance is the same"
-
-
-# --- what is written ---
-
-
-@pytest.fixture(scope="module")
-def written(walled, tmp_path_factory):
-    out = tmp_path_factory.mktemp("out")
-    paths = assess.write_reports(walled, out, formats=("json", "csv", "xlsx", "html"))
-    return {path.name: path for path in paths.values()}
-
-
-def test_json_follows_the_schema(written):
-    found = json.loads(written["results.json"].read_text(encoding="utf-8"))
-    jsonschema.validate(found, build_schema())
-    items = {one["item"]: one for one in found["items"]}
-    low = items["low 2"]
-    assert low["sliding"].keys() == {"branch", "slip_median_cm", "slip_84_cm"}
-    assert low["sliding"]["branch"] == "slide"
-    assert (low["friction"], low["against_wall"], low["falls_toward_deg"]) == (0.2, True, None)
-    assert items["slender 2"]["one_sided_chance"] > 0
-
-
-def test_without_friction_and_walls_the_fields_are_null(plain, tmp_path):
-    (path,) = assess.write_reports(plain, tmp_path, formats=("json",)).values()
-    found = json.loads(path.read_text(encoding="utf-8"))
-    jsonschema.validate(found, build_schema())
-    assert {(one["sliding"], one["against_wall"], one["one_sided_chance"]) for one in found["items"]} == {(None,) * 3}
-
-
-def test_csv_and_excel_have_the_columns(written, walled):
-    rows = list(csv.DictReader(io.StringIO(written["items.csv"].read_text(encoding="utf-8-sig"))))
-    keys = {"sliding_branch", "sliding_slip_median_cm", "sliding_slip_84_cm", "against_wall", "one_sided_chance"}
-    assert keys <= rows[0].keys()
-    assert rows[0]["sliding_branch"] == walled["slender 1"].governing.sliding.branch
-    sheet = openpyxl.load_workbook(written["report.xlsx"])["Items"]
-    heads = {cell.value: cell.column for cell in sheet[1]}
-    headings = [one.heading() for one in item_fields(walled) if one.key in keys]
-    assert {*headings} <= heads.keys()
-    slip = sheet.cell(2, heads["Peak slip, 84 % (as run) [cm]"]).value
-    assert slip == pytest.approx(walled["slender 1"].governing.sliding.slip_84_cm)
-
-
-def test_an_edited_friction_leads_to_run_again(written, walled):
-    """The class of the row holds for the friction as run: its formula compares the two."""
-    sheet = openpyxl.load_workbook(written["report.xlsx"])["Items"]
-    heads = {cell.value: cell.column_letter for cell in sheet[1]}
-    edited = sheet[f"{heads['Edited']}2"].value
-    assert f"${heads['Friction']}2-${heads['Friction as run']}2" in edited
-    assert sheet[f"{heads['Friction as run']}2"].value == 0.2
-
-
-def test_the_rows_of_pieces_say_it(written, walled):
-    page = written["report.html"].read_text(encoding="utf-8")
-    sliding = walled["low 2"].governing.sliding
-    said = f"slides up to {sliding.slip_median_cm:.0f} cm (median), {sliding.slip_84_cm:.0f} cm (84 %)"
-    assert said in re.sub(r"\s+", " ", page).replace("\u00a0", " ")
-    assert "with the wall at its back" in page

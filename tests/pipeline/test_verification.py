@@ -1,6 +1,5 @@
 """The verification through a whole run: what it changes, what it may not, and that it comes out the same."""
 
-import csv
 import io
 import json
 import re
@@ -97,14 +96,6 @@ def inventory(tmp_path_factory):
 # --- what is found ---
 
 
-def test_results_follow_their_schema(done):
-    jsonschema.validate(done.found, json.loads(SCHEMA.read_text(encoding="utf-8")))
-    assert done.found["assess"]["seed"] == 1
-    settings = done.found["assess"]["settings"]
-    assert (settings["verify"], settings["runs"], settings["seed"], settings["scale_motions"]) == ("all", 100, 1, False)
-    assert done.found["assess"]["inputs"]["motions"] == {}
-
-
 def test_every_piece_that_rocks_is_counted_with_its_interval(done):
     for name, item in done.items.items():
         found = item["verification"]
@@ -116,6 +107,8 @@ def test_every_piece_that_rocks_is_counted_with_its_interval(done):
         assert found["probability"] == found["overturned"] / found["draws"]
         assert found["low"] <= found["probability"] <= found["high"]
         assert item["methods"]["housner_monte_carlo"]["value"] == found["probability"]
+    for name in ("verification", "adopted", "methods", "axes"):
+        assert done.items["usual"][name] == done.items["twin"][name]
 
 
 def test_a_piece_too_stocky_to_rock_is_low(done):
@@ -126,19 +119,13 @@ def test_a_piece_too_stocky_to_rock_is_low(done):
 
 
 def test_ensembles_tell_how_they_meet_their_spectrum(done):
-    floors = {floor["floor"]: floor["demands"] for floor in done.found["floors"]}
-    for name in ("roof", "pulse", "still", "given"):
-        for demand in floors[name]:
-            if demand["axis"] == "Y":
-                assert demand["ensemble"] is None, "no piece topples that way"
-                continue
-            ensemble = demand["ensemble"]
-            assert (ensemble["motions"], ensemble["assumed_motion"]) == (100, name == "given")
-            assert (ensemble["bands"] is None) == (name != "given")
-            if name == "given":
-                assert ensemble["fit"] is None, "drawn motions follow no spectrum"
-            else:
-                assert 0.9 < ensemble["fit"]["pfa_ratio"] < 1.1
+    for floor in done.found["floors"]:
+        along_x = [one["ensemble"] for one in floor["demands"] if one["axis"] == "X"]
+        assert [one["ensemble"] for one in floor["demands"] if one["axis"] == "Y"] == [None] * len(along_x)
+        is_drawn = floor["floor"] == "given"
+        for one in along_x:
+            assert (one["motions"], one["assumed_motion"], one["bands"] is None) == (100, is_drawn, not is_drawn)
+            assert one["fit"] is None if is_drawn else 0.9 < one["fit"]["pfa_ratio"] < 1.1
 
 
 def test_where_nothing_rocks_none_of_n_overturns(done):
@@ -173,45 +160,18 @@ def test_of_parallel_records_the_worst_governs_and_lowered_is_held_against_the_h
     assert (one.adopted.lowered_from, one.by_formula.motion.record) == (RiskClass.VERY_HIGH, "fast.csv")
 
 
-def test_equal_pieces_come_out_equal(done):
-    for name in ("verification", "adopted", "methods", "axes"):
-        assert done.items["usual"][name] == done.items["twin"][name]
-
-
 # --- lowered, and never lowered ---
 
 
-def test_every_lowered_class_is_marked_in_all_outputs(done, results):
-    lowered = {one.item.item: one.adopted.lowered_from.word for one in results if one.adopted.lowered_from}
+def test_every_lowered_class_is_marked(done, results):
+    lowered = {one.item.item: one.adopted.lowered_from for one in results if one.adopted.lowered_from}
     assert {"parallel", "usual", "twin"} <= set(lowered)
     assert not {"falls", "stocky", "stands"} & set(lowered)
     for one in results:
         highest = RiskClass(max(int(classify(case.methods["proposed_or"].value)) for case in one.cases))
         is_lower = one.adopted.risk < highest and one.adopted.can_rock and not one.adopted.is_unconfirmed
         assert one.adopted.lowered_from == (highest if is_lower else None)
-    assert lowered == {
-        name: item["adopted"]["lowered_from"] for name, item in done.items.items() if item["adopted"]["lowered_from"]
-    }
-    with (done.out / "items.csv").open(encoding="utf-8-sig", newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert lowered == {row["item"]: row["adopted_lowered_from"] for row in rows if row["adopted_lowered_from"]}
-    (line,) = [one for one in done.stdout.splitlines() if "Simulated by direct integration" in one]
-    assert re.search(rf"; class lowered: \d+ pieces in {len(lowered)} rows; unconfirmed: ", line)
-    assert "7 of 8 rows, 100 motions each" in line
-
-
-def test_the_flat_table_has_the_verification(done):
-    with (done.out / "items.csv").open(encoding="utf-8-sig", newline="") as file:
-        rows = {row["item"]: row for row in csv.DictReader(file)}
-    for name, item in done.items.items():
-        found, row = item["verification"], rows[name]
-        if found is None:
-            assert {value for key, value in row.items() if key.startswith("verification_")} == {""}
-            continue
-        for key in ("runs", "overturned", "probability", "low", "high"):
-            assert float(row[f"verification_{key}"]) == found[key]
-        record = found["record"]
-        assert row["verification_record_overturned"] == ("" if record is None else str(record["overturned"]))
+    assert re.search(rf"; class lowered: \d+ pieces in {len(lowered)} rows; unconfirmed: ", done.stdout)
 
 
 def test_of_an_unknown_building_a_class_is_simulated_and_unconfirmed(done):
@@ -247,27 +207,15 @@ def test_high_simulates_only_what_is_high_or_doubtful_or_on_a_route(tmp_path):
         {"item": "calm", "floor": "calm", "axis": "X", "breadth": 60, "height": 180},
         {"item": "outside", "floor": "still", "axis": "X", "breadth": 90, "height": 180},
     ]
-    done = _run(
-        tmp_path,
-        _book(tmp_path, items, [*FLOORS, {"floor": "calm", "pfa_x": 0.12}], motion_uncertainty=0.4),
-        "--verify",
-        "high",
-        "--runs",
-        5,
-    )
+    path = _book(tmp_path, items, [*FLOORS, {"floor": "calm", "pfa_x": 0.12}], motion_uncertainty=0.4)
+    done = _run(tmp_path, path, "--verify", "high", "--runs", 5)
     calm, outside = done.items["calm"], done.items["outside"]
-    assert (calm["verification"], calm["adopted"]["method"]) == (None, "proposed_or")
+    assert (calm["verification"], calm["adopted"]["method"], calm["adopted"]["basis"]) == (
+        None, "proposed_or", "formula",
+    )  # fmt: skip
     assert calm["adopted"]["probability"] == calm["methods"]["proposed_or"]["value"]
     assert "extrapolated" in outside["methods"]["proposed_or"]["flags"]
     assert outside["verification"]["runs"] == 5
-    assert calm["adopted"]["basis"] == "formula"
-    assert "Simulated by direct integration: 1 of 2 rows, 5 motions each" in done.stdout
-
-
-@pytest.mark.slow
-def test_by_default_every_piece_that_can_be_rocked_is_simulated(tmp_path):
-    done = _run(tmp_path, _book(tmp_path), "--runs", 5)
-    assert {name for name, item in done.items.items() if item["verification"] is None} == {"stocky"}
 
 
 @pytest.mark.slow
@@ -328,10 +276,9 @@ def small(tmp_path_factory):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("jobs", [2, 3, 4])
-def test_the_number_of_threads_changes_no_byte(small, tmp_path, jobs):
+def test_the_number_of_threads_changes_no_byte(small, tmp_path):
     _, path, before = small
-    again = _run(tmp_path, path, "--verify", "all", "--runs", 40, "--jobs", jobs, formats="json,npz")
+    again = _run(tmp_path, path, "--verify", "all", "--runs", 40, "--jobs", 3, formats="json,npz")
     assert again.files == before.files
 
 
@@ -413,27 +360,18 @@ def suite(tmp_path):
 @pytest.mark.parametrize("scaled", [False, True])
 def test_motions_of_ones_own(tmp_path, suite, scaled):
     more = ["--scale-motions"] if scaled else []
-    done = _run(tmp_path, _book(tmp_path), "--verify", "all", "--motions", suite, *more, formats="json,npz")
+    done = _run(tmp_path, _book(tmp_path), "--motions", suite, *more)
     settings, inputs = done.found["assess"]["settings"], done.found["assess"]["inputs"]
     assert (settings["runs"], settings["scale_motions"]) == (5, scaled)
     assert sorted(inputs["motions"]) == ["m0.csv", "m1.csv", "m2.csv", "m3.csv", "other.csv"]
     jsonschema.validate(done.found, json.loads(SCHEMA.read_text(encoding="utf-8")))
     ensembles = [one["ensemble"] for floor in done.found["floors"] for one in floor["demands"] if one["axis"] == "X"]
-    weak = [one.pop("weak_motions") for one in ensembles]
-    assert any(weak), "some floors shake more than these, or faster"
-    plain = {
-        "motions": 5,
-        "assumed_motion": False,
-        "unknown_building": False,
-        "signs": None,
-        "fit": None,
-        "bands": None,
-    }
-    assert ensembles == [plain] * 5
+    assert any(one["weak_motions"] for one in ensembles), "some floors shake more than these, or faster"
+    unknown = ("assumed_motion", "unknown_building", "signs", "fit", "bands")
+    assert {(one["motions"], *(bool(one[name]) for name in unknown)) for one in ensembles} == {(5, *[False] * 5)}
     assert {item["verification"]["runs"] for item in done.items.values() if item["verification"]} == {5}
     still = done.items["stands"]["verification"]["overturned"]
     assert still == 0 if scaled else still > 0, "scaled to the 0.05 g of its floor, nothing rocks"
-    assert "5 motions each" in done.stdout
 
 
 def test_a_suite_that_cannot_be_read_ends_the_run(tmp_path, suite):
@@ -445,34 +383,24 @@ def test_a_suite_that_cannot_be_read_ends_the_run(tmp_path, suite):
     assert not (tmp_path / "out").exists()
 
 
-def _write_suite(folder, peak, period=1.0, count=6):
-    folder.mkdir()
-    for number in range(count):
-        write_record(
-            folder / f"m{number}.csv", peak * np.sin(2 * np.pi * TIMES / period) * np.exp(-(((TIMES - 4) / 2) ** 2))
-        )
-    return folder
-
-
 @pytest.mark.parametrize(
     ("peak", "period", "more"),
     [(0.002, 1.0, []), (0.4, 0.05, ["--scale-motions"])],
     ids=["of far too low a level", "scaled, but without the floor's velocity"],
 )
 def test_motions_weaker_than_the_floor_lower_no_class(tmp_path, peak, period, more):
-    folder = _write_suite(tmp_path / "mine", peak, period)
+    (tmp_path / "mine").mkdir()
+    motion = peak * np.sin(2 * np.pi * TIMES / period) * np.exp(-(((TIMES - 4) / 2) ** 2))
+    for number in range(6):
+        write_record(tmp_path / "mine" / f"m{number}.csv", motion)
     items = [{"item": "thin", "floor": "1", "breadth": 30, "height": 180}]
     path = write(tmp_path / "w.xlsx", items, [{"floor": "1", "pfa_x": 0.5, "pfv_x": 70}])
-    done = _run(tmp_path, path, "--motions", folder, *more)
+    done = _run(tmp_path, path, "--motions", tmp_path / "mine", *more)
     (item,) = done.items.values()
     assert item["verification"]["overturned"] == 0
-    assert item["adopted"]["method"] == "fema_p58"
-    assert item["adopted"]["lowered_from"] is None
+    assert (item["adopted"]["method"], item["adopted"]["lowered_from"]) == ("fema_p58", None)
     assert {"weak_motions", "unconfirmed"} <= set(item["adopted"]["flags"])
-    warnings = [one["message"] for one in done.found["problems"] if one["severity"] == "warning"]
-    assert any("weaker than floor '1' X: median PFA" in one for one in warnings)
     assert "weaker than floor '1' X" in done.stderr
-    assert "; unconfirmed: 1 piece in 1 row." in done.stdout
 
 
 @pytest.mark.slow
