@@ -116,30 +116,39 @@ def refuse(results: Path, *words: object) -> str:
     return message
 
 
-def test_nothing_asked_for(results):
-    assert "nothing is to be written: add --out MODEL.ifc" in refuse(results, "--ifc", DUPLEX)
-
-
-def test_the_model_is_always_named(results):
-    assert "--ifc" in refuse(results, "-o", results.with_name("o.ifc"))
-
-
-@pytest.mark.parametrize(("option", "name"), [("-o", "o.xlsx"), ("-o", "o"), ("--bcf", "t.zip"), ("--bcf", "t.ifc")])
-def test_another_kind_of_file(results, option, name):
-    assert "has an unsupported file type" in refuse(results, "--ifc", DUPLEX, option, results.with_name(name))
-
-
-@pytest.mark.parametrize("forced", [(), ("--force",)])
-def test_the_model_itself_is_never_replaced(results, forced):
-    model = results.with_name("model.ifc")
+def test_what_cannot_be_written_leaves_the_folder_as_it_was(results):
+    model, out, bcf = (results.with_name(name) for name in ("model.ifc", "o.ifc", "t.bcfzip"))
     model.write_bytes(DUPLEX.read_bytes())
-    assert "model.ifc is read for this: name another file" in refuse(results, "--ifc", model, "-o", model, *forced)
-
-
-def test_both_in_one_file(results):
-    out = results.with_name("o.ifc")
-    message = refuse(results, "--ifc", DUPLEX, "-o", out, "--bcf", out)
-    assert "name the same file" in message
+    results.with_name("taken").write_bytes(b"file")
+    for words, message in (
+        (("--ifc", DUPLEX), "nothing is to be written: add --out MODEL.ifc"),
+        (("-o", out), "--ifc"),
+        *((("--ifc", DUPLEX, option, results.with_name(name)), "unsupported file type")
+          for option, name in (("-o", "o.xlsx"), ("-o", "o"), ("--bcf", "t.zip"), ("--bcf", "t.ifc"))),
+        *((("--ifc", model, "-o", model, *forced), "model.ifc is read for this: name another file")
+          for forced in ((), ("--force",))),
+        (("--ifc", DUPLEX, "-o", out, "--bcf", out), "name the same file"),
+        (("--ifc", OFFICE, "-o", out), "is that of an element of LargeBuilding.ifc. Name the model that"),
+        (("--ifc", DUPLEX, "-o", out, "--bcf", results.parent / "taken" / "t.bcfzip"),
+         "name a file in a folder that exists"),
+    ):  # fmt: skip
+        assert message in refuse(results, *words), words
+    for data, message in (
+        (b"", "model.ifc .* is empty"),
+        (DUPLEX.read_bytes()[: 2 * DUPLEX.stat().st_size // 3], "END-ISO-10303-21;, is missing"),
+        (b"PK\x03\x04....", "packed as a zip file"),
+        (b"plain text", "does not begin as an IFC file"),
+    ):
+        model.write_bytes(data)
+        assert re.search(message, refuse(results, "--ifc", model, "-o", out, "--bcf", bcf))
+    earlier = results.read_text(encoding="utf-8").replace('"source_id":', '"source_is":')
+    for text, message in (
+        (earlier, "holds no Source ID, by which a piece is found in the model"),
+        ("{}", "results.json was not written by assess"),
+    ):
+        results.write_text(text, encoding="utf-8")
+        assert message in refuse(results, "--ifc", DUPLEX, "-o", out)
+    assert "gone.json does not exist" in refuse(results.with_name("gone.json"), "--ifc", DUPLEX, "-o", out)
 
 
 @pytest.mark.parametrize(("option", "name"), [("-o", "o.ifc"), ("--bcf", "t.bcfzip")])
@@ -153,57 +162,11 @@ def test_an_existing_file_stays_unless_forced(results, option, name):
     assert out.read_bytes() != b"mine"
 
 
-@pytest.mark.parametrize(
-    ("data", "message"),
-    [
-        (b"", "model.ifc .* is empty"),
-        (DUPLEX.read_bytes()[: 2 * DUPLEX.stat().st_size // 3], "END-ISO-10303-21;, is missing"),
-        (b"PK\x03\x04....", "packed as a zip file"),
-        (b"plain text", "does not begin as an IFC file"),
-    ],
-)
-def test_a_model_that_cannot_be_read(results, data, message):
-    model = results.with_name("model.ifc")
-    model.write_bytes(data)
-    found = refuse(results, "--ifc", model, "-o", results.with_name("o.ifc"), "--bcf", results.with_name("t.bcfzip"))
-    assert re.search(message, found)
-
-
-def test_a_model_of_another_building(results):
-    message = refuse(results, "--ifc", OFFICE, "-o", results.with_name("o.ifc"))
-    assert "is that of an element of LargeBuilding.ifc. Name the model that the workbook was imported from." in message
-
-
-def test_results_that_are_none(results):
-    results.write_text("{}", encoding="utf-8")
-    assert "results.json was not written by assess" in refuse(
-        results, "--ifc", DUPLEX, "-o", results.with_name("o.ifc")
-    )
-    assert "gone.json does not exist" in refuse(
-        results.with_name("gone.json"), "--ifc", DUPLEX, "-o", results.with_name("o.ifc")
-    )
-
-
-def test_results_of_an_earlier_schema_hold_no_source_ids(results):
-    text = results.read_text(encoding="utf-8").replace('"source_id":', '"source_is":')
-    results.write_text(text, encoding="utf-8")
-    message = refuse(results, "--ifc", DUPLEX, "-o", results.with_name("o.ifc"))
-    assert "holds no Source ID, by which a piece is found in the model" in message
-
-
 def test_a_model_that_was_exported_before(results):
     first = results.with_name("first.ifc")
     run("export", results, "--ifc", DUPLEX, "-o", first)
     message = refuse(results, "--ifc", first, "-o", results.with_name("second.ifc"))
     assert "first.ifc holds Assess_OverturningRisk already, on 4 of the pieces" in message
-
-
-def test_where_one_file_cannot_be_written_neither_is(results):
-    """A folder of a name that is taken by a file: the model could be written, the topics not."""
-    results.with_name("taken").write_bytes(b"file")
-    bcf = results.parent / "taken" / "t.bcfzip"
-    message = refuse(results, "--ifc", DUPLEX, "-o", results.with_name("o.ifc"), "--bcf", bcf)
-    assert "name a file in a folder that exists" in message
 
 
 WITHOUT = """

@@ -22,7 +22,7 @@ def cobie(tmp_path: Path) -> Path:
     return write_cobie(tmp_path / "handover.xlsx")
 
 
-def test_it_says_what_was_taken_and_what_was_left_out(cobie):
+def test_the_workbook_lacks_the_shaking_alone_and_runs_with_it(cobie):
     out = cobie.with_name("building.xlsx")
     done = run("import", cobie, "-o", out)
     assert done.exit_code == 0
@@ -30,28 +30,13 @@ def test_it_says_what_was_taken_and_what_was_left_out(cobie):
         "handover.xlsx: 2 pieces of 1 type on 2 floors taken.",
         "1 component left out (AssetType is Fixed): Door B (1).",
     ]
-    assert done.stderr.startswith(
-        f"wrote {out} and this list beside it. Choose Shaking in Building or fill in Floors, then run: assess check"
-    )
-
-
-def test_the_workbook_lacks_the_shaking_alone(cobie):
-    out = cobie.with_name("building.xlsx")
-    run("import", cobie, "--out", out)
     checked = run("check", out)
     assert checked.exit_code == 1
     errors = [line for line in checked.stderr.splitlines() if line.startswith("error")]
     assert len(errors) == 2
     assert all("has neither a record nor a PFA" in line for line in errors)
-    assert "building.xlsx is incomplete: what is filled in can be used." in checked.stderr
-
-
-def test_with_the_shaking_filled_in_it_runs(cobie):
-    out = cobie.with_name("building.xlsx")
-    run("import", cobie, "-o", out)
-    cell = f"B{PLACES['Building', 'ground_pga'] + 1}"
-    out.write_bytes(patch_workbook(out.read_bytes(), {"Building": {cell: 0.3}}).data)
-    assert run("check", out).stdout == "building.xlsx: no errors. 2 rows of furniture on 2 floors, 0 route segments.\n"
+    fill_in(out, ground_pga=0.3)
+    assert run("check", out).exit_code == 0
 
 
 def test_furniture_that_was_left_out_is_named_and_ends_with_1(tmp_path):
@@ -66,32 +51,14 @@ def test_furniture_that_was_left_out_is_named_and_ends_with_1(tmp_path):
     assert (tmp_path / "b.xlsx").exists()
 
 
-def test_without_furniture_the_floors_are_written_and_the_end_is_1(tmp_path):
-    done = run("import", write_cobie(tmp_path / "h.xlsx", components=()), "-o", tmp_path / "b.xlsx")
-    assert done.exit_code == 1
-    assert "No furniture was found: fill in Items by hand." in done.stdout
-    checked = run("check", tmp_path / "b.xlsx")
-    assert (checked.exit_code, "is incomplete" in checked.stderr) == (1, True)
-
-
-@pytest.mark.parametrize(
-    ("name", "message"),
-    [
-        ("model.ifc", "model.ifc does not exist. Check the name and the folder."),
-        ("scan.json", "scan.json does not exist."),
-        ("missing.xlsx", "missing.xlsx does not exist. Check the name and the folder."),
-    ],
-)
-def test_files_of_another_kind(tmp_path, name, message):
-    done = run("import", tmp_path / name, "-o", tmp_path / "b.xlsx")
-    assert message in error(done)
-    assert not (tmp_path / "b.xlsx").exists()
-
-
-def test_an_inventory_given_by_mistake_is_said(tmp_path):
-    path = write(tmp_path / "inventory.xlsx")
-    done = run("import", path, "-o", tmp_path / "b.xlsx")
-    assert "inventory.xlsx is an inventory workbook already, not a COBie file." in error(done)
+def test_files_of_another_kind(tmp_path):
+    write(tmp_path / "inventory.xlsx")
+    for name, message in (
+        *((name, f"{name} does not exist.") for name in ("model.ifc", "scan.json", "missing.xlsx")),
+        ("inventory.xlsx", "inventory.xlsx is an inventory workbook already, not a COBie file."),
+    ):
+        assert message in error(run("import", tmp_path / name, "-o", tmp_path / "b.xlsx"))
+        assert not (tmp_path / "b.xlsx").exists()
 
 
 def test_an_existing_workbook_stays_unless_forced(cobie):
@@ -180,15 +147,6 @@ def test_a_model_gives_pieces_plans_and_the_list_of_what_was_left_out(imported):
     assert {one.name for one in imported.parent.iterdir()} == {
         "duplex.xlsx", "duplex.txt", "duplex-import.txt", "duplex-Level-1.svg", "duplex-Level-2.svg", "duplex-Roof.svg",
     }  # fmt: skip
-
-
-def test_the_workbook_of_a_model_lacks_the_shaking_alone(imported):
-    checked = run("check", imported)
-    assert checked.exit_code == 1
-    told = [line for line in checked.stderr.splitlines() if line.startswith(("error", "warning", "note"))]
-    assert len(told) == 3
-    assert all("has neither a record nor a PFA" in line for line in told)
-    assert "duplex.xlsx is incomplete: what is filled in can be used." in checked.stderr
 
 
 def test_the_wardrobes_have_their_supports_and_the_catalogue_their_type(duplex):
@@ -310,21 +268,18 @@ def test_an_update_writes_no_plan_over_one_of_people_that_the_workbook_does_not_
     assert duplex.read_bytes() == before
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
+def test_choices_that_do_not_fit(tmp_path):
+    for arguments, message in (
         (("--update", "--force"), "--update keeps what is in the workbook, --force replaces it: give one of them."),
         (("--update", "--routes", "draft"), "routes are drafted into a new workbook only: leave out one of the two."),
         (("--update",), "b.xlsx does not exist: name the workbook of an earlier import, or leave it out."),
         (("--also", "IfcTable2"), "IfcTable2 is not a class of IFC2X3."),
         (("--routes", "some"), "'some' is not one of 'none', 'draft'"),
-    ],
-)
-def test_choices_that_do_not_fit(tmp_path, arguments, message):
-    done = run("import", MODELS / "LargeBuilding.ifc", "-o", tmp_path / "b.xlsx", *arguments)
-    assert done.exit_code == 2
-    assert message in done.stderr.replace("\n", " ")
-    assert list(tmp_path.iterdir()) == []
+    ):
+        done = run("import", MODELS / "LargeBuilding.ifc", "-o", tmp_path / "b.xlsx", *arguments)
+        assert done.exit_code == 2
+        assert message in done.stderr.replace("\n", " ")
+        assert list(tmp_path.iterdir()) == []
 
 
 def test_a_plan_that_is_there_is_not_replaced(tmp_path):

@@ -41,24 +41,10 @@ def test_the_document_is_the_one_of_the_contract():
     assert len(spectrum["periods_s"]) == len(spectrum["pseudo_acceleration_g"])
 
 
-def test_several_files_are_a_list_in_one_document():
-    documents = json.loads(record(ROOF, SWEEP, "--json").stdout)
-    assert [len(document["channels"]) for document in documents] == [1, 3]
-
-
-def test_the_text_tells_a_person_the_same():
-    text = record(SWEEP).stdout
-    assert "made-up-sweep.csv: plain CSV, 3 channels" in text
-    assert "made-up-sweep.csv#north (channel north, 3rd floor, 0 deg)" in text
-    assert "made-up-sweep.csv#up (channel up, 3rd floor, vertical)" in text
-    assert "1,201 samples, one every 0.01 s: 12.00 s" in text
-    assert "PFA 0.3000 g, PFV 57.76 cm/s" in text
-    assert "5 % spectrum  T [s]     0.05" in text
-
-
-def test_one_channel_of_a_file():
-    (channel,) = json.loads(record(f"{SWEEP}#east", "--json").stdout)["channels"]
-    assert (channel["channel"], channel["name"]) == ("east", "made-up-sweep.csv#east")
+def test_one_channel_of_a_file_and_several_files():
+    one, several = json.loads(record(f"{SWEEP}#east", SWEEP, "--json").stdout)
+    assert [(each["channel"], each["name"]) for each in one["channels"]] == [("east", "made-up-sweep.csv#east")]
+    assert len(several["channels"]) == 3
 
 
 def test_a_set_in_a_zip_archive(tmp_path):

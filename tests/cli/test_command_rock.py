@@ -12,15 +12,13 @@ import pytest
 from matplotlib.figure import Figure
 
 from assess.cli import command_rock
-from assess.cli.command_rock import describe, describe_outcome, list_lines, read_case, write_figure
-from assess.report.figures import draw as figures
-from tests.cli.calling import run
+from assess.cli.command_rock import describe_outcome, read_case, write_figure
+from tests.cli.calling import error, run
 from tests.motion.writers import THREE, csmip_v2, zipped
 
 ROOT = Path(__file__).parents[2]
 SAMPLES = ROOT / "samples" / "records"
-MARKET = ROOT / "inventories" / "records" / "575-market"
-FLOOR, ROOF, SWEEP = SAMPLES / "0165a_u.smc", MARKET / "891018_1.cra-1.0210a.smc", SAMPLES / "made-up-sweep.csv"
+FLOOR, SWEEP = SAMPLES / "0165a_u.smc", SAMPLES / "made-up-sweep.csv"
 KEYS = {
     "overturned", "max_rotation_ratio", "impacts", "overturn_time_s", "pfa_g", "critical_angle_rad",
     "frequency_parameter_rad_s", "restitution",
@@ -38,14 +36,6 @@ def document(**options):
     done = rock("--json", **options)
     assert (done.exit_code, done.stderr) == (0, "")
     return json.loads(done.stdout)
-
-
-def error(done):
-    """The message of a run that failed as it should: status 2, nothing printed, no traceback."""
-    assert (done.exit_code, done.stdout) == (2, "")
-    assert done.exception is None or isinstance(done.exception, SystemExit)
-    assert "Traceback" not in done.stderr
-    return " ".join(re.sub(r"[│╭╮╰╯─\n]", " ", done.stderr).split())
 
 
 def test_the_document_has_the_keys_of_the_contract():
@@ -96,45 +86,6 @@ def test_the_centre_of_gravity_changes_angle_frequency_restitution_and_threshold
     assert starts == {40: False, 50: False, 60: True}
 
 
-def test_the_text_states_the_centre_of_gravity_where_it_is_given():
-    lines = rock(height=190, pfa=0.19, cg=60).stdout.splitlines()
-    assert lines[0].startswith("Block    40 x 190 cm: B/H 0.2105, alpha 9.95 deg, p 2.620 rad/s, restitution 0.9516")
-    assert lines[1] == "         centre of gravity at 60 % of the height: b/z_c 0.1754"
-    assert "Rocks    above g b/z_c = 0.1754 g: exceeded" in lines
-    text = rock(height=190, pfa=0.1, cg=40).stdout
-    assert "does not start to rock: the peak 0.1000 g does not exceed its threshold 0.2632 g" in text
-    assert "centre of gravity" not in rock(height=190, pfa=0.1, cg=50).stdout
-
-
-def test_the_text_tells_a_person():
-    done = rock(pfa=0.5)
-    assert (done.exit_code, done.stderr) == (0, "")
-    assert (
-        "Block    40 x 180 cm: B/H 0.2222, alpha 12.53 deg, p 2.824 rad/s, restitution 0.9294 (Housner's)"
-        in done.stdout
-    )
-    assert "Record   0165a_u.smc (channel 90, floor 12, 90 deg, USGS SMC)" in done.stdout
-    assert "Uncorrected: mean removed, then a Butterworth high-pass at 0.1 Hz" in done.stdout
-    assert "Motion   PFA 0.2714 g, scaled by 1.842 to 0.5000 g, PFV 41.8 cm/s" in done.stdout
-    assert "Rocks    above g B/H = 0.2222 g: exceeded" in done.stdout
-    assert re.search(r"^Outcome  overturns at \d+\.\d\d s, after \d+ impacts$", done.stdout, re.MULTILINE)
-    assert "Limits   one rigid block in plane motion: no sliding, no vertical motion" in done.stdout
-    assert done.stdout.isascii()
-
-
-def test_the_text_of_blocks_that_stand():
-    text = rock(pfa=0.3).stdout
-    assert re.search(r"Outcome  does not overturn: rotates to 0\.\d+ of the critical angle, \d+ impacts\n", text)
-    text = rock(pfa=0.1).stdout
-    assert "Outcome  does not start to rock: the peak 0.1000 g does not exceed its threshold 0.2222 g" in text
-    assert "0.2222 g: not exceeded" in text
-    text = rock(restitution=0.9, baseline="none").stdout
-    assert "restitution 0.9000 (given)" in text
-    assert "Uncorrected: mean removed, not filtered." in text
-    assert "cm/s, not scaled" in text
-    assert "note: unevenly sampled" in rock(record=ROOF).stdout
-
-
 def test_a_channel_of_a_file_and_of_an_archive(tmp_path):
     assert document(record=f"{SWEEP}#north")["pfa_g"] == pytest.approx(0.3)
     assert (
@@ -145,39 +96,28 @@ def test_a_channel_of_a_file_and_of_an_archive(tmp_path):
     assert "Record   set.zip#11 (channel 11, " in rock(record=f"{tmp_path / 'set.zip'}#11").stdout
 
 
-@pytest.mark.parametrize(("breadth", "height"), [("12in", "6ft"), ("1'", "6' 0\""), ("0.3048 m", "1828.8mm")])
-def test_sizes_may_have_their_unit_as_in_the_workbook(breadth: str, height: str) -> None:
-    assert rock(breadth=breadth, height=height).stdout == rock(breadth=30.48, height=182.88).stdout
-
-
-@pytest.mark.parametrize("size", ["forty", "12 apples", "1,234.5.6"])
-def test_a_size_that_is_no_length_is_refused(size: str) -> None:
-    result = rock(breadth=size)
-    assert (result.exit_code, "Traceback" in result.output) == (2, False)
-    assert f"'{size}' is not a number; expected one such as 40 or 12in" in " ".join(result.output.split())
+def test_sizes_may_have_their_unit_as_in_the_workbook():
+    usual = rock("--json", breadth=30.48, height=182.88).stdout
+    for breadth, height in (("12in", "6ft"), ("1'", "6' 0\""), ("0.3048 m", "1828.8mm")):
+        assert rock("--json", breadth=breadth, height=height).stdout == usual
+    for size in ("forty", "12 apples", "1,234.5.6"):
+        assert f"'{size}' is not a number; expected one such as 40 or 12in" in error(rock(breadth=size))
 
 
 @pytest.mark.parametrize(
     ("options", "message"),
     [
         ({"breadth": 0}, "--breadth is 0 cm, expected 5 to 600 cm"),
-        ({"breadth": -40}, "--breadth is -40 cm, expected 5 to 600 cm"),
-        ({"breadth": "nan"}, "--breadth is nan cm, expected 5 to 600 cm"),
         ({"height": 1.8}, "--height is 1.8 cm, expected 5 to 600 cm"),
-        ({"height": 1800}, "--height is 1800 cm, expected 5 to 600 cm"),
         ({"height": "inf"}, "--height is inf cm, expected 5 to 600 cm"),
         ({"breadth": 141, "height": 100}, "--breadth and --height: a block with B/H of 1.41 does not rock"),
         ({"cg": 4.9}, "--cg is 4.9 %, expected 5 to 95 %"),
-        ({"cg": 96}, "--cg is 96 %, expected 5 to 95 %"),
-        ({"cg": 0.5}, "--cg is 0.5 %, expected 5 to 95 %"),
         ({"cg": "nan"}, "--cg is nan %, expected 5 to 95 %"),
         ({"breadth": 141, "height": 100, "cg": 40}, "--breadth, --height and --cg: a block with "),
         ({"pfa": 0}, "--pfa is 0 g, expected above 0 and at most 50 g"),
-        ({"pfa": -0.5}, "--pfa is -0.5 g, expected above 0 and at most 50 g"),
         ({"pfa": 51}, "--pfa is 51 g, expected above 0 and at most 50 g"),
         ({"pfa": "nan"}, "--pfa is nan g, expected above 0 and at most 50 g"),
         ({"restitution": 1.01}, "--restitution is 1.01, expected 0 to 1"),
-        ({"restitution": -0.1}, "--restitution is -0.1, expected 0 to 1"),
         ({"restitution": "nan"}, "--restitution is nan, expected 0 to 1"),
         ({"baseline": "strict"}, "--baseline is 'strict', expected one of: standard, none"),
         ({"breadth": "40 lb"}, "Invalid value for '--breadth'"),
@@ -207,26 +147,15 @@ def test_what_is_missing_is_named(left_out):
 @pytest.mark.parametrize(
     ("kind", "magic", "pfa"), [("png", b"\x89PNG", 0.1), ("svg", b"<?xml", 0.3), ("pdf", b"%PDF", 0.5)]
 )
-def test_the_figure_is_the_same_twice(tmp_path, kind, magic, pfa):
-    first, second = tmp_path / f"a.{kind}", tmp_path / f"b.{kind}"
-    for path in (first, second):
+def test_the_figure_is_written_and_the_same_twice(tmp_path, kind, magic, pfa):
+    paths = [tmp_path / f"a.{kind}", tmp_path / "b.svg"]
+    for path in paths:
         done = rock("--json", pfa=pfa, plot=path)
         assert (done.exit_code, done.stderr) == (0, f"wrote {path}\n")
         assert set(json.loads(done.stdout)) == KEYS
-    assert first.read_bytes().startswith(magic)
-    assert first.read_bytes() == second.read_bytes()
-    assert sorted(tmp_path.iterdir()) == [first, second]
-
-
-@pytest.mark.parametrize(
-    ("name", "message"),
-    [
-        ("x.gif", "the figure x.gif has an unsupported file type: end its name in .png, .svg or .pdf"),
-        ("none/x.png", "cannot be written there: name a file in a folder that exists"),
-    ],
-)
-def test_figures_that_cannot_be_written(tmp_path, name, message):
-    assert message in error(rock(plot=tmp_path / name))
+    assert paths[0].read_bytes().startswith(magic)
+    assert kind != "svg" or paths[0].read_bytes() == paths[1].read_bytes()
+    assert sorted(tmp_path.iterdir()) == paths
 
 
 def test_a_figure_that_cannot_be_put_in_its_place(tmp_path, monkeypatch):
@@ -239,23 +168,6 @@ def test_a_figure_that_cannot_be_put_in_its_place(tmp_path, monkeypatch):
     assert "x.png could not be written: Permission denied. Name another file." in done.stderr
     assert set(json.loads(done.stdout)) == KEYS
     assert not list(tmp_path.iterdir())
-
-
-def test_help_names_the_units():
-    text = run("rock", "--help").output
-    for words in (
-        "--breadth",
-        "[cm]",
-        "--cg",
-        "[% of the height]",
-        "--pfa",
-        "[g]",
-        "--restitution",
-        "--baseline",
-        "--json",
-        "--plot",
-    ):
-        assert words in text
 
 
 def test_the_example_of_the_documentation_is_what_is_printed(monkeypatch):
@@ -299,43 +211,14 @@ def case(pfa=0.5, record=FLOOR, restitution=None, cg=None):
 @pytest.mark.parametrize(
     ("pfa", "found", "words"),
     [
-        (0.5, fallen(), "overturns at 5.39 s, after 3 impacts"),
         (0.5, Found(overturned=True, fall_time=2.0, impacts=1), "overturns at 2.00 s, after 1 impact"),
-        (0.5, Found(rotation=0.333, impacts=135), "does not overturn: rotates to 0.33 of the critical angle, 135 imp"),
         (0.5, Found(rotation=1.05, impacts=1), "does not overturn: rotates to 1.05 of the critical angle, 1 impact"),
         (0.5, Found(rotation=0.0123), "does not overturn: rotates to 0.012 of the critical angle, 0 impacts"),
-        (
-            0.5,
-            Found(rotation=1e-7, impacts=1),
-            "does not overturn: rotates to less than 0.001 of the critical angle, 1 impact",
-        ),
-        (0.1, Found(), "does not start to rock: the peak 0.1000 g does not exceed its threshold 0.2222 g"),
         (0.23, Found(), "does not start to rock: the peak 0.2300 g does not stay above its threshold 0.2222 g"),
     ],
 )
 def test_outcomes_in_words(pfa, found, words):
     assert describe_outcome(case(pfa), found).startswith(words)
-
-
-def test_the_document_says_null_where_nothing_falls():
-    assert describe(case(), Found(rotation=0.3, impacts=4)) == {
-        "overturned": False,
-        "max_rotation_ratio": 0.3,
-        "impacts": 4,
-        "overturn_time_s": None,
-        "pfa_g": 0.5,
-        "critical_angle_rad": 0.2,
-        "frequency_parameter_rad_s": 2.8,
-        "restitution": 0.93,
-    }
-    assert describe(case(), fallen())["overturn_time_s"] == 5.39
-
-
-def test_the_lines_fit_a_screen_and_say_what_was_done():
-    lines = list(list_lines(case(), fallen()))
-    assert [line[:9].strip() for line in lines] == ["Block", "Record", "", "Motion", "Rocks", "Outcome", "Limits"]
-    assert lines[0].endswith("restitution 0.9300 (Housner's)")
-    assert next(list_lines(case(restitution=0.93), fallen())).endswith("(given)")
 
 
 def test_a_motion_is_scaled_as_a_whole():
@@ -391,23 +274,14 @@ def test_the_figure_is_turned_towards_the_fall_and_reaches_it():
 
 def test_a_long_path_is_thinned_out_and_keeps_its_peak_and_its_end():
     times = np.linspace(0, 30, 200_001)
-    theta = 0.1 * np.sin(times)
-    theta[77_777], theta[-1] = 0.19, 0.05
-    found = Found(rotation=0.95, times=times, theta=theta)
-    _, bottom = paint(case(), found).axes
-    drawn = bottom.lines[0]
-    assert drawn.get_xdata().size <= command_rock.MOST_POINTS + 1
-    assert drawn.get_ydata().max() == pytest.approx(0.95)
-    assert (drawn.get_xdata()[-1], drawn.get_ydata()[-1]) == (30, pytest.approx(0.25))
-
-
-def test_thinning_out_keeps_a_peak_among_the_last_points():
-    values = np.zeros(9_001)
-    values[-2] = 1
-    times, kept = figures.thin_out(np.arange(9_001.0), values)
-    assert kept.max() == 1
-    assert times[-1] == 9_000
-    assert kept.size <= figures.MOST_POINTS + 2
+    for at in (77_777, 199_998):
+        theta = 0.1 * np.sin(times)
+        theta[at], theta[-1] = 0.19, 0.05
+        _, bottom = paint(case(), Found(rotation=0.95, times=times, theta=theta)).axes
+        drawn = bottom.lines[0]
+        assert drawn.get_xdata().size <= command_rock.MOST_POINTS + 2
+        assert drawn.get_ydata().max() == pytest.approx(0.95)
+        assert (drawn.get_xdata()[-1], drawn.get_ydata()[-1]) == (30, pytest.approx(0.25))
 
 
 def test_names_that_look_like_mathematics_are_drawn_as_they_are(tmp_path):

@@ -18,8 +18,6 @@ from tests.cli.calling import run
 from tests.waiting import PATIENCE
 
 NAMES = ["table1", "solver", "table2", "calibration", "contours", "table3", "fit"]
-OWN = {"calibration"}
-"""Studies that repeat no part of the paper."""
 
 
 def study(*words):
@@ -45,27 +43,19 @@ def two(monkeypatch):
 # ---------------------------------------------------------------- what there is
 
 
-def test_all_studies_are_there():
+def test_all_studies_are_there_with_what_they_take():
     assert [one.name for one in all_studies()] == NAMES
-    assert {one.name for one in all_studies() if not one.of} == OWN
-    for one in all_studies():
-        assert one.title
-        assert one.takes <= {"records", "breadth", "height"}
-
-
-def test_what_studies_take_is_what_they_say():
+    assert {one.name for one in all_studies() if not one.of} == {"calibration"}, "it repeats no part of the paper"
+    assert all(one.title for one in all_studies())
     taken = {one.name: one.takes for one in all_studies() if one.takes}
     assert taken == {"table1": {"records", "breadth", "height"}, "table2": {"breadth", "height"}}
 
 
 def test_the_help_names_every_study_and_the_sizes_that_are_used():
     assert sorted(command_study.NAMES.split(", ")) == sorted(NAMES)
-    told = " ".join(study("--help").stdout.split())
-    assert f"{command_study.NAMES}; or all" in told
-    given = Options(out=Path("unused"))
+    told, given = " ".join(study("--help").stdout.split()), Options(out=Path("unused"))
     assert all(f"[default: ({100 * size:g})]" in told for size in (given.breadth, given.height))
     assert f"table2, contours, fit, calibration. [default: {given.runs}; 20<=x<=1000]" in told
-    assert "the same command continues from there" in told
 
 
 # ---------------------------------------------------------------- files
@@ -104,13 +94,9 @@ def test_all_of_them_have_one_page(tmp_path):
 
 
 @pytest.mark.usefixtures("two")
-def test_names_are_taken_in_any_case(tmp_path):
+def test_names_are_taken_in_any_case_and_what_is_kept_is_told(tmp_path):
     assert [study(name, "--out", tmp_path).exit_code for name in ("FIRST", "All")] == [0, 0]
     assert (tmp_path / PAGE).is_file()
-
-
-@pytest.mark.usefixtures("two")
-def test_what_is_kept_is_told(tmp_path):
     (tmp_path / PARTS).mkdir()
     found = study("second", "--out", tmp_path)
     assert f"second.md; {tmp_path / PARTS} keeps the long integrations for the next run" in found.stderr
@@ -177,18 +163,16 @@ def test_bad_input_writes_nothing(tmp_path, words, told):
     assert not (tmp_path / "out").exists()
 
 
-def test_an_empty_name_is_not_the_folder_in_which_one_stands(tmp_path, monkeypatch):
+def test_folders_that_cannot_be_meant(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    found = study("table3", "--out", "")
-    assert found.exit_code == 2
-    assert "--out is empty: name a folder, or leave out --out" in found.stderr
-    assert not list(tmp_path.iterdir())
-
-
-def test_the_folder_of_records_is_not_that_of_the_files(tmp_path):
-    found = study("table1", "--records", tmp_path, "--out", tmp_path / "x" / "..")
-    assert found.exit_code == 2
-    assert "--records and --out are the same folder: name another one for the files with --out" in found.stderr
+    for words, told in (
+        (("table3", "--out", ""), "--out is empty: name a folder, or leave out --out"),
+        (("table1", "--records", tmp_path, "--out", tmp_path / "x" / ".."),
+         "--records and --out are the same folder: name another one for the files with --out"),
+    ):  # fmt: skip
+        found = study(*words)
+        assert (found.exit_code, told in found.stderr) == (2, True)
+        assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("below", ["", "further/down"])
@@ -205,18 +189,16 @@ def test_a_file_in_place_of_the_folder_is_told_before_the_work(tmp_path, monkeyp
     assert len(list(tmp_path.iterdir())) == 1
 
 
-def test_a_folder_that_one_may_not_write_to_is_told(tmp_path, monkeypatch):
+def test_looking_whether_a_folder_can_be_written_to_leaves_nothing(tmp_path, monkeypatch):
+    check_folder(tmp_path / "new" / "and" / "more")
+    assert not list(tmp_path.iterdir())
+
     def refuse(*_args, **_more):
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr("tempfile.mkdtemp", refuse)
     with pytest.raises(OutputError, match=r"new could not be written: Permission denied\."):
         check_folder(tmp_path / "new")
-
-
-def test_looking_whether_a_folder_can_be_written_to_leaves_nothing(tmp_path):
-    check_folder(tmp_path / "new" / "and" / "more")
-    assert not list(tmp_path.iterdir())
 
 
 # ---------------------------------------------------------------- records of one's own

@@ -5,11 +5,14 @@ import os
 import shutil
 import subprocess
 import sys
+from contextlib import redirect_stdout
+from io import StringIO
+from unittest.mock import patch
 
 import pytest
 
 from assess.cli import command_fragility, command_run, completion
-from assess.cli.app import list_names
+from assess.cli.app import app, list_names
 from assess.i18n import LANGUAGES
 from assess.settings import SCENARIOS, VERIFY, Settings
 from tests.waiting import PATIENCE
@@ -31,7 +34,9 @@ def complete(line):
     """Return what bash is offered for the last word of a line; it separates the words by newlines."""
     words = line.split(" ")
     told = {"COMP_WORDS": "\n".join(words), "COMP_CWORD": str(len(words) - 1), completion.ASKED: "complete_bash"}
-    return ask(told).split()
+    with patch.dict(os.environ, told), redirect_stdout(StringIO()) as said, pytest.raises(SystemExit):
+        app(prog_name="assess")
+    return said.getvalue().split()
 
 
 def test_all_commands_are_offered():

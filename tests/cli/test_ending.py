@@ -9,7 +9,10 @@ import pytest
 
 import assess
 from assess.cli.ending import find_blank
+from assess.errors import InputError
+from assess.report.provenance import report_time
 from tests.cli.calling import run
+from tests.shaking import write_records
 from tests.workbooks import write
 
 LONG = "x" * 300
@@ -38,59 +41,48 @@ def one_line(done, status):
 # ---------------------------------------------------------------- names
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
+def test_names_that_are_too_long(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write(tmp_path / "book.xlsx")
+    for words in (
         ("run", "book.xlsx", "--out", LONG), ("run", "book.xlsx", "--out", f"{LONG}/inner"), ("run", f"{LONG}.xlsx"),
         ("check", f"{LONG}.xlsx"), ("new", f"{LONG}.xlsx"), ("run", "book.xlsx", "--motions", LONG),
         ("run", "book.xlsx", "--template", LONG), ("run", "book.xlsx", "--method", LONG), ("record", LONG),
         ("fragility", "book.xlsx", "--out", LONG), ("routes", "book.xlsx", "--plot", f"{LONG}.png"),
         ("check", "book.xlsx", "--fix", f"{LONG}.xlsx"), ("study", "table1", "--out", LONG),
-    ],
-    ids=lambda words: words[0],
-)  # fmt: skip
-def test_names_that_are_too_long(tmp_path, monkeypatch, words):
-    monkeypatch.chdir(tmp_path)
-    write(tmp_path / "book.xlsx")
-    done = run(*words)
-    assert done.exit_code == (1 if words[0] == "study" else 2)
-    assert isinstance(done.exception, SystemExit)
-    assert "xxxxx" in done.stderr
-    assert [one.name for one in tmp_path.iterdir()] == ["book.xlsx"]
+    ):  # fmt: skip
+        done = run(*words)
+        assert done.exit_code == (1 if words[0] == "study" else 2), words
+        assert isinstance(done.exception, SystemExit)
+        assert "xxxxx" in done.stderr
+        assert [one.name for one in tmp_path.iterdir()] == ["book.xlsx"]
 
 
-@pytest.mark.parametrize(
-    ("words", "named"),
-    [
+def test_blank_words():
+    for words, named in (
         (["run", "a.xlsx", "--out", ""], "--out"), (["run", "a.xlsx", "--motions="], "--motions"),
-        (["check", " "], "word 2"), (["run", "a.xlsx", "--out", "b"], None), (["study", "fit", "--", ""], None),
-        ([], None),
-    ],
-)  # fmt: skip
-def test_blank_words(words, named):
-    found = find_blank(words)
-    assert found == named or (named and found.startswith(named))
+        (["run", "a.xlsx", "--template", " "], "--template"), (["check", " "], "word 2"),
+        (["run", "a.xlsx", "--out", "b"], None), (["study", "fit", "--", ""], None), ([], None),
+    ):  # fmt: skip
+        found = find_blank(words)
+        assert found == named or (named and found.startswith(named))
 
 
-@pytest.mark.parametrize("words", [("--out", ""), ("--out=",), ("--motions", " "), ("--template", "")])
-def test_a_blank_folder_is_not_the_one_that_one_is_in(tmp_path, words):
+def test_a_blank_folder_is_not_the_one_that_one_is_in(tmp_path):
     write(tmp_path / "book.xlsx")
-    text = one_line(call(tmp_path, "run", "book.xlsx", "--verify", "none", *words), 2)
-    assert text == f"error  {words[0].rstrip('=')} is blank: fill it in, or leave it out."
+    text = one_line(call(tmp_path, "run", "book.xlsx", "--verify", "none", "--out="), 2)
+    assert text == "error  --out is blank: fill it in, or leave it out."
     assert [one.name for one in tmp_path.iterdir()] == ["book.xlsx"]
 
 
 # ---------------------------------------------------------------- the date
 
 
-@pytest.mark.parametrize("date", ["abc", "-1", " ", "1e5", "9" * 30, "253402300800", "²", "1.5", "\x1b[31m"])
-def test_a_date_that_is_none_is_refused_before_the_work(tmp_path, monkeypatch, date):
-    from assess.errors import InputError
-    from assess.report.provenance import report_time
-
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", date)
-    with pytest.raises(InputError, match=r"SOURCE_DATE_EPOCH is '.*', expected seconds since 1970, 0 to 253402300799"):
-        report_time()
+def test_a_date_that_is_none_is_refused_before_the_work(tmp_path, monkeypatch):
+    for date in ("abc", "-1", " ", "1e5", "9" * 30, "253402300800", "²", "1.5", "\x1b[31m"):
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", date)
+        with pytest.raises(InputError, match=r"SOURCE_DATE_EPOCH is '.*', expected seconds since 1970, 0 to 25340230"):
+            report_time()
     done = run("run", write(tmp_path / "book.xlsx"), "--out", tmp_path / "out")
     assert (done.exit_code, done.stdout) == (2, "")
     assert done.stderr.startswith("error  the environment variable SOURCE_DATE_EPOCH is '")
@@ -98,55 +90,30 @@ def test_a_date_that_is_none_is_refused_before_the_work(tmp_path, monkeypatch, d
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize(("date", "year"), [("0", 1970), ("1700000000", 2023), ("253402300799", 9999)])
-def test_dates(tmp_path, monkeypatch, date, year):
-    from assess.report.provenance import report_time
-
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", date)
-    assert report_time().year == year
-    formats = "html,xlsx,json"
-    done = run("run", write(tmp_path / "b.xlsx"), "--verify", "none", "--formats", formats, "--out", tmp_path / "out")
-    assert done.exit_code == 0, done.output
-    assert str(year) in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
-
-
-def test_an_empty_date_is_none(monkeypatch):
-    from assess.report.provenance import report_time
-
+def test_dates(tmp_path, monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "")
     assert report_time().year >= 2025
+    path = write(tmp_path / "b.xlsx")
+    for date, year in (("1700000000", 2023), ("0", 1970), ("253402300799", 9999)):
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", date)
+        assert report_time().year == year
+        done = run("run", path, "--verify", "none", "--formats", "html,xlsx,json", "--out", tmp_path / date)
+        assert done.exit_code == 0, done.output
+        assert str(year) in (tmp_path / date / "report.html").read_text(encoding="utf-8")
 
 
 # ---------------------------------------------------------------- outputs
 
 
 @needs_full
-@pytest.mark.parametrize(
-    "words",
-    [
-        ("check", "book.xlsx"),
-        ("methods",),
-        ("--help",),
-        ("run", "--help"),
-        ("--version",),
-        ("record", "fast.csv", "--json"),
-    ],
-    ids=" ".join,
-)
-def test_an_output_that_is_full(tmp_path, words):
-    from tests.shaking import write_records
-
+def test_an_output_that_is_full(tmp_path):
     write_records(tmp_path, "fast")
     write(tmp_path / "book.xlsx")
     with FULL.open("w") as full:
-        done = call(tmp_path, *words, out=full)
-        assert one_line(done, 1) == "error  the output could not be written: No space left on device."
-        assert call(tmp_path, *words, out=full, err=full).returncode == 1
-
-
-@needs_full
-def test_messages_that_cannot_be_written(tmp_path):
-    with FULL.open("w") as full:
+        for words in (("check", "book.xlsx"), ("run", "--help"), ("--version",), ("record", "fast.csv", "--json")):
+            done = call(tmp_path, *words, out=full)
+            assert one_line(done, 1) == "error  the output could not be written: No space left on device."
+        assert call(tmp_path, "methods", out=full, err=full).returncode == 1
         assert call(tmp_path, "check", "missing.xlsx", err=full).returncode == 1
 
 

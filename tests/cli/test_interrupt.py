@@ -167,21 +167,8 @@ def test_a_signal_at_any_time_leaves_nothing_behind(tmp_path, number, first):
     """
     book = write(tmp_path / "w.xlsx")
     (tmp_path / "tmp").mkdir()
-    words = [
-        sys.executable,
-        "-v",
-        "-m",
-        "assess",
-        "run",
-        book.name,
-        "--runs",
-        "20",
-        "--formats",
-        "pdf,csv",
-        "--out",
-        "out",
-    ]
-    for moment in [*(0.1 * at + first for at in range(20)), *(2 + first + at for at in range(8))]:
+    words = [sys.executable, *f"-v -m assess run {book.name} --runs 20 --formats pdf,csv --out out".split()]
+    for moment in [*(0.2 * at + first for at in range(10)), *(2 + first + 2 * at for at in range(4))]:
         with subprocess.Popen(
             words, cwd=tmp_path, env=os.environ | {"TMPDIR": str(tmp_path / "tmp")}, stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE, text=True,
@@ -201,9 +188,9 @@ def test_a_signal_at_any_time_leaves_nothing_behind(tmp_path, number, first):
 
 @pytest.mark.skipif(os.name == "nt", reason="no signals to send")
 @pytest.mark.parametrize(
-    ("number", "event"), [(signal.SIGINT, "import"), (signal.SIGTERM, "import"), (signal.SIGTERM, "os.rename")]
+    ("number", "event", "at"),
+    [(signal.SIGINT, "import", 1), (signal.SIGTERM, "import", 3), (signal.SIGTERM, "os.rename", 1)],
 )
-@pytest.mark.parametrize("at", [1, 3])
 def test_a_signal_at_the_first_imports_or_moves(tmp_path, number, event, at):
     """Before the work nothing is written; while files are moved the signal waits, and comes too late."""
     out = tmp_path / "out"
@@ -262,8 +249,7 @@ def test_work_that_swallows_every_interrupt_is_ended(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("threads", [1, 2])
-@pytest.mark.parametrize("count", [1, 3])
+@pytest.mark.parametrize(("threads", "count"), [(1, 1), (2, 3)])
 def test_nothing_is_compiled_in_the_thread_that_hears_ctrl_c(threads, count):
     """In the middle of a compilation the exception would end up in the compiler's own code, and be lost."""
 
@@ -273,7 +259,6 @@ def test_nothing_is_compiled_in_the_thread_that_hears_ctrl_c(threads, count):
             return MadeUp.open(self, threads, progress)
 
     ensembles = tuple(Watched(number) for number in range(count))
-    evaluate(
-        Cases.of(breadth=0.3, height=1.8, ensemble=range(count), ensembles=ensembles), Settings(runs=2), threads=threads
-    )
+    cases = Cases.of(breadth=0.3, height=1.8, ensemble=range(count), ensembles=ensembles)
+    evaluate(cases, Settings(runs=2), threads=threads)
     assert all(one.opened for one in ensembles)

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from assess.compare.changes import Direction, compare, lies_within
-from assess.compare.comparison_data import describe, dump
+from assess.compare.comparison_data import describe
 from assess.compare.comparison_view import View
 from assess.compare.comparison_words import say_anchor, say_inputs
 from assess.compare.past_run import PastChance
@@ -315,19 +315,6 @@ def test_other_limits_and_settings_are_warned_of(routed, source, tmp_path):
         "earthquake and of the pieces",
         "The limit on the chance that a route is blocked differs",
     ]
-
-
-def test_the_document_says_the_same(source, tmp_path):
-    stronger = read_run(write_run(tmp_path / "s", Settings(verify="none", scale=1.5)))
-    found = compare(read_run(source), stronger)
-    record = describe(found)
-    assert record["after"]["settings"]["scale"] == 1.5
-    assert {one["item"]: one["change"] for one in record["items"]} == _directions(found)
-    assert sum(one["pieces"] for one in record["moves"]) == 7
-    assert record["counts"]["expected_falls"]["after"] == pytest.approx(
-        sum(one.quantity * one.chance.probability for one in stronger.pieces if not one.is_held)
-    )
-    assert dump(record).endswith("}\n")
 
 
 def test_what_is_taken_as_anchored_is_put_into_words():

@@ -16,7 +16,6 @@ from assess.compare.read_results import read_run
 from assess.errors import CancelledError, InputError, OutputError, PdfUnavailableError
 from assess.progress import Progress
 from assess.report.pages.pdf_seal import is_sealed
-from assess.report.report_options import ReportOptions
 from assess.settings import Settings
 from tests.compare.past import change, item, write_routed_run
 from tests.workbooks import UNVERIFIED
@@ -58,16 +57,12 @@ def test_the_list_of_the_files_is_right_and_the_pdf_is_sealed(written):
 
 def test_the_page_leads_with_what_gets_worse_and_escapes_every_text(found, written):
     page = written["html"].read_text(encoding="utf-8")
-    headings = re.findall(r"<h2>(.*?)</h2>", page)
-    assert headings[0] == "What gets worse"
-    assert "<script" not in page
+    assert re.findall(r"<h2>(.*?)</h2>", page)[0] == "What gets worse"
     assert "&lt;script&gt;alert(1)&lt;/script&gt;" in page.replace("<wbr>", "")
-    assert "</h1><b>" not in page
     assert "BEFORE: motion × 0.4" in page
-    assert View(found).headline in page
     for route in found.routes:
         assert (route.name in page) == (route.direction != Direction.SAME)
-    assert not re.search(r"(src|href)=", page)
+    assert not re.search(r"(src|href)=|<script|</h1><b>", page)
 
 
 def test_the_pdf_is_tagged_carries_the_document_and_says_the_same(found, written):
@@ -173,11 +168,6 @@ def test_what_fails_or_is_cancelled_leaves_nothing(found, tmp_path, monkeypatch)
     assert list(tmp_path.iterdir()) == []
     with pytest.raises(InputError, match="'docx' is unknown"):
         write_comparison(found, tmp_path / "c", ("docx",))
-
-
-def test_it_speaks_italian(found, tmp_path):
-    page = write_comparison(found, tmp_path, ("html",), ReportOptions(language="it"))["html"]
-    assert '<html lang="it">' in page.read_text(encoding="utf-8")
 
 
 def test_a_chance_that_is_not_known_is_no_number_in_the_workbook(found, written):

@@ -76,37 +76,23 @@ def test_a_corrected_record_loses_nothing():
 
 
 @pytest.mark.parametrize(
-    ("scenario", "floor", "message"),
+    ("scenario", "given", "message"),
     [
-        (
-            "recorded",
-            Floor(row=7, floor="1", pfa={"X": 3.0}),
-            r"Floors!A7: floor '1' has no record, which .*'recorded'",
-        ),
-        ("given", Floor(row=7, floor="1", records={}), r"Floors!A7: floor '1' has no PFA, which .*'given'"),
-        ("as filled", Floor(row=7, floor="1"), r"Floors!A7: floor '1' has neither a record nor a PFA"),
-        ("as filled", Floor(row=7, floor="1", elevation=3.0), r"neither a record nor a PFA.* Ground PGA"),
-        (
-            "given",
-            Floor(row=7, floor="1", elevation=3.0),
-            r"no PFA, which .* as it does not lie between two floors that",
-        ),
-        ("recorded", Floor(row=7, floor="1"), r"no record, which .* as its Elevation is blank"),
-        (
-            "EN 1998-1",
-            Floor(row=7, floor="1"),
-            r"Floors!A7: floor '1' has no Elevation, which the scenario 'EN 1998-1'",
-        ),
-        (
-            "EN 1998-1",
-            Floor(row=7, floor="1", elevation=3.0),
-            r"Building: Ground PGA, SDS, ShakeMap file and Shaking are blank; the",
-        ),
+        ("recorded", {"pfa": {"X": 3.0}}, "has no record, which .*'recorded'"),
+        ("recorded", {}, "has no record, which .* as its Elevation is blank"),
+        ("given", {"records": {}}, "has no PFA, which .*'given'"),
+        ("given", {"elevation": 3.0}, "has no PFA, which .* as it does not lie between two floors that"),
+        ("as filled", {}, "has neither a record nor a PFA"),
+        ("as filled", {"elevation": 3.0}, "has neither a record nor a PFA.* Ground PGA"),
+        ("EN 1998-1", {}, "has no Elevation, which the scenario 'EN 1998-1'"),
+        ("EN 1998-1", {"elevation": 3.0}, None),
     ],
 )
-def test_a_floor_without_motion_is_named(scenario, floor, message):
-    with pytest.raises(assess.WorkbookError, match=message):
-        build_demands(_inventory(floor), scenario)
+def test_a_floor_without_motion_is_named(scenario, given, message):
+    place = rf"Floors!A7: floor '1' {message}"
+    expected = place if message else r"Building: Ground PGA, SDS, ShakeMap file and Shaking are blank; the"
+    with pytest.raises(assess.WorkbookError, match=expected):
+        build_demands(_inventory(Floor(row=7, floor="1", **given)), scenario)
 
 
 # ------------------------------------------------------------------ floors between known ones

@@ -15,11 +15,10 @@ from assess.pipeline import levels
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.route_sweep import FINEST, JUMP, MOST_INSERTED, find_fragility, find_jumps, find_passing
 from assess.pipeline.run import build_results, compute
-from assess.pipeline.verify import choose_motions
 from assess.progress import Progress, Report
-from assess.rocking.ensemble import rock_blocks
 from assess.settings import Settings
 from assess.units import GRAVITY
+from tests.pipeline.alone import rocked
 from tests.pipeline.rows import read_sheets
 from tests.shaking import write_records
 
@@ -63,18 +62,8 @@ def chances(found, route: str = "A") -> list[float]:
 
 
 def share(assessment: Assessment, pfa_g: float) -> list[float]:
-    """Rock every piece as it is given, alone, under the motions of each axis scaled to a PFA: the shares that fall."""
-    every = np.ones(len(assessment.case_item), dtype=np.bool_)
-    inventory, settings = assessment.inventory, assessment.settings
-    cases = choose_motions(
-        assessment.cases, every, assessment.case_demand, assessment.demands, inventory, settings, None
-    )
-    found = []
-    for at, demand in enumerate(assessment.case_demand):
-        ((motions, step),) = cases.ensembles[cases.ensemble[at]].open(1).realise(0, settings.runs)
-        scaled = motions * (pfa_g * GRAVITY / demand.pfa)
-        found.append(float(rock_blocks(cases.breadth[at], cases.height[at], scaled, step).overturned.mean()))
-    return found
+    """Return the share of draws in which each piece falls, alone."""
+    return [float(one.mean()) for one in rocked(assessment, pfa_g)]
 
 
 # --- one piece ---

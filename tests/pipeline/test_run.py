@@ -1,5 +1,4 @@
 import gc
-import shutil
 from dataclasses import replace
 from threading import Event
 
@@ -8,30 +7,25 @@ import pytest
 import assess
 from assess.pipeline.schedule import fix_first
 from assess.risk import RiskClass, classify
-from tests.workbooks import FLOORS, RECORDS, UNVERIFIED, assessed, write
+from tests.motion.motions import MARKET
+from tests.pipeline import rows
+from tests.workbooks import RECORDS, UNVERIFIED, write
 
 PIECE = {"floor": "1", "breadth": 40, "width": 90, "height": 180}
 
 
-def test_an_item_with_an_axis_takes_that_axis_alone(tmp_path):
+def test_an_axis_alone_or_the_one_of_the_larger_probability():
     items = [{"item": "x", "axis": "X", **PIECE}, {"item": "y", "axis": "Y", **PIECE}, {"item": "both", **PIECE}]
-    results = assessed(tmp_path / "w.xlsx", items)
-    assert [one.motion.axis for one in results["x"].cases] == ["X"]
-    assert [one.motion.axis for one in results["y"].cases] == ["Y"]
-    assert [one.motion.axis for one in results["both"].cases] == ["X", "Y"]
+    results = rows.assessed(items, [{"floor": "1", "pfa_x": 0.2, "pfa_y": 0.4}])
+    assert [[one.motion.axis for one in each.cases] for each in results] == [["X"], ["Y"], ["X", "Y"]]
+    assert results["both"].governing.motion.axis == "Y"
+    assert results["both"].adopted.probability == results["both"].worst("fema_p58")
 
 
-def test_the_larger_probability_governs_a_blank_axis(tmp_path):
-    floors = [{"floor": "1", "pfa_x": 0.2, "pfa_y": 0.4}]
-    one = assessed(tmp_path / "w.xlsx", [{"item": "a", **PIECE}], floors)["a"]
-    assert one.governing.motion.axis == "Y"
-    assert one.adopted.probability == one.worst("fema_p58")
-
-
-def test_the_larger_velocity_governs_a_blank_axis_and_by_the_papers_formula_the_larger_acceleration(tmp_path):
+def test_the_larger_velocity_governs_a_blank_axis_and_by_the_papers_formula_the_larger_acceleration():
     floors = [{"floor": "1", "pfa_x": 0.4, "pfv_x": 20, "pfa_y": 0.3, "pfv_y": 40}]
-    best = assessed(tmp_path / "w.xlsx", [{"item": "a", **PIECE}], floors)["a"]
-    paper = assessed(tmp_path / "w.xlsx", [{"item": "a", **PIECE}], floors, class_by="proposed OR")["a"]
+    best = rows.assessed([{"item": "a", **PIECE}], floors)["a"]
+    paper = rows.assessed([{"item": "a", **PIECE}], floors, class_by="proposed OR")["a"]
     assert (best.governing.motion.axis, best.adopted.method) == ("Y", "fema_p58")
     assert (paper.governing.motion.axis, paper.adopted.method) == ("X", "proposed_or")
     assert paper.formula_class is paper.paper_class is classify(paper.worst("proposed_or"))
@@ -44,32 +38,28 @@ def test_the_option_comes_before_the_workbook(tmp_path):
     assert assess.run(path, UNVERIFIED, class_by="best formula")["a"].adopted.method == "fema_p58"
 
 
-def test_at_equal_probability_the_larger_pfa_governs_then_x(tmp_path):
+def test_at_equal_probability_the_larger_pfa_governs_then_x():
     """Both PFA lie past the peak of the formula, where its value is held: the probabilities are equal."""
     floors = [{"floor": "1", "pfa_x": 1.1, "pfa_y": 1.4}, {"floor": "2", "pfa_x": 1.2, "pfa_y": 1.2}]
     items = [{"item": "a", **PIECE}, {"item": "b", **PIECE, "floor": "2"}]
-    results = assessed(tmp_path / "w.xlsx", items, floors, class_by="proposed OR")
+    results = rows.assessed(items, floors, class_by="proposed OR")
     assert results["a"].governing.motion.axis == "Y"
     assert results["b"].governing.motion.axis == "X"
     assert {case.methods["proposed_or"].value for case in results["a"].cases} == {results["a"].adopted.probability}
 
 
-def test_the_worst_of_parallel_records_governs_and_all_are_kept(tmp_path):
-    for name in ("0165a_u.smc", "np01002p_4225a_a.smc"):
-        shutil.copy(RECORDS / name, tmp_path / name)
+def test_the_worst_of_parallel_records_governs_and_all_are_kept():
     floors = [{"floor": "1", "record_x": "np01002p_4225a_a.smc; 0165a_u.smc"}]
-    one = assessed(tmp_path / "w.xlsx", [{"item": "a", "axis": "X", **PIECE}], floors)["a"]
+    one = rows.assessed([{"item": "a", "axis": "X", **PIECE}], floors, RECORDS)["a"]
     assert [case.motion.record for case in one.cases] == ["np01002p_4225a_a.smc", "0165a_u.smc"]
     assert one.governing.motion.pfv_cm_s == max(case.motion.pfv_cm_s or 0.0 for case in one.cases)
     assert one.governing.motion.record == "np01002p_4225a_a.smc"
     assert one.governing.motion.pfa_g < max(case.motion.pfa_g for case in one.cases)
 
 
-def test_treatment_that_takes_over_two_percent_of_the_peak_is_told(tmp_path):
-    folder = tmp_path / "records"
-    shutil.copytree(RECORDS.parents[1] / "inventories" / "records" / "575-market", folder)
-    floors = [{"floor": "1", "record_x": "records/891018_1.cra-1.0210a.smc"}]
-    results = assessed(tmp_path / "w.xlsx", [{"item": "a", **PIECE}], floors)
+def test_treatment_that_takes_over_two_percent_of_the_peak_is_told():
+    floors = [{"floor": "1", "record_x": "891018_1.cra-1.0210a.smc"}]
+    results = rows.assessed([{"item": "a", **PIECE}], floors, MARKET)
     (note,) = [one for one in results.problem_rows if "treatment lowers the PFA" in one.message]
     assert note.severity == "note"
     assert "from the file's 0.233 g to 0.222 g (4.5%)" in note.message
@@ -84,42 +74,36 @@ def test_an_assessment_without_items_is_empty(tmp_path):
     assert all(path.stat().st_size for path in written.values())
 
 
-def test_flags_of_piece_and_motion_reach_the_adopted_risk(tmp_path):
+def test_flags_of_piece_and_motion_reach_the_adopted_risk():
     floors = [{"floor": "1", "pfa_x": 0.95}]
     items = [
         {"item": "stocky", "floor": "1", "breadth": 150, "height": 100, "axis": "Y"},
         {"item": "slippery", "floor": "1", "breadth": 60, "height": 120, "friction": 0.3, "axis": "X"},
         {"item": "thin", "floor": "1", "breadth": 10, "height": 150, "axis": "X"},
     ]
-    results = assessed(tmp_path / "w.xlsx", items, floors, period=1.0)
+    results = rows.assessed(items, floors, period=1.0)
     flags = {one.item.item: set(one.adopted.flags) for one in results}
     assert flags["stocky"] >= {"does_not_rock", "one_axis_only", "unknown_height"}
     assert (results["stocky"].adopted.basis, results["stocky"].adopted.risk) == ("cannot rock", RiskClass.LOW)
     assert results["stocky"].governing.methods["fema_p58"].value is None
     assert flags["slippery"] >= {"slides", "unknown_height"}
     assert "extrapolated" in flags["thin"]
-    by_paper = assessed(tmp_path / "w.xlsx", items, floors, period=1.0, class_by="proposed OR")
+    by_paper = rows.assessed(items, floors, period=1.0, class_by="proposed OR")
     assert {"thin", "held", "extrapolated"} <= set(by_paper["thin"].adopted.flags)
 
 
-def test_what_to_fix_first(tmp_path):
+def test_what_to_fix_first():
+    safety, thin = {"importance": "life safety"}, {"floor": "1", "breadth": 28, "height": 200}
     items = [
-        {"item": "plain", "floor": "1", "breadth": 28, "height": 200},
-        {"item": "few", "floor": "1", "breadth": 40, "height": 180, "importance": "life safety"},
-        {"item": "many", "floor": "1", "breadth": 40, "height": 180, "importance": "life safety", "quantity": 5},
-        {
-            "item": "anchored",
-            "floor": "1",
-            "breadth": 28,
-            "height": 200,
-            "anchored": "yes",
-            "importance": "life safety",
-        },
-        {"item": "stable", "floor": "1", "breadth": 90, "height": 90, "importance": "life safety"},
-        {"item": "worst", "floor": "1", "breadth": 28, "height": 200, "importance": "life safety"},
-        {"item": "mild", "floor": "1", "breadth": 70, "height": 180, "importance": "life safety"},
+        {"item": "plain", **thin},
+        {"item": "few", **PIECE, **safety},
+        {"item": "many", **PIECE, **safety, "quantity": 5},
+        {"item": "anchored", **thin, **safety, "anchored": "yes"},
+        {"item": "stable", "floor": "1", "breadth": 90, "height": 90, **safety},
+        {"item": "worst", **thin, **safety},
+        {"item": "mild", "floor": "1", "breadth": 70, "height": 180, **safety},
     ]
-    results = list(assessed(tmp_path / "w.xlsx", items, [{"floor": "1", "pfa_x": 0.25}], class_by="proposed OR"))
+    results = list(rows.assessed(items, [{"floor": "1", "pfa_x": 0.25}], class_by="proposed OR"))
     assert [one.item.item for one in fix_first(iter(results))] == ["worst", "many", "few", "plain", "mild"]
     assert results[6].adopted.risk is RiskClass.MEDIUM  # no life safety puts it before what is likely to fall
     assert results[4].adopted.risk is RiskClass.LOW
@@ -135,13 +119,15 @@ def test_a_path_is_read_and_keywords_are_settings(tmp_path):
         assess.run(tmp_path / "nowhere.xlsx")
 
 
-def test_a_building_value_that_is_replaced_counts(tmp_path):
-    inventory = assess.read_inventory(write(tmp_path / "w.xlsx", [{"item": "a", **PIECE}], FLOORS))
+def test_a_building_value_that_is_replaced_and_a_setting_count():
+    inventory = rows.read([{"item": "a", **PIECE}])
     smooth = replace(inventory, building=replace(inventory.building, friction=0.1))
     before, after = (assess.run(one, UNVERIFIED)["a"] for one in (inventory, smooth))
     assert (before.item.friction, after.item.friction) == (None, 0.1)
     assert "slides" not in before.adopted.flags
     assert "slides" in after.adopted.flags
+    wide = assess.run(inventory, replace(UNVERIFIED, zeta_velocity=1.5))["a"]
+    assert wide.worst("kaneko_hayashi") != before.worst("kaneko_hayashi")
 
 
 def test_a_cancelled_run_stops_and_leaves_nothing(tmp_path):
@@ -172,12 +158,3 @@ def test_series_lie_where_the_caller_says_else_they_go_with_the_results(tmp_path
     del passing
     gc.collect()
     assert not folder.exists()
-
-
-def test_settings_change_what_they_say(tmp_path):
-    inventory = assess.read_inventory(write(tmp_path / "w.xlsx", [{"item": "a", **PIECE}], FLOORS))
-    usual, wide = (
-        next(iter(assess.run(inventory, replace(UNVERIFIED, zeta_velocity=zeta)))).worst("kaneko_hayashi")
-        for zeta in (0.5, 1.5)
-    )
-    assert usual != wide

@@ -136,10 +136,11 @@ def test_a_floor_of_which_no_furniture_is_listed_is_not_known_without_a_plan():
 
 
 def test_one_on_no_floor_that_joins_nothing_is_not_known_whatever_names_it():
-    """A piece that names it tells nothing of the others: they have a floor, it has none."""
+    """A piece that names it tells nothing of the others: they have a floor, it has none; nor is it a stair."""
     items = [piece(2.0, 0.1, route="Way", segment="a"), piece(2.0, **LOOSE)]
-    found = evaluated(make_falls([0.001, 0.9]), items, [stretch(floor="")]).segments[0]
-    assert (found.state, [row.what for row in found.missing]) == (NOT_KNOWN, ["ends"])
+    for chances, given, width in (([0.001, 0.9], items, 1.8), ([], [], 1.2)):
+        found = evaluated(make_falls(chances), given, [stretch(floor="", clear_width=width)]).segments[0]
+        assert (found.state, [row.what for row in found.missing]) == (NOT_KNOWN, ["ends"])
 
 
 def test_positions_of_places_and_of_pieces_are_asked_for_at_once():
@@ -171,16 +172,12 @@ def flight(clear_width, *items, chance=0.2):
     return evaluated(make_falls([chance] * len(items)), items, [one], STAIR_ENDS).routes[0]
 
 
-def test_a_stair_of_known_width_is_open():
-    found = flight(1.2, piece(2.0, **LOOSE))
-    assert (found.state, found.blocked.probability, found.from_places, found.to_places) == (
+def test_a_stair_is_open_where_its_clear_width_is_known():
+    known, blank = flight(1.2, piece(2.0, **LOOSE)), flight(None)
+    assert (known.state, known.blocked.probability, known.from_places, known.to_places) == (
         OPEN, 0, ("Up",), ("Down",),
     )  # fmt: skip
-
-
-def test_one_without_a_clear_width_is_not_known():
-    found = flight(None)
-    assert (found.state, [(row.what, row.names, row.cells) for row in found.missing]) == (
+    assert (blank.state, [(row.what, row.names, row.cells) for row in blank.missing]) == (
         NOT_KNOWN, [("clear_width", ("Stair: flight",), ("Routes!A2",))],
     )  # fmt: skip
 
@@ -222,11 +219,6 @@ def test_two_stairs_of_one_floor_that_a_corridor_joins_are_both_ways_out():
     ways = [stretch("office", "Office", "Up", floor="2"), stretch("corridor", "Up", "Other", floor="2")]
     found = evaluated(make_falls([0.5]), [BESIDE_CORRIDOR], ways, [OFFICE, *ends]).routes[0]
     assert (found.state, found.to_places) == (OPEN, ("Other", "Up"))
-
-
-def test_a_segment_on_no_floor_that_joins_nothing_is_no_stair():
-    found = evaluated(make_falls([]), [], [stretch(floor="", clear_width=1.2)]).segments[0]
-    assert (found.state, found.missing[0].what) == (NOT_KNOWN, "ends")
 
 
 def test_one_between_floors_that_names_a_floor_says_so():
@@ -305,12 +297,6 @@ def test_with_its_fixes_held_a_route_is_open():
     held = [at in {fix.item_index for fix in before.fixes} for at in range(3)]
     after = evaluated(make_falls([0.1, 0.075, 0.0], fell=fell, anchored=held), items).routes[0]
     assert (before.state, held, after.state) == (DOUBTFUL, [True, True, False], OPEN)
-
-
-def test_along_a_corridor_the_plan_tells():
-    """A placed piece is counted by its position: it leaves nothing open."""
-    found = evaluated(make_falls([0.2]), [piece(2.0, x=5.0, y=8.0)], [corridor()], CORRIDOR)
-    assert (found.segments[0].state, found.rooms[0].state) == (OPEN, OPEN)
 
 
 def test_a_room_that_no_segment_joins_is_named():

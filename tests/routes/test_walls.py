@@ -133,10 +133,6 @@ def reached(item, *places):
     return find_obstructions(building([item], [corridor()], (*CORRIDOR, *places)))[0].pieces
 
 
-def test_a_piece_that_falls_away_from_the_corridor_does_not_reach_it():
-    assert reached(against(4, 1.3), room()) == ()
-
-
 @pytest.mark.parametrize(
     ("item", "places", "flag"),
     [

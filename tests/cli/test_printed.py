@@ -1,0 +1,147 @@
+"""What commands print and write: words exactly, numbers within their error.
+
+``python -m tests.cli.test_printed`` writes it anew after a change that is meant; git shows the difference.
+"""
+
+import contextlib
+import json
+import re
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from assess.cli.app import list_names
+from assess.workbook.patch import patch_workbook
+from assess.workbook.template import Content, write_workbook
+from tests.alike import differences
+from tests.cli.calling import run
+from tests.nets.lines import read_excel, read_html
+from tests.shaking import write_records
+from tests.workbooks import address, write
+
+SHOWN = Path(__file__).parent / "shown"
+SAMPLES = Path(__file__).parents[2] / "samples"
+SWEEP, FLOOR = SAMPLES / "records" / "made-up-sweep.csv", SAMPLES / "records" / "0165a_u.smc"
+LACKING = [{"floor": "1", "elevation": 0}, {"floor": "2", "elevation": 4}]
+SHAKING = {"shaking": "MMI VII, very strong"}
+CORRIDOR = {"segment": "corridor", "clear_width": 1.5, "required_width": 0.9}
+SHAPE = {"width": 80, "axis": "X", "height": 180}
+ROUTED: dict[str, list[dict[str, Any]]] = {
+    "Building": [{"period": 1.0}],
+    "Floors": [{"floor": "1", "record_x": "slow.csv"}, {"floor": "2", "pfa_x": 0.5}, {"floor": "3", "pfa_x": 0.5}],
+    "Catalogue": [{"type": "=Shelf"}],
+    "Items": [
+        {"item": "a1", "floor": "1", "breadth": 40, "type": "=Shelf", "route": "Aula", "edge_distance": 0, **SHAPE},
+        {"item": "a2", "floor": "1", "breadth": 30, "type": "=Shelf", "route": "Aula", "edge_distance": 0,
+         "anchored": "yes", **SHAPE},
+        {"item": "@b", "floor": "2", "breadth": 50, "route": "=Bar", "quantity": 2, "edge_distance": 0, **SHAPE},
+        {"item": "stout", "floor": "1", "breadth": 160, "width": 160, "height": 110, "quantity": 3},
+    ],
+    "Routes": [{"route": name, "floor": floor, **CORRIDOR} for name, floor in (("Aula", "1"), ("=Bar", "2"),
+                                                                              ("Closet", "3"))],
+}  # fmt: skip
+BLOCK = ("rock", "--breadth", 40, "--height")
+SIDES = ("--pfa", 0.29, "--vertical", SWEEP, "--wall", "--friction", 0.3)
+SMALL = ("--runs", 20, "--seed", 3)
+CALLS: dict[str, list[tuple[Any, ...]]] = {
+    "help": [("--help",), *((name, "--help") for name in list_names())],
+    "methods": [("methods",)],
+    "record": [("record", SWEEP), ("record", FLOOR)],
+    "rock": [
+        (*BLOCK, 190, "--record", FLOOR, "--pfa", 0.19, "--cg", 60),
+        *((*BLOCK, 180, "--record", FLOOR, "--pfa", pfa) for pfa in (0.5, 0.3, 0.1)),
+        (*BLOCK, 180, "--record", FLOOR, "--restitution", 0.9, "--baseline", "none"),
+        (*BLOCK, 180, "--record", f"{SWEEP}#north", *SIDES),
+        (*BLOCK, 180, "--record", f"{SWEEP}#north", *SIDES, "--json"),
+    ],
+    "routes": [
+        ("routes", "routed.xlsx", "--pfa", "0.1:0.9:0.2", *SMALL, "--csv", "routes.csv"),
+        ("routes", "routed.xlsx", "--pfa", "0.1:0.9:0.2", *SMALL, "--json"),
+    ],
+    "fragility": [
+        ("fragility", "routed.xlsx", "--levels", "0.1:0.9:0.2", *SMALL, "--by", "type", "--out", "curves"),
+        ("fragility", "routed.xlsx", "--levels", "20:200:60", "--im", "pfv", "--ideal", *SMALL),
+    ],
+    "check": [("check", f"{name}.xlsx") for name in ("unshaken", "unfurnished", "assumed", "not-placed", "routed")]
+    + [("check", "typed.xlsx", "--fix", "corrected.xlsx")],
+    "compare": [
+        ("run", "before.xlsx", "--verify", "none", "--formats", "json", "--out", "before"),
+        ("run", "before.xlsx", "--verify", "none", "--formats", "json", "--scale", 1.5, "--anchor", "A1,A3",
+         "--out", "after"),
+        ("compare", "before", "after", "--formats", "html,xlsx", "--out", "compared"),
+    ],
+    "import": [("import", SAMPLES / "models" / "duplex.ifc", "-o", "duplex.xlsx", "--routes", "draft")],
+}  # fmt: skip
+WRITTEN = {
+    "routes": ("routes.csv",),
+    "fragility": ("curves/fragility.csv", "curves/fragility_table.csv", "curves/fragility.json"),
+    "compare": ("compared/compare.html", "compared/compare.xlsx"),
+}
+
+
+def make(folder: Path) -> None:
+    """Write what the calls name."""
+    write_records(folder, "slow")
+    write_workbook(folder / "routed.xlsx", Content(rows=ROUTED), spare=1)
+    write(folder / "unshaken.xlsx", floors=LACKING)
+    write(folder / "unfurnished.xlsx", items=[])
+    write(folder / "assumed.xlsx", floors=LACKING, **SHAKING)
+    write(folder / "not-placed.xlsx", floors=[{"floor": "1"}, {"floor": "2"}], **SHAKING)
+    write(folder / "before.xlsx", building="Town hall", period=0.8)
+    habits = {address("breadth", 2): "30 cm", address("height", 2): "2 m", address("anchored", 4): "N"}
+    typed = write(folder / "typed.xlsx")
+    typed.write_bytes(patch_workbook(typed.read_bytes(), {"Items": habits}).data)
+
+
+def read(path: Path) -> Iterator[str]:
+    """Yield the lines of a file."""
+    if path.suffix == ".html":
+        return iter(read_html(path))
+    return iter(read_excel(path) if path.suffix == ".xlsx" else path.read_text("utf-8-sig").splitlines())
+
+
+def show(name: str) -> list[str]:
+    """Return what calls print and write, in the folder in which one stands, without versions and hashes."""
+    lines: list[str] = []
+    for words in CALLS[name]:
+        done = run(*words)
+        printed = done.stdout
+        if "--json" in words:
+            document = json.loads(printed)
+            document.pop("assess", None)
+            printed = json.dumps(document, indent=1)
+        lines += [f"$ assess {' '.join(str(word) for word in words)}", *printed.splitlines()]
+        lines += [*done.stderr.splitlines(), f"[{done.exit_code}]"]
+    for file in WRITTEN.get(name, ()):
+        lines += [f"$ {file}", *read(Path(file))]
+    return [re.sub(r"\b[0-9a-f]{12,64}\b|\d+\.\d+\.\d+\S*", "…", line).replace(f"{SAMPLES}", "samples")
+            for line in lines if "ISO" not in line and "platform" not in line]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("printed")
+    make(folder)
+    return folder
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_commands_print_what_they_printed(folder, monkeypatch, name):
+    monkeypatch.chdir(folder)
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1767225600")
+    kept = (SHOWN / f"{name}.txt").read_text(encoding="utf-8").splitlines()
+    assert differences(show(name), kept) == []
+
+
+if __name__ == "__main__":
+    SHOWN.mkdir(exist_ok=True)
+    with (
+        tempfile.TemporaryDirectory() as box, contextlib.chdir(box), pytest.MonkeyPatch.context() as patch
+    ):  # fmt: skip
+        patch.setenv("SOURCE_DATE_EPOCH", "1767225600")
+        make(Path(box))
+        for name in CALLS:
+            (SHOWN / f"{name}.txt").write_text("\n".join(show(name)) + "\n", encoding="utf-8")
