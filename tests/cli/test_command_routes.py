@@ -82,7 +82,7 @@ def test_the_document(swept):
     assert aula["chances"][-1]["blocked"] > 0.5
     assert all(at["if_anchors_fail"]["blocked"] >= at["blocked"] for at in aula["chances"])
     assert {at["if_anchors_fail"] for at in bar["chances"]} == {None}
-    rows = list(csv.DictReader((folder / "t.csv").open(encoding="utf-8-sig")))
+    rows = list(csv.DictReader((folder / "t.csv").read_text("utf-8-sig").splitlines()))
     assert [row["route"] for row in rows if row["route"] != "Closet"] == (
         ["Aula"] * len(document["pfa_g"]) + ["'=Bar"] * len(document["pfa_g"])
     ), "no text is taken for a formula"
