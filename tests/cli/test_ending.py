@@ -52,7 +52,7 @@ def test_names_that_are_too_long(tmp_path, monkeypatch):
         ("check", "book.xlsx", "--fix", f"{LONG}.xlsx"), ("study", "table1", "--out", LONG),
     ):  # fmt: skip
         done = run(*words)
-        assert done.exit_code == (1 if words[0] == "study" else 2), words
+        assert done.exit_code == (1 if "study" in words else 2), words
         assert isinstance(done.exception, SystemExit)
         assert "xxxxx" in done.stderr
         assert [one.name for one in tmp_path.iterdir()] == ["book.xlsx"]
