@@ -7,8 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from assess.cli.command_record import write_figure
-from assess.errors import OutputError
 from assess.motion.formats import read_channels, read_records
 from assess.motion.record import treat
 from tests.cli.calling import run
@@ -93,16 +91,6 @@ def test_figures_that_cannot_be_written(tmp_path):
         done = record(SWEEP, "--plot", tmp_path / name)
         assert (done.exit_code, done.stdout) == (2, "")
         assert message in done.stderr
-
-
-def test_a_figure_that_is_open_elsewhere(tmp_path, monkeypatch):
-    def forbid(*_):
-        raise PermissionError(13, "Permission denied")
-
-    monkeypatch.setattr(Path, "replace", forbid)
-    with pytest.raises(OutputError, match=r"x\.png could not be written: Permission denied\. Name another file"):
-        write_figure(read_channels(str(SWEEP)), tmp_path / "x.png")
-    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("name", ["n" * 300, f"{'n' * 300}#1"])

@@ -138,12 +138,6 @@ def test_bad_input_is_named(tmp_path, options, message):
     assert not plot.exists()
 
 
-@pytest.mark.parametrize("left_out", USUAL)
-def test_what_is_missing_is_named(left_out):
-    arguments = [str(part) for name, value in USUAL.items() if name != left_out for part in (f"--{name}", value)]
-    assert f"Missing option '--{left_out}'" in error(run("rock", *arguments))
-
-
 @pytest.mark.parametrize(
     ("kind", "magic", "pfa"), [("png", b"\x89PNG", 0.1), ("svg", b"<?xml", 0.3), ("pdf", b"%PDF", 0.5)]
 )

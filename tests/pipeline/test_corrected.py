@@ -10,7 +10,7 @@ from typing import Any
 import openpyxl
 import pytest
 
-from assess.pipeline.corrected import Corrected, correct_workbook, group_corrections
+from assess.pipeline.corrected import Corrected, correct_workbook
 from assess.pipeline.live_values import live_values, with_live
 from assess.workbook.example import example_content
 from assess.workbook.patch import list_formulas, patch_workbook
@@ -116,13 +116,6 @@ def test_a_formula_stays_a_formula(tmp_path: Path) -> None:
     done = correct_workbook(path)
     assert ([one.cell for one in done.kept], done.changed) == ([BREADTH], ())
     assert done.inventory.data == path.read_bytes()
-
-
-def test_corrections_of_one_kind_are_listed_together(tmp_path: Path) -> None:
-    done = correct_workbook(example(tmp_path / "book.xlsx", HABITS))
-    groups = group_corrections(done.changed)
-    assert [HEIGHT, SECOND] in [[one.cell for one in group] for group in groups]
-    assert sum(map(len, groups)) == len(done.changed)
 
 
 def test_an_italian_workbook(tmp_path: Path) -> None:
