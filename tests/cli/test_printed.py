@@ -75,6 +75,8 @@ CALLS: dict[str, list[tuple[Any, ...]]] = {
     ],
     "import": [("import", SAMPLES / "models" / "duplex.ifc", "-o", "duplex.xlsx", "--routes", "draft")],
 }  # fmt: skip
+VARYING = re.compile(r"\b[0-9a-f]{12,64}\b|\d+\.\d+\.\d+\S*|20\d\d-\d\d-\d\d \d\d:\d\d(:\d\d)?")
+"""Hashes, versions and times."""
 WRITTEN = {
     "routes": ("routes.csv",),
     "fragility": ("curves/fragility.csv", "curves/fragility_table.csv", "curves/fragility.json"),
@@ -104,7 +106,7 @@ def read(path: Path) -> Iterator[str]:
 
 
 def show(name: str) -> list[str]:
-    """Return what calls print and write, in the folder in which one stands, without versions and hashes."""
+    """Return what calls print and write, in the folder in which one stands, without versions, hashes and times."""
     lines: list[str] = []
     for words in CALLS[name]:
         done = run(*words)
@@ -117,7 +119,7 @@ def show(name: str) -> list[str]:
         lines += [*done.stderr.splitlines(), f"[{done.exit_code}]"]
     for file in WRITTEN.get(name, ()):
         lines += [f"$ {file}", *read(Path(file))]
-    return [re.sub(r"\b[0-9a-f]{12,64}\b|\d+\.\d+\.\d+\S*", "…", line).replace(f"{SAMPLES}", "samples")
+    return [VARYING.sub("…", line).replace(f"{SAMPLES}", "samples")
             for line in lines if "ISO" not in line and "platform" not in line]  # fmt: skip
 
 
