@@ -34,7 +34,9 @@ def one_line(done, status):
     text = done.stderr
     assert done.returncode == status, text
     assert "Traceback" not in text
-    assert [line for line in text.splitlines() if not line.startswith(("warning", "note"))] == [text.splitlines()[-1]]
+    assert [line for line in text.splitlines() if not line.startswith(("warning", "note", "Working"))] == [
+        text.splitlines()[-1]
+    ]
     return text.splitlines()[-1]
 
 
