@@ -35,35 +35,31 @@ def made(path: Path, mode: int) -> Path:
     return path
 
 
-def test_a_missing_folder_is_made_for_the_user_alone(own):
+def test_a_folder_that_others_can_write_to_or_replace_is_not_used(tmp_path, own):
     assert choose_folder() == (own, "")
-    assert own.stat().st_mode & 0o777 == 0o700
-
-
-@pytest.mark.parametrize("mode", [0o777, 0o702, 0o1777])
-def test_a_folder_that_others_can_write_to_is_not_used(tmp_path, own, mode):
-    shared = made(tmp_path / "shared", mode)
-    assert choose_folder(str(shared)) == (own, f"others can write to {shared}")
-    own.chmod(mode)
-    examine_folder.cache_clear()
-    assert choose_folder(str(shared)) == (None, f"others can write to {shared}; others can write to {own}")
-
-
-def test_nor_is_one_that_others_can_replace(tmp_path, own):
-    inner = made(tmp_path / "open" / "inner", 0o700)
-    made(tmp_path / "open", 0o777)
-    assert choose_folder(str(inner)) == (own, f"others can write to {tmp_path / 'open'}")
-    made(tmp_path / "open", 0o1777)  # as /tmp: each owns what they make
+    assert own.stat().st_mode & 0o777 == 0o700, "it is made for the user alone"
+    shared, above = tmp_path / "shared", tmp_path / "open"
+    inner = made(above / "inner", 0o700)
+    (tmp_path / "link").symlink_to(inner)
+    (tmp_path / "round").symlink_to(tmp_path / "round")
+    for mode in (0o777, 0o702, 0o1777):
+        made(shared, mode)
+        assert choose_folder(str(shared)) == (own, f"others can write to {shared}")
+        own.chmod(mode)
+        examine_folder.cache_clear()
+        assert choose_folder(str(shared)) == (None, f"others can write to {shared}; others can write to {own}")
+        own.chmod(0o700)
+        examine_folder.cache_clear()
+    above.chmod(0o777)
+    for path in (inner, tmp_path / "link"):
+        assert choose_folder(str(path)) == (own, f"others can write to {above}")
+    above.chmod(0o1777)  # as /tmp: each owns what they make
     examine_folder.cache_clear()
     assert choose_folder(str(inner)) == (inner, "")
-
-
-def test_nor_one_that_a_link_leads_to(tmp_path, own):
-    made(tmp_path / "open", 0o777)
-    (tmp_path / "link").symlink_to(made(tmp_path / "open" / "inner", 0o700))
-    assert choose_folder(str(tmp_path / "link")) == (own, f"others can write to {tmp_path / 'open'}")
-    (tmp_path / "round").symlink_to(tmp_path / "round")
     assert "cannot be used" in choose_folder(str(tmp_path / "round"))[1]
+    if os.getuid() == 0:  # only root can give files away
+        os.chown(made(tmp_path / "theirs", 0o755), 12345, 12345)
+        assert choose_folder(str(tmp_path / "theirs"))[1] == f"{tmp_path / 'theirs'} belongs to another user"
 
 
 def test_what_lies_in_it_counts_where_others_come_in(tmp_path, own):
@@ -73,13 +69,6 @@ def test_what_lies_in_it_counts_where_others_come_in(tmp_path, own):
     named.chmod(0o700)
     examine_folder.cache_clear()
     assert choose_folder(str(named)) == (named, "")
-
-
-@pytest.mark.skipif(hasattr(os, "getuid") and os.getuid() != 0, reason="only root can give files away")
-def test_the_folder_of_another_user_is_not_used(tmp_path, own):
-    theirs = made(tmp_path / "theirs", 0o755)
-    os.chown(theirs, 12345, 12345)
-    assert choose_folder(str(theirs)) == (own, f"{theirs} belongs to another user")
 
 
 def test_the_group_of_one_user_is_no_other(tmp_path, own, monkeypatch):

@@ -39,26 +39,13 @@ def _kept(folder):
 
 @pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="other systems have other folders")
 def test_it_is_kept_in_the_users_folder(tmp_path):
+    """Only this package's functions are kept there, not those that a notebook compiles afterwards."""
     before = _kept(PACKAGE)
-    _child(FIRST_USE, XDG_CACHE_HOME=tmp_path)
+    code = f"from numba import config\nbefore = config.CACHE_DIR\n{FIRST_USE}assert config.CACHE_DIR == before"
+    _child(code, XDG_CACHE_HOME=tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["assess"]
     assert [name for name in _kept(tmp_path / "assess") if name.startswith("bend_rows-") or ".bend_rows-" in name]
     assert _kept(PACKAGE) == before, "nothing beside the code, which may be read-only or shared"
-
-
-def test_another_folder_may_be_named(tmp_path):
-    _child(FIRST_USE, XDG_CACHE_HOME=tmp_path / "mine", NUMBA_CACHE_DIR=tmp_path / "named")
-    assert _kept(tmp_path / "named")
-    assert not (tmp_path / "mine").exists()
-
-
-def test_importing_leaves_the_folder_of_others_as_it_was(tmp_path):
-    """Only this package's functions are kept there, not those that a notebook compiles afterwards."""
-    _child(
-        "from numba import config\nbefore = config.CACHE_DIR\nimport assess.motion.recipe\n"
-        "assert config.CACHE_DIR == before",
-        XDG_CACHE_HOME=tmp_path,
-    )
 
 
 @pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="other systems have other folders")
@@ -79,21 +66,19 @@ def test_where_nothing_can_be_kept_on_disk_it_is_compiled_anew(monkeypatch):
     assert compiled(double)(1.5) == 3.0
 
 
-@pytest.mark.parametrize(
-    ("system", "variables", "folder"),
-    [
+def test_each_system_has_its_folder(monkeypatch):
+    for system, variables, folder in (
         ("linux", {"XDG_CACHE_HOME": "/caches"}, "/caches/assess"),
         ("linux", {"XDG_CACHE_HOME": ""}, "{home}/.cache/assess"),
         ("darwin", {"XDG_CACHE_HOME": "/caches"}, "{home}/Library/Caches/assess"),
         ("win32", {"LOCALAPPDATA": "/local"}, "/local/assess/cache"),
         ("win32", {"LOCALAPPDATA": ""}, "{home}/AppData/Local/assess/cache"),
-    ],
-)
-def test_each_system_has_its_folder(monkeypatch, system, variables, folder):
-    monkeypatch.setattr(sys, "platform", system)
-    for name, value in variables.items():
-        monkeypatch.setenv(name, value)
-    assert cache_folder() == Path(folder.format(home=Path.home()))
+    ):
+        with monkeypatch.context() as patch:
+            patch.setattr(sys, "platform", system)
+            for name, value in variables.items():
+                patch.setenv(name, value)
+            assert cache_folder() == Path(folder.format(home=Path.home()))
 
 
 # --- another processor ---
@@ -127,6 +112,7 @@ def test_a_processor_without_wide_vectors_gives_the_same_risks(tmp_path):
         )
         found = json.loads((out / "results.json").read_text(encoding="utf-8"))
         risks.append({one["item"]: one["verification"]["probability"] for one in found["items"]})
+    assert _kept(tmp_path / "cache-generic"), "NUMBA_CACHE_DIR names another folder"
     native, generic = risks
     assert native.keys() == generic.keys()
     assert any(0 < value < 1 for value in native.values())

@@ -28,33 +28,24 @@ def _items(count):
     ]  # fmt: skip
 
 
-def test_the_formula_path_imports_nothing_heavy(tmp_path):
+LOADED = "print(sorted({found} & {{name.split('.')[0] for name in sys.modules}} | {found} & {{*sys.modules}}))"
+
+
+def test_nothing_heavy_is_imported_before_it_is_needed(tmp_path):
     path = write(tmp_path / "w.xlsx", _items(50))
-    command = ["assess", "run", str(path), "--verify", "none", "--formats", "json,csv", "--out", str(tmp_path / "out")]
-    loaded = _child(
-        f"import sys\nsys.argv = {command!r}\n"
-        "from assess.cli.app import main\n"
-        "try:\n    main()\nexcept SystemExit as stop:\n    assert not stop.code\n"
-        f"print([name for name in {HEAVY!r} if name in sys.modules])\n"
-        "print([name for name in sys.modules if name in ('assess.routes.evaluate', 'assess.routes.obstructions')])"
+    words = ["assess", "run", str(path), "--verify", "none", "--formats", "json,csv", "--out", str(tmp_path / "out")]
+    run = (
+        f"sys.argv = {words!r}\nfrom assess.cli.app import main\n"
+        "try:\n    main()\nexcept SystemExit as stop:\n    assert not stop.code"
     )
-    assert loaded.splitlines()[-2:] == ["[]", "[]"]  # nor what evaluates routes, where there are none
-
-
-def test_import_assess_loads_next_to_nothing():
-    loaded = _child(
-        "import sys, assess; print([name for name in ('numpy', 'openpyxl', 'typer') if name in sys.modules])"
-    )
-    assert loaded.strip() == "[]"
-
-
-def test_the_page_is_imported_by_its_own_command_alone():
-    loaded = _child(
-        "import sys\nimport assess.cli.app\nassess.cli.app.build_app()\n"
-        "print([name for name in sys.modules if name.split('.')[0] in ('starlette', 'uvicorn', 'anyio')])\n"
-        "print([name for name in sys.modules if name.startswith('assess.web')])"
-    )
-    assert loaded.split() == ["[]", "[]"]
+    for code, heavy in (
+        ("import assess", {"numpy", "openpyxl", "typer"}),
+        ("import assess.hazard, assess.fragility", {"numba", "scipy"}),
+        ("import assess.cli.app\nassess.cli.app.build_app()", {"starlette", "uvicorn", "anyio", "assess.web"}),
+        (run, {*HEAVY, "assess.routes.evaluate", "assess.routes.obstructions"}),  # there are no routes
+    ):
+        loaded = _child(f"import sys\n{code}\n{LOADED.format(found=heavy)}")
+        assert loaded.splitlines()[-1] == "[]", code
 
 
 @pytest.mark.long

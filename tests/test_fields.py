@@ -7,7 +7,6 @@ import pytest
 
 from assess.fields import (
     MOTION_FIELDS,
-    Field,
     Shape,
     case_fields,
     floor_fields,
@@ -15,7 +14,6 @@ from assess.fields import (
     method_fields,
     unnest,
 )
-from assess.i18n import load_catalogue, speaking
 from assess.report.data import write_json
 from assess.settings import Settings
 from tests.workbooks import assessed
@@ -47,15 +45,6 @@ def test_a_record_of_the_document_gives_back_the_row(results, tmp_path):
         assert unnest(record, MOTION_FIELDS) == motions.flatten(motion)
 
 
-def test_a_group_of_which_nothing_is_known_is_null(results):
-    record = Shape(item_fields(results)).nest(results["A1"])
-    if not results.has_simulated:
-        assert record["verification"] is None
-        return
-    assert record["verification"]["runs"] == 10
-    assert record["verification"]["record"] is None
-
-
 def test_units_of_keys_and_headings_agree(results):
     """``breadth_cm`` is "Breadth [cm]": what a key ends in is the unit of its heading."""
     marks = {"cm": "cm", "m": "m", "g": "g", "cm/s": "cm_s", "deg": "deg", "Hz": "hz", "s": "s", "kg": "kg", "kN": "kn"}
@@ -64,14 +53,6 @@ def test_units_of_keys_and_headings_agree(results):
             assert one.heading() == f"{one.label} [{one.unit}]"
         if one.unit and "^" not in one.unit:
             assert one.key.endswith(f"_{marks[one.unit]}"), one.key
-
-
-def test_whatever_excel_shows_has_a_heading(results):
-    shown = [one for one in item_fields(results) if "excel" in one.shows]
-    assert {"item", "friction", "notes"} <= {one.key for one in shown}
-    assert [one.key for one in shown if not one.label] == []
-    with speaking(load_catalogue("it")):
-        assert next(one for one in shown if one.key == "height_cm").heading() == "Altezza [cm]"
 
 
 def test_the_columns_of_a_method_follow_from_what_it_says_of_itself(results):
@@ -84,10 +65,3 @@ def test_the_columns_of_a_method_follow_from_what_it_says_of_itself(results):
             decimals = column.format.rstrip("f").partition(".")[2]
             assert len(own[name].format.partition(".")[2]) == int(decimals or 0)
         assert own[method.key].format == ("0.0%" if method.kind == "probability" else "0")
-
-
-def test_a_field_reads_its_row_and_flattens_its_value():
-    field = Field(key="names", read=lambda row: row["names"], kind="list", flat="; ".join)
-    row = {"names": ["a", "b"]}
-    assert (field.read(row), field.flatten(row), field.place) == (["a", "b"], "a; b", ("names",))
-    assert Shape([field]).nest(row) == row

@@ -1,8 +1,6 @@
 """The fit of a fragility: known ones are found again, the optimum is scipy's, and data without a fit say so."""
 
 import math
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -166,9 +164,3 @@ def test_the_chance_of_a_lognormal():
 def test_counts_that_cannot_be(given, message):
     with pytest.raises(ValueError, match=message):
         fit_fragility(*given)
-
-
-def test_importing_it_loads_nothing_heavy():
-    code = "import sys, assess.fragility; print([one for one in ('numba', 'scipy') if one in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=True)
-    assert done.stdout.strip() == "[]"

@@ -1,8 +1,6 @@
 """Hazard curves: files as people and OpenQuake write them, the nearest site, and what is wrong with a file."""
 
 import math
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -249,9 +247,3 @@ def test_a_cut_table_of_openquake_is_never_read_as_another_curve(name):
             assert str(error).startswith("h.csv: ")  # noqa: PT017 - most cuts are refused, some leave the curve whole
             continue
         assert cut.rate.tolist() == whole.rate.tolist()
-
-
-def test_importing_it_loads_nothing_heavy():
-    code = "import sys, assess.hazard; print([one for one in ('numba', 'scipy') if one in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=True)
-    assert done.stdout.strip() == "[]"

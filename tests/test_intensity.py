@@ -21,14 +21,14 @@ LIMITS = {3.5: 3.0, 4.5: 11.4, 5.0: 22.3, 5.5: 43.6, 6.0: 85.2, 6.5: 166}
 BY_NAME = {one.name: one for one in SHAKINGS.values()}
 
 
-@pytest.mark.parametrize("name", LEGEND)
-def test_mmi_classes_are_those_of_the_legend_of_shakemap(name):
-    pga, pgv = LEGEND[name]
-    shaking = BY_NAME[name]
-    assert 100 * shaking.pga / GRAVITY == pytest.approx(pga, rel=0.01)
-    assert 100 * shaking.pgv == pytest.approx(pgv, rel=0.012)
-    assert not shaking.is_derived
-    assert shaking.references == (WORDEN,)
+def test_mmi_classes_are_those_of_the_legend_of_shakemap():
+    for name, (pga, pgv) in LEGEND.items():
+        shaking = BY_NAME[name]
+        assert 100 * shaking.pga / GRAVITY == pytest.approx(pga, rel=0.01), name
+        assert 100 * shaking.pgv == pytest.approx(pgv, rel=0.012), name
+        assert (shaking.is_derived, shaking.references) == (False, (WORDEN,))
+        for speed in (pgv / 100, None):
+            assert name_mmi(pga / 100 * GRAVITY, speed) == shaking.choice
 
 
 @pytest.mark.parametrize("relation", [WORDEN_PGA, WORDEN_PGV])
@@ -41,18 +41,14 @@ def test_a_relation_and_its_inverse_agree(relation):
             assert c_1 + c_2 * log == pytest.approx(mmi)
 
 
-def test_jma_limits_by_midorikawa():
-    for intensity, pgv in LIMITS.items():
-        assert invert_jma(intensity) == pytest.approx(pgv, rel=0.01)
-
-
-@pytest.mark.parametrize("name", CLASSES)
-def test_jma_classes_stand_for_their_middle(name):
-    low, high = CLASSES[name]
-    shaking = BY_NAME[name]
-    assert shaking.intensity == (low + high) / 2
-    assert invert_jma(low) < 100 * shaking.pgv < invert_jma(high)
-    assert shaking.references == (MIDORIKAWA,)
+def test_jma_classes_stand_for_their_middle():
+    """The limits are those of Midorikawa."""
+    assert {one: invert_jma(one) for one in LIMITS} == pytest.approx(LIMITS, rel=0.01)
+    for name, (low, high) in CLASSES.items():
+        shaking = BY_NAME[name]
+        assert shaking.intensity == (low + high) / 2
+        assert invert_jma(low) < 100 * shaking.pgv < invert_jma(high)
+        assert shaking.references == (MIDORIKAWA,)
 
 
 def test_pga_of_a_jma_class_follows_from_pgv():
@@ -77,12 +73,6 @@ def test_an_open_class_does_not_stand_for_its_lower_limit():
     assert [one.name for one in SHAKINGS.values() if one.is_open] == ["MMI X", "JMA 7"]
 
 
-@pytest.mark.parametrize("name", LEGEND)
-def test_peaks_have_the_class_that_the_legend_gives_them(name):
-    pga, pgv = LEGEND[name]
-    assert name_mmi(pga / 100 * GRAVITY, pgv / 100) == name_mmi(pga / 100 * GRAVITY, None) == BY_NAME[name].choice
-
-
 def test_pgv_decides_on_the_class_and_what_is_weak_or_beyond_has_the_nearest_word():
     """New York: 0.547 g would be MMI VIII or more; 13.6 cm/s is VI."""
     assert name_mmi(0.547 * GRAVITY, 0.136) == "MMI VI, strong"
@@ -104,13 +94,11 @@ def test_the_scatter_of_a_jma_class_adds_its_width_to_that_of_the_equation():
     assert BY_NAME["JMA 4"].scatter > BY_NAME["JMA 5+"].scatter >= 0.21 / 1.72 * math.log(10)
 
 
-@pytest.mark.parametrize("scale", ["MMI", "JMA"])
-def test_a_stronger_class_shakes_more(scale):
-    own = [one for one in SHAKINGS.values() if one.name.startswith(scale)]
-    assert len(own) == {"MMI": 7, "JMA": 6}[scale]
-    for weaker, stronger in pairwise(own):
-        assert weaker.pga < stronger.pga
-        assert weaker.pgv < stronger.pgv
+def test_a_stronger_class_shakes_more():
+    for scale, number in (("MMI", 7), ("JMA", 6)):
+        own = [one for one in SHAKINGS.values() if one.name.startswith(scale)]
+        assert len(own) == number
+        assert all(one.pga < next_.pga and one.pgv < next_.pgv for one, next_ in pairwise(own))
 
 
 def test_the_table_of_the_documentation_is_that_of_the_code():

@@ -1,14 +1,17 @@
 """The wheel, installed in a clean environment away from the checkout, renders a report and does a study."""
 
 import os
+import re
 import subprocess
 import sys
+import tomllib
 import venv
 import zipfile
 from pathlib import Path
 
 import pytest
 
+from assess.extras import say_install
 from tests.other_pythons import find_pythons, list_versions
 from tests.workbooks import write
 
@@ -30,7 +33,9 @@ def wheel(tmp_path_factory):
 
 
 def test_the_wheel_carries_templates_catalogue_schema_and_types(wheel):
-    names = set(zipfile.ZipFile(wheel).namelist())
+    listed = zipfile.ZipFile(wheel).namelist()
+    names = set(listed)
+    assert len(names) == len(listed), "no file hides another"
     assert {
         "assess/templates/report.html.j2",
         "assess/templates/style/print.css",
@@ -53,11 +58,6 @@ def test_the_wheel_carries_templates_catalogue_schema_and_types(wheel):
         "575-market", "berkeley-1103", "others"
     }  # fmt: skip
     assert not [name for name in names if name.startswith(("tests", "inventories", "samples"))]
-
-
-def test_no_file_of_the_wheel_hides_another_and_it_stays_small(wheel):
-    names = zipfile.ZipFile(wheel).namelist()
-    assert len(names) == len(set(names))
     # 3 MB of it are the records of the studies, 0.4 MB the fonts, 0.3 MB the page and its example, 0.1 MB the city,
     # 0.1 MB what reads and writes building models
     assert wheel.stat().st_size < 5.35e6
@@ -107,6 +107,19 @@ def test_the_installed_wheel_does_a_study_and_reads_its_records_elsewhere(instal
     assert "27 printed OR" in told
     assert (tmp_path / "out" / "table3.md").is_file()
     assert _elsewhere(installed, tmp_path, "-c", READ_ALL).split() == ["21", "True"]
+
+
+def test_every_extra_that_a_text_names_exists_and_none_is_installed_by_the_name_of_the_project():
+    """On PyPI `assess` is another project."""
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    texts = {path: path.read_text(encoding="utf-8") for path in (ROOT / "assess").rglob("*.py")}
+    assert [path for path, text in texts.items() if re.search(r"pip install [\"']?assess\[", text)] == []
+    named = {one for text in texts.values() for one in re.findall(r"say_install\([\"'](\w+)[\"']\)", text)}
+    assert {"parquet", "cluster", "web", "word", "plans"} <= named <= set(extras)
+    said = say_install("parquet")
+    assert "\n" not in said
+    assert "python -m pip install '.[parquet]'" in said
+    assert "pipx install --force '.[parquet]'" in said
 
 
 def test_other_pythons_are_those_that_run_on_the_path_or_in_pyenv(tmp_path, monkeypatch):

@@ -1,7 +1,7 @@
 """Cancelling: it is obeyed in whatever the work is doing, leaves nothing behind, and the rest of the work ends soon."""
 
 import threading
-from pathlib import Path
+from contextlib import closing
 from threading import Event
 
 import matplotlib as mpl
@@ -12,10 +12,9 @@ import assess
 from assess.errors import CancelledError, InputError
 from assess.i18n import gettext, load_catalogue, speaking
 from assess.motion.formats import _text, plain_csv, read_records
-from assess.pipeline import run as pipeline
 from assess.pipeline.series import write_series
 from assess.progress import SILENT, Progress, Report, check_waits
-from assess.report import FORMATS, data
+from assess.report import FORMATS
 from assess.report.figures.draw import draw
 from assess.workbook.writer import write_book
 from tests.workbooks import UNVERIFIED, write
@@ -39,7 +38,7 @@ class Blocked:
         finally:
             self.ended.set()
 
-    def let_go(self) -> None:
+    def close(self) -> None:
         self.released.set()
         for thread in self.threads:
             thread.join()
@@ -47,9 +46,8 @@ class Blocked:
 
 @pytest.fixture
 def blocked():
-    work = Blocked(Event())
-    yield work
-    work.let_go()
+    with closing(Blocked(Event())) as work:
+        yield work
 
 
 def _join() -> None:
@@ -62,9 +60,21 @@ def _join() -> None:
 # ---------------------------------------------------------------- waiting
 
 
-def test_work_without_an_event_is_just_called():
-    for progress in (SILENT, Progress(print)):
+def test_nothing_is_begun_or_reported_after_a_cancel():
+    for progress in (SILENT, Progress(print)):  # without an event work is just called
         assert progress.wait_for(threading.current_thread) is threading.current_thread()
+    cancel, reports = Event(), list[Report]()
+    progress = Progress(reports.append, cancel)
+    rows = progress.checked(range(10))
+    assert [next(rows), next(rows)] == [0, 1]
+    with progress.stage("reading"):
+        cancel.set()
+        progress.tell(Report("reading", 0.5, "", None))
+        with pytest.raises(CancelledError):
+            next(rows)
+        with pytest.raises(CancelledError):
+            progress.wait_for(lambda: pytest.fail("it was begun"))
+    assert [one.share for one in reports] == [0.0]
 
 
 def test_work_aside_returns_raises_and_speaks_as_it_would_here():
@@ -82,29 +92,9 @@ def test_work_that_does_not_look_is_left_at_once_and_ends_at_its_next_look(block
     with pytest.raises(CancelledError):
         Progress(cancel=blocked.cancel).wait_for(blocked)
     assert not blocked.ended.is_set()
-    blocked.let_go()
+    blocked.close()
     assert blocked.ended.is_set()
     check_waits()  # nobody has cancelled what this thread does
-
-
-def test_nothing_is_begun_or_reported_after_a_cancel():
-    cancel, reports = Event(), list[Report]()
-    progress = Progress(reports.append, cancel)
-    with progress.stage("reading"):
-        cancel.set()
-        progress.tell(Report("reading", 0.5, "", None))
-        with pytest.raises(CancelledError):
-            progress.wait_for(lambda: pytest.fail("it was begun"))
-    assert [one.share for one in reports] == [0.0]
-
-
-def test_rows_are_checked_one_by_one():
-    cancel = Event()
-    rows = Progress(cancel=cancel).checked(range(10))
-    assert [next(rows), next(rows)] == [0, 1]
-    cancel.set()
-    with pytest.raises(CancelledError):
-        next(rows)
 
 
 # ---------------------------------------------------------------- reading
@@ -152,38 +142,29 @@ def test_a_long_record_of_words_is_not_converted_to_its_end(tmp_path, monkeypatc
     assert len(blocks) == 3
 
 
-def test_a_workbook_is_left_in_the_midst_of_its_checks(tmp_path, monkeypatch, blocked):
-    path = write(tmp_path / "w.xlsx")
-    monkeypatch.setattr("assess.workbook.read._check", blocked)
-    with pytest.raises(CancelledError):
-        assess.read_inventory(path, progress=Progress(cancel=blocked.cancel))
-    assert not blocked.ended.is_set()
+# ---------------------------------------------------------------- a run, reports
 
 
-# ---------------------------------------------------------------- a run
-
-
-def test_a_run_is_left_in_the_midst_of_a_compilation(tmp_path, monkeypatch, blocked):
-    inventory = assess.read_inventory(write(tmp_path / "w.xlsx"))
-    monkeypatch.setattr(pipeline, "verify", blocked)
-    with pytest.raises(CancelledError):
-        assess.run(inventory, cancel=blocked.cancel, series_folder=tmp_path / "series")
-    assert not blocked.ended.is_set()
-    assert not (tmp_path / "series").exists()
-
-
-def test_a_run_that_is_cancelled_late_leaves_no_folder(tmp_path, monkeypatch, blocked):
-    inventory = assess.read_inventory(write(tmp_path / "w.xlsx"))
-    monkeypatch.setattr("assess.pipeline.run.make_folder", lambda *_: _make(tmp_path / "temporary"))
-    monkeypatch.setattr(pipeline, "build_series", blocked)
-    with pytest.raises(CancelledError):
-        assess.run(inventory, UNVERIFIED, cancel=blocked.cancel)
-    assert not (tmp_path / "temporary").exists()
-
-
-def _make(folder: Path) -> Path:
-    folder.mkdir()
-    return folder
+def test_work_is_left_in_its_midst_and_leaves_nothing(tmp_path, monkeypatch):
+    """The checks of a workbook, a compilation, the end of a run, the packing of outcomes."""
+    path, out, temporary = write(tmp_path / "w.xlsx"), tmp_path / "out", tmp_path / "temporary"
+    inventory, results = assess.read_inventory(path), assess.run(path, UNVERIFIED)
+    monkeypatch.setattr("assess.pipeline.run.make_folder", lambda *_: temporary.mkdir() or temporary)
+    for place, work in {
+        "assess.workbook.read._check": lambda progress: assess.read_inventory(path, progress=progress),
+        "assess.pipeline.run.verify": lambda progress: assess.run(inventory, cancel=progress.cancel, series_folder=out),
+        "assess.pipeline.run.build_series": lambda progress: assess.run(inventory, UNVERIFIED, cancel=progress.cancel),
+        "assess.report.data._pack_outcomes": lambda progress: assess.write_reports(
+            results, out, "npz", progress=progress
+        ),
+    }.items():
+        blocked = Blocked(Event())
+        with monkeypatch.context() as patch, closing(blocked):
+            patch.setattr(place, blocked)
+            with pytest.raises(CancelledError):
+                work(Progress(cancel=blocked.cancel))
+            assert not blocked.ended.is_set(), place
+            assert [one.name for one in tmp_path.iterdir()] == ["w.xlsx"], place
 
 
 def test_a_file_of_series_is_not_left_half_written(tmp_path):
@@ -192,9 +173,6 @@ def test_a_file_of_series_is_not_left_half_written(tmp_path):
     with pytest.raises(CancelledError):
         write_series(tmp_path / "series.npz", {"a": np.zeros(10)}, Progress(cancel=cancel))
     assert list(tmp_path.iterdir()) == []
-
-
-# ---------------------------------------------------------------- reports
 
 
 def test_no_format_leaves_a_file(tmp_path, monkeypatch):
@@ -208,15 +186,6 @@ def test_no_format_leaves_a_file(tmp_path, monkeypatch):
             with pytest.raises(CancelledError):
                 assess.write_reports(results, out, name, progress=progress)
             assert [path.name for path in tmp_path.iterdir()] == ["w.xlsx"], name
-
-
-def test_outcomes_are_left_in_the_midst_of_packing(tmp_path, monkeypatch, blocked):
-    results = assess.run(write(tmp_path / "w.xlsx"), UNVERIFIED)
-    monkeypatch.setattr(data, "_pack_outcomes", blocked)
-    with pytest.raises(CancelledError):
-        assess.write_reports(results, tmp_path / "out", "npz", progress=Progress(cancel=blocked.cancel))
-    assert not blocked.ended.is_set()
-    assert [path.name for path in tmp_path.iterdir()] == ["w.xlsx"]
 
 
 def test_a_workbook_is_left_in_the_midst_of_packing(tmp_path):
@@ -242,23 +211,19 @@ def test_a_figure_is_left_with_the_next_thing_put_into_it():
             axes.plot([0, 1], [0, at])
             put.append(at)
 
-    with pytest.raises(CancelledError):
-        draw(3, 2, paint, progress=Progress(cancel=cancel))
-    assert put == [0, 1, 2]
-    assert dict(mpl.rcParams) == before
-    whole = draw(3, 2, lambda figure: figure.subplots(), progress=Progress(cancel=Event()))
-    assert whole == draw(3, 2, lambda figure: figure.subplots())
-
-
-def test_a_figure_is_left_while_it_is_laid_out_or_drawn():
-    cancel = Event()
-
-    def paint(figure):
+    def paint_late(figure):
         figure.subplots().text(0.5, 0.5, "text")
         cancel.set()  # what is left is matplotlib's own work
 
     with pytest.raises(CancelledError):
         draw(3, 2, paint, progress=Progress(cancel=cancel))
+    assert put == [0, 1, 2]
+    cancel.clear()
+    with pytest.raises(CancelledError):
+        draw(3, 2, paint_late, progress=Progress(cancel=cancel))
+    assert dict(mpl.rcParams) == before
+    whole = draw(3, 2, lambda figure: figure.subplots(), progress=Progress(cancel=Event()))
+    assert whole == draw(3, 2, lambda figure: figure.subplots())
 
 
 def test_a_figure_that_waits_for_another_can_be_cancelled(monkeypatch):

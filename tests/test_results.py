@@ -7,7 +7,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import assess
 from assess.errors import InputError
 from assess.report import write_reports
 from assess.results import find_ideal_class
@@ -30,14 +29,6 @@ def test_the_worked_example_pickles_small_and_comes_back_equal(example):
     assert len(data) < 300_000
     assert again == example
     assert list(again) == list(example)
-
-
-@pytest.mark.slow
-def test_the_simulated_example_pickles_small_and_comes_back_equal(example_inventory):
-    results = assess.run(example_inventory, Settings(verify="all", runs=5))
-    data = pickle.dumps(results)
-    assert len(data) < 300_000
-    assert pickle.loads(data) == results
 
 
 def test_a_change_makes_results_unequal(simulated):
@@ -91,13 +82,6 @@ def test_an_unknown_name_is_an_input_error_with_a_hint(example, simulated):
         simulated["zebra"]
 
 
-def test_the_larger_of_the_formula_and_the_row_itself(simulated):
-    one = simulated["A1"]
-    assert one.worst(one.formula_key) == max(case.methods[one.formula_key].value for case in one.cases)
-    assert one.formula == one.by_formula.methods[simulated.formula.key]
-    assert one.governing.simulation.runs == 10
-
-
 # ---------------------------------------------------------------- tables
 
 
@@ -122,15 +106,6 @@ def test_items_have_the_columns_of_items_csv(simulated, tmp_path):
     assert items["item"].tolist() == read["item"].tolist()
 
 
-def test_tables_of_cases_floors_and_problems(simulated):
-    cases, floors = simulated.cases, simulated.floors
-    assert len(cases) == len(simulated.cases_table)
-    assert cases["governs"].sum() == len(simulated)
-    assert floors[["floor", "axis"]].values.tolist() == [[one.floor, one.axis] for one in simulated.motions]
-    assert (floors["ensemble_motions"] == 10).all()
-    assert len(simulated.problems) == len(simulated.problem_rows)
-
-
 def test_tables_of_routes_join_by_name_and_index(tmp_path):
     results = assess_routed(tmp_path / "w.xlsx")
     segments, routes, rooms = results.segments, results.routes, results.rooms
@@ -141,11 +116,6 @@ def test_tables_of_routes_join_by_name_and_index(tmp_path):
     assert routes["segment_indices"].tolist() == [[0, 1, 2], [3], [4]]
     assert routes["fixes"].tolist()[0] == ["tall"]
     assert rooms["ways"].tolist() == [["Street"], ["Street"]]
-
-
-def test_a_building_without_routes_has_empty_tables_with_the_same_columns(simulated, example):
-    assert len(simulated.segments) == len(simulated.rooms) == 0
-    assert list(simulated.segments.columns) == list(example.segments.columns)
 
 
 # ---------------------------------------------------------------- in a notebook

@@ -18,7 +18,7 @@ from tests.report.reading import render
 from tests.shaking import RECORDS
 from tests.workbook import books
 from tests.workbook.books import change_parts, replace
-from tests.workbooks import assessed, write
+from tests.workbooks import assessed
 
 EVIL = "a\x1b]0;PWN\x07\x9b31m\x00\u202ecod\u2066\u200b\x7fz"
 CLEAN = "a\ufffd]0;PWN\ufffd\ufffd31m\ufffdcod\ufffdz"
@@ -42,16 +42,13 @@ def record(title: str = EVIL) -> bytes:
 # ---------------------------------------------------------------- one rule
 
 
-@pytest.mark.parametrize(
-    ("text", "shown"),
-    [
+def test_what_is_no_text_is_taken_out() -> None:
+    for text, shown in (
         ("plain", "plain"), ("Zürich ▲ 漢字 𝄞", "Zürich ▲ 漢字 𝄞"), (EVIL, CLEAN), ("a\r\nb\rc\td", "a\nb\nc\td"),
         ("a\ud800\ufffe\U0001ffffb", "a\ufffd\ufffd\ufffdb"), ("می\u200cخواهم", "می\u200cخواهم"), ("", ""),
-    ],
-)  # fmt: skip
-def test_what_is_no_text_is_taken_out(text: str, shown: str) -> None:
-    assert plain_text(text) == shown
-    assert plain_line(text) == re.sub("[\t\n]", " ", shown)
+    ):  # fmt: skip
+        assert plain_text(text) == shown
+        assert plain_line(text) == re.sub("[\t\n]", " ", shown)
 
 
 def test_sentences() -> None:
@@ -91,23 +88,22 @@ def test_names_of_members_of_an_archive(tmp_path: Path) -> None:
     assert not UNSAFE.search(run("record", path).output)
 
 
-@pytest.mark.parametrize("words", [(), ("--json",)])
-def test_station_event_and_channel_of_a_record(tmp_path: Path, words: tuple[str, ...]) -> None:
+def test_texts_of_a_record(tmp_path: Path) -> None:
+    """Its station, event and channels, on the terminal and in JSON."""
     (tmp_path / "a.AT2").write_bytes(record())
-    done = run("record", tmp_path / "a.AT2", *words)
-    assert done.exit_code == 0
-    assert "]0;PWN\ufffd\ufffd31m" in done.stdout
-    assert not UNSAFE.search(done.stdout + done.stderr)
-    (found,) = read_records(tmp_path / "a.AT2")
-    assert not UNSAFE.search(f"{found.event}{found.station}{found.channel}{found.file}")
-
-
-def test_names_of_channels_of_a_table(tmp_path: Path) -> None:
     lines = [f"{0.01 * at:.2f},{value:.6f}" for at, value in enumerate(RECORDS["pulse"])]
     (tmp_path / "a.csv").write_text("\n".join(["time [s],a\x1b\x9b\u202ex [g]", *lines]), encoding="utf-8")
-    done = run("record", tmp_path / "a.csv")
-    assert "a\ufffd\ufffdx" in done.stdout, done.output
-    assert not UNSAFE.search(done.stdout + done.stderr)
+    for words, part in (
+        (["a.AT2"], "]0;PWN\ufffd\ufffd31m"),
+        (["a.AT2", "--json"], "]0;PWN"),
+        (["a.csv"], "a\ufffd\ufffdx"),
+    ):
+        done = run("record", tmp_path / words[0], *words[1:])
+        assert done.exit_code == 0
+        assert part in done.stdout, done.output
+        assert not UNSAFE.search(done.stdout + done.stderr)
+    (found,) = read_records(tmp_path / "a.AT2")
+    assert not UNSAFE.search(f"{found.event}{found.station}{found.channel}{found.file}")
 
 
 def test_reports(tmp_path: Path) -> None:
@@ -126,20 +122,14 @@ def test_reports(tmp_path: Path) -> None:
         assert not any(UNSAFE.search(parts.read(one).decode()) for one in parts.namelist() if one.endswith(".xml"))
 
 
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [('<row r="2"', '<row r="a\x9bb\u202e"'), ('t="n"', 't="\x9b"'), ("<sheetData>", "<sheetData><x\u202e/>")],
-)
-def test_damaged_workbooks(tmp_path: Path, old: str, new: str) -> None:
+def test_damaged_workbooks(tmp_path: Path) -> None:
     """What a message quotes of a workbook's XML is clean."""
-    path = change_parts(books.write(tmp_path), {"xl/worksheets/sheet1.xml": replace(old, new)})
-    assert not UNSAFE.search(run("check", path).output)
-
-
-def test_names_of_sheets_and_columns(tmp_path: Path) -> None:
-    path = write(tmp_path / "book.xlsx")
-    change_parts(path, {"xl/workbook.xml": replace('name="Items"', 'name="Item\x9bs\u202e"')})
-    done = run("check", path)
-    assert done.exit_code == 2
-    assert "Item" in done.stderr
-    assert not UNSAFE.search(done.stdout + done.stderr)
+    for part, old, new in (
+        ("worksheets/sheet1", '<row r="2"', '<row r="a\x9bb\u202e"'), ("worksheets/sheet1", 't="n"', 't="\x9b"'),
+        ("worksheets/sheet1", "<sheetData>", "<sheetData><x\u202e/>"),
+        ("workbook", 'name="Items"', 'name="Item\x9bs\u202e"'),
+    ):  # fmt: skip
+        path = change_parts(books.write(tmp_path), {f"xl/{part}.xml": replace(old, new)})
+        done = run("check", path)
+        assert not UNSAFE.search(done.output), new
+        assert part != "workbook" or (done.exit_code == 2 and "Item" in done.output)
