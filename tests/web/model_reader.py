@@ -1,4 +1,4 @@
-"""The process in which a server reads a building model: found, and held as long as a test wants it to take."""
+"""The processes in which a server reads a building model or simulates: found, and held as long as a test wants."""
 
 import os
 import signal
@@ -11,23 +11,23 @@ from tests.waiting import wait_until
 linux = pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="processes are found in /proc")
 
 
-def find_reader(server):
-    """Return the process of a server that reads a model, 0 where there is none."""
+def find_worker(server, name):
+    """Return the process of a server that runs a module, 0 where there is none."""
     pid = server.process.pid
     children = "".join(path.read_text() for path in Path(f"/proc/{pid}/task").glob("*/children")).split()
-    return next((int(child) for child in children if _is_reader(child)), 0)
+    return next((int(child) for child in children if _runs(child, name)), 0)
 
 
-def _is_reader(pid):
+def _runs(pid, name):
     try:
-        return b"assess.bim.model_worker" in Path(f"/proc/{pid}/cmdline").read_bytes()
+        return name in Path(f"/proc/{pid}/cmdline").read_bytes()
     except OSError:
         return False
 
 
 def hold_reader(server):
     """Have the process stand still once it has begun; return its number. SIGCONT has it go on, SIGKILL ends it."""
-    pid = wait_until(lambda: find_reader(server), bool)
+    pid = wait_until(lambda: find_worker(server, b"assess.bim.model_worker"))
     os.kill(pid, signal.SIGSTOP)
     return pid
 

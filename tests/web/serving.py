@@ -7,8 +7,10 @@ import re
 import signal
 import subprocess
 import sys
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Timer
 from urllib.parse import quote, urlsplit
 
 from tests.waiting import PATIENCE, wait_until
@@ -103,11 +105,23 @@ def start(*words, cwd, temporary=None, environment=None, before=()):
         [*before, sys.executable, "-m", "assess", "open", *map(str, words)],
         cwd=cwd, env=variables, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
-    for line in process.stdout:
-        if found := ADDRESS.fullmatch(line.strip()):
-            return Served(process, found[0], cwd)
+    with end_late(process):
+        for line in process.stdout:
+            if found := ADDRESS.fullmatch(line.strip()):
+                return Served(process, found[0], cwd)
     _, err = process.communicate(timeout=PATIENCE)
     raise AssertionError(f"no address was printed, exit status {process.returncode}: {err}")
+
+
+@contextmanager
+def end_late(process):
+    """Kill a process whose line is waited for in vain: its output ends then."""
+    timer = Timer(PATIENCE, process.kill)
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
 
 
 def list_named(folder, start):

@@ -1,11 +1,14 @@
 """The sheet of the page as a user handles it: cells by the header of their column and the row of the spreadsheet."""
 
 import json
+import re
 
 from playwright.sync_api import expect
 
-CLASS = "Class (formula)"
+from tests.waiting import PATIENCE
 
+CLASS = "Class (formula)"
+KEY = re.compile(r"<[A-Z][A-Za-z0-9+]*>")
 
 SCROLL_TO = """async (head) => {
     const box = head.closest(".grid-box").getBoundingClientRect();
@@ -17,6 +20,18 @@ SCROLL_TO = """async (head) => {
 
 TWO_FRAMES = "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
 """The grid draws before the next frame."""
+SETTLE = """async (patience) => {
+    const { store } = await import("/store.mjs");
+    let timer;
+    const late = new Promise((_, no) => {
+        timer = setTimeout(() => no(new Error("changes were not sent")), patience);
+    });
+    while (store.waiting) {
+        await Promise.race([late, new Promise((done) => store.addEventListener("state", done, { once: true }))]);
+    }
+    await Promise.race([late, store.refreshLive()]);
+    clearTimeout(timer);
+}"""
 COPY = """([text, html]) => document.addEventListener("copy", (event) => {
     event.preventDefault();
     event.clipboardData.setData("text/plain", text);
@@ -66,21 +81,19 @@ class SheetPage:
         return self
 
     def type(self, *keys):
-        """Type texts; a word in angle brackets is a key: "<Enter>"."""
+        """Type texts; a word of its own in angle brackets is a key: "<Enter>"."""
         for one in keys:
-            if one.startswith("<") and one.endswith(">"):
+            if KEY.fullmatch(one):
                 self.keyboard.press(one[1:-1])
+            elif KEY.search(one):
+                raise ValueError(f"a key has to be a word of its own: {one!r}")
             else:
                 self.keyboard.type(one)
         return self
 
     def settle(self):
         """Wait until the server has all changes and the page all answers."""
-        self.page.evaluate("""async () => {
-            const { store } = await import("/store.mjs");
-            while (store.waiting) await new Promise((done) => store.addEventListener("state", done, { once: true }));
-            await store.refreshLive();
-        }""")
+        self.page.evaluate(SETTLE, 1e3 * PATIENCE)
         return self
 
     def cells(self, sheet, row):

@@ -118,6 +118,8 @@ def test_a_floor_is_described(path):
     assert len(plan["walls"]) == 8
     assert plan["frame"] == pytest.approx([-BORDER, -BORDER, 16 + BORDER, 12 + BORDER])
     assert _plan(hold(path), "no floor of that name")["floor"] == "1"
+    types = {one["type"]: one for one in describe_catalogue(hold(path).snapshot())["types"]}
+    assert 0.2 < types["Bookcase 5 shelves"]["breadth"] < types["Bookcase 5 shelves"]["height"] < 3, "in metres"
 
 
 def test_pieces_with_errors_are_still_drawn(path):
@@ -132,7 +134,7 @@ def test_pieces_with_errors_are_still_drawn(path):
     assert len(found["A3"]["fallen"]) == 2
 
 
-def test_an_unknown_width_is_told(path):
+def test_an_unknown_width_is_told_and_without_floors_there_is_a_frame(path):
     """It is drawn as Breadth, as the routes assume it; nobody may take that for what the piece covers."""
     book = hold(path)
     edit(book, ("Items", 2, "width", None))
@@ -140,10 +142,6 @@ def test_an_unknown_width_is_told(path):
     assert (shelves["missing"], shelves["width"]) == (["width"], shelves["breadth"])
     piece = _plan(book, "1")["pieces"][0]
     assert (piece["missing"], piece["width"], len(piece["fallen"])) == (["width"], 0.3, 2)
-
-
-def test_a_workbook_without_floors_has_a_frame(path):
-    book = hold(path)
     edit(book, *(("Floors", row, "floor", None) for row in (2, 3, 4)))
     plan = _plan(book)
     assert (plan["floor"], plan["floor_row"], plan["pieces"]) == ("", None, [])
@@ -177,22 +175,15 @@ def test_a_drawing_is_shown_before_it_is_placed(path):
     _, _, wide, tall = map(float, root.get("viewBox").split())
     assert tall / wide == pytest.approx(given["aspect"], abs=1e-4)
     numbers = [float(one) for one in re.findall(r"-?[\d.]+", root[0].get("d"))]
-    assert (
-        all(0 <= x <= wide and 0 <= y <= tall for x, y in zip(numbers[::2], numbers[1::2], strict=True))
-        if numbers
-        else False
-    )
+    assert numbers
+    assert all(0 <= x <= wide and 0 <= y <= tall for x, y in zip(numbers[::2], numbers[1::2], strict=True))
     edit(book, ("Floors", 3, "plan_left", -2), ("Floors", 3, "plan_bottom", 1), ("Floors", 3, "plan_width", 10))
     placed = _plan(book, "2")["picture"]
     assert (placed["placed"], placed["left"], placed["width"]) == (True, -2, 10)
     assert placed["height"] == pytest.approx(10 * given["aspect"])
     assert placed["url"] == given["url"], "the same drawing, wherever it lies"
-
-
-def test_an_unplaced_picture_has_room_on_an_empty_floor(path):
-    book = hold(path)
     edit(book, ("Floors", 4, "plan", "p.png"))
-    plan = _plan(book, "3")
+    plan = _plan(book, "3")  # an empty floor has room for it
     assert plan["picture"]["aspect"] == 0.75
     assert plan["frame"] == pytest.approx([-BORDER, -BORDER, 20 + BORDER, 15 + BORDER])
 
@@ -205,12 +196,6 @@ def test_a_picture_that_cannot_be_used_is_none(path):
     for floor in ("1", "2", "3", "none"):
         assert find_picture(book.snapshot(), floor) is None
         assert _plan(book, floor)["picture"] is None
-
-
-def test_the_catalogue_has_sizes_in_metres(path):
-    types = {one["type"]: one for one in describe_catalogue(hold(path).snapshot())["types"]}
-    shelf = types["Bookcase 5 shelves"]
-    assert 0.2 < shelf["breadth"] < shelf["height"] < 3
 
 
 FIRST = """

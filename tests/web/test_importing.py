@@ -78,26 +78,19 @@ def test_a_model_becomes_a_workbook_with_its_plans_beside_it(served, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_second_workbook_of_a_model_replaces_no_file(served):
-    server = served()
+def test_a_second_workbook_of_a_model_replaces_no_file_and_a_third_ends_the_list(served, tmp_path):
+    server = served(write(tmp_path / "office.xlsx"))
+    before = (tmp_path / "office.xlsx").read_bytes()
     (server.folder / PLANS[0]).write_bytes(b"mine")
-    for name in ("duplex.xlsx", "duplex-2.xlsx"):
+    for name, open_meanwhile in (("duplex.xlsx", "office.xlsx"), ("duplex-2.xlsx", "duplex.xlsx")):
         assert _read(server.client, "duplex.ifc", DUPLEX.read_bytes())["state"] == "done"
+        assert server.client.get("/api/book").json()["name"] == open_meanwhile
         book = server.client.post("/api/import/open").json()
         assert (book["name"], book["missing"]) == (name, [])
     assert (server.folder / PLANS[0]).read_bytes() == b"mine"
     tables, _ = read_tables((server.folder / "duplex.xlsx").read_bytes(), "duplex.xlsx")
     named = [row.get("plan") for row in tables["Floors"].rows]
     assert named == ["duplex-Level-1-2.svg", *PLANS[1:]]
-
-
-@pytest.mark.slow
-def test_another_workbook_ends_the_list_of_what_was_imported(served, tmp_path):
-    server = served(write(tmp_path / "office.xlsx"))
-    before = (tmp_path / "office.xlsx").read_bytes()
-    assert _read(server.client, "duplex.ifc", DUPLEX.read_bytes())["state"] == "done"
-    assert server.client.get("/api/book").json()["name"] == "office.xlsx"  # it stays open meanwhile
-    assert server.client.post("/api/import/open").json()["name"] == "duplex.xlsx"
     assert (tmp_path / "office.xlsx").read_bytes() == before
     server.client.post("/api/start", {"kind": "blank", "name": "other"})
     assert server.client.get("/api/import").json()["opened"] is None
@@ -111,7 +104,7 @@ def test_routes_are_drafted_where_they_are_asked_for(served):
     assert client.request("POST", "/api/import?routes=none", b"x").status == 422
 
 
-def test_a_cobie_file_is_recognised_where_a_workbook_is_opened(served, tmp_path):
+def test_a_cobie_file_and_a_scan_are_recognised_by_their_content(served, tmp_path):
     server = served()
     path = write_cobie(tmp_path / "handover.xlsx")
     begun = server.client.send("/api/upload", "handover.xlsx", path.read_bytes()).json()
@@ -123,13 +116,9 @@ def test_a_cobie_file_is_recognised_where_a_workbook_is_opened(served, tmp_path)
     )
     assert (found["found"]["pieces"], found["found"]["skipped"][0]["types"]) == (2, [["Door B", 1]])
     assert server.client.post("/api/import/open").json()["name"] == "handover-inventory.xlsx"
-    office = write(tmp_path / "office.xlsx")
-    assert server.client.send("/api/upload", "office.xlsx", office.read_bytes()).json()["name"] == "office.xlsx"
-
-
-def test_a_scan_is_told_by_its_content_whatever_it_is_called(served):
-    server = served()
-    found = _read(server.client, "office.ifc", scan_files.write(scan_files.office()))
+    office = write(tmp_path / "mine.xlsx")
+    assert server.client.send("/api/upload", "mine.xlsx", office.read_bytes()).json()["name"] == "mine.xlsx"
+    found = _read(server.client, "office.ifc", scan_files.write(scan_files.office()))  # a scan, by its content
     assert (found["state"], found["found"]["floors"]) == ("done", 1)
     assert server.client.post("/api/import/open").json()["name"] == "office.xlsx"
 
@@ -190,16 +179,12 @@ def test_the_server_ends_while_a_model_is_read(served, tmp_path):
     assert list((tmp_path / "tmp").iterdir()) == []
 
 
-def test_a_client_that_goes_away_while_it_sends_leaves_nothing(served, tmp_path):
+def test_one_model_is_sent_at_a_time_and_a_client_that_goes_away_leaves_nothing(served, tmp_path):
     client = served().client
     with _begin_sending(client, "Content-Length: 100000", b"x" * 1000):
         wait_until(lambda: _list_left(tmp_path), len)
     wait_until(lambda: _list_left(tmp_path), lambda left: left == [])
     assert client.get("/api/import").json()["import"] is None
-
-
-def test_one_model_is_sent_at_a_time(served, tmp_path):
-    client = served().client
     with _begin_sending(client, "Transfer-Encoding: chunked", b"3e8\r\n" + b"x" * 1000 + b"\r\n"):
         wait_until(lambda: _list_left(tmp_path), len)
         reply = client.request("POST", "/api/import?name=b.ifc", b"x")
@@ -286,28 +271,22 @@ def test_without_a_place_nothing_is_kept(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_plans_get_names_that_no_other_file_has(tmp_path):
+def test_plans_get_names_that_no_other_file_and_no_other_plan_has(tmp_path):
+    """Storeys "EG" and "EG 2": the second name of the first plan is that of the second plan."""
     (tmp_path / "a.svg").write_bytes(b"mine")
     (tmp_path / "a-2.svg").write_bytes(b"a")  # of an earlier import of the same model
     (tmp_path / "b.svg").write_bytes(b"b")
-    floors = [{"floor": "1", "plan": "a.svg"}, {"floor": "2", "plan": "b.svg"}, {"floor": "3"}]
-    found = ImportedBuilding(source="m.ifc", floors=floors, files={"a.svg": b"a", "b.svg": b"b"})
-    renamed = importing._rename_files(found, tmp_path)
-    assert [row.get("plan") for row in renamed.floors] == ["a-2.svg", "b.svg", None]
-    assert renamed.files == {"a-2.svg": b"a", "b.svg": b"b"}
-
-
-def test_a_plan_takes_no_name_of_another_plan_of_the_import(tmp_path):
-    """Storeys "EG" and "EG 2": the second name of the first plan is that of the second plan."""
     (tmp_path / "m-EG.svg").write_bytes(b"mine")
-    floors = [{"floor": "EG", "plan": "m-EG.svg"}, {"floor": "EG 2", "plan": "m-EG-2.svg"}]
-    found = ImportedBuilding(source="m.ifc", floors=floors, files={"m-EG.svg": b"eg", "m-EG-2.svg": b"eg2"})
+    plans = {"a.svg": b"a", "b.svg": b"b", "m-EG.svg": b"eg", "m-EG-2.svg": b"eg2"}
+    floors = [*({"floor": name, "plan": name} for name in plans), {"floor": "none"}]
+    found = ImportedBuilding(source="m.ifc", floors=floors, files=plans)
     renamed = importing._rename_files(found, tmp_path)
-    assert [row["plan"] for row in renamed.floors] == ["m-EG-3.svg", "m-EG-2.svg"]
-    assert renamed.files == {"m-EG-3.svg": b"eg", "m-EG-2.svg": b"eg2"}
+    names = [row.get("plan") for row in renamed.floors]
+    assert names == ["a-2.svg", "b.svg", "m-EG-3.svg", "m-EG-2.svg", None]
+    assert renamed.files == dict(zip(names[:4], plans.values(), strict=True))
     (tmp_path / "m-EG-2.svg").write_bytes(b"mine, too")
     renamed = importing._rename_files(found, tmp_path)
-    assert [renamed.files[row["plan"]] for row in renamed.floors] == [b"eg", b"eg2"]
+    assert [renamed.files[row["plan"]] for row in renamed.floors[:4]] == [*plans.values()]
 
 
 def test_names_of_new_workbooks_and_of_models(tmp_path):

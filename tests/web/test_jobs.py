@@ -13,12 +13,12 @@ import pytest
 
 from assess.web.job_inputs import list_stale
 from tests.waiting import wait_until
+from tests.web.model_reader import find_worker, is_gone, linux
 from tests.web.serving import list_named, start, wait_for_job
 from tests.workbooks import ITEMS, write
 
 LONG = {"verify": "all", "runs": 100_000, "formats": ["json"]}
 """A job that takes minutes."""
-linux = pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="processes are found in /proc")
 
 
 @pytest.fixture(scope="module")
@@ -41,16 +41,7 @@ def _list_left(server):
 
 
 def _find_worker(server):
-    pid = server.process.pid
-    children = "".join(path.read_text() for path in Path(f"/proc/{pid}/task").glob("*/children")).split()
-    return next((int(child) for child in children if b"job_process" in Path(f"/proc/{child}/cmdline").read_bytes()), 0)
-
-
-def _is_gone(pid):
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().split(")")[1].split()[0] == "Z"
-    except FileNotFoundError:
-        return True
+    return find_worker(server, b"job_process")
 
 
 def _find_end(row, key, end):
@@ -102,7 +93,7 @@ def test_results_are_those_of_the_command(running, tmp_path):
     assert pieces == {sum(job["items"]["quantity"])}
 
 
-def test_a_job_ends_with_its_files_and_is_found_again(running):
+def test_a_job_ends_with_its_files_is_found_again_and_rows_that_changed_since_are_stale(running):
     """Also by another tab of the browser; a report is shown in a frame that belongs to no address."""
     asked = {"verify": "none", "formats": ["html"]}
     assert running.client.post("/api/job", asked).json()["job"]["state"] == "running"
@@ -117,11 +108,6 @@ def test_a_job_ends_with_its_files_and_is_found_again(running):
     assert report.headers["x-frame-options"] == "SAMEORIGIN"
     assert running.client.get("/api/job/file/report.html").headers["content-disposition"].startswith("attachment")
     assert running.client.get("/api/job/file/report.pdf").status == 404
-
-
-def test_rows_that_changed_since_are_stale(running):
-    running.client.post("/api/job", {"verify": "none", "formats": ["json"]})
-    job = wait_for_job(running.client)
     book = running.client.get("/api/book").json()
     columns = {one["field"]: one["at"] for one in book["sheets"][2]["columns"]}
     edits = [["Items", 2, columns["breadth"], 31], ["Items", 3, columns["notes"], "by the door"]]
@@ -210,7 +196,7 @@ def test_a_job_ends_with_a_server_that_is_killed_and_the_next_one_sweeps_up(serv
     wait_until(lambda: server.client.get("/api/job").json()["job"]["stage"], bool)
     server.process.kill()
     server.process.wait()
-    wait_until(lambda: _is_gone(worker), bool)
+    wait_until(lambda: is_gone(worker), bool)
     assert _list_left(server) == []
     assert [one.name[:12] for one in (tmp_path / "tmp").iterdir()] == ["assess-open-"]
     other = served(path)

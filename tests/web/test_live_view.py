@@ -150,15 +150,25 @@ def test_floors_without_shaking_leave_the_others_their_classes(tmp_path):
     assert answer["counts"] == {"low": 0, "medium": 0, "high": 0, "very_high": 0, "": 7}
 
 
-def test_one_bad_row_leaves_all_others_as_they_were(example):
-    book = hold(MARKET)
-    edit(book, ("Items", 7, "height", "tall"), ("Items", 9, "quantity", -3), ("Building", 0, "ground_pga", "a lot"))
-    answer = _answer(book)
-    expected = _expect(example) | {7: ("", "check", None), 9: ("", "check", None)}
-    assert _classes(answer) == expected
+def test_the_run_and_the_page_agree_on_a_faulty_workbook(tmp_path):
+    """Whatever is left out, what stays is assessed as the command does."""
+    book, view = hold(MARKET), LiveView()
+    version = _answer(book, view)["version"]
+    edit(book, ("Items", 5, "height", 90))
+    for _ in range(2):
+        assert _answer(book, view, version)["items"]["row"] == [5], "asked again, it is the same"
+    assert _answer(book, view, book.version)["items"]["row"] == []
+    wrong = [("Floors", 3, "pfa_x", "strong"), ("Items", 7, "height", None), ("Items", 8, "axis", "Z"),
+             ("Items", 9, "quantity", -3), ("Building", 0, "ground_pga", "a lot")]  # fmt: skip
+    edit(book, *wrong)
+    (tmp_path / "w.xlsx").write_bytes(book.write())
+    inventory = assess.read_inventory(tmp_path / "w.xlsx", records=MARKET.parent, strict=False)
+    expected, answer = _expect(assess.run(inventory, UNVERIFIED)), _answer(book)
+    found = _classes(answer)
+    assert {row: found[row] for row in expected} == expected
+    assert all(found[row][0] == "" for row in found.keys() - expected.keys())
     cells = {(one["sheet"], *cell) for one in answer["problems"] if one["severity"] == "error" for cell in one["cells"]}
-    wanted = [("Items", "height", 7), ("Items", "quantity", 9), ("Building", "ground_pga", 0)]
-    assert cells == {(sheet, *(book.sheets[sheet].place(field, row) or ())) for sheet, field, row in wanted}
+    assert cells >= {(sheet, *(book.sheets[sheet].place(field, row) or ())) for sheet, row, field, _ in wrong}
 
 
 # ---------------------------------------------------------------- what changed
@@ -191,27 +201,12 @@ def test_the_changes_make_up_the_whole(tmp_path):
             name: whole[name] for name in ("problems", "counts", "floors", "error")
         }
         version = change["version"]
-
-
-def test_one_edit_is_answered_by_one_row():
-    book, view = hold(MARKET), LiveView()
-    version = _answer(book, view)["version"]
-    edit(book, ("Items", 5, "height", 90))
-    assert _answer(book, view, version)["items"]["row"] == [5]
-    assert _answer(book, view, version)["items"]["row"] == [5], "asked again, it is the same"
-    assert _answer(book, view, book.version)["items"]["row"] == []
-
-
-def test_a_page_that_is_too_old_is_told_all(tmp_path):
-    path = write(tmp_path / "w.xlsx")
-    book, view = hold(path), LiveView()
-    version = _answer(book, view)["version"]
     assert _answer(book, view, 99)["whole"]
-    assert _answer(hold(path), view, version)["whole"], "another workbook with the same versions"
+    assert _answer(hold(tmp_path / "w.xlsx"), view, version)["whole"], "another workbook with the same versions"
     for height in range(100, 120):
         edit(book, ("Items", 2, "height", height))
         _answer(book, view, None)
-    assert _answer(book, view, version)["whole"]
+    assert _answer(book, view, version)["whole"], "it is too old"
 
 
 # ---------------------------------------------------------------- problems
@@ -220,12 +215,13 @@ def test_a_page_that_is_too_old_is_told_all(tmp_path):
 def test_problems_of_one_habit_are_one_with_every_cell(tmp_path):
     items = [{"item": f"A{at}", "floor": "1", "breadth": 40, "height": 180} for at in range(12)]
     book = hold(write(tmp_path / "w.xlsx", items=items))
-    edit(book, *(("Items", row, "quantity", "some") for row in range(3, 11)))
+    edit(book, *(("Items", row, "quantity", f"some {row}") for row in range(3, 11)))
     (found,) = [one for one in _answer(book)["problems"] if one["severity"] == "error"]
     at = book.sheets["Items"].field("quantity").at
     assert found["cells"] == [[row, at] for row in range(3, 11)]
     assert (found["count"], found["row"], found["at"], found["sheet"]) == (8, 3, at, "Items")
     assert found["cell"] == f"{chr(ord('A') + at)}3"
+    assert [f"'some {row}'" in message for row, (message, _) in enumerate(found["own"], 3)] == [True] * 8
 
 
 def test_problems_are_in_the_language_of_the_workbook(tmp_path):
@@ -266,28 +262,3 @@ def test_a_workbook_without_a_sheet_is_answered(tmp_path, sheet):
     answer = _answer(hold(path))
     assert any(one["sheet"] == sheet and one["row"] is None for one in answer["problems"])
     assert not any(answer["items"]["class"])
-
-
-def test_the_run_and_the_page_agree_on_a_faulty_workbook(tmp_path):
-    """Whatever is left out, what stays is assessed as the command does."""
-    book = hold(MARKET)
-    edit(book, ("Floors", 3, "pfa_x", "strong"), ("Items", 7, "height", None), ("Items", 8, "axis", "Z"))
-    (tmp_path / "w.xlsx").write_bytes(book.write())
-    inventory = assess.read_inventory(tmp_path / "w.xlsx", records=MARKET.parent, strict=False)
-    expected = _expect(assess.run(inventory, UNVERIFIED))
-    found = _classes(_answer(book))
-    assert {row: found[row] for row in expected} == expected
-    assert all(found[row][0] == "" for row in found.keys() - expected.keys())
-
-
-def test_cells_of_one_habit_keep_their_own_message(tmp_path):
-    sizes = {"width": 80, "height": 200}
-    items = [{"item": name, "floor": "1", "breadth": text, **sizes} for name, text in (("A1", "abc"), ("A2", "wide"))]
-    path = write(tmp_path / "w.xlsx", items, [{"floor": "1", "pfa_x": 0.3}])
-    problem = next(one for one in _answer(hold(path))["problems"] if one["severity"] == "error")
-    assert problem["count"] == 2
-    assert [message for message, _ in problem["own"]] == [
-        "Breadth is the text 'abc', expected a number [cm].",
-        "Breadth is the text 'wide', expected a number [cm].",
-    ]
-    assert len(problem["cells"]) == len(problem["own"])

@@ -40,11 +40,9 @@ def test_a_thousand_rows_are_one_edit_and_one_step_back(small):
         [f"N{n}", "", "1", f"Room {n % 40}", "Shelf", "", "", "40,5", "80", str(150 + n % 60)] for n in range(1000)
     ]
     small.copy_text("\r\n".join("\t".join(row) for row in block) + "\r\n").select("Item", 8)
-    small.page.evaluate("() => (window.started = performance.now())")
     small.type("<Control+v>")
     expect(small.page.locator(".grid-frame")).to_be_visible()
     small.settle()
-    print(f"1,000 x 10 cells pasted and assessed in {small.page.evaluate('() => performance.now() - started'):.0f} ms")
     names = small.values("Items", "item")
     assert [names[row] for row in (8, 9, 1007)] == ["N0", "N1", "N999"]
     assert small.values("Items", "breadth")[500] == 40.5
@@ -98,22 +96,16 @@ def test_what_is_copied_can_be_pasted_elsewhere_and_back(small):
     assert small.cells("Items", 7)[:5] == ["A1", None, "1", "Hall", "Bookcase"]
 
 
-def test_a_selection_that_is_a_multiple_is_filled_and_computed_cells_are_left_out(small):
+def test_what_is_pasted_fills_a_multiple_leaves_computed_cells_moves_what_was_cut_and_joins_a_text(small):
     small.copy_text("40\t80").select("Breadth", 2, "Width", 5).type("<Control+v>").settle()
     assert [small.cells("Items", row)[7:9] for row in range(2, 7)] == [[40, 80]] * 4 + [[None, None]]
     small.copy_text("Z\tcomputed\t2").select("Item", 7).type("<Control+v>").settle()
     assert small.cells("Items", 7)[:3] == ["Z", None, "2"]
-
-
-def test_cut_moves_and_is_one_step_back_each(small):
     small.select("Room", 2, "Description", 2).type("<Control+x>").settle()
     assert small.cells("Items", 2)[3:5] == [None, None]
     small.select("Room", 6).type("<Control+v>").settle()
     assert small.cells("Items", 6)[3:5] == ["Hall", "Bookcase"]
     small.type("<Control+z>", "<Control+z>").settle()
     assert small.cells("Items", 2)[3:5] == ["Hall", "Bookcase"]
-
-
-def test_pasting_into_a_cell_that_is_being_edited_pastes_its_text(small):
     small.copy_text("of oak").select("Description", 2).type("<F2>", " ", "<Control+v>", "<Enter>").settle()
     assert small.values("Items", "description")[2] == "Bookcase of oak"

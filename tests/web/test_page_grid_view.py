@@ -1,18 +1,17 @@
 """What the sheets show: many rows, sorted and filtered rows, widths, series, a phone, what axe-core says."""
 
 import re
-from pathlib import Path
 
 import pytest
 import xlsxwriter
 from playwright.sync_api import expect
 
-from tests.web.sheet_page import CLASS, opened
+from tests.web.looking import examine
+from tests.web.sheet_page import opened
 from tests.workbooks import write
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-AXE = Path(__file__).parents[1] / "data" / "axe-core" / "axe.min.js"
 MANY = 20_000
 MOST_NODES, MOST_BYTES = 1500, 60e6
 HEADERS = (
@@ -126,17 +125,6 @@ def test_an_edit_in_sorted_rows_reaches_its_row_and_nothing_jumps(sorted_items):
     assert names_shown(sheet) == ["E", "B", "C", "a", "d", "new"]
 
 
-def test_rows_are_duplicated_and_cleared_without_moving_others(sorted_items):
-    sheet = sorted_items
-    sheet.select("Item", 2).page.get_by_role("button", name="Duplicate rows").click()
-    sheet.settle()
-    assert sheet.cells("Items", 7)[0] == "B 2"
-    assert sheet.cells("Items", 7)[2:] == sheet.cells("Items", 2)[2:]
-    sheet.select("Item", 3, "Item", 4).page.get_by_role("button", name="Clear rows").click()
-    sheet.settle()
-    assert sheet.values("Items", "item") == {2: "B", 5: "d", 6: "E", 7: "B 2"}
-
-
 def test_the_fill_handle_continues_a_series_and_copies_with_ctrl(sorted_items):
     sheet = sorted_items
 
@@ -168,7 +156,7 @@ def test_the_fill_handle_continues_a_series_and_copies_with_ctrl(sorted_items):
     assert [sheet.values("Items", "width")[row] for row in range(6, 9)] == [80, 81, 82]
 
 
-def test_widths_are_dragged_fitted_and_kept(sorted_items):
+def test_widths_are_dragged_fitted_and_kept_and_rows_duplicated_and_cleared(sorted_items):
     sheet = sorted_items
 
     def width():
@@ -189,46 +177,41 @@ def test_widths_are_dragged_fitted_and_kept(sorted_items):
     sheet.cell("Room", 2).dblclick()
     sheet.type(" A", "<Enter>").settle()
     assert sheet.values("Items", "room")[2] == "Hall A"
+    sheet.select("Item", 2).page.get_by_role("button", name="Duplicate rows").click()
+    sheet.settle()
+    assert sheet.cells("Items", 7)[0] == "B 2"
+    assert sheet.cells("Items", 7)[2:] == sheet.cells("Items", 2)[2:]
+    sheet.select("Item", 3, "Item", 4).page.get_by_role("button", name="Clear rows").click()
+    sheet.settle()
+    assert sheet.values("Items", "item") == {2: "B", 5: "d", 6: "E", 7: "B 2"}
 
 
 CUT = """all => all.filter((one) => one.scrollHeight > one.clientHeight + 1 || one.scrollWidth > one.clientWidth)
     .map((one) => one.textContent)"""
 
 
-@pytest.mark.parametrize("locale", ["en-GB", "it-IT"])
-def test_headers_show_their_units_and_the_tabs_of_the_plan_their_names(page, served, tmp_path, locale):
-    sheet = opened(page, served(write(tmp_path / "office.xlsx")), width=4000, locale=locale).open("Items")
-    expect(sheet.head("Bracket capacity")).to_contain_text("[kN]")
-    assert sheet.grid.locator(".grid-label").evaluate_all(CUT) == []
-    sheet.page.set_viewport_size({"width": 1400, "height": 900})
-    sheet.page.locator("nav.tabs [data-tab=plan]").click()
-    expect(sheet.page.locator(".plan-tabs")).to_be_visible()
-    assert sheet.page.locator(".plan-tabs, .plan-tabs button").evaluate_all(CUT) == []
-    assert len({one.bounding_box()["y"] for one in sheet.page.locator(".plan-tabs button").all()}) == 1
+def test_headers_show_their_units_and_the_tabs_of_the_plan_their_names(page, served, tmp_path):
+    server = served(write(tmp_path / "office.xlsx"))
+    for locale in ("en-GB", "it-IT"):
+        sheet = opened(page, server, width=4000, locale=locale).open("Items")
+        expect(sheet.head("Bracket capacity")).to_contain_text("[kN]")
+        assert sheet.grid.locator(".grid-label").evaluate_all(CUT) == [], locale
+        sheet.page.set_viewport_size({"width": 1400, "height": 900})
+        sheet.page.locator("nav.tabs [data-tab=plan]").click()
+        expect(sheet.page.locator(".plan-tabs")).to_be_visible()
+        assert sheet.page.locator(".plan-tabs, .plan-tabs button").evaluate_all(CUT) == [], locale
+        assert len({one.bounding_box()["y"] for one in sheet.page.locator(".plan-tabs button").all()}) == 1, locale
 
 
-def test_a_phone_reads_and_does_not_edit(page, served, tmp_path):
-    sheet = opened(page, served(write(tmp_path / "office.xlsx")), width=390, height=844, has_touch=True)
-    expect(sheet.page.get_by_text("at least 900 pixels wide")).to_be_visible()
-    expect(sheet.cell(CLASS, 2)).to_contain_text("high")
-    sheet.cell("Item", 2).tap()
-    sheet.type("changed", "<Enter>").settle()
-    assert sheet.values("Items", "item")[2] == "A1"
-    assert sheet.page.evaluate("() => document.documentElement.scrollWidth") <= 390
-    sheet.open("Building")
-    expect(sheet.page.get_by_label("Address", exact=True)).not_to_be_editable()
-
-
-@pytest.mark.parametrize(("scheme", "width"), [("light", 1400), ("dark", 1400), ("light", 390)])
-def test_axe_core_finds_nothing_serious(page, served, tmp_path, scheme, width):
+def test_sheets_with_problems_are_accessible(page, served, tmp_path):
     items = [{"item": "A1", "floor": "1", "breadth": "wide", "width": 80, "height": 200}, {"item": "A2", "floor": "9"}]
-    sheet = opened(page, served(write(tmp_path / "office.xlsx", items)), width=width, color_scheme=scheme)
-    found = []
-    for name in ("Items", "Building"):
-        sheet.open(name).settle()
-        if name == "Items" and width > 900:
-            sheet.select("Type", 2).type("<Alt+ArrowDown>")
-        sheet.page.evaluate(AXE.read_text(encoding="utf-8"))
-        found += sheet.page.evaluate("async () => (await axe.run()).violations")
-    serious = [one for one in found if one["impact"] in ("serious", "critical")]
-    assert [(one["id"], [node["html"][:200] for node in one["nodes"]]) for one in serious] == []
+    sheet = opened(page, served(write(tmp_path / "office.xlsx", items)))
+    for theme, width in (("light", 1400), ("dark", 1400), ("light", 390)):
+        sheet.page.emulate_media(color_scheme=theme)
+        sheet.page.set_viewport_size({"width": width, "height": 900})
+        for name in ("Items", "Building"):
+            sheet.open(name).settle()
+            if name == "Items" and width > 900:
+                sheet.select("Type", 2).type("<Alt+ArrowDown>")
+            assert examine(sheet.page) == [], (name, theme, width)
+            sheet.type("<Escape>")

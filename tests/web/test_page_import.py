@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from urllib.parse import urlsplit
 
 import pytest
 from playwright.sync_api import expect
@@ -20,15 +21,6 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 MODELS = Path(__file__).parents[2] / "samples" / "models"
 DUPLEX = MODELS / "duplex.ifc"
-"""Time that a model may take to be read here [ms]."""
-ANSWER_LATE = """
-const ask = window.fetch;
-window.fetch = async (path, options) => {
-  if (path === "PATH") await new Promise((go) => setTimeout(go, 500));
-  return ask(path, options);
-};
-"""
-"""Has the page wait for the answers to one of its requests."""
 
 
 def _choose(page, *files):
@@ -70,17 +62,25 @@ def test_a_dropped_model_shows_what_was_taken_and_becomes_a_workbook(page, serve
     expect(found.locator("#view-sheet")).to_be_visible()
 
 
-@pytest.mark.parametrize("slow", ["/api/import", "/api/book"])
-def test_what_was_taken_is_shown_after_a_reload_whichever_answer_comes_last(page, served, tmp_path, slow):
+def test_what_was_taken_is_shown_after_a_reload_whichever_answer_comes_last(page, served, tmp_path):
     found = page(served())
     _choose(found, write_cobie(tmp_path / "handover.xlsx"))
     _see_list(found, "handover.xlsx")
-    found.add_init_script(ANSWER_LATE.replace("PATH", slow))
-    found.reload()
-    _see_list(found, "handover.xlsx")
+    for first, last in (("/api/book", "/api/import"), ("/api/import", "/api/book")):
+        held = []
+        found.route(lambda url, last=last: urlsplit(url).path == last, lambda route, held=held: held.append(route))
+        with found.expect_response(lambda reply, first=first: urlsplit(reply.url).path == first):
+            found.reload(wait_until="commit")
+        found.unroute_all()
+        for one in held:
+            one.continue_()
+        _see_list(found, "handover.xlsx")
 
 
-def test_the_list_of_what_was_skipped_is_copied(page, served):
+FORMULAS = ('=HYPERLINK("https://example.org")', "+1", "-1", "@SUM(A1)", "\t=1", " =1", "Desk\t=1", "Desk\n=1", "A=1")
+
+
+def test_the_list_of_what_was_skipped_is_copied_and_none_of_it_becomes_a_formula(page, served):
     found = page(served(), permissions=["clipboard-read", "clipboard-write"])
     _choose(found, DUPLEX)
     _see_list(found).get_by_role("button", name="Copy the list").click()
@@ -90,13 +90,6 @@ def test_the_list_of_what_was_skipped_is_copied(page, served):
     assert sum(int(line.split("\t")[2]) for line in lines[1:]) == 14
     found.get_by_role("button", name="Discard").click()
     expect(found.get_by_role("heading", name="Start from a building model")).to_be_visible()
-
-
-FORMULAS = ('=HYPERLINK("https://example.org")', "+1", "-1", "@SUM(A1)", "\t=1", " =1", "Desk\t=1", "Desk\n=1", "A=1")
-
-
-def test_no_type_of_a_model_becomes_a_formula_of_a_spreadsheet(page, served):
-    found = page(served())
     rows = [["Not on the floor", name, 3] for name in FORMULAS]
     text = found.evaluate("async (rows) => (await import('/clipboard.mjs')).writeList(rows)", rows)
     cells = [line.split("\t") for line in text.split("\n")]
@@ -128,7 +121,7 @@ def test_why_a_model_cannot_be_read_stands_beside_the_drop_area_and_a_second_try
 
 
 @linux
-def test_a_reading_is_shown_and_cancelled(page, served):
+def test_a_reading_is_shown_and_cancelled_by_a_button_or_by_leaving(page, served):
     server = served()
     found = page(server)
     _choose(found, DUPLEX)
@@ -142,13 +135,7 @@ def test_a_reading_is_shown_and_cancelled(page, served):
     found.keyboard.press("Enter")
     expect(card.locator(".fault")).to_have_text("Reading duplex.ifc was cancelled. Nothing of it was kept.")
     expect(found.get_by_role("button", name="Choose a model")).to_be_focused()
-
-
-@linux
-def test_a_page_that_is_left_ends_its_reading(page, served):
-    server = served()
-    found = page(server)
-    _choose(found, DUPLEX)
+    _choose(found, DUPLEX)  # a page that is left ends its reading
     reader = hold_reader(server)
     expect(found.locator(".import-card").get_by_role("status")).to_have_text("Reading duplex.ifc")
     found.goto("about:blank")
@@ -189,12 +176,13 @@ def test_a_cobie_file_is_read_and_an_inventory_opened(page, served, tmp_path):
     expect(found.get_by_role("heading", name="office.xlsx")).to_be_visible()
 
 
-@pytest.mark.parametrize("theme", ["light", "dark"])
-def test_on_a_phone(page, served, theme):
-    found = page(served(), width=WIDTH, height=HEIGHT, color_scheme=theme, has_touch=True)
+def test_on_a_phone(page, served):
+    found = page(served(), width=WIDTH, height=HEIGHT, has_touch=True)
     for show in (lambda: None, lambda: (_choose(found, DUPLEX), _see_list(found))):
         show()
-        assert found.evaluate(OVER_THE_EDGE, WIDTH) == []
-        assert examine(found) == []
+        for theme in ("light", "dark"):
+            found.emulate_media(color_scheme=theme)
+            assert found.evaluate(OVER_THE_EDGE, WIDTH) == [], theme
+            assert examine(found) == [], theme
     found.get_by_role("button", name="Open the workbook").click()
     expect(found.get_by_role("heading", name="duplex.xlsx")).to_be_visible()

@@ -5,6 +5,7 @@ from playwright.sync_api import expect
 
 from tests.conftest import EXAMPLE
 from tests.web.looking import VIEWS, examine, show
+from tests.web.sheet_page import SheetPage
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -20,22 +21,25 @@ SMALL_TABS = """() => [...document.querySelectorAll("nav.tabs a")]
     .filter((one) => one.getBoundingClientRect().height < 40).length"""
 
 
-@pytest.mark.parametrize("theme", ["light", "dark"])
-def test_every_view_can_be_read(page, served, theme):
-    found = page(served(EXAMPLE), width=WIDTH, height=HEIGHT, color_scheme=theme, has_touch=True)
-    for view in VIEWS:
-        show(found, view)
-        assert found.evaluate("() => document.documentElement.scrollWidth") <= WIDTH, view
-        assert found.evaluate(OVER_THE_EDGE, WIDTH) == [], view
-        assert examine(found) == [], view
+def test_every_view_can_be_read(page, served):
+    found = page(served(EXAMPLE), width=WIDTH, height=HEIGHT, has_touch=True)
+    for theme in ("light", "dark"):
+        found.emulate_media(color_scheme=theme)
+        for view in VIEWS:
+            show(found, view)
+            assert found.evaluate("() => document.documentElement.scrollWidth") <= WIDTH, (view, theme)
+            assert found.evaluate(OVER_THE_EDGE, WIDTH) == [], (view, theme)
+            assert examine(found) == [], (view, theme)
     assert found.evaluate(SMALL_TABS) == 0
 
 
-def test_on_a_phone_the_tabs_are_at_the_bottom_and_nothing_is_edited(page, served):
-    found = page(served(EXAMPLE), width=WIDTH, height=HEIGHT, has_touch=True)
+def test_on_a_phone_the_tabs_are_at_the_bottom_nothing_is_edited_and_notices_leave_room(page, served):
+    server = served(EXAMPLE)
+    found = page(server, width=WIDTH, height=HEIGHT, has_touch=True)
     expect(found.locator(".counts")).to_contain_text("very high")
     tabs = found.get_by_role("navigation", name="Views").bounding_box()
     assert tabs["y"] + tabs["height"] == HEIGHT
+    expect(found.get_by_text("at least 900 pixels wide")).to_be_visible()
     expect(found.locator(".problems-rows")).to_be_hidden()
     expect(found.get_by_role("button", name="Undo")).to_be_hidden()
     found.get_by_role("button", name="Menu").click()
@@ -43,18 +47,12 @@ def test_on_a_phone_the_tabs_are_at_the_bottom_and_nothing_is_edited(page, serve
     found.get_by_role("button", name="Menu").click()
     expect(found.get_by_label("Language of the page")).to_be_hidden()
     before = found.evaluate("async () => (await import('/store.mjs')).store.state.version")
-    found.get_by_role("gridcell").first.click()
-    found.keyboard.type("x")
-    found.keyboard.press("Enter")
-    assert found.evaluate("async () => (await import('/store.mjs')).store.waiting") == 0
+    sheet = SheetPage(found, server)
+    found.get_by_role("gridcell").first.tap()
+    sheet.type("x", "<Enter>").settle()
     assert found.evaluate("async () => (await import('/store.mjs')).store.state.version") == before
-    found.set_viewport_size({"width": 900, "height": 800})
-    expect(found.get_by_role("button", name="Undo")).to_be_visible()
-
-
-def test_notices_leave_two_thirds_of_the_page_and_can_be_closed(page, served):
-    found = page(served(EXAMPLE), width=WIDTH, height=HEIGHT, has_touch=True)
-    expect(found.locator(".counts")).to_contain_text("very high")
+    sheet.open("Building")
+    expect(found.get_by_label("Address", exact=True)).not_to_be_editable()
     found.evaluate("""async () => {
         const { notice } = await import("/messages.mjs");
         for (const n of [1, 2, 3, 4]) notice(`${n} ${"cannot be saved ".repeat(20)}`, { kind: "error", lasting: true });
@@ -63,3 +61,5 @@ def test_notices_leave_two_thirds_of_the_page_and_can_be_closed(page, served):
     for left in (3, 2, 1, 0):
         found.locator(".notice").first.get_by_role("button", name="Close").click()
         expect(found.locator(".notice")).to_have_count(left)
+    found.set_viewport_size({"width": 900, "height": 800})
+    expect(found.get_by_role("button", name="Undo")).to_be_visible()

@@ -44,7 +44,7 @@ def test_a_dragged_piece_moves_in_the_workbook_and_undo_brings_it_back(page, ser
     expect(plan.piece(A2)).to_have_attribute("transform", "translate(5.0000 -4.0000)")
 
 
-def test_a_late_answer_does_not_move_a_piece_back(plan):
+def test_a_late_answer_does_not_move_a_piece_back_and_the_selection_is_shared_with_the_sheet(plan):
     """While the server still answers for the plan before, the piece stays where it was dropped."""
     held = []
     plan.page.route("**/api/plan*", lambda route: held.append(route))  # noqa: PLW0108 - it looks at its arguments
@@ -56,18 +56,36 @@ def test_a_late_answer_does_not_move_a_piece_back(plan):
     plan.settle()
     expect(plan.piece(A2)).to_have_attribute("transform", "translate(3.0000 -3.0000)")
     assert plan.at(A2)[:2] == (3, 3)
+    plan.click(3, 3)
+    plan.page.locator("nav.tabs [data-tab=sheet]").click()
+    expect(plan.page.locator(".sheet-cell")).to_have_text(re.compile(f"{A2}$"))
+    plan.sheet.open("Items").select("Description", 5)
+    plan.open()
+    expect(plan.page.get_by_role("button", name="First")).to_have_attribute("aria-pressed", "true")
+    expect(plan.piece(5)).to_have_class(re.compile("selected"))
 
 
-def test_several_pieces_are_framed_and_dragged_in_one_step(plan):
+def test_several_pieces_are_dragged_in_one_step_and_undone_wherever_the_focus_is(plan):
     plan.drag((1, 5.5), (6, 1))
     expect(plan.page.locator(".piece.selected")).to_have_count(2)
     plan.drag((2, 2), (3, 3), keys=["Alt"])
     assert (plan.at(A1)[:2], plan.at(A2)[:2]) == ((3, 3), (6, 5))
     plan.keyboard.press("Control+z")
     assert (plan.at(A1)[:2], plan.at(A2)[:2]) == ((2, 2), (5, 4))
+    plan.drag((2, 2), (3, 3), keys=["Alt"])
+    for focused in (
+        plan.page.get_by_label("Snap"),
+        plan.page.get_by_label("Falls"),
+        plan.page.locator("[data-tool=select]"),
+    ):
+        focused.focus()
+        plan.keyboard.press("Control+z")
+        assert plan.at(A1)[:2] == (2, 2)
+        plan.keyboard.press("Control+y")
+        assert plan.at(A1)[:2] == (3, 3)
 
 
-def test_a_piece_is_turned_by_its_handle_and_by_keys(plan):
+def test_a_piece_is_turned_and_snaps_to_the_wall_and_to_another_piece_unless_alt_is_held(plan):
     plan.click(5, 4)
     handle = plan.page.locator(".handle.turn")
     box = handle.locator("circle").last.bounding_box()
@@ -83,9 +101,6 @@ def test_a_piece_is_turned_by_its_handle_and_by_keys(plan):
     for angle in (105, 90, 0):
         plan.keyboard.press("Control+z")
         assert plan.at(A2) == (5, 4, angle)
-
-
-def test_a_piece_snaps_to_the_wall_and_to_another_piece_unless_alt_is_held(plan):
     near = 3 / plan.page.evaluate("() => document.querySelector('svg.plan .world').getScreenCTM().a")
     plan.drag((5, 4), (7.8 - near, 4.03))
     assert plan.at(A2)[0] == 7.8, "its side, 0.2 m from its centre, lies on the wall at 8 m"
@@ -133,7 +148,17 @@ def test_keys_alone_select_move_copy_and_take_off(plan):
     assert FREE not in plan.values("Items", "item")
 
 
-def test_copy_and_paste_goes_to_another_floor(plan):
+def test_a_copy_lies_beside_the_original_or_on_another_floor(plan):
+    plan.click(2, 2)
+    plan.keyboard.press("Control+c")
+    plan.keyboard.press("Control+v")
+    assert plan.at(FREE)[:2] == (2.5, 1.5)
+    expect(plan.say()).to_have_text("1 piece pasted")
+    plan.keyboard.press("Control+v")
+    assert plan.at(FREE + 1)[:2] == (3, 1)
+    plan.keyboard.press("Control+z")
+    plan.keyboard.press("Control+z")
+    plan.settle()
     plan.click(2, 2)
     plan.keyboard.press("Control+c")
     plan.page.get_by_role("button", name="First").click()
@@ -145,30 +170,6 @@ def test_copy_and_paste_goes_to_another_floor(plan):
     assert (x, y, angle) == (pytest.approx(1.5, abs=0.02), pytest.approx(1.2, abs=0.02), 90)
     assert plan.values("Items", "floor")[FREE] == "2"
     assert plan.values("Items", "description")[FREE] == "Bookcase"
-
-
-def test_a_copy_pasted_at_once_lies_beside_the_original(plan):
-    plan.click(2, 2)
-    plan.keyboard.press("Control+c")
-    plan.keyboard.press("Control+v")
-    assert plan.at(FREE)[:2] == (2.5, 1.5)
-    expect(plan.say()).to_have_text("1 piece pasted")
-    plan.keyboard.press("Control+v")
-    assert plan.at(FREE + 1)[:2] == (3, 1)
-
-
-def test_undo_works_while_a_checkbox_or_a_list_has_the_focus(plan):
-    plan.drag((2, 2), (3, 3), keys=["Alt"])
-    for focused in (
-        plan.page.get_by_label("Snap"),
-        plan.page.get_by_label("Falls"),
-        plan.page.locator("[data-tool=select]"),
-    ):
-        focused.focus()
-        plan.keyboard.press("Control+z")
-        assert plan.at(A1)[:2] == (2, 2)
-        plan.keyboard.press("Control+y")
-        assert plan.at(A1)[:2] == (3, 3)
 
 
 def test_what_is_not_known_of_a_piece_is_marked_and_leads_to_its_cell(page, served, tmp_path):
@@ -217,16 +218,6 @@ def test_a_type_is_dragged_from_the_catalogue_and_an_unplaced_piece_from_its_lis
     plan.keyboard.press("Control+z")
     expect(plan.piece(A3)).to_have_count(0)
     assert plan.at(A3)[:2] == (None, None)
-
-
-def test_the_selection_is_shared_with_the_sheet(plan):
-    plan.click(5, 4)
-    plan.page.locator("nav.tabs [data-tab=sheet]").click()
-    expect(plan.page.locator(".sheet-cell")).to_have_text(re.compile(f"{A2}$"))
-    plan.sheet.open("Items").select("Description", 5)
-    plan.open()
-    expect(plan.page.get_by_role("button", name="First")).to_have_attribute("aria-pressed", "true")
-    expect(plan.piece(5)).to_have_class(re.compile("selected"))
 
 
 def test_positions_are_written_in_the_unit_of_the_workbook(page, served, tmp_path):

@@ -5,6 +5,7 @@ import os
 import re
 import shutil
 import signal
+from base64 import b64encode
 from pathlib import Path
 
 import pytest
@@ -22,14 +23,10 @@ PAGE = Path(assess.web.__file__).with_name("page")
 MOST_BYTES = 150_000
 STATE = ".save-state"
 
-in_browser = [pytest.mark.browser, pytest.mark.slow]
-
 
 def browsing(test):
     """Mark a test that opens a browser."""
-    for mark in in_browser:
-        test = mark(test)
-    return test
+    return pytest.mark.browser(pytest.mark.slow(test))
 
 
 @pytest.fixture
@@ -90,16 +87,17 @@ def test_nothing_of_the_page_names_another_server_or_makes_elements_of_text():
 
 
 @browsing
-@pytest.mark.parametrize("theme", ["light", "dark"])
-def test_every_view_is_accessible_and_asks_no_other_server(page, served, example, theme):
+def test_every_view_is_accessible_and_asks_no_other_server(page, served, example):
     server = served(example)
-    found = page(server, color_scheme=theme, reduced_motion="reduce")
+    found = page(server, reduced_motion="reduce")
     addresses = note_requests(found)
     found.reload()
-    for view in VIEWS:
-        show(found, view)
-        expect(found.locator(f"#view-{view} [role=alert]:not(:empty)")).to_have_count(0)
-        assert examine(found) == [], view
+    for theme in ("light", "dark"):
+        found.emulate_media(color_scheme=theme, reduced_motion="reduce")
+        for view in VIEWS:
+            show(found, view)
+            expect(found.locator(f"#view-{view} [role=alert]:not(:empty)")).to_have_count(0)
+            assert examine(found) == [], (view, theme)
     assert len(addresses) > 20
     assert [one for one in addresses if not one.startswith((server.base + "/", "data:", "blob:"))] == []
 
@@ -140,10 +138,17 @@ def test_the_address_holds_the_tab_and_a_new_tab_shows_the_same(page, served, of
 
 
 @browsing
-def test_italian(page, served, office):
+def test_language_and_colours_are_kept_and_percentages_stay_on_their_side_of_a_limit(page, served, office):
     server = served(office)
-    found = page(server)
+    found = page(server, color_scheme="light")
     expect(found.get_by_role("link", name="Sheet", exact=True)).to_be_visible()
+    colour = "() => getComputedStyle(document.body).backgroundColor"
+    light = found.evaluate(colour)
+    found.get_by_label("Colours").select_option("dark")
+    dark = found.evaluate(colour)
+    percents = "async chances => { const { percent } = await import('/texts.mjs'); return chances.map(percent); }"
+    shown = [one.replace("\u00a0", " ") for one in found.evaluate(percents, [0.02999, 0.03, 0.69996, None, 1, 0])]
+    assert shown == ["2.999 %", "3.0 %", "69.996 %", "–", "100.0 %", "0.0 %"]
     found.get_by_label("Language of the page").select_option("it")
     expect(found.get_by_role("link", name="Foglio", exact=True)).to_be_visible()
     expect(found.locator(STATE)).to_have_text("Tutte le modifiche sono salvate in office.xlsx")
@@ -155,36 +160,10 @@ def test_italian(page, served, office):
     assert numbers == ["1,5", "12.345,7", "1,2\u00a0%", "x: 2.000"]
     found.reload()
     expect(found.get_by_role("link", name="Foglio", exact=True)).to_be_visible()
+    assert found.evaluate(colour) == dark != light
     assert server.client.get("/api/book").json()["language"] == "en"
     found.get_by_label("Lingua della pagina").select_option("en")
-    expect(found.get_by_role("link", name="Sheet", exact=True)).to_be_visible()
-
-
-@browsing
-def test_the_page_speaks_the_browsers_language_where_no_workbook_says_otherwise(page, served):
-    found = page(served(), locale="it-IT")
-    expect(found.get_by_role("heading", name="Aprire una cartella di lavoro")).to_be_visible()
-
-
-@browsing
-def test_the_theme_is_kept(page, served, office):
-    found = page(served(office), color_scheme="light")
-    colour = "() => getComputedStyle(document.body).backgroundColor"
-    light = found.evaluate(colour)
-    found.get_by_label("Colours").select_option("dark")
-    dark = found.evaluate(colour)
-    found.reload()
     expect(found.get_by_label("Colours")).to_have_value("dark")
-    assert found.evaluate(colour) == dark != light
-
-
-@browsing
-def test_a_percentage_stays_on_its_side_of_a_limit(page, served, office):
-    chances = [0.02999, 0.03, 0.69996, None, 1, 0]
-    shown = page(served(office)).evaluate(
-        "async chances => { const { percent } = await import('/texts.mjs'); return chances.map(percent); }", chances
-    )
-    assert [one.replace("\u00a0", " ") for one in shown] == ["2.999 %", "3.0 %", "69.996 %", "–", "100.0 %", "0.0 %"]
 
 
 # ---------------------------------------------------------------- nothing is lost
@@ -337,8 +316,6 @@ DROP = """([name, data]) => {
 
 
 def drop(page, name, data):
-    from base64 import b64encode
-
     page.evaluate(DROP, [name, b64encode(data).decode()])
 
 

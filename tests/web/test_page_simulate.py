@@ -42,7 +42,7 @@ def simulated(page):
     )
 
 
-def test_from_start_to_report(simulating):
+def test_from_start_to_report_and_pieces_changed_since(simulating):
     page = simulating
     run(page, "HTML", "CSV")
     frame = page.frame_locator("iframe[title=Report]")
@@ -80,11 +80,6 @@ def test_from_start_to_report(simulating):
     page.reload()
     expect(page.frame_locator("iframe[title=Report]").locator("h1").first).to_be_visible()
     assert [row for row, _ in simulated(page)] == SIMULATED
-
-
-def test_pieces_changed_since_are_told_apart(simulating):
-    page = simulating
-    run(page, "CSV")
     expect(page.locator(".stale-note")).to_have_count(0)
     page.evaluate("""async () => {
         const { store } = await import("/store.mjs");
@@ -97,15 +92,7 @@ def test_pieces_changed_since_are_told_apart(simulating):
     expect(page.locator(".stale-note")).to_have_count(0)
 
 
-def test_reports_by_the_formula_alone(simulating):
-    page = simulating
-    page.get_by_label("None: reports by the formula only").check()
-    run(page, "HTML")
-    expect(page.get_by_text("Nothing was simulated")).to_be_visible()
-    assert simulated(page) == []
-
-
-def test_a_run_is_found_again_after_a_reload_and_can_be_cancelled(simulating):
+def test_a_run_is_found_again_after_a_reload_and_cancelled_and_another_is_by_the_formula_alone(simulating):
     page = simulating
     choose(page, "PDF", "HTML")
     page.get_by_label("Motions of each floor").select_option("auto")
@@ -117,6 +104,10 @@ def test_a_run_is_found_again_after_a_reload_and_can_be_cancelled(simulating):
     expect(page.get_by_text("was cancelled")).to_be_visible()
     expect(page.get_by_role("button", name="Start the run")).to_be_enabled()
     assert page.evaluate("async () => (await (await fetch('/api/job')).json()).job.state") == "cancelled"
+    page.get_by_label("None: reports by the formula only").check()
+    run(page, "HTML")
+    expect(page.get_by_text("Nothing was simulated")).to_be_visible()
+    assert simulated(page) == []
 
 
 def test_a_workbook_with_errors_says_which(page, served, tmp_path):

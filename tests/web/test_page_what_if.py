@@ -35,7 +35,7 @@ def counts(page, at):
     return [int(row.locator("td.num").nth(at).text_content()) for row in page.locator(".bars tbody tr").all()]
 
 
-def test_sliders_and_ticks_change_the_counts_and_not_the_file(sheet, path):
+def test_sliders_ticks_and_scenarios_change_the_counts_and_not_the_file(sheet, path):
     page, before = sheet.page, path.read_bytes()
     present = counts(page, 0)
     assert counts(page, 1) == present
@@ -63,9 +63,6 @@ def test_sliders_and_ticks_change_the_counts_and_not_the_file(sheet, path):
     assert path.read_bytes() == before
     assert sheet.server.client.get("/api/download").data == before
     assert not sheet.server.client.get("/api/state").json()["state"]["can_undo"]
-
-
-def test_another_scenario_that_cannot_be_computed_says_what_is_missing(sheet):
     sheet.page.get_by_label("Scenario").select_option("ASCE 7-22")
     expect(sheet.page.get_by_role("alert")).to_contain_text("SDS")
 
@@ -88,11 +85,7 @@ def test_anchors_are_written_after_a_question_and_undone_in_one_step(sheet):
     page.get_by_role("button", name="Undo").last.click()
     expect(page.get_by_role("checkbox", name=re.compile("A2"))).to_be_visible()
     assert sheet.settle().values("Items", "anchored") == {4: "yes"}
-
-
-def test_an_undo_that_a_notice_offers_never_undoes_something_else(sheet):
-    page = sheet.page
-    page.get_by_role("checkbox", name=re.compile("A2")).check()
+    page.get_by_role("checkbox", name=re.compile("A2")).check()  # an undo that a notice offers undoes nothing else
     page.get_by_role("button", name="Write into the workbook").click()
     page.get_by_role("dialog").get_by_role("button", name="Write").click()
     said = page.locator(".notice").filter(has_text="1 row written.")

@@ -86,36 +86,28 @@ def hall(tmp_path):
     return hold(tmp_path / "w.xlsx")
 
 
-def test_an_edit_changes_a_state(hall):
-    before = _states(_answer(hall)["routes"], "route")
-    assert (before[("R",)][0], before[("S",)][:2]) == ("blocked", ("blocked", "✕ blocked as it stands"))
-    edit(hall, ("Items", 2, "anchored", "yes"))
-    assert _states(_answer(hall)["routes"], "route")[("R",)][0] == "open"
-
-
-def test_a_room_that_nothing_joins_is_not_known(hall):
-    rooms = _answer(hall)["rooms"]
-    assert {(one["room"], one["place_row"]): (one["state"], one["detail"]) for one in rooms}["Attic", 3] == (
+def test_an_edit_changes_a_state_and_a_faulty_segment_leaves_no_route_open(hall):
+    before = _answer(hall)
+    states = _states(before["routes"], "route")
+    assert (states[("R",)][0], states[("S",)][:2]) == ("blocked", ("blocked", "✕ blocked as it stands"))
+    assert {(one["room"], one["place_row"]): (one["state"], one["detail"]) for one in before["rooms"]}["Attic", 3] == (
         "not_known", "no segment joins it to an exit or a stair",
     )  # fmt: skip
-
-
-def test_a_route_of_which_a_segment_has_an_error_is_never_open(hall):
-    edit(hall, ("Items", 2, "anchored", "yes"), ("Routes", 4, "route", "R"), ("Routes", 4, "segment", "c"),
-         ("Routes", 4, "start", "Nowhere"))  # fmt: skip
+    edit(hall, ("Items", 2, "anchored", "yes"))
+    assert _states(_answer(hall)["routes"], "route")[("R",)][0] == "open"
+    edit(hall, *(("Routes", 4, *one) for one in (("route", "R"), ("segment", "c"), ("start", "Nowhere"))))
     (route, *_) = _answer(hall)["routes"]
     assert (route["route"], route["state"], route["chance"]) == ("R", "not_known", None)
     assert "row of the sheet Routes has an error: 4" in route["detail"]
 
 
-@pytest.mark.parametrize("floor", [2, 3])
-def test_routes_on_a_floor_without_shaking_are_not_known(hall, floor):
+def test_routes_on_a_floor_without_shaking_are_not_known(hall):
     """What is not crossed does not matter."""
-    edit(hall, ("Floors", floor, "pfa_x", None), ("Floors", floor, "elevation", None))
-    answer = _answer(hall)
-    states = {one["state"] for one in answer["routes"]}
-    assert states == ({"not_known"} if floor == 2 else {"blocked"})
-    assert bool(answer["error"]) == (floor == 2)
+    for floor, state in ((3, "blocked"), (2, "not_known")):
+        edit(hall, ("Floors", floor, "pfa_x", None), ("Floors", floor, "elevation", None))
+        answer = _answer(hall)
+        assert {one["state"] for one in answer["routes"]} == {state}
+        assert bool(answer["error"]) == (state == "not_known")
 
 
 def test_words_are_in_the_language_of_the_workbook(tmp_path):

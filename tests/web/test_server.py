@@ -10,6 +10,7 @@ import openpyxl
 import pytest
 
 from tests.waiting import PATIENCE, wait_until
+from tests.web.serving import end_late
 from tests.workbooks import write
 
 posix = pytest.mark.skipif(os.name == "nt", reason="signals")
@@ -147,9 +148,10 @@ def test_enter_in_the_terminal_opens_the_page_again(tmp_path):
         env=os.environ | {"TMPDIR": str(tmp_path)},
     )  # fmt: skip
     try:
-        first = process.stdout.readline()
-        os.write(leader, b"\n")
-        second = process.stdout.readline()
+        with end_late(process):
+            first = process.stdout.readline()
+            os.write(leader, b"\n")
+            second = process.stdout.readline()
         assert first.split("=")[0] == second.split("=")[0]
         assert first != second
     finally:
