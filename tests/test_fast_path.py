@@ -40,6 +40,7 @@ def test_nothing_heavy_is_imported_before_it_is_needed(tmp_path):
     )
     for code, heavy in (
         ("import assess", {"numpy", "openpyxl", "typer"}),
+        ("import assess.motion.formats as formats\nformats.all_formats()", {"obspy"}),
         ("import assess.hazard, assess.fragility", {"numba", "scipy"}),
         ("import assess.cli.app\nassess.cli.app.build_app()", {"starlette", "uvicorn", "anyio", "assess.web"}),
         (run, {*HEAVY, "assess.routes.evaluate", "assess.routes.obstructions"}),  # there are no routes

@@ -149,9 +149,8 @@ def test_the_chance_of_a_lognormal():
     assert lognormal_chance(0.0, 0.4, 0.5) == 0
 
 
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
+def test_counts_that_cannot_be():
+    for counts, message in (
         (([0.1, 0.2], [1], [2, 2]), "have shapes"),
         (([0.1, math.nan], [1, 1], [2, 2]), "must be finite"),
         (([0.0, 0.2], [1, 1], [2, 2]), "levels must be above 0"),
@@ -159,8 +158,6 @@ def test_the_chance_of_a_lognormal():
         (([0.1, 0.2], [-1, 1], [2, 2]), "fallen 0 to trials"),
         (([0.1, 0.2], [0, 0], [0, 0]), "no trials"),
         (([], [], []), "no trials"),
-    ],
-)
-def test_counts_that_cannot_be(given, message):
-    with pytest.raises(ValueError, match=message):
-        fit_fragility(*given)
+    ):
+        with pytest.raises(ValueError, match=message):
+            fit_fragility(*counts)

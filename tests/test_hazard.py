@@ -51,14 +51,10 @@ def test_tables_as_people_write_them(text):
     assert not curve.is_far
 
 
-def test_a_table_in_latin_1():
+def test_tables_in_latin_1_and_with_level_rates():
     assert parse_hazard("# sito: città\n".encode("latin-1") + PLAIN.encode(), "x.csv").rate.size == 3
-
-
-def test_rates_may_be_level_in_places():
-    np.testing.assert_array_equal(
-        parse("pga_g,annual_rate\n0.01,0.02\n0.1,0.02\n0.4,0.002\n").rate, [0.02, 0.02, 0.002]
-    )
+    level = parse("pga_g,annual_rate\n0.01,0.02\n0.1,0.02\n0.4,0.002\n").rate
+    np.testing.assert_array_equal(level, [0.02, 0.02, 0.002])
 
 
 @pytest.mark.parametrize(
@@ -100,13 +96,10 @@ def test_tables_that_cannot_be_used(text, message):
     assert isinstance(raised.value.message, Text), "it can be translated"
 
 
-@pytest.mark.parametrize("data", [b"PK\x03\x04", b"\xff\xfep\0g\0a\0", b"pga_g\0"])
-def test_files_that_are_no_text(data):
-    with pytest.raises(InputError, match=r"x\.csv: the file is not plain text\. Save it as CSV UTF-8"):
-        parse_hazard(data, "x.csv")
-
-
-def test_files_that_are_too_large(monkeypatch):
+def test_files_that_are_no_text_or_too_large(monkeypatch):
+    for data in (b"PK\x03\x04", b"\xff\xfep\0g\0a\0", b"pga_g\0"):
+        with pytest.raises(InputError, match=r"x\.csv: the file is not plain text\. Save it as CSV UTF-8"):
+            parse_hazard(data, "x.csv")
     monkeypatch.setattr("assess.hazard.LARGEST_FILE", 20)
     with pytest.raises(InputError, match="larger than"):
         parse(PLAIN)
@@ -170,9 +163,6 @@ def test_chances_of_0_and_1_are_left_out():
     assert curve.distance < 100
     np.testing.assert_allclose(curve.pga, np.array([0.2, 0.4]) * G)
     assert str(curve.notes[0]) == "1 level whose chance is 0 or 1 was left out"
-
-
-def test_a_curve_that_is_not_the_mean_says_so():
     curve = parse(SITES.replace("kind='mean'", "kind='quantile-0.85'"), latitude=42, longitude=13)
     assert [str(note) for note in curve.notes] == ["the curve is 'quantile-0.85', not the mean"]
 

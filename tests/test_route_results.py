@@ -106,6 +106,27 @@ def test_a_round_trip_changes_nothing_and_is_small(written):
     assert len(kept) < 20_000
 
 
+def test_widths_needs_and_what_blocks(written):
+    """From the rows of the workbook to what is said of each segment."""
+    rows = {one.item: one.row for one in written[0].item_rows}
+    segments, routes = written[1]["routes"]["segments"], written[1]["routes"]["routes"]
+    aisle, flight, lane, back, yard = segments
+    assert (back["clear_width_used_m"], back["required_width_used_m"]) == (0.9, 0.9)
+    assert {"clear_assumed", "required_assumed"} <= set(back["flags"])
+    assert (flight["needed_width_m"], flight["insufficient_for_occupants"]) == (pytest.approx(1.524), True)
+    assert flight["insufficient_after_falls"]["probability"] == 1
+    assert lane["insufficient_after_falls"] is lane["needed_width_m"] is None
+    (tall,) = aisle["pieces"]
+    assert (tall["item"], tall["row"], tall["by_plan"], tall["blocks_alone"]) == ("tall", rows["tall"], True, True)
+    assert tall["distance_m"] == pytest.approx(0.15)
+    assert (aisle["state"], tall["falls_while_blocked"]) == ("blocked", aisle["blocked"]["probability"])
+    (held,) = yard["pieces"]
+    assert (held["item"], yard["state"], yard["blocked"]["pieces"]) == ("held", "open", 0)
+    assert yard["blocked_if_anchors_fail"]["pieces"] == 1
+    (fix,) = routes[0]["fixes"]
+    assert (fix["item"], fix["left"], fix["gain"]) == ("tall", 0, pytest.approx(routes[0]["blocked"]["probability"]))
+
+
 def test_a_stair_is_open_and_without_a_clear_width_not_known(written, tmp_path):
     """The flight joins two floors and no piece names it; of one without a width that it is open is not known."""
     flight = written[1]["routes"]["segments"][1]

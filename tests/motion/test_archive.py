@@ -64,6 +64,8 @@ def test_windows_paths(tmp_path: Path) -> None:
     # Some programs for Windows write them against the standard.
     (record,) = read_set(tmp_path, zipped({"a/C.V2": csmip_v2(EAST)}).replace(b"a/C.V2", b"a\\C.V2"))
     assert record.file == "set.zip/a/C.V2"
+    (record,) = read_set(tmp_path, zipped({"d/" * 20_000 + "r.at2": at2()}))
+    assert len(record.file) < 300, "long names are cut"
 
 
 def test_nothing_to_read(tmp_path: Path) -> None:

@@ -31,19 +31,11 @@ def _write_at2(path: Path, component: str, station: str = "TOWN HALL", step: str
     return path
 
 
-@pytest.mark.parametrize("text", VERTICAL.split("|"))
-def test_words_for_the_vertical(text: str) -> None:
-    assert read_direction(text) == read_direction(text.lower(), bare_degrees=False) == (None, True)
-
-
-@pytest.mark.parametrize(("text", "azimuth"), LEVEL.items())
-def test_words_for_a_horizontal_direction(text: str, azimuth: float | None) -> None:
-    assert read_direction(text) == (azimuth, False)
-
-
-@pytest.mark.parametrize("text", NOT_KNOWN)
-def test_what_tells_nothing_is_not_known(text: str) -> None:
-    assert read_direction(text, bare_degrees=False) == (None, None)
+def test_words_for_directions() -> None:
+    for text in VERTICAL.split("|"):
+        assert read_direction(text) == read_direction(text.lower(), bare_degrees=False) == (None, True), text
+    assert {text: read_direction(text) for text in LEVEL} == {text: (one, False) for text, one in LEVEL.items()}
+    assert {read_direction(text, bare_degrees=False) for text in NOT_KNOWN} == {(None, None)}
 
 
 def test_the_odd_one_out_of_three_components_is_vertical(tmp_path: Path) -> None:
@@ -64,13 +56,10 @@ def test_beside_a_vertical_one_the_other_two_are_horizontal(tmp_path: Path) -> N
     assert [len(record.notes) for record in records] == [1, 1, 0]
 
 
-@pytest.mark.parametrize("step", ["0.1000E-01", "0.1000D-01 SEC", "1.0E-2,", ".01", ".01000SEC"])
-def test_the_step_of_a_peer_file_is_read_to_its_end(tmp_path: Path, step: str) -> None:
-    (record,) = read_records(_write_at2(tmp_path / "a.at2", "090", step=step))
-    assert record.time_step == 0.01
-
-
-@pytest.mark.parametrize("step", ["0.01.5", "0.01X", "-.01"])
-def test_a_step_that_is_no_number_is_refused(tmp_path: Path, step: str) -> None:
-    with pytest.raises(RecordError, match="line 4 does not give the number of points and their time step"):
-        read_records(_write_at2(tmp_path / "a.at2", "090", step=step))
+def test_the_step_of_a_peer_file_is_read_to_its_end(tmp_path: Path) -> None:
+    for step in ("0.1000E-01", "0.1000D-01 SEC", "1.0E-2,", ".01", ".01000SEC"):
+        (record,) = read_records(_write_at2(tmp_path / "a.at2", "090", step=step))
+        assert record.time_step == 0.01, step
+    for step in ("0.01.5", "0.01X", "-.01"):
+        with pytest.raises(RecordError, match="line 4 does not give the number of points and their time step"):
+            read_records(_write_at2(tmp_path / "a.at2", "090", step=step))

@@ -13,15 +13,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
 from assess.errors import RecordError
 from assess.motion.formats import read_records
 from assess.motion.formats._direction import read_direction
 from assess.motion.formats._values import read_acceleration_unit
 from assess.motion.record import Record, treat
-from tests.motion.damage import damaged
 
 MANIFEST = "MANIFEST.md"
 
@@ -162,20 +159,6 @@ def compare(record: Record, row: Row) -> None:
     )  # numbers of directions
     if azimuth is not None or vertical:
         assert (record.azimuth_deg, record.vertical) == (azimuth, vertical), where
-
-
-@settings(max_examples=100, deadline=None, suppress_health_check=list(HealthCheck))
-@given(draw=st.data())
-def test_damage_is_a_record_error_at_worst(tmp_path: Path, draw: st.DataObject) -> None:
-    small = [path for path in FILES if path.stat().st_size < 150_000]
-    damage = draw.draw(damaged([small[draw.draw(st.integers(0, len(small) - 1))].read_bytes()]))
-    path = tmp_path / "damaged"
-    path.write_bytes(damage.data)
-    try:
-        records = read_records(path)
-    except RecordError:
-        return
-    assert all(np.isfinite(treat(record).pfv) for record in records)
 
 
 # --- velocity ---

@@ -311,23 +311,3 @@ def test_points_without_a_value_are_next_to_some_buildings_only():
 def test_a_file_that_is_not_there(tmp_path):
     with pytest.raises(InputError, match=r"grid\.xml: the file cannot be read \(No such file"):
         read_shakemap(tmp_path / "grid.xml")
-
-
-def test_whatever_is_done_to_the_bytes_it_is_read_or_refused():
-    """Bytes lost, doubled and changed anywhere: a value that could be, or a message that names the file."""
-    whole, random = build_grid(PLAIN | {"PGV": ("cms", PGA), "STDPGA": ("", (0.3,) * 6)}), np.random.default_rng(4)
-    refused = read = 0
-    for _ in range(400):
-        at, length = random.integers(len(whole), size=2) // (1, 20)
-        piece = random.choice([b"", whole[at : at + length] * 2, random.bytes(int(length) % 9), b"<!--", b"nan "])
-        data = whole[:at] + bytes(piece) + whole[at + length :]
-        try:
-            site = _at(data, 37.6, -121.7)
-        except InputError as error:
-            refused += error.message.startswith("grid.xml: ")
-        else:
-            assert 0 < site.pga <= 10 * GRAVITY
-            assert 0 <= site.dispersion <= 3
-            read += 1
-    assert refused + read == 400, "what is wrong is told of the file"
-    assert min(refused, read) > 20

@@ -16,6 +16,7 @@ from assess.motion.sweep import Single
 from assess.motion.target import Grid, Target, recorded_target
 from assess.progress import Progress
 from tests.motion.motions import cut
+from tests.waiting import PATIENCE
 
 GRID = Grid(0.005, 1601)
 TARGET = recorded_target(cut("b", 8, 16), GRID)
@@ -70,30 +71,23 @@ def test_what_is_handed_out_may_be_changed() -> None:
     assert share().spectra.ordinates.all()
 
 
-@pytest.mark.parametrize(
-    "other",
-    [
+def test_targets_axes_seeds_and_signs_that_differ_at_all_share_nothing(nothing_kept: list[int]) -> None:
+    first = share().realise(0, 2)
+    others = (
         replace(TARGET, pseudo=TARGET.pseudo * 1.0001),
         replace(TARGET, pfa=TARGET.pfa * 1.0001),
         replace(TARGET, pfv=TARGET.pfv * 1.0001),
         replace(TARGET, envelopes=replace(TARGET.envelopes, values=TARGET.envelopes.values**2)),
-    ],
-    ids=["spectrum", "pfa", "pfv", "envelope"],
-)
-def test_targets_that_differ_at_all_share_nothing(other: Target, nothing_kept: list[int]) -> None:
-    first = share().realise(0, 2)
-    assert not np.array_equal(share(other).realise(0, 2), first)
-    assert len(nothing_kept) == 2
-
-
-def test_axes_seeds_and_signs_share_nothing(nothing_kept: list[int]) -> None:
-    share()
+    )
+    for built, other in enumerate(others, 2):
+        assert not np.array_equal(share(other).realise(0, 2), first)
+        assert len(nothing_kept) == built
     share(axis="Y")
     share_motions(TARGET, GRID, factor=1.0, seed=2, axis="X")
     share_motions(TARGET, GRID, factor=1.0, seed=1, axis="X", signs=(1, 1, 1, -1, 1, 1, 1, 1, 1))
-    assert len(nothing_kept) == 4
+    assert len(nothing_kept) == 8
     share_motions(TARGET, GRID, factor=1.0, seed=1, axis="X", signs=(1,) * 9)  # signs that turn nothing
-    assert len(nothing_kept) == 4
+    assert len(nothing_kept) == 8
 
 
 def test_threads_that_ask_at_once_wait_for_one(nothing_kept: list[int]) -> None:
@@ -109,13 +103,13 @@ def test_whoever_waits_can_stop(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def slow(*given, **named):
         begun.set()
-        go_on.wait(60)
+        go_on.wait(PATIENCE)
         return build_generator(*given, **named)
 
     monkeypatch.setattr(shared_motions, "build_generator", slow)
     with ThreadPoolExecutor(1) as pool:
         first = pool.submit(share)
-        assert begun.wait(60)
+        assert begun.wait(PATIENCE)
         cancel.set()
         with pytest.raises(CancelledError):
             share_motions(TARGET, GRID, factor=1.0, seed=1, axis="X", progress=Progress(cancel=cancel))
@@ -141,10 +135,8 @@ def test_no_more_is_kept_than_allowed(monkeypatch: pytest.MonkeyPatch, nothing_k
     built = len(nothing_kept)
     np.testing.assert_array_equal(share().realise(0, 140), first)
     assert len(nothing_kept) == built + 1
-
-
-def test_what_exceeds_the_room_alone_is_made_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(shared_motions.KEPT, "most", 1000)
+    shared_motions.KEPT.forget()
+    monkeypatch.setattr(shared_motions.KEPT, "most", 1000)  # what exceeds the room alone is made all the same
     np.testing.assert_array_equal(share().realise(0, 120), alone(0, 120))
     assert shared_motions.KEPT.nbytes == 0
 

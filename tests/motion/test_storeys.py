@@ -1,7 +1,5 @@
 """The elevation that is assumed of a floor from its name."""
 
-import pytest
-
 from assess.motion.assumed import assume_elevation, find_lowest_number, find_storey
 
 NAMES = {
@@ -13,35 +11,20 @@ NAMES = {
 UNNUMBERED = ["Roof", "Mezzanine", "25A", "Block 3 floor 10", "A", "", "2/3", "Wing 2", "B", "b.", "-", "- "]
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_the_storey_that_a_name_tells(name):
-    assert find_storey(name) == NAMES[name]
-
-
-@pytest.mark.parametrize("name", UNNUMBERED)
-def test_names_that_tell_none(name):
-    assert find_storey(name) is None
-    assert assume_elevation(name, 12.0, 4) is None
+def test_the_storey_that_a_name_tells():
+    assert {name: find_storey(name) for name in NAMES} == NAMES
+    assert {find_storey(name) for name in UNNUMBERED} == {None}
+    assert {assume_elevation(name, 12.0, 4) for name in UNNUMBERED} == {None}
+    assert assume_elevation("2", None, 4) is assume_elevation("2", 12.0, None) is None
 
 
 def test_storeys_are_of_one_height_and_no_floor_is_above_the_roof():
     assert [assume_elevation(str(one), 12.0, 4) for one in range(6)] == [0, 3, 6, 9, 12, 12]
 
 
-@pytest.mark.parametrize(("height", "storeys"), [(None, 4), (12.0, None)])
-def test_without_height_or_storeys_nothing_is_assumed(height, storeys):
-    assert assume_elevation("2", height, storeys) is None
-
-
-@pytest.mark.parametrize(
-    ("floors", "lowest"),
-    [({"1": None, "2": None}, 0), ({"1": 0.0, "2": None}, 1), ({"0": 0.0, "1": None}, 0), ({"Hall": 0.0, "1": None}, 0),
-     ({"1": -4.0, "2": None}, 0), ({"B1": -3.0, "2": 0.0}, 2), ({"1": 0.0, "2": 0.0}, None),
-     ({"1": 0.0, "2": 3.0}, None)],
-)  # fmt: skip
-def test_the_ground_floor_begins_the_numbers(floors, lowest):
-    assert find_lowest_number(floors.items()) == lowest
-
-
-def test_floors_are_counted_from_the_number_of_the_ground_floor():
+def test_the_ground_floor_begins_the_numbers():
+    floors = {0: [{"1": None, "2": None}, {"0": 0.0, "1": None}, {"Hall": 0.0, "1": None}, {"1": -4.0, "2": None}],
+              1: [{"1": 0.0, "2": None}], 2: [{"B1": -3.0, "2": 0.0}], None: [{"1": 0.0, "2": 0.0}, {"1": 0.0, "2": 3.0}]}
+    for lowest, cases in floors.items():
+        assert {find_lowest_number(one.items()) for one in cases} == {lowest}
     assert [assume_elevation(str(one), 12.0, 4, lowest=1) for one in range(6)] == [0, 0, 3, 6, 9, 12]

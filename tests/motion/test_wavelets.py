@@ -95,19 +95,11 @@ def test_far_ordinates_are_nearly_left_alone(name: str, place: int) -> None:
     assert np.abs(after / before - 1)[far].mean() < 0.006
 
 
-def test_a_ratio_of_one_changes_nothing() -> None:
+def test_it_is_linear_in_what_is_asked_follows_the_sign_and_a_ratio_of_one_changes_nothing() -> None:
     motion = read_motion("a").acceleration
     np.testing.assert_array_equal(adjusted(motion, np.ones(PERIODS.size)), motion.astype(np.float32))
-
-
-def test_it_is_linear_in_what_is_asked() -> None:
-    motion = read_motion("a").acceleration
     small, large = (adjusted(motion, ratios_at(3, ratio)) - motion for ratio in (1.01, 1.04))
     np.testing.assert_allclose(4 * small, large, atol=2e-6)
-
-
-def test_it_follows_the_sign_of_the_motion() -> None:
-    motion = read_motion("a").acceleration
     np.testing.assert_allclose(adjusted(-motion, ratios_at(2, 1.1)), -adjusted(motion, ratios_at(2, 1.1)), atol=1e-6)
 
 
@@ -116,9 +108,6 @@ def test_a_motion_shorter_than_the_wavelet_is_changed_within_its_ends() -> None:
     changed = adjusted(motion, np.full(PERIODS.size, 1.1))
     assert np.isfinite(changed).all()
     assert not np.array_equal(changed, motion)
-
-
-def test_a_silent_motion_stays_silent() -> None:
     np.testing.assert_array_equal(adjusted(np.zeros(500), np.full(PERIODS.size, 1.2)), 0.0)
 
 

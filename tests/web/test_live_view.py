@@ -158,7 +158,7 @@ def test_the_run_and_the_page_agree_on_a_faulty_workbook(tmp_path):
     for _ in range(2):
         assert _answer(book, view, version)["items"]["row"] == [5], "asked again, it is the same"
     assert _answer(book, view, book.version)["items"]["row"] == []
-    wrong = [("Floors", 3, "pfa_x", "strong"), ("Items", 7, "height", None), ("Items", 8, "axis", "Z"),
+    wrong = [("Floors", 3, "pfa_x", "strong"), ("Items", 7, "height", "tall"), ("Items", 8, "axis", "Z"),
              ("Items", 9, "quantity", -3), ("Building", 0, "ground_pga", "a lot")]  # fmt: skip
     edit(book, *wrong)
     (tmp_path / "w.xlsx").write_bytes(book.write())
@@ -241,7 +241,7 @@ def test_problems_are_in_the_language_of_the_workbook(tmp_path):
 def test_sessions_of_two_languages_do_not_mix(tmp_path):
     def words(language):
         book = hold(paths[language])
-        return {_by_row(_answer(book))[5][1] for _ in range(20)}
+        return {_by_row(_answer(book))[5][1] for _ in range(6)}
 
     paths = {code: _write(tmp_path / f"{code}.xlsx", {}, code) for code in ("en", "it")}
     with ThreadPoolExecutor(4) as pool:

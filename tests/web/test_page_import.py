@@ -62,19 +62,24 @@ def test_a_dropped_model_shows_what_was_taken_and_becomes_a_workbook(page, serve
     expect(found.locator("#view-sheet")).to_be_visible()
 
 
+def _reload_holding(page, last, first):
+    """Reload the page, and answer its request of one path once that of another is answered."""
+    held = []
+    page.route(lambda url: urlsplit(url).path == last, lambda route: held.append(route))  # noqa: PLW0108
+    with page.expect_response(lambda reply: urlsplit(reply.url).path == first):
+        page.reload(wait_until="commit")
+    page.unroute_all()
+    for one in held:
+        one.continue_()
+
+
 def test_what_was_taken_is_shown_after_a_reload_whichever_answer_comes_last(page, served, tmp_path):
     found = page(served())
     _choose(found, write_cobie(tmp_path / "handover.xlsx"))
-    _see_list(found, "handover.xlsx")
     for first, last in (("/api/book", "/api/import"), ("/api/import", "/api/book")):
-        held = []
-        found.route(lambda url, last=last: urlsplit(url).path == last, lambda route, held=held: held.append(route))
-        with found.expect_response(lambda reply, first=first: urlsplit(reply.url).path == first):
-            found.reload(wait_until="commit")
-        found.unroute_all()
-        for one in held:
-            one.continue_()
         _see_list(found, "handover.xlsx")
+        _reload_holding(found, last, first)
+    _see_list(found, "handover.xlsx")
 
 
 FORMULAS = ('=HYPERLINK("https://example.org")', "+1", "-1", "@SUM(A1)", "\t=1", " =1", "Desk\t=1", "Desk\n=1", "A=1")
