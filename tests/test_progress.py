@@ -151,18 +151,18 @@ def test_work_is_left_in_its_midst_and_leaves_nothing(tmp_path, monkeypatch):
     inventory, results = assess.read_inventory(path), assess.run(path, UNVERIFIED)
     monkeypatch.setattr("assess.pipeline.run.make_folder", lambda *_: temporary.mkdir() or temporary)
     for place, work in {
-        "assess.workbook.read._check": lambda progress: assess.read_inventory(path, progress=progress),
-        "assess.pipeline.run.verify": lambda progress: assess.run(inventory, cancel=progress.cancel, series_folder=out),
-        "assess.pipeline.run.build_series": lambda progress: assess.run(inventory, UNVERIFIED, cancel=progress.cancel),
-        "assess.report.data._pack_outcomes": lambda progress: assess.write_reports(
-            results, out, "npz", progress=progress
+        "assess.workbook.read._check": lambda one: assess.read_inventory(path, progress=Progress(cancel=one)),
+        "assess.pipeline.run.verify": lambda one: assess.run(inventory, cancel=one, series_folder=out),
+        "assess.pipeline.run.build_series": lambda one: assess.run(inventory, UNVERIFIED, cancel=one),
+        "assess.report.data._pack_outcomes": lambda one: assess.write_reports(
+            results, out, "npz", progress=Progress(cancel=one)
         ),
     }.items():
         blocked = Blocked(Event())
         with monkeypatch.context() as patch, closing(blocked):
             patch.setattr(place, blocked)
             with pytest.raises(CancelledError):
-                work(Progress(cancel=blocked.cancel))
+                work(blocked.cancel)
             assert not blocked.ended.is_set(), place
             assert [one.name for one in tmp_path.iterdir()] == ["w.xlsx"], place
 

@@ -56,8 +56,8 @@ def test_runs_and_scales_that_can_be_used():
         found = Settings(runs=given).runs
         assert (found, type(found)) == (runs, type(runs))
     for scale in (10, 0.01, np.float64(0.9)):
-        found = Settings(scale=scale).scale
-        assert (found, type(found)) == (scale, float)
+        taken = Settings(scale=scale).scale
+        assert (taken, type(taken)) == (scale, float)
 
 
 def test_equal_settings_in_other_spellings_are_equal():

@@ -145,7 +145,7 @@ def test_what_is_held_is_what_is_written(book, tmp_path):
 # ---------------------------------------------------------------- typed texts
 
 
-TYPED = {
+TYPED: dict[str, list[tuple[Any, Any]]] = {
     "breadth": [("45 cm", 45), ("1,80 m", 180), ("45,5", 45.5), ("18 in", 45.72), ("1'4\"", 40.64),
                 ("5 11/16", "5 11/16"), ("wide", "wide"), (True, True), (" ", None), ("", None)],
     "anchored": [("Y", "yes"), ("YES", "YES"), ("maybe", "maybe"), (True, "yes")],
@@ -248,9 +248,10 @@ def test_a_workbook_that_cannot_be_changed_at_all(tmp_path, filled):
 
 
 def test_what_is_no_edit(book):
-    cells = (["Items", 2, 0], ["Items", "2", 0, 1], ["Items", 2.0, 0, 1], ["Items", True, 0, 1], [None, 2, 0, 1],
-             ["Items", 2, 0, [1]], ["Items", 2, 0, {"a": 1}], ["Items", 2, None, 1])  # fmt: skip
-    for edits in (None, {}, "x", [1], *([one] for one in cells)):
+    cells: list[Any] = [["Items", 2, 0], ["Items", "2", 0, 1], ["Items", 2.0, 0, 1], ["Items", True, 0, 1]]
+    cells += [[None, 2, 0, 1], ["Items", 2, 0, [1]], ["Items", 2, 0, {"a": 1}], ["Items", 2, None, 1]]
+    wrong: list[Any] = [None, {}, "x", [1], *([one] for one in cells)]
+    for edits in wrong:
         with pytest.raises(InputError, match=r"edits? ha(s|ve) to be a list"):
             book.edit(book.version, edits, "x")
     assert book.version == 1

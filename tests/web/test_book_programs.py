@@ -15,6 +15,7 @@ from assess.workbook.schema import LIVE
 from assess.workbook.template import Content, write_workbook
 from assess.workbook.writer import write_book
 from tests.recalculate import libreoffice, needs_libreoffice, stored_cells
+from tests.web.opened import edit
 from tests.workbooks import FLOORS, ITEMS
 
 ROWS = {"Building": [{"building": "Hall", "ground_pga": 0.2, "period": 0.8}], "Floors": FLOORS, "Items": ITEMS}
@@ -31,8 +32,7 @@ def test_everything_of_the_user_stays(tmp_path):
     kinds = set()
     for path in [Path(shutil.copy(one, tmp_path)) for one in sorted(USERS.glob("*.xls*"))]:
         before, book = parts_of(path), Book.open_disk(path)
-        edits = [[book.sheets["Items"].place(field, 2), value] for field, value in (("height", 151), ("room", "Attic"))]
-        book.edit(1, [["Items", *place, value] for place, value in edits], "x")
+        edit(book, ("Items", 2, "height", 151), ("Items", 2, "room", "Attic"))
         book.save()
         after = parts_of(path)
         assert list(before) == list(after), path.name

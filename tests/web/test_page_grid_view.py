@@ -7,7 +7,7 @@ import xlsxwriter
 from playwright.sync_api import expect
 
 from tests.web.looking import examine
-from tests.web.sheet_page import opened
+from tests.web.sheet_page import TWO_FRAMES, opened
 from tests.workbooks import write
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -49,6 +49,7 @@ def write_many(path):
 
 def names_shown(sheet):
     """Return the items in sight from the top, without the blank rows at the end."""
+    sheet.page.evaluate(TWO_FRAMES)
     rows = sheet.grid.locator(".grid-row:not([hidden]):not(.grid-head)")
     found = rows.evaluate_all("""all => all.map((row) => [Number(row.getAttribute("aria-rowindex")),
         row.querySelector("[aria-colindex='2']").textContent]).sort((a, b) => a[0] - b[0])""")
