@@ -17,6 +17,7 @@ from assess.progress import SILENT, Progress, Report, check_waits
 from assess.report import FORMATS
 from assess.report.figures.draw import draw
 from assess.workbook.writer import write_book
+from tests.waiting import PATIENCE
 from tests.workbooks import UNVERIFIED, write
 
 ROWS = 2000
@@ -32,7 +33,7 @@ class Blocked:
     def __call__(self, *_given, **_named):
         self.threads.append(threading.current_thread())
         self.cancel.set()
-        self.released.wait()
+        self.released.wait(PATIENCE)
         try:
             check_waits()
         finally:
