@@ -8,8 +8,8 @@ BIN := $(VENV)/bin
 # Tests start Python hundreds of times: what it compiles is kept, whatever the machine is set to.
 export PYTHONDONTWRITEBYTECODE :=
 
-# Workers keep to neighbouring tests, which share what they set up; more than eight gain nothing and take memory.
-PYTEST := $(BIN)/python -m pytest -n auto --maxprocesses=8 --dist worksteal
+# A worker takes whole files, whose tests share what they set up; more than eight gain nothing and take memory.
+PYTEST := $(BIN)/python -m pytest -n auto --maxprocesses=8 --dist loadfile
 SLOW := slow or browser or libreoffice or verapdf
 
 .PHONY: example test test-slow test-smoke test-long nets lint benchmark blank docs texts samples clean

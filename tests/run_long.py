@@ -56,7 +56,7 @@ def describe(rows: list[tuple[str, str, str]]) -> Iterator[str]:
 def run(what: str, python: str | Path, *arguments: str) -> tuple[str, str, str]:
     """Run pytest and return a row of the page."""
     started = time.monotonic()
-    command = [str(python), "-m", "pytest", "--dist", "worksteal", "-q", *arguments]
+    command = [str(python), "-m", "pytest", "--dist", "loadfile", "-q", *arguments]
     print(f"== {what}", flush=True)
     done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=False)
     print(done.stdout)
