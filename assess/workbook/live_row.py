@@ -90,8 +90,7 @@ class LiveRow:
     def _width(self, kind: str) -> str:
         """Expression for the width [cm] that Breadth must not exceed: the row's own, else its type's, else nothing."""
         own = self._own("width")
-        listed = f'IF(AND(TRIM({own})="",ISNUMBER({kind})),INDEX(type_width,{kind}),"")'
-        return f'IF(ISNUMBER({own}),IFERROR({own}*unit_items_width*100,""),{listed})'
+        return f'IFERROR(IF(TRIM({own})="",INDEX(type_width,{kind}),{own}*unit_items_width*100),"")'
 
     def _can_rock(self, ratio: str, pfa: str, kind: str, floor: str) -> str:
         """Expression for whether the strongest motion that may be drawn can start it: PFA e^(3 s) >= 0.65 g b/z.

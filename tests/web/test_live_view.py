@@ -130,7 +130,7 @@ def test_a_type_that_is_not_known_is_to_be_checked(tmp_path):
         ("Items", 2, "type", "Zorp"),
         *(("Items", row, name, None) for row in (2, 3) for name in ("breadth", "height")),
     )
-    assert [word for _, word, *_ in _by_row(_answer(book)).values()] == ["check", "", "check"]
+    assert [word for _, word, *_ in _by_row(_answer(book)).values()] == ["type?", "", "check"]
 
 
 def test_floors_without_shaking_leave_the_others_their_classes(tmp_path):

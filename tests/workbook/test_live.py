@@ -4,7 +4,7 @@ Every stored result is overwritten with a wrong one first, so that an engine whi
 """
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -25,7 +25,7 @@ from assess.workbook.read import read_inventory
 from assess.workbook.schema import LIVE, SHEETS, WORKINGS
 from assess.workbook.template import ROWS, Content, Units, write_workbook
 from tests.recalculate import libreoffice, needs_libreoffice, same
-from tests.workbook.books import change_parts
+from tests.workbook.books import change_parts, read_part
 
 Live = list[Any]
 Rows = list[dict[str, Any]]
@@ -35,6 +35,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
 AGREEMENT = 1e-9
 POISON = 0.123
+MOST_COLUMNS = 80
 ITEMS_AT = 3
 """Place of the sheet Items, whatever its name: after Help, Building and Floors."""
 
@@ -143,25 +144,25 @@ def poison(path: Path) -> Path:
 # ---------------------------------------------------------------- engines
 
 
-def _places(path: Path) -> tuple[list[int], int]:
-    """Return the columns of the live values, found by their headers, and the number of rows."""
-    page = openpyxl.load_workbook(path).worksheets[ITEMS_AT]
-    places = {cell.value: at for at, cell in enumerate(page[1], 1)}
-    return [places[say_live(label)] for label in LIVE], page.max_row
+def _find_places(heads: Iterable[Any]) -> list[int]:
+    """Return the columns of the live values, found by their headers."""
+    places = {head: at for at, head in enumerate(heads, 1)}
+    return [places[say_live(label)] for label in LIVE]
 
 
 def by_formualizer(path: Path) -> dict[int, Live]:
-    places, last = _places(path)
+    last = int(re.findall(r'<row r="(\d+)"', read_part(path, f"xl/worksheets/sheet{ITEMS_AT + 1}.xml"))[-1])
     book = formualizer.load_workbook(str(path))
     book.evaluate_all()
     name = book.sheet_names[ITEMS_AT]
+    places = _find_places(book.get_value(name, 1, at) for at in range(1, MOST_COLUMNS))
     return {row: [book.get_value(name, row, at) for at in places] for row in range(2, last + 1)}
 
 
 def by_libreoffice(path: Path) -> dict[int, Live]:
-    places, last = _places(path)
     page = openpyxl.load_workbook(libreoffice(path, path.with_name("again.xlsx")), data_only=True).worksheets[ITEMS_AT]
-    shown = {row: [page.cell(row, at).value for at in places] for row in range(2, last + 1)}
+    places = _find_places(cell.value for cell in page[1])
+    shown = {row: [page.cell(row, at).value for at in places] for row in range(2, page.max_row + 1)}
     return {row: ["" if value is None else value for value in values] for row, values in shown.items()}
 
 
