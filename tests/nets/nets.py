@@ -18,11 +18,16 @@ import pytest
 
 import assess
 from assess.report.figures import motion_figures, risk_contours
+from assess.report.figures.math_figures import MathFigure
+from assess.report.pages import html
+from assess.report.word import drawings
+from assess.report.word.drawings import Picture
 from assess.results import Results
 from assess.settings import Settings
 from tests.nets.lines import PDFS, QUICK, render
 from tests.nets.make import CITY, MADE, ROOT, make_workbooks
 from tests.nets.stored import read_results, write_results
+from tests.pictures import picture
 
 HERE = Path(__file__).parent
 OWN = HERE / "workbooks"
@@ -41,6 +46,7 @@ BY_FORMULA = frozenset(("doubted", "LargeBuilding", "city-2", "table-totals"))
 SHAKING = {"shaking": "MMI VIII, severe"}
 """What is typed in Building where a model tells nothing of it."""
 STORED, SHOWN = HERE / "stored", HERE / "shown"
+EMPTY = picture("PNG")
 DATE = "1767225600"
 """1 January 2026 as SOURCE_DATE_EPOCH: reports are dated by it."""
 
@@ -72,11 +78,17 @@ def store(name: str, results: Results) -> None:
 
 
 def show(name: str, results: Results, folder: Path, formats: Collection[str] = QUICK) -> Mapping[str, list[str]]:
-    """Return the lines of outputs. Figures are no lines: the page has an empty picture in their places."""
+    """Return the lines of outputs. Figures are no lines: empty pictures stand in their places.
+
+    So do they in place of equations, but in PDFs, where the pages follow from their sizes.
+    """
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SOURCE_DATE_EPOCH", DATE)
         for module in (motion_figures, risk_contours):
             patch.setattr(module, "draw", lambda *_, **__: b"")
+        if not set(formats) & set(PDFS):
+            patch.setattr(html, "draw_math", lambda _: MathFigure({}, "", (0, 0, 1, 1), 0))
+        patch.setattr(drawings, "draw_all", lambda given, *_: [Picture(EMPTY, one.width, "") for one in given])
         found = render(results, folder, formats)
     if "json" in found:
         found["json"] = [line for line in found["json"] if not _is_far(line)]
@@ -113,8 +125,11 @@ def rewrite(names: Collection[str] = NAMES, *, anew: bool = False, say: Callable
             if anew:
                 store(name, assess_workbook(name, made))
             folder = Path(tempfile.mkdtemp(dir=box))
-            formats = (*QUICK, *PDFS) if name in PRINTED else QUICK
-            for kind, lines in show(name, read_stored(name, folder), folder / "out", formats).items():
+            results = read_stored(name, folder)
+            found = dict(show(name, results, folder / "out"))
+            if name in PRINTED:
+                found |= show(name, results, folder / "printed", PDFS)
+            for kind, lines in found.items():
                 difference = list(compare(name, kind, lines))
                 if difference:
                     say(f"{name}.{kind}: {len(difference)} lines")

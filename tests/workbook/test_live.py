@@ -195,10 +195,10 @@ BUILDINGS = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("building", BUILDINGS, ids=["no T1", "short T1", "long T1", "ground", "PGV alone"])
-@pytest.mark.parametrize("units", ["si", "imperial"])
-def test_live_columns_equal_the_program(tmp_path: Path, units: Units, building: dict[str, Any]) -> None:
-    check(fill(tmp_path / "book.xlsx", GRID, FLOORS, building, units), by_formualizer)
+@pytest.mark.parametrize("at", range(len(BUILDINGS)), ids=["no T1", "short T1", "long T1", "ground", "PGV alone"])
+def test_live_columns_equal_the_program(tmp_path: Path, at: int) -> None:
+    units: Units = "imperial" if at % 2 else "si"
+    check(fill(tmp_path / "book.xlsx", GRID, FLOORS, BUILDINGS[at], units), by_formualizer)
 
 
 @pytest.mark.parametrize("units", RETYPED)
