@@ -1,5 +1,6 @@
 """Signs between floors: which records are compared, and what they do to the motions that are generated."""
 
+import json
 from dataclasses import replace
 from functools import cache
 
@@ -15,9 +16,11 @@ from assess.motion.target import Grid, octaves, put_on_grid
 from assess.pipeline.demand import build_demands, scale_demands
 from assess.pipeline.ensembles import build_ensembles, find_clock, find_phase_signs
 from assess.progress import SILENT
+from assess.report.findings.motions import say_signs
+from assess.settings import Settings
 from tests.conftest import EXAMPLE
 from tests.motion.test_generate import measure
-from tests.pipeline.rows import read
+from tests.pipeline.rows import assessed, read
 from tests.shaking import RECORDS, TIMES
 
 BAND = (0.8, 1.6)
@@ -233,3 +236,20 @@ def test_a_factor_on_all_motions_changes_no_sign():
         found.append(list(find_phase_signs(every, grid, azimuth).values()))
     assert len(found[0]) == 9
     assert found[0] == found[1] == found[2]
+
+
+# --- what results and reports say ---
+
+
+def test_results_and_reports_hold_signs(tmp_path):
+    write_table(tmp_path / "both.csv", AGAINST)
+    items = [{"item": f"i{floor}", "floor": floor, "breadth": 30, "height": 200, "axis": "X"} for floor in "210"]
+    results = assessed(items, FLOORS, tmp_path, Settings(runs=10), height=12)
+    found = {one.floor: one.ensemble.signs for one in results.motions if one.ensemble}
+    at = {floor: one and one[AT[0.8]] for floor, one in found.items()}
+    assert at == {"2": 1, "1": -1, "0": None}
+    written = assess.write_reports(results, tmp_path / "out", ("json",))["json"]
+    floors = json.loads(written.read_text(encoding="utf-8"))["floors"]
+    demands = {one["floor"]: one["demands"][0]["ensemble"]["signs"] for one in floors}
+    assert demands == {floor: signs and list(signs) for floor, signs in found.items()}
+    assert "on one clock (2 X, 1 X), the sign of each octave" in say_signs(results)
