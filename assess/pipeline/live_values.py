@@ -70,14 +70,14 @@ def live_values(inventory: Inventory, scenario: str | None = None) -> list[list[
 def _list_live(inventory: Inventory, demands: Demands) -> list[Demand]:
     """Return the demands that the sheet knows: of typed peaks, and of the ground where no floor has its own motion."""
     every = [one for parallel in demands.values() for one in parallel]
-    ground = find_ground(inventory)
     given = [one for one in every if one.source == "given" and one.drawn]
     known = [one for one in given if one.drawn and one.drawn.target.meets == "peaks"]
-    if ground.site is not None:
+    if find_ground(inventory).site is not None:
         return known
     followed = [one for one in given if one.drawn and one.drawn.record is None]
     by_beam = every if all(one.source == "beam" for one in every) else []
-    placed = [one for one in (*followed, *by_beam) if ground.storeys is None or one.floor.elevation is not None]
+    is_numbered = inventory.building.storeys and not any((one.elevation or 0.0) > 0 for one in inventory.floors)
+    placed = [one for one in (*followed, *by_beam) if not is_numbered or one.floor.elevation is not None]
     return [*known, *placed]
 
 

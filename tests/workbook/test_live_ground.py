@@ -212,10 +212,11 @@ def test_only_storeys_leave_floors_by_their_number_to_the_program(tmp_path: Path
 @pytest.mark.parametrize("engine", ENGINES)
 def test_floors_beside_a_ground_floor_at_0_are_left_to_the_program(tmp_path: Path, engine: Engine) -> None:
     floors: Rows = [{"floor": "1", "elevation": 0}, {"floor": "2"}]
-    path = fill(tmp_path / "book.xlsx", furnish(floors), floors, {"ground_pga": 0.2, "storeys": 4})
-    check(path, engine)
+    check(fill(tmp_path / "book.xlsx", furnish(floors), floors, {"ground_pga": 0.2, "storeys": 4}), engine)
     shown = show(tmp_path / "shown", floors, ground_pga=0.2, storeys=4)
     assert [one[1] for one in shown.values()] == [pytest.approx(0.2), "run assess"]
+    floors.append({"floor": "3", "elevation": 0})  # so that numbers do not tell where floor 2 lies
+    check(fill(tmp_path / "two.xlsx", furnish(floors), floors, {"ground_pga": 0.2, "storeys": 4}), engine)
 
 
 # ---------------------------------------------------------------- typed peaks
