@@ -86,6 +86,7 @@ WRONG: dict[str, list[tuple[str, Any, str]]] = {
         ("Ground PGV [cm/s]", 0, f"Ground PGV is 0 cm/s, expected 0.01 to 1000 cm/s. {CLEAR}"),
         ("Ground PGV [m/s]", 25, "Ground PGV is 25 m/s, expected 0.0001 to 10 m/s. Did you mean 25 cm/s = 0.25 m/s?"),
         ("Period T1 [s]", 0, f"Period T1 is 0 s, expected 0.02 to 20 s. {CLEAR}"),
+        ("Period T1 [s]", 60, f"Period T1 is 60 s, expected 0.02 to 20 s. {CHECK}"),
         ("Structure", "bamboo", f"Structure is 'bamboo', expected one of: {STRUCTURES}. {LIST}"),
         ("Structure", "frmae", f"Structure is 'frmae', expected one of: {STRUCTURES}. Did you mean frame?"),
         *(("Shaking", typed, f"Shaking is '{typed}', expected one of: MMI IV, light; ")
