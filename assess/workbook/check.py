@@ -187,14 +187,15 @@ def check_floors(tables: Tables, *, is_shaken: bool = False) -> Iterator[Problem
 def _check_demands(table: Table, *, has_storeys: bool) -> Iterator[Problem]:
     """Report floors that nothing can serve: a motion at grade serves all, one above it only those of known height."""
     rows = table.with_all("floor")
-    lowest = find_lowest_number((row.get("floor"), row.get("elevation")) for row in rows) if has_storeys else None
-    if any(table.spoilt("elevation", row) for row in rows):
-        lowest = None
+    is_numbered = has_storeys and not any(table.spoilt("elevation", row) for row in rows)
+    lowest = find_lowest_number((row.get("floor"), row.get("elevation")) for row in rows) if is_numbered else None
 
     def find_level(row: Row) -> float | None:
         elevation: float | None = row.get("elevation")
-        number = find_storey(row.get("floor")) if elevation is None and lowest is not None else None
-        return elevation if number is None or lowest is None else number - lowest
+        if elevation is not None or lowest is None:
+            return elevation
+        number = find_storey(row.get("floor"))
+        return None if number is None else number - lowest
 
     known = [row for row in rows if table.says(row, "pfa_x", "pfa_y", "record_x", "record_y")]
     heights = [level for row in known if (level := find_level(row)) is not None]
