@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import tempfile
 import zipfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ import pytest
 from assess.report.content import build_content
 from assess.report.xlsx import write_xlsx
 from assess.results import Results
+from tests.waiting import PATIENCE
 
 _SOFFICE = shutil.which("soffice") or shutil.which("libreoffice")
 
@@ -40,17 +42,25 @@ def write_report(results: Results, path: Path) -> None:
 def libreoffice(path: Path, out: Path, *, recalculates: bool = True) -> Path:
     """Open `path` in LibreOffice with every formula recalculated, or as its users do, and save it as `out`."""
     with tempfile.TemporaryDirectory() as box:
-        user = Path(box) / "profile" / "user"
-        user.mkdir(parents=True)
+        shutil.copy(libreoffice_all([path], Path(box), recalculates=recalculates)[0], out)
+    return out
+
+
+def libreoffice_all(paths: Sequence[Path], folder: Path, *, recalculates: bool = True) -> list[Path]:
+    """Do so with many workbooks at once, as it takes long to start; save them in `folder` by their names."""
+    with tempfile.TemporaryDirectory() as profile:
+        user = Path(profile) / "user"
+        user.mkdir()
         if recalculates:
             (user / "registrymodifications.xcu").write_text(_PROFILE, encoding="utf-8")
         command = [
-            str(_SOFFICE), f"-env:UserInstallation=file://{user.parent}", "--headless",
-            "--convert-to", "xlsx", "--outdir", str(Path(box) / "out"), str(path),
+            str(_SOFFICE), f"-env:UserInstallation=file://{profile}", "--headless",
+            "--convert-to", "xlsx", "--outdir", str(folder), *map(str, paths),
         ]  # fmt: skip
-        subprocess.run(command, check=True, capture_output=True, timeout=180)
-        shutil.copy(Path(box) / "out" / f"{path.stem}.xlsx", out)
-    return out
+        subprocess.run(command, check=True, capture_output=True, timeout=PATIENCE * len(paths))
+    written = [folder / f"{path.stem}.xlsx" for path in paths]
+    assert all(path.is_file() for path in written)
+    return written
 
 
 def stored_cells(path: Path) -> dict[tuple[str, str], Any]:

@@ -52,6 +52,11 @@ def _tree(path: Path) -> ast.Module:
     return ast.parse(path.read_text(encoding="utf-8"))
 
 
+@cache
+def _nodes(path: Path) -> tuple[ast.AST, ...]:
+    return tuple(ast.walk(_tree(path)))
+
+
 def _layer(module: str) -> int:
     parts = module.split(".")
     return LAYERS[parts[1] if len(parts) > 1 else "__init__"]
@@ -70,7 +75,7 @@ def _place(path: Path, node: ast.expr | ast.stmt | None = None) -> str:
 def _imports(path: Path) -> frozenset[str]:
     """Return the modules of the package that a file imports, whether at its head or inside a function."""
     found = set()
-    for node in ast.walk(_tree(path)):
+    for node in _nodes(path):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module:
@@ -82,8 +87,8 @@ def _imports(path: Path) -> frozenset[str]:
 
 def _texts(path: Path) -> Iterator[ast.Constant]:
     """Yield the string literals of a file, parts of f-strings included, without docstrings."""
-    statements = {id(node.value) for node in ast.walk(_tree(path)) if isinstance(node, ast.Expr)}
-    for node in ast.walk(_tree(path)):
+    statements = {id(node.value) for node in _nodes(path) if isinstance(node, ast.Expr)}
+    for node in _nodes(path):
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in statements:
             yield node
 
@@ -128,11 +133,11 @@ def test_reports_import_no_physics():
     for path in (PACKAGE / "report").rglob("*.py"):
         typing_only = {
             id(node)
-            for block in ast.walk(_tree(path))
+            for block in _nodes(path)
             if isinstance(block, ast.If) and "TYPE_CHECKING" in ast.unparse(block.test)
             for node in ast.walk(block)
         }
-        for node in ast.walk(_tree(path)):
+        for node in _nodes(path):
             named = [node.module] if isinstance(node, ast.ImportFrom) and not _describes(node) else []
             named += [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
             if id(node) not in typing_only and any(
@@ -203,7 +208,7 @@ def test_files_and_functions_are_short():
     for path in MODULES:
         lines = _count_code(path)
         found += [f"{_place(path)} has {lines} lines"] * (lines > LONGEST_FILE and _place(path) not in LONG_FILES)
-        for node in ast.walk(_tree(path)):
+        for node in _nodes(path):
             if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
                 body = node.body[1:] if ast.get_docstring(node) else node.body
                 is_table = len(body) == 1 and isinstance(body[0], ast.Return)  # one row written, field by field
@@ -215,7 +220,7 @@ def test_files_and_functions_are_short():
 def _count_code(path: Path) -> int:
     described = {
         line
-        for node in ast.walk(_tree(path))
+        for node in _nodes(path)
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
         for line in range(node.lineno, (node.end_lineno or node.lineno) + 1)
     }
@@ -262,10 +267,10 @@ def test_messages_of_errors_can_be_translated():
         _place(path, node)
         for path in MODULES
         if not any(path.is_relative_to(folder) for folder in english)
-        for scope in ast.walk(_tree(path))
+        for scope in _nodes(path)
         if isinstance(scope, ast.Module | ast.FunctionDef)
         for node in ast.walk(scope)
-        if isinstance(node, ast.Call) and ast.unparse(node.func) in kinds
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in kinds
         for text in node.args
         if _is_bare(text) or (isinstance(scope, ast.FunctionDef) and ast.unparse(text) in _list_bare(scope))
     }
@@ -274,7 +279,7 @@ def test_messages_of_errors_can_be_translated():
 
 def _list_errors(known: set[str]) -> set[str]:
     """Return the names of the errors and of all that derive from them."""
-    classes = [node for path in MODULES for node in ast.walk(_tree(path)) if isinstance(node, ast.ClassDef)]
+    classes = [node for path in MODULES for node in _nodes(path) if isinstance(node, ast.ClassDef)]
     derived = {node.name for node in classes if known.intersection(map(ast.unparse, node.bases))}
     return known if derived <= known else _list_errors(known | derived)
 

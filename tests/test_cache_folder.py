@@ -87,6 +87,7 @@ def test_the_group_of_one_user_is_no_other(tmp_path, own, monkeypatch):
         assert (choose_folder(str(named))[0] == named) is is_safe, (members, name)
 
 
+@pytest.mark.slow
 def test_compiling_goes_to_the_users_own_folder(tmp_path):
     shared = made(tmp_path / "shared", 0o777)
     _child(FIRST_USE, NUMBA_CACHE_DIR=shared, XDG_CACHE_HOME=tmp_path / "own")
@@ -94,6 +95,7 @@ def test_compiling_goes_to_the_users_own_folder(tmp_path):
     assert _kept(tmp_path / "own")
 
 
+@pytest.mark.slow
 def test_doctor_says_so(tmp_path, own, monkeypatch):
     assert f"ok       compiled code: kept in {own}" in run("doctor").stdout
     shared = made(tmp_path / "shared", 0o777)

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import pytest
+
 from assess import fields
 from assess.fields import EVERYWHERE, Shape, _of_item, item_fields
 from assess.pipeline.run import run
@@ -19,6 +21,7 @@ ROWS = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_a_new_column_of_items_reaches_the_results_and_the_reports(monkeypatch):
     items = replace(schema.ITEMS, columns=(*schema.ITEMS.columns, COLOUR))
     sheets = tuple(items if sheet.name == "Items" else sheet for sheet in schema.SHEETS)

@@ -38,6 +38,7 @@ def _kept(folder):
 
 
 @pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="other systems have other folders")
+@pytest.mark.slow
 def test_it_is_kept_in_the_users_folder(tmp_path):
     """Only this package's functions are kept there, not those that a notebook compiles afterwards."""
     before = _kept(PACKAGE)
@@ -49,6 +50,7 @@ def test_it_is_kept_in_the_users_folder(tmp_path):
 
 
 @pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="other systems have other folders")
+@pytest.mark.slow
 def test_a_folder_that_cannot_be_written_is_done_without(tmp_path):
     (tmp_path / "assess").write_text("a file where the folder should be", encoding="utf-8")
     _child(FIRST_USE, XDG_CACHE_HOME=tmp_path)
@@ -95,13 +97,32 @@ MOST_APART = 0.06
 it."""
 
 
+GENERIC = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""}
+BENT = (
+    "import numpy as np\nfrom assess.motion.recipe import bend_rows\n"
+    "rows = np.sin(np.arange(1000.0, dtype=np.float32)).reshape(2, 500)\n"
+    "bend_rows(rows, 1.0, 0.1)\nprint(*rows.ravel().tolist())\n"
+)
+
+
 @pytest.mark.slow
+def test_without_wide_vectors_a_motion_is_bent_alike(tmp_path):
+    """One function is compiled anew, and kept where NUMBA_CACHE_DIR says."""
+    generic = _child(BENT, NUMBA_CACHE_DIR=tmp_path / "cache", **GENERIC)
+    native = _child(BENT, NUMBA_CACHE_DIR=os.environ.get("NUMBA_CACHE_DIR"))
+    assert _kept(tmp_path / "cache")
+    values = [[float(one) for one in text.split()] for text in (native, generic)]
+    assert len(set(values[0])) > 100
+    assert values[1] == pytest.approx(values[0], rel=1e-4, abs=1e-5)
+
+
+@pytest.mark.long
 def test_a_processor_without_wide_vectors_gives_the_same_risks(tmp_path):
     """All is compiled anew for it, and summed in another order."""
     write_records(tmp_path, "slow")
     path = write(tmp_path / "w.xlsx", ITEMS, FLOORS)
     risks = []
-    for name, changes in (("native", {}), ("generic", {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""})):
+    for name, changes in (("native", {}), ("generic", GENERIC)):
         out = tmp_path / name
         words = ["assess", "run", str(path), "--verify", "all", "--formats", "json", "--out", str(out)]
         code = f"import sys\nfrom assess.cli.app import main\nsys.argv = {words!r}\nmain()"

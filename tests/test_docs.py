@@ -65,6 +65,7 @@ def test_examples_in_python_run(page, tmp_path, monkeypatch):
     assert "results" in space
 
 
+@pytest.mark.slow
 def test_code_within_the_sentences_runs(tmp_path, monkeypatch):
     """What stands between words: an expression is evaluated; a call with ``...`` takes its arguments."""
     text = (DOCS / "python.md").read_text(encoding="utf-8")

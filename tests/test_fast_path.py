@@ -31,6 +31,7 @@ def _items(count):
 LOADED = "print(sorted({found} & {{name.split('.')[0] for name in sys.modules}} | {found} & {{*sys.modules}}))"
 
 
+@pytest.mark.slow
 def test_nothing_heavy_is_imported_before_it_is_needed(tmp_path):
     path = write(tmp_path / "w.xlsx", _items(50))
     words = ["assess", "run", str(path), "--verify", "none", "--formats", "json,csv", "--out", str(tmp_path / "out")]

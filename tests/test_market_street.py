@@ -25,8 +25,7 @@ from assess.workbook.lists import RUN_ASSESS
 from assess.workbook.live_row import IS_ANCHORED
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import CLASS, CLASS_OR, LIVE
-from assess.workbook.template import write_workbook
-from tests.workbooks import UNVERIFIED
+from tests.workbooks import UNVERIFIED, write_sheets
 
 FOLDER = Path(__file__).parents[1] / "inventories"
 WORKBOOK = FOLDER / "market-street.xlsx"
@@ -61,6 +60,7 @@ def _cells(path):
     return {(page.title, cell.coordinate): cell.value for page in book for row in page for cell in row if cell.value}
 
 
+@pytest.mark.slow
 def test_the_script_builds_the_workbook_and_nothing_else(tmp_path, script):
     shutil.copytree(FOLDER / "records", tmp_path / "records")
     script.build(tmp_path / "again.xlsx")
@@ -113,10 +113,11 @@ def test_stored_live_values_are_those_of_the_program_and_of_a_spreadsheet_engine
 RATIOS = {"42": 170.8 / 175, "34": 137.5 / 175, "25": 100 / 175, "G": 0}
 
 
+@pytest.mark.slow
 def test_without_its_records_it_runs_by_beams_or_by_the_profile_of_a_code(tmp_path, script):
     content = script.content()
     floors = [{name: row[name] for name in ("floor", "name", "elevation")} for row in content.rows["Floors"]]
-    write_workbook(tmp_path / "no-records.xlsx", replace(content, rows={**content.rows, "Floors": floors}))
+    write_sheets(tmp_path / "no-records.xlsx", {**content.rows, "Floors": floors})
     inventory, pga = read_inventory(tmp_path / "no-records.xlsx"), 0.139
     beams = run(inventory, UNVERIFIED).motions
     for one in beams:
@@ -131,6 +132,7 @@ def test_without_its_records_it_runs_by_beams_or_by_the_profile_of_a_code(tmp_pa
         assert one.pfa_g == pytest.approx(pga * amplification)
 
 
+@pytest.mark.slow
 def test_as_a_scenario_of_a_code_it_sets_its_records_aside(example_inventory):
     found = run(example_inventory, Settings(scenario="ASCE 7-22", verify="none"))
     assert {one.source for one in found.motions} == {"profile"}
@@ -140,12 +142,14 @@ def test_as_a_scenario_of_a_code_it_sets_its_records_aside(example_inventory):
     assert set(warned) == {"Items", "Places"}, "every profile value is above the recorded one; a room has no furniture"
 
 
+@pytest.mark.slow
 def test_recorded_each_floor_has_its_record(example_inventory, example):
     found = run(example_inventory, Settings(scenario="recorded", verify="none"))
     assert [one.governing.motion for one in found] == [one.governing.motion for one in example]
     assert {one.source for one in found.motions} == {"record"}
 
 
+@pytest.mark.slow
 def test_interpolation_left_out_as_a_test_gives_less_than_was_recorded(example_inventory):
     """On the 25th floor along X, from G and the 34th: 132.8 + 100/137.5 x (151.2 - 132.8) = 146.2 cm/s2 = 0.149 g."""
     floors = tuple(replace(floor, records={}) if floor.floor == "25" else floor for floor in example_inventory.floors)
@@ -155,12 +159,13 @@ def test_interpolation_left_out_as_a_test_gives_less_than_was_recorded(example_i
     assert f"it gives {one.pfa_g:.3f} g where {recorded:.3f} g was recorded" in MAY_BE_LOWER
 
 
+@pytest.mark.slow
 def test_a_floor_that_lost_its_record_is_interpolated(tmp_path, script):
     """The 34th floor lies (137.5 - 100)/(170.8 - 100) = 0.52966 of the way from the 25th to the 42nd."""
     content = script.content()
     floors = [row if row["floor"] != "34" else {"floor": "34", "elevation": 137.5} for row in content.rows["Floors"]]
     shutil.copytree(FOLDER / "records", tmp_path / "records")
-    write_workbook(tmp_path / "lost.xlsx", replace(content, rows={**content.rows, "Floors": floors}))
+    write_sheets(tmp_path / "lost.xlsx", {**content.rows, "Floors": floors})
     for scenario in ("as filled", "recorded"):
         found = run(read_inventory(tmp_path / "lost.xlsx"), Settings(scenario=scenario, verify="none"))
         (one,) = found.motions_of("34", "X")

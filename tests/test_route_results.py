@@ -151,6 +151,7 @@ def test_a_stair_is_open_and_without_a_clear_width_not_known(written, tmp_path):
     assert found["uncounted_pieces"] == 1
 
 
+@pytest.mark.slow
 def test_what_depends_on_unconfirmed_pieces_is_not_known(tmp_path):
     """Neither T1 nor height is known: the simulated class of the bookcase is lower, and is not adopted."""
     run = assess_routed(tmp_path / "w.xlsx", VERIFIED, **DOUBTED)

@@ -106,6 +106,7 @@ def test_texts_of_a_record(tmp_path: Path) -> None:
     assert not UNSAFE.search(f"{found.event}{found.station}{found.channel}{found.file}")
 
 
+@pytest.mark.slow
 def test_reports(tmp_path: Path) -> None:
     """Texts of a record and of a workbook reach every report clean."""
     (tmp_path / "a.AT2").write_bytes(record())

@@ -1,13 +1,20 @@
 """Workbooks for tests, written as a user would fill them in."""
 
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import xlsxwriter
+
 import assess
+from assess.i18n import gettext
 from assess.results import Results
 from assess.settings import Settings
-from assess.workbook.layout import LETTERS
-from assess.workbook.template import Content, Units, write_workbook
+from assess.workbook.catalogue import read_catalogue
+from assess.workbook.layout import LETTERS, PLACES
+from assess.workbook.schema import CATALOGUE, SHEETS
+from assess.workbook.template import Units
 
 RECORDS = Path(__file__).parents[1] / "samples" / "records"
 
@@ -29,18 +36,40 @@ def address(field: str, row: int, sheet: str = "Items") -> str:
     return f"{LETTERS[sheet, field]}{row}"
 
 
+def write_sheets(path: Path, rows: Mapping[str, Sequence[Mapping[str, Any]]], units: Units = "si") -> Path:
+    """Write the sheets of a workbook with these rows, each where the template has it, and nothing else.
+
+    The template, with its help, lists and formulas, takes five times as long (`assess.workbook.template`).
+    """
+    with xlsxwriter.Workbook(path, {"in_memory": True}) as book:
+        for sheet in SHEETS:
+            page = book.add_worksheet(gettext(sheet.name))
+            given = rows.get(sheet.name) or (read_catalogue(units) if sheet is CATALOGUE else [])
+            for column in sheet.columns:
+                at, is_form = PLACES[sheet.name, column.name], sheet.layout == "form"
+                page.write_string(
+                    *((at, 0) if is_form else (0, at)), replace(column, label=gettext(column.label)).header(units)
+                )
+                for number, row in enumerate(given, 1):
+                    value = row.get(column.name)
+                    if value is not None:
+                        value = gettext(value) if column.choices and isinstance(value, str) else value
+                        (page.write_string if isinstance(value, str) else page.write_number)(
+                            *((at, 1) if is_form else (number, at)), value
+                        )
+    return path
+
+
 def write(
     path: Path,
     items: list[dict[str, Any]] | None = None,
     floors: list[dict[str, Any]] | None = None,
     units: Units = "si",
-    spare: int | None = 3,
     **building: Any,
 ) -> Path:
-    """Write a workbook with these rows; a small one where none are given. Few rows beyond them have formulas."""
+    """Write a workbook with these rows; a small one where none are given."""
     rows = {"Building": [building], "Floors": floors or FLOORS, "Items": ITEMS if items is None else items}
-    write_workbook(path, Content(rows=rows), units, spare=spare)
-    return path
+    return write_sheets(path, rows, units)
 
 
 def assessed(path: Path, *args: Any, settings: Settings = UNVERIFIED, **named: Any) -> Results:

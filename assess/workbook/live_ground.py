@@ -59,7 +59,8 @@ def write_table(book: Any, page: Any, at: int) -> int:
         _name(book, name, at + place, len(values))
     rows = [row for one in STRUCTURES for by_ratio in read_table()[one] for row in by_ratio]
     for number, row in enumerate(rows, 3):
-        page.write_row(number, at + 4, [*row[:, 0].tolist(), *row[:, 1].tolist()])
+        for place, value in enumerate(row.T.ravel().tolist(), at + 4):
+            page.write_number(number, place, value)
     first, last = xl_col_to_name(at + 4), xl_col_to_name(at + 3 + 2 * _COLUMNS)
     # some blank rows belong to it, of which the weight is 0
     book.define_name("floor_table", f"={gettext(LISTS)}!${first}$4:${last}${4 + len(rows) + len(RATIOS) + 1}")

@@ -12,6 +12,7 @@ header, so that a header edited by another program, as when a unit is changed, m
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -223,7 +224,11 @@ class _Writer:
 
     def _rows(self, sheet: str) -> Rows:
         rows = self.content.rows.get(sheet, ())
-        return read_catalogue(self.units) if sheet == CATALOGUE.name and not rows else rows
+        return self._types if sheet == CATALOGUE.name and not rows else rows
+
+    @cached_property
+    def _types(self) -> Rows:
+        return read_catalogue(self.units)
 
     def _header(self, column: Column) -> str:
         return replace(column, label=gettext(column.label)).header(self.units)

@@ -45,7 +45,9 @@ def write_book(
     packed = _Packed(progress)
     with tempfile.TemporaryDirectory(prefix=".assess-sheets-", dir=path.parent) as parts:
         try:
-            book = xlsxwriter.Workbook(packed, {"constant_memory": by_row, "tmpdir": parts, **_TEXT_STAYS_TEXT})
+            book = xlsxwriter.Workbook(
+                packed, {"constant_memory": by_row, "in_memory": not by_row, "tmpdir": parts, **_TEXT_STAYS_TEXT}
+            )
             fill(book)
             book.close()
         except (OSError, xlsxwriter.exceptions.FileCreateError) as error:

@@ -1,5 +1,7 @@
 """What many tests of building models look at, made once for all of them."""
 
+from collections.abc import Iterator
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -7,9 +9,21 @@ import pytest
 from assess.bim.building_model import BuildingModel
 from assess.bim.ifc_model import read_model
 from tests.bim.export_runs import PLACES, ROUTES, SIMULATED, write_flat, write_results
+from tests.bim.model_here import models_read_here
 from tests.bim.update_books import first_book
 
 MODELS = Path(__file__).parents[2] / "samples" / "models"
+
+
+APART = ("test_damaged_models", "test_read_source")
+"""Files whose tests are about the process in which models are read."""
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _models_read_here(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Read models in the process of the tests; `model_process` has tests of its own."""
+    with nullcontext() if request.module.__name__.endswith(APART) else models_read_here():
+        yield
 
 
 @pytest.fixture(scope="session")

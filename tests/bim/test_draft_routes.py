@@ -121,6 +121,7 @@ def test_rows_grow_with_the_rooms_not_with_their_ways():
     assert len(found.routes) < 3 * len(model.spaces)
 
 
+@pytest.mark.slow
 def test_a_route_to_a_stair_ends_with_its_flight():
     found = draft(build_office(1, 3, storeys=2))
     (flight,) = [row for row in found.routes if "floor" not in row]
@@ -306,8 +307,9 @@ def hostile_models(draw) -> BuildingModel:
                          walls=walls)  # fmt: skip
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=50 if settings().derandomize else 100, deadline=None)
 @given(hostile_models())
+@pytest.mark.slow
 def test_any_model_gives_a_draft_that_holds_together(model):
     names, found = name_all(model), draft(model)
     known = {*names.values(), *(one["place"] for one in found.places)}

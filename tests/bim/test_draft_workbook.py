@@ -34,6 +34,7 @@ def results(duplex, tmp_path_factory) -> Results:
     return assess.run(build(duplex, tmp_path_factory.mktemp("duplex")), UNVERIFIED)
 
 
+@pytest.mark.slow
 def test_a_draft_is_a_workbook_without_errors(published, tmp_path):
     inventory = build(published, tmp_path)
     assert inventory.errors == ()
@@ -66,6 +67,7 @@ def test_rooms_of_both_storeys_have_a_way_to_an_exit(results):
     assert {one.state for one in results.route_tables.routes} <= set(RouteState)
 
 
+@pytest.mark.slow
 def test_rooms_upstairs_are_not_known_until_the_width_of_the_stair_is_filled_in(tmp_path):
     """The model does not tell it; all else of their ways is."""
     inventory = build(build_office(1, 3, storeys=2), tmp_path)

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from functools import cache
 from pathlib import Path
 
 import ifcopenshell
@@ -44,7 +45,7 @@ def test_all_that_a_topic_selects_is_in_the_picture(tmp_path: Path, model: Path)
     """All pieces of an import are found again, and the topics of those on drafted routes select doors of the model."""
     results = import_results(tmp_path, model)
     found = export(results, model)
-    elements = ifcopenshell.open(str(model))
+    elements, corners = ifcopenshell.open(str(model)), cache(read_corners)
     topics = Bcf(found.topics.data).topics
     assert len(topics) > 5
     with_door = 0
@@ -53,7 +54,7 @@ def test_all_that_a_topic_selects_is_in_the_picture(tmp_path: Path, model: Path)
         assert float(topic.view.findtext("PerspectiveCamera/FieldOfView")) == FIELD_OF_VIEW
         selected = [elements.by_guid(key) for key in topic.selected]
         for element in selected:
-            assert in_view(read_corners(element), *camera), (topic.text("Title"), element)
+            assert in_view(corners(element), *camera), (topic.text("Title"), element)
         has_door = any(one.is_a("IfcDoor") for one in selected)
         assert not has_door or "block route" in topic.text("Title")
         assert any(one.is_a("IfcFurnishingElement") for one in selected)

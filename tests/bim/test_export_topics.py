@@ -198,6 +198,7 @@ def test_the_camera_looks_down_at_the_piece_from_inside_its_room(bcf):
     assert 45 <= float(topic.view.findtext("PerspectiveCamera/FieldOfView")) <= 60
 
 
+@pytest.mark.slow
 def test_a_later_run_of_the_same_pieces_has_the_same_topics(simulated, flat, tmp_path):
     """So that a program for BCF brings a topic up to date, and keeps what was answered to it."""
     first, same = export_topics(simulated, flat).data, export_topics(simulated, flat).data
@@ -214,6 +215,7 @@ def test_topics_are_in_the_language_in_use(simulated, flat):
         assert "molto alto" in find(read_topics(simulated, flat), CUPBOARD_1).labels
 
 
+@pytest.mark.slow
 def test_entries_beyond_the_most_and_those_without_a_piece_in_the_model_are_counted(
     simulated, flat, tmp_path, monkeypatch
 ):
@@ -242,10 +244,10 @@ def test_pieces_with_one_source_id_have_topics_of_their_own(flat, tmp_path):
     assert all(not one.text("Description").count("Not in this model") for one in found.topics)
 
 
-def test_pieces_that_only_help_together_are_one_topic(pair):
+def test_pieces_that_only_help_together_are_one_topic(pair, flat):
     (entry,) = json.loads(pair.read_text(encoding="utf-8"))["schedule"]["entries"]
     assert (entry["only_together"], len(entry["works"])) == (True, 2)
-    (topic,) = read_topics(pair).topics
+    (topic,) = read_topics(pair, flat).topics
     assert set(topic.selected) == {*BOTH, DOOR_B202}
     title, text = topic.text("Title"), topic.text("Description")
     assert "Armadio è 1 and Armadio è 2 together" in title
@@ -268,30 +270,32 @@ def move(rows: list[dict[str, Any]], by: float) -> list[dict[str, Any]]:
     return [one | {"x": one["x"] + by, "y": one["y"] - by} for one in rows]
 
 
-def test_a_door_is_found_in_a_shifted_workbook_and_where_a_segment_passes_it(tmp_path):
+def test_a_door_is_found_in_a_shifted_workbook_and_where_a_segment_passes_it(flat, tmp_path):
     """A workbook of a model far from its origin is shifted by whole metres; here there is no place at the door."""
     places = [PLACES[0] | {"x": 1.9, "y": -13.5}, PLACES[2] | {"x": 1.0, "y": -10.3}]
     routes = [{"route": "Scala", "segment": "a", "floor": "2", "start": "B202", "end": "out"}]
     items = [CUPBOARDS[0] | {"edge_distance": 0.0, "route": "Scala"}]
     results = write_results(tmp_path, move(items, 1200), places=move(places, 1200), routes=routes)
-    found = export_topics(results)
+    found = export_topics(results, flat)
     assert found.is_placed
     assert find(Bcf(found.data), CUPBOARD_1).selected == [CUPBOARD_1, DOOR_B202]
 
 
-def test_where_positions_do_not_agree_no_door_is_taken_and_one_that_was_moved_does_not_shift_the_others(tmp_path):
+@pytest.mark.slow
+def test_where_positions_do_not_agree_no_door_is_taken_and_one_that_was_moved_does_not_shift_the_others(flat, tmp_path):
     items = [CUPBOARDS[0], CUPBOARDS[1] | {"x": 9.0, "y": 4.0}, CUPBOARDS[3] | {"x": 1.0, "y": 30.0}]
     results = write_results(tmp_path, items, places=PLACES, routes=ROUTES)
-    found = export_topics(results)
+    found = export_topics(results, flat)
     assert (found.is_placed, found.doors) == (False, 0)
     assert find(Bcf(found.data), CUPBOARD_1).point("CameraViewPoint")
     items[1] = CUPBOARDS[1]
-    moved = read_topics(write_results(tmp_path, items, places=PLACES, routes=ROUTES))
+    moved = read_topics(write_results(tmp_path, items, places=PLACES, routes=ROUTES), flat)
     assert DOOR_B202 in find(moved, CUPBOARD_1).selected
 
 
-def test_pieces_without_shapes_are_seen_at_their_origin(tmp_path):
-    model = ifcopenshell.open(str(DUPLEX))
+@pytest.mark.slow
+def test_pieces_without_shapes_are_seen_at_their_origin(flat, tmp_path):
+    model = ifcopenshell.open(str(flat))
     model.by_guid(CUPBOARD_1).Representation = None
     bare = tmp_path / "bare.ifc"
     model.write(str(bare))

@@ -63,6 +63,7 @@ def test_large_building_in_millimetres(large):
     assert {(one.count, one.is_furniture) for one in proxies} == {(11, False), (2, False)}
 
 
+@pytest.mark.slow
 def test_proxies_are_taken_by_name():
     path = MODELS / "LargeBuilding.ifc"
     found = read_model(path, "a.ifc", ("IfcBuildingElementProxy",))

@@ -24,6 +24,7 @@ def _building(**more: object) -> ImportedBuilding:
     return ImportedBuilding(**(rows | more))
 
 
+@pytest.mark.slow
 def test_the_same_import_gives_the_same_bytes() -> None:
     assert build_workbook(_building()) == build_workbook(_building())
 
@@ -60,6 +61,7 @@ def test_long_names_and_those_alike_in_another_letter_case_are_told_apart() -> N
     assert name_apart(["Desk", "desk", "Desk (2)", "Desk"]) == ["Desk", "desk (2)", "Desk (2) (2)", "Desk (3)"]
 
 
+@pytest.mark.slow
 def test_without_items_the_workbook_lacks_furniture() -> None:
     with pytest.raises(WorkbookError, match="the table has no rows") as caught:
         read_inventory(build_workbook(_building(items=[])))

@@ -49,6 +49,7 @@ def test_memory_is_limited():
 
 
 @ON_LINUX
+@pytest.mark.slow
 def test_processor_time_is_limited(monkeypatch):
     monkeypatch.setattr(model_process, "SECONDS", 1)
     with pytest.raises(ModelError, match="takes more than 1 s of processor time"):

@@ -28,7 +28,11 @@ def zipped(**parts: bytes) -> bytes:
     return data.getvalue()
 
 
-@pytest.mark.parametrize("name", ["a.IFC", "model", "renamed.xlsx", "renamed.json"])
+@pytest.mark.parametrize(
+    "name",
+    ["model", "renamed.xlsx", *(pytest.param(name, marks=pytest.mark.long) for name in ("a.IFC", "renamed.json"))],
+)
+@pytest.mark.slow
 def test_a_model_is_known_whatever_its_name(tmp_path, name):
     model, _, room = one_room()
     model.piece("Shelf", SHELF, within=room, at=(2, 1, 0))
@@ -97,6 +101,7 @@ def test_a_million_entities_more_change_nothing(tmp_path):
     assert len(read_source(path, "a.ifc").items) == 14
 
 
+@pytest.mark.slow
 def test_more_pieces_than_are_read_are_refused(tmp_path):
     at = LARGE.rindex(b"ENDSEC;")
     path = tmp_path / "a.ifc"
@@ -106,6 +111,7 @@ def test_more_pieces_than_are_read_are_refused(tmp_path):
         read_source(path, "a.ifc")
 
 
+@pytest.mark.slow
 def test_rows_are_in_the_language_in_use(tmp_path):
     model, storey, _ = one_room()
     model.element("IfcDoor", "D", (0, 0, 0, 0.9, 0.2, 2), within=storey, at=(3, -0.1, 0), OverallWidth=0.9)
@@ -114,6 +120,7 @@ def test_rows_are_in_the_language_in_use(tmp_path):
     assert {row["place"] for row in found.places} == {"101 Office", "Uscita 101"}
 
 
+@pytest.mark.slow
 def test_without_the_library_one_line_tells_how_to_install_it(tmp_path):
     """The library is hidden from a process of its own, as on a machine without the extra."""
     code = "import sys; sys.modules['ifcopenshell'] = None; from assess.__main__ import main; main()"

@@ -118,6 +118,7 @@ def test_north_is_that_of_the_compass(home):
     assert read(change(b"northDirection='0.5235988'", b"northDirection='0.0'")).azimuth_deg is None
 
 
+@pytest.mark.slow
 def test_a_home_becomes_a_workbook_that_is_read(tmp_path):
     found = read_source(FILE, FILE.name, routes="draft")
     assert {row["sizes_from"] for row in found.items} == {"model"}

@@ -69,6 +69,7 @@ def test_what_people_renamed_keeps_its_name_for_new_pieces_too(book: bytes) -> N
     assert faults(found.data) == []
 
 
+@pytest.mark.slow
 def test_floors_that_were_renumbered_are_not_mixed_up() -> None:
     """People call 0 and 1 what the model calls 1 and 2: pieces stay, new ones go to the floor that is meant."""
 
@@ -177,6 +178,7 @@ def test_sizes_of_a_type_follow_and_its_weight_and_types_of_the_program_stay(boo
     assert (kind.get("width"), kind.get("weight")) == (pytest.approx(0.82), 95)
 
 
+@pytest.mark.slow
 def test_types_told_apart_by_a_number_are_found_by_their_sizes() -> None:
     """The numbers follow the order of the pieces: "Desk" of today may be "Desk (2)" of the workbook."""
     small, large = ({"type": "Desk", "breadth": 60.0, "width": width, "height": 75.0} for width in (120.0, 160.0))
@@ -210,6 +212,7 @@ def test_a_place_that_people_put_on_another_floor_is_listed(book: bytes) -> None
     assert texts(found) == ["Places B6 Floor of Exit B stays 'Level 2'; the model has 'Level 1'"]
 
 
+@pytest.mark.slow
 def test_routes_are_peoples_own_and_points_of_another_draft_move_none_of_theirs() -> None:
     """Drafts number their points: "L1 point 1" of the model may be another one than that of a reviewed route."""
     point = {"place": "L1 point 1", "floor": "Level 1", "x": 5.0, "y": 2.0}

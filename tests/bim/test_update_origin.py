@@ -39,6 +39,7 @@ def test_another_origin_of_the_model_is_no_change(book: bytes, by: tuple[float, 
     assert found.moved == (-by[0], -by[1])
 
 
+@pytest.mark.slow
 def test_new_rows_and_moved_pieces_get_the_origin_of_the_workbook(book: bytes) -> None:
     place = {"place": "B202", "floor": "Level 2", "x": 9.0, "y": 2.0, "kind": "room", "outline": "6 0; 12.5 0; 12.5 4"}
     items = [{**ITEMS[0], "x": 7.0}, *ITEMS[1:], piece(7, "Level 3", "C301")]
@@ -50,6 +51,7 @@ def test_new_rows_and_moved_pieces_get_the_origin_of_the_workbook(book: bytes) -
     assert found.data == same.data
 
 
+@pytest.mark.slow
 def test_a_building_that_moved_by_no_whole_step_and_half_of_its_pieces_are_moved(book: bytes) -> None:
     found = update(book, shift(building(), 103.0, 0.0))
     assert found.moved == (0.0, 0.0)
@@ -60,6 +62,7 @@ def test_a_building_that_moved_by_no_whole_step_and_half_of_its_pieces_are_moved
     assert [one.now for one in found.changes] == [101, 102, 103]
 
 
+@pytest.mark.slow
 def test_a_new_piece_beyond_a_line_of_the_grid_moves_nothing_else(tmp_path: Path) -> None:
     def write(*more: float) -> ImportedBuilding:
         model = ModelWriter()

@@ -93,6 +93,7 @@ def test_no_plan_takes_the_name_of_another_floor(tmp_path: Path) -> None:
     assert (tmp_path / "house-EG.svg").read_bytes() == b"mine"
 
 
+@pytest.mark.slow
 def test_a_plan_of_a_floor_that_the_model_lost_is_not_replaced(tmp_path: Path, book: bytes) -> None:
     """The model calls Level 2 now what was Level 1, whose plan would get the name of that of the floor that is gone."""
     put(tmp_path, Level_1=OLD["house-Level-1.svg"], Level_2=OLD["house-Level-2.svg"])

@@ -46,6 +46,7 @@ def grown(*new: dict[str, Any], **more: Any) -> ImportedBuilding:
 # ---------------------------------------------------------------- where they go
 
 
+@pytest.mark.slow
 def test_a_new_piece_goes_into_the_next_prepared_row_and_more_below(book: bytes) -> None:
     found = update(book, grown())
     assert texts(found) == ["Items A8 B201-07 was added"]
@@ -59,6 +60,7 @@ def test_a_new_piece_goes_into_the_next_prepared_row_and_more_below(book: bytes)
     assert len(inventory(found.data).items) == 26
 
 
+@pytest.mark.slow
 def test_a_new_piece_gets_a_name_that_no_row_has_and_goes_below_rows_of_people(book: bytes) -> None:
     data = typed(book, row=3, item="b201-07")
     found = update(data, grown(NEW, {**NEW, "source_id": "other"}))
@@ -68,6 +70,7 @@ def test_a_new_piece_gets_a_name_that_no_row_has_and_goes_below_rows_of_people(b
     assert texts(update(data, grown())) == ["Items A13 B201-07 was added"]
 
 
+@pytest.mark.slow
 def test_live_formulas_stay_and_work_in_new_rows(book: bytes, tmp_path: Path) -> None:
     data = line(book, shaking="MMI VIII, severe")
     found = update(data, grown())
@@ -93,6 +96,7 @@ def test_live_formulas_stay_and_work_in_new_rows(book: bytes, tmp_path: Path) ->
 # ---------------------------------------------------------------- where they cannot go
 
 
+@pytest.mark.slow
 def test_below_something_else_nothing_is_added_and_all_is_listed(book: bytes) -> None:
     model = building(items=[*changed(p1={"breadth": 60.0}).items, NEW])
     for fields in ({"item": "Total", "quantity": 6}, {"notes": "Checked by Ann"}, {"item": "Next ward"}):
@@ -119,6 +123,7 @@ def test_under_merged_cells_nothing_is_added(book: bytes) -> None:
     assert "merged cells or a formula of several cells stand below row 7" in str(found.problems[0])
 
 
+@pytest.mark.slow
 def test_what_another_program_saved_with_formulas_in_a_column_of_its_own_is_updated(book: bytes) -> None:
     def prepare(workbook: Any) -> None:
         page = workbook["Items"]
@@ -136,6 +141,7 @@ def test_what_another_program_saved_with_formulas_in_a_column_of_its_own_is_upda
 
 
 @pytest.mark.parametrize("language", ["en", "it"])
+@pytest.mark.slow
 def test_imperial_headers_in_any_language(tmp_path: Path, language: str) -> None:
     data = in_units(tmp_path / "book.xlsx", building(), language)
     assert update(data).changes == ()

@@ -54,6 +54,7 @@ def test_the_same_import_changes_nothing_to_the_byte(book: bytes) -> None:
     assert (found.data, found.changes, found.problems, found.is_changed) == (book, (), (), False)
 
 
+@pytest.mark.slow
 def test_a_real_model_again_changes_nothing() -> None:
     name = "LargeBuilding.ifc"
     model = read_source(Path(__file__).parents[2] / "samples" / "models" / name, name, routes="draft")
@@ -61,6 +62,7 @@ def test_a_real_model_again_changes_nothing() -> None:
     assert update_workbook(data, model, "b.xlsx").data is data
 
 
+@pytest.mark.slow
 def test_a_cobie_file_again_adds_what_is_new_and_its_sizes_follow(tmp_path: Path) -> None:
     """Such files have no positions, and nothing in them says where sizes come from."""
     path = write_cobie(tmp_path / "handover.xlsx")
@@ -172,6 +174,7 @@ def test_a_piece_that_the_model_lost_stays_and_is_listed(book: bytes) -> None:
     assert not found.is_changed
 
 
+@pytest.mark.slow
 def test_a_source_id_that_is_there_twice_is_listed_and_one_of_other_letter_case_is_another(book: bytes) -> None:
     data = typed(book, row=8, item="Copy", floor="Level 1", breadth=54.5, height=200, source_id=f" {IDS[2]} ")
     letters = table(data).letters["source_id"]
@@ -274,6 +277,7 @@ def test_it_can_be_cancelled(book: bytes) -> None:
 # ---------------------------------------------------------------- Building
 
 
+@pytest.mark.slow
 def test_only_blank_lines_of_the_building_are_filled(book: bytes) -> None:
     data = line(book, latitude=None, azimuth_deg=28, building="Town hall", client="Ann")
     found = update(data)

@@ -8,11 +8,12 @@ from typer.testing import CliRunner
 
 from assess.cli import console
 from assess.cli.app import app
+from tests.report.reading import no_figures
 
 
 def run(*words: object):
-    """Call `assess` with some words; however long it takes, no line of progress is printed."""
-    with patch.object(console, "QUIET", math.inf):
+    """Call `assess` with some words, without the figures of reports; no line of progress is printed."""
+    with patch.object(console, "QUIET", math.inf), no_figures():
         return CliRunner().invoke(app, [str(word) for word in words])
 
 

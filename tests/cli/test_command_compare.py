@@ -57,6 +57,7 @@ def test_before_and_after_equal_what_each_run_says(folder, tmp_path):
             assert one[side]["class"] == adopted[one["item"]]["class"]
 
 
+@pytest.mark.slow
 def test_files_go_to_the_current_folder_by_default(folder, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     _compare(folder, "base", "strong")

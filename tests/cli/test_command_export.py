@@ -12,9 +12,16 @@ import pytest
 from ifcopenshell.util.element import get_psets
 
 from tests.bim.export_runs import CUPBOARD_1, CUPBOARDS, DUPLEX, OFFICE, PLACES, ROUTES, piece, write_results
+from tests.bim.model_here import models_read_here
 from tests.cli.calling import error, run
 
 WALL = "2O2Fr$t4X7Zf8NOew3FKau"
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _models_read_here():
+    with models_read_here():
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -60,6 +67,7 @@ def test_each_can_be_written_by_itself_from_the_folder_of_a_report(results, opti
     assert files(results.parent) == sorted([name, "results.json"])
 
 
+@pytest.mark.slow
 def test_pieces_that_are_not_in_the_model_are_named_and_end_with_1(tmp_path):
     items = [*CUPBOARDS, piece("No id", "1", None, 1, 1), piece("Stranger", "1", "0" * 22, 2, 1)]
     results = write_results(tmp_path, items)
@@ -86,6 +94,7 @@ def test_pieces_of_walls_and_pieces_that_share_an_element_are_named_and_end_with
     assert read_class(out) == "very high"
 
 
+@pytest.mark.slow
 def test_relative_names_in_the_folder_of_the_model(results, monkeypatch):
     """As it is called most often: from the folder that holds model and results."""
     results.with_name("model.ifc").write_bytes(DUPLEX.read_bytes())

@@ -20,9 +20,9 @@ from assess.model import Item
 from assess.pipeline.piece_fragility import FloorMotions, PieceFragilities, PieceFragility, find_piece_fragilities
 from assess.pipeline.run import compute
 from assess.units import GRAVITY
-from assess.workbook.template import Content, write_workbook
 from tests.cli.calling import error, run
 from tests.shaking import write_records
+from tests.workbooks import write_sheets
 
 SHAPE = {"width": 80, "axis": "X", "height": 180}
 ITEMS = [
@@ -40,7 +40,7 @@ def write(folder: Path, **rows: Any) -> Path:
     write_records(folder, "slow")
     path = folder / "w.xlsx"
     content = {"Building": [{}], "Floors": FLOORS, "Items": ITEMS, "Catalogue": [{"type": "=Shelf"}], **rows}
-    write_workbook(path, Content(rows=content), "si")
+    write_sheets(path, content)
     return path
 
 
@@ -220,6 +220,7 @@ GROUND = [{"ground_pga": 0.25, "height": 9}]
 TYPES = ("--by", "type", "--runs", 200)
 
 
+@pytest.mark.slow
 def test_files_for_pelicun_and_openquake(tmp_path):
     """What a format has no place for is named with its reason, and the exit status tells; the files are written."""
     path, out = write(tmp_path, Building=GROUND), tmp_path / "out"

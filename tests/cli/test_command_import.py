@@ -10,11 +10,18 @@ from assess.workbook.layout import PLACES
 from assess.workbook.patch import patch_workbook
 from assess.workbook.read import read_inventory, read_tables
 from tests.bim.cobie_files import COMPONENTS, TYPES, one_type, write_cobie
+from tests.bim.model_here import models_read_here
 from tests.cli.calling import error, run
 from tests.workbooks import write
 
 MODELS = Path(__file__).parents[2] / "samples" / "models"
 DUPLEX = MODELS / "duplex.ifc"
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _models_read_here():
+    with models_read_here():
+        yield
 
 
 @pytest.fixture
@@ -164,6 +171,7 @@ def test_the_wardrobes_have_their_supports_and_the_catalogue_their_type(duplex):
         assert len(one.more["source_id"]) == 22
 
 
+@pytest.mark.slow
 def test_with_the_shaking_filled_in_reports_show_the_walls(duplex):
     fill_in(duplex, shaking="MMI VII, very strong")
     out = duplex.parent / "reports"
@@ -175,6 +183,7 @@ def test_with_the_shaking_filled_in_reports_show_the_walls(duplex):
     assert [floor["floor"] for floor in plans] == ["Level 1", "Level 2", "Roof"]
 
 
+@pytest.mark.slow
 def test_drafted_routes_reach_an_exit_or_a_stair_from_19_rooms(tmp_path):
     out = tmp_path / "d.xlsx"
     done = run("import", MODELS / "duplex.ifc", "-o", out, "--routes", "draft")
@@ -190,6 +199,7 @@ def test_drafted_routes_reach_an_exit_or_a_stair_from_19_rooms(tmp_path):
     assert "drafted from a building model" in run("check", out).stderr
 
 
+@pytest.mark.slow
 def test_an_update_keeps_what_people_typed_and_lists_what_changed(duplex):
     set_item(duplex, 2, anchored="yes", weight=55.0, notes="ours", height=99.0)
     before = duplex.read_bytes()
@@ -213,6 +223,7 @@ def test_an_update_without_changes_leaves_every_byte(duplex):
     assert done.stderr.startswith(f"{duplex} stays as it is; wrote this list beside it. Now run: assess check")
 
 
+@pytest.mark.slow
 def test_what_people_save_while_an_update_reads_the_model_is_not_lost(duplex, monkeypatch):
     from assess.bim import read_source
 
@@ -282,6 +293,7 @@ def test_choices_that_do_not_fit(tmp_path):
         assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_a_plan_that_is_there_is_not_replaced(tmp_path):
     plan = tmp_path / "LargeBuilding-Level-1.svg"
     plan.write_text("mine", encoding="utf-8")

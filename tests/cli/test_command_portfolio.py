@@ -5,6 +5,7 @@ import re
 import signal
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -12,9 +13,10 @@ from typer.testing import CliRunner
 
 from assess.cli.app import app
 from assess.cli.command_portfolio import FORMATS, _say_repeat, describe_city
-from assess.portfolio import portfolio_output
+from assess.portfolio import example_city, portfolio_output
 from assess.portfolio.city_tables import read_table
 from assess.portfolio.city_totals import build_totals
+from assess.portfolio.example_city import BUILDINGS, write_example_city
 from assess.portfolio.run_portfolio import PortfolioResult
 from assess.settings import Settings
 from tests.portfolio.staged import write_building, write_city
@@ -32,6 +34,7 @@ def _call(*words, formats="parquet"):
     return run(app, ["portfolio", *map(str, words), "--verify", "none", "--formats", formats, "--jobs", "1"])
 
 
+@pytest.mark.slow
 def test_a_folder_is_assessed_and_told_in_words(tmp_path):
     result = _call(_write(tmp_path), "--out", tmp_path / "out")
     assert result.exit_code == 0
@@ -49,6 +52,7 @@ def test_a_folder_is_assessed_and_told_in_words(tmp_path):
     assert f"wrote {tmp_path / 'out' / 'pieces.parquet'}" in result.stderr
 
 
+@pytest.mark.slow
 def test_a_skipped_building_is_named_and_the_exit_status_is_1(tmp_path):
     city = _write(tmp_path, 1)
     (city / "bad\x1b[31m.xlsx").write_bytes(b"no workbook")
@@ -61,6 +65,7 @@ def test_a_skipped_building_is_named_and_the_exit_status_is_1(tmp_path):
     assert "error  unshaken.xlsx: skipped. " in result.stderr
 
 
+@pytest.mark.slow
 def test_the_same_command_goes_on_from_what_is_there(tmp_path):
     city = _write(tmp_path)
     _call(city, "--out", tmp_path / "out")
@@ -92,6 +97,7 @@ def test_bad_usage_is_named_with_its_option_and_writes_nothing(tmp_path, monkeyp
         assert [path.name for path in tmp_path.iterdir()] == ["city"]
 
 
+@pytest.mark.slow
 def test_runs_that_do_not_fit_the_scenarios_are_refused_and_leave_the_results(tmp_path):
     city = write_city(tmp_path / "city", [40.0])
     ground, out = tmp_path / "gm", tmp_path / "out"
@@ -154,11 +160,13 @@ def test_an_example_that_is_interrupted_leaves_nothing(tmp_path):
 
 
 @pytest.mark.slow
-def test_the_example_is_a_city_of_200_buildings_or_more_that_are_all_assessed(tmp_path):
+@pytest.mark.parametrize("count", [30, pytest.param(BUILDINGS, marks=pytest.mark.long)])
+def test_the_example_is_a_city_whose_buildings_are_all_assessed(tmp_path, monkeypatch, count):
+    monkeypatch.setattr(example_city, "write_example_city", partial(write_example_city, buildings=count))
     result = _call(tmp_path / "bay", "--example", "--out", tmp_path / "out")
     assert result.exit_code == 0, result.stderr
     rows = read_table(tmp_path / "out", "buildings")
-    assert len(rows) >= 200
+    assert len(rows) == count
     assert [set(rows[name]) for name in ("status", "ground_source", "inventory")] == [
         {"assessed"}, {"shakemap"}, {"surveyed", "assumed"},
     ]  # fmt: skip
@@ -168,7 +176,7 @@ def test_the_example_is_a_city_of_200_buildings_or_more_that_are_all_assessed(tm
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_the_command_and_keeps_what_is_done(tmp_path, number):
-    city = _write(tmp_path, 300)
+    city = _write(tmp_path, 120)
     words = f"assess portfolio {city} --verify none --out {tmp_path / 'out'} --formats parquet".split()
     code = (
         f"import signal, sys\nsignal.signal(signal.SIGINT, signal.default_int_handler)\nsys.argv = {words!r}\n"
@@ -189,7 +197,7 @@ def test_a_signal_ends_the_command_and_keeps_what_is_done(tmp_path, number):
     assert errors.endswith("the same command goes on.\n")
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["parts"]
     result = _call(city, "--out", tmp_path / "out")
-    assert re.match(r"300 buildings assessed \(\d+ of them by an earlier run\)", result.stdout)
+    assert re.match(r"120 buildings assessed \(\d+ of them by an earlier run\)", result.stdout)
 
 
 def test_the_line_that_repeats_a_building_names_what_differs_from_the_defaults():

@@ -65,6 +65,7 @@ def test_a_file_that_cannot_be_read_is_named_and_the_others_are_told(tmp_path):
 
 
 @pytest.mark.parametrize("kind", ["png", "svg", "pdf"])
+@pytest.mark.slow
 def test_the_figure(tmp_path, kind):
     path = tmp_path / f"figure.{kind}"
     done = record(SWEEP, "--plot", path)
@@ -75,6 +76,7 @@ def test_the_figure(tmp_path, kind):
         assert sum(1 for one in ET.parse(path).iter() if str(one.get("id", "")).startswith("axes_")) == 9
 
 
+@pytest.mark.slow
 def test_only_the_first_channels_are_drawn_and_the_rest_is_said(tmp_path):
     done = record(*[SWEEP] * 5, "--plot", tmp_path / "many.png")
     assert "3 more channels not drawn" in done.stderr

@@ -141,6 +141,7 @@ def test_bad_input_is_named(tmp_path, options, message):
 @pytest.mark.parametrize(
     ("kind", "magic", "pfa"), [("png", b"\x89PNG", 0.1), ("svg", b"<?xml", 0.3), ("pdf", b"%PDF", 0.5)]
 )
+@pytest.mark.slow
 def test_the_figure_is_written_and_the_same_twice(tmp_path, kind, magic, pfa):
     paths = [tmp_path / f"a.{kind}", tmp_path / "b.svg"]
     for path in paths:
@@ -278,6 +279,7 @@ def test_a_long_path_is_thinned_out_and_keeps_its_peak_and_its_end():
         assert (drawn.get_xdata()[-1], drawn.get_ydata()[-1]) == (30, pytest.approx(0.25))
 
 
+@pytest.mark.slow
 def test_names_that_look_like_mathematics_are_drawn_as_they_are(tmp_path):
     path = tmp_path / "$x$_{.csv"
     path.write_bytes(SWEEP.read_bytes())

@@ -21,9 +21,9 @@ from assess.pipeline.route_sweep import Fragility, RouteFragility
 from assess.rocking.draws import Uncertainty
 from assess.route_results import Chance, PieceRef
 from assess.units import GRAVITY
-from assess.workbook.template import Content, write_workbook
 from tests.cli.calling import error, run
 from tests.shaking import write_records
+from tests.workbooks import write_sheets
 
 CORRIDOR = {"segment": "corridor", "clear_width": 1.5, "required_width": 0.9}
 ROUTES = [
@@ -45,7 +45,7 @@ def write(folder: Path, **rows: Any) -> Path:
     write_records(folder, "slow")
     path = folder / "w.xlsx"
     content = {"Building": [{"period": 1.0}], "Floors": FLOORS, "Items": ITEMS, "Routes": ROUTES, **rows}
-    write_workbook(path, Content(rows=content), "si")
+    write_sheets(path, content)
     return path
 
 
@@ -203,6 +203,7 @@ def test_it_is_what_a_run_finds_at_the_floors_own_pfa(swept):
     assert 0 < at["blocked"] < 1
 
 
+@pytest.mark.slow
 def test_the_figure_is_the_same_twice_and_of_each_kind(swept):
     folder, _ = swept
     assert (folder / "f.png").read_bytes().startswith(b"\x89PNG")

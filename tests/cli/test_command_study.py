@@ -61,6 +61,7 @@ def test_the_help_names_every_study_and_the_sizes_that_are_used():
 # ---------------------------------------------------------------- files
 
 
+@pytest.mark.slow
 def test_a_study_writes_its_page_tables_and_figure(tmp_path):
     found = study("table3", "--out", tmp_path / "out")
     assert found.exit_code == 0
@@ -76,6 +77,7 @@ def test_a_study_writes_its_page_tables_and_figure(tmp_path):
     assert found.stderr.endswith(f"wrote {tmp_path / 'out' / 'table3.md'}\n")
 
 
+@pytest.mark.slow
 def test_the_same_again_gives_the_same_bytes(tmp_path):
     for name in ("one", "other"):
         assert study("table1", "--out", tmp_path / name).exit_code == 0
@@ -204,6 +206,7 @@ def test_looking_whether_a_folder_can_be_written_to_leaves_nothing(tmp_path, mon
 # ---------------------------------------------------------------- records of one's own
 
 
+@pytest.mark.slow
 def test_a_folder_of_records_has_a_table_of_its_own(tmp_path, monkeypatch):
     """The folder in which one stands, with our own files in it: their folder is none of the records, run by run."""
     folder = tmp_path / "my records"
@@ -265,6 +268,7 @@ def test_a_run_that_is_interrupted_says_where_it_goes_on(tmp_path, number, keeps
         assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_a_request_to_end_is_as_before_afterwards(tmp_path):
     before = signal.getsignal(signal.SIGTERM)
     assert study("table3", "--out", tmp_path).exit_code == 0

@@ -189,6 +189,7 @@ def test_methods_lists_every_method():
         assert str(method.reference) in text
 
 
+@pytest.mark.slow
 def test_doctor_finds_all_that_is_installed_here():
     done = run(app, ["doctor"])
     assert f"assess: {assess.__version__}" in done.output

@@ -92,6 +92,7 @@ def test_a_date_that_is_none_is_refused_before_the_work(tmp_path, monkeypatch):
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_dates(tmp_path, monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "")
     assert report_time().year >= 2025
@@ -108,6 +109,7 @@ def test_dates(tmp_path, monkeypatch):
 
 
 @needs_full
+@pytest.mark.slow
 def test_an_output_that_is_full(tmp_path):
     write_records(tmp_path, "fast")
     write(tmp_path / "book.xlsx")
@@ -119,6 +121,7 @@ def test_an_output_that_is_full(tmp_path):
         assert call(tmp_path, "check", "missing.xlsx", err=full).returncode == 1
 
 
+@pytest.mark.slow
 def test_a_reader_that_leaves(tmp_path):
     """As head does, or a pager that is left."""
     write(tmp_path / "book.xlsx")

@@ -30,6 +30,7 @@ HEAD = "import os, signal, sys, time\nfrom assess.cli import console, interrupts
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
+@pytest.mark.slow
 def test_an_interrupted_verification_leaves_all_as_it_was(tmp_path, jobs):
     path, out = write(tmp_path / "w.xlsx", ITEMS, FLOORS), tmp_path / "out"
     out.mkdir()
@@ -159,7 +160,7 @@ def test_a_signal_during_any_import_or_file_operation_leaves_nothing_behind(tmp_
 
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="no signals to send")
-@pytest.mark.parametrize(("number", "first"), [(signal.SIGINT, 0.0), (signal.SIGTERM, 0.05)])
+@pytest.mark.parametrize(("number", "first"), [(signal.SIGINT, 0.0), (signal.SIGTERM, 0.2)])
 def test_a_signal_at_any_time_leaves_nothing_behind(tmp_path, number, first):
     """Sent from outside, to all of the command: its threads, the process that lays the PDF out.
 
@@ -168,7 +169,7 @@ def test_a_signal_at_any_time_leaves_nothing_behind(tmp_path, number, first):
     book = write(tmp_path / "w.xlsx")
     (tmp_path / "tmp").mkdir()
     words = [sys.executable, *f"-v -m assess run {book.name} --runs 20 --formats pdf,csv --out out".split()]
-    for moment in [*(0.2 * at + first for at in range(10)), *(2 + first + 2 * at for at in range(4))]:
+    for moment in [*(0.4 * at + first for at in range(5)), *(2 + first + 2 * at for at in range(4))]:
         with subprocess.Popen(
             words, cwd=tmp_path, env=os.environ | {"TMPDIR": str(tmp_path / "tmp")}, stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE, text=True,

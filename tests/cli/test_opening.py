@@ -34,6 +34,7 @@ def run_open(folder, formats, **variables):
     )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_the_report_is_opened_in_the_browser(tmp_path, browser):
     done = run_open(tmp_path, "json,html,xlsx", BROWSER=str(browser))
     assert done.returncode == 0, done.stderr
@@ -42,6 +43,7 @@ def test_the_report_is_opened_in_the_browser(tmp_path, browser):
 
 
 @pytest.mark.skipif(sys.platform == "darwin", reason="always has a display")
+@pytest.mark.slow
 def test_away_from_a_display_one_line_says_where_the_report_is(tmp_path):
     done = run_open(tmp_path, "json,xlsx")
     report = tmp_path / "a b" / "report.xlsx"

@@ -15,12 +15,11 @@ import pytest
 
 from assess.cli.app import list_names
 from assess.workbook.patch import patch_workbook
-from assess.workbook.template import Content, write_workbook
 from tests.alike import differences, strip_numbers
 from tests.cli.calling import run
 from tests.nets.lines import read_excel, read_html
 from tests.shaking import write_records
-from tests.workbooks import address, write
+from tests.workbooks import address, write, write_sheets
 
 SHOWN = Path(__file__).parent / "shown"
 SAMPLES = Path(__file__).parents[2] / "samples"
@@ -89,7 +88,7 @@ WRITTEN = {
 def make(folder: Path) -> None:
     """Write what the calls name."""
     write_records(folder, "slow")
-    write_workbook(folder / "routed.xlsx", Content(rows=ROUTED), spare=1)
+    write_sheets(folder / "routed.xlsx", ROUTED)
     write(folder / "unshaken.xlsx", floors=LACKING)
     write(folder / "unfurnished.xlsx", items=[])
     write(folder / "assumed.xlsx", floors=LACKING, **SHAKING)

@@ -100,6 +100,7 @@ def test_the_walls_verdicts_hold_the_vertical_motion():
     assert both["wall"]["negative_side"] != alone["wall"]["negative_side"]
 
 
+@pytest.mark.slow
 def test_the_figure_is_of_the_outcome(tmp_path):
     drawn = {}
     for name, flags in (("plain", ()), ("vertical", ("--vertical", SWEEP)), ("wall", ("--wall",))):

@@ -115,6 +115,7 @@ def test_a_file_of_the_users_own_is_not_replaced(found, tmp_path):
     assert {path.name: path.read_text(encoding="utf-8") for path in tmp_path.iterdir()} == {"compare.html": "mine"}
 
 
+@pytest.mark.slow
 def test_a_file_that_was_changed_is_not_replaced(found, tmp_path):
     for name, formats in (("compare.html", ("html",)), ("compare.pdf", ("pdf",))):
         folder = tmp_path / name

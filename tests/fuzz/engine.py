@@ -191,7 +191,10 @@ def fuzz(
     deep: bool = False,
     report: Callable[[Summary], None] | None = None,
 ) -> Summary:
-    """Change and run inputs for so much time of the processor, seeds first; `report` is called about every minute."""
+    """Change and run inputs for so much time of the processor, one at least; `report` is called about every minute.
+
+    Seeds come first, and take of that time.
+    """
     draw, summary, pool, told = random.Random(seed), Summary(), list[bytes](), 0.0
     started = time.process_time()
     with Lines() as lines:
@@ -199,7 +202,8 @@ def fuzz(
             _count(summary, target, data, started, deep=deep)
             pool.append(data)
         summary.lines_of_seeds = summary.lines = lines.count
-        while summary.seconds < seconds:
+        seeds = summary.executions
+        while summary.seconds < seconds or summary.executions == seeds:
             data = target.mutate(draw, _choose(draw, pool), pool)
             outcome = _count(summary, target, data, started, deep=deep)
             if lines.count > summary.lines and outcome in target.further:

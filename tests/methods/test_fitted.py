@@ -90,6 +90,7 @@ models = st.builds(
 class TestFile:
     @examples(deadline=None, max_examples=200)
     @given(model=models)
+    @pytest.mark.slow
     def test_what_is_written_comes_back(self, model):
         assert parse_model(write_model(model), "m.toml") == model
 
@@ -193,6 +194,7 @@ class TestFile:
 
     @examples(deadline=None, max_examples=300)
     @given(data=st.data())
+    @pytest.mark.slow
     def test_damaged_files_are_told_and_nothing_else_is_raised(self, data):
         text = write_model(data.draw(st.sampled_from([SURFACE, PROBIT])))
         at = data.draw(st.integers(0, len(text) - 1))

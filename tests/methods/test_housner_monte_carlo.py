@@ -380,6 +380,7 @@ def test_the_width_of_intervals() -> None:
 
 @pytest.mark.parametrize("settings", [Settings(runs=30), AUTO], ids=["30", "auto"])
 @pytest.mark.parametrize("ensembles", [1, 3])
+@pytest.mark.slow
 def test_threads_change_nothing(ensembles: int, settings: Settings) -> None:
     expected = evaluate(_grid(ensembles), settings)
     for threads in (2, 3, 4):

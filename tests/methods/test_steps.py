@@ -77,6 +77,7 @@ def last(steps: list[str], start: str) -> float:
     return float(re.sub(COMPUTES, r"\g<result>", step))
 
 
+@pytest.mark.slow
 def test_every_step_of_a_sweep_can_be_worked_again() -> None:
     sweep = itertools.product((8, 30, 45, 90, 200), (60, 200), (0.05, 0.3, 0.9, 2.0), (math.nan, 2, 40, 300))
     b, h, pfa, pfv = np.array(list(sweep)).T

@@ -106,6 +106,7 @@ def test_floors_of_one_draw_move_as_one_building() -> None:
 # --- what they depend on ---
 
 
+@pytest.mark.slow
 def test_draws_depend_on_neither_number_nor_order_nor_threads() -> None:
     every = realise(target(), 0, 260)
     beam_motions.KEPT.forget()
@@ -147,6 +148,7 @@ def test_the_factor_in_height_is_straight_between_known_floors_and_down_to_the_g
 # --- what is kept ---
 
 
+@pytest.mark.slow
 def test_no_more_is_kept_than_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = realise(target())
 

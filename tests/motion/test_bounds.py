@@ -9,21 +9,30 @@ import pytest
 
 from assess.errors import RecordError
 from assess.motion.formats import _format, parse_records, plain_csv, read_records
-from assess.motion.formats._format import MOST_CHANNELS
+from assess.motion.formats._format import MOST_CHANNELS, MOST_VALUES
+from assess.motion.formats._text import MOST_LINES
+from assess.motion.formats.miniseed import MOST_PARTS
 from assess.motion.record import MOST_SAMPLES
 from tests.apart import run_apart
 from tests.motion.writers import EAST, Signal, at2, csmip_v1, csmip_v2, mseed, sac, wave, zipped
+from tests.waiting import PATIENCE
 
-MOST_MEMORY = 400
-"""MB at the peak, of which Python and the libraries take 60."""
+OWN_MEMORY, MOST_MEMORY = 90, 400
+"""MB at the peak: what Python, the libraries and a block of a file take, and all in all."""
 LARGE = 63_900_000
 """Bytes: the largest file that is read has 64 MB."""
+SIZES = [pytest.param(8, marks=pytest.mark.slow), pytest.param(1, marks=pytest.mark.long)]
+"""An eighth of the size, of every limit and of the memory; and the whole."""
 
 _CHILD = """
 import sys
 from pathlib import Path
-from assess.motion.formats import read_records
+from assess.motion.formats import _text, miniseed, plain_csv, read_records
 from assess.errors import RecordError
+for module in [module for name, module in sys.modules.items() if name.startswith("assess.motion.")]:
+    for limit in ("LARGEST_FILE", "MOST_SAMPLES", "MOST_VALUES", "MOST_LINES", "MOST_PARTS"):
+        if hasattr(module, limit):
+            setattr(module, limit, getattr(module, limit) // SMALLER)
 try:
     print(sum(record.acceleration.size for record in read_records(Path(sys.argv[1]))), "samples")
 except RecordError as error:
@@ -31,42 +40,60 @@ except RecordError as error:
 """
 
 
-def read_apart(folder: Path, data: bytes) -> str:
-    """Read a file in a process of its own; return what it says, having checked how much memory it took."""
+def read_apart(folder: Path, data: bytes, smaller: int) -> str:
+    """Read a file in a process of its own; return what it says, having checked how much memory it took.
+
+    There the limits of a file are `smaller` times as small, and so is what may be taken for it.
+    """
     (folder / "large").write_bytes(data)
+    most = OWN_MEMORY + (MOST_MEMORY - OWN_MEMORY) / smaller
     try:
-        return run_apart(_CHILD, folder / "large", most_memory=MOST_MEMORY, seconds=300)
+        return run_apart(f"SMALLER = {smaller}{_CHILD}", folder / "large", most_memory=most, seconds=2 * PATIENCE)
     finally:
         (folder / "large").unlink()
+
+
+Build = Callable[[int], bytes]
+"""Builds a file, so many times smaller than the largest."""
 
 
 # --- plain CSV ---
 
 
-def many_rows(channels: int, cell: str = "-0.12345", end: str = "\n") -> bytes:
+def many_rows(smaller: int, channels: int, cell: str = "-0.12345", end: str = "\n") -> bytes:
     head = "time [s]," + ",".join(f"c{number} [cm/s2]" for number in range(channels)) + end
     # Two values, or every sample would be alike.
     rows = ["," + ",".join([cell] * channels) + end, "," + ",".join(["0.12345"[: len(cell)]] * channels) + end]
-    count = min((LARGE - len(head)) // (len(rows[0]) + 8), MOST_SAMPLES)
+    count = min((LARGE // smaller - len(head)) // (len(rows[0]) + 8), MOST_SAMPLES // smaller)
     return (head + "".join(f"{row * 0.005:.3f}{rows[row % 2]}" for row in range(count))).encode()
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("data", "said"),
-    [
-        (lambda: many_rows(1), "samples"),
-        (lambda: many_rows(3, end=",,,\r\n"), "samples"),
-        (lambda: many_rows(MOST_CHANNELS), "samples"),
-        (lambda: many_rows(3).replace(b",", b'","').replace(b"\n", b'"\n"')[:LARGE].rpartition(b"\n")[0], "samples"),
-        (lambda: many_rows(MOST_CHANNELS, "1"), "the file has more than 20,000,000 samples"),
-        (lambda: b"time [s],a [g]\n" + b"1,2\n" * (LARGE // 4 - 10), "the file has more than 4,000,000 rows"),
-        (lambda: b"time [s],a [g]\n" + b"#" * (LARGE - 100), "line 2 has more than 500 channels, or the end"),
-        (lambda: b"#" * (LARGE - 100), "the file format is not supported"),
-    ],
-)
-def test_the_largest_csv(tmp_path: Path, data: Callable[[], bytes], said: str) -> None:
-    assert said in read_apart(tmp_path, data())
+def quoted_rows(smaller: int) -> bytes:
+    quoted = many_rows(smaller, 3).replace(b",", b'","').replace(b"\n", b'"\n"')
+    return quoted[: LARGE // smaller].rpartition(b"\n")[0]
+
+
+TABLES: dict[str, tuple[Build, str]] = {
+    "a channel": (lambda smaller: many_rows(smaller, 1), "samples"),
+    "empty columns": (lambda smaller: many_rows(smaller, 3, end=",,,\r\n"), "samples"),
+    "most channels": (lambda smaller: many_rows(smaller, MOST_CHANNELS), "samples"),
+    "quoted": (quoted_rows, "samples"),
+    "samples": (lambda smaller: many_rows(smaller, MOST_CHANNELS, "1"), "the file has more than {:,} samples"),
+    "rows": (lambda smaller: b"time [s],a [g]\n" + b"1,2\n" * (LARGE // smaller // 4 - 10),
+             "the file has more than {:,} rows"),
+    "a line": (lambda smaller: b"time [s],a [g]\n" + b"#" * (LARGE // smaller - 100),
+               "line 2 has more than 500 channels, or the end"),
+    "no table": (lambda smaller: b"#" * (LARGE // smaller - 100), "the file format is not supported"),
+}  # fmt: skip
+LIMITS = {"samples": MOST_VALUES, "rows": MOST_SAMPLES}
+"""What is named where a file goes beyond it."""
+
+
+@pytest.mark.parametrize("smaller", SIZES)
+@pytest.mark.parametrize("name", TABLES)
+def test_the_largest_csv(tmp_path: Path, name: str, smaller: int) -> None:
+    build, said = TABLES[name]
+    assert said.format(LIMITS.get(name, 0) // smaller) in read_apart(tmp_path, build(smaller), smaller)
 
 
 def test_a_million_channels_are_refused_at_the_headings(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -130,25 +157,10 @@ def test_two_rows_that_make_up_for_each_other_are_not_taken_for_even() -> None:
 # --- other formats ---
 
 
-def tiny_words() -> bytes:
+def tiny_words(smaller: int) -> bytes:
     head = at2().split(b"\r\n")[:3]
-    return b"\n".join([*head, b"NPTS= 4000000, DT= .01000 SEC", b"0\n1\n" * 2_000_000])
-
-
-TEXTS: dict[str, tuple[Callable[[], bytes], str]] = {
-    "words": (tiny_words, "4000000 samples"),
-    "columns": (lambda: csmip_v1(Signal(wave(4_000_000))), "4000000 samples"),
-    "short lines": (lambda: csmip_v2(EAST)[:60] + b"\r\nUNCORRECTED ACCELEROGRAM DATA\n" + b"01234\n" * 9_900_000,
-                    "no line says"),
-    "lines beyond count": (lambda: at2() + b"\n" * LARGE, "the file has more than 10,000,000 lines"),
-    "channels": (lambda: (csmip_v2(EAST)[:2700] + b"\n") * 20_000, "the file has more than 500 channels"),
-    "a line": (lambda: at2() + b"1 " * (LARGE // 2 - 10_000), "the file has more data values than the 400"),
-    "miniSEED": (lambda: mseed(EAST) * (LARGE // len(mseed(EAST)) - 1), "the number of samples is"),
-    "short records": (lambda: short_records() * (LARGE // 128), "the file has more than 250,000 records of miniSEED"),
-    "stations": (lambda: b"".join(mseed(EAST, station=f"{n:04}") for n in range(600)), "more than 500 channels"),
-    "SAC": (lambda: sac(Signal(wave(15_000_000)), unit="g"), "the number of samples is 15,000,000, expected at most"),
-    "the largest SAC": (lambda: sac(Signal(wave(4_000_000)), unit="g"), "4000000 samples"),
-}  # fmt: skip
+    count = MOST_SAMPLES // smaller
+    return b"\n".join([*head, b"NPTS= %7d, DT= .01000 SEC" % count, b"0\n1\n" * (count // 2)])
 
 
 def short_records() -> bytes:
@@ -158,11 +170,36 @@ def short_records() -> bytes:
     return bytes(record)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", TEXTS)
-def test_the_largest_files_of_other_formats(tmp_path: Path, name: str) -> None:
-    build, said = TEXTS[name]
-    assert said in read_apart(tmp_path, build())
+UNCORRECTED = b"\r\nUNCORRECTED ACCELEROGRAM DATA\n"
+OTHERS: dict[str, tuple[Build, str, int]] = {
+    "words": (tiny_words, "{} samples", MOST_SAMPLES),
+    "columns": (lambda smaller: csmip_v1(Signal(wave(MOST_SAMPLES // smaller))), "{} samples", MOST_SAMPLES),
+    "short lines": (lambda smaller: csmip_v2(EAST)[:60] + UNCORRECTED + b"01234\n" * (9_900_000 // smaller),
+                    "no line says", 0),
+    "lines beyond count": (lambda smaller: at2() + b"\n" * (LARGE // smaller), "the file has more than {:,} lines",
+                           MOST_LINES),
+    "channels": (lambda smaller: (csmip_v2(EAST)[:2700] + b"\n") * (20_000 // smaller),
+                 "the file has more than 500 channels", 0),
+    "a line": (lambda smaller: at2() + b"1 " * (LARGE // smaller // 2 - 10_000),
+               "the file has more data values than the 400", 0),
+    "miniSEED": (lambda smaller: mseed(EAST) * (LARGE // smaller // len(mseed(EAST)) - 1), "the number of samples is",
+                 0),
+    "short records": (lambda smaller: short_records() * (LARGE // smaller // 128),
+                      "the file has more than {:,} records of miniSEED", MOST_PARTS),
+    "stations": (lambda _: b"".join(mseed(EAST, station=f"{n:04}") for n in range(600)), "more than 500 channels", 0),
+    "SAC": (lambda smaller: sac(Signal(wave(15_000_000 // smaller)), unit="g"),
+            "the number of samples is {:,}, expected at most", 15_000_000),
+    "the largest SAC": (lambda smaller: sac(Signal(wave(MOST_SAMPLES // smaller)), unit="g"), "{} samples",
+                        MOST_SAMPLES),
+}  # fmt: skip
+"""What is read, what is said of it, and the number in that for the whole size."""
+
+
+@pytest.mark.parametrize("smaller", SIZES)
+@pytest.mark.parametrize("name", OTHERS)
+def test_the_largest_files_of_other_formats(tmp_path: Path, name: str, smaller: int) -> None:
+    build, said, number = OTHERS[name]
+    assert said.format(number // smaller) in read_apart(tmp_path, build(smaller), smaller)
 
 
 def test_samples_of_an_archive_count_together(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -79,6 +79,7 @@ def test_what_is_not_read_is_refused_with_the_reason(path: Path) -> None:
         read_records(path)
 
 
+@pytest.mark.slow
 def test_all_else_is_read(read: Mapping[Path, tuple[Record, ...]]) -> None:
     assert all(read.values())
     for records in read.values():

@@ -20,6 +20,8 @@ SHORT_CSV = b"time [s],2 [g],1 [g]\n" + b"".join(
     b"%.2f,%.3f,%.1f\n" % (row / 100, row / 50, row % 3) for row in range(20)
 )
 ALL_DATA = [*(path.read_bytes() for path in COMMITTED), SHORT_CSV, *(SAMPLES[name]().data for name in SAMPLES)]
+MOST_DAMAGED = 50 if settings().derandomize else 150
+"""Damaged files of each format: the same ones in the gate, others and more by `make test-long`."""
 
 
 # --- the contract of every format ---
@@ -77,7 +79,7 @@ def test_each_format_has_a_sample_it_reads(candidate: Format) -> None:
 
 
 @pytest.mark.parametrize("candidate", all_formats(), ids=lambda candidate: candidate.key)
-@settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=MOST_DAMAGED, deadline=None, suppress_health_check=list(HealthCheck))
 @given(draw=st.data())
 def test_damage_is_a_record_error_at_worst(candidate: Format, draw: st.DataObject) -> None:
     own = [data for data in ALL_DATA if candidate.recognises(data[:HEAD])]
@@ -96,7 +98,7 @@ def test_damage_is_a_record_error_at_worst(candidate: Format, draw: st.DataObjec
         assert np.isfinite(treat(record).acceleration).all()
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=MOST_DAMAGED, deadline=None, suppress_health_check=list(HealthCheck))
 @given(
     damage=st.one_of(
         damaged([zipped({"a.V2": csmip_v2(EAST), "in.zip": zipped({"b.AT2": at2()})}), at2(), mseed(EAST)]),

@@ -3,6 +3,7 @@
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -40,10 +41,13 @@ def share(target: Target = TARGET, factor: float = 1.0, axis: str = "X", threads
     return share_motions(target, GRID, factor=factor, seed=1, axis=axis, threads=threads)
 
 
+@cache
 def alone(first: int, count: int) -> Single:
+    """Return motions of a generator of their own; they are not changed here."""
     return build_generator(TARGET, GRID, seed=1, axis="X").realise(first, count)
 
 
+@pytest.mark.slow
 def test_shared_motions_are_those_made_alone(nothing_kept: list[int]) -> None:
     one, other = share(), share(factor=2.5)
     assert len(nothing_kept) == 1
@@ -71,6 +75,7 @@ def test_what_is_handed_out_may_be_changed() -> None:
     assert share().spectra.ordinates.all()
 
 
+@pytest.mark.slow
 def test_targets_axes_seeds_and_signs_that_differ_at_all_share_nothing(nothing_kept: list[int]) -> None:
     first = share().realise(0, 2)
     others = (
@@ -125,6 +130,7 @@ def test_a_failure_is_not_kept(nothing_kept: list[int]) -> None:
     np.testing.assert_array_equal(share().realise(0, 3), alone(0, 3))
 
 
+@pytest.mark.slow
 def test_no_more_is_kept_than_allowed(monkeypatch: pytest.MonkeyPatch, nothing_kept: list[int]) -> None:
     size = 2_000_000  # room for the first 100 motions of two targets, not of three
     monkeypatch.setattr(shared_motions.KEPT, "most", size)

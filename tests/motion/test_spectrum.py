@@ -21,8 +21,17 @@ NOISE = np.random.default_rng(1).standard_normal((3, 400))
 # --- against another implementation ---
 
 
-@pytest.mark.parametrize("damping", [0.02, 0.05, 0.2])
-@pytest.mark.parametrize("name", [*"abck", ROOF, TWELFTH, GROUND])
+OFTEN, SELDOM = ("a", ROOF), ("b", "c", "k", TWELFTH, GROUND)
+
+
+@pytest.mark.parametrize(
+    ("name", "damping"),
+    [
+        *((name, damping) for name in OFTEN for damping in (0.02, 0.05, 0.2)),
+        *((name, 0.05) for name in SELDOM),
+        *(pytest.param(name, damping, marks=pytest.mark.long) for name in SELDOM for damping in (0.02, 0.2)),
+    ],
+)
 def test_against_eqsig(name: str, damping: float) -> None:
     """It has 2 pi to eight digits, hence 1e-8; the formulas in eqsig.sdof, unlike its AccSignal, do not resample."""
     motion = read_motion(name)

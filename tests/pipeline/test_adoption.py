@@ -205,6 +205,7 @@ def any_case(draw):
 
 
 @given(st.lists(any_case(), min_size=1, max_size=20))
+@pytest.mark.slow
 def test_nothing_comes_out_lower_than_it_should(given):
     found = adopted(*given)
     for at, case in enumerate(given):
@@ -239,6 +240,7 @@ def test_nothing_comes_out_lower_than_it_should(given):
 
 
 @given(st.lists(any_case(), min_size=1, max_size=8))
+@pytest.mark.slow
 def test_cases_do_not_touch_each_other(given):
     together = adopted(*given)
     for at, case in enumerate(given):

@@ -16,7 +16,9 @@ from tests.pipeline.rows import assessed, read
 from tests.workbooks import UNVERIFIED
 
 RECORDS = Path(__file__).parents[2] / "inventories" / "records" / "575-market"
-DRAWS = 10_000
+DRAWS, FEW = 10_000, 500
+NARROWER = 0.75
+"""Breadth over the limit of the pieces of the few draws [-]: a weaker motion fells these than those at the limit."""
 JUST_BELOW = 1 + 1e-6
 """Breadths are that much above the limit [-]."""
 HEIGHTS, CENTRES = (40, 120, 250), (30, 50, 75)
@@ -37,7 +39,7 @@ BUILDINGS = {
 
 
 def at_the_limit(pfa, dispersion, peak):
-    """Return pieces of every size, top-heavy or not, that the strongest motion for a PFA [g] just may not start."""
+    """Yield pieces of every size, top-heavy or not, that the strongest motion for a PFA [g] just may not start."""
     for height in HEIGHTS:
         for centre in CENTRES:
             for source in ("", "scan"):
@@ -50,10 +52,8 @@ def at_the_limit(pfa, dispersion, peak):
                            "sizes_from": source}  # fmt: skip
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("beta", [0.0, 0.4])
-@pytest.mark.parametrize("floor", FLOORS)
-def test_in_10_000_draws_no_piece_that_cannot_rock_overturns(floor, beta):
+def pieces_and_building(floor, beta):
+    """Return pieces that just cannot rock on a floor, that floor, and the building under that scatter."""
     building = {"motion_uncertainty": beta} | BUILDINGS[floor]
     one = {"floor": "1"} | FLOORS[floor]
     any_piece = {"item": "a", "floor": "1", "axis": "X", "breadth": 40, "height": 180}
@@ -62,9 +62,35 @@ def test_in_10_000_draws_no_piece_that_cannot_rock_overturns(floor, beta):
     assert spread == beta
     items = list(at_the_limit(pfa / GRAVITY, np.array(spread), np.array(peak)))
     assert len(items) >= 4
-    found = compute(read(items, [one], RECORDS, **building), Settings(verify="all", runs=DRAWS))
+    return items, one, building
+
+
+def count_falls(items, floor, building, draws):
+    """Return the assessment of pieces by so many draws, and the falls on the floor."""
+    found = compute(read(items, [floor], RECORDS, **building), Settings(verify="all", runs=draws))
+    return found, {int(joint.fell.sum()) for joint in found.joints.values()}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("beta", [0.0, 0.4])
+@pytest.mark.parametrize("floor", FLOORS)
+def test_in_10_000_draws_no_piece_that_cannot_rock_overturns(floor, beta):
+    found, falls = count_falls(*pieces_and_building(floor, beta), DRAWS)
     assert not find_can_rock(found.cases, found.settings).any()
-    assert {int(joint.fell.sum()) for joint in found.joints.values()} == {0}
+    assert falls == {0}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("beta", [0.0, 0.4])
+@pytest.mark.parametrize("floor", FLOORS)
+def test_in_few_draws_none_overturns_that_is_narrower_still(floor, beta):
+    """A twentieth of the draws, of pieces that motions three quarters as strong fell."""
+    items, one, building = pieces_and_building(floor, beta)
+    first = compute(read(items, [one], RECORDS, **building), UNVERIFIED)
+    assert not find_can_rock(first.cases, first.settings).any()
+    narrower = [piece | {"breadth": max(NARROWER * piece["breadth"], 5)} for piece in items]
+    _, falls = count_falls(narrower, one, building, FEW)
+    assert falls == {0}
 
 
 def test_a_king_bed_and_a_coffee_table_are_low_with_formulas_only():

@@ -50,6 +50,7 @@ def stored(done: Corrected, path: Path) -> dict[tuple[str, str], Any]:
     return stored_cells(path)
 
 
+@pytest.mark.slow
 def test_the_corrections_are_in_the_workbook_and_nothing_else_is(tmp_path: Path) -> None:
     path = example(tmp_path / "book.xlsx", HABITS)
     done = correct_workbook(path)
@@ -66,6 +67,7 @@ def test_the_corrections_are_in_the_workbook_and_nothing_else_is(tmp_path: Path)
     assert changed_parts(path.read_bytes(), done.inventory.data or b"") == numbers
 
 
+@pytest.mark.slow
 def test_corrected_once_there_is_nothing_left_to_correct(tmp_path: Path) -> None:
     done = correct_workbook(example(tmp_path / "book.xlsx", HABITS))
     (tmp_path / "out.xlsx").write_bytes(done.inventory.data or b"")
@@ -76,6 +78,7 @@ def test_corrected_once_there_is_nothing_left_to_correct(tmp_path: Path) -> None
     assert again.inventory.sha256 == done.inventory.sha256
 
 
+@pytest.mark.slow
 def test_the_live_columns_store_what_they_show(tmp_path: Path) -> None:
     done = correct_workbook(example(tmp_path / "book.xlsx", {**HABITS, "Items": {BREADTH: "30 cm", HEIGHT: "2 m"}}))
     page = openpyxl.load_workbook(io.BytesIO(done.inventory.data or b""), data_only=True)["Items"]
@@ -118,6 +121,7 @@ def test_a_formula_stays_a_formula(tmp_path: Path) -> None:
     assert done.inventory.data == path.read_bytes()
 
 
+@pytest.mark.slow
 def test_an_italian_workbook(tmp_path: Path) -> None:
     from assess.i18n import load_catalogue, speaking
 

@@ -72,6 +72,7 @@ def test_two_alike_have_one_chance_of_a_fall_along_either_axis():
     assert chances == pytest.approx([np.average(shares, weights=[1, 3])] * 2)
 
 
+@pytest.mark.slow
 def test_without_any_uncertainty_it_is_nearly_the_product():
     """Phases of the two axes are independent: 1 - (1 - P_X)(1 - P_Y), where nothing is drawn."""
     inventory = read({"item": "a", "width": 35}, motion_uncertainty=0, piece_uncertainty="no")

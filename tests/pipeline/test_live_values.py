@@ -71,6 +71,7 @@ def test_what_no_formula_knows_asks_for_a_run(tmp_path):
     assert [row[1:] for row in with_live(by_code).live] == [unknown, unknown, unknown, anchored, unknown]
 
 
+@pytest.mark.slow
 def test_they_are_the_results_of_the_run(tmp_path):
     floors = [{"floor": "1", "pfa_x": 0.3, "pfa_y": 0.4, "pfv_x": 30}, {"floor": "2", "pfa_x": 0.3, "pfv_x": 9}]
     path = tmp_path / "book.xlsx"

@@ -35,6 +35,7 @@ def by_map(tmp_path_factory):
     return chances(ITEMS, FLOORS, folder, shakemap="grid.xml")
 
 
+@pytest.mark.slow
 def test_a_map_and_its_typed_peaks_are_one_motion(by_map):
     ground = {"ground_pga": PGA, "ground_pgv": PGV, "motion_uncertainty": SIGMA_PGV}
     assert chances(ITEMS, FLOORS, **ground) == by_map
@@ -50,6 +51,7 @@ def test_on_the_ground_it_is_what_the_floor_s_own_peaks_give(by_map):
     assert sum(found.values()) == pytest.approx(sum(by_map[one] for one in found), rel=0.2)
 
 
+@pytest.mark.slow
 def test_a_low_velocity_topples_little_on_the_ground_and_more_of_it_more(by_map):
     """With the velocity of a large earthquake, 105 cm/s per g, most of what stands on the ground floor falls."""
     ground = {"ground_pga": PGA, "ground_pgv": 105 * PGA, "motion_uncertainty": SIGMA_PGV}

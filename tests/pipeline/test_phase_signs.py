@@ -42,6 +42,7 @@ def market():
     return {one.demand.name.removesuffix(".smc")[-1]: one for one in found if not one.demand.is_borrowed}
 
 
+@cache
 def build(letter: str, *, is_signed: bool = True, threads: int = 1):
     one = market()[letter]
     signs = one.signs if is_signed else None
@@ -59,6 +60,7 @@ def cohere(one, other, step=0.005):
 # --- what the motions of 575 Market Street come to ---
 
 
+@pytest.mark.slow
 def test_motions_of_floors_42_and_34_move_against_each_other_as_their_records_do():
     """At 0.8 to 1.6 Hz; with common phases alone they move alike. Further motions do as the first."""
     records = [put_on_grid(market()[one].demand.motion, market()[one].grid) for one in "ad"]
@@ -76,6 +78,7 @@ def test_motions_of_floors_42_and_34_move_against_each_other_as_their_records_do
     assert means[clear] == pytest.approx(own[clear], abs=0.2)
 
 
+@pytest.mark.slow
 def test_turned_phases_meet_the_spectrum_as_others_do():
     """The worst ordinate is a matter of the draw: over eight seeds it is 6 to 11 % of floor 34, turned or not."""
     generator = build("d")

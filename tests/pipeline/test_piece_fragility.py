@@ -131,6 +131,7 @@ def test_levels_are_added_where_a_short_motion_fells_late(tmp_path):
     assert again.fallen.tolist() == one.curve.fallen.tolist(), "no level is rocked otherwise for being added"
 
 
+@pytest.mark.slow
 def test_levels_and_threads_change_nothing(tmp_path):
     items = [CABINET, {**CABINET, "item": "a2", "breadth": 30, "axis": None}]
     floors = [{"floor": "1", **SLOW}, {"floor": "2", "pfa_x": 0.4}]
@@ -233,6 +234,7 @@ def test_a_type_is_the_sum_of_its_rows_by_quantity(tmp_path):
 # --- what is flagged, left out, or cannot be had ---
 
 
+@pytest.mark.slow
 def test_motions_that_may_be_too_weak_are_flagged(tmp_path):
     floors = [{"floor": "1", **SLOW}, {"floor": "2", "record_x": "pulse.csv"}, {"floor": "3", "pfa_x": 0.4}]
     items = [{**CABINET, "item": one, "floor": one} for one in "123"]

@@ -67,6 +67,7 @@ def curves(items, runs, **levels):
     return find_piece_fragilities(compute(read(items), Settings(verify="none", runs=runs, seed=2)), **levels).curves
 
 
+@pytest.mark.slow
 def test_the_curve_of_a_scanned_piece_is_wider():
     """More fall where few do, fewer where most do: under motions that differ by their phases alone."""
     usual, wide = (curves(items, 400, levels=LEVELS) for items in (pieces(), pieces(*NAMES)))

@@ -59,6 +59,7 @@ def chances(inventory, **settings):
     return found.outcomes[simulation().key].value
 
 
+@pytest.mark.slow
 def test_floors_without_a_record_share_their_beams_and_each_is_as_alone(swung):
     lower, upper = ({"floor": name, "elevation": z, "pfa_x": pfa} for name, z, pfa in (("1", 3, 0.3), ("2", 9, 0.55)))
     building = {"height": 9}
@@ -76,6 +77,7 @@ def test_floors_without_a_record_share_their_beams_and_each_is_as_alone(swung):
     assert 0 < both.mean() < 1
 
 
+@pytest.mark.slow
 def test_another_building_before_changes_nothing(swung):
     first = chances(read({"floor": "1", "pfa_x": 0.4}))
     beam_motions.KEPT.forget()
@@ -83,6 +85,7 @@ def test_another_building_before_changes_nothing(swung):
     np.testing.assert_array_equal(chances(read({"floor": "1", "pfa_x": 0.4})), first)
 
 
+@pytest.mark.slow
 def test_t1_is_not_rounded_into_one(swung):
     chances(read({"floor": "1", "pfa_x": 0.4}))
     once = len(swung)
@@ -92,6 +95,7 @@ def test_t1_is_not_rounded_into_one(swung):
     assert len(swung) == 2 * once
 
 
+@pytest.mark.slow
 def test_a_scaled_record_has_the_motions_of_the_record(built):
     inventory = read({"floor": "1", "record_x": CHANNEL})
     for scale in (1.0, 1.3, 0.7):

@@ -95,6 +95,7 @@ def test_what_is_used_is_told_with_where_its_scatter_comes_from_and_an_automatic
     assert "0.605 (assumed, as the map has none at this place: the total of Boore et al. 2014" in text
 
 
+@pytest.mark.slow
 def test_annual_chances_go_by_the_pga_and_leave_its_scatter_out(tmp_path):
     write_hazard(tmp_path)
     shutil.copy(BAY, tmp_path)

@@ -68,6 +68,7 @@ def flat(document):
     ("fill", "message"),
     [(nested, "more than 100,000"), (repeated, "more than 100,000"), (far, "damaged"), (flat, "no lines")],
 )  # fmt: skip
+@pytest.mark.slow
 def test_what_cannot_be_used(fill, message):
     document = new()
     fill(document)
@@ -94,6 +95,7 @@ def test_a_large_drawing_is_refused_before_ezdxf_builds_it(content, message, mon
     assert not built
 
 
+@pytest.mark.slow
 def test_values_of_zero_are_no_elements():
     lines = b"0\nLINE\n8\n0\n10\n0\n20\n0\n11\n9\n21\n9\n" + b"62\n0\n" * 100_001
     assert len(unpack(read_plan(text_dxf(lines), None).content)) == 1

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from assess.i18n import fill
 from assess.motion.site_ground import SiteGround
-from assess.workbook.template import Content, write_workbook
+from tests.workbooks import write_sheets
 
 KILLS, KILLS_ONCE, HOLDS, FILLS = 1.0, 2.0, 3.0, 4.0
 """Latitudes at which the process dies each time, or once; waits; or cannot write any more."""
@@ -73,7 +73,7 @@ def write_building(path, **building):
         "Floors": [{"floor": "1", "elevation": 0}, {"floor": "2", "elevation": 3.5}],
         "Items": list(ITEMS),
     }
-    write_workbook(path, Content(rows=rows), spare=1)
+    write_sheets(path, rows)
     return path
 
 

@@ -6,9 +6,8 @@ from assess.portfolio.building_inventory import _is_near, read_building
 from assess.portfolio.index_file import IndexRow
 from assess.portfolio.sources import Source
 from assess.workbook.read import read_inventory
-from assess.workbook.template import Content, write_workbook
 from tests.bim.cobie_files import COMPONENTS, TYPES, one_type, write_cobie
-from tests.workbooks import write
+from tests.workbooks import write, write_sheets
 
 SHAKEN = IndexRow(path="c.xlsx", ground_pga_g=0.3)
 
@@ -83,7 +82,7 @@ def _warn(tmp_path, **index):
         "Floors": [{"floor": "1", "elevation": 0}],
         "Items": [{"item": "A1", "floor": "1", "breadth": 30, "height": 200}],
     }
-    write_workbook(path, Content(rows=rows), spare=1)
+    write_sheets(path, rows)
     origin, inventory = _read(Source(path="w.xlsx", file=path, index=IndexRow(path="w.xlsx", **index)), path)
     assert origin.inventory == "surveyed"
     assert inventory.building.building == "Town hall", "the workbook holds"

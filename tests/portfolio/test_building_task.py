@@ -13,10 +13,9 @@ from assess.portfolio.part_files import FOLDER, find_place, read_part
 from assess.portfolio.sources import Source, find_sources
 from assess.portfolio.table_schemas import TABLES
 from assess.settings import Settings
-from assess.workbook.template import Content, write_workbook
 from tests.portfolio.staged import StagedGround, write_building, write_city
 from tests.workbook.books import write_book
-from tests.workbooks import write
+from tests.workbooks import write, write_sheets
 
 SETTINGS = Settings(verify="none", city=True)
 
@@ -214,7 +213,7 @@ def test_a_route_that_is_not_known_has_no_chance_and_its_people_no_number(tmp_pa
     folder.mkdir()
     for name, routes in (("both.xlsx", [known, unknown]), ("unknown.xlsx", [unknown])):
         own = rows | {"Routes": routes} | ({} if known in routes else {"Items": [item | {"route": ""}]})
-        write_workbook(folder / name, Content(rows=own), spare=1)
+        write_sheets(folder / name, own)
     first, settings = find_sources(folder)[0], Settings(city=True, runs=20)
     east = _rows(Task(source=first, settings=settings, ground=None, out=tmp_path / "simulated"), "routes")[0]
     assert 0 <= east["probability_low"] < east["probability_high"] <= 1

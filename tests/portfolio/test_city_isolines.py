@@ -37,6 +37,7 @@ def test_a_line_runs_where_the_ground_has_its_value_and_ends_where_it_is_not_kno
     assert max(y for one in found for _x, y in one.line) <= 37.7
 
 
+@pytest.mark.slow
 def test_lines_of_the_loma_prieta_map_agree_with_it():
     ground = read_shakemap(city_file("grid.xml"))
     found = build_isolines(ground, PLACES)

@@ -100,6 +100,7 @@ def test_the_list_holds_the_share_beside_the_expected_falls(html, data, view):
         assert f"{one['cells'][at]}" in one["facts"]
 
 
+@pytest.mark.slow
 def test_what_is_not_known_of_a_building_stands_beside_its_numbers(view):
     rows = view.buildings.copy()
     first = build_content(view).buildings[0]["path"]

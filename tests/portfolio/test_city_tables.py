@@ -33,6 +33,7 @@ def test_what_is_written_is_read_again(tmp_path):
     pd.testing.assert_frame_equal(read_table(tmp_path, "pieces"), build_frame("pieces", rows))
 
 
+@pytest.mark.slow
 def test_columns_that_are_empty_keep_their_types(tmp_path):
     duckdb = pytest.importorskip("duckdb")
     for name, columns in TABLES.items():

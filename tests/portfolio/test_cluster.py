@@ -2,7 +2,6 @@
 
 import contextlib
 import os
-import re
 import signal
 import socket
 import subprocess
@@ -14,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from assess.errors import InputError, OutputError
-from assess.portfolio import cluster
+from assess.portfolio import cluster, local_pool
 from assess.portfolio.building_task import Task
 from assess.portfolio.cluster import (
     Site,
@@ -42,6 +41,10 @@ QUIET = {
     "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "3s",
     "PYTHONPATH": str(ROOT),
 }
+
+
+ALONE = ("--nthreads", "1", "--no-nanny")
+"""A worker that nobody starts again when it dies."""
 
 
 @contextlib.contextmanager
@@ -83,8 +86,8 @@ def _workers(address, count, *options):
 
 @pytest.fixture(scope="module")
 def address():
-    """Return the address of a scheduler with four workers."""
-    with _scheduler() as (_, found), _workers(found, 4):
+    """Return the address of a scheduler with three workers."""
+    with _scheduler() as (_, found), _workers(found, 3):
         yield found
 
 
@@ -95,9 +98,10 @@ def _run(tmp_path, out, scheduler=None, settings=FORMULAS):
     )  # fmt: skip
 
 
-def test_four_workers_give_the_bytes_of_one_process(tmp_path, address):
-    settings = Settings(verify="all", runs=10)
-    write_city(tmp_path / "city", [40.0, 41.0] * 5)
+@pytest.mark.parametrize("settings", [FORMULAS, pytest.param(Settings(verify="all", runs=10), marks=pytest.mark.long)])
+def test_three_workers_give_the_bytes_of_one_process(tmp_path, address, monkeypatch, settings):
+    monkeypatch.setattr(cluster, "BATCH", 1)
+    write_city(tmp_path / "city", [40.0, 41.0] * 3)
     (tmp_path / "city" / "bad.xlsx").write_bytes(b"no workbook")
     found = _run(tmp_path, "cluster", address, settings)
     assert [path for path, _ in found.skipped] == ["bad.xlsx"]
@@ -106,36 +110,41 @@ def test_four_workers_give_the_bytes_of_one_process(tmp_path, address):
     assert not list((tmp_path / "cluster" / FOLDER).glob(".probe-*"))
 
 
-def test_a_worker_that_dies_changes_no_byte_and_a_building_that_kills_workers_is_skipped(tmp_path, address):
+def test_a_worker_that_dies_changes_no_byte_and_a_building_that_kills_workers_is_skipped(
+    tmp_path, address, monkeypatch
+):
     write_city(tmp_path / "city", [40.0, KILLS_ONCE, 41.0, KILLS])
     found = _run(tmp_path, "cluster", address)
     assert (tmp_path / "killed").exists()
     assert [path for path, _ in found.skipped] == ["b03.xlsx"]
+    monkeypatch.setattr(local_pool, "MOST_DEATHS", 1)
     _run(tmp_path, "process")
     assert read_results(tmp_path / "cluster") == read_results(tmp_path / "process")
 
 
-def test_a_client_that_is_killed_is_followed_by_one_that_goes_on(tmp_path, address):
-    write_city(tmp_path / "city", [40.0] * 20 + [HOLDS])
+def test_a_client_that_is_killed_is_followed_by_one_that_goes_on(tmp_path, address, monkeypatch):
+    monkeypatch.setattr(cluster, "BATCH", 4)
+    write_city(tmp_path / "city", [40.0] * 8 + [HOLDS])
     (tmp_path / "hold").touch()
     code = (
-        "from pathlib import Path\nfrom tests.portfolio import test_cluster as t\n"
+        "from pathlib import Path\nfrom tests.portfolio import test_cluster as t\nt.cluster.BATCH = 4\n"
         f"t._run(Path({str(tmp_path)!r}), 'out', {address!r})"
     )
     parts = tmp_path / "out" / FOLDER
     with subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, env=os.environ | QUIET) as client:
-        wait_until(lambda: len(list(parts.glob("*/*.part"))) == 20 and list(tmp_path.glob("held-*")))
+        wait_until(lambda: len(list(parts.glob("*/*.part"))) == 8 and list(tmp_path.glob("held-*")))
         client.send_signal(signal.SIGKILL)
     (tmp_path / "hold").unlink()
-    assert _run(tmp_path, "out", address).kept >= 20
+    assert _run(tmp_path, "out", address).kept >= 8
     _run(tmp_path, "process")
     assert read_results(tmp_path / "out") == read_results(tmp_path / "process")
 
 
-def test_a_scheduler_that_dies_is_told_and_what_is_done_is_kept(tmp_path):
-    write_city(tmp_path / "city", [40.0] * 20 + [HOLDS])
+def test_a_scheduler_that_dies_is_told_and_what_is_done_is_kept(tmp_path, monkeypatch):
+    monkeypatch.setattr(cluster, "BATCH", 4)
+    write_city(tmp_path / "city", [40.0] * 8 + [HOLDS])
     (tmp_path / "hold").touch()
-    with _scheduler() as (process, own), _workers(own, 1):
+    with _scheduler() as (process, own), _workers(own, 1, *ALONE):
         tasks = [
             Task(source=one, settings=replace(FORMULAS, city=True), ground=StagedGround(tmp_path), out=tmp_path / "out")
             for one in find_sources(tmp_path / "city")
@@ -161,7 +170,10 @@ def test_no_workers_and_workers_with_several_threads_are_told(tmp_path, monkeypa
         with pytest.raises(InputError, match=r"has no workers\. Start some with one thread"):
             _run(tmp_path, "out", own)
         monkeypatch.undo()
-        with _workers(own, 1, "--nthreads", "3"), pytest.raises(InputError, match=r"it has 3 threads\. Start it with"):
+        with (
+            _workers(own, 1, "--nthreads", "3", "--no-nanny"),
+            pytest.raises(InputError, match=r"it has 3 threads\. Start it with"),
+        ):
             _run(tmp_path, "out", own)
     assert not list((tmp_path / "out").glob("*.parquet"))
 
@@ -201,19 +213,27 @@ HTTP = b"HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\n\r\n"
 
 
 def test_what_is_not_a_scheduler_is_told_in_one_line(tmp_path):
-    """A server of the web, one that says nothing, nobody, and a worker."""
+    """A server of the web, and a worker."""
     said = "what is there does not answer as a dask scheduler"
-    for data in (HTTP, bytes(2000), b""):
-        with _serving(data) as address:
-            line = _fail(tmp_path, address)
-        assert line.startswith(f"error  --scheduler {address}: {said}")
-        assert line.endswith("a scheduler prints its address when it starts.")
-    assert re.fullmatch(rf"error  --scheduler 127\.0\.0\.1:1 {UNREACHED}", _fail(tmp_path, "127.0.0.1:1"))
+    with _serving(HTTP) as address:
+        line = _fail(tmp_path, address)
+    assert line.startswith(f"error  --scheduler {address}: {said}")
+    assert line.endswith("a scheduler prints its address when it starts.")
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
-    with _scheduler() as (_, found), _workers(found, 1, "--nthreads", "1", "--worker-port", str(port)):
+    with _scheduler() as (_, found), _workers(found, 1, *ALONE, "--worker-port", str(port)):
         wait_until(lambda: _answers(port))
         assert said in _fail(tmp_path, f"tcp://127.0.0.1:{port}")
+
+
+def test_a_server_that_says_nothing_or_nothing_readable_and_nobody_are_told(tmp_path):
+    write_city(tmp_path / "city", [40.0])
+    for data in (bytes(2000), b""):
+        with _serving(data) as address, pytest.raises(InputError, match="what is there does not answer as a dask"):
+            _run(tmp_path, "out", address)
+    with pytest.raises(InputError, match=rf"127\.0\.0\.1:1 {UNREACHED}"):
+        _run(tmp_path, "out", "127.0.0.1:1")
+    assert not list((tmp_path / "out").glob("*.parquet"))
 
 
 def test_an_address_of_another_form_is_refused_at_once():

@@ -82,6 +82,7 @@ def test_the_folder_holds_a_workbook_a_building_the_index_and_real_ground_motion
     assert "28 buildings" in said
 
 
+@pytest.mark.slow
 def test_it_is_the_same_to_the_byte(folder, tmp_path):
     write_example_city(tmp_path / "again", 6)
     again = {path.relative_to(tmp_path / "again"): path for path in (tmp_path / "again").rglob("*.xlsx")}
@@ -91,6 +92,7 @@ def test_it_is_the_same_to_the_byte(folder, tmp_path):
         assert first == second, name
 
 
+@pytest.mark.slow
 def test_a_city_that_is_there_is_used_and_one_that_was_changed_is_not(tmp_path):
     bay = tmp_path / "bay"
     bay.mkdir()

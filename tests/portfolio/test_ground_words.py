@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import pytest
+
 from assess.motion.ground_scenarios import read_scenarios
 from assess.portfolio.city_method import list_method
 from assess.portfolio.city_totals import RunGround, build_totals
@@ -59,6 +61,7 @@ def test_a_released_map_has_nothing_to_warn_of(tmp_path):
     assert (city.ground.is_known, list(list_ground_cautions(city))) == (False, [])
 
 
+@pytest.mark.slow
 def test_one_scenario_is_warned_of_and_far_and_farther_buildings_are_told(tmp_path):
     (tmp_path / "gmf-data.csv").write_text("site_id,event_id,gmv_PGA\n0,0,0.3\n")
     (tmp_path / "sites.csv").write_text("site_id,lon,lat\n0,10.0,37.8\n")

@@ -90,6 +90,7 @@ def test_skipped_buildings_say_why(book):
     assert said.items() <= rows[0].items()
 
 
+@pytest.mark.slow
 def test_what_is_not_known_of_a_building_stands_beside_its_numbers(view):
     rows = view.buildings.copy()
     paths = [one["path"] for one in build_content(view).buildings[:2]]
@@ -107,6 +108,7 @@ def test_what_is_not_known_of_a_building_stands_beside_its_numbers(view):
     assert found[paths[1]]["Routes blocked"] == "–"
 
 
+@pytest.mark.slow
 def test_formulas_alone_have_no_ranges():
     book = openpyxl.load_workbook(io.BytesIO(render_ranking(make_view(12, verify="none"))))
     rows = {row[0].value: [cell.value for cell in row[1:]] for row in book["Summary"].iter_rows()}
@@ -115,6 +117,7 @@ def test_formulas_alone_have_no_ranges():
     assert any(str(text).startswith("Expected to overturn:") and "No range is known" in text for text in rows if text)
 
 
+@pytest.mark.slow
 def test_a_city_of_which_nothing_could_be_assessed_has_a_ranking_all_the_same():
     view = make_view(60, draws=5)
     assert render_ranking(view) == render_ranking(view), "the same bytes each time"

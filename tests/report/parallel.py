@@ -18,7 +18,6 @@ import openpyxl.utils
 from assess.report.xlsx.items_sheet import item_columns
 from assess.results import Results
 from assess.settings import Settings
-from tests.recalculate import libreoffice, stored_cells
 from tests.workbooks import assessed
 
 FLOORS: list[dict[str, Any]] = [
@@ -135,14 +134,8 @@ Edit = tuple[str, str, Any]
 """Sheet, cell, value."""
 
 
-def recalculate(path: Path, edits: list[Edit], engine: str, folder: Path) -> Cells:
-    """Return every cell of a workbook after edits, as an engine computes it: formualizer or libreoffice."""
-    if engine == "libreoffice":
-        changed = openpyxl.load_workbook(path)
-        for sheet, cell, value in edits:
-            changed[sheet][cell] = value
-        changed.save(folder / "edited.xlsx")
-        return stored_cells(libreoffice(folder / "edited.xlsx", folder / "again.xlsx"))
+def recalculate(path: Path, edits: list[Edit]) -> Cells:
+    """Return every cell of a workbook after edits, as formualizer computes it."""
     book = formualizer.load_workbook(str(path))
     for sheet, cell, value in edits:
         book.set_value(sheet, *_place(cell), value)
@@ -151,6 +144,15 @@ def recalculate(path: Path, edits: list[Edit], engine: str, folder: Path) -> Cel
     found = {(title, cell.coordinate): book.get_value(title, cell.row, cell.column) for title, cell in cells
              if cell.value is not None}  # fmt: skip
     return found | {(sheet, cell): value for sheet, cell, value in edits}
+
+
+def write_edited(path: Path, edits: list[Edit], out: Path) -> Path:
+    """Write a workbook after edits, with no result of a formula stored in it."""
+    changed = openpyxl.load_workbook(path)
+    for sheet, cell, value in edits:
+        changed[sheet][cell] = value
+    changed.save(out)
+    return out
 
 
 def _place(cell: str) -> tuple[int, int]:

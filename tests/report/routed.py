@@ -5,8 +5,7 @@ from typing import Any
 
 import assess
 from assess.results import Results
-from assess.workbook.template import Content, write_workbook
-from tests.workbooks import UNVERIFIED
+from tests.workbooks import UNVERIFIED, write_sheets
 
 FLOORS: list[dict[str, Any]] = [
     {"floor": "1", "name": "First", "elevation": 4.0, "pfa_x": 0.3, "pfv_x": 30.0, "pfa_y": 0.2, "pfv_y": 45.0},
@@ -84,7 +83,7 @@ def write_routed(path: Path, **sheets: Any) -> Path:
     """Write the building; `sheets` take the place of its own by their names."""
     rows = {"Building": [BUILDING], "Floors": FLOORS, "Items": ITEMS, "Places": PLACES,
             "Routes": ROUTES}  # fmt: skip
-    write_workbook(path, Content(rows=rows | sheets), spare=3)
+    write_sheets(path, rows | sheets)
     return path
 
 

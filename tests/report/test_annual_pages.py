@@ -29,6 +29,7 @@ def test_results_json_has_them(tmp_path):
     assert list(found["assess"]["inputs"]["records"]) == ["hazard.csv"]
 
 
+@pytest.mark.slow
 def test_a_curve_that_does_not_reach_far_enough_is_told_beside_the_number(tmp_path):
     write_hazard(tmp_path, 0.5, 3.0)
     results = build_results(assessed(tmp_path, settings=SETTINGS))

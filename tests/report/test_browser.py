@@ -9,10 +9,9 @@ import pytest
 
 import assess
 from assess.settings import Settings
-from assess.workbook.template import Content, write_workbook
 from docs.screenshot import HEIGHT, WIDTH, find_browser
 from tests.waiting import PATIENCE
-from tests.workbooks import FLOORS, UNVERIFIED
+from tests.workbooks import FLOORS, UNVERIFIED, write_sheets
 
 pytestmark = [
     pytest.mark.browser,
@@ -41,7 +40,7 @@ ROUTES = [{"route": "R", "segment": "a", "floor": "1", "start": "Hall", "end": "
 def report(tmp_path_factory):
     folder = tmp_path_factory.mktemp("browser")
     rows = {"Building": [{"building": "Town hall"}], "Floors": FLOORS, "Items": PIECES, "Places": PLACES}
-    write_workbook(folder / "w.xlsx", Content(rows=rows | {"Routes": ROUTES}), spare=3)
+    write_sheets(folder / "w.xlsx", rows | {"Routes": ROUTES})
     assessment = assess.run(assess.read_inventory(folder / "w.xlsx"), UNVERIFIED)
     return assess.write_reports(assessment, folder, "html")["html"]
 
@@ -172,7 +171,7 @@ def test_parts_of_the_table_are_sorted_and_filtered_each_by_itself(browser, tmp_
         {"item": name, "floor": "1", "breadth": breadth, "width": 90, "height": 200, "axis": "Y"}
         for name, breadth in (("b", 76), ("c", 29), ("a", 74), ("d", 30))
     ]}  # fmt: skip
-    write_workbook(tmp_path / "w.xlsx", Content(rows=rows), spare=3)
+    write_sheets(tmp_path / "w.xlsx", rows)
     results = assess.run(assess.read_inventory(tmp_path / "w.xlsx"), Settings(verify="high", runs=5), jobs=1)
     assert [one.apart for one in results] == ["formula", "", "formula", ""]
     page = browser.new_page()

@@ -15,6 +15,7 @@ def results(tmp_path):
     return run, json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))
 
 
+@pytest.mark.slow
 def test_results_follow_their_schema(results):
     schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator.check_schema(schema)
@@ -42,6 +43,7 @@ def test_the_schema_describes_fields_of_rows_and_knows_their_limits():
     }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_schema_refuses_an_unknown_field_and_a_probability_above_one(results):
     schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
     wrong = json.loads(json.dumps(results[1]))

@@ -12,7 +12,6 @@ from assess.report.content import build_content
 from assess.report.groups import PieceGroup, choose_groups, group_rows, join_runs
 from assess.report.pages import editions
 from assess.report.report_options import ReportOptions
-from tests.conftest import EXAMPLE
 from tests.pictures import picture
 from tests.report.reading import read_text, render
 from tests.shaking import write_records
@@ -65,6 +64,7 @@ def written(results, tmp_path_factory):
     return assess.write_reports(results, tmp_path_factory.mktemp("out"), ("pdf", "annex", "json"))
 
 
+@pytest.mark.slow
 def test_every_section_has_a_heading_and_a_template_or_is_left_out(results):
     headings = editions._headings()
     assert {name for names in editions.SECTIONS.values() for name in names} == set(headings)
@@ -193,15 +193,13 @@ def test_of_too_many_groups_the_worst_are_shown_in_their_order(results):
 
 
 @pytest.mark.slow
-def test_the_worked_example_has_its_pages_and_none_is_half_empty(tmp_path):
-    results = assess.run(EXAMPLE)
-    written = assess.write_reports(results, tmp_path, ("pdf", "annex"))
-    pages, toc = _read(written["pdf"])
-    plans = [page for page in build_content(results).shown_floors if page.placed]
+def test_the_worked_example_has_its_pages_and_none_is_half_empty(verified_example, samples_now):
+    pages, toc = _read(samples_now["pdf"])
+    plans = [page for page in build_content(verified_example).shown_floors if page.placed]
     assert len(pages) <= MOST_PAGES + len(plans) == 16
     assert _count_pages(toc, len(pages))["Evacuation routes"] == 1
-    assert [at for at, share in enumerate(_fill(written["pdf"])[:-1], 1) if share < 0.5] == []
-    assert sum(share < 0.5 for share in _fill(written["annex"])[:-1]) <= 1, "where its pages turn"
+    assert [at for at, share in enumerate(_fill(samples_now["pdf"])[:-1], 1) if share < 0.5] == []
+    assert sum(share < 0.5 for share in _fill(samples_now["annex"])[:-1]) <= 1, "where its pages turn"
     text = " ".join(pages)
     assert "0.135 g on floor G, recorded motion; 0.139 g of the workbook is used for the code's force" in pages[0]
     assert UNCITABLE.findall(text) == []

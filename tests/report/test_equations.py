@@ -81,6 +81,7 @@ def test_parts_are_words_and_equations():
 
 
 @pytest.mark.parametrize("code", ["en", "it"])
+@pytest.mark.slow
 def test_every_equation_of_a_method_is_typeset_in_every_language(code):
     """Each has the symbols and numbers of the plain text, which is its alternative, and mathtext draws it."""
     with speaking(load_catalogue(code)):

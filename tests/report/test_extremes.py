@@ -29,7 +29,14 @@ def _read(*paths):
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(
+    "name",
+    [
+        "no items",
+        "names of 300 characters",
+        pytest.param("an item with no name but its number", marks=pytest.mark.long),
+    ],
+)
 def test_it_renders(tmp_path, name):
     given, told = CASES[name]
     written = assess.write_reports(assessed(tmp_path / "w.xlsx", **given), tmp_path / "out")

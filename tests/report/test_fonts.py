@@ -50,6 +50,7 @@ def test_signs_that_the_text_face_lacks_are_in_the_other():
     assert find_undrawn(SIGNS) == ""
 
 
+@pytest.mark.slow
 def test_a_page_names_every_face(example, tmp_path):
     html = write_html(example, tmp_path)
     assert html.count("@font-face") == 2, "each once, as data"

@@ -107,6 +107,7 @@ def test_typed_peaks_of_the_ground_are_told_as_an_intensity(tmp_path, building, 
     assert say_ground_source(results) == ""
 
 
+@pytest.mark.slow
 def test_a_record_of_the_ground_comes_first_and_nothing_is_assumed_beside_it():
     results = assess.run("inventories/market-street.xlsx", Settings(verify="none"), figures=False)
     assert say_ground(results) == (

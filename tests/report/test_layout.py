@@ -6,9 +6,8 @@ import pytest
 
 import assess
 from assess.report.report_options import ReportOptions
-from assess.workbook.template import Content, write_workbook
 from tests.report.reading import lay_out, render
-from tests.workbooks import UNVERIFIED, assessed
+from tests.workbooks import UNVERIFIED, assessed, write_sheets
 
 pytestmark = pytest.mark.slow
 
@@ -41,7 +40,7 @@ def results(tmp_path_factory):
     path = tmp_path_factory.mktemp("layout") / "w.xlsx"
     building = [{"building": f"{LONG} hall", "revision": "B", "azimuth_deg": 45, "prepared_by": LONG}]
     rows = {"Building": building, "Floors": FLOORS, "Items": PIECES, "Places": PLACES, "Routes": ROUTES}
-    write_workbook(path, Content(rows=rows), spare=3)
+    write_sheets(path, rows)
     return assess.run(path, UNVERIFIED)
 
 

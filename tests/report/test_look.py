@@ -38,6 +38,7 @@ def own(folder, name, text):
     return ReportOptions(templates=folder)
 
 
+@pytest.mark.slow
 def test_a_file_of_the_firms_own_stands_in(assessment, tmp_path):
     look = own(
         tmp_path, "sections/limits.html.j2", '<section id="limits"><h2>Our limits: {{ content.title }}</h2></section>'
@@ -90,6 +91,7 @@ def test_what_cannot_be_read_is_told_before_the_work(tmp_path, name, text, told)
     assert not (tmp_path / "o").exists()
 
 
+@pytest.mark.slow
 def test_a_fault_in_a_template_writes_nothing(assessment, tmp_path):
     look = own(tmp_path / "firm", "sections/limits.html.j2", "{{ nothing }}")
     with pytest.raises(InputError, match="'nothing' is undefined"):
@@ -149,6 +151,7 @@ def test_a_long_list_is_cut_with_a_word(assessment, monkeypatch):
     assert "5 rows, the first 3 of which are shown: the Excel report holds all" in read_text(render(assessment))
 
 
+@pytest.mark.slow
 def test_a_logo_is_embedded(tmp_path):
     for size, shown in (((40, 30), (40, 30)), ((4000, 50), (1334, 17))):
         (tmp_path / "logo.png").write_bytes(picture("PNG", size=size))

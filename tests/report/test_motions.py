@@ -67,6 +67,7 @@ def test_json_holds_what_was_used_on_each_floor_and_axis(mixed):
     assert "interpolated" in found["items"][1]["adopted"]["flags"]
 
 
+@pytest.mark.slow
 def test_json_of_floors_on_a_beam_by_hand(tmp_path):
     """Of the table of medians: T1 1 s, PGV/PGA 105 cm/s per g, z/h 0.6 PFA/PGA 1.505, PFV/PGV 1.814."""
     written = _reports(tmp_path, floors=PLACED, ground_pga=0.25, height=20, period=1.0)

@@ -121,6 +121,7 @@ def test_without_the_ground_of_the_scenario_it_is_refused(building):
         write_nrml(*assess_small(building))
 
 
+@pytest.mark.slow
 def test_a_profile_starts_from_the_ground_of_sds():
     """Floors that follow the profile belong to 0.4 SDS."""
     assessment, found = assess_small({"Height [m]": 9, "SDS [g]": 1.0, "Scenario kind": "ASCE 7-22"}, floors=BARE)

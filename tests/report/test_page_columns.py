@@ -35,6 +35,7 @@ def test_a_list_has_every_field_that_it_shows_in_their_order(results, where):
     assert {"B × W × H [cm]", "Chance", "Class"} <= set(found) or where == "methods"
 
 
+@pytest.mark.slow
 def test_a_further_field_shows_in_every_format_and_list(results, tmp_path, monkeypatch):
     colour = Field(key="colour", read=lambda one: f"red {one.item.row}", label="Colour", shows=EVERYWHERE)
     monkeypatch.setattr(fields, "PIECE_FIELDS", (*fields.PIECE_FIELDS, colour))

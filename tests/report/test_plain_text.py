@@ -15,8 +15,8 @@ import pytest
 import assess
 from assess.report.pages.html import hash_script
 from assess.workbook.schema import SHEETS
-from assess.workbook.template import Content, write_workbook
 from tests.report.reading import no_figures
+from tests.workbooks import write_sheets
 
 FORMULA = '=HYPERLINK("http://x","y")'
 SCRIPT = "<script>alert(1)</script>"
@@ -52,7 +52,7 @@ def outputs(tmp_path_factory):
               "y": 1}],
     }  # fmt: skip
     path = folder / "w.xlsx"
-    write_workbook(path, Content(rows=rows), spare=3)
+    write_sheets(path, rows)
     _unescape_controls(path)
     results = assess.run(path)
     with no_figures():
@@ -185,11 +185,12 @@ def test_word(outputs):
 
 
 @pytest.mark.slow
-def test_pdf(outputs, tmp_path):
+@pytest.mark.parametrize("editions", [("annex",), pytest.param(("pdf", "annex"), marks=pytest.mark.long)])
+def test_pdf(outputs, tmp_path, editions):
     results, _ = outputs
-    written = assess.write_reports(results, tmp_path, ("pdf", "annex"))
+    written = assess.write_reports(results, tmp_path, editions)
     texts = []
-    for name in ("pdf", "annex"):
+    for name in editions:
         document = pypdfium2.PdfDocument(written[name])
         texts += [document[at].get_textpage().get_text_range() for at in range(len(document))]
         document.close()

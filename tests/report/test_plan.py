@@ -14,9 +14,8 @@ from assess.report.figures.labels import bounds, overlap, place_labels
 from assess.report.figures.plan import build_plan, fallen, rectangle
 from assess.report.figures.ways import build_stretches, list_styles
 from assess.route_results import MissingRow, RouteState
-from assess.workbook.template import Content, write_workbook
 from tests.report.reading import render
-from tests.workbooks import FLOORS, UNVERIFIED
+from tests.workbooks import FLOORS, UNVERIFIED, write_sheets
 
 SVG = "{http://www.w3.org/2000/svg}"
 PIECES = [
@@ -38,7 +37,7 @@ ROUTES = [{"route": "R", "segment": "a", "floor": "1", "start": "Hall", "end": "
 
 def _assess(path, pieces=PIECES, places=PLACES, routes=ROUTES, **building):
     rows = {"Building": [building], "Floors": FLOORS, "Items": pieces, "Places": places, "Routes": routes}
-    write_workbook(path, Content(rows=rows), spare=3)
+    write_sheets(path, rows)
     return assess.run(assess.read_inventory(path), UNVERIFIED)
 
 
@@ -324,7 +323,7 @@ def test_outlines_over_a_drawing_are_as_grey_as_it(tmp_path):
     strokes = []
     for name, floor in (("drawn", drawn), ("plain", plain)):
         rows = {"Floors": [floor], "Items": PIECES[:1], "Places": [room]}
-        write_workbook(tmp_path / f"{name}.xlsx", Content(rows=rows), spare=3)
+        write_sheets(tmp_path / f"{name}.xlsx", rows)
         page = render(assess.run(assess.read_inventory(tmp_path / f"{name}.xlsx"), UNVERIFIED))
         strokes += re.findall(r'<g class="rooms" fill="none" stroke="(#\w+)"', page)
         assert ("In grey: the plan" in page) == (name == "drawn")

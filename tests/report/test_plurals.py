@@ -56,6 +56,7 @@ def building(request, tmp_path_factory):
     return path, folder, results
 
 
+@pytest.mark.slow
 def test_reports_count_one_as_one(building):
     _path, _folder, results = building
     english = ReportOptions(language="en")

@@ -109,6 +109,7 @@ def test_the_map_is_that_of_the_methods(tmp_path, pfv):
             assert risk[row, column] == pytest.approx(evaluate(case, SETTINGS).value[0], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_pieces_too_stocky_to_rock_have_no_chance_on_the_map(tmp_path):
     """FEMA P-58 gives them no value."""
     chosen = _chosen(tmp_path, {"breadth": 300, "height": 100}, {"breadth": 20, "height": 100})
@@ -129,6 +130,7 @@ def test_without_a_pfv_that_goes_with_a_pfa_there_is_no_map_by_it(tmp_path, monk
 # --- what is drawn ---
 
 
+@pytest.mark.slow
 def test_each_piece_is_drawn_in_every_panel(mixed):
     assert len(_ids(mixed, "piece")) == 3 * 2
     assert len(_ids(mixed, "name")) == 3 * 2
@@ -136,6 +138,7 @@ def test_each_piece_is_drawn_in_every_panel(mixed):
     assert 3 * 4 <= len(_ids(mixed, "chance")) <= 3 * len(LINES)
 
 
+@pytest.mark.slow
 def test_one_piece_and_many(tmp_path):
     one = _chosen(tmp_path, TALL)
     assert (len(_ids(one, "piece")), len(_ids(one, "name"))) == (3, 3)
@@ -146,6 +149,7 @@ def test_one_piece_and_many(tmp_path):
     assert len(draw_contours(many)) < 250_000
 
 
+@pytest.mark.slow
 def test_a_strange_name_and_a_chance_that_is_everywhere_one(tmp_path):
     items = [{"item": "棚 $x$ \u0628", "floor": "1", "axis": "X", "breadth": 5, "height": 300}]
     chosen = _build(tmp_path, items, [{"floor": "1", "pfa_x": 4.0, "pfv_x": 900}])[1]

@@ -236,6 +236,7 @@ def _rows(html, table):
     ]
 
 
+@pytest.mark.slow
 def test_what_is_not_evaluated_is_neither_open_nor_has_a_chance(tmp_path):
     """A stair of known width that no piece names, a lane without positions, and a piece that has no position."""
     hall = {"route": "Hall", "floor": "1", "start": "Office", "clear_width": 1.2, "room": "Hall"}
@@ -262,6 +263,7 @@ def test_what_is_not_evaluated_is_neither_open_nor_has_a_chance(tmp_path):
     assert [left_out in _text(_section(one)) for one in (html, printed)] == [False, True]
 
 
+@pytest.mark.slow
 def test_long_lists_are_bounded_and_what_is_left_out_is_least_likely(tmp_path):
     count = 180
     places = [{"place": f"Room {at}", "floor": "1", "kind": "room"} for at in range(count)]

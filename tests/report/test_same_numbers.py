@@ -15,8 +15,7 @@ from assess.report.words import find_range
 from assess.results import Results
 from assess.risk import RiskClass
 from assess.settings import Settings
-from tests.conftest import EXAMPLE
-from tests.recalculate import needs_libreoffice, stored_cells
+from tests.recalculate import stored_cells
 from tests.report.parallel import BASES, assess_rich, read_csv, read_html, read_items, read_json, recalculate
 from tests.report.reading import no_figures, read_text
 
@@ -41,7 +40,7 @@ class Written:
 def written(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp("same")
     if request.param == "example":
-        results = assess.run(assess.read_inventory(EXAMPLE), Settings())
+        results = request.getfixturevalue("verified_example")
     else:
         verify, _, by_paper = request.param.partition(" by ")
         class_by = "proposed OR" if by_paper else None
@@ -92,11 +91,8 @@ def test_stored_items_are_those_of_results_json(written):
     _compare_items(read_items(cells, written.results), written)
 
 
-@pytest.mark.parametrize(
-    "engine", ["formualizer", pytest.param("libreoffice", marks=[pytest.mark.libreoffice, needs_libreoffice])]
-)
-def test_recalculated_items_are_those_of_results_json(written, tmp_path, engine):
-    cells = recalculate(written.paths["xlsx"], [], engine, tmp_path)
+def test_recalculated_items_are_those_of_results_json(written):
+    cells = recalculate(written.paths["xlsx"], [])
     _compare_items(read_items(cells, written.results), written)
 
 

@@ -8,7 +8,7 @@ import pypdfium2
 import pytest
 
 from assess.risk import LIMITS
-from docs.samples import NAMES, SAMPLES, write_samples
+from docs.samples import NAMES, SAMPLES
 from tests.alike import differences, flatten, strip_numbers
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:.*extension is not supported")]
@@ -16,13 +16,6 @@ pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:.*extension i
 SKIPPED = re.compile(r"/(class|class_upper|lowered_from|flags/\d+|overturned)$")
 """Classes are held against their limits; of 200 draws the share is held, not the count."""
 CLASS_WORD = re.compile(r"low|medium|high|[■▲◇○]", re.IGNORECASE)
-
-
-@pytest.fixture(scope="module")
-def written(tmp_path_factory):
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SOURCE_DATE_EPOCH", "0")  # set anew by what writes them, and put back here
-        return write_samples(tmp_path_factory.mktemp("samples"))
 
 
 def read_pdf(path):
@@ -58,8 +51,8 @@ def read_results(path):
 
 
 @pytest.fixture(scope="module")
-def results(written):
-    return read_results(written["pdf"]), read_results(SAMPLES / NAMES["pdf"])
+def results(samples_now):
+    return read_results(samples_now["pdf"]), read_results(SAMPLES / NAMES["pdf"])
 
 
 def is_at_a_limit(now, then):
@@ -121,7 +114,7 @@ def test_results_are_those_of_the_sample(results):
 
 
 @pytest.mark.parametrize("kind", READERS)
-def test_samples_are_current(written, results, kind):
+def test_samples_are_current(samples_now, results, kind):
     """Their words are compared. Where a class changed at its limit, close chances have another order, or another motion
     governs a piece, rows come and go in lists: then all but 1 % of the words are there, in any order and without words
     of classes."""
@@ -129,7 +122,7 @@ def test_samples_are_current(written, results, kind):
     order = [[work["items"] for entry in found["schedule"]["entries"] for work in entry["works"]] for found in results]
     now, then = (
         [hide_platforms(line, platforms) for line in READERS[kind](path)]
-        for path in (written[kind], SAMPLES / NAMES[kind])
+        for path in (samples_now[kind], SAMPLES / NAMES[kind])
     )
     if order[0] == order[1] and not find_changed(*results) and not find_moved(*results):
         assert differences(now, then) == [], "run: make samples"

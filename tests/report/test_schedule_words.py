@@ -12,7 +12,7 @@ from assess.report.ranking import RouteStep, say_effect
 from assess.report.words import say_bracket
 from assess.schedule_results import NOTHING
 from assess.settings import Settings
-from assess.workbook.template import Content, write_workbook
+from tests.workbooks import write_sheets
 
 FLOORS = [
     {"floor": "2", "pfa_x": 0.5, "pfa_y": 0.5, "elevation": 4},
@@ -37,7 +37,7 @@ def assess_these(folder, items=ITEMS, costs=(), **building):
     path = folder / "w.xlsx"
     building = {"motion_uncertainty": 0.4} | building
     rows = {"Building": [building], "Floors": FLOORS, "Items": items, "Costs": list(costs)}
-    write_workbook(path, Content(rows=rows), spare=3)
+    write_sheets(path, rows)
     return assess.run(assess.read_inventory(path), Settings(verify="none"))
 
 

@@ -15,11 +15,10 @@ from assess.motion.formats import read_records
 from assess.report import words
 from assess.report.content import build_content
 from assess.report.findings import motions
-from assess.workbook.template import Content, write_workbook
 from docs.texts import collect
 from tests.pictures import picture
 from tests.report.test_verified import _assess
-from tests.workbooks import RECORDS
+from tests.workbooks import RECORDS, write_sheets
 
 SMC = "0165a_u.smc"
 BUILDING = {"ground_pga": 0.3, "sds": 0.9, "height": 40, "storeys": 4, "period": 9, "azimuth_deg": 45}
@@ -71,7 +70,7 @@ def _write(folder, **last):
     (folder / "p.png").write_bytes(picture("PNG"))
     path = folder / "w.xlsx"
     rows = {"Building": [BUILDING], "Floors": [*FLOORS[:-1], FLOORS[-1] | last], "Items": ITEMS, "Routes": ROUTES}
-    write_workbook(path, Content(rows=rows), spare=3)
+    write_sheets(path, rows)
     book = openpyxl.load_workbook(path)
     book["Items"].cell(1, 40, "99")
     book["Items"].cell(90, 40, "stray")

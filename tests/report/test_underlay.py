@@ -18,11 +18,10 @@ from assess.report.figures.plan import Plan, build_plan
 from assess.report.figures.plan_names import Names
 from assess.report.figures.underlay import cut_falls, find_edge, list_rooms, widen
 from assess.report.figures.ways import build_stretches
-from assess.workbook.template import Content, write_workbook
 from tests.pictures import picture
 from tests.plans.drawings import PLAN_SVG
 from tests.report.reading import render
-from tests.workbooks import UNVERIFIED
+from tests.workbooks import UNVERIFIED, write_sheets
 
 SVG = "{http://www.w3.org/2000/svg}"
 PIECE = {"item": "A1", "floor": "1", "breadth": 30, "width": 80, "height": 200, "x": 1.0, "y": 1.0, "angle_deg": 0}
@@ -37,7 +36,7 @@ def _assess(folder: Path, pieces=(PIECE,), places=(), **floor):
     (folder / "p.png").write_bytes(picture("PNG", size=(1600, 1200)))
     (folder / "p.svg").write_bytes(PLAN_SVG)
     rows = {"Floors": [{"floor": "1", "pfa_x": 0.4, **floor}], "Items": pieces, "Places": places}
-    write_workbook(folder / "w.xlsx", Content(rows=rows), spare=3)
+    write_sheets(folder / "w.xlsx", rows)
     return assess.run(assess.read_inventory(folder / "w.xlsx"), UNVERIFIED)
 
 
@@ -173,6 +172,7 @@ def _overlaps(plan: Plan) -> int:
     return sum(overlap(one, other) > 0 for one, other in itertools.combinations(plan.boxes, 2))
 
 
+@pytest.mark.slow
 def test_no_two_names_overlap_on_the_floors_of_the_worked_example(tmp_path):
     path = Path(__file__).parents[2] / "inventories" / "market_street.py"
     spec = importlib.util.spec_from_file_location("market_street", path)
@@ -180,7 +180,7 @@ def test_no_two_names_overlap_on_the_floors_of_the_worked_example(tmp_path):
     spec.loader.exec_module(script)
     content = script.content()
     floors = [{"floor": one["floor"], "pfa_x": 0.4} for one in content.rows["Floors"]]
-    write_workbook(tmp_path / "w.xlsx", Content(content.rows | {"Floors": floors}), spare=3)
+    write_sheets(tmp_path / "w.xlsx", content.rows | {"Floors": floors})
     plans = _plans(assess.run(assess.read_inventory(tmp_path / "w.xlsx"), UNVERIFIED))
     assert len(plans) == 4
     for plan in plans:

@@ -100,6 +100,7 @@ def test_bars_show_every_piece_in_proportion(tmp_path):
     assert build_bars([]) is None
 
 
+@pytest.mark.slow
 def test_without_pieces_nothing_is_said_of_them(tmp_path):
     results = assessed(tmp_path / "w.xlsx", [])
     assert not [name for name, _ in list_assumptions(results) if name.startswith(("Axis unknown", "Friction"))]
@@ -109,6 +110,7 @@ def test_without_pieces_nothing_is_said_of_them(tmp_path):
     assert "Raw: as printed" not in write_html(results, tmp_path)
 
 
+@pytest.mark.slow
 def test_long_names_are_cut_without_a_remark_where_there_is_no_room(tmp_path):
     long = "N" * 300
     items = [PIECE | {"item": long, "room": long, "description": long}]

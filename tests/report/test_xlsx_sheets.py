@@ -97,6 +97,7 @@ def test_few_items(tmp_path, count):
     assert compare_formulas(path) > count
 
 
+@pytest.mark.slow
 def test_two_hundred_floors_stay_readable(tmp_path):
     floors = [{"floor": str(at), "name": f"Level {at}", "pfa_x": 0.2 + at / 400} for at in range(200)]
     items = [{"item": f"i{at}", "floor": str(at), "breadth": 30, "width": 80, "height": 150} for at in range(0, 200, 2)]
@@ -188,6 +189,7 @@ def test_the_sheets_are_set_up(written):
     assert book["Routes"]["U2"].number_format == "0.00"
 
 
+@pytest.mark.slow
 def test_no_text_is_a_formula(written):
     _, book, path = written
     for name in ("Routes", "Route pieces", "Route rooms"):

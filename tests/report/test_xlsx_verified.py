@@ -285,6 +285,7 @@ def test_an_unconfirmed_class_is_that_of_the_formula_or_of_the_faster_draws(repo
     assert any(line.startswith(f"Unconfirmed pieces: {pieces - kept[0].item.quantity};") for line in lines)
 
 
+@pytest.mark.slow
 def test_a_suite_and_parallel_records_hold_too(tmp_path):
     folder = tmp_path / "own"
     folder.mkdir()
@@ -315,6 +316,7 @@ def test_the_workings_are_hidden_and_stand_last(report):
     assert sheet.auto_filter.ref.endswith(f"{openpyxl.utils.get_column_letter(max(report.places.values()))}21")
 
 
+@pytest.mark.slow
 def test_the_factor_on_the_motion_and_the_ideal_chance_are_named_on_every_sheet(tmp_path):
     items = [{"item": "a", "floor": "1", "breadth": 40, "width": 90, "height": 180}]
     floors = [{"floor": "1", "pfa_x": 0.4}]
@@ -333,6 +335,7 @@ def test_the_factor_on_the_motion_and_the_ideal_chance_are_named_on_every_sheet(
     assert list(found.places).index(CHANCES[3]) < list(found.places).index(CHANCES[0])
 
 
+@pytest.mark.slow
 def test_a_piece_that_may_fall_along_either_axis_holds_the_chance_of_both(tmp_path):
     floors = [{"floor": "1", "pfa_x": 0.3, "pfv_x": 30.0, "pfa_y": 0.28, "pfv_y": 33.0}]
     items = [{"item": f"{breadth}", "floor": "1", "breadth": breadth, "width": breadth + 4, "height": 190}

@@ -11,21 +11,28 @@ import openpyxl
 import openpyxl.utils
 import pytest
 
-import assess
 from assess.report.xlsx.items_sheet import item_columns
 from assess.results import Results
 from assess.risk import RiskClass
 from assess.settings import Settings
-from tests.conftest import EXAMPLE
-from tests.recalculate import needs_libreoffice, stored_cells, write_report
-from tests.report.parallel import BRACKETS, HELD, Cells, Edit, assess_rich, read_items, recalculate, write_wave
+from tests.recalculate import libreoffice_all, needs_libreoffice, same, stored_cells, write_report
+from tests.report.parallel import (
+    BRACKETS,
+    HELD,
+    Cells,
+    Edit,
+    assess_rich,
+    read_items,
+    recalculate,
+    write_edited,
+    write_wave,
+)
 from tests.workbooks import assessed
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
 AGAIN, ANCHORED = "run again", "⚓ "
 LABELS = [risk.label for risk in RiskClass]
-ENGINES = ["formualizer", pytest.param("libreoffice", marks=[pytest.mark.libreoffice, needs_libreoffice])]
 DECIDED = {f"{floor}-{kind}{at}" for floor in "12" for kind in "bs" for at, (word, capacity) in enumerate(BRACKETS)
            if word != "no" and capacity}  # fmt: skip
 """Pieces of which a bracket of known capacity decides whether they count as anchored."""
@@ -54,6 +61,18 @@ class Book:
         return [("Floors", cell.coordinate, factor * cell.value) for column in "CDFG" for cell in sheet[column][1:]
                 if isinstance(cell.value, float | int)]  # fmt: skip
 
+    @property
+    def peaks_of_records(self) -> list[tuple[Any, tuple[Any, Any]]]:
+        """Rows of Floors, with PFA and PFV along X, of the parallel records of floor 2."""
+        sheet = openpyxl.load_workbook(self.path, data_only=True)["Floors"]
+        rows = [row for row in sheet.iter_rows(min_row=2) if row[0].value == "2"]
+        return [(row[0].row, (row[2].value, row[3].value)) for row in rows]
+
+    def with_the_largest_below(self, column: str) -> list[Edit]:
+        """Return the edit of the record in the floor's own line to half of the other, in a column of Floors."""
+        (first, _), (_, other) = self.peaks_of_records
+        return [("Floors", f"{column}{first}", other["CD".index(column)] / 2)]
+
     def items(self, cells: Cells) -> dict[str, dict[str, Any]]:
         """Return the rows of Items by item."""
         return {one["item"]: one for one in read_items(cells, self.results)}
@@ -80,12 +99,13 @@ def _rank(shown: str) -> int:
 
 
 @pytest.fixture(scope="module")
-def books(tmp_path_factory):
+def books(request, tmp_path_factory):
     """Return a report of a run by the formulas, by that of the paper, and of one that simulates every piece."""
     runs = {
         "by_formula": Settings(verify="none"),
         "by_paper": Settings(verify="none", class_by="proposed OR"),
         "simulated": Settings(verify="all", runs=40),
+        "simulated_by_paper": Settings(verify="all", runs=40, class_by="proposed OR"),
         "partly": Settings(verify="high", runs=40),
     }
 
@@ -93,7 +113,7 @@ def books(tmp_path_factory):
     def make(name: str) -> Book:
         folder = tmp_path_factory.mktemp(name)
         is_example = name == "example"
-        results = assess.run(EXAMPLE, Settings()) if is_example else assess_rich(folder, runs[name])
+        results = request.getfixturevalue("verified_example") if is_example else assess_rich(folder, runs[name])
         write_report(results, folder / "r.xlsx")
         return Book(results, folder / "r.xlsx")
 
@@ -105,12 +125,12 @@ def book(request, books):
     return books(request.param)
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_weaker_floors_raise_no_count_and_no_class(book, tmp_path, engine):
+@pytest.mark.slow
+def test_weaker_floors_raise_no_count_and_no_class(book):
     """Of each class and above: of a class alone there may be more, as those of higher classes fall into it."""
     edits = book.scaled(0.7)
     assert len(edits) >= len(book.results.floor_rows)
-    stored, cells = stored_cells(book.path), recalculate(book.path, edits, engine, tmp_path)
+    stored, cells = stored_cells(book.path), recalculate(book.path, edits)
     before, after = book.counts(stored), book.counts(cells)
     assert before.keys() == after.keys()
     for place, (classes, others) in before.items():
@@ -138,9 +158,10 @@ def _check_waiting(book: Book, rows: dict[str, dict[str, Any]], cells: Cells) ->
         assert not (waiting | known) & set(names)
 
 
-def test_stronger_floors_lower_no_class_of_a_row_that_follows(book, tmp_path):
+@pytest.mark.slow
+def test_stronger_floors_lower_no_class_of_a_row_that_follows(book):
     stored = stored_cells(book.path)
-    cells = recalculate(book.path, book.scaled(1.5), "formualizer", tmp_path)
+    cells = recalculate(book.path, book.scaled(1.5))
     rows = book.items(cells)
     for item, row in book.items(stored).items():
         if rows[item]["class"] != AGAIN:
@@ -151,6 +172,7 @@ def test_stronger_floors_lower_no_class_of_a_row_that_follows(book, tmp_path):
 # ---------------------------------------------------------------- brackets
 
 
+@pytest.mark.slow
 def test_what_counts_as_anchored_is_what_the_bracket_says(books):
     for one in map(books, ("by_formula", "simulated")):
         rows = one.items(stored_cells(one.path))
@@ -191,7 +213,8 @@ SINGLE: dict[str, tuple[int, str, Any, str]] = {
 
 
 @pytest.mark.parametrize("kind", ["by_formula", "simulated"])
-def test_edited_anchors_and_brackets(kind, books, tmp_path):
+@pytest.mark.slow
+def test_edited_anchors_and_brackets(kind, books):
     """As many edits at once as there are rows of the kind: one on each floor."""
     one, left = books(kind), list(SINGLE.values())
     while left:
@@ -203,7 +226,7 @@ def test_edited_anchors_and_brackets(kind, books, tmp_path):
                 edits.append((*one.cell(item, key), value))
                 expected[item] = state
                 left.remove(edit)
-        _check_single(one, recalculate(one.path, edits, "formualizer", tmp_path), expected)
+        _check_single(one, recalculate(one.path, edits), expected)
 
 
 def _check_single(book: Book, cells: Cells, expected: dict[str, str]) -> None:
@@ -242,37 +265,36 @@ def test_a_bracket_of_a_piece_of_unknown_width(tmp_path, verify):
     assert {one.item.item for one in results if one.is_anchored} == {"a", "c"}
     edits: list[Edit] = [(*book.cell("a", "width_cm"), 90.0), (*book.cell("b", "width_cm"), 90.0)]
     edits += [(*book.cell("c", "anchored"), "partly"), (*book.cell("d", "anchored"), "yes")]
-    cells = recalculate(book.path, edits, "formualizer", tmp_path)
+    cells = recalculate(book.path, edits)
     found = {item: _state(row) for item, row in book.items(cells).items()}
     assert found == {"a": "again", "b": "again", "c": "free", "d": "held", "e": "free"}
 
 
-@pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize(("name", "column"), [("by_formula", "D"), ("by_paper", "C")])
-def test_a_row_by_formula_goes_by_the_largest_of_parallel_records(name, column, books, tmp_path, engine):
+@pytest.mark.slow
+def test_a_row_by_formula_goes_by_the_largest_of_parallel_records(name, column, books):
     """The record in the floor's own line is edited below the other one, which then governs.
 
     Which is the largest is by PFV in FEMA P-58, and by PFA in OR.
     """
     book, at = books(name), "CD".index(column)
-    sheet = openpyxl.load_workbook(book.path, data_only=True)["Floors"]
-    lines = {row[0].row: (row[2].value, row[3].value) for row in sheet.iter_rows(min_row=2) if row[0].value == "2"}
-    (first, largest), (_, other) = lines.items()
+    (_, largest), (_, other) = book.peaks_of_records
     assert largest[at] > other[at]
     assert largest[1 - at] < other[1 - at], "the other peak alone would have the other record govern"
     row = book.items(stored_cells(book.path))["2-0"]
     assert (row["axis"], row["pfa_g"], row["pfv_cm_s"]) == ("X", *map(pytest.approx, largest))
-    cells = recalculate(book.path, [("Floors", f"{column}{first}", other[at] / 2)], engine, tmp_path)
+    cells = recalculate(book.path, book.with_the_largest_below(column))
     row = book.items(cells)["2-0"]
     assert (row["axis"], row["pfa_g"], row["pfv_cm_s"]) == ("X", *map(pytest.approx, other))
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_of_several_motions_the_strongest_that_can_start_the_piece_governs(tmp_path, engine):
-    """The motion of the larger PFV has too small a PFA to rock the stockier pieces: along an axis, or of a record."""
+@pytest.fixture(scope="module")
+def several_motions(tmp_path_factory):
+    """Return a report where the larger PFV has too small a PFA to rock the stockier pieces."""
+    folder = tmp_path_factory.mktemp("several")
     time = np.arange(0, 20, 0.01)
     for name, pfa, cycles in (("fast.csv", 500, 4), ("slow.csv", 60, 0.25)):
-        write_wave(tmp_path / name, time, pfa * np.sin(2 * np.pi * cycles * time) * np.exp(-(((time - 10) / 4) ** 2)))
+        write_wave(folder / name, time, pfa * np.sin(2 * np.pi * cycles * time) * np.exp(-(((time - 10) / 4) ** 2)))
     floors = [
         {"floor": "1", "pfa_x": 0.06, "pfv_x": 40.0, "pfa_y": 0.5, "pfv_y": 20.0},
         {"floor": "2", "record_x": "fast.csv; slow.csv", "record_y": "slow.csv"},
@@ -283,15 +305,44 @@ def test_of_several_motions_the_strongest_that_can_start_the_piece_governs(tmp_p
         | ({"axis": axis} if axis else {})
         for floor in "123" for breadth in (15, 60, 90) for axis in ("X", "Y", "")
     ]  # fmt: skip
-    results = assessed(tmp_path / "w.xlsx", items, floors, settings=Settings(verify="none"), period=1.0)
+    results = assessed(folder / "w.xlsx", items, floors, settings=Settings(verify="none"), period=1.0)
+    write_report(results, folder / "r.xlsx")
+    return Book(results, folder / "r.xlsx")
+
+
+def test_of_several_motions_the_strongest_that_can_start_the_piece_governs(several_motions):
+    """Along an axis, or of a record."""
+    book, results = several_motions, several_motions.results
     largest = {one.item.item: max((case.motion.pfv_cm_s, case.motion.pfa_g) for case in one.cases) for one in results}
     passed = {one.item.item for one in results if one.governing.motion.pfv_cm_s < largest[one.item.item][0]}
     assert {"1-60", "2-60", "3-60", "2-60X", "3-60Y"} <= passed
-    write_report(results, tmp_path / "r.xlsx")
-    book = Book(results, tmp_path / "r.xlsx")
-    shown = book.items(recalculate(book.path, [], engine, tmp_path))
+    shown = book.items(recalculate(book.path, []))
     for one in results:
         row, motion = shown[one.item.item], one.governing.motion
         assert row["axis"] == motion.axis, one.item.item
         assert [row["pfa_g"], row["pfv_cm_s"]] == pytest.approx([motion.pfa_g, motion.pfv_cm_s]), one.item.item
         assert row["class"].rstrip("*") == one.adopted.risk.label
+
+
+@pytest.mark.libreoffice
+@needs_libreoffice
+@pytest.mark.parametrize(
+    ("as_run", "weaker"),
+    [
+        (("simulated", "example"), ("by_formula", "partly")),
+        pytest.param(("by_paper", "partly", "simulated_by_paper"), ("example",), marks=pytest.mark.long),
+    ],
+)
+def test_libreoffice_computes_what_the_other_engine_does(as_run, weaker, books, several_motions, tmp_path):
+    """In reports as run, and after the edits of the tests above: in every cell."""
+    cases: list[tuple[Book, list[Edit]]] = [(several_motions, [])]
+    cases += [(books(name), []) for name in as_run]
+    cases += [(books(name), books(name).scaled(0.7)) for name in weaker]
+    for name, column in (("by_formula", "D"), ("by_paper", "C")):
+        cases.append((books(name), books(name).with_the_largest_below(column)))
+    edited = [write_edited(book.path, edits, tmp_path / f"{at}.xlsx") for at, (book, edits) in enumerate(cases)]
+    for (book, edits), path in zip(cases, libreoffice_all(edited, tmp_path / "again"), strict=True):
+        shown = stored_cells(path)
+        wanted = {place: value for place, value in recalculate(book.path, edits).items() if value not in ("", None)}
+        assert [place for place in shown if shown[place] != "" and place not in wanted] == []
+        assert [place for place, value in wanted.items() if not same(shown.get(place), value)] == []

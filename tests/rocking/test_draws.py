@@ -180,6 +180,7 @@ def test_hardly_a_draw_starts_a_piece_beyond_the_largest_start():
 
 
 @pytest.mark.parametrize("chance", [0.03, 0.1, 0.3, 0.7])
+@pytest.mark.slow
 def test_intervals_of_200_draws_cover_a_known_chance(chance):
     """A piece that falls in a draw where the earthquake's factor exceeds a limit: its chance is known exactly.
 

@@ -721,7 +721,7 @@ def test_el_centro(monkeypatch: pytest.MonkeyPatch) -> None:
     assert theirs.rotation[0, :2] == pytest.approx([0.3288, 0.5170], abs=2e-4)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_number_of_lanes_changes_nothing(monkeypatch):
     rng = np.random.default_rng(11)
     motions = np.cumsum(rng.normal(size=(9, 800)), axis=1)

@@ -85,6 +85,7 @@ def test_bodies_that_cannot_be(change, message):
 # --- agreement with the kernel ---
 
 
+@pytest.mark.slow
 def test_it_agrees_with_the_kernel(motion):
     rng, fell = np.random.default_rng(1), 0
     for _ in range(150):
@@ -311,6 +312,7 @@ def reference(body, across, up, step, away):
 
 @pytest.mark.parametrize("away", [0, 1, -1])
 @pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.slow
 def test_it_agrees_with_scipy(motion, seed, away):
     rng = np.random.default_rng(seed)
     first, size = int(rng.integers(550, 650)), 300

@@ -46,6 +46,7 @@ def both(breadth, height, values, step, eta=math.nan):
     return one, many
 
 
+@pytest.mark.slow
 def test_the_verdict_is_that_of_many_blocks_to_the_bit(motions):
     fell = 0
     for case in draw(motions, 400, 1):

@@ -168,6 +168,7 @@ def reference_slip(friction, motion, time_step):
 
 
 @pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.slow
 def test_newmark_1965_rectangular_pulse(sign):
     """A 0.5 g, mu 0.2, 0.2 s: (A - mu) g t2 A / 2 mu = 0.1471 m."""
     step, A, mu, t1 = 1e-6, 0.5, 0.2, 0.2
@@ -210,6 +211,7 @@ def test_newmark_1965_by_scipy(friction, seed):
     assert found == pytest.approx(reference_slip(friction, motion, 0.05), rel=1e-6, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_newmark_1965_by_scipy_under_a_record():
     motion = treat(read_records(RECORD)[0])
     strong = slice(400, 1400)

@@ -71,6 +71,7 @@ def same(one, other, within=1e-12):
 
 @QUICK
 @given(pieces(), st.randoms())
+@pytest.mark.slow
 def test_the_order_of_the_items_changes_no_chance(rows, random):
     shuffled = list(rows)
     random.shuffle(shuffled)
@@ -79,6 +80,7 @@ def test_the_order_of_the_items_changes_no_chance(rows, random):
 
 @QUICK
 @given(pieces(most=4), pieces(most=1))
+@pytest.mark.slow
 def test_one_piece_more_never_lowers_a_chance(rows, more):
     without, with_it = found(rows)[1], found([*rows, *more])[1]
     for less, more_ in zip(without, with_it, strict=True):
@@ -89,6 +91,7 @@ def test_one_piece_more_never_lowers_a_chance(rows, more):
 
 @QUICK
 @given(pieces())
+@pytest.mark.slow
 def test_chances_and_their_ends(rows):
     """In order, and as told: the joint one where all fell under one source, else the largest; blocked <= taken."""
     routes, chances = found(rows)
@@ -104,6 +107,7 @@ def test_chances_and_their_ends(rows):
 
 @QUICK
 @given(pieces())
+@pytest.mark.slow
 def test_drawn_chances_are_near_those_gone_through(rows):
     exact = found(rows)[1]
     with pytest.MonkeyPatch.context() as patch:
@@ -183,6 +187,7 @@ def test_who_asks_first_changes_nothing(first):
 
 @QUICK
 @given(pieces())
+@pytest.mark.slow
 def test_sharing_what_is_known_of_all_pieces_changes_nothing(rows):
     """Each segment alone, and of the whole building: where every outcome is gone through, the chances are the same."""
     falls = falls_of(rows)

@@ -82,6 +82,7 @@ def test_every_record_comes_along(buildings):
     ]  # fmt: skip
 
 
+@pytest.mark.slow
 def test_channels_hang_along_the_axes_that_their_files_say(buildings):
     for building in buildings:
         azimuths = {
@@ -94,6 +95,7 @@ def test_channels_hang_along_the_axes_that_their_files_say(buildings):
             assert abs(abs(lines["X"].pop() - lines["Y"].pop()) - 90) <= 1
 
 
+@pytest.mark.slow
 def test_channels_of_a_floor_are_moved_by_one_factor(buildings):
     for building in buildings:
         levels = find_levels(building)
@@ -258,6 +260,7 @@ rock_building(one, dict.fromkeys(one.channels, (0.3, 0.6)), Options(out=Path(sys
 
 
 @pytest.mark.skipif(os.name == "nt", reason="no SIGKILL to send")
+@pytest.mark.slow
 def test_a_run_that_was_killed_goes_on_where_it_was(buildings, tmp_path):
     """Killed as soon as its first part is there: that part is left as it is, and the numbers are as of one run."""
     folder = tmp_path / "killed"

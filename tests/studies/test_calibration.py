@@ -208,6 +208,7 @@ def pick():
     return [list_recorded()[-1], list_beams()[-3]]
 
 
+@pytest.mark.slow
 def test_what_falls_is_that_of_the_scaled_motions(kept):
     """One block on both floors, by hand."""
     breadth, height = build_blocks()

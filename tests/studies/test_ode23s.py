@@ -65,6 +65,7 @@ def test_path_within_a_step():
 
 @settings(deadline=None, max_examples=30)
 @given(st.floats(-7, -2), st.floats(0.2, 5.0))
+@pytest.mark.slow
 def test_the_error_follows_the_tolerance(exponent, end):
     rtol = 10.0**exponent
     found = solve_ivp(swing, (0, end), [1.0, 0.0], method=Ode23s, rtol=rtol, atol=rtol / 100)
@@ -74,6 +75,7 @@ def test_the_error_follows_the_tolerance(exponent, end):
 
 @settings(deadline=None, max_examples=30)
 @given(st.floats(1e3, 1e9))
+@pytest.mark.slow
 def test_stiff_decay_is_stable_at_long_steps(rate):
     """Of y' = -rate (y - cos t) - sin t, whose slow part is cos t; explicit steps would be 2 / rate at most."""
     found = solve_ivp(

@@ -18,6 +18,7 @@ def ground():
     return rise * (1.5 * np.sin(2 * np.pi * 1.1 * TIMES) + 0.8 * np.sin(2 * np.pi * 3.7 * TIMES))
 
 
+@pytest.mark.slow
 def test_two_modes_are_those_of_the_equation_of_motion(ground):
     """T1 of 1 s, mid-height: shares 4/pi sin(45 deg) and 4/(3 pi) sin(135 deg), the rest moves with the ground."""
     omega = 2 * np.pi * np.array([1.0, 3.0])

@@ -66,7 +66,10 @@ def test_half_sines_by_every_solver(limit, solver, within):
 
 @pytest.mark.parametrize(
     "limit",
-    [pytest.param(one, marks=() if at in (0, 3) else pytest.mark.slow) for at, one in enumerate(LIMITS[:6])],
+    [
+        pytest.param(one, marks=() if at in (0, 3) else pytest.mark.slow if at in (1, 4) else pytest.mark.long)
+        for at, one in enumerate(LIMITS[:6])
+    ],
     ids=name,
 )
 def test_one_sines_by_every_solver(limit):
@@ -90,11 +93,11 @@ def test_verdicts_are_not_monotone(case, solver):
     assert (seen[1].impacts, seen[3].impacts) == (1, 0)
 
 
-@pytest.mark.slow
-@settings(deadline=None, max_examples=30)
-@given(st.floats(1.02, 9.0), st.booleans())
-def test_the_same_verdicts_as_the_reference_of_the_kernel(amplitude, is_linear):
-    """`tests.rocking.reference` integrates a record sample by sample; no case here is nearer than 0.01 to a limit."""
+def check_verdict(amplitude, is_linear):
+    """Assert that `tests.rocking.reference`, which integrates a record sample by sample, has the same verdict.
+
+    No case here is nearer than 0.01 to a limit.
+    """
     case = LINEAR if is_linear else NONLINEAR
     assume(all(abs(amplitude - one.listed) > 0.01 for one in LIMITS[:6] if one.case == case))
     assume(amplitude * ALPHA > 1.01 * case.threshold)
@@ -105,6 +108,20 @@ def test_the_same_verdicts_as_the_reference_of_the_kernel(amplitude, is_linear):
     assert one.overturned == found.overturned
     if one.overturned:
         assert one.impacts == found.impacts
+
+
+@pytest.mark.slow
+@settings(deadline=None, max_examples=8)
+@given(st.floats(1.02, 9.0), st.booleans())
+def test_the_same_verdicts_as_the_reference_of_the_kernel(amplitude, is_linear):
+    check_verdict(amplitude, is_linear)
+
+
+@pytest.mark.long
+@settings(deadline=None, max_examples=30)
+@given(st.floats(1.02, 9.0), st.booleans())
+def test_many_of_the_same_verdicts(amplitude, is_linear):
+    check_verdict(amplitude, is_linear)
 
 
 @pytest.mark.parametrize("case", [LINEAR, NONLINEAR], ids=["linear", "nonlinear"])

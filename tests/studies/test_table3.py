@@ -81,6 +81,7 @@ def test_or_reaches_one_half_where_equation_9_does():
 
 
 @given(st.floats(0.1, 1.0))
+@pytest.mark.slow
 def test_a_median_is_where_the_chance_is_one_half(ratio):
     for name, chance in build_chances(OPTIONS).items():
         median = find_median(chance, ratio)
@@ -117,6 +118,7 @@ def test_the_boundary_frequency_by_hand():
 
 
 @given(st.sampled_from(BLOCKS), st.floats(0.05, 1.0), st.floats(-2, 2), st.floats(0.3, 1.2))
+@pytest.mark.slow
 def test_a_pfv_lowers_no_median_and_passes_no_bound(block, pfa, decades, height):
     """Whatever the floor frequency: the median with that of a motion, which is scaled, is at least the bound's."""
     found = build_chances(OPTIONS)[BOUND](np.array([block.ratio]), np.array([pfa]))[0]
@@ -128,6 +130,7 @@ def test_a_pfv_lowers_no_median_and_passes_no_bound(block, pfa, decades, height)
         assert chance < 0.5
 
 
+@pytest.mark.slow
 def test_the_files(tmp_path):
     finding = run_study(STUDY, Options(out=tmp_path))
     shown = "\n".join(finding.page)

@@ -37,6 +37,7 @@ def find_chances(shaking: str) -> dict[str, list[float]]:
     return found
 
 
+@pytest.mark.slow
 def test_at_jma_4_nothing_tall_falls_on_the_ground_floor():
     assert max(find_chances("JMA 4")["ground"]) <= 3
 

@@ -34,6 +34,7 @@ def compare_figures(findings) -> None:
 
 
 @pytest.mark.parametrize("name", ["table1", "table3"])
+@pytest.mark.slow
 def test_quick_studies_are_on_the_page(name, tmp_path):
     """These two integrate nothing: their rounded numbers are the same on every processor."""
     study = next(one for one in all_studies() if one.name == name)

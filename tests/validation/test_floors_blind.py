@@ -39,6 +39,7 @@ def read_peaks(name: str) -> tuple[float, float]:
 
 @pytest.mark.parametrize("building", ["575 Market Street", "Berkeley"])
 @pytest.mark.parametrize("by", ["T1", "height"])
+@pytest.mark.slow
 def test_peaks_of_recorded_floors(building, by):
     """PFA/PGA, and PFV/PFA, of eight and of seven floors."""
     amplified, velocity = [], []
@@ -102,6 +103,7 @@ def test_the_velocity_at_the_top_of_a_tower_is_among_those_drawn_where_nothing_i
     assert low < 40 < high
 
 
+@pytest.mark.slow
 def test_the_furniture_of_a_tower_blind():
     """575 Market Street from its ground's PGA and its height: recorded motions give 10 to 11 falls of 177 pieces."""
     inventory = assess.read_inventory("inventories/market-street.xlsx")

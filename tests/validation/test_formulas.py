@@ -28,6 +28,7 @@ def compare_with_kept(rows, within):
 
 
 @pytest.mark.parametrize("building", all_buildings(), ids=lambda one: one.name)
+@pytest.mark.slow
 def test_kept_chances_of_recorded_floors_are_what_is_simulated(building):
     rows = list(formulas.simulate_building(building, CHANNELS[building.name]))
     assert len(rows) == 3 * len(CHANNELS[building.name])

@@ -61,6 +61,7 @@ def test_all_rows_are_checked_below() -> None:
 
 
 @pytest.mark.parametrize("row", chosen("one_sine", "linear"), ids=name)
+@pytest.mark.slow
 def test_one_sine_linear_by_the_reference(row: dict[str, str]) -> None:
     def follow(times: float) -> tuple[bool, int]:
         omega = P * float(row["frequency_ratio"])
@@ -94,6 +95,7 @@ def test_half_sine_in_closed_form(row: dict[str, str]) -> None:
 
 
 @pytest.mark.parametrize("row", chosen("half_sine", "linear"), ids=name)
+@pytest.mark.slow
 def test_half_sine_linear_by_the_reference(row: dict[str, str]) -> None:
     def follow(times: float) -> tuple[bool, int]:
         values, step = sine(times * ALPHA, ALPHA, P * float(row["frequency_ratio"]), math.pi, 400)

@@ -1,30 +1,43 @@
 """Fixtures: a server of the page, and a browser in it."""
 
+import tempfile
 from contextlib import ExitStack
 
 import pytest
 
 from tests.waiting import PATIENCE
-from tests.web.serving import Client, start
+from tests.web.serving import Client, serve_here, start
 
 
 @pytest.fixture
-def served(tmp_path):
-    """Return a function that serves a workbook, or none, on a free port: `served(path, "--language", "it")`.
-
-    Temporary files of the servers go to the folder `tmp` of `tmp_path`, and the folder of new workbooks is `home`.
-    """
+def folders(tmp_path):
+    """Make the folders of servers: temporary files go to `tmp` of `tmp_path`, new workbooks to `home`."""
     (tmp_path / "tmp").mkdir()
     (tmp_path / "home").mkdir()
+    return tmp_path
+
+
+@pytest.fixture
+def served(folders):
+    """Return a function that serves a workbook, or none, by the command: `served(path, "--language", "it")`."""
     with ExitStack() as stack:
 
         def serve(workbook=None, *options, cwd=None):
             words = [*([workbook] if workbook else []), "--no-browser", "--port", "0", *options]
-            running = start(*words, cwd=cwd or tmp_path / "home", temporary=tmp_path / "tmp")
+            running = start(*words, cwd=cwd or folders / "home", temporary=folders / "tmp")
             stack.callback(running.stop)
             return running
 
         yield serve
+
+
+@pytest.fixture
+def served_here(folders, monkeypatch):
+    """Return a function that serves a workbook, or none, in a thread, for tests of what the page does."""
+    monkeypatch.setenv("TMPDIR", str(folders / "tmp"))
+    monkeypatch.setattr(tempfile, "tempdir", None)
+    with ExitStack() as stack:
+        yield lambda workbook=None: stack.enter_context(serve_here(workbook, folders / "home"))
 
 
 @pytest.fixture

@@ -7,6 +7,19 @@ from playwright.sync_api import expect
 AXE = Path(__file__).parents[1] / "data" / "axe-core" / "axe.min.js"
 VIEWS = ("sheet", "plan", "what-if", "simulate", "start")
 GRAVE = ("serious", "critical")
+OF_COLOURS = ("color-contrast", "link-in-text-block")
+"""Rules about colours: what is to be looked at again in another theme, in which all else is the same."""
+THEMES = (("light", ()), ("dark", OF_COLOURS))
+"""Themes, and the rules by which each is examined: the first by all."""
+EXAMINE = """async ([grave, rules]) => {
+    const options = { resultTypes: ["violations"], iframes: false, preload: false };
+    if (rules.length) options.runOnly = { type: "rule", values: rules };
+    const { violations } = await axe.run(document, options);
+    return violations
+        .filter((one) => grave.includes(one.impact))
+        .map((one) => [one.id, one.impact, one.nodes[0].html.slice(0, 200)]);
+}"""
+"""What is found is picked in the page: all that axe-core returns takes longer to hand over than to find."""
 
 
 def show(page, view):
@@ -17,12 +30,11 @@ def show(page, view):
     expect(page.locator(f"#view-{view} [aria-busy=true]")).to_have_count(0)
 
 
-def examine(page):
-    """Return what axe-core is sure of that is grave: rule, impact and the first element of each."""
-    page.evaluate(AXE.read_text(encoding="utf-8"))
-    options = {"resultTypes": ["violations"], "iframes": False, "preload": False}
-    found = page.evaluate("options => axe.run(document, options)", options)["violations"]
-    return [(one["id"], one["impact"], one["nodes"][0]["html"][:200]) for one in found if one["impact"] in GRAVE]
+def examine(page, rules=()):
+    """Return what axe-core is sure of that is grave: rule, impact and the first element of each; of `rules` alone."""
+    if not page.evaluate("() => 'axe' in window"):
+        page.evaluate(AXE.read_text(encoding="utf-8"))
+    return [tuple(one) for one in page.evaluate(EXAMINE, [GRAVE, rules])]
 
 
 def note_requests(page):

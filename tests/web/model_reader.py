@@ -1,4 +1,4 @@
-"""The processes in which a server reads a building model or simulates: found, and held as long as a test wants."""
+"""Building models, and the processes in which a server reads them or simulates: found, and held for a test."""
 
 import os
 import signal
@@ -6,14 +6,23 @@ from pathlib import Path
 
 import pytest
 
+from tests.bim.ifc_files import one_room
 from tests.waiting import wait_until
 
 linux = pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="processes are found in /proc")
 
 
+def write_house(path):
+    """Write a small model: a room on one floor with two cabinets, and a shelf above them that is skipped."""
+    model, _, room = one_room()
+    for name, x, bottom in (("Cabinet", 1, 0), ("Cabinet", 3, 0), ("Shelf", 5, 1.4)):
+        model.piece(name, (x, 1, bottom, 0.8, 0.4, 1.6), within=room)
+    return model.write(path)
+
+
 def find_worker(server, name):
     """Return the process of a server that runs a module, 0 where there is none."""
-    pid = server.process.pid
+    pid = server.pid
     children = "".join(path.read_text() for path in Path(f"/proc/{pid}/task").glob("*/children")).split()
     return next((int(child) for child in children if _runs(child, name)), 0)
 

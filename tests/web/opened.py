@@ -1,8 +1,13 @@
-"""Workbooks held as the server holds them, for tests that need no server."""
+"""Workbooks held as the server holds them, for tests that need no server; workbooks as the template makes them."""
 
+import json
+import tempfile
+from functools import cache
 from pathlib import Path
 
 from assess.web.book import Book
+from assess.workbook.template import Content, Units, write_workbook
+from tests.workbooks import FLOORS, ITEMS
 
 MARKET = Path(__file__).parents[2] / "inventories" / "market-street.xlsx"
 
@@ -20,3 +25,29 @@ def edit(book: Book, *cells) -> None:
         assert place is not None, field
         edits.append([sheet, *place, value])
     book.edit(book.version, edits, "test")
+
+
+@cache
+def _make(rows: str, units: Units, spare: int) -> bytes:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "made.xlsx"
+        write_workbook(path, Content(rows=json.loads(rows)), units, spare=spare)
+        return path.read_bytes()
+
+
+def write_template(path: Path, rows, units: Units = "si", spare: int = 3) -> Path:
+    """Write a workbook as users have it, with its formulas in few rows; the same rows are made once."""
+    path.write_bytes(_make(json.dumps(rows), units, spare))
+    return path
+
+
+def write_office(path: Path, items=None, floors=None, **building) -> Path:
+    """Write the small workbook as users have it."""
+    return write_template(path, {"Building": [building], "Floors": floors or FLOORS, "Items": items or ITEMS})
+
+
+def write_one_floor(path: Path, **building) -> Path:
+    """Write the small workbook with all pieces on one floor, along one axis: its report has fewer figures."""
+    lying = ("axis", "x", "y", "angle_deg")
+    items = [{name: value for name, value in one.items() if name not in lying} | {"floor": "1"} for one in ITEMS]
+    return write_office(path, items, [{"floor": "1", "pfa_x": 0.5, "pfv_x": 45.0}], **building)

@@ -4,7 +4,7 @@ import re
 
 from playwright.sync_api import expect
 
-from assess.workbook.template import Content, write_workbook
+from tests.web.opened import write_template
 from tests.web.sheet_page import opened
 
 FLOORS = [
@@ -28,8 +28,7 @@ ROUTES = [{"route": "Way out", "segment": "1", "floor": "1", "start": "Hall", "e
 def write_floor(path, units="si", items=ITEMS, floors=FLOORS, places=PLACES, routes=ROUTES):
     """Write a workbook with a hall of 8 by 6 m, two pieces on its plan, and a way out."""
     rows = {"Building": [{}], "Floors": floors, "Items": items, "Places": places, "Routes": routes}
-    write_workbook(path, Content(rows=rows), units)
-    return path
+    return write_template(path, rows, units, spare=8)
 
 
 class PlanPage:

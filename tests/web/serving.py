@@ -1,4 +1,4 @@
-"""The page as users have it: the command in a process of its own, and a client of its requests."""
+"""The page as users have it: the command in a process of its own, or its server here; a client of its requests."""
 
 import http.client
 import json
@@ -10,9 +10,13 @@ import sys
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from threading import Timer
+from threading import Event, Thread, Timer
 from urllib.parse import quote, urlsplit
 
+from assess.delivery.private_folder import private_folder
+from assess.web.book import Book
+from assess.web.folders import PREFIX
+from assess.web.server import Place, Server, bind
 from tests.waiting import PATIENCE, wait_until
 
 ADDRESS = re.compile(r"https?://\S+")
@@ -63,13 +67,17 @@ class Client:
 
 
 @dataclass
-class Served:
-    """A running `assess open`: the address that it printed, and a client that enters when it is first asked for."""
+class Opened:
+    """A page that is served: its address, which serves once, and a client that enters when it is first asked for."""
 
-    process: subprocess.Popen[str]
     url: str
     folder: Path
     entered: Client | None = None
+
+    @property
+    def pid(self):
+        """The process that answers."""
+        return os.getpid()
 
     @property
     def base(self):
@@ -80,6 +88,17 @@ class Served:
         if self.entered is None:
             self.entered = enter(self.url)
         return self.entered
+
+
+@dataclass
+class Served(Opened):
+    """A running `assess open`, with the address that it printed."""
+
+    process: subprocess.Popen[str] | None = None
+
+    @property
+    def pid(self):
+        return self.process.pid
 
     def stop(self, number=signal.SIGTERM):
         """Send a signal, and return the exit status, what was printed, and the messages."""
@@ -108,9 +127,27 @@ def start(*words, cwd, temporary=None, environment=None, before=()):
     with end_late(process):
         for line in process.stdout:
             if found := ADDRESS.fullmatch(line.strip()):
-                return Served(process, found[0], cwd)
+                return Served(found[0], cwd, process=process)
     _, err = process.communicate(timeout=PATIENCE)
     raise AssertionError(f"no address was printed, exit status {process.returncode}: {err}")
+
+
+@contextmanager
+def serve_here(workbook, cwd):
+    """Serve a workbook, or none, as `assess open` does, in a thread: what a process imports is here already."""
+    place, ready = Place(), Event()
+    with bind(place) as listening, private_folder(PREFIX) as folder:
+        server = Server(listening, place, folder, cwd)
+        if workbook is not None:
+            server.take(Book.open_disk(Path(workbook)))
+        thread = Thread(target=server.run, args=((), ready.set))
+        thread.start()
+        try:
+            assert ready.wait(PATIENCE)
+            yield Opened(server.issue_address(), cwd)
+        finally:
+            server._uvicorn.should_exit = server._uvicorn.force_exit = True
+            thread.join(PATIENCE)
 
 
 @contextmanager

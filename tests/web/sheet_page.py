@@ -121,7 +121,7 @@ class SheetPage:
 
 
 def opened(page, server, **options):
-    """Open the page of a server at its sheets."""
+    """Open the page of a server at its sheets, with the first answer of the server: tabs are drawn anew with it."""
     found = page(server, **options)
     expect(found.get_by_role("tab").first).to_be_visible()
-    return SheetPage(found, server)
+    return SheetPage(found, server).settle()

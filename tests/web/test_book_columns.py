@@ -31,7 +31,7 @@ def columns(sheet):
 
 
 def test_every_sheet_and_column_of_the_template(tmp_path):
-    write_workbook(tmp_path / "book.xlsx", Content(ROWS))
+    write_workbook(tmp_path / "book.xlsx", Content(ROWS), spare=3)
     sheets = describe(Book.open_disk(tmp_path / "book.xlsx"))[1]
     assert list(sheets) == [one.name for one in SHEETS]
     for sheet in SHEETS:
@@ -60,7 +60,7 @@ def test_every_sheet_and_column_of_the_template(tmp_path):
 def test_an_italian_workbook_round_trips(tmp_path):
     rows = ROWS | {"Items": [{"item": "A1", "floor": "1", "breadth": 40, "height": 180, "anchored": "no"}]}
     with speaking(load_catalogue("it")):
-        write_workbook(tmp_path / "libro.xlsx", Content(rows))
+        write_workbook(tmp_path / "libro.xlsx", Content(rows), spare=3)
     book = Book.open_disk(tmp_path / "libro.xlsx")
     found, sheets = describe(book)
     assert (found["language"], found["units"]) == ("it", "si")
@@ -83,7 +83,7 @@ def test_an_italian_workbook_round_trips(tmp_path):
 def test_an_imperial_workbook_round_trips(tmp_path):
     floors = [{"floor": "1", "pfa_x": 0.3, "elevation": 10}]
     items = [{"item": "A1", "floor": "1", "breadth": 16, "height": 72, "x": 3}]
-    write_workbook(tmp_path / "book.xlsx", Content({"Floors": floors, "Items": items}), "imperial")
+    write_workbook(tmp_path / "book.xlsx", Content({"Floors": floors, "Items": items}), "imperial", spare=3)
     book = Book.open_disk(tmp_path / "book.xlsx")
     found, sheets = describe(book)
     assert found["units"] == "imperial"

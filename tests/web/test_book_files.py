@@ -33,7 +33,7 @@ RECORD = Path(__file__).parents[2] / "inventories" / "records" / "575-market" / 
 def filled(tmp_path_factory):
     """A workbook that names no files."""
     path = tmp_path_factory.mktemp("filled") / "office.xlsx"
-    write_workbook(path, Content(PLAIN))
+    write_workbook(path, Content(PLAIN), spare=3)
     return path.read_bytes()
 
 
@@ -41,7 +41,7 @@ def filled(tmp_path_factory):
 def naming(tmp_path_factory):
     """A workbook that names files."""
     path = tmp_path_factory.mktemp("naming") / "office.xlsx"
-    write_workbook(path, Content(ROWS))
+    write_workbook(path, Content(ROWS), spare=3)
     return path.read_bytes()
 
 

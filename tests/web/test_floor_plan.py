@@ -48,7 +48,7 @@ def path(tmp_path):
     (tmp_path / "p.png").write_bytes(picture("PNG", size=(1600, 1200)))
     (tmp_path / "p.svg").write_bytes(PLAN_SVG)
     rows = {"Floors": FLOORS, "Items": ITEMS, "Places": PLACES, "Routes": ROUTES}
-    write_workbook(tmp_path / "w.xlsx", Content(rows))
+    write_workbook(tmp_path / "w.xlsx", Content(rows), spare=3)
     return tmp_path / "w.xlsx"
 
 
@@ -96,6 +96,7 @@ def _compare(book, results):
     return falls
 
 
+@pytest.mark.slow
 def test_geometry_is_that_of_the_report(example):
     assert _compare(hold(MARKET), example) > 20
 
@@ -221,8 +222,9 @@ print(faults)
 """
 
 
+@pytest.mark.slow
 def test_the_first_requests_of_a_page_may_come_at_once(tmp_path):
     """Each imports what it needs; of modules that import one another one of them would find a half of the other."""
-    write_workbook(tmp_path / "w.xlsx", Content({"Floors": FLOORS, "Items": ITEMS}))
+    write_workbook(tmp_path / "w.xlsx", Content({"Floors": FLOORS, "Items": ITEMS}), spare=3)
     command = [sys.executable, "-c", FIRST, str(tmp_path / "w.xlsx")]
     assert subprocess.run(command, capture_output=True, text=True, check=True).stdout == "[]\n"

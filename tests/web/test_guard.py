@@ -56,6 +56,7 @@ def test_without_the_cookie_every_path_answers_401(client):
     assert b"refresh" in Client(client.base).get("/", Accept="text/html", **{"Sec-Fetch-Site": "cross-site"}).data
 
 
+@pytest.mark.slow
 def test_a_ticket_opens_the_page_once_and_becomes_a_strict_cookie(tmp_path):
     server = start("--no-browser", "--port", "0", cwd=tmp_path, temporary=tmp_path)
     try:

@@ -19,14 +19,21 @@ from assess.workbook.read import read_tables
 from tests.bim import scan_files
 from tests.bim.cobie_files import write_cobie
 from tests.waiting import wait_until
-from tests.web.model_reader import hold_reader, is_gone, linux
+from tests.web.model_reader import hold_reader, is_gone, linux, write_house
 from tests.web.serving import list_named
 from tests.web.test_sessions import OPTIONS, _come
 from tests.workbooks import write
 
 MODELS = Path(__file__).parents[2] / "samples" / "models"
 DUPLEX, LARGE = MODELS / "duplex.ifc", MODELS / "LargeBuilding.ifc"
+PLAN = "house-Level-1.svg"
 PLANS = ["duplex-Level-1.svg", "duplex-Level-2.svg", "duplex-Roof.svg"]
+
+
+@pytest.fixture(scope="module")
+def house(tmp_path_factory):
+    """Return the bytes of a small model."""
+    return write_house(tmp_path_factory.mktemp("house") / "house.ifc").read_bytes()
 
 
 def _read(client, name, data, query=""):
@@ -78,28 +85,29 @@ def test_a_model_becomes_a_workbook_with_its_plans_beside_it(served, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_second_workbook_of_a_model_replaces_no_file_and_a_third_ends_the_list(served, tmp_path):
-    server = served(write(tmp_path / "office.xlsx"))
+def test_a_second_workbook_of_a_model_replaces_no_file_and_a_third_ends_the_list(served_here, house, tmp_path):
+    server = served_here(write(tmp_path / "office.xlsx"))
     before = (tmp_path / "office.xlsx").read_bytes()
-    (server.folder / PLANS[0]).write_bytes(b"mine")
-    for name, open_meanwhile in (("duplex.xlsx", "office.xlsx"), ("duplex-2.xlsx", "duplex.xlsx")):
-        assert _read(server.client, "duplex.ifc", DUPLEX.read_bytes())["state"] == "done"
+    (server.folder / PLAN).write_bytes(b"mine")
+    for name, open_meanwhile in (("house.xlsx", "office.xlsx"), ("house-2.xlsx", "house.xlsx")):
+        assert _read(server.client, "house.ifc", house)["state"] == "done"
         assert server.client.get("/api/book").json()["name"] == open_meanwhile
         book = server.client.post("/api/import/open").json()
         assert (book["name"], book["missing"]) == (name, [])
-    assert (server.folder / PLANS[0]).read_bytes() == b"mine"
-    tables, _ = read_tables((server.folder / "duplex.xlsx").read_bytes(), "duplex.xlsx")
-    named = [row.get("plan") for row in tables["Floors"].rows]
-    assert named == ["duplex-Level-1-2.svg", *PLANS[1:]]
+    assert (server.folder / PLAN).read_bytes() == b"mine"
+    tables, _ = read_tables((server.folder / "house.xlsx").read_bytes(), "house.xlsx")
+    assert [row.get("plan") for row in tables["Floors"].rows] == ["house-Level-1-2.svg"]
     assert (tmp_path / "office.xlsx").read_bytes() == before
     server.client.post("/api/start", {"kind": "blank", "name": "other"})
     assert server.client.get("/api/import").json()["opened"] is None
 
 
 @pytest.mark.slow
-def test_routes_are_drafted_where_they_are_asked_for(served):
-    client = served().client
-    assert _read(client, "duplex.ifc", DUPLEX.read_bytes(), "&routes=draft")["found"]["routes"] > 0
+def test_routes_are_drafted_where_they_are_asked_for(served_here):
+    client = served_here().client
+    office = scan_files.write(scan_files.office())
+    assert _read(client, "office.json", office)["found"]["routes"] == 0
+    assert _read(client, "office.json", office, "&routes=draft")["found"]["routes"] > 0
     assert client.request("POST", "/api/import?name=a.ifc&routes=all", b"x").status == 422
     assert client.request("POST", "/api/import?routes=none", b"x").status == 422
 
@@ -161,15 +169,16 @@ def test_a_reading_can_be_cancelled_and_the_server_answers_meanwhile(served, tmp
 
 @linux
 @pytest.mark.slow
-def test_another_model_takes_the_place_of_one_that_is_being_read(served):
-    server = served()
+def test_another_model_takes_the_place_of_one_that_is_being_read(served_here, house):
+    server = served_here()
     server.client.request("POST", "/api/import?name=large.ifc", LARGE.read_bytes())
     reader = hold_reader(server)
-    found = _read(server.client, "duplex.ifc", DUPLEX.read_bytes())
-    assert (found["state"], found["name"], is_gone(reader)) == ("done", "duplex.ifc", True)
+    found = _read(server.client, "house.ifc", house)
+    assert (found["state"], found["name"], is_gone(reader)) == ("done", "house.ifc", True)
 
 
 @linux
+@pytest.mark.slow
 def test_the_server_ends_while_a_model_is_read(served, tmp_path):
     server = served()
     server.client.request("POST", "/api/import?name=duplex.ifc", DUPLEX.read_bytes())
@@ -213,8 +222,8 @@ def test_on_a_server_for_several_a_model_of_no_known_length_is_counted_as_it_is_
 
 
 @pytest.mark.slow
-def test_what_is_too_large_is_refused_however_it_is_sent(served, tmp_path):
-    client = served().client
+def test_what_is_too_large_is_refused_however_it_is_sent(served_here, tmp_path):
+    client = served_here().client
     part = b"x" * 2**20
     for headers in ({"Content-Length": str(MOST_MODEL + 2**20)}, {}):
         body = (part for _ in range(MOST_MODEL // 2**20 + 1))
@@ -234,14 +243,14 @@ def test_models_come_from_the_page_alone(served):
 
 
 @pytest.mark.slow
-def test_on_a_server_for_several_it_is_held_with_its_plans_for_its_user_alone(served):
+def test_on_a_server_for_several_it_is_held_with_its_plans_for_its_user_alone(served, house):
     server = served(None, *OPTIONS)
     ann, _ = _come(server, "ann")
     ben, _ = _come(server, "ben")
-    assert _read(ann, "duplex.ifc", DUPLEX.read_bytes())["state"] == "done"
+    assert _read(ann, "house.ifc", house)["state"] == "done"
     assert ben.get("/api/import").json()["import"] is None
     book = ann.post("/api/import/open").json()
-    assert (book["name"], book["mode"], book["missing"]) == ("duplex.xlsx", "held", [])
+    assert (book["name"], book["mode"], book["missing"]) == ("house.xlsx", "held", [])
     assert ann.get("/api/picture?floor=Level%201").status == 200
     assert list(server.folder.iterdir()) == []
 

@@ -50,13 +50,14 @@ def _classes(answer):
 
 def _write(path, rows, language="en"):
     with speaking(load_catalogue(language)):
-        write_workbook(path, Content({"Floors": FLOORS, "Items": ITEMS, **rows}))
+        write_workbook(path, Content({"Floors": FLOORS, "Items": ITEMS, **rows}), spare=3)
     return path
 
 
 # ---------------------------------------------------------------- classes
 
 
+@pytest.mark.slow
 def test_classes_and_chances_are_those_of_the_run(example):
     """Floors with records, for which the sheet's own formulas ask for a run, among them."""
     answer = _answer(hold(MARKET))
@@ -71,7 +72,7 @@ def test_classes_and_chances_are_those_of_the_run(example):
 
 
 def test_live_columns_show_what_the_formulas_of_the_sheet_show(tmp_path):
-    book = hold(write(tmp_path / "w.xlsx"))
+    book = hold(_write(tmp_path / "w.xlsx", {}))
     items = _answer(book)["items"]
     found = {one.label: items["values"][str(at)] for at, one in book.sheets["Items"].columns.items()
              if one.live is not None}  # fmt: skip
@@ -150,6 +151,7 @@ def test_floors_without_shaking_leave_the_others_their_classes(tmp_path):
     assert answer["counts"] == {"low": 0, "medium": 0, "high": 0, "very_high": 0, "": 7}
 
 
+@pytest.mark.slow
 def test_the_run_and_the_page_agree_on_a_faulty_workbook(tmp_path):
     """Whatever is left out, what stays is assessed as the command does."""
     book, view = hold(MARKET), LiveView()
@@ -238,6 +240,7 @@ def test_problems_are_in_the_language_of_the_workbook(tmp_path):
     assert _by_row(answer)[5][1] == "ancorato"
 
 
+@pytest.mark.slow
 def test_sessions_of_two_languages_do_not_mix(tmp_path):
     def words(language):
         book = hold(paths[language])

@@ -3,8 +3,9 @@
 import pytest
 from playwright.sync_api import expect
 
+from tests.web.opened import write_office
 from tests.web.sheet_page import opened
-from tests.workbooks import ITEMS, write
+from tests.workbooks import ITEMS
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -30,8 +31,8 @@ FROM_SHEETS = """<meta charset='utf-8'><google-sheets-html-origin><table><tbody>
 
 
 @pytest.fixture
-def small(page, served, tmp_path):
-    return opened(page, served(write(tmp_path / "office.xlsx"))).open("Items")
+def small(page, served_here, tmp_path):
+    return opened(page, served_here(write_office(tmp_path / "office.xlsx"))).open("Items")
 
 
 def test_a_thousand_rows_are_one_edit_and_one_step_back(small):

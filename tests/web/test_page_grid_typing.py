@@ -8,8 +8,9 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.conftest import EXAMPLE
+from tests.web.opened import write_office
 from tests.web.sheet_page import CLASS, opened
-from tests.workbooks import ITEMS, write
+from tests.workbooks import ITEMS
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -18,9 +19,9 @@ MARKUP = '<img src=x onerror="document.title=1">'
 
 
 @pytest.fixture
-def small(page, served, tmp_path):
+def small(page, served_here, tmp_path):
     """Return the sheet Items of a small workbook."""
-    return opened(page, served(write(tmp_path / "office.xlsx"))).open("Items")
+    return opened(page, served_here(write_office(tmp_path / "office.xlsx"))).open("Items")
 
 
 def tab_to(sheet, selector, key="Tab"):
@@ -40,9 +41,9 @@ def edit_elsewhere(sheet, room):
     assert done.status == 200, done.data
 
 
-def test_a_first_piece_by_keyboard_alone(page, served, tmp_path):
+def test_a_first_piece_by_keyboard_alone(page, served_here, tmp_path):
     shutil.copy(BLANK, tmp_path / "new.xlsx")
-    sheet = opened(page, served(tmp_path / "new.xlsx"))
+    sheet = opened(page, served_here(tmp_path / "new.xlsx"))
     tab_to(sheet, "[role=tab]", "Shift+Tab")
     for _ in range(7):
         if sheet.page.locator("[data-sheet=Floors]:focus").count():
@@ -141,9 +142,9 @@ def test_keys_of_a_spreadsheet(small):
     expect(small.grid.locator("[role=gridcell][aria-selected=true]")).not_to_have_count(4)
 
 
-def test_markup_in_a_cell_is_text(page, served, tmp_path):
+def test_markup_in_a_cell_is_text(page, served_here, tmp_path):
     items = [ITEMS[0] | {"room": MARKUP, "description": MARKUP}, ITEMS[1] | {"item": MARKUP, "axis": MARKUP}]
-    sheet = opened(page, served(write(tmp_path / "office.xlsx", items))).open("Items")
+    sheet = opened(page, served_here(write_office(tmp_path / "office.xlsx", items))).open("Items")
     expect(sheet.cell("Room", 2)).to_have_text(MARKUP)
     expect(sheet.page.locator(".problems")).to_contain_text("<img")
     sheet.head("Room").get_by_role("button").click()
@@ -177,16 +178,16 @@ def test_undo_goes_back_across_sheets_in_order_and_quick_edits_reach_the_server_
     expect(small.cell("Quantity", 3)).to_have_text("3")
 
 
-def test_a_cell_that_cannot_be_changed_goes_back_and_is_named(page, served, tmp_path):
+def test_a_cell_that_cannot_be_changed_goes_back_and_is_named(page, served_here, tmp_path):
     from openpyxl import load_workbook
 
-    path = write(tmp_path / "office.xlsx")
+    path = write_office(tmp_path / "office.xlsx")
     book = load_workbook(path)
     column = book["Items"].max_column + 1
     book["Items"].cell(1, column, "Our number")
     book["Items"].cell(2, column, "=1+1")
     book.save(path)
-    sheet = opened(page, served(path)).open("Items")
+    sheet = opened(page, served_here(path)).open("Items")
     sheet.type("<End>")
     sheet.select("Our number", 2).type("5", "<Enter>")
     name = sheet.cell("Our number", 2)

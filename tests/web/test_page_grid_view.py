@@ -7,8 +7,8 @@ import xlsxwriter
 from playwright.sync_api import expect
 
 from tests.web.looking import examine
+from tests.web.opened import write_office
 from tests.web.sheet_page import TWO_FRAMES, opened
-from tests.workbooks import write
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -22,13 +22,13 @@ HEIGHTS = {"B": 150, "a": 90, "C": 210, "d": None, "E": 90}
 
 
 @pytest.fixture
-def sorted_items(page, served, tmp_path):
+def sorted_items(page, served_here, tmp_path):
     """Return the sheet Items of pieces whose names and heights are in no order."""
     items = [
         {"item": name, "floor": "1", "room": room, "breadth": 40, "width": 80, "height": height}
         for (name, height), room in zip(HEIGHTS.items(), ("Hall", "Store", "Hall", "Hall", ""), strict=True)
     ]
-    return opened(page, served(write(tmp_path / "office.xlsx", items))).open("Items")
+    return opened(page, served_here(write_office(tmp_path / "office.xlsx", items))).open("Items")
 
 
 def write_many(path):
@@ -63,8 +63,8 @@ def choose(sheet, label, *buttons):
 
 
 @pytest.mark.long
-def test_twenty_thousand_rows(page, served, tmp_path):
-    sheet = opened(page, served(write_many(tmp_path / "many.xlsx"))).open("Items").settle()
+def test_twenty_thousand_rows(page, served_here, tmp_path):
+    sheet = opened(page, served_here(write_many(tmp_path / "many.xlsx"))).open("Items").settle()
     client = sheet.page.context.new_cdp_session(sheet.page)
     client.send("Performance.enable")
     sheet.select("Item", 2).type(*["<PageDown>"] * 20, "<Control+End>")
@@ -191,8 +191,8 @@ CUT = """all => all.filter((one) => one.scrollHeight > one.clientHeight + 1 || o
     .map((one) => one.textContent)"""
 
 
-def test_headers_show_their_units_and_the_tabs_of_the_plan_their_names(page, served, tmp_path):
-    server = served(write(tmp_path / "office.xlsx"))
+def test_headers_show_their_units_and_the_tabs_of_the_plan_their_names(page, served_here, tmp_path):
+    server = served_here(write_office(tmp_path / "office.xlsx"))
     for locale in ("en-GB", "it-IT"):
         sheet = opened(page, server, width=4000, locale=locale).open("Items")
         expect(sheet.head("Bracket capacity")).to_contain_text("[kN]")
@@ -204,9 +204,9 @@ def test_headers_show_their_units_and_the_tabs_of_the_plan_their_names(page, ser
         assert len({one.bounding_box()["y"] for one in sheet.page.locator(".plan-tabs button").all()}) == 1, locale
 
 
-def test_sheets_with_problems_are_accessible(page, served, tmp_path):
+def test_sheets_with_problems_are_accessible(page, served_here, tmp_path):
     items = [{"item": "A1", "floor": "1", "breadth": "wide", "width": 80, "height": 200}, {"item": "A2", "floor": "9"}]
-    sheet = opened(page, served(write(tmp_path / "office.xlsx", items)))
+    sheet = opened(page, served_here(write_office(tmp_path / "office.xlsx", items)))
     for theme, width in (("light", 1400), ("dark", 1400), ("light", 390)):
         sheet.page.emulate_media(color_scheme=theme)
         sheet.page.set_viewport_size({"width": width, "height": 900})

@@ -8,19 +8,26 @@ import pytest
 from playwright.sync_api import expect
 
 from assess.web.guard import MOST_MODEL
+from tests.bim import scan_files
 from tests.bim.cobie_files import write_cobie
 from tests.waiting import wait_until
-from tests.web.looking import examine
-from tests.web.model_reader import hold_reader, is_gone, linux
+from tests.web.looking import THEMES, examine
+from tests.web.model_reader import hold_reader, is_gone, linux, write_house
+from tests.web.opened import write_office
 from tests.web.sheet_page import CLASS, SheetPage
 from tests.web.test_page_phone import HEIGHT, OVER_THE_EDGE, WIDTH
 from tests.web.test_page_shell import drop
-from tests.workbooks import write
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 MODELS = Path(__file__).parents[2] / "samples" / "models"
 DUPLEX = MODELS / "duplex.ifc"
+
+
+@pytest.fixture(scope="module")
+def house(tmp_path_factory):
+    """Return a small model."""
+    return write_house(tmp_path_factory.mktemp("house") / "house.ifc")
 
 
 def _choose(page, *files):
@@ -29,42 +36,42 @@ def _choose(page, *files):
     chooser.value.set_files(*files)
 
 
-def _see_list(page, name="duplex.ifc"):
+def _see_list(page, name):
     expect(page.get_by_role("heading", name=f"What was taken from {name}")).to_be_visible()
     return page.locator("#view-import")
 
 
-def test_a_dropped_model_shows_what_was_taken_and_becomes_a_workbook(page, served):
-    server = served()
+def test_a_dropped_model_shows_what_was_taken_and_becomes_a_workbook(page, served_here):
+    server = served_here()
     found = page(server)
     expect(found.get_by_label("Draft evacuation routes")).not_to_be_checked()
-    drop(found, "duplex.ifc", DUPLEX.read_bytes())
-    shown = _see_list(found)
+    drop(found, "scan.json", scan_files.write(scan_files.office()))
+    shown = _see_list(found, "scan.json")
     expect(found.get_by_role("heading", name="What was taken")).to_be_focused()
-    expect(shown).to_contain_text("47 of 61 pieces on 2 floors")
-    expect(shown).to_contain_text("14 pieces skipped that may be furniture")
+    expect(shown).to_contain_text("4 of 5 pieces on 1 floor")
+    expect(shown).to_contain_text("1 piece skipped that may be furniture")
     table = shown.get_by_role("table").first
     expect(table.get_by_role("rowheader", name="Not on the floor")).to_be_visible()
     rows = table.locator("tr:not(.reason) td.num").all_inner_texts()
-    assert sum(map(int, rows)) == 14
+    assert rows == ["1"]
     expect(shown.get_by_role("heading", name="What to check")).to_be_visible()
     assert examine(found) == []
     found.reload()
-    _see_list(found)
+    _see_list(found, "scan.json")
     shown.get_by_label("Shaking of the ground").select_option(label="MMI VIII, severe")
     shown.get_by_role("button", name="Open the workbook").click()
-    expect(found.get_by_role("heading", name="duplex.xlsx")).to_be_visible()
+    expect(found.get_by_role("heading", name="scan.xlsx")).to_be_visible()
     expect(SheetPage(found, server).cell(CLASS, 2)).to_contain_text(re.compile("low|medium|high"))
-    assert (server.folder / "duplex.xlsx").is_file()
+    assert (server.folder / "scan.xlsx").is_file()
     found.get_by_role("link", name="Imported").click()
-    _see_list(found)
-    found.get_by_role("link", name="Back to duplex.xlsx").click()
+    _see_list(found, "scan.json")
+    found.get_by_role("link", name="Back to scan.xlsx").click()
     expect(found.locator("#view-sheet")).to_be_visible()
 
 
-def test_what_was_taken_is_shown_after_a_reload(page, served, tmp_path):
+def test_what_was_taken_is_shown_after_a_reload(page, served_here, tmp_path):
     """Which view the address names depends on the import: the page has its answer before it asks for the book."""
-    found = page(served())
+    found = page(served_here())
     _choose(found, write_cobie(tmp_path / "handover.xlsx"))
     _see_list(found, "handover.xlsx")
     seen = []
@@ -78,14 +85,14 @@ def test_what_was_taken_is_shown_after_a_reload(page, served, tmp_path):
 FORMULAS = ('=HYPERLINK("https://example.org")', "+1", "-1", "@SUM(A1)", "\t=1", " =1", "Desk\t=1", "Desk\n=1", "A=1")
 
 
-def test_the_list_of_what_was_skipped_is_copied_and_none_of_it_becomes_a_formula(page, served):
-    found = page(served(), permissions=["clipboard-read", "clipboard-write"])
-    _choose(found, DUPLEX)
-    _see_list(found).get_by_role("button", name="Copy the list").click()
+def test_the_list_of_what_was_skipped_is_copied_and_none_of_it_becomes_a_formula(page, served_here, house):
+    found = page(served_here(), permissions=["clipboard-read", "clipboard-write"])
+    _choose(found, house)
+    _see_list(found, house.name).get_by_role("button", name="Copy the list").click()
     expect(found.locator(".notice")).to_contain_text("The list was copied")
     lines = found.evaluate("() => navigator.clipboard.readText()").splitlines()
     assert lines[0].split("\t") == ["Reason", "Type", "Number"]
-    assert sum(int(line.split("\t")[2]) for line in lines[1:]) == 14
+    assert [line.split("\t")[1:] for line in lines[1:]] == [["IfcFurniture Shelf", "1"]]
     found.get_by_role("button", name="Discard").click()
     expect(found.get_by_role("heading", name="Start from a building model")).to_be_visible()
     rows = [["Not on the floor", name, 3] for name in FORMULAS]
@@ -97,8 +104,10 @@ def test_the_list_of_what_was_skipped_is_copied_and_none_of_it_becomes_a_formula
     ]  # fmt: skip
 
 
-def test_why_a_model_cannot_be_read_stands_beside_the_drop_area_and_a_second_try_works(page, served, tmp_path):
-    server = served()
+def test_why_a_model_cannot_be_read_stands_beside_the_drop_area_and_a_second_try_works(
+    page, served_here, house, tmp_path
+):
+    server = served_here()
     found = page(server)
     cut = tmp_path / "cut.ifc"
     cut.write_bytes(DUPLEX.read_bytes()[:200_000])
@@ -114,13 +123,13 @@ def test_why_a_model_cannot_be_read_stands_beside_the_drop_area_and_a_second_try
     _choose(found, huge)
     expect(fault).to_contain_text("huge.ifc is larger than 256 MB.")
     assert list(server.folder.iterdir()) == []
-    _choose(found, DUPLEX)
-    _see_list(found)
+    _choose(found, house)
+    _see_list(found, house.name)
 
 
 @linux
-def test_a_reading_is_shown_and_cancelled_by_a_button_or_by_leaving(page, served):
-    server = served()
+def test_a_reading_is_shown_and_cancelled_by_a_button_or_by_leaving(page, served_here):
+    server = served_here()
     found = page(server)
     _choose(found, DUPLEX)
     hold_reader(server)
@@ -140,47 +149,47 @@ def test_a_reading_is_shown_and_cancelled_by_a_button_or_by_leaving(page, served
     wait_until(lambda: is_gone(reader), bool)
 
 
-def test_a_model_dropped_on_an_open_workbook_becomes_another(page, served, tmp_path):
-    server = served(write(tmp_path / "office.xlsx"))
+def test_a_model_dropped_on_an_open_workbook_becomes_another(page, served_here, house, tmp_path):
+    server = served_here(write_office(tmp_path / "office.xlsx"))
     before = (tmp_path / "office.xlsx").read_bytes()
     found = page(server)
     expect(found.get_by_role("heading", name="office.xlsx")).to_be_visible()
-    drop(found, "duplex.ifc", DUPLEX.read_bytes())
+    drop(found, "house.ifc", house.read_bytes())
     asked = found.get_by_role("dialog")
-    expect(asked).to_contain_text("duplex.ifc is read into a new workbook. office.xlsx stays as it is.")
+    expect(asked).to_contain_text("house.ifc is read into a new workbook. office.xlsx stays as it is.")
     asked.get_by_role("button", name="Cancel").click()
     expect(found.get_by_role("heading", name="office.xlsx")).to_be_visible()
-    drop(found, "duplex.ifc", DUPLEX.read_bytes())
+    drop(found, "house.ifc", house.read_bytes())
     asked.get_by_role("button", name="Read it", exact=True).click()
-    shown = _see_list(found)
+    shown = _see_list(found, house.name)
     expect(found.get_by_role("link", name="Imported")).to_be_hidden()  # office.xlsx was not
     shown.get_by_role("button", name="Open the workbook").click()
-    expect(found.get_by_role("heading", name="duplex.xlsx")).to_be_visible()
+    expect(found.get_by_role("heading", name="house.xlsx")).to_be_visible()
     expect(found.locator(".notice")).to_contain_text("choose Shaking in Building")
     found.locator(".notice").get_by_role("button", name="Choose the shaking").click()
     expect(found.locator(".sheet-tabs [data-sheet=Building]")).to_have_attribute("aria-selected", "true")
     assert (tmp_path / "office.xlsx").read_bytes() == before
 
 
-def test_a_cobie_file_is_read_and_an_inventory_opened(page, served, tmp_path):
-    server = served()
+def test_a_cobie_file_is_read_and_an_inventory_opened(page, served_here, tmp_path):
+    server = served_here()
     found = page(server)
     _choose(found, write_cobie(tmp_path / "handover.xlsx"))
     shown = _see_list(found, "handover.xlsx")
     expect(shown).to_contain_text("2 pieces on 2 floors")
     shown.get_by_text("1 element skipped that is not furniture").click()
     expect(shown.get_by_role("row", name="Door B 1")).to_be_visible()
-    drop(found, "office.xlsx", write(tmp_path / "office.xlsx").read_bytes())
+    drop(found, "office.xlsx", write_office(tmp_path / "office.xlsx").read_bytes())
     expect(found.get_by_role("heading", name="office.xlsx")).to_be_visible()
 
 
-def test_on_a_phone(page, served):
-    found = page(served(), width=WIDTH, height=HEIGHT, has_touch=True)
-    for show in (lambda: None, lambda: (_choose(found, DUPLEX), _see_list(found))):
+def test_on_a_phone(page, served_here, house):
+    found = page(served_here(), width=WIDTH, height=HEIGHT, has_touch=True)
+    for show in (lambda: None, lambda: (_choose(found, house), _see_list(found, house.name))):
         show()
-        for theme in ("light", "dark"):
+        for theme, rules in THEMES:
             found.emulate_media(color_scheme=theme)
             assert found.evaluate(OVER_THE_EDGE, WIDTH) == [], theme
-            assert examine(found) == [], theme
+            assert examine(found, rules) == [], theme
     found.get_by_role("button", name="Open the workbook").click()
-    expect(found.get_by_role("heading", name="duplex.xlsx")).to_be_visible()
+    expect(found.get_by_role("heading", name="house.xlsx")).to_be_visible()

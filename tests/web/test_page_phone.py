@@ -4,7 +4,7 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.conftest import EXAMPLE
-from tests.web.looking import VIEWS, examine, show
+from tests.web.looking import THEMES, VIEWS, examine, show
 from tests.web.sheet_page import SheetPage
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -21,20 +21,20 @@ SMALL_TABS = """() => [...document.querySelectorAll("nav.tabs a")]
     .filter((one) => one.getBoundingClientRect().height < 40).length"""
 
 
-def test_every_view_can_be_read(page, served):
-    found = page(served(EXAMPLE), width=WIDTH, height=HEIGHT, has_touch=True)
-    for theme in ("light", "dark"):
-        found.emulate_media(color_scheme=theme)
-        for view in VIEWS:
-            show(found, view)
+def test_every_view_can_be_read(page, served_here):
+    found = page(served_here(EXAMPLE), width=WIDTH, height=HEIGHT, has_touch=True)
+    for view in VIEWS:
+        show(found, view)
+        for theme, rules in THEMES:
+            found.emulate_media(color_scheme=theme)
             assert found.evaluate("() => document.documentElement.scrollWidth") <= WIDTH, (view, theme)
             assert found.evaluate(OVER_THE_EDGE, WIDTH) == [], (view, theme)
-            assert examine(found) == [], (view, theme)
+            assert examine(found, rules) == [], (view, theme)
     assert found.evaluate(SMALL_TABS) == 0
 
 
-def test_on_a_phone_the_tabs_are_at_the_bottom_nothing_is_edited_and_notices_leave_room(page, served):
-    server = served(EXAMPLE)
+def test_on_a_phone_the_tabs_are_at_the_bottom_nothing_is_edited_and_notices_leave_room(page, served_here):
+    server = served_here(EXAMPLE)
     found = page(server, width=WIDTH, height=HEIGHT, has_touch=True)
     expect(found.locator(".counts")).to_contain_text("very high")
     tabs = found.get_by_role("navigation", name="Views").bounding_box()

@@ -14,13 +14,13 @@ NUMBERS = ("plan_left", "plan_bottom", "plan_width", "plan_turn")
 
 
 @pytest.fixture
-def plan(page, served, tmp_path):
-    return opened_plan(page, served(write_floor(tmp_path / "hall.xlsx", items=ITEMS[:2])))
+def plan(page, served_here, tmp_path):
+    return opened_plan(page, served_here(write_floor(tmp_path / "hall.xlsx", items=ITEMS[:2])))
 
 
 @pytest.fixture
-def empty(page, served, tmp_path):
-    return opened_plan(page, served(write_floor(tmp_path / "empty.xlsx", items=[], places=[], routes=[])))
+def empty(page, served_here, tmp_path):
+    return opened_plan(page, served_here(write_floor(tmp_path / "empty.xlsx", items=[], places=[], routes=[])))
 
 
 def draw_picture(path):
@@ -46,10 +46,10 @@ def numbers(plan):
     return [plan.values("Floors", name).get(2) for name in NUMBERS]
 
 
-def test_a_picture_is_placed_by_two_clicks_and_a_distance(page, served, tmp_path):
+def test_a_picture_is_placed_by_two_clicks_and_a_distance(page, served_here, tmp_path):
     draw_picture(tmp_path / "plan.png")
     floors = [FLOORS[0] | {"plan": "plan.png"}, FLOORS[1]]
-    plan = opened_plan(page, served(write_floor(tmp_path / "hall.xlsx", floors=floors)))
+    plan = opened_plan(page, served_here(write_floor(tmp_path / "hall.xlsx", floors=floors)))
     plan.tab("picture")
     for run, turn in (("", 0), ("90", 90)):
         expect(plan.panel).to_contain_text("Not placed yet")

@@ -15,12 +15,12 @@ A1, A2, A3, FREE = 2, 3, 4, 6
 
 
 @pytest.fixture
-def plan(page, served, tmp_path):
-    return opened_plan(page, served(write_floor(tmp_path / "hall.xlsx")))
+def plan(page, served_here, tmp_path):
+    return opened_plan(page, served_here(write_floor(tmp_path / "hall.xlsx")))
 
 
-def test_a_dragged_piece_moves_in_the_workbook_and_undo_brings_it_back(page, served, tmp_path):
-    plan = opened_plan(page, served(write_floor(tmp_path / "hall.xlsx")), width=2200)
+def test_a_dragged_piece_moves_in_the_workbook_and_undo_brings_it_back(page, served_here, tmp_path):
+    plan = opened_plan(page, served_here(write_floor(tmp_path / "hall.xlsx")), width=2200)
     before = plan.server.client.get("/api/download").data
     expect(plan.piece(A2)).to_have_class(re.compile("class-(very-)?high"))
     shown = plan.piece(A2).get_attribute("class")
@@ -172,9 +172,9 @@ def test_a_copy_lies_beside_the_original_or_on_another_floor(plan):
     assert plan.values("Items", "description")[FREE] == "Bookcase"
 
 
-def test_what_is_not_known_of_a_piece_is_marked_and_leads_to_its_cell(page, served, tmp_path):
+def test_what_is_not_known_of_a_piece_is_marked_and_leads_to_its_cell(page, served_here, tmp_path):
     items = [{"item": "A1", "floor": "1", "type": "Bookcase 5 shelves", "x": 3, "y": 3, "angle_deg": 0}]
-    plan = opened_plan(page, served(write_floor(tmp_path / "hall.xlsx", items=items, routes=[])))
+    plan = opened_plan(page, served_here(write_floor(tmp_path / "hall.xlsx", items=items, routes=[])))
     piece = plan.piece(A1)
     expect(piece).to_have_class(re.compile("width-missing"))
     expect(piece.locator(".unknown")).to_have_text(["?", "?"])
@@ -220,18 +220,18 @@ def test_a_type_is_dragged_from_the_catalogue_and_an_unplaced_piece_from_its_lis
     assert plan.at(A3)[:2] == (None, None)
 
 
-def test_positions_are_written_in_the_unit_of_the_workbook(page, served, tmp_path):
+def test_positions_are_written_in_the_unit_of_the_workbook(page, served_here, tmp_path):
     foot = 0.3048
     items = [{"item": "A1", "floor": "1", "breadth": 16, "width": 32, "height": 80, "x": 2 / foot, "y": 2 / foot}]
     path = write_floor(tmp_path / "feet.xlsx", "imperial", items, places=[], routes=[])
-    plan = opened_plan(page, served(path))
+    plan = opened_plan(page, served_here(path))
     plan.drag((2, 2), (3, 2.5), keys=["Alt"])
     assert plan.at(2)[:2] == (pytest.approx(3 / foot, abs=0.006), pytest.approx(2.5 / foot, abs=0.006))
     expect(plan.page.locator(".scale-bar")).to_have_text(re.compile("ft$"))
 
 
-def test_on_a_phone_the_plan_is_read_and_not_edited(page, served, tmp_path):
-    server = served(write_floor(tmp_path / "hall.xlsx"))
+def test_on_a_phone_the_plan_is_read_and_not_edited(page, served_here, tmp_path):
+    server = served_here(write_floor(tmp_path / "hall.xlsx"))
     plan = opened_plan(page, server, width=390, height=844, has_touch=True)
     plan.page.touchscreen.tap(*plan.place(2, 2))
     expect(plan.panel.locator(".details h2")).to_have_text("A1")

@@ -15,9 +15,10 @@ from playwright.sync_api import expect
 import assess.web
 from assess.web.answers import find_page_file
 from tests.conftest import EXAMPLE
-from tests.web.looking import VIEWS, examine, note_requests, show
+from tests.web.looking import THEMES, VIEWS, examine, note_requests, show
+from tests.web.opened import write_office
 from tests.web.serving import start
-from tests.workbooks import ITEMS, write
+from tests.workbooks import ITEMS
 
 PAGE = Path(assess.web.__file__).with_name("page")
 MOST_BYTES = 150_000
@@ -31,7 +32,7 @@ def browsing(test):
 
 @pytest.fixture
 def office(tmp_path):
-    return write(tmp_path / "office.xlsx")
+    return write_office(tmp_path / "office.xlsx")
 
 
 @pytest.fixture
@@ -87,24 +88,24 @@ def test_nothing_of_the_page_names_another_server_or_makes_elements_of_text():
 
 
 @browsing
-def test_every_view_is_accessible_and_asks_no_other_server(page, served, example):
-    server = served(example)
+def test_every_view_is_accessible_and_asks_no_other_server(page, served_here, example):
+    server = served_here(example)
     found = page(server, reduced_motion="reduce")
     addresses = note_requests(found)
     found.reload()
-    for theme in ("light", "dark"):
-        found.emulate_media(color_scheme=theme, reduced_motion="reduce")
-        for view in VIEWS:
-            show(found, view)
-            expect(found.locator(f"#view-{view} [role=alert]:not(:empty)")).to_have_count(0)
-            assert examine(found) == [], (view, theme)
+    for view in VIEWS:
+        show(found, view)
+        expect(found.locator(f"#view-{view} [role=alert]:not(:empty)")).to_have_count(0)
+        for theme, rules in THEMES:
+            found.emulate_media(color_scheme=theme, reduced_motion="reduce")
+            assert examine(found, rules) == [], (view, theme)
     assert len(addresses) > 20
     assert [one for one in addresses if not one.startswith((server.base + "/", "data:", "blob:"))] == []
 
 
 @browsing
-def test_a_view_that_fails_leaves_the_others(page, served, office):
-    found = page(served(office))
+def test_a_view_that_fails_leaves_the_others(page, served_here, office):
+    found = page(served_here(office))
     found.route(
         "**/what_if_view.mjs",
         lambda route: route.fulfill(body="throw new Error('broken')", content_type="text/javascript"),
@@ -119,8 +120,8 @@ def test_a_view_that_fails_leaves_the_others(page, served, office):
 
 
 @browsing
-def test_the_address_holds_the_tab_and_a_new_tab_shows_the_same(page, served, office):
-    found = page(served(office))
+def test_the_address_holds_the_tab_and_a_new_tab_shows_the_same(page, served_here, office):
+    found = page(served_here(office))
     found.get_by_role("link", name="Simulate and report").click()
     expect(found.locator("#view-simulate")).to_be_visible()
     edit(found, "Items", 2, 3, "Attic")
@@ -138,8 +139,8 @@ def test_the_address_holds_the_tab_and_a_new_tab_shows_the_same(page, served, of
 
 
 @browsing
-def test_language_and_colours_are_kept_and_percentages_stay_on_their_side_of_a_limit(page, served, office):
-    server = served(office)
+def test_language_and_colours_are_kept_and_percentages_stay_on_their_side_of_a_limit(page, served_here, office):
+    server = served_here(office)
     found = page(server, color_scheme="light")
     expect(found.get_by_role("link", name="Sheet", exact=True)).to_be_visible()
     colour = "() => getComputedStyle(document.body).backgroundColor"
@@ -192,8 +193,8 @@ def test_what_is_changed_while_the_server_is_gone_reaches_the_file(page, served,
 
 
 @browsing
-def test_an_answer_that_breaks_off_loses_no_edit(page, served, office):
-    found = page(served(office))
+def test_an_answer_that_breaks_off_loses_no_edit(page, served_here, office):
+    found = page(served_here(office))
     expect(found.get_by_role("grid")).to_be_visible()
 
     def break_off(route):
@@ -252,8 +253,8 @@ LOOK = """isHidden => {
 
 
 @browsing
-def test_a_change_by_another_program_is_read_and_asks_only_where_changes_would_be_lost(page, served, office):
-    found = page(served(office))
+def test_a_change_by_another_program_is_read_and_asks_only_where_changes_would_be_lost(page, served_here, office):
+    found = page(served_here(office))
     expect(found.locator(STATE)).to_contain_text("All changes saved")
     change_outside(office, "Cellar")
     said = found.locator(".notice").filter(has_text="changed by another program")
@@ -274,8 +275,8 @@ def test_a_change_by_another_program_is_read_and_asks_only_where_changes_would_b
 
 
 @browsing
-def test_what_stands_in_the_way_of_saving_is_told_until_it_is_gone(page, served, office):
-    found = page(served(office))
+def test_what_stands_in_the_way_of_saving_is_told_until_it_is_gone(page, served_here, office):
+    found = page(served_here(office))
     expect(found.locator(STATE)).to_contain_text("All changes saved")
     office.rename(office.with_name("moved.xlsx"))
     edit(found, "Items", 2, 3, "Attic")
@@ -320,8 +321,8 @@ def drop(page, name, data):
 
 
 @browsing
-def test_a_workbook_and_the_files_that_it_names_are_dropped_in(page, served, example):
-    found = page(served())
+def test_a_workbook_and_the_files_that_it_names_are_dropped_in(page, served_here, example):
+    found = page(served_here())
     expect(found.get_by_role("heading", name="Open a workbook")).to_be_visible()
     drop(found, "old.xls", b"old")
     expect(found.get_by_role("alert").filter(has_text="old.xls cannot be opened")).to_contain_text("LibreOffice")
@@ -350,8 +351,8 @@ def test_a_workbook_and_the_files_that_it_names_are_dropped_in(page, served, exa
 
 
 @browsing
-def test_a_held_workbook_asks_before_it_is_left(page, served, office, tmp_path):
-    found = page(served())
+def test_a_held_workbook_asks_before_it_is_left(page, served_here, office, tmp_path):
+    found = page(served_here())
     expect(found.get_by_role("heading", name="Open a workbook")).to_be_visible()
     drop(found, "mine.xlsx", office.read_bytes())
     expect(found.locator(STATE)).to_have_text("No changes since the last download")

@@ -7,7 +7,8 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.web.looking import examine, show
-from tests.workbooks import ITEMS, write
+from tests.web.opened import write_office, write_one_floor
+from tests.workbooks import ITEMS
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -16,9 +17,9 @@ SIMULATED = [2, 3, 4, 5, 6]
 
 
 @pytest.fixture
-def simulating(page, served, tmp_path):
+def simulating(page, served_here, tmp_path):
     """Return a page that shows the simulation of a small workbook."""
-    found = page(served(write(tmp_path / "office.xlsx", height=12.0)))
+    found = page(served_here(write_one_floor(tmp_path / "office.xlsx", height=12.0)))
     show(found, "simulate")
     return found
 
@@ -105,14 +106,14 @@ def test_a_run_is_found_again_after_a_reload_and_cancelled_and_another_is_by_the
     expect(page.get_by_role("button", name="Start the run")).to_be_enabled()
     assert page.evaluate("async () => (await (await fetch('/api/job')).json()).job.state") == "cancelled"
     page.get_by_label("None: reports by the formula only").check()
-    run(page, "HTML")
+    run(page, "CSV")
     expect(page.get_by_text("Nothing was simulated")).to_be_visible()
     assert simulated(page) == []
 
 
-def test_a_workbook_with_errors_says_which(page, served, tmp_path):
+def test_a_workbook_with_errors_says_which(page, served_here, tmp_path):
     items = [ITEMS[0] | {"height": "tall"}, ITEMS[1] | {"type": "Zorp"}, *ITEMS[2:]]
-    found = page(served(write(tmp_path / "office.xlsx", items)))
+    found = page(served_here(write_office(tmp_path / "office.xlsx", items)))
     expect(found.locator(".counts-line")).to_contain_text("by formula")
     show(found, "simulate")
     found.get_by_role("button", name="Start the run").click()

@@ -4,13 +4,13 @@ import pytest
 from playwright.sync_api import expect
 
 from docs.screenshot import find_browser
+from tests.web.opened import write_office
 from tests.web.sheet_page import CLASS, opened
-from tests.workbooks import write
 
 
 @pytest.mark.skipif(find_browser() is None, reason="no Chromium or Chrome is installed")
 def test_an_edited_piece_gets_another_class(page, served, tmp_path):
-    path = write(tmp_path / "office.xlsx")
+    path = write_office(tmp_path / "office.xlsx")
     before = path.read_bytes()
     sheet = opened(page, served(path)).open("Items")
     expect(sheet.cell(CLASS, 4)).to_contain_text("▲ high")

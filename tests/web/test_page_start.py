@@ -14,9 +14,9 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 
 @pytest.fixture
-def started(page, served):
+def started(page, served_here):
     """Return a page without a workbook, and its server."""
-    server = served()
+    server = served_here()
     found = page(server)
     expect(found.get_by_role("heading", name="Make a new workbook")).to_be_visible()
     return found, server
@@ -66,8 +66,8 @@ def test_three_steps_lead_to_the_first_class(started):
     assert [made.cell(row, 4).value for row in range(2, 7)] == ["Classroom"] * 4 + [None]
 
 
-def test_in_italian_the_workbook_is_italian(page, served):
-    server = served()
+def test_in_italian_the_workbook_is_italian(page, served_here):
+    server = served_here()
     found = page(server, locale="it-IT")
     found.get_by_role("button", name="Salta il resto e crea").click()
     expect(found.get_by_role("heading", name="uffici.xlsx")).to_be_visible()

@@ -22,8 +22,8 @@ def path(tmp_path):
 
 
 @pytest.fixture
-def sheet(page, served, path):
-    sheet = opened(page, served(path))
+def sheet(page, served_here, path):
+    sheet = opened(page, served_here(path))
     sheet.page.locator("nav.tabs [data-tab=what-if]").click()
     expect(sheet.page.locator(".results")).to_have_attribute("aria-busy", "false")
     return sheet

@@ -60,6 +60,7 @@ def _compare(answer, results):
     assert {name for (name,) in found.keys() - rooms.keys()} == set(tables.unjoined_rooms)
 
 
+@pytest.mark.slow
 def test_states_are_those_of_the_run(example):
     answer = _answer(hold(MARKET))
     _compare(answer, example)
@@ -70,6 +71,7 @@ def test_states_are_those_of_the_run(example):
     assert all(places[one["room"]] == one["place_row"] for one in answer["rooms"])
 
 
+@pytest.mark.slow
 def test_a_piece_with_an_error_leaves_the_routes_to_the_others(tmp_path):
     book = hold(MARKET)
     edit(book, ("Items", 5, "height", "tall"))
@@ -82,7 +84,7 @@ def test_a_piece_with_an_error_leaves_the_routes_to_the_others(tmp_path):
 
 @pytest.fixture
 def hall(tmp_path):
-    write_workbook(tmp_path / "w.xlsx", Content(HALL))
+    write_workbook(tmp_path / "w.xlsx", Content(HALL), spare=3)
     return hold(tmp_path / "w.xlsx")
 
 
@@ -112,12 +114,12 @@ def test_routes_on_a_floor_without_shaking_are_not_known(hall):
 
 def test_words_are_in_the_language_of_the_workbook(tmp_path):
     with speaking(load_catalogue("it")):
-        write_workbook(tmp_path / "w.xlsx", Content(HALL))
+        write_workbook(tmp_path / "w.xlsx", Content(HALL), spare=3)
     answer = _answer(hold(tmp_path / "w.xlsx"))
     assert [one["word"] for one in answer["routes"]] == ["✕ ostruito", "✕ ostruito allo stato attuale"]
 
 
 def test_without_routes_there_is_nothing_to_say(tmp_path):
-    write_workbook(tmp_path / "w.xlsx", Content({**HALL, "Routes": [], "Places": []}))
+    write_workbook(tmp_path / "w.xlsx", Content({**HALL, "Routes": [], "Places": []}), spare=3)
     answer = _answer(hold(tmp_path / "w.xlsx"))
     assert [answer[name] for name in ("routes", "rooms", "segments", "remarks", "problems", "error")] == [[]] * 5 + [""]

@@ -30,6 +30,7 @@ def _read(path, at):
 
 @posix
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.slow
 def test_a_signal_ends_it_after_the_last_edit_is_saved(served, tmp_path, number):
     path = write(tmp_path / "office.xlsx")
     server = served(path)
@@ -81,13 +82,14 @@ def test_a_workbook_that_another_server_has_open_is_told(served, tmp_path):
     second = served(path)
     remark = second.client.get("/api/book").json()["remark"]
     assert remark.startswith("office.xlsx is also open in another window")
-    assert f"(process {first.process.pid})" in remark
+    assert f"(process {first.pid})" in remark
     assert second.stop()[2] == f"warning  {remark}\nStopped. All changes are saved in office.xlsx.\n"
     assert first.client.get("/api/book").json()["remark"] == ""
     first.stop(signal.SIGKILL)
     assert served(path).client.get("/api/book").json()["remark"] == ""
 
 
+@pytest.mark.slow
 def test_changes_of_a_held_workbook_that_are_not_downloaded_are_kept_at_the_end(served, tmp_path):
     data = write(tmp_path / "mine.xlsx").read_bytes()
     for is_downloaded in (False, True):
@@ -126,6 +128,7 @@ def test_a_port_that_is_taken_is_named(served, tmp_path):
 
 
 @posix
+@pytest.mark.slow
 def test_enter_in_the_terminal_opens_the_page_again(tmp_path):
     """With a new ticket, for those who closed the browser, or use another one."""
     import pty

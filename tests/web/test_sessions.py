@@ -21,6 +21,7 @@ def _come(server, user, **headers):
     return client, reply
 
 
+@pytest.mark.slow
 def test_users_have_sessions_of_their_own(served, tmp_path):
     server = served(None, *OPTIONS)
     ann, first = _come(server, "ann", **{"X-Forwarded-Proto": "https"})

@@ -2,6 +2,8 @@
 
 import re
 
+import pytest
+
 import assess
 from assess.web import texts
 from assess.web.safe_names import make_safe
@@ -71,6 +73,7 @@ def test_names_that_were_sent_are_made_safe():
     assert {make_safe(name) for name in ("", "..", "\0", "con.xlsx", ".xlsx")} == {"workbook.xlsx"}
 
 
+@pytest.mark.slow
 def test_every_use_offers_rooms_and_types_and_the_worked_example_has_its_records(served):
     server = served()
     found = server.client.get("/api/start").json()

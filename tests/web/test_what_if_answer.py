@@ -52,6 +52,7 @@ ASKED = [{"scenario": "ASCE 7-22", "scale": 0.5}, {"anchor": ["42-04", "25-31"]}
 
 
 @pytest.mark.parametrize("asked", ASKED, ids=str)
+@pytest.mark.slow
 def test_both_sides_are_those_of_runs(market, example, asked):
     before = market.write()
     answer = _try(market, **asked)
@@ -67,6 +68,7 @@ def test_both_sides_are_those_of_runs(market, example, asked):
     assert not market.state()["unsaved"]
 
 
+@pytest.mark.slow
 def test_anchoring_is_what_the_workbook_says_once_it_is_filled_in(market):
     """The row of a piece that is ticked, and the same piece as anchored in its cell."""
     ticked = _try(market, anchor=["42-04"])
@@ -75,6 +77,7 @@ def test_anchoring_is_what_the_workbook_says_once_it_is_filled_in(market):
     assert _try(book)["before"] == ticked["after"]
 
 
+@pytest.mark.slow
 def test_named_pieces_the_first_fixes_besides_and_more_than_there_are(market):
     named, first, all_ = (_try(market, anchor=["42-04"], **more) for more in ({}, {"first": 1}, {"first": 10_000}))
     assert set(named["anchored"]) < set(first["anchored"])
@@ -83,6 +86,7 @@ def test_named_pieces_the_first_fixes_besides_and_more_than_there_are(market):
     assert [all_["after"]["counts"][one] for one in ("medium", "high", "very_high")] == [0, 0, 0]
 
 
+@pytest.mark.slow
 def test_nothing_asked_for_changes_nothing(market):
     answer = _try(market)
     assert answer["before"] == answer["after"]

@@ -60,6 +60,7 @@ def test_a_detail_that_is_unknown_or_never_priced_is_a_warning_at_its_cell(tmp_p
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.slow
 def test_the_empty_workbook_offers_every_detail_and_knows_it_again(tmp_path, language):
     catalogue = load_catalogue(language)
     write_new_workbook(tmp_path / "new.xlsx", "si", language=language)

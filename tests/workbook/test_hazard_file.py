@@ -8,8 +8,8 @@ import pytest
 
 import assess
 from assess.errors import WorkbookError
-from assess.workbook.template import Content, write_workbook
 from tests.hazards import write_hazard
+from tests.workbooks import write_sheets
 
 SITES = Path(__file__).parents[1] / "data" / "hazard" / "oq-case44-hazard_curve-mean-PGA.csv"
 FLOORS = [{"floor": "1", "pfa_x": 0.3}]
@@ -18,7 +18,7 @@ ITEMS = [{"item": "a", "floor": "1", "breadth": 40, "width": 90, "height": 180}]
 
 def workbook(folder: Path, **building: Any) -> Path:
     path = folder / "w.xlsx"
-    write_workbook(path, Content(rows={"Building": [building], "Floors": FLOORS, "Items": ITEMS}), "si")
+    write_sheets(path, {"Building": [building], "Floors": FLOORS, "Items": ITEMS})
     return path
 
 

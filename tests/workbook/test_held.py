@@ -97,6 +97,7 @@ def _read_bytes(data: bytes, folder: Path | None = None) -> Inventory:
 
 @given(first=st.dictionaries(CELLS, VALUES, max_size=30), second=st.dictionaries(CELLS, VALUES, max_size=8))
 @settings(max_examples=40, deadline=None)
+@pytest.mark.slow
 def test_what_is_held_reads_as_the_bytes_do(first: dict[Any, Any], second: dict[Any, Any]) -> None:
     held = hold_sheets(ODD, "inventory.xlsx")
     assert _read(held) == _read_bytes(ODD)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import openpyxl
 import openpyxl.utils
+import pytest
 
 from assess.workbook.read import read_inventory
 from tests.workbook.books import ITEMS, change_parts, errors_of, replace, write, write_shared
@@ -139,6 +140,7 @@ ODD_SHEETS: dict[str, tuple[Iterable[bytes], dict[str, bytes], str]] = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_sheets_that_are_large_or_lie_about_it(tmp_path: Path) -> None:
     expected = {cell: f"Items!{message}" for cell, message in FAR.items()}
     for cell in FAR:
@@ -215,6 +217,7 @@ SLOW: dict[str, tuple[bytes, bytes, int, bytes]] = {
 """A start, what is repeated, so many bytes of it, and an end."""
 
 
+@pytest.mark.slow
 def test_bytes_made_to_be_slow(tmp_path: Path) -> None:
     with zipfile.ZipFile(write(tmp_path)) as archive:
         parts = {one: archive.read(one) for one in archive.namelist()}
@@ -249,6 +252,7 @@ LARGE: dict[str, tuple[str, str, str, int, str]] = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_large_parts(tmp_path: Path) -> None:
     """Just below the limits the memory stays within bounds; above them they are refused."""
     for times in (1, 2):

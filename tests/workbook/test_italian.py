@@ -75,6 +75,7 @@ def test_every_language_can_be_chosen_for_the_report() -> None:
     assert tuple(find_language(choice) for choice in choices) == LANGUAGES
 
 
+@pytest.mark.slow
 def test_the_example_says_the_same_in_both_languages(tmp_path: Path) -> None:
     english, italian = (read_inventory(example(tmp_path, language)) for language in LANGUAGES)
     assert (english.language, italian.language) == ("en", "it")
@@ -296,6 +297,7 @@ def test_sheets_and_columns_that_are_missing_or_twice(
     assert errors_of(write_book(tmp_path / "book.xlsx", sheets)) == errors
 
 
+@pytest.mark.slow
 def test_an_english_workbook_loads_no_catalogue(tmp_path: Path) -> None:
     path = example(tmp_path, "en")
     code = (

@@ -18,17 +18,7 @@ from assess.model import STRUCTURES
 from assess.motion.floor_medians import TABLE
 from assess.units import GRAVITY
 from assess.workbook.template import Units
-from tests.recalculate import needs_libreoffice
-from tests.workbook.test_live import (
-    ENGINES,
-    Engine,
-    Rows,
-    by_formualizer,
-    by_libreoffice,
-    check,
-    fill,
-    poison,
-)
+from tests.workbook.test_live import Rows, by_formualizer, check, fill, poison
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
@@ -50,11 +40,17 @@ def furnish(floors: Rows, sizes: Rows = SIZES) -> Rows:
 UNITS: tuple[Units, ...] = ("si", "imperial")
 
 
-def show(folder: Path, floors: Rows, engine: Engine = by_formualizer, **building: Any) -> dict[str, list[Any]]:
-    """Return what is shown of a slender piece on each floor, governed by the larger motion."""
-    items = [{"item": one["floor"], "floor": one["floor"], "breadth": 20, "height": 180} for one in floors]
+def slender(path: Path, floors: Rows, **building: Any) -> Path:
+    """Write a slender piece on each floor that has a name, governed by the larger motion."""
+    names = [one["floor"] for one in floors if "floor" in one]
+    items = [{"item": name, "floor": name, "breadth": 20, "height": 180} for name in names]
+    return fill(path, items, floors, building)
+
+
+def show(folder: Path, floors: Rows, **building: Any) -> dict[str, list[Any]]:
+    """Return what is shown of such a piece on each floor."""
     folder.mkdir(exist_ok=True)
-    shown = engine(poison(fill(folder / "book.xlsx", items, floors, building)))
+    shown = by_formualizer(poison(slender(folder / "book.xlsx", floors, **building)))
     return {one["floor"]: shown[row] for row, one in enumerate(floors, 2)}
 
 
@@ -104,14 +100,7 @@ BUILDINGS: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("at", range(len(BUILDINGS)), ids=BUILDINGS)
 def test_floors_on_the_ground_equal_the_program(tmp_path: Path, at: int) -> None:
     building, units = list(BUILDINGS.values())[at], UNITS[at % 2]
-    check(fill(tmp_path / "book.xlsx", furnish(FLOORS), FLOORS, building, units), by_formualizer)
-
-
-@pytest.mark.libreoffice
-@needs_libreoffice
-@pytest.mark.parametrize("name", ["PGA and PGV", "PGV", "SDS and PGV", "MMI and PGV", "JMA", "large ratio"])
-def test_floors_on_the_ground_equal_the_program_in_libreoffice(tmp_path: Path, name: str) -> None:
-    check(fill(tmp_path / "book.xlsx", furnish(FLOORS), FLOORS, BUILDINGS[name]), by_libreoffice)
+    check(fill(tmp_path / "book.xlsx", furnish(FLOORS), FLOORS, building, units))
 
 
 @pytest.mark.parametrize("structure", STRUCTURES)
@@ -119,14 +108,14 @@ def test_floors_on_the_ground_equal_the_program_in_libreoffice(tmp_path: Path, n
 def test_every_structure_equals_the_program(tmp_path: Path, structure: str, known: dict[str, Any]) -> None:
     floors = FLOORS if known else [UNPLACED]
     building = {"ground_pga": 0.3, "ground_pgv": 45.0, "structure": structure, **known}
-    check(fill(tmp_path / "book.xlsx", furnish(floors), floors, building), by_formualizer)
+    check(fill(tmp_path / "book.xlsx", furnish(floors), floors, building))
 
 
 @pytest.mark.parametrize("choice", SHAKINGS)
 def test_every_intensity_equals_the_program(tmp_path: Path, choice: str) -> None:
     floors = [FLOORS[1], FLOORS[4]]
     path = fill(tmp_path / "book.xlsx", furnish(floors), floors, {"shaking": choice, "period": 4.0})
-    check(path, by_formualizer)
+    check(path)
     assert by_formualizer(path)[2][1] == pytest.approx(SHAKINGS[choice].pga / GRAVITY)
 
 
@@ -138,15 +127,16 @@ def test_a_motion_at_grade_serves_a_floor_of_unknown_height(
     for motion in ({"pfa_x": 0.3}, {"record_x": "roof.csv"}):
         floors = [{"floor": "G", **grade, **motion}, UNPLACED]
         assert show(tmp_path, floors, **building)["loft"][1:] == ["run assess"] * 7
-        check(fill(tmp_path / "book.xlsx", furnish(floors), floors, building), by_formualizer)
+        check(fill(tmp_path / "book.xlsx", furnish(floors), floors, building))
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("kind", [{"shaking": "MMI VIII, severe"}, {"ground_pga": 0.2, "structure": "muratura"}])
-def test_an_italian_workbook_equals_the_program(tmp_path: Path, kind: dict[str, Any], engine: Engine) -> None:
+ITALIAN = [{"shaking": "MMI VIII, severe"}, {"ground_pga": 0.2, "structure": "muratura"}]
+
+
+@pytest.mark.parametrize("kind", ITALIAN)
+def test_an_italian_workbook_equals_the_program(tmp_path: Path, kind: dict[str, Any]) -> None:
     with speaking(load_catalogue("it")):
-        path = fill(tmp_path / "book.xlsx", furnish(FLOORS, ITALIAN_SIZES), FLOORS, kind)
-        check(path, engine)
+        check(fill(tmp_path / "book.xlsx", furnish(FLOORS, ITALIAN_SIZES), FLOORS, kind))
 
 
 @pytest.mark.parametrize(("structure", "place"), [("frame", 0.6), ("walls", 1.0), ("dual", 0.15)])
@@ -167,14 +157,19 @@ def test_a_floor_shows_the_entry_of_the_table(tmp_path: Path, structure: str, pl
     assert velocity["a"] == pytest.approx(42 * float(row[f"PFV/PGV at {place}"]))
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_the_roof_comes_by_height_then_storeys_then_the_highest_floor(tmp_path: Path, engine: Engine) -> None:
+AT_9_M: Rows = [{"floor": "a", "elevation": 9}]
+ROOFS: dict[str, dict[str, Any]] = {
+    name: {"ground_pga": 0.2, "period": 0.8} | one
+    for name, one in {
+        "highest": {}, "height": {"height": 9}, "storeys": {"storeys": 3}, "low": {"height": 5, "storeys": 9},
+        "fewer": {"storeys": 2}, "higher": {"height": 18, "storeys": 2}, "more": {"storeys": 6},
+    }.items()
+}  # fmt: skip
+
+
+def test_the_roof_comes_by_height_then_storeys_then_the_highest_floor(tmp_path: Path) -> None:
     """A floor of 9 m is the roof of a building of 9 m, however that is known; and it is half as high as one of 18 m."""
-    floors: Rows = [{"floor": "a", "elevation": 9}]
-    ground = {"ground_pga": 0.2, "period": 0.8}
-    ways = {"highest": {}, "height": {"height": 9}, "storeys": {"storeys": 3}, "low": {"height": 5, "storeys": 9},
-            "fewer": {"storeys": 2}, "higher": {"height": 18, "storeys": 2}, "more": {"storeys": 6}}  # fmt: skip
-    shown = {name: show(tmp_path / name, floors, engine, **ground, **one)["a"][1] for name, one in ways.items()}
+    shown = {name: show(tmp_path / name, AT_9_M, **one)["a"][1] for name, one in ROOFS.items()}
     assert all(isinstance(one, float) for one in shown.values())
     for name in ("height", "storeys", "low", "fewer"):
         assert shown[name] == pytest.approx(shown["highest"]), name
@@ -202,21 +197,23 @@ def test_a_floor_at_or_below_grade_has_the_motion_of_the_ground(tmp_path: Path, 
 def test_only_storeys_leave_floors_by_their_number_to_the_program(tmp_path: Path) -> None:
     """The sheet reads no numbers out of names; a floor of which PFA and PFV are typed needs no height."""
     floors: Rows = [{"floor": "1"}, {"floor": "2", "pfa_x": 0.3}, {"floor": "3", "pfa_x": 0.3, "pfv_x": 30}]
-    check(fill(tmp_path / "book.xlsx", furnish(floors), floors, {"ground_pga": 0.2, "storeys": 4}), by_formualizer)
+    check(fill(tmp_path / "book.xlsx", furnish(floors), floors, {"ground_pga": 0.2, "storeys": 4}))
     shown = show(tmp_path / "shown", floors, ground_pga=0.2, storeys=4)
     assert [one[1] for one in shown.values()] == ["run assess", "run assess", 0.3]
     alone = show(tmp_path / "alone", floors[:1], ground_pga=0.2, storeys=4)
     assert alone["1"][1:] == ["run assess"] * 7
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_floors_beside_a_ground_floor_at_0_are_left_to_the_program(tmp_path: Path, engine: Engine) -> None:
-    floors: Rows = [{"floor": "1", "elevation": 0}, {"floor": "2"}]
-    check(fill(tmp_path / "book.xlsx", furnish(floors), floors, {"ground_pga": 0.2, "storeys": 4}), engine)
-    shown = show(tmp_path / "shown", floors, ground_pga=0.2, storeys=4)
+BESIDE_0: Rows = [{"floor": "1", "elevation": 0}, {"floor": "2"}]
+TWO_AT_0: Rows = [*BESIDE_0, {"floor": "3", "elevation": 0}]
+"""So that numbers do not tell where floor 2 lies."""
+
+
+def test_floors_beside_a_ground_floor_at_0_are_left_to_the_program(tmp_path: Path) -> None:
+    for floors in (BESIDE_0, TWO_AT_0):
+        check(fill(tmp_path / "book.xlsx", furnish(floors), floors, {"ground_pga": 0.2, "storeys": 4}))
+    shown = show(tmp_path / "shown", BESIDE_0, ground_pga=0.2, storeys=4)
     assert [one[1] for one in shown.values()] == [pytest.approx(0.2), "run assess"]
-    floors.append({"floor": "3", "elevation": 0})  # so that numbers do not tell where floor 2 lies
-    check(fill(tmp_path / "two.xlsx", furnish(floors), floors, {"ground_pga": 0.2, "storeys": 4}), engine)
 
 
 # ---------------------------------------------------------------- typed peaks
@@ -246,21 +243,14 @@ def own_floors(name: str, unplaced: dict[str, Any] | None = None) -> Rows:
     return [*placed, UNPLACED | (unplaced or {"pfa_x": 0.35, "pfa_y": 0.2})]
 
 
-@pytest.mark.parametrize("name", OWN)
-@pytest.mark.parametrize("building", AROUND, ids=["nothing", "T1", "PGA and PGV", "given", "SDS", "PGV"])
-def test_typed_peaks_equal_the_program(tmp_path: Path, name: str, building: dict[str, Any]) -> None:
-    floors = own_floors(name)
+@pytest.mark.parametrize("shift", [0, 1, *(pytest.param(at, marks=pytest.mark.long) for at in range(2, len(AROUND)))])
+@pytest.mark.parametrize("at", range(len(OWN)), ids=OWN)
+def test_typed_peaks_equal_the_program(tmp_path: Path, at: int, shift: int) -> None:
+    """Each kind of floor with two buildings, and each building with two kinds; with all of them in the long tests."""
+    floors, building = own_floors(list(OWN)[at]), AROUND[(at + shift) % len(AROUND)]
     if building.get("scenario_kind") == "given":  # which serves no floor above the highest typed one
         floors = [one for one in floors if one.keys() & {"pfa_x", "pfa_y"}]
-    check(fill(tmp_path / "book.xlsx", furnish(floors), floors, building), by_formualizer)
-
-
-@pytest.mark.libreoffice
-@needs_libreoffice
-@pytest.mark.parametrize("name", OWN)
-def test_typed_peaks_equal_the_program_in_libreoffice(tmp_path: Path, name: str) -> None:
-    floors = own_floors(name)
-    check(fill(tmp_path / "book.xlsx", furnish(floors), floors, AROUND[1], "imperial"), by_libreoffice)
+    check(fill(tmp_path / "book.xlsx", furnish(floors), floors, building))
 
 
 def test_beside_a_typed_floor_the_others_are_the_program_s_task(tmp_path: Path) -> None:
@@ -284,14 +274,13 @@ def test_a_typed_pfa_is_shown_as_typed_whatever_the_ground(tmp_path: Path) -> No
         assert show(tmp_path / str(at), floors, **building)["a"][1] == 0.35
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_rows_without_a_name_change_nothing(tmp_path: Path, engine: Engine) -> None:
+NAMELESS: Rows = [{"elevation": 60}, {"elevation": 0, "pfa_x": 0.9, "pfv_x": 200}, {"record_x": "roof.csv"}]
+
+
+def test_rows_without_a_name_change_nothing(tmp_path: Path) -> None:
     """They are no floors: neither their height is that of the roof, nor their motion that of the ground."""
-    floors: Rows = [{"floor": "a", "elevation": 9}]
-    stray: Rows = [{"elevation": 60}, {"elevation": 0, "pfa_x": 0.9, "pfv_x": 200}, {"record_x": "roof.csv"}]
-    alone = show(tmp_path / "alone", floors, engine, ground_pga=0.2)["a"]
-    item = [{"item": "a", "floor": "a", "breadth": 20, "height": 180}]
-    beside = engine(poison(fill(tmp_path / "book.xlsx", item, [*floors, *stray], {"ground_pga": 0.2})))[2]
+    alone = show(tmp_path / "alone", AT_9_M, ground_pga=0.2)["a"]
+    beside = by_formualizer(poison(slender(tmp_path / "book.xlsx", [*AT_9_M, *NAMELESS], ground_pga=0.2)))[2]
     assert beside[:5] == pytest.approx(alone[:5])
     assert beside[4:] == alone[4:]
 
@@ -314,7 +303,7 @@ def test_beside_records_the_sheet_equals_the_program(
     write_record(tmp_path)
     floors: Rows = [{"floor": str(at), **one} for at, one in enumerate(BESIDE_RECORDS[name])]
     floors[2] |= {along: "roof.csv", **own}
-    check(fill(tmp_path / "book.xlsx", furnish(floors), floors, {"period": 0.6}), by_formualizer)
+    check(fill(tmp_path / "book.xlsx", furnish(floors), floors, {"period": 0.6}))
 
 
 def test_a_record_anywhere_gives_typed_floors_the_scatter_of_earthquakes(tmp_path: Path) -> None:
@@ -459,7 +448,7 @@ def test_on_the_ground_a_piece_can_rock_by_the_scatter_of_what_is_known(
     ]  # fmt: skip
     path = fill(tmp_path / "book.xlsx", items, floors, building)
     assert [by_formualizer(poison(path))[row][7] for row in (2, 3)] == ["yes", "no"]
-    check(path, by_formualizer)
+    check(path)
 
 
 def test_above_the_ground_the_peak_is_drawn_too(tmp_path: Path) -> None:

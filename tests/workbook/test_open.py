@@ -86,6 +86,7 @@ def test_workbook_with_macros(tmp_path: Path) -> None:
     assert len(read_inventory(path).items) == 1
 
 
+@pytest.mark.slow
 def test_zip_bomb(tmp_path: Path) -> None:
     for at, part in enumerate([SHEET, "xl/sharedStrings.xml", "xl/styles.xml", WORKBOOK, "xl/media/photo.png"]):
         blanks = (b" " * 2**20 for _ in range(520 if part == SHEET else 300))

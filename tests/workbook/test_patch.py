@@ -265,6 +265,7 @@ def test_what_cannot_be_changed() -> None:
     ),
 )
 @settings(max_examples=60, deadline=None)
+@pytest.mark.slow
 def test_any_sheet(old: dict[tuple[int, int], Any], new: dict[tuple[int, int], Any]) -> None:
     """What is read afterwards is what was there, with the changes in it."""
     packed = io.BytesIO()

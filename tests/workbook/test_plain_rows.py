@@ -79,6 +79,7 @@ def test_prepared_rows_are_not_parsed(monkeypatch: pytest.MonkeyPatch, tmp_path:
     assert cut == [str(n) for n in FEW] * 2  # once for each way to read
 
 
+@pytest.mark.slow
 def test_a_new_workbook_with_all_its_prepared_rows(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     path = tmp_path / "new.xlsx"
     for content in (Content(), fill_content("imperial", "Hospital", is_example=True)):
@@ -166,6 +167,7 @@ SAME = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_it_reads_as_through_the_parser(compare, tmp_path: Path) -> None:
     for name, xml in SAME.items():
         assert compare(xml), name
@@ -193,6 +195,7 @@ def test_a_row_of_over_2_mb_is_refused(compare) -> None:
     assert "holds a row of over 2 MB" in compare(body(prepared(1), row, prepared(3)))[-1]
 
 
+@pytest.mark.slow
 def test_damage_anywhere(compare, tmp_path: Path) -> None:
     """Cut off, or with a byte changed: the same values, or the same error."""
     draw = random.Random(1)

@@ -105,6 +105,7 @@ def test_files_by_libreoffice(tmp_path: Path) -> None:
     assert (found.item, found.breadth, found.quantity, found.notes) == ("A1", 0.4, 2, "ä\n2")
 
 
+@pytest.mark.slow
 def test_many_rows(tmp_path: Path) -> None:
     rows = [[f"A{n}", "1", 30 + n % 50, 180] for n in range(6_000)]
     inventory = read_inventory(write_shared(tmp_path / "book.xlsx", {"Items": [ITEMS[0], *rows], "Floors": FLOORS}))

@@ -138,6 +138,7 @@ def test_texts_stay_texts(tmp_path: Path) -> None:
     assert [one.notes for one in read_inventory(tmp_path / "book.xlsx").items] == texts
 
 
+@pytest.mark.slow
 def test_more_rows_than_prepared(tmp_path: Path) -> None:
     """A longer table has its drop-downs, formulas and lists all the way down."""
     count = max(ROWS.values()) + 20
@@ -154,6 +155,7 @@ def test_more_rows_than_prepared(tmp_path: Path) -> None:
         assert str(book["Items"][f"{LETTERS['Items', label]}{count + 1}"].value).startswith("=")
 
 
+@pytest.mark.slow
 def test_a_type_of_ones_own_replaces_none(tmp_path: Path) -> None:
     """Rows for the catalogue stand in place of the built-in ones: the user asked for these."""
     rows = {"Catalogue": [{"type": "Mine", "breadth": 40, "height": 180}]}

@@ -45,6 +45,7 @@ def test_rooms_are_of_types_of_their_use():
 
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
+@pytest.mark.slow
 def test_every_use_lacks_nothing_but_shaking(tmp_path):
     for use, (units, language) in zip(USES, cycle([("si", "it"), ("imperial", "en")])):
         inventory = read_inventory(new(tmp_path, use, units, language), strict=False)
@@ -56,6 +57,7 @@ def test_every_use_lacks_nothing_but_shaking(tmp_path):
 
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
+@pytest.mark.slow
 def test_without_shaking_the_live_columns_tell_the_slenderness(tmp_path):
     path = new(tmp_path, "Hospital", "imperial")
     shown = stored(path)
@@ -69,6 +71,7 @@ def test_without_shaking_the_live_columns_tell_the_slenderness(tmp_path):
 
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
+@pytest.mark.slow
 def test_an_example_of_a_use_can_be_run_and_shows_its_results(tmp_path):
     for use, (units, language) in zip(USES, cycle([("si", "en"), ("imperial", "it")])):
         path = new(tmp_path, use, units, language, example=True)
@@ -82,6 +85,7 @@ def test_an_example_of_a_use_can_be_run_and_shows_its_results(tmp_path):
             assert row == tuple(one if isinstance(one, str) else pytest.approx(one, abs=1e-3) for one in values)
 
 
+@pytest.mark.slow
 def test_the_command_writes_it_and_says_what_to_do(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     message = error(run("new", "ward.xlsx", "--for", "hotel"))

@@ -1,0 +1,57 @@
+"""The worked example as a run gives it by default, verified, and its reports: made once for all workers."""
+
+import fcntl
+import os
+import pickle
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import assess
+from docs import samples
+
+
+@pytest.fixture(scope="session")
+def make_once(tmp_path_factory):
+    """Return what makes a thing in a folder of all workers, where no other worker has made it, and returns it."""
+    base = tmp_path_factory.getbasetemp()
+    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+
+    def make_once(name: str, make: Callable[[Path], Any]) -> Any:
+        folder = shared / name
+        folder.mkdir(exist_ok=True)
+        with (folder / "lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not (folder / "made.pickle").exists():
+                made = pickle.dumps(make(folder))
+                (folder / "made.pickle").write_bytes(made)
+            return pickle.loads((folder / "made.pickle").read_bytes())
+
+    return make_once
+
+
+@pytest.fixture(scope="session")
+def verified_example(make_once, example_inventory):
+    """Return the worked example, run on the day of the samples."""
+
+    def run(folder: Path) -> assess.Results:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setenv("SOURCE_DATE_EPOCH", samples.DAY)
+            return assess.run(example_inventory, series_folder=folder)
+
+    return make_once("verified-example", run)
+
+
+@pytest.fixture(scope="session")
+def samples_now(make_once, verified_example):
+    """Return the files of samples/reports as they are written now, by format. No test changes them."""
+
+    def write(folder: Path) -> dict[str, Path]:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setenv("SOURCE_DATE_EPOCH", samples.DAY)  # set by what writes them, and put back here
+            patch.setattr(assess, "run", lambda _inventory: verified_example)
+            return samples.write_samples(folder)
+
+    return make_once("samples-now", write)
