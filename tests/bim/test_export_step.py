@@ -50,6 +50,7 @@ def test_texts_are_ascii_on_one_line(text, written):
 
 @settings(max_examples=40)
 @given(st.text(st.characters(codec="utf-8"), max_size=40))
+@pytest.mark.slow
 def test_every_text_comes_back(text):
     assert read_back(write_label(text)) == plain_line(text)
 

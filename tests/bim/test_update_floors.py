@@ -229,6 +229,7 @@ def test_without_a_sheet_of_places_these_are_left_out(book: bytes) -> None:
     assert kinds(found) == ["left_out"] * len(PLACES)
 
 
+@pytest.mark.slow
 def test_a_model_of_one_storey_alone_touches_that_storey_alone(book: bytes) -> None:
     model: ImportedBuilding = replace(without(changed(p5={"breadth": 60.0}), 1, 2, 3, 4), floors=FLOORS[1:])
     found = update(book, replace(model, places=PLACES[3:]))

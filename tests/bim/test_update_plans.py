@@ -66,6 +66,7 @@ def test_a_plan_of_people_under_the_name_of_an_import_stays_and_is_listed(tmp_pa
 
 
 @pytest.mark.parametrize("mine", [b"<svg>mine</svg>", OLD["house-Level-1.svg"]])
+@pytest.mark.slow
 def test_a_file_that_floors_do_not_name_keeps_its_name(tmp_path: Path, book: bytes, mine: bytes) -> None:
     """Not even a plan of an import is known to be nobody's then."""
     put(tmp_path, Level_1=mine, Level_3=mine)

@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import pytest
+
 from assess.workbook.patch import patch_workbook
 from assess.workbook.read import read_inventory
 from tests.cli.calling import error, run
@@ -68,6 +70,7 @@ def test_the_workbook_itself_is_never_written(tmp_path):
     assert path.read_bytes() == before
 
 
+@pytest.mark.slow
 def test_an_existing_file_is_replaced_on_demand_only(tmp_path):
     path = habits(tmp_path / "book.xlsx", "30 cm")
     (tmp_path / "out.xlsx").write_text("mine")

@@ -189,6 +189,7 @@ def test_simulated_draws_are_summed_draw_by_draw(task):
     assert part.draws["people_blocked"] == [0] * 20
 
 
+@pytest.mark.slow
 def test_a_route_that_is_not_known_has_no_chance_and_its_people_no_number(tmp_path):
     """A number there would look safer than what is known."""
     places = [

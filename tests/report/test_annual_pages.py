@@ -41,6 +41,7 @@ def test_a_curve_that_does_not_reach_far_enough_is_told_beside_the_number(tmp_pa
     assert (row.at_least, row.low, row.median_g) == (True, None, None)
 
 
+@pytest.mark.slow
 def test_what_is_missing_is_said(tmp_path):
     write_hazard(tmp_path)
     text = write_html(build_results(assessed(tmp_path, ground_pga=None, settings=SETTINGS)), tmp_path)

@@ -49,6 +49,7 @@ def test_a_file_of_the_firms_own_stands_in(assessment, tmp_path):
     assert "Data-quality log" in html
 
 
+@pytest.mark.slow
 def test_a_style_of_the_firms_own_stands_in(assessment, tmp_path):
     assert "h1 { color: teal; }" in render(assessment, own(tmp_path, "style/screen.css", "h1 { color: teal; }"))
 

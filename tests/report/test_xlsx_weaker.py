@@ -250,6 +250,7 @@ def _state(row: dict[str, Any]) -> str:
 
 
 @pytest.mark.parametrize("verify", ["none", "all"])
+@pytest.mark.slow
 def test_a_bracket_of_a_piece_of_unknown_width(tmp_path, verify):
     """What counts as anchored is as run and after Anchored is edited; once a width is typed, it is to be run again."""
     bare = {"floor": "1", "breadth": 30, "height": 200, "bracket_capacity": 50.0}
