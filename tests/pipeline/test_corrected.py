@@ -110,6 +110,7 @@ def test_libreoffice_recalculates_what_rests_on_corrected_cells(tmp_path: Path) 
     assert shown["Items", head.replace("1", "2")] == pytest.approx(0.15), "30 cm by 2 m"
 
 
+@pytest.mark.slow
 def test_a_formula_stays_a_formula(tmp_path: Path) -> None:
     path = example(tmp_path / "book.xlsx", {"Items": {BREADTH: 30}})
     sheet = f"xl/worksheets/sheet{1 + openpyxl.load_workbook(path).sheetnames.index('Items')}.xml"

@@ -93,6 +93,7 @@ def test_turned_phases_meet_the_spectrum_as_others_do():
     np.testing.assert_array_equal(build("d", threads=2).realise(95, 30), generator.realise(95, 30))
 
 
+@pytest.mark.slow
 def test_signs_are_relative_to_the_strongest_motion():
     strongest = max(market().values(), key=lambda one: one.demand.pfa)
     assert strongest.demand.floor.floor == "25"

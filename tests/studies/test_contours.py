@@ -17,6 +17,7 @@ from tests.studies.made_up import make_compared
 OPTIONS = Options(out=Path("unused"))
 
 
+@pytest.mark.slow
 def test_the_channel_of_the_highest_risk_as_recorded_is_drawn():
     """Where the chance grows with PFV, it is the channel with the largest recorded PFV."""
     judged = make_compared(lambda _b, _h, _a, pfv: pfv / 10, OPTIONS)

@@ -148,6 +148,7 @@ def test_bodies_that_cannot_be_read_are_refused(client):
         assert (reply.status, reply.json()["message"]) == (400, "The request cannot be read."), body[:20]
 
 
+@pytest.mark.slow
 def test_strange_requests_are_never_an_error_of_the_server(running, client):
     cookie = client.headers["Cookie"].encode()
     head = b"Host: HOST\r\nCookie: " + cookie + b"\r\nConnection: close\r\n"

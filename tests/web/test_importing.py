@@ -59,6 +59,7 @@ def _list_left(tmp_path):
     return list_named(tmp_path / "tmp", "import-")
 
 
+@pytest.mark.slow
 def test_a_model_becomes_a_workbook_with_its_plans_beside_it(served, tmp_path):
     server = served()
     found = _read(server.client, "duplex.ifc", DUPLEX.read_bytes())
@@ -112,6 +113,7 @@ def test_routes_are_drafted_where_they_are_asked_for(served_here):
     assert client.request("POST", "/api/import?routes=none", b"x").status == 422
 
 
+@pytest.mark.slow
 def test_a_cobie_file_and_a_scan_are_recognised_by_their_content(served, tmp_path):
     server = served()
     path = write_cobie(tmp_path / "handover.xlsx")
@@ -131,6 +133,7 @@ def test_a_cobie_file_and_a_scan_are_recognised_by_their_content(served, tmp_pat
     assert server.client.post("/api/import/open").json()["name"] == "office.xlsx"
 
 
+@pytest.mark.slow
 def test_what_cannot_be_read_is_said_and_not_kept_and_a_second_try_works(served, tmp_path):
     server = served()
     cut = DUPLEX.read_bytes()[: DUPLEX.stat().st_size // 2]
@@ -150,6 +153,7 @@ def test_what_cannot_be_read_is_said_and_not_kept_and_a_second_try_works(served,
 
 
 @linux
+@pytest.mark.slow
 def test_a_reading_can_be_cancelled_and_the_server_answers_meanwhile(served, tmp_path):
     server = served()
     client = server.client
@@ -188,6 +192,7 @@ def test_the_server_ends_while_a_model_is_read(served, tmp_path):
     assert list((tmp_path / "tmp").iterdir()) == []
 
 
+@pytest.mark.slow
 def test_one_model_is_sent_at_a_time_and_a_client_that_goes_away_leaves_nothing(served, tmp_path):
     client = served().client
     with _begin_sending(client, "Content-Length: 100000", b"x" * 1000):
@@ -233,6 +238,7 @@ def test_what_is_too_large_is_refused_however_it_is_sent(served_here, tmp_path):
     assert client.get("/api/import").json() == {"import": None, "opened": None, "most": MOST_MODEL}
 
 
+@pytest.mark.slow
 def test_models_come_from_the_page_alone(served):
     client = served().client
     for headers in ({"Origin": "https://example.org"}, {"X-Assess": None}, {"Sec-Fetch-Site": "cross-site"}):

@@ -159,6 +159,7 @@ def test_what_cannot_be_asked_for_is_refused(running):
     assert wait_for_job(running.client)["settings"] == {"verify": "none"}
 
 
+@pytest.mark.slow
 def test_a_workbook_with_errors_is_not_simulated(served, tmp_path):
     server = served(write(tmp_path / "faulty.xlsx", [*ITEMS, {"item": "B1", "floor": "1", "height": "tall"}]))
     reply = server.client.post("/api/job", {"verify": "none"})
@@ -184,6 +185,7 @@ def test_cancelling_ends_the_process_and_leaves_nothing(served, tmp_path):
 
 
 @linux
+@pytest.mark.slow
 def test_a_process_that_is_killed_is_a_job_that_failed(served, tmp_path):
     server = served(write(tmp_path / "w.xlsx"))
     server.client.post("/api/job", LONG)

@@ -9,6 +9,7 @@ from tests.web.sheet_page import CLASS, opened
 
 
 @pytest.mark.skipif(find_browser() is None, reason="no Chromium or Chrome is installed")
+@pytest.mark.slow
 def test_an_edited_piece_gets_another_class(page, served, tmp_path):
     path = write_office(tmp_path / "office.xlsx")
     before = path.read_bytes()

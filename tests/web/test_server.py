@@ -110,6 +110,7 @@ def test_changes_of_a_held_workbook_that_are_not_downloaded_are_kept_at_the_end(
             kept.unlink()
 
 
+@pytest.mark.slow
 def test_stopping_does_not_wait_for_a_browser_that_is_silent(served):
     server = served()
     line = socket.create_connection((server.client.host, server.client.port))
@@ -119,6 +120,7 @@ def test_stopping_does_not_wait_for_a_browser_that_is_silent(served):
     assert (status, err) == (0, "Stopped.\n")
 
 
+@pytest.mark.slow
 def test_a_port_that_is_taken_is_named(served, tmp_path):
     port = str(served().client.port)
     words = [sys.executable, "-m", "assess", "open", "--no-browser", "--port", port]

@@ -48,6 +48,7 @@ def test_users_have_sessions_of_their_own(served, tmp_path):
     assert list((tmp_path / "tmp").iterdir()) == []
 
 
+@pytest.mark.slow
 def test_neither_a_cookie_nor_a_name_alone_lets_anyone_in(served):
     server = served(None, *OPTIONS)
     ann, _ = _come(server, "ann")

@@ -18,6 +18,7 @@ ASKED = {
 """A type in English: the page may speak another language than the workbook."""
 
 
+@pytest.mark.slow
 def test_a_template_has_classes_at_once(served):
     server = served()
     offers = server.client.get("/api/book")
@@ -46,6 +47,7 @@ def _speak(server, language):
     return f"{server.client.headers['Cookie']}; assess-language={language}"
 
 
+@pytest.mark.slow
 def test_a_new_workbook_replaces_no_file_and_leaves_its_folder_by_no_name(served):
     server = served()
     taken = server.folder / "taken.xlsx"
@@ -88,6 +90,7 @@ def test_every_use_offers_rooms_and_types_and_the_worked_example_has_its_records
     assert server.client.post("/api/start", {"kind": "example", "name": "market-street-2.xlsx"}).status == 200
 
 
+@pytest.mark.slow
 def test_every_text_of_the_page_is_found_where_its_modules_name_it(served):
     """A call of `t` or `tn` with anything but plain literals would stay English in every language."""
     called = sum(

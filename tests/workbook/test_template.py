@@ -165,6 +165,7 @@ def test_a_type_of_ones_own_replaces_none(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("code", LANGUAGES)
+@pytest.mark.slow
 def test_help_and_the_comment_of_the_class_explain_its_words(tmp_path: Path, code: str) -> None:
     with speaking(load_catalogue(code)):
         write_workbook(tmp_path / "book.xlsx")
