@@ -75,7 +75,8 @@ def count_falls(items, floor, building, draws):
 @pytest.mark.parametrize("beta", [0.0, 0.4])
 @pytest.mark.parametrize("floor", FLOORS)
 def test_in_10_000_draws_no_piece_that_cannot_rock_overturns(floor, beta):
-    found, falls = count_falls(*pieces_and_building(floor, beta), DRAWS)
+    items, one, building = pieces_and_building(floor, beta)
+    found, falls = count_falls(items, one, building, DRAWS)
     assert not find_can_rock(found.cases, found.settings).any()
     assert falls == {0}
 
