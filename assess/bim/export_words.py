@@ -68,11 +68,7 @@ def _say_class(run: PastRun, one: ExportPiece, upper: RiskClass, *, is_short: bo
 def say_chance(one: ExportPiece) -> str:
     """Return the chance of overturning with its interval, and what it rests on."""
     chance = one.past.chance
-    text = words.percent(chance.probability)
-    if chance.low is not None and chance.high is not None:
-        interval = _("({low} to {high} %)", low=words.in_percent(chance.low), high=words.in_percent(chance.high))
-        text = f"{text} {interval}"
-    return f"{text}, {_(BASES[one.past.basis])}"
+    return f"{words.say_chance(chance.probability, chance.low, chance.high)}, {_(BASES[one.past.basis])}"
 
 
 def describe(one: ExportPiece) -> str:

@@ -111,14 +111,8 @@ def style_standing(standing: str) -> str:
 
 
 def say_chance(chance: PastChance | None) -> str:
-    """Return a chance with its interval, where there is one: ``3.0 % (1.0 to 8.5 %)``."""
-    if chance is None:
-        return words.DASH
-    shown = words.percent(chance.probability)
-    if chance.low is None or chance.high is None or words.in_percent(chance.low) == words.in_percent(chance.high):
-        return shown
-    interval = _("({low} to {high} %)", low=words.in_percent(chance.low), high=words.in_percent(chance.high))
-    return f"{shown} {interval.replace(' ', words.NO_BREAK)}"
+    """Return a chance with its interval, where there is one."""
+    return words.DASH if chance is None else words.say_chance(chance.probability, chance.low, chance.high)
 
 
 def say_inputs(change: PieceChange) -> list[str]:

@@ -46,18 +46,8 @@ def say_probability(row: Row) -> str:
     """
     if row.get("state") == RouteState.NOT_KNOWN:
         return words.DASH
-    said = _say_chance(row)
+    said = words.say_chance(row["probability"], row["probability_low"], row["probability_high"])
     return _("free-standing: {chance}", chance=said) if row.get("is_held") else said
-
-
-def _say_chance(row: Row) -> str:
-    value, low, high = row["probability"], row["probability_low"], row["probability_high"]
-    if value is None:
-        return words.DASH
-    if low is None or high is None:
-        return words.percent(value)
-    interval = _("({low} to {high} %)", low=words.in_percent(low), high=words.in_percent(high))
-    return f"{words.percent(value)} {interval}"
 
 
 def say_size(row: Row) -> str:

@@ -1,11 +1,9 @@
 """Alike pieces as one line: what a report for a client lists in place of every row."""
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from assess.i18n import gettext as _
 from assess.natural import natural_key
 from assess.report import words
 from assess.report.row_order import find_kind
@@ -15,9 +13,6 @@ MOST_GROUPS = 110
 """Groups that the client's edition has room for."""
 NAMED, LONGEST_NAME = 4, 16
 """Runs of names that a group shows, and characters of a name."""
-LEAST_RUN = 3
-"""Names in a row from which a run is written as the first and the last."""
-_NUMBERED = re.compile(r"(.*?)(\d+)$", re.S)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +39,7 @@ class PieceGroup:
     @property
     def names(self) -> str:
         """Their names with runs joined and the number of rows: ``25-07 to 25-09 (3)``."""
-        runs = join_runs([words.cut(one.item.item, LONGEST_NAME) for one in self.results])
-        text = words.name_first(runs, NAMED)
+        text = words.name_first(words.join_runs([one.item.item for one in self.results], LONGEST_NAME), NAMED)
         return f"{text} ({len(self.results)})" if len(self.results) > 1 else text
 
     @property
@@ -88,26 +82,3 @@ def choose_groups(groups: Sequence[PieceGroup], most: int = MOST_GROUPS) -> list
         worst = sorted(range(len(groups)), key=lambda at: groups[at].urgency, reverse=True)[:most]
         groups = [groups[at] for at in sorted(worst)]
     return [(floor, list(own)) for floor, own in groupby(groups, key=lambda one: one.floor)]
-
-
-def join_runs(names: Sequence[str]) -> list[str]:
-    """Return names with each run of numbers that follow each other as one text, ``25-07 to 25-09``."""
-    runs: list[list[str]] = []
-    for name in names:
-        if runs and _is_next(runs[-1][-1], name):
-            runs[-1].append(name)
-        else:
-            runs.append([name])
-    texts = []
-    for run in runs:
-        is_long = len(run) >= LEAST_RUN
-        texts += [_("{first} to {last}", first=run[0], last=run[-1])] if is_long else run
-    return texts
-
-
-def _is_next(before: str, after: str) -> bool:
-    """Whether two names are the same but for a number at the end, which is one more."""
-    first, second = _NUMBERED.match(before), _NUMBERED.match(after)
-    if first is None or second is None or first[1] != second[1]:
-        return False
-    return int(second[2]) == int(first[2]) + 1

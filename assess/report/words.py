@@ -24,6 +24,9 @@ LONGEST_WORD = 18
 """Letters of a word that a table never breaks."""
 _WORD = re.compile(r"(\s+|(?<=[\w)])-(?=\w))")
 NO_BREAK = "\N{NO-BREAK SPACE}"
+LEAST_RUN = 3
+"""Names in a row from which a run is written as the first and the last."""
+_NUMBERED = re.compile(r"(.*?)([0-9]{1,9})", re.DOTALL)
 
 
 def name_ranges(method: "MethodInfo") -> str:
@@ -71,6 +74,30 @@ def name_first(names: Sequence[str], most: int, mark: str = ", ") -> str:
     """Return the first names with a mark between them, and how many more there are."""
     named, more = mark.join(names[:most]), len(names) - most
     return _("{names} and {more:,} more", names=named, more=more) if more > 0 else named
+
+
+def join_runs(names: Sequence[str], longest: int) -> list[str]:
+    """Return names with each run of three or more whose numbers follow each other as one text, ``25-07 to 25-09``.
+
+    Each name is cut at `longest` characters.
+    """
+    runs: list[list[str]] = []
+    for name in names:
+        if runs and name == _find_next(runs[-1][-1]):
+            runs[-1].append(name)
+        else:
+            runs.append([name])
+    texts = []
+    for run in runs:
+        shown = [cut(one, longest) for one in run]
+        texts += [_("{first} to {last}", first=shown[0], last=shown[-1])] if len(run) >= LEAST_RUN else shown
+    return texts
+
+
+def _find_next(name: str) -> str:
+    """Return the name whose number at the end is one more, with its zeros: A10 after A09; "" where there is none."""
+    found = _NUMBERED.fullmatch(name)
+    return f"{found[1]}{str(int(found[2]) + 1).zfill(len(found[2]))}" if found else ""
 
 
 def in_percent(probability: float) -> str:
@@ -158,8 +185,7 @@ def chance(one: ItemResult) -> str:
     """Return the adopted chance, with its range where it was simulated: ``3.0 % (1.0 to 8.5 %)``."""
     if not one.adopted.can_rock:
         return _("cannot rock")
-    found = find_range(one)
-    return percent(one.adopted.probability) if found is None else _with_interval(one.adopted.probability, *found)
+    return say_chance(one.adopted.probability, *(find_range(one) or ()))
 
 
 def find_range(one: ItemResult) -> tuple[float, float] | None:
@@ -192,7 +218,13 @@ def find_highest(one: ItemResult) -> RiskClass:
     return one.adopted.upper if faster is None else max(one.adopted.upper, faster)
 
 
-def _with_interval(probability: float, low: float, high: float) -> str:
+def say_chance(probability: float | None, low: float | None = None, high: float | None = None) -> str:
+    """Return a chance with its interval, ``3.0 % (1.0 to 8.5 %)``; alone where there is none, or its ends are the same.
+
+    A dash stands for a chance that is not known.
+    """
+    if probability is None or low is None or high is None or in_percent(low) == in_percent(high):
+        return percent(probability)
     interval = _("({low} to {high} %)", low=in_percent(low), high=in_percent(high))
     return f"{percent(probability)} {interval.replace(' ', NO_BREAK)}"
 
@@ -202,7 +234,7 @@ def ideal_chance(one: ItemResult) -> str:
     found = one.governing.simulation
     if found is None or found.ideal is None:
         return DASH
-    return _with_interval(found.ideal.probability, found.ideal.low, found.ideal.high)
+    return say_chance(found.ideal.probability, found.ideal.low, found.ideal.high)
 
 
 def under_record(one: ItemResult) -> str:

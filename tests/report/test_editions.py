@@ -9,7 +9,7 @@ import pytest
 
 import assess
 from assess.report.content import build_content
-from assess.report.groups import PieceGroup, choose_groups, group_rows, join_runs
+from assess.report.groups import PieceGroup, choose_groups, group_rows
 from assess.report.pages import editions
 from assess.report.report_options import ReportOptions
 from tests.pictures import picture
@@ -147,19 +147,6 @@ def test_a_ground_motion_that_is_not_used_says_what_is(tmp_path, floors, buildin
 
 
 # ---------------------------------------------------------------- alike pieces
-
-
-@pytest.mark.parametrize(
-    ("names", "runs"),
-    [
-        (["25-07", "25-08", "25-09"], ["25-07 to 25-09"]),
-        (["A9", "A10", "A11", "B12", "B14"], ["A9 to A11", "B12", "B14"]),
-        (["Safe", "Safe 1"], ["Safe", "Safe 1"]),
-        ([], []),
-    ],
-)
-def test_names_in_a_row_are_joined(names, runs):
-    assert join_runs(names) == runs
 
 
 def test_alike_pieces_are_one_row(results):

@@ -62,8 +62,8 @@ def works(content):
 @pytest.mark.parametrize(
     ("names", "short"),
     [
-        (["25-09", "25-07", "25-08"], "25-07, 25-08 and 25-09"),
-        (["a10", "a9", "a8", "a7"], "a7, a8, a9 and a10"),  # numbers of different length are no run
+        (["25-09", "25-07", "25-08"], "25-07 to 25-09"),
+        (["a10", "a9", "a8", "a7"], "a7 to a10"),
         (["25-07", "25-08", "25-09", "25-10", "25-12"], "25-07 to 25-10 and 25-12"),
         (["a1", "b2", "c3", "d4"], "a1, b2, c3 and d4"),
         (["desk"], "desk"),

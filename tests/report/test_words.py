@@ -31,6 +31,36 @@ def test_a_percentage_never_contradicts_its_class(value, text):
     assert words.percent(value) == text
 
 
+@pytest.mark.parametrize(
+    ("chance", "text"),
+    [
+        ((0.03, 0.01, 0.085), "3.0 % (1.0\xa0to\xa08.5\xa0%)"),
+        ((0.03, None, None), "3.0 %"),
+        ((0.03,), "3.0 %"),
+        ((1.0, 0.99999, 1.0), "100.0 %"),
+        ((None, None, None), "–"),
+    ],
+)
+def test_a_chance_has_its_interval_where_that_says_more(chance, text):
+    assert words.say_chance(*chance) == text
+
+
+@pytest.mark.parametrize(
+    ("names", "runs"),
+    [
+        (["25-07", "25-08", "25-09"], ["25-07 to 25-09"]),
+        (["A9", "A10", "A11", "B12", "B14"], ["A9 to A11", "B12", "B14"]),
+        (["S08", "S9", "S10", "S11"], ["S08", "S9 to S11"]),
+        (["A09", "A10", "A11"], ["A09 to A11"]),
+        (["A1", "A2", "a very long name"], ["A1", "A2", "a very…"]),
+        (["Safe", "Safe 1"], ["Safe", "Safe 1"]),
+        ([], []),
+    ],
+)
+def test_names_in_a_row_are_joined(names, runs):
+    assert words.join_runs(names, 8) == runs
+
+
 def test_that_holds_beside_every_limit():
     for limit in LIMITS:
         for power in range(1, 17):

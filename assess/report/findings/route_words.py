@@ -111,12 +111,8 @@ def is_blocked_standing(one: RouteRow | RoomRow) -> bool:
 
 
 def say_chance(chance: Chance) -> str:
-    """Return a chance with its interval, ``15.5 % (11.1 to 21.2 %)``; one whose ends are the same stands alone."""
-    shown = words.percent(chance.probability)
-    if words.in_percent(chance.low) == words.in_percent(chance.high):
-        return shown
-    interval = _("({low} to {high} %)", low=words.in_percent(chance.low), high=words.in_percent(chance.high))
-    return f"{shown} {interval.replace(' ', words.NO_BREAK)}"
+    """Return a chance with its interval."""
+    return words.say_chance(chance.probability, chance.low, chance.high)
 
 
 def say_blocked(one: SegmentRow | RouteRow) -> str:

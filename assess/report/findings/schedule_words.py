@@ -1,6 +1,5 @@
 """The schedule in words: its entries by urgency and its work by room, the details that it names, before and after."""
 
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
@@ -18,8 +17,6 @@ from assess.schedule_results import Schedule, ScheduleRow, State, WorkRow
 
 NAMED = 2
 """Routes that a reason names; the rest are counted."""
-RUN = 4
-"""Names that follow each other from which only the first and the last are named."""
 MOST_NAMES = 8
 """Names, or rows of them, that a page has room for; the Excel report holds all."""
 HELD = "¹"
@@ -34,22 +31,8 @@ WEIGHT, HEIGHT, METRE = "w", "h", "m"
 
 
 def shorten_names(names: Iterable[str]) -> list[str]:
-    """Return names in natural order; of four or more that follow each other the first and the last: ``a1 to a9``."""
-    ordered = sorted(names, key=natural_key)
-    runs = groupby(enumerate(ordered), key=lambda pair: _find_run(*pair))
-    return [text for _run, own in runs for text in _shorten_run([name for _at, name in own])]
-
-
-def _find_run(at: int, name: str) -> object:
-    """Return what names that follow each other share, by their places in a list."""
-    found = re.fullmatch(r"(.*?)(\d+)", name)
-    return (found[1], len(found[2]), int(found[2]) - at) if found and len(found[2]) < 10 else at
-
-
-def _shorten_run(names: Sequence[str]) -> list[str]:
-    if len(names) < RUN:
-        return [words.cut(one, 20) for one in names]
-    return [_("{low} to {high}", low=words.cut(names[0], 20), high=words.cut(names[-1], 20))]
+    """Return names in natural order, cut, with runs of them joined."""
+    return words.join_runs(sorted(names, key=natural_key), 20)
 
 
 def join_names(parts: Sequence[str]) -> str:
