@@ -18,7 +18,7 @@ example: $(VENV)/.installed
 	$(BIN)/assess run inventories/market-street.xlsx --out out/market-street
 
 test: $(VENV)/.developing
-	$(PYTEST) -m "not ($(SLOW) or long)"
+	$(PYTEST) -m "not ($(SLOW) or long or smoke)"
 
 # Full reports, browsers, LibreOffice, veraPDF, extremes, killed processes.
 test-slow: $(VENV)/.developing

@@ -20,7 +20,7 @@ from tests.other_pythons import find_pythons  # noqa: E402
 
 PAGE = ROOT / "docs" / "tests.md"
 BUILD = ROOT / "build"
-QUICK = "not (slow or browser or libreoffice or verapdf or long)"
+QUICK = "not (slow or browser or libreoffice or verapdf or long or smoke)"
 SEEDS = range(1, 6)
 CLOSING = re.compile(r"(\d+ (?:passed|failed|error|skipped|xfailed).*) in [\d.]+s")
 FUZZED = ("records", "xml", "workbooks", "models", "pictures", "ground")

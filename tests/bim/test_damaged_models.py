@@ -16,7 +16,7 @@ from tests.bim.damaged_models import damage, write_house
 
 MODELS = Path(__file__).parents[2] / "samples" / "models"
 QUICK = {"house": 2, "large": 1}
-FEW, MANY = {"house": 6, "large": 2}, 60
+FEW, MANY = {"house": 3, "large": 1}, 60
 """Damaged models of each that are read by the quick tests, by the slow ones and by the long ones."""
 FOUND = {"house": (142, 143, 184, 315, 333, 344, 379, 496), "large": (1108,)}
 """Seeds that once broke something."""

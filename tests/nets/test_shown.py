@@ -15,6 +15,8 @@ from tests.nets.nets import (
 )
 
 ANEW = "where that is meant, write them anew: python -m tests.nets.nets"
+ANNEXES = ("everything", "doubted")
+"""Of these annexes are held in the slow tests; of the others in the long ones."""
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
 
@@ -35,11 +37,19 @@ def test_outputs_say_what_they_said(name, tmp_path):
     assert {find_shown(name, kind).name for kind in found} == kept
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", PRINTED)
-def test_pdfs_say_what_they_said(name, tmp_path):
-    found = show(name, read_stored(name, tmp_path), tmp_path / "out", PDFS)
-    assert {kind: difference for kind in PDFS if (difference := list(compare(name, kind, found[kind])))} == {}, ANEW
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        pytest.param(
+            name, kind, marks=pytest.mark.long if kind == "annex" and name not in ANNEXES else pytest.mark.slow
+        )
+        for name in PRINTED
+        for kind in PDFS
+    ],
+)
+def test_pdfs_say_what_they_said(name, kind, tmp_path):
+    found = show(name, read_stored(name, tmp_path), tmp_path / "out", (kind,))
+    assert list(compare(name, kind, found[kind])) == [], ANEW
 
 
 def test_a_number_a_sentence_and_a_column_that_change_are_named(tmp_path):
