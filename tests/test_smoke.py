@@ -1,7 +1,7 @@
 """What shows that the product works on another Python: each command starts, and one workbook goes through every format.
 
-`make test-smoke` runs these with `tests/validation` and `tests/rocking`: the gate, on each other Python. On its own Python
-the gate runs all that they look at.
+`make test-smoke` runs these with `tests/validation` and `tests/rocking`: the gate, on each other Python; on its own it
+runs all that they look at.
 """
 
 import csv
