@@ -119,9 +119,9 @@ def say_inputs(change: PieceChange) -> list[str]:
     """Return what differs in the inputs of a piece: ``Height: 180 → 200 cm``."""
     texts = []
     for name, (before, after) in change.inputs.items():
-        label, unit = INPUTS[name]
+        field = INPUTS[name]
         values = _("{before} → {after}", before=say_value(before), after=say_value(after))
-        texts.append(_("{label}: {value}", label=_(label), value=f"{values} {unit}".rstrip()))
+        texts.append(_("{label}: {value}", label=_(field.label), value=f"{values} {field.unit}".rstrip()))
     return texts
 
 

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from assess.i18n import Text, fill
+from assess.fields import Field, arrange_item_fields
 from assess.results import CANNOT_ROCK
 from assess.risk import RiskClass
 from assess.route_results import RouteState
+from assess.workbook.schema import ITEMS
 
 CLASSES = tuple(risk.word for risk in reversed(RiskClass))
 """The words of the classes, the highest first."""
@@ -17,27 +18,16 @@ UNCONFIRMED, BY_FORMULA, ANCHORED = "unconfirmed", "by formula", "anchored"
 APART = (UNCONFIRMED, BY_FORMULA, ANCHORED)
 """What stands outside the classes of a run."""
 NOT_KNOWN = str(RouteState.NOT_KNOWN)
-INPUTS: Mapping[str, tuple[Text, str]] = {
-    "floor": (fill("Floor"), ""),
-    "room": (fill("Room"), ""),
-    "type": (fill("Type"), ""),
-    "quantity": (fill("Pieces"), ""),
-    "breadth_cm": (fill("Breadth"), "cm"),
-    "width_cm": (fill("Width"), "cm"),
-    "height_cm": (fill("Height"), "cm"),
-    "sizes_from": (fill("Sizes from"), ""),
-    "centre_of_gravity": (fill("Centre of gravity"), ""),
-    "weight_kg": (fill("Weight"), "kg"),
-    "friction": (fill("Friction"), ""),
-    "anchored": (fill("Anchored"), ""),
-    "bracket_height_cm": (fill("Bracket height"), "cm"),
-    "bracket_capacity_kn": (fill("Bracket capacity"), "kN"),
-    "against_wall": (fill("Against wall"), ""),
-    "axis": (fill("Axis"), ""),
-    "pfa_g": (fill("PFA"), "g"),
-    "pfv_cm_s": (fill("PFV"), "cm/s"),
-}
-"""Inputs of a piece, whose change explains that of its chance, by field: label and unit."""
+_EVERY = {one.key: one for one in arrange_item_fields((), ITEMS.name)}
+INPUTS: Mapping[str, Field] = {
+    key: _EVERY[key]
+    for key in (
+        "floor", "room", "type", "quantity", "breadth_cm", "width_cm", "height_cm", "sizes_from", "centre_of_gravity",
+        "weight_kg", "friction", "anchored", "bracket_height_cm", "bracket_capacity_kn", "against_wall", "axis",
+        "pfa_g", "pfv_cm_s",
+    )
+}  # fmt: skip
+"""Inputs of a piece, whose change explains that of its chance."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,6 +14,7 @@ from typing import Any, Never, TypeVar
 from assess.compare import past_run as past
 from assess.delivery.deliver import explain_unfinished, is_unfinished
 from assess.errors import InputError
+from assess.fields import unnest
 from assess.i18n import Text, fill
 from assess.input_file import read_input
 from assess.model import MEASURED
@@ -406,14 +407,13 @@ class Reader:
 
 
 def _read_inputs(row: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the inputs of a piece; of its bracket, which stands apart, no height where that is assumed."""
+    """Return the inputs of a piece; no height of its bracket where that is assumed."""
+    found = unnest(row, past.INPUTS.values())
     anchor = row.get("anchor")
-    bracket = anchor if isinstance(anchor, dict) else {}
-    found = {**row, **{name: bracket.get(name) for name in ("bracket_height_cm", "bracket_capacity_kn")}}
-    if bracket.get("is_height_assumed") is True:
+    if isinstance(anchor, dict) and anchor.get("is_height_assumed") is True:
         found["bracket_height_cm"] = None
-    found["sizes_from"] = found.get("sizes_from") or MEASURED  # results before 5.2 do not tell it
-    return {name: _plain(found.get(name)) for name in past.INPUTS}
+    found["sizes_from"] = found["sizes_from"] or MEASURED  # results before 5.2 do not tell it
+    return {name: _plain(value) for name, value in found.items()}
 
 
 def _plain(value: Any) -> Any:

@@ -8,6 +8,7 @@ from assess.errors import Gap, Problem
 from assess.i18n import gettext
 from assess.workbook.habits import list_groups
 from assess.workbook.names import find_sheet
+from assess.workbook.plain_rows import column_number
 from assess.workbook.schema import SHEETS
 
 _RANGE = re.compile(r"([A-Z]{1,3})(\d+)(?::([A-Z]{1,3})(\d+))?")
@@ -53,17 +54,9 @@ def list_cells(sheet: str, address: str) -> list[Cell]:
     if found is None:
         return []
     first, top, last, bottom = found.groups()
-    columns = range(find_column(first), find_column(last or first) + 1)
+    columns = range(column_number(first) - 1, column_number(last or first))
     rows = range(int(top), int(bottom or top) + 1)
     if sheet in _FORMS:
         return list(dict.fromkeys((row, 1) for row in rows[:MOST_OF_RANGE]))
     every = ((row, at) for row in rows for at in columns)
     return [cell for _, cell in zip(range(MOST_OF_RANGE), every, strict=False)]
-
-
-def find_column(letters: str) -> int:
-    """Return the place of a column, from 0, by its letters."""
-    number = 0
-    for letter in letters:
-        number = 26 * number + ord(letter) - ord("A") + 1
-    return number - 1
