@@ -174,7 +174,7 @@ def test_the_example_is_a_city_whose_buildings_are_all_assessed(tmp_path, monkey
 
 @pytest.mark.skipif(os.name == "nt", reason="no signals to send")
 @pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [pytest.param(signal.SIGINT, marks=pytest.mark.long), signal.SIGTERM])
 def test_a_signal_ends_the_command_and_keeps_what_is_done(tmp_path, number):
     city = _write(tmp_path, 120)
     words = f"assess portfolio {city} --verify none --out {tmp_path / 'out'} --formats parquet".split()

@@ -311,6 +311,7 @@ def test_a_worker_that_sees_another_folder_or_not_the_workbooks_is_refused(site,
     assert "gone.xlsx. Put it in a folder that all machines share." in text
 
 
+@pytest.mark.long
 def test_a_worker_that_joins_later_is_asked_as_well(site, tmp_path):
     (source,) = find_sources(write_city(tmp_path / "city", [40.0]))
     task = Task(source=source, settings=replace(FORMULAS, city=True), ground=StagedGround(tmp_path), out=tmp_path)

@@ -4,6 +4,7 @@ They are the program's numbers to 1e-9, or a word in place of a class.
 """
 
 import csv
+from collections.abc import Iterable
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -38,6 +39,11 @@ def furnish(floors: Rows, sizes: Rows = SIZES) -> Rows:
 
 
 UNITS: tuple[Units, ...] = ("si", "imperial")
+
+
+def with_others_long(choices: Iterable[str]) -> list[Any]:
+    """Return choices, every other one for the long tests."""
+    return [pytest.param(one, marks=pytest.mark.long) if at % 2 else one for at, one in enumerate(choices)]
 
 
 def slender(path: Path, floors: Rows, **building: Any) -> Path:
@@ -103,7 +109,7 @@ def test_floors_on_the_ground_equal_the_program(tmp_path: Path, at: int) -> None
     check(fill(tmp_path / "book.xlsx", furnish(FLOORS), FLOORS, building, units))
 
 
-@pytest.mark.parametrize("structure", STRUCTURES)
+@pytest.mark.parametrize("structure", with_others_long(STRUCTURES))
 @pytest.mark.parametrize("known", [{"period": 0.45}, {}], ids=["T1", "unknown building"])
 def test_every_structure_equals_the_program(tmp_path: Path, structure: str, known: dict[str, Any]) -> None:
     floors = FLOORS if known else [UNPLACED]
@@ -111,7 +117,7 @@ def test_every_structure_equals_the_program(tmp_path: Path, structure: str, know
     check(fill(tmp_path / "book.xlsx", furnish(floors), floors, building))
 
 
-@pytest.mark.parametrize("choice", SHAKINGS)
+@pytest.mark.parametrize("choice", with_others_long(SHAKINGS))
 def test_every_intensity_equals_the_program(tmp_path: Path, choice: str) -> None:
     floors = [FLOORS[1], FLOORS[4]]
     path = fill(tmp_path / "book.xlsx", furnish(floors), floors, {"shaking": choice, "period": 4.0})
