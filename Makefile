@@ -21,8 +21,9 @@ test: $(VENV)/.developing
 	$(PYTEST) -m "not ($(SLOW) or long or smoke)"
 
 # Full reports, browsers, LibreOffice, veraPDF, extremes, killed processes.
+# They wait for browsers and other processes a fifth of the time: a worker more than there are cores.
 test-slow: $(VENV)/.developing
-	$(PYTEST) -m "($(SLOW)) and not long"
+	$(PYTEST) -n $$($(BIN)/python -c "import os; print(min(8, os.cpu_count()) + 1)") -m "($(SLOW)) and not long"
 
 # Each command, one workbook through each format, the physics: whether another Python will do (VENV, PYTHON).
 test-smoke: $(VENV)/.developing
