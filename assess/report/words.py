@@ -79,7 +79,7 @@ def name_first(names: Sequence[str], most: int, mark: str = ", ") -> str:
 def join_runs(names: Sequence[str], longest: int) -> list[str]:
     """Return names with each run of three or more whose numbers follow each other as one text, ``25-07 to 25-09``.
 
-    Each name is cut at `longest` characters.
+    Each name is cut at `longest` characters; a run whose ends are the same then is not joined.
     """
     runs: list[list[str]] = []
     for name in names:
@@ -90,7 +90,8 @@ def join_runs(names: Sequence[str], longest: int) -> list[str]:
     texts = []
     for run in runs:
         shown = [cut(one, longest) for one in run]
-        texts += [_("{first} to {last}", first=shown[0], last=shown[-1])] if len(run) >= LEAST_RUN else shown
+        is_joined = len(run) >= LEAST_RUN and shown[0] != shown[-1]
+        texts += [_("{first} to {last}", first=shown[0], last=shown[-1])] if is_joined else shown
     return texts
 
 

@@ -53,6 +53,7 @@ def test_a_chance_has_its_interval_where_that_says_more(chance, text):
         (["S08", "S9", "S10", "S11"], ["S08", "S9 to S11"]),
         (["A09", "A10", "A11"], ["A09 to A11"]),
         (["A1", "A2", "a very long name"], ["A1", "A2", "a very…"]),
+        (["Bookcase 1", "Bookcase 2", "Bookcase 3"], ["Bookcas…"] * 3),
         (["Safe", "Safe 1"], ["Safe", "Safe 1"]),
         ([], []),
     ],
