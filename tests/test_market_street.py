@@ -179,7 +179,7 @@ def test_a_floor_that_lost_its_record_is_interpolated(tmp_path, script):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("class_by", "most"), [(None, 12), ("proposed OR", 60)])
+@pytest.mark.parametrize(("class_by", "most"), [pytest.param(None, 12, marks=pytest.mark.long), ("proposed OR", 60)])
 def test_verified_under_its_records_classes_are_lowered_and_say_so(tmp_path, example_inventory, class_by, most):
     """With 20 motions: weak long shaking, which overturns less than FEMA P-58 says, and far less than OR does."""
     results = run(example_inventory, replace(UNVERIFIED, class_by=class_by))

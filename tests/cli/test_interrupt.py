@@ -160,7 +160,9 @@ def test_a_signal_during_any_import_or_file_operation_leaves_nothing_behind(tmp_
 
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="no signals to send")
-@pytest.mark.parametrize(("number", "first"), [(signal.SIGINT, 0.0), (signal.SIGTERM, 0.2)])
+@pytest.mark.parametrize(
+    ("number", "first"), [pytest.param(signal.SIGINT, 0.0, marks=pytest.mark.long), (signal.SIGTERM, 0.2)]
+)
 def test_a_signal_at_any_time_leaves_nothing_behind(tmp_path, number, first):
     """Sent from outside, to all of the command: its threads, the process that lays the PDF out.
 

@@ -17,7 +17,7 @@ from typing import Any
 import pytest
 
 import assess
-from assess.report.figures import math_figures, motion_figures, risk_contours
+from assess.report.figures import motion_figures, risk_contours
 from assess.report.figures.math_figures import MathFigure
 from assess.report.pages import html
 from assess.report.word import drawings
@@ -28,6 +28,7 @@ from tests.nets.lines import PDFS, QUICK, render
 from tests.nets.make import CITY, MADE, ROOT, make_workbooks
 from tests.nets.stored import read_results, write_results
 from tests.pictures import picture
+from tests.report.reading import leave_room
 
 HERE = Path(__file__).parent
 OWN = HERE / "workbooks"
@@ -86,7 +87,7 @@ def show(name: str, results: Results, folder: Path, formats: Collection[str] = Q
         patch.setenv("SOURCE_DATE_EPOCH", DATE)
         for module in (motion_figures, risk_contours):
             patch.setattr(module, "draw", lambda *_, **__: b"")
-        patch.setattr(html, "draw_math", _leave_room if set(formats) & set(PDFS) else lambda _: NO_ROOM)
+        patch.setattr(html, "draw_math", leave_room if set(formats) & set(PDFS) else lambda _: NO_ROOM)
         patch.setattr(drawings, "draw_all", lambda given, *_: [Picture(EMPTY, one.width, "") for one in given])
         found = render(results, folder, formats)
     if "json" in found:
@@ -94,11 +95,6 @@ def show(name: str, results: Results, folder: Path, formats: Collection[str] = Q
     if "csv" in found:
         found["csv"] = found["csv"][: MOST_ROWS + 1]
     return found
-
-
-def _leave_room(tex: str) -> MathFigure:
-    """Return an equation without its letters, whose drawing takes half the time of a PDF."""
-    return replace(math_figures.draw_math(tex), letters={}, placed="")
 
 
 def _is_far(line: str) -> bool:

@@ -15,8 +15,10 @@ from tests.nets.nets import (
 )
 
 ANEW = "where that is meant, write them anew: python -m tests.nets.nets"
-ANNEXES = ("everything", "doubted")
-"""Of these annexes are held in the slow tests; of the others in the long ones."""
+IN_SLOW = {
+    ("everything", "pdf"), ("everything", "annex"), ("everything-it", "pdf"), ("doubted", "pdf"), ("city-1", "pdf"),
+}  # fmt: skip
+"""The PDFs that are held in the slow tests; the others in the long ones."""
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
 
@@ -40,9 +42,7 @@ def test_outputs_say_what_they_said(name, tmp_path):
 @pytest.mark.parametrize(
     ("name", "kind"),
     [
-        pytest.param(
-            name, kind, marks=pytest.mark.long if kind == "annex" and name not in ANNEXES else pytest.mark.slow
-        )
+        pytest.param(name, kind, marks=pytest.mark.slow if (name, kind) in IN_SLOW else pytest.mark.long)
         for name in PRINTED
         for kind in PDFS
     ],

@@ -13,6 +13,7 @@ from docs.screenshot import HEIGHT, WIDTH, find_browser
 from tests.waiting import PATIENCE
 from tests.workbooks import FLOORS, UNVERIFIED, write_sheets
 
+DRAWS_EQUATIONS = True
 pytestmark = [
     pytest.mark.browser,
     pytest.mark.slow,

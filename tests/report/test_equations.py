@@ -17,6 +17,7 @@ NAMED = {
     "mu": "μ", "pi": "π", "Phi": "Φ", "pm": "±", "leq": "≤", "geq": "≥", "sqrt": "√", "ast": "*",
 }  # fmt: skip
 LAYOUT = re.compile(r"\\(dfrac|frac|mathrm|left|right|cdot)(?![a-zA-Z])|\\[,;]")
+DRAWS_EQUATIONS = True
 LINES = [text for method in all_methods() for text in method.equations] + [one.equation for one in PROFILES.values()]
 
 

@@ -120,7 +120,7 @@ def books(request, tmp_path_factory):
     return make
 
 
-@pytest.fixture(params=["by_formula", "partly", pytest.param("example", marks=pytest.mark.slow)])
+@pytest.fixture(params=["by_formula", "partly", pytest.param("example", marks=pytest.mark.long)])
 def book(request, books):
     return books(request.param)
 
@@ -330,8 +330,8 @@ def test_of_several_motions_the_strongest_that_can_start_the_piece_governs(sever
 @pytest.mark.parametrize(
     ("as_run", "weaker"),
     [
-        (("simulated", "example"), ("by_formula", "partly")),
-        pytest.param(("by_paper", "partly", "simulated_by_paper"), ("example",), marks=pytest.mark.long),
+        (("simulated",), ("by_formula", "partly")),
+        pytest.param(("by_paper", "partly", "simulated_by_paper", "example"), ("example",), marks=pytest.mark.long),
     ],
 )
 def test_libreoffice_computes_what_the_other_engine_does(as_run, weaker, books, several_motions, tmp_path):

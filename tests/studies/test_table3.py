@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from assess.methods import Cases, all_methods
@@ -81,6 +81,7 @@ def test_or_reaches_one_half_where_equation_9_does():
 
 
 @given(st.floats(0.1, 1.0))
+@settings(max_examples=20)
 @pytest.mark.slow
 def test_a_median_is_where_the_chance_is_one_half(ratio):
     for name, chance in build_chances(OPTIONS).items():
