@@ -8,8 +8,8 @@ from tests.nets.make import make_workbooks
 from tests.nets.nets import BY_FORMULA, NAMES, assess_workbook, read_stored
 
 CHANCE = 0.02
-LONGEST = ("market-street", "everything-it")
-"""Half of the time: in the slow tests."""
+LONGEST = {"market-street": pytest.mark.slow, "everything": pytest.mark.slow, "everything-it": pytest.mark.long}
+"""Half of the time."""
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
 
@@ -20,9 +20,7 @@ def made(tmp_path_factory):
     return folder
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[pytest.mark.slow] if name in LONGEST else []) for name in NAMES]
-)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=LONGEST.get(name, ())) for name in NAMES])
 def test_what_is_computed_is_what_it_was(name, made, tmp_path):
     """Formulas are equal, chances that are simulated within 0.02; texts are not compared."""
     now, then = assess_workbook(name, made), read_stored(name, tmp_path)

@@ -4,6 +4,8 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 Point = tuple[float, float]
 Bounds = tuple[float, float, float, float]
 """Left, low, right and high end."""
@@ -66,11 +68,13 @@ def place_each(
     for text, piece in named:
         size = (1.1 * text_width(text) * unit, LINE * unit)  # bold
         tried = [box for box in _around(piece, size, unit) if _is_inside(box, frame)]
-        tried = [box for box in tried if not any(overlap(box, other) for other in held)]
+        tried = [box for box, area in zip(tried, _covered(tried, held), strict=True) if not area]
         if not tried:
             placed.append(None)
             continue
-        best = min(tried, key=lambda box: (_hidden(box, taken, size), round(_away(box, piece) / unit)))
+        hidden = [math.floor(10 * area / (size[0] * size[1])) for area in _covered(tried, taken)]
+        away = [round(_away(box, piece) / unit) for box in tried]
+        best = min(zip(hidden, away, tried, strict=True), key=lambda one: one[:2])[2]  # a tenth more hides no more
         held.append(best)
         placed.append(Label(text, best, _lead(best, piece) if _away(best, piece) > _FAR * unit else None))
     return placed
@@ -92,9 +96,12 @@ def _around(piece: Bounds, size: Point, unit: float) -> Iterator[Bounds]:
                     yield x0, y0, x0 + wide, y0 + tall
 
 
-def _hidden(box: Bounds, taken: Sequence[Bounds], size: Point) -> float:
-    """Return how much is covered, in tenths of the label: less makes no difference."""
-    return math.floor(10 * sum(overlap(box, other) for other in taken) / (size[0] * size[1]))
+def _covered(boxes: Sequence[Bounds], others: Sequence[Bounds]) -> list[float]:
+    """Return the area [m2] of each box that others share, counted once for each of them."""
+    one, other = np.reshape(boxes, (-1, 1, 4)), np.reshape(others, (1, -1, 4))
+    sides = np.minimum(one[..., 2:], other[..., 2:]) - np.maximum(one[..., :2], other[..., :2])
+    areas: list[float] = np.maximum(sides, 0).prod(axis=2).sum(axis=1).tolist()
+    return areas
 
 
 def _away(box: Bounds, piece: Bounds) -> float:

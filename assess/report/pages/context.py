@@ -12,7 +12,7 @@ from assess.report.content import Content
 from assess.report.counts import build_bars
 from assess.report.embedded import Photos, data_uri, embed_logo
 from assess.report.figures.motion_figures import choose_traced, draw_motion, draw_traced, get_acceleration
-from assess.report.figures.plan import build_plan
+from assess.report.figures.plan import Plan, build_plan
 from assess.report.figures.risk_contours import Contours, build_contours, draw_contours
 from assess.report.figures.ways import build_stretches
 from assess.report.findings import (
@@ -179,9 +179,12 @@ def _of_client(content: Content) -> dict[str, Any]:
 def _of_floors(content: Content, progress: Progress | None) -> dict[str, Any]:
     """Return the plans of the floors, none without `progress`: of an edition that has no floors."""
     stretches = build_stretches(content.run.route_tables)
-    plans = {}
+    plans: dict[str, Plan | None] = {}
     for page in progress.checked(content.shown_floors) if progress else ():
-        plans[page.floor.floor] = build_plan(page, content.run, stretches.get(page.floor.floor, ()))
+        name = f"plan {page.floor.floor}"
+        if name not in content.drawn:  # HTML, PDF and Word show the same
+            content.drawn[name] = build_plan(page, content.run, stretches.get(page.floor.floor, ()))
+        plans[page.floor.floor] = content.drawn[name]
     return {"plans": plans, "source": motions.describe_source, "origin": motions.describe_origin}
 
 
