@@ -22,7 +22,7 @@ NAMES = {"pdf": "market-street.pdf", "annex": "market-street-annex.pdf", "html":
 
 
 def write_samples(folder: Path) -> dict[str, Path]:
-    """Write the reports of the example into a folder, as `assess run` does by default; return them by format."""
+    """Write the reports of the example into a folder, and return them by format."""
     os.environ["SOURCE_DATE_EPOCH"] = DAY
     with tempfile.TemporaryDirectory() as box:
         written = assess.write_reports(assess.run(assess.read_inventory(WORKBOOK)), box, tuple(NAMES))

@@ -14,8 +14,8 @@ from assess.i18n import gettext, load_catalogue, speaking
 from assess.motion.formats import _text, plain_csv, read_records
 from assess.pipeline.series import write_series
 from assess.progress import SILENT, Progress, Report, check_waits
-from assess.report import FORMATS
 from assess.report.figures.draw import draw
+from assess.report_formats import DEFAULT
 from assess.workbook.writer import write_book
 from tests.waiting import PATIENCE
 from tests.workbooks import UNVERIFIED, write
@@ -179,7 +179,7 @@ def test_a_file_of_series_is_not_left_half_written(tmp_path):
 def test_no_format_leaves_a_file(tmp_path, monkeypatch):
     """Cancelled at an early look of each format, whatever it is at."""
     results, out = assess.run(write(tmp_path / "w.xlsx"), UNVERIFIED), tmp_path / "out"
-    for name in (*FORMATS, "npz"):
+    for name in (*DEFAULT, "annex", "npz"):
         for number in (2, 4):
             cancel, looks = Event(), list[int]()
             progress = Progress(cancel=cancel)

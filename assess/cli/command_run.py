@@ -26,6 +26,7 @@ from assess.cli.options import (
 from assess.errors import InputError
 from assess.i18n import LANGUAGES
 from assess.progress import Progress
+from assess.report_formats import ALL, DEFAULT, FILES
 from assess.settings import ROUTE_RISK, VERIFY, Settings, change_settings
 
 if TYPE_CHECKING:
@@ -52,8 +53,6 @@ EXAMPLES = (
     "assess run building.xlsx --ground-motions oq-export --out scenarios",
 )
 
-FORMATS = ("pdf", "annex", "xlsx", "html", "json", "csv", "docx", "npz", "parquet")
-"""Those of `assess.report`, which takes long to import; the last three are written only where they are named."""
 MOST_METHODS = 4
 """Fitted models that a report shows next to the published methods: a column each."""
 PLAIN = frozenset(("json", "csv", "xlsx"))
@@ -127,11 +126,11 @@ def command(
     formats: Annotated[
         str,
         typer.Option(
-            help="Files to write, separated by commas: pdf is the report for the client, annex its details; also docx, "
-            "the report for the client in Word, npz, the result of every motion, and parquet, the items typed.",
-            autocompletion=list_of(FORMATS),
+            help="Files to write, separated by commas: pdf is the report for the client; also annex, its details, docx, "
+            "the report in Word, npz, the result of every motion, parquet, the items typed; or all.",
+            autocompletion=list_of((*FILES, ALL)),
         ),
-    ] = ",".join(FORMATS[:-3]),
+    ] = ",".join(DEFAULT),
     jobs: Jobs = None,
     language: Annotated[
         str | None,
@@ -225,10 +224,11 @@ def _write(
 
 
 def _read_formats(formats: str, verify: str, open_report: bool) -> list[str]:
-    from assess.report import FILES
+    from assess.report import list_formats
 
-    wanted = read_formats(formats, FILES)
-    if "npz" in wanted and verify == "none":
+    named = read_formats(formats, (*FILES, ALL))
+    wanted = [one for one in list_formats(named) if one != "npz" or verify != "none" or "npz" in named]
+    if "npz" in named and verify == "none":
         raise InputError("--formats: npz holds results of the simulation: leave out npz or --verify none.")
     if open_report and not set(wanted) & set(OPENED):
         raise InputError(f"--open opens a report: write one of {', '.join(OPENED)} with --formats.")

@@ -6,7 +6,7 @@ were. A run replaces and removes only what results.json lists (`assess.report.ow
 """
 
 import os
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -20,6 +20,7 @@ from assess.i18n import fill
 from assess.progress import SILENT, Progress
 from assess.report.ownership import find_reports
 from assess.report.report_options import ReportOptions
+from assess.report_formats import ALL, DEFAULT, FILES
 from assess.results import Results
 
 if TYPE_CHECKING:
@@ -58,30 +59,15 @@ class Job:
         return path
 
 
-FILES: Mapping[str, str] = {
-    "pdf": "report.pdf",
-    "annex": "annex.pdf",
-    "xlsx": "report.xlsx",
-    "html": "report.html",
-    "json": "results.json",
-    "csv": "items.csv",
-    "docx": "report.docx",
-    "npz": "outcomes.npz",
-    "parquet": "items.parquet",
-}
-"""The formats, and the file that each is written to."""
 _PDFS = ("pdf", "annex")
 _LAST = ("json", *_PDFS)
 """What is written last: results.json, which lists the files before it, and the PDFs, which carry it."""
-FORMATS = tuple(name for name in FILES if name not in ("docx", "npz", "parquet"))
-"""The formats that are written where none are asked for: not the Word edition and Parquet, which need more packages,
-nor the outcomes of every motion, which are for other programs."""
 
 
 def write_reports(
     results: Results,
     folder: str | Path,
-    formats: str | Sequence[str] = FORMATS,
+    formats: str | Sequence[str] = DEFAULT,
     options: ReportOptions | None = None,
     *,
     progress: Progress = SILENT,
@@ -96,8 +82,8 @@ def write_reports(
         Where to; made where it is missing. Reports of an earlier run in it are replaced or removed, whatever their
         format; other files are left alone.
     formats : str or sequence of str
-        Of "pdf", "annex", "xlsx", "html", "json", "csv", "docx", "npz", "parquet"; all but the last three by default.
-        results.json is always written.
+        Of "pdf", "annex", "xlsx", "html", "json", "csv", "docx", "npz", "parquet"; by default all but "annex" and the
+        last three; or "all". results.json is always written.
     options : ReportOptions, optional
         Language, templates and kind of PDF; by default in the workbook's language, with the standard templates.
     progress : Progress, optional
@@ -120,7 +106,7 @@ def write_reports(
     CancelledError
         If the work was cancelled; nothing was written.
     """
-    formats = (formats,) if isinstance(formats, str) else formats
+    formats = list_formats((formats,) if isinstance(formats, str) else formats)
     unknown = [name for name in formats if name not in FILES]
     if unknown:
         known = ", ".join(FILES)
@@ -141,6 +127,15 @@ def write_reports(
         raise missing
     files = {name: folder / file for name, file in FILES.items() if file in job.written}
     return Written(files, removed=[folder / name for name in gone])
+
+
+def list_formats(formats: Sequence[str]) -> Sequence[str]:
+    """Return the formats that are named, of "all" every one whose packages are installed."""
+    from assess.report.parquet_file import has_parquet
+    from assess.report.word import has_word
+
+    left_out = {"docx": not has_word(), "parquet": not has_parquet()} if ALL in formats else {}
+    return [name for name in FILES if not left_out.get(name)] if ALL in formats else formats
 
 
 def _find_old(folder: Path, wanted: Collection[str]) -> frozenset[str]:

@@ -39,7 +39,7 @@ class PieceGroup:
     @property
     def names(self) -> str:
         """Their names with runs joined and the number of rows: ``25-07 to 25-09 (3)``."""
-        text = words.name_first(words.join_runs([one.item.item for one in self.results], LONGEST_NAME), NAMED)
+        text = words.name_pieces([one.item.item for one in self.results], NAMED, LONGEST_NAME)
         return f"{text} ({len(self.results)})" if len(self.results) > 1 else text
 
     @property

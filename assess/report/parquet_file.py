@@ -19,6 +19,11 @@ _SQL_TYPES: dict[Kind, str] = {"number": "DOUBLE", "share": "DOUBLE", "count": "
 """Of the columns by what a field holds; all others are VARCHAR, lists joined by "; " as in items.csv."""
 
 
+def has_parquet() -> bool:
+    """Tell whether the package that writes it is there."""
+    return importlib.util.find_spec("duckdb") is not None
+
+
 def check_parquet() -> None:
     """Check that the package that writes it is there.
 
@@ -27,7 +32,7 @@ def check_parquet() -> None:
     InputError
         If it is missing: it says what to install.
     """
-    if importlib.util.find_spec("duckdb") is None:
+    if not has_parquet():
         raise InputError(
             fill("the format parquet needs duckdb, which is not installed. {how}", how=say_install("parquet"))
         )

@@ -76,23 +76,36 @@ def name_first(names: Sequence[str], most: int, mark: str = ", ") -> str:
     return _("{names} and {more:,} more", names=named, more=more) if more > 0 else named
 
 
-def join_runs(names: Sequence[str], longest: int) -> list[str]:
-    """Return names with each run of three or more whose numbers follow each other as one text, ``25-07 to 25-09``.
+def find_runs(names: Sequence[str], longest: int) -> list[list[int]]:
+    """Return the places of names, those of three or more whose numbers follow each other as one run.
 
-    Each name is cut at `longest` characters; a run whose ends are the same then is not joined.
+    A run whose ends are the same once they are cut at `longest` characters is none.
     """
-    runs: list[list[str]] = []
-    for name in names:
-        if runs and name == _find_next(runs[-1][-1]):
-            runs[-1].append(name)
+    runs: list[list[int]] = []
+    for at, name in enumerate(names):
+        if runs and name == _find_next(names[runs[-1][-1]]):
+            runs[-1].append(at)
         else:
-            runs.append([name])
-    texts = []
+            runs.append([at])
+    found: list[list[int]] = []
     for run in runs:
-        shown = [cut(one, longest) for one in run]
-        is_joined = len(run) >= LEAST_RUN and shown[0] != shown[-1]
-        texts += [_("{first} to {last}", first=shown[0], last=shown[-1])] if is_joined else shown
-    return texts
+        is_run = len(run) >= LEAST_RUN and cut(names[run[0]], longest) != cut(names[run[-1]], longest)
+        found += [run] if is_run else [[at] for at in run]
+    return found
+
+
+def join_runs(names: Sequence[str], longest: int) -> list[str]:
+    """Return names, each cut at `longest` characters, with each run of them as one text, ``25-07 to 25-09``."""
+    shown = [cut(one, longest) for one in names]
+    return [
+        _("{first} to {last}", first=shown[run[0]], last=shown[run[-1]]) if len(run) > 1 else shown[run[0]]
+        for run in find_runs(names, longest)
+    ]
+
+
+def name_pieces(names: Sequence[str], most: int, longest: int = 20) -> str:
+    """Return the first names of pieces, runs of them joined, and how many more parts there are."""
+    return name_first(join_runs(names, longest), most)
 
 
 def _find_next(name: str) -> str:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from assess.errors import WorkbookError
 from assess.i18n import fill, spoken
 from assess.model import Inventory
+from assess.report_formats import FILES
 from assess.settings import change_settings
 from assess.web.job_process import INPUT, ORDER, OUT
 from assess.web.named_files import list_present
@@ -18,7 +19,7 @@ from assess.workbook.records import find_place
 if TYPE_CHECKING:
     from assess.web.book import Book, Snapshot
 
-FORMATS = ("html", "pdf", "annex", "xlsx", "docx", "json", "csv")
+FORMATS = tuple(name for name in FILES if name not in ("npz", "parquet"))
 """Files that the page offers; results.json is always written."""
 OPTIONS = ("verify", "runs", "seed", "scale", "scenario")
 """Settings that the page may choose; fitted models and templates are code, and never come from a page."""

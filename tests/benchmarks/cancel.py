@@ -13,7 +13,7 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 import assess
 from assess.motion.formats import LARGEST_FILE
 from assess.progress import Progress
-from assess.report import FORMATS
+from assess.report_formats import DEFAULT
 from tests.benchmarks.measuring import list_items
 from tests.benchmarks.report import write_thousand
 from tests.benchmarks.routes import FLOORS, write_tower
@@ -72,7 +72,7 @@ def rows(folder: Path) -> Iterator[str]:
     for book, name in ((market, "121 items, all formats"), (thousands, "5,000 items, all formats")):
         results = assess.run(book, UNVERIFIED)
         yield _row("rendering", name, lambda progress, results=results: assess.write_reports(
-            results, folder / "out", (*FORMATS, "npz"), progress=progress))  # fmt: skip
+            results, folder / "out", (*DEFAULT, "annex", "npz"), progress=progress))  # fmt: skip
 
 
 def _row(stage: str, name: str, work: Callable[..., Any]) -> str:

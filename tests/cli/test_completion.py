@@ -56,7 +56,7 @@ def test_all_commands_are_offered():
         ("assess run b.xlsx --formats pdf,h", ["pdf,html"]),
         (
             "assess run b.xlsx --formats pdf,xlsx,html,json,",
-            [f"pdf,xlsx,html,json,{one}" for one in ("annex", "csv", "docx", "npz", "parquet")],
+            [f"pdf,xlsx,html,json,{one}" for one in ("annex", "csv", "docx", "npz", "parquet", "all")],
         ),
         ("assess new w.xlsx --language ", list(LANGUAGES)),
         ("assess new w.xlsx --units i", ["imperial"]),

@@ -38,7 +38,8 @@ def _read(*paths):
 )
 def test_it_renders(tmp_path, name):
     given, told = CASES[name]
-    written = assess.write_reports(assessed(tmp_path / "w.xlsx", **given), tmp_path / "out")
+    formats = ("pdf", "annex", "xlsx")
+    written = assess.write_reports(assessed(tmp_path / "w.xlsx", **given), tmp_path / "out", formats)
     pages = _read(written["pdf"], written["annex"])
     text = re.sub(r"\s+", " ", " ".join(pages).replace("\ufffe", "-"))
     for one in told:

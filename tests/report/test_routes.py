@@ -210,7 +210,7 @@ def test_the_data_quality_log_warns_of_rooms_without_furniture(drafted, routed):
 def test_a_long_draft_keeps_its_mark_in_every_list(drafted):
     (step, *_others) = [say_step(one) for one in list_steps(drafted.route_tables) if one.route == LONG]
     assert step.startswith("route To the stair of the n… (draft): ")
-    lines = [one.names for one in route_page.list_route_lines(drafted.route_tables)]
+    lines = [one.names for one in route_page.list_route_lines(drafted.route_tables, drafted.item_rows)]
     assert "To the stair of the north wing,… (draft)" in lines
 
 
@@ -292,9 +292,9 @@ def test_long_lists_are_bounded_and_what_is_left_out_is_least_likely(tmp_path):
 def test_rooms_that_are_alike_stand_in_one_line(routed):
     routes = routed.route_tables
     twin = replace(routes.rooms[0], room="Twin")
-    lines = route_page.list_room_lines(replace(routes, rooms=(*routes.rooms, twin)))
+    lines = route_page.list_room_lines(replace(routes, rooms=(*routes.rooms, twin)), routed.item_rows)
     assert [one.names for one in lines if "Twin" in one.names] == ["Office, Twin"]
-    assert len(lines) == len(route_page.list_room_lines(routes))
+    assert len(lines) == len(route_page.list_room_lines(routes, routed.item_rows))
 
 
 def test_what_more_draws_would_settle_says_so(routed):

@@ -12,15 +12,16 @@ import sys
 import pytest
 
 import assess
-from assess.report import FILES, FORMATS, check_folder
+from assess.report import check_folder, list_formats
 from assess.report.data import write_json
 from assess.report.ownership import read_list
+from assess.report_formats import DEFAULT, FILES
 from tests.cli.calling import error, run
 from tests.report.reading import no_figures
 from tests.waiting import PATIENCE
 from tests.workbooks import assessed, write
 
-DEFAULT = {FILES[name] for name in FORMATS}
+USUAL = {FILES[name] for name in DEFAULT}
 
 
 def _contents(folder):
@@ -52,6 +53,19 @@ def test_an_unknown_format_is_refused(tmp_path):
     with pytest.raises(assess.InputError, match="formats: 'odt' is unknown, expected some of: pdf, annex, xlsx"):
         assess.write_reports(assessed(tmp_path / "w.xlsx"), tmp_path / "out", ("odt",))
     assert not (tmp_path / "out").exists()
+
+
+def test_all_is_every_format_whose_packages_are_installed(monkeypatch):
+    assert list_formats(("all",)) == list(FILES)
+    missing = {"duckdb", "docx"}
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None if name in missing else name)
+    assert list_formats(("json", "all")) == [name for name in FILES if name not in ("docx", "parquet")]
+    assert list_formats(("docx",)) == ("docx",), "what is asked for by its name is missed"
+
+
+def test_the_annex_is_written_where_it_is_asked_for():
+    assert "annex" not in DEFAULT
+    assert {"docx", "npz", "parquet"} & set(DEFAULT) == set()
 
 
 def test_a_folder_that_is_a_file_is_refused(tmp_path):
@@ -316,7 +330,7 @@ def test_without_the_native_libraries_all_else_is_written(tmp_path):
     assert done.returncode == 1
     assert "the PDF was not written: a native library is missing" in done.stderr
     assert "apt install libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0" in done.stderr or sys.platform != "linux"
-    assert {path.name for path in (tmp_path / "out").iterdir()} == DEFAULT - {"report.pdf", "annex.pdf"}
+    assert {path.name for path in (tmp_path / "out").iterdir()} == USUAL - {"report.pdf"}
     json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
 
 

@@ -44,7 +44,7 @@ def say_apart(results: Sequence[ItemResult]) -> list[str]:
 
 
 def _say_unconfirmed(unconfirmed: Sequence[ItemResult]) -> str:
-    names = words.name_first([words.cut(one.item.item, 20) for one in unconfirmed], NAMED)
+    names = words.name_pieces([one.item.item for one in unconfirmed], NAMED)
     text = ngettext(
         "{n:,} piece is unconfirmed and counted apart, as nothing is known of its building or its motions may be too "
         "weak ({names}).",

@@ -72,10 +72,15 @@ def list_routes_at_risk(results: Results) -> list[RouteAtRisk]:
             one,
             routes.risk,
             "" if one.most_likely_piece is None or is_blocked_standing(one) else one.most_likely_piece.item,
-            ", ".join(say_row(results.result(fix.item_index)) for fix in one.fixes) or say_missing(one.missing),
+            _name_fixes(results, one) or say_missing(one.missing),
         )
         for one in found
     ]
+
+
+def _name_fixes(results: Results, route: RouteRow) -> str:
+    names = sorted((say_row(results.result(fix.item_index)) for fix in route.fixes), key=natural_key)
+    return ", ".join(words.join_runs(names, 60))
 
 
 def say_row(one: ItemResult) -> str:

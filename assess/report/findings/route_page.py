@@ -18,6 +18,7 @@ from assess.report.findings.route_words import (
     say_route_state,
     say_segment,
 )
+from assess.results import ItemRow
 from assess.route_results import RoomRow, RouteRow, RouteState, RouteTables
 
 Row = TypeVar("Row")
@@ -25,6 +26,8 @@ MOST_LINES = 12
 """Lines of either table that a page has room for."""
 MOST_FIXES = 10
 """Pieces that a line names."""
+LONGEST = 20
+"""Characters of the name of a piece."""
 MOST_NAMES = 16
 """Names that a line holds."""
 
@@ -47,8 +50,8 @@ class Line:
         Of a blockage, with its interval.
     decisive : str
         The segment that decides, "" where none does.
-    fixes : tuple of int
-        Pieces to anchor or move, by their index in the items.
+    fixes : tuple of tuple of int
+        Pieces to anchor or move, by their index in the items: one, or a run of which the ends are named.
     more : int
         Further ones that are not named.
     advice : str
@@ -62,19 +65,19 @@ class Line:
     said: str
     chance: str
     decisive: str
-    fixes: tuple[int, ...]
+    fixes: tuple[tuple[int, ...], ...]
     more: int
     advice: str
 
 
-def list_route_lines(routes: RouteTables) -> list[Line]:
+def list_route_lines(routes: RouteTables, items: Sequence[ItemRow]) -> list[Line]:
     """Return the routes that are not open, the worst first, and one line for all that are open."""
     found = sorted(
         (one for one in routes.routes if one.state != RouteState.OPEN),
         key=lambda one: (-one.state.severity, -find_chance(one), natural_key(one.route)),
     )
     lines = [
-        _line(one, routes, words.cut(one.route, 40), say_route_state(one, routes.risk), say_blocked(one),
+        _line(one, routes, items, words.cut(one.route, 40), say_route_state(one, routes.risk), say_blocked(one),
               _name(one.to_places))
         for one in found
     ]  # fmt: skip
@@ -96,7 +99,7 @@ def _join_open(found: Sequence[RouteRow], routes: RouteTables) -> list[Line]:
     return lines
 
 
-def list_room_lines(routes: RouteTables) -> list[Line]:
+def list_room_lines(routes: RouteTables, items: Sequence[ItemRow]) -> list[Line]:
     """Return the rooms by their best way to the street, the worst first; those that are alike as one line."""
 
     def kind(one: RoomRow) -> tuple[object, ...]:
@@ -114,7 +117,7 @@ def list_room_lines(routes: RouteTables) -> list[Line]:
         chance = _("at most {chance}", chance=words.percent(high.high)) if is_open and high.high else say_lost(own[0])
         names = _name(own[0].exits)
         exits = _("stairs: {names}", names=names) if own[0].by_stairs else names
-        lines.append(_line(own[0], routes, rooms, say_room_state(own[0]), chance, exits))
+        lines.append(_line(own[0], routes, items, rooms, say_room_state(own[0]), chance, exits))
     return lines
 
 
@@ -125,8 +128,16 @@ def _group(rows: Iterable[Row], kind: Callable[[Row], object]) -> list[tuple[obj
     return list(found.items())
 
 
-def _line(one: RouteRow | RoomRow, routes: RouteTables, names: str, said: str, chance: str, ends: str) -> Line:
-    fixes = tuple(fix.item_index for fix in one.fixes)
+def _line(
+    one: RouteRow | RoomRow,
+    routes: RouteTables,
+    items: Sequence[ItemRow],
+    names: str,
+    said: str,
+    chance: str,
+    ends: str,
+) -> Line:
+    fixes = () if one.missing else _find_runs(one, items)
     is_open = one.state == RouteState.OPEN
     decisive = None if is_open or one.decisive_segment is None else routes.segments[one.decisive_segment]
     return Line(
@@ -137,10 +148,17 @@ def _line(one: RouteRow | RoomRow, routes: RouteTables, names: str, said: str, c
         said=said,
         chance=chance,
         decisive=say_segment(decisive) if decisive else "",
-        fixes=() if one.missing else fixes[:MOST_FIXES],
-        more=0 if one.missing else max(0, len(fixes) - MOST_FIXES),
+        fixes=fixes[:MOST_FIXES],
+        more=sum(map(len, fixes[MOST_FIXES:])),
         advice=say_advice(one),
     )
+
+
+def _find_runs(one: RouteRow | RoomRow, items: Sequence[ItemRow]) -> tuple[tuple[int, ...], ...]:
+    """Return the pieces to fix in natural order, rows of one piece each whose names follow each other as a run."""
+    fixes = sorted((items[fix.item_index] for fix in one.fixes), key=lambda row: natural_key(row.item))
+    names = [row.item if row.quantity == 1 else f"{row.item} ({row.quantity})" for row in fixes]
+    return tuple(tuple(fixes[at].index for at in run) for run in words.find_runs(names, LONGEST))
 
 
 def say_advice(one: RouteRow | RoomRow) -> str:

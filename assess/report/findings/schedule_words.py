@@ -323,7 +323,8 @@ def say_doubtful_brackets(rows: Iterable[ItemResult]) -> list[str]:
     text = ngettext(
         "{n:,} anchored piece has a bracket that fails at 84 % of PFA or by the code: {names}.",
         "{n:,} anchored pieces have brackets that fail at 84 % of PFA or by the code: {names}.",
-        sum(one.item.quantity for one in found), names=words.name_first([one.item.item for one in found], MOST_NAMES),
+        sum(one.item.quantity for one in found),
+        names=words.name_pieces([one.item.item for one in found], MOST_NAMES, 40),
     )  # fmt: skip
     return [text]
 

@@ -38,7 +38,7 @@ def _say_anchored(results: Results) -> str:
             "Taken as anchored and holding: the first {n:,} entries of what to fix",
             wanted,
         )
-    return _("Taken as anchored and holding: {items}", items=words.name_first(wanted, NAMED))
+    return _("Taken as anchored and holding: {items}", items=words.name_pieces(wanted, NAMED, 40))
 
 
 def say_assumed(results: Results) -> str:

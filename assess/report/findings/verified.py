@@ -266,4 +266,4 @@ def count_rows(results: Sequence[ItemResult]) -> str:
 
 def name_some(results: Sequence[ItemResult]) -> str:
     """Return the names of the first rows, and how many more there are."""
-    return words.name_first([words.cut(one.item.item, 40) for one in results], NAMED)
+    return words.name_pieces([one.item.item for one in results], NAMED, 40)

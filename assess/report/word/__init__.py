@@ -18,6 +18,15 @@ NEEDED = {"docx": "python-docx", "pypdfium2": "pypdfium2"}
 """Packages that a Word edition needs besides those of every report, by the modules that they bring."""
 
 
+def has_word() -> bool:
+    """Tell whether the packages for a Word edition are there."""
+    return not _list_missing()
+
+
+def _list_missing() -> list[str]:
+    return [package for module, package in NEEDED.items() if importlib.util.find_spec(module) is None]
+
+
 def check_word() -> None:
     """Check that the packages for a Word edition are there.
 
@@ -26,8 +35,7 @@ def check_word() -> None:
     InputError
         If one is missing: it says what to install.
     """
-    missing = [package for module, package in NEEDED.items() if importlib.util.find_spec(module) is None]
-    if missing:
+    if missing := _list_missing():
         text = fill(
             "the format docx needs {packages}, which is not installed. {how}",
             packages=", ".join(missing),

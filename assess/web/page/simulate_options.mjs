@@ -15,8 +15,8 @@ const VERIFY = () => [
 const FORMATS = () => [
   ["html", t("Report as a page, shown below (HTML)"), true],
   ["pdf", t("Report for the client (PDF)"), true],
-  ["annex", t("Annex with all details (PDF)"), true],
   ["xlsx", t("Report with live formulas (Excel)"), true],
+  ["annex", t("Annex with all details (PDF)"), false],
   ["docx", t("Report for the client (Word)"), false],
   ["json", t("All results, for other programs (JSON)"), true],
   ["csv", t("Table of the pieces (CSV)"), true],

@@ -22,12 +22,15 @@ const address = (name) => `/api/job/file/${encodeURIComponent(name)}`;
 export class ResultsView {
   #store;
   #reveal;
+  #begin;
   #framed = "";
   #isListOpen = false;
 
-  constructor(store, reveal) {
+  /** `begin` gets the request of POST /api/job. */
+  constructor(store, reveal, begin) {
     this.#store = store;
     this.#reveal = reveal;
+    this.#begin = begin;
     this.top = el("div", { class: "results" });
     this.frame = el("div", { class: "report" });
     this.node = el("section", { class: "results", "aria-label": t("Results"), hidden: true }, this.top, this.frame);
@@ -63,8 +66,11 @@ export class ResultsView {
       el("li", null, el("a", { href: address(name), download: name, text: LABELS[name]?.() ?? name }), " ", el("span", { class: "hint", text: `${name}, ${bytes(size)}` }));
     const files = job.files.filter(({ name }) => name !== ARCHIVE);
     const hasAll = job.files.some(({ name }) => name === ARCHIVE);
+    const request = { ...job.settings, first: job.before_after?.first, formats: [...job.formats, "annex"] };
+    const annex = el("button", { type: "button", text: t("Simulate again with the annex (PDF)"), on: { click: () => this.#begin(request) } });
     return el("section", { class: "card" }, el("h3", { text: t("Files") }), el("ul", { class: "file-list" }, files.map(one)),
-      hasAll && el("div", { class: "buttons" }, el("a", { class: "button primary", href: address(ARCHIVE), download: ARCHIVE, text: t("Download all in one file (ZIP)") })));
+      el("div", { class: "buttons" }, hasAll && el("a", { class: "button primary", href: address(ARCHIVE), download: ARCHIVE, text: t("Download all in one file (ZIP)") }),
+        !job.formats.includes("annex") && annex));
   }
 
   #changed(rows) {

@@ -23,7 +23,7 @@ class SimulateView {
     this.options = el("details", { class: "fold", open: true }, el("summary", { text: t("What to simulate and what to write") }), this.form.node);
     this.progress = this.#progressCard();
     this.fault = el("div", { role: "alert" });
-    this.results = new ResultsView(store, (cell) => this.#reveal(cell));
+    this.results = new ResultsView(store, (cell) => this.#reveal(cell), (request) => this.#start(request));
     this.#root = el("div", { class: "page-like simulate" }, el("h2", { text: t("Simulate and report") }),
       el("p", { class: "muted", text: t("Risk classes of the sheet come from a formula. A simulation shakes every piece by many motions of its floor, and confirms or corrects its class. You may go on working meanwhile.") }),
       this.options, el("div", { class: "buttons" }, this.form.button), this.progress.node, this.fault, this.results.node);
