@@ -126,7 +126,7 @@ def command(
     formats: Annotated[
         str,
         typer.Option(
-            help="Files to write, separated by commas: pdf is the report for the client; also annex, its details, docx, "
+            help="Files to write, comma-separated: pdf is the report for the client; also annex, its details, docx, "
             "the report in Word, npz, the result of every motion, parquet, the items typed; or all.",
             autocompletion=list_of((*FILES, ALL)),
         ),
