@@ -9,6 +9,7 @@ from assess.i18n import gettext, load_catalogue, speaking
 from assess.methods import all_methods
 from assess.motion.scenario import PROFILES
 from assess.report.equations import NotationError, Part, split_line, write_tex
+from assess.report.figures import math_figures
 from assess.report.figures.math_figures import draw_math
 from assess.report.pages.html import lower_indices, write_equation
 
@@ -158,3 +159,25 @@ def test_a_page_holds_each_letter_of_its_equations_once():
     assert len(letters) == 7  # B H = 0 . 5 2
     assert all('role="img"' in line for line in lines)
     assert 'aria-label="B/H = 0.25"' in lines[1]
+
+
+def test_what_is_drawn_is_kept_and_drawn_anew_where_that_is_damaged(monkeypatch, tmp_path):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr("sys.platform", "linux")
+    drawn = draw_math.__wrapped__(r"\dfrac{a}{b}")
+    (kept,) = (tmp_path / "assess" / "equations").iterdir()
+    with monkeypatch.context() as patch:
+        patch.setattr(math_figures, "_draw", None)
+        assert draw_math.__wrapped__(r"\dfrac{a}{b}") == drawn
+    for damage in ("", "[]", "{}", '{"box": 1}', kept.read_text()[:-9]):
+        kept.write_text(damage)
+        assert draw_math.__wrapped__(r"\dfrac{a}{b}") == drawn
+        assert kept.read_text().endswith("}")
+    monkeypatch.setattr(math_figures, "MOST_KEPT", 1)
+    draw_math.__wrapped__("c")
+    (tmp_path / "assess" / "equations").chmod(0o777)
+    math_figures.examine_folder.cache_clear()
+    kept.write_text("{}")
+    assert draw_math.__wrapped__(r"\dfrac{a}{b}") == drawn, "nothing is read where others can write"
+    assert [path.read_text() for path in (tmp_path / "assess" / "equations").iterdir()] == ["{}"]
+    math_figures.examine_folder.cache_clear()

@@ -1,11 +1,21 @@
-"""Equations drawn by matplotlib's mathtext as small SVG pictures, as large as the text around them."""
+"""Equations drawn by matplotlib's mathtext as small SVG pictures, as large as the text around them.
 
+What is drawn is kept for the next process: most equations are those of the methods, and a hundred take two seconds.
+"""
+
+import contextlib
+import hashlib
+import importlib.metadata
+import json
+import os
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cache
+from pathlib import Path
 from typing import Any
 
+from assess.cache_folder import cache_folder, examine_folder
 from assess.progress import SILENT
 from assess.report.figures.draw import one_at_a_time
 
@@ -18,6 +28,8 @@ FACE = "stix"
 """STIX, a face for mathematics that matplotlib brings along."""
 ENLARGED = 1.06
 """By how much its letters are enlarged, so that they look as large as those of the text."""
+MOST_KEPT = 1000
+"""Equations that are kept, 3 kB each: those of the methods, and of some worked examples."""
 _UNNAMED = re.compile(r"[^A-Za-z0-9]+")
 _LETTERS = {1: "M", 2: "L", 3: "Q", 4: "C", 79: "Z"}
 """What SVG calls the codes of `matplotlib.path.Path`."""
@@ -78,6 +90,28 @@ def draw_math(tex: str) -> MathFigure:
     ValueError
         If it is no TeX that mathtext reads.
     """
+    place = _find_place(tex)
+    with contextlib.suppress(OSError, ValueError, TypeError, LookupError):  # none is kept, or a damaged one
+        kept: Any = json.loads(place.read_text(encoding="utf-8")) if place else None
+        return MathFigure(**{**kept, "box": tuple(map(float, kept["box"]))})
+    drawn = _draw(tex)
+    with contextlib.suppress(OSError):
+        if place and len(list(place.parent.iterdir())) < MOST_KEPT:
+            new = place.with_suffix(f".{os.getpid()}")
+            new.write_text(json.dumps(asdict(drawn)), encoding="utf-8")
+            new.replace(place)
+    return drawn
+
+
+def _find_place(tex: str) -> Path | None:
+    """Return the file that an equation is kept in; None where nothing can be kept, or others could change it."""
+    folder = cache_folder() / "equations"
+    drawn_by = f"{FACE} {MARGIN} {importlib.metadata.version('matplotlib')} {tex}"
+    name = hashlib.sha256(drawn_by.encode()).hexdigest()
+    return None if examine_folder(folder) else folder / f"{name[:32]}.json"
+
+
+def _draw(tex: str) -> MathFigure:
     from matplotlib import rc_context, rcParamsDefault
     from matplotlib.font_manager import FontProperties
     from matplotlib.textpath import text_to_path
