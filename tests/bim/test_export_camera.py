@@ -40,7 +40,9 @@ def read_corners(element):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("model", [DUPLEX, OFFICE], ids=["duplex", "office"])
+@pytest.mark.parametrize(
+    "model", [pytest.param(DUPLEX, marks=pytest.mark.long, id="duplex"), pytest.param(OFFICE, id="office")]
+)
 def test_all_that_a_topic_selects_is_in_the_picture(tmp_path: Path, model: Path):
     """All pieces of an import are found again, and the topics of those on drafted routes select doors of the model."""
     results = import_results(tmp_path, model)

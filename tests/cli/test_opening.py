@@ -35,10 +35,14 @@ def run_open(folder, formats, **variables):
 
 
 @pytest.mark.slow
-def test_the_report_is_opened_in_the_browser(tmp_path, browser):
-    done = run_open(tmp_path, "json,html,xlsx", BROWSER=str(browser))
+@pytest.mark.parametrize(
+    ("formats", "opened"),
+    [("json,csv,xlsx", "report.xlsx"), pytest.param("json,html,xlsx", "report.html", marks=pytest.mark.long)],
+)
+def test_the_report_is_opened_in_the_browser(tmp_path, browser, formats, opened):
+    done = run_open(tmp_path, formats, BROWSER=str(browser))
     assert done.returncode == 0, done.stderr
-    assert (tmp_path / "opened").read_text(encoding="utf-8") == f"{(tmp_path / 'a b' / 'report.html').as_uri()}\n"
+    assert (tmp_path / "opened").read_text(encoding="utf-8") == f"{(tmp_path / 'a b' / opened).as_uri()}\n"
     assert done.stderr.splitlines()[-1].startswith("wrote ")
 
 

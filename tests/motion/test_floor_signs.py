@@ -59,7 +59,7 @@ def test_what_is_a_quarter_of_a_cycle_apart_is_not_coherent():
     assert find_signs(floors, STEP)[1, AT[0.8]] == 1
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_unrelated_noise_has_no_sign_but_by_chance():
     """Its coherence is above the level in 5 % of cases, whatever the octave, also where it fades in and out."""
     random, above = np.random.default_rng(3), np.zeros(9)

@@ -78,7 +78,7 @@ def test_motions_of_floors_42_and_34_move_against_each_other_as_their_records_do
     assert means[clear] == pytest.approx(own[clear], abs=0.2)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_turned_phases_meet_the_spectrum_as_others_do():
     """The worst ordinate is a matter of the draw: over eight seeds it is 6 to 11 % of floor 34, turned or not."""
     generator = build("d")

@@ -110,6 +110,7 @@ def test_three_workers_give_the_bytes_of_one_process(tmp_path, address, monkeypa
     assert not list((tmp_path / "cluster" / FOLDER).glob(".probe-*"))
 
 
+@pytest.mark.long
 def test_a_worker_that_dies_changes_no_byte_and_a_building_that_kills_workers_is_skipped(
     tmp_path, address, monkeypatch
 ):

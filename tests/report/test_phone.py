@@ -137,7 +137,7 @@ def test_no_name_of_a_piece_is_broken_at_its_hyphen(look, width):
 
 
 @pytest.mark.parametrize("rows", [8, pytest.param(10_000, marks=pytest.mark.long)])
-@pytest.mark.parametrize("width", [DESK, PHONE])
+@pytest.mark.parametrize("width", [pytest.param(DESK, marks=pytest.mark.long), PHONE])
 def test_axe_finds_nothing_serious(open_page, width, rows):
     """Also none of less weight: whatever axe-core is sure of. Of the rows of each table, which are alike, so many."""
     page = open_page(width)
