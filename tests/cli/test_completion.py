@@ -11,7 +11,7 @@ from unittest.mock import patch
 
 import pytest
 
-from assess.cli import command_fragility, command_run, completion
+from assess.cli import command_fragility, completion
 from assess.cli.app import app, list_names
 from assess.i18n import LANGUAGES
 from assess.settings import SCENARIOS, VERIFY, Settings
