@@ -5,6 +5,7 @@ import unicodedata
 
 import pytest
 
+from assess.cache_folder import examine_folder
 from assess.i18n import gettext, load_catalogue, speaking
 from assess.methods import all_methods
 from assess.motion.scenario import PROFILES
@@ -176,8 +177,8 @@ def test_what_is_drawn_is_kept_and_drawn_anew_where_that_is_damaged(monkeypatch,
     monkeypatch.setattr(math_figures, "MOST_KEPT", 1)
     draw_math.__wrapped__("c")
     (tmp_path / "assess" / "equations").chmod(0o777)
-    math_figures.examine_folder.cache_clear()
+    examine_folder.cache_clear()
     kept.write_text("{}")
     assert draw_math.__wrapped__(r"\dfrac{a}{b}") == drawn, "nothing is read where others can write"
     assert [path.read_text() for path in (tmp_path / "assess" / "equations").iterdir()] == ["{}"]
-    math_figures.examine_folder.cache_clear()
+    examine_folder.cache_clear()

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from assess.report import FILES
+from assess.report_formats import FILES
 from tests.workbooks import write
 
 EVERY = [name for name in FILES if name != "npz"]
