@@ -31,7 +31,7 @@ def _run(way, folder, stride):
 
 
 @pytest.mark.parametrize("stride", STRIDES)
-@pytest.mark.parametrize("way", ["list", "undo", "twice"])
+@pytest.mark.parametrize("way", ["twice", *(pytest.param(way, marks=pytest.mark.long) for way in ("list", "undo"))])
 def test_readers_see_one_run_and_the_next_run_completes(tmp_path, way, stride):
     found, old, new = _run(way, tmp_path, stride), OLD | MINE, FRESH | MINE
     whole = [old, new, NEXT | MINE] if way == "twice" else [old, new]

@@ -48,11 +48,14 @@ def market():
     return hold(MARKET)
 
 
-ASKED = [{"scenario": "ASCE 7-22", "scale": 0.5}, {"anchor": ["42-04", "25-31"]}, {"first": 3, "scale": 1.4}]
+ASKED = [
+    pytest.param({"scenario": "ASCE 7-22", "scale": 0.5}, marks=pytest.mark.long),
+    pytest.param({"anchor": ["42-04", "25-31"]}, marks=pytest.mark.slow),
+    pytest.param({"first": 3, "scale": 1.4}, marks=pytest.mark.slow),
+]
 
 
 @pytest.mark.parametrize("asked", ASKED, ids=str)
-@pytest.mark.slow
 def test_both_sides_are_those_of_runs(market, example, asked):
     before = market.write()
     answer = _try(market, **asked)

@@ -127,18 +127,22 @@ def _place(path: Path, options: ReportOptions) -> str:
 
 
 def _environment(options: ReportOptions, filters: Mapping[str, Any] | None = None) -> Any:
-    """Return where templates are rendered: a sandbox that escapes every text and is strict about names."""
-    from jinja2 import FileSystemLoader, StrictUndefined
+    """Return where templates are rendered: it escapes every text and is strict about names.
+
+    Templates of a firm's own are rendered in a sandbox, which takes half as long again.
+    """
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
     from jinja2.sandbox import ImmutableSandboxedEnvironment
 
-    environment = ImmutableSandboxedEnvironment(
+    is_own = options.templates is not None
+    environment = (ImmutableSandboxedEnvironment if is_own else Environment)(
         loader=FileSystemLoader(options.folders),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
         optimized=False,  # what is compiled holds no result of a filter, so that all renderings share it
-        bytecode_cache=_compiled(),
+        bytecode_cache=_compiled(is_sandboxed=is_own),
     )
     environment.filters |= {
         **FILTERS,
@@ -152,7 +156,7 @@ def _environment(options: ReportOptions, filters: Mapping[str, Any] | None = Non
 
 
 @cache
-def _compiled() -> Any:
+def _compiled(*, is_sandboxed: bool) -> Any:  # templates are compiled otherwise for a sandbox
     """Return where compiled templates are kept while the program runs: a run renders most of them three times."""
     from jinja2 import BytecodeCache
 
