@@ -160,7 +160,7 @@ def test_an_example_that_is_interrupted_leaves_nothing(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("count", [12, pytest.param(BUILDINGS, marks=pytest.mark.long)])
+@pytest.mark.parametrize("count", [30, pytest.param(BUILDINGS, marks=pytest.mark.long)])
 def test_the_example_is_a_city_whose_buildings_are_all_assessed(tmp_path, monkeypatch, count):
     monkeypatch.setattr(example_city, "write_example_city", partial(write_example_city, buildings=count))
     result = _call(tmp_path / "bay", "--example", "--out", tmp_path / "out")
