@@ -34,7 +34,7 @@ fi
 
 [ -x "$VENV/bin/python" ] || "$PYTHON" -m venv "$VENV"
 pip() { "$VENV/bin/python" -m pip install --quiet --disable-pip-version-check "$@"; }
-# uv finds and unpacks a hundred packages in a tenth of pip's time; where it cannot, as behind some proxies, pip does.
+# uv takes a third of pip's time; where it cannot reach the packages, as behind some proxies, pip does.
 { pip uv && "$VENV/bin/python" -m uv pip install --quiet --python "$VENV/bin/python" -e "$1"; } 2>/dev/null || pip -e "$1"
 
 works() { "$VENV"/bin/python -c "import weasyprint" >/dev/null 2>&1; }

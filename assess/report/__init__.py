@@ -131,11 +131,13 @@ def write_reports(
 
 def list_formats(formats: Sequence[str]) -> Sequence[str]:
     """Return the formats that are named, of "all" every one whose packages are installed."""
+    if ALL not in formats:
+        return formats
     from assess.report.parquet_file import has_parquet
     from assess.report.word import has_word
 
-    left_out = {"docx": not has_word(), "parquet": not has_parquet()} if ALL in formats else {}
-    return [name for name in FILES if not left_out.get(name)] if ALL in formats else formats
+    is_there = {"docx": has_word(), "parquet": has_parquet()}
+    return [name for name in FILES if is_there.get(name, True)]
 
 
 def _find_old(folder: Path, wanted: Collection[str]) -> frozenset[str]:

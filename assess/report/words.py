@@ -104,8 +104,11 @@ def join_runs(names: Sequence[str], longest: int) -> list[str]:
 
 
 def name_pieces(names: Sequence[str], most: int, longest: int = 20) -> str:
-    """Return the first names of pieces, runs of them joined, and how many more parts there are."""
-    return name_first(join_runs(names, longest), most)
+    """Return the first names of pieces, runs of them joined, and how many more pieces there are."""
+    shown = join_runs(names, longest)
+    more = sum(map(len, find_runs(names, longest)[most:]))
+    named = ", ".join(shown[:most])
+    return _("{names} and {more:,} more", names=named, more=more) if more else named
 
 
 def _find_next(name: str) -> str:

@@ -62,6 +62,12 @@ def test_names_in_a_row_are_joined(names, runs):
     assert words.join_runs(names, 8) == runs
 
 
+def test_pieces_that_are_not_named_are_counted_one_by_one():
+    names = ["A1", "A2", "A3", "B1", "C1", "C2", "C3", "C4", "D1"]
+    assert words.name_pieces(names, 2) == "A1 to A3, B1 and 5 more"
+    assert words.name_pieces(names, 4) == "A1 to A3, B1, C1 to C4, D1"
+
+
 def test_that_holds_beside_every_limit():
     for limit in LIMITS:
         for power in range(1, 17):

@@ -129,7 +129,7 @@ def _place(path: Path, options: ReportOptions) -> str:
 def _environment(options: ReportOptions, filters: Mapping[str, Any] | None = None) -> Any:
     """Return where templates are rendered: it escapes every text and is strict about names.
 
-    Templates of a firm's own are rendered in a sandbox, which takes half as long again.
+    Templates of a firm's own are rendered in a sandbox, which takes longer.
     """
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
     from jinja2.sandbox import ImmutableSandboxedEnvironment
