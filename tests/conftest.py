@@ -1,9 +1,14 @@
 """Fixtures that several folders of tests share, and an environment that is the same on every machine."""
 
+import fcntl
+import gc
 import os
+import pickle
 import shutil
 import signal
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import settings
@@ -39,6 +44,11 @@ def pytest_configure() -> None:
         signal.signal(signal.SIGHUP, lambda *_: None)
 
 
+def pytest_collection_finish() -> None:
+    """Leave what collecting made out of every later search for garbage."""
+    gc.freeze()
+
+
 @pytest.fixture(scope="session")
 def browser():
     """Start a browser without a window, one for all tests, which have contexts of their own in it."""
@@ -50,6 +60,25 @@ def browser():
         browser = playwright.chromium.launch(executable_path=shell or find_browser())
         yield browser
         browser.close()
+
+
+@pytest.fixture(scope="session")
+def make_once(tmp_path_factory):
+    """Return what makes a thing in a folder of all workers, where no other worker has made it, and returns it."""
+    base = tmp_path_factory.getbasetemp()
+    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+
+    def make_once(name: str, make: Callable[[Path], Any]) -> Any:
+        folder = shared / name
+        folder.mkdir(exist_ok=True)
+        with (folder / "lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not (folder / "made.pickle").exists():
+                made = pickle.dumps(make(folder))
+                (folder / "made.pickle").write_bytes(made)
+            return pickle.loads((folder / "made.pickle").read_bytes())
+
+    return make_once
 
 
 @pytest.fixture(scope="session")

@@ -11,6 +11,7 @@ import pytest
 
 import assess
 from assess.methods import all_methods
+from docs.texts import KEYWORDS
 
 ROOT = Path(assess.__file__).parents[1]
 PACKAGE = ROOT / "assess"
@@ -251,6 +252,20 @@ def test_every_method_is_tested_and_referenced():
 
 
 # ---------------------------------------------------------------- what is wrong, in every language
+
+
+def test_no_text_stands_inside_an_f_string():
+    """Python 3.11 takes such a string as one piece: the text in it would be collected on later versions alone."""
+    texts = [
+        (_place(path, node), inner.args[0].value)
+        for path in MODULES
+        for node in _nodes(path)
+        if isinstance(node, ast.JoinedStr)
+        for inner in ast.walk(node)
+        if isinstance(inner, ast.Call) and isinstance(inner.func, ast.Name) and inner.func.id in KEYWORDS
+        if isinstance(inner.args[0], ast.Constant)
+    ]
+    assert texts == []
 
 
 def test_messages_of_errors_can_be_translated():

@@ -1,6 +1,5 @@
 """Texts in another language: catalogues that are complete, sentences made of parts, numbers."""
 
-import ast
 import pickle
 import re
 from pathlib import Path
@@ -29,7 +28,7 @@ from assess.i18n import (
 from assess.methods import all_methods
 from assess.methods._method import Reference
 from assess.report.provenance import say_date, say_reference
-from docs.texts import KEYWORDS, ROOT, collect
+from docs.texts import collect
 
 
 def read(code):
@@ -161,17 +160,3 @@ def test_references_keep_their_titles_and_their_remarks_are_translated():
     full = Reference(authors="A B", year="1999", title="On blocks", source="J 1:2", doi="10.1/x", remark="Section 2.")
     assert str(full) == "A B (1999). On blocks. J 1:2. doi:10.1/x Section 2."
     assert str(Reference(authors="", year="", title="On blocks", source="")) == "On blocks."
-
-
-def test_no_text_stands_inside_an_f_string():
-    """Python 3.11 takes such a string as one piece: the text in it would be collected on later versions alone."""
-    texts = [
-        (path.name, inner.args[0].value)
-        for path in sorted((ROOT / "assess").rglob("*.py"))
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-        if isinstance(node, ast.JoinedStr)
-        for inner in ast.walk(node)
-        if isinstance(inner, ast.Call) and isinstance(inner.func, ast.Name) and inner.func.id in KEYWORDS
-        if isinstance(inner.args[0], ast.Constant)
-    ]
-    assert texts == []

@@ -1,6 +1,6 @@
 """What many tests of building models look at, made once for all of them."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from pathlib import Path
 
@@ -27,15 +27,15 @@ def _models_read_here(request: pytest.FixtureRequest) -> Iterator[None]:
 
 
 @pytest.fixture(scope="session")
-def duplex() -> BuildingModel:
+def duplex(make_once: Callable[..., BuildingModel]) -> BuildingModel:
     """Return a published model of two storeys in IFC2X3."""
-    return read_model(MODELS / "duplex.ifc", "duplex.ifc")
+    return make_once("duplex", lambda _: read_model(MODELS / "duplex.ifc", "duplex.ifc"))
 
 
 @pytest.fixture(scope="session")
-def large() -> BuildingModel:
+def large(make_once: Callable[..., BuildingModel]) -> BuildingModel:
     """Return a published model in millimetres."""
-    return read_model(MODELS / "LargeBuilding.ifc", "LargeBuilding.ifc")
+    return make_once("large", lambda _: read_model(MODELS / "LargeBuilding.ifc", "LargeBuilding.ifc"))
 
 
 @pytest.fixture(params=["duplex", "large"])

@@ -130,6 +130,7 @@ class Tags(HTMLParser):
             self.found.append(data)
 
 
+@pytest.mark.slow
 def test_the_report_runs_nothing_of_them(page):
     tags = Tags()
     tags.feed(page)

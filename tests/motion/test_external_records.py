@@ -33,7 +33,9 @@ def find_folder() -> Path | None:
 
 FOLDER = find_folder()
 FILES = sorted(path for path in FOLDER.rglob("*") if path.is_file() and path.name != MANIFEST) if FOLDER else []
-pytestmark = pytest.mark.skipif(not FILES, reason="no folder of real records: name one in ASSESS_RECORDS")
+pytestmark = [
+    pytest.mark.slow, pytest.mark.skipif(not FILES, reason="no folder of real records: name one in ASSESS_RECORDS"),
+]  # fmt: skip
 
 UNKNOWN = r"file format"
 REFUSED = {

@@ -171,7 +171,13 @@ def test_more_points_than_are_read(monkeypatch, content):
         read_plan(svg(content), 16.0)
 
 
-@pytest.mark.parametrize(("before", "item"), [("<polyline points='", "0 "), ("<path d='M0 0 1 1", "z")])
+@pytest.mark.parametrize(
+    ("before", "item"),
+    [
+        pytest.param("<polyline points='", "0 ", marks=pytest.mark.long),
+        pytest.param("<path d='M0 0 1 1", "z", marks=pytest.mark.slow),
+    ],
+)
 def test_memory_of_a_large_drawing(tmp_path, before, item):
     path = tmp_path / "x.svg"
     path.write_bytes(svg(f"{before}{item * (10_000_000 // len(item))}'/>"))

@@ -1,11 +1,6 @@
 """The worked example as a run gives it by default, verified, and its reports: made once for all workers."""
 
-import fcntl
-import os
-import pickle
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -22,25 +17,6 @@ def _equations_without_letters(request):
         if not getattr(request.module, "DRAWS_EQUATIONS", False):
             patch.setattr(html, "draw_math", leave_room)
         yield
-
-
-@pytest.fixture(scope="session")
-def make_once(tmp_path_factory):
-    """Return what makes a thing in a folder of all workers, where no other worker has made it, and returns it."""
-    base = tmp_path_factory.getbasetemp()
-    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
-
-    def make_once(name: str, make: Callable[[Path], Any]) -> Any:
-        folder = shared / name
-        folder.mkdir(exist_ok=True)
-        with (folder / "lock").open("w") as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX)
-            if not (folder / "made.pickle").exists():
-                made = pickle.dumps(make(folder))
-                (folder / "made.pickle").write_bytes(made)
-            return pickle.loads((folder / "made.pickle").read_bytes())
-
-    return make_once
 
 
 @pytest.fixture(scope="session")

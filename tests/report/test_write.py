@@ -240,8 +240,8 @@ def test_a_list_leads_out_of_no_folder(tmp_path):
 @pytest.mark.parametrize(
     ("formats", "limit"),
     [
-        ("json,csv,xlsx", 4_000),
-        pytest.param("json,csv,xlsx", 20_000, marks=pytest.mark.slow),
+        pytest.param("json,csv,xlsx", 4_000, marks=pytest.mark.slow),
+        pytest.param("json,csv,xlsx", 20_000, marks=pytest.mark.long),
         pytest.param("csv", 100, marks=pytest.mark.slow),
     ],
 )

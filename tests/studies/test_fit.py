@@ -38,6 +38,7 @@ def on_surface():
     return fit_all(make_compared(surface, OPTIONS), OPTIONS)
 
 
+@pytest.mark.slow
 def test_a_known_surface_gives_its_coefficients_back(on_surface):
     values = dict(zip(POWERS, on_surface.equation_8.surface.coefficients, strict=True))
     for powers, known in KNOWN.items():

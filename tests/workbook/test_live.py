@@ -292,9 +292,17 @@ def test_an_unreadable_unit_of_an_italian_workbook(tmp_path: Path) -> None:
 def shown_of(
     folder: Path, item: dict[str, Any], floors: Rows | None = None, catalogue: Rows | None = None, **building: Any
 ) -> Live:
-    row = {"item": "A1", "floor": "1", "breadth": 40, "height": 180} | item
-    path = fill(folder / "book.xlsx", [row], floors or [{"floor": "1", "pfa_x": 0.5}], building, catalogue=catalogue)
-    return by_formualizer(poison(path))[2]
+    return shown_rows(folder, [item], floors, catalogue, **building)[0]
+
+
+def shown_rows(
+    folder: Path, items: Rows, floors: Rows | None = None, catalogue: Rows | None = None, **building: Any
+) -> list[Live]:
+    """Return what one workbook shows of each piece, which has the usual sizes where none are given."""
+    rows = [{"item": f"A{at}", "floor": "1", "breadth": 40, "height": 180} | item for at, item in enumerate(items)]
+    path = fill(folder / "book.xlsx", rows, floors or [{"floor": "1", "pfa_x": 0.5}], building, catalogue=catalogue)
+    shown = by_formualizer(poison(path))
+    return [shown[at] for at in range(2, 2 + len(rows))]
 
 
 def test_blank_rows_show_nothing(tmp_path: Path) -> None:
@@ -333,13 +341,11 @@ def test_own_sizes_need_no_type(tmp_path: Path) -> None:
     assert shown_of(tmp_path, {"type": "none such"})[0] == pytest.approx(40 / 180)
 
 
-@pytest.mark.parametrize(("axis", "pfa"), [("x", 0.3), (" Y ", 0.5), ("Z", "axis?")])
-def test_axis_as_typed(tmp_path: Path, axis: str, pfa: float | str) -> None:
+def test_axis_as_typed(tmp_path: Path) -> None:
     """Pasting goes round the drop-down; a wrong axis never shows the class of another."""
-    shown = shown_of(tmp_path, {"axis": axis}, [{"floor": "1", "pfa_x": 0.3, "pfa_y": 0.5}])
-    assert shown[1] == pfa
-    if isinstance(pfa, str):
-        assert shown[2:] == [pfa] * 6
+    items: Rows = [{"axis": axis} for axis in ("x", " Y ", "Z")]
+    x, y, wrong = shown_rows(tmp_path, items, [{"floor": "1", "pfa_x": 0.3, "pfa_y": 0.5}])
+    assert (x[1], y[1], wrong[1:]) == (0.3, 0.5, ["axis?"] * 7)
 
 
 FLOORS_WITH_RECORDS = [
@@ -469,12 +475,12 @@ def test_a_row_without_a_name_serves_no_floor(tmp_path: Path) -> None:
     assert shown_of(tmp_path, {}, floors)[1:] == ["shaking?"] * 7
 
 
-@pytest.mark.parametrize("axis", [None, "X", "Y"])
 @pytest.mark.parametrize("kind", ["ASCE 7-22", "ASCE 7-16", "EN 1998-1", "NTC 2018"])
-def test_a_profile_serves_floors_with_a_pfa_too(tmp_path: Path, kind: str, axis: str | None) -> None:
+def test_a_profile_serves_floors_with_a_pfa_too(tmp_path: Path, kind: str) -> None:
     floors = [{"floor": "1", "pfa_x": 0.5, "elevation": 3}]
-    shown = shown_of(tmp_path, {"axis": axis}, floors, scenario_kind=kind, ground_pga=0.2)
-    assert shown[1:] == ["run assess"] * 7
+    items: Rows = [{}, {"axis": "X"}, {"axis": "Y"}]
+    shown = shown_rows(tmp_path, items, floors, scenario_kind=kind, ground_pga=0.2)
+    assert [row[1:] for row in shown] == [["run assess"] * 7] * 3
 
 
 def test_floors_beside_one_with_nothing_of_its_own_keep_theirs(tmp_path: Path) -> None:
@@ -482,29 +488,34 @@ def test_floors_beside_one_with_nothing_of_its_own_keep_theirs(tmp_path: Path) -
     assert shown_of(tmp_path, {}, floors, ground_pga=0.2)[1] == 0.5
 
 
-ROCKING = [  # 0.05 g e^(3 s) against 0.65 g b/z; without records a typed motion is met in every draw
-    ({"breadth": 19}, {}, "yes"), ({"breadth": 20}, {}, "no"), ({}, {"motion_uncertainty": 0.4}, "yes"),
-    ({"breadth": 48}, {"motion_uncertainty": 0.4}, "yes"), ({"breadth": 49}, {"motion_uncertainty": 0.4}, "no"),
-    ({"breadth": 32}, {"motion_uncertainty": 0.1}, "no"),
-    ({"breadth": 32, "centre_of_gravity": 80}, {"motion_uncertainty": 0.1}, "yes"),
-    ({"breadth": 32, "type": "heavy"}, {"motion_uncertainty": 0.1}, "yes"),
-    ({"breadth": 32, "type": "heavy", "centre_of_gravity": 50}, {"motion_uncertainty": 0.1}, "no"),
-    ({"breadth": 32, "type": "plain"}, {"motion_uncertainty": 0.1}, "no"),
-    ({"breadth": 20}, {"motion_uncertainty": 0}, "no"), ({"breadth": 19}, {"motion_uncertainty": 0}, "yes"),
-    ({"breadth": 255}, {"motion_uncertainty": 1.5}, "no"), ({"breadth": 253}, {"motion_uncertainty": 1.5}, "yes"),
-    ({}, {"motion_uncertainty": "much"}, "check"), ({"centre_of_gravity": "top"}, {}, "check"),
-    ({"breadth": 22, "sizes_from": "scan"}, {"motion_uncertainty": 0}, "no"),
-    *(({"breadth": 21, "sizes_from": one}, {"motion_uncertainty": 0}, "yes") for one in ("scan", " Scan", "S")),
-    *(({"breadth": 21, "sizes_from": one}, {"motion_uncertainty": 0}, "no") for one in ("model", "measured", "lidar")),
-]  # fmt: skip
+ROCKING: dict[Any, list[tuple[dict[str, Any], str]]] = {
+    None: [({"breadth": 19}, "yes"), ({"breadth": 20}, "no"), ({"centre_of_gravity": "top"}, "check")],
+    0: [
+        ({"breadth": 20}, "no"), ({"breadth": 19}, "yes"), ({"breadth": 22, "sizes_from": "scan"}, "no"),
+        *(({"breadth": 21, "sizes_from": one}, "yes") for one in ("scan", " Scan", "S")),
+        *(({"breadth": 21, "sizes_from": one}, "no") for one in ("model", "measured", "lidar")),
+    ],
+    0.1: [
+        ({"breadth": 32}, "no"), ({"breadth": 32, "centre_of_gravity": 80}, "yes"),
+        ({"breadth": 32, "type": "heavy"}, "yes"), ({"breadth": 32, "type": "heavy", "centre_of_gravity": 50}, "no"),
+        ({"breadth": 32, "type": "plain"}, "no"),
+    ],
+    0.4: [({}, "yes"), ({"breadth": 48}, "yes"), ({"breadth": 49}, "no")],
+    1.5: [({"breadth": 255}, "no"), ({"breadth": 253}, "yes")],
+    "much": [({}, "check")],
+}  # fmt: skip
+"""What is said of pieces by Motion uncertainty s: 0.05 g e^(3 s) against 0.65 g b/z. Without records a typed motion is
+met in every draw."""
 
 
-@pytest.mark.parametrize(("item", "building", "said"), ROCKING)
-def test_whether_a_piece_can_rock(tmp_path: Path, item: dict[str, Any], building: dict[str, Any], said: str) -> None:
+@pytest.mark.parametrize("uncertainty", ROCKING)
+def test_whether_a_piece_can_rock(tmp_path: Path, uncertainty: Any) -> None:
     catalogue = [{"type": "heavy", "centre_of_gravity": 80}, {"type": "plain"}]
-    *_, label, shown = shown_of(tmp_path, item, [{"floor": "1", "pfa_x": 0.05}], catalogue=catalogue, **building)
-    assert shown == said
-    assert said != "no" or label == "○ low"
+    floors = [{"floor": "1", "pfa_x": 0.05}]
+    items, expected = zip(*ROCKING[uncertainty], strict=True)
+    shown = shown_rows(tmp_path, list(items), floors, catalogue, motion_uncertainty=uncertainty)
+    assert [row[-1] for row in shown] == list(expected)
+    assert {row[-2] for row in shown if row[-1] == "no"} <= {"○ low"}
 
 
 def test_an_unreadable_unit_of_the_centre_of_gravity(tmp_path: Path) -> None:
@@ -702,13 +713,12 @@ REFUSED: list[tuple[dict[str, Any], dict[str, Any]]] = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("item", "floor"), REFUSED)
-def test_a_number_that_the_program_refuses_shows_no_class(
-    tmp_path: Path, item: dict[str, Any], floor: dict[str, Any]
-) -> None:
+def test_a_number_that_the_program_refuses_shows_no_class(tmp_path: Path) -> None:
     """A date read out of 4/5 is a breadth of 450 m; metres below a header in cm are a needle; 25 of PFA is a percentage."""
     narrow = [{"type": "narrow", "breadth": 20, "width": 30, "height": 180}]
-    assert shown_of(tmp_path, item, [{"floor": "1", "pfa_x": 0.5} | floor], narrow)[5] == "check"
+    floors = [{"floor": str(at), "pfa_x": 0.5} | floor for at, (_, floor) in enumerate(REFUSED)]
+    items = [{"floor": str(at)} | item for at, (item, _) in enumerate(REFUSED)]
+    assert [row[5] for row in shown_rows(tmp_path, items, floors, narrow)] == ["check"] * len(REFUSED)
 
 
 def breadths_and_widths(path: Path) -> Path:
@@ -730,16 +740,13 @@ def test_a_breadth_up_to_the_width_shows_its_class(tmp_path: Path) -> None:
     assert [shown[row][0] for row in range(2, 7)] == pytest.approx([40 / 180] * 5)
 
 
-@pytest.mark.parametrize(
-    ("item", "building"),
-    [({"centre_of_gravity": 0.6}, {}), ({"centre_of_gravity": "60"}, {}), ({}, {"motion_uncertainty": "0,4"}),
-     ({}, {"motion_uncertainty": -1}), ({"type": "light"}, {}), ({"type": "text"}, {})],
-)  # fmt: skip
-def test_whether_it_can_rock_rests_on_numbers_alone(
-    tmp_path: Path, item: dict[str, Any], building: dict[str, Any]
-) -> None:
-    catalogue = [{"type": "light", "centre_of_gravity": 1}, {"type": "text", "centre_of_gravity": "40 %"}]
-    assert shown_of(tmp_path, {"breadth": 150, **item}, catalogue=catalogue, **building)[7] == "check"
+def test_whether_it_can_rock_rests_on_numbers_alone(tmp_path: Path) -> None:
+    catalogue: Rows = [{"type": "light", "centre_of_gravity": 1}, {"type": "text", "centre_of_gravity": "40 %"}]
+    items: Rows = [{"centre_of_gravity": 0.6}, {"centre_of_gravity": "60"}, {"type": "light"}, {"type": "text"}]
+    shown = shown_rows(tmp_path, [{"breadth": 150, **item} for item in items], catalogue=catalogue)
+    assert [row[7] for row in shown] == ["check"] * 4
+    for uncertainty in ("0,4", -1):
+        assert shown_of(tmp_path, {"breadth": 150}, motion_uncertainty=uncertainty)[7] == "check"
 
 
 def test_blank_looking_cells_are_blank(tmp_path: Path) -> None:
@@ -749,9 +756,10 @@ def test_blank_looking_cells_are_blank(tmp_path: Path) -> None:
     assert shown[:2] == pytest.approx([0.2, 0.5])
 
 
-@pytest.mark.parametrize("pfv", ["1,5", 0, -20, 2000])
-def test_a_pfv_that_the_program_refuses_shows_no_class(tmp_path: Path, pfv: Any) -> None:
-    assert shown_of(tmp_path, {}, [{"floor": "1", "pfa_x": 0.5, "pfv_x": pfv}])[1:] == ["check"] * 7
+def test_a_pfv_that_the_program_refuses_shows_no_class(tmp_path: Path) -> None:
+    floors = [{"floor": str(at), "pfa_x": 0.5, "pfv_x": pfv} for at, pfv in enumerate(("1,5", 0, -20, 2000))]
+    shown = shown_rows(tmp_path, [{"floor": str(at)} for at in range(4)], floors)
+    assert [row[1:] for row in shown] == [["check"] * 7] * 4
 
 
 # ---------------------------------------------------------------- more rows than prepared
