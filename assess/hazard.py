@@ -172,7 +172,7 @@ def _split(lines: Sequence[str]) -> Iterator[Line]:
 def _read_number(text: str, line: int, column: str) -> float:
     value = float(text) if _NUMBER.fullmatch(text) else math.nan
     if not math.isfinite(value):
-        message = fill("line {line}: {column} is {text!r}, not a number", line=line, column=column, text=text[:40])
+        message = fill("line {line}: {column} is {text!r}, not a number", line=line, column=column[:40], text=text[:40])
         raise InputError(message)
     return value
 

@@ -176,6 +176,7 @@ def test_chances_of_0_and_1_are_left_out():
         (("investigation_time=50.0", "investigation_time=0"), "the first line has no investigation_time above 0"),
         (("poe-0.2000000", "poe-0.0500000"), "line 2: expected two or more columns poe-LEVEL with rising levels"),
         (("poe-0.2000000", "poe-x"), "line 2: poe-x is 'x', not a number"),
+        (("poe-0.2000000", f"poe-{'x' * 90}"), f"line 2: poe-{'x' * 36} is '{'x' * 40}', not a number"),
         (("13.0,42.0,0.0,9.0E-01,", "13.0,42.0,0.0,"), "line 3: the number of cells is 5, but there are 6 headings"),
         (("13.0,42.0", "13.0,91.0"), "line 3: lon 13 and lat 91 are not a place on earth"),
         (("13.5,42.0", "13.5,north"), "line 4: lat is 'north', not a number"),
