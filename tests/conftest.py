@@ -1,6 +1,5 @@
 """Fixtures that several folders of tests share, and an environment that is the same on every machine."""
 
-import fcntl
 import gc
 import os
 import pickle
@@ -65,6 +64,7 @@ def browser():
 @pytest.fixture(scope="session")
 def make_once(tmp_path_factory):
     """Return what makes a thing in a folder of all workers, where no other worker has made it, and returns it."""
+    fcntl = pytest.importorskip("fcntl")
     base = tmp_path_factory.getbasetemp()
     shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
 

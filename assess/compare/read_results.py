@@ -66,7 +66,7 @@ def read_record(path: Path) -> tuple[past.PastRun, Mapping[str, Any], "Reader"]:
 
 def _load(path: Path, file: Path) -> tuple[bytes, datetime.datetime]:
     try:
-        if not file.is_file():
+        if not file.exists():
             if is_unfinished(file.parent, file.name):
                 raise InputError(explain_unfinished(file.parent))
             if path.is_dir():

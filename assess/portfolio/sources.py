@@ -82,7 +82,7 @@ def find_sources(source: Path, out: Path | None = None) -> tuple[Source, ...]:
                 path=plain_line(str(source)),
             )
         )
-    elif root.is_file():
+    elif root.exists():
         found = (_take_row(row, root.parent) for row in read_index(root))
     else:
         raise InputError(fill("{path} is neither a folder nor an index (.csv).", path=plain_line(str(source))))

@@ -96,19 +96,25 @@ def find_runs(names: Sequence[str], longest: int) -> list[list[int]]:
 
 def join_runs(names: Sequence[str], longest: int) -> list[str]:
     """Return names, each cut at `longest` characters, with each run of them as one text, ``25-07 to 25-09``."""
-    shown = [cut(one, longest) for one in names]
-    return [
-        _("{first} to {last}", first=shown[run[0]], last=shown[run[-1]]) if len(run) > 1 else shown[run[0]]
-        for run in find_runs(names, longest)
-    ]
+    return [_say_run(names, run, longest) for run in find_runs(names, longest)]
+
+
+def _say_run(names: Sequence[str], run: Sequence[int], longest: int) -> str:
+    first, last = (cut(names[run[end]], longest) for end in (0, -1))
+    return _("{first} to {last}", first=first, last=last) if len(run) > 1 else first
 
 
 def name_pieces(names: Sequence[str], most: int, longest: int = 20) -> str:
     """Return the first names of pieces, runs of them joined, and how many more pieces there are."""
-    shown = join_runs(names, longest)
-    more = sum(map(len, find_runs(names, longest)[most:]))
-    named = ", ".join(shown[:most])
+    runs = find_runs(names, longest)
+    named, more = ", ".join(_say_run(names, run, longest) for run in runs[:most]), sum(map(len, runs[most:]))
     return _("{names} and {more:,} more", names=named, more=more) if more else named
+
+
+def fit_pieces(names: Sequence[str], room: int) -> str:
+    """Return as many names of pieces as `room` characters hold, one at least, and how many more there are."""
+    texts = (name_pieces(names, most, room) for most in range(min(len(names), room // 3 + 1), 1, -1))  # "A, " each
+    return next((text for text in texts if len(text) <= room), name_pieces(names, 1, room))
 
 
 def _find_next(name: str) -> str:

@@ -134,6 +134,7 @@ def test_wrong_usage_exits_with_2(tmp_path):
         (["--scale", "0"], "--scale is 0.0, expected above 0 and at most 10"),
         (["--scale", "11"], "--scale is 11.0, expected above 0 and at most 10"),
         (["--scale", "nan"], "--scale is nan, expected above 0 and at most 10"),
+        (["--scale", "many"], "Invalid value for '--scale': 'many' is not a number; expected one such as 1.5 or 150%"),
         (["--verify", "none", "--ideal"], "--ideal is about the simulation: leave out --ideal or --verify none"),
         (["--verify", "maybe"], "--verify is 'maybe', expected one of: none, high, all"),
         (["--runs", "0"], "--runs is '0', expected 1 to 100,000, or auto"),
@@ -167,10 +168,11 @@ def test_scale_and_ideal_reach_the_settings(tmp_path, monkeypatch):
 
     monkeypatch.setattr("assess.pipeline.run.run", stop)
     path = write(tmp_path / "w.xlsx")
-    for words in ([], ["--scale", "0.9", "--ideal"], ["--verify", "high"]):
+    for words in ([], ["--scale", "0.9", "--ideal"], ["--verify", "high"], ["--scale", "150%"], ["--scale", " 60 % "]):
         assert run(app, ["run", str(path), "--out", str(tmp_path / "out"), *words]).exit_code == 2
     assert [(one.verify, one.scale, one.ideal, one.scale_motions) for one in given] == [
         ("all", 1.0, False, False), ("all", 0.9, True, False), ("high", 1.0, False, False),
+        ("all", 1.5, False, False), ("all", 0.6, False, False),
     ]  # fmt: skip
 
 

@@ -31,7 +31,7 @@ def test_what_is_no_file_is_refused_at_once(place):
         ("check", "{}.xlsx"), ("run", "{}.xlsx"), ("record", "{}.csv"), ("import", "{}.ifc", "-o", "new.xlsx"),
         ("import", "{}.json", "-o", "new.xlsx"), ("import", "{}.xlsx", "-o", "new.xlsx"),
         ("rock", "--breadth", 40, "--height", 180, "--record", "{}.csv"),
-        ("run", "w.xlsx", "--shakemap", "{}.xml"),
+        ("run", "w.xlsx", "--shakemap", "{}.xml"), ("compare", "{}.json", "w.json"), ("portfolio", "{}.csv"),
     ):  # fmt: skip
         for name in ("pipe", "zero"):
             assert SAID in error(run(*(str(word).format(name) for word in words))), words

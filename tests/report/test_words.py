@@ -62,10 +62,24 @@ def test_names_in_a_row_are_joined(names, runs):
     assert words.join_runs(names, 8) == runs
 
 
+def test_a_share_that_is_no_probability_is_rounded_alone():
+    """It has no class whose limit it would have to stay below, as a chance has."""
+    assert (words.deviation(0.02999999), words.percent(0.02999999)) == ("3.0 %", "2.999999 %")
+
+
 def test_pieces_that_are_not_named_are_counted_one_by_one():
     names = ["A1", "A2", "A3", "B1", "C1", "C2", "C3", "C4", "D1"]
     assert words.name_pieces(names, 2) == "A1 to A3, B1 and 5 more"
     assert words.name_pieces(names, 4) == "A1 to A3, B1, C1 to C4, D1"
+
+
+def test_as_many_pieces_are_named_as_there_is_room_for():
+    names = ["25-01", "25-02", "25-03", "25-07", "25-08", "25-09", "25-31"]
+    assert words.fit_pieces(names, 40) == "25-01 to 25-03, 25-07 to 25-09, 25-31"
+    assert words.fit_pieces(names, 28) == "25-01 to 25-03 and 4 more"
+    assert words.fit_pieces(names, 10) == "25-01 to 25-03 and 4 more"  # one at least
+    assert words.fit_pieces(["Bookcase by the window"], 10) == "Bookcase…"
+    assert words.fit_pieces([], 10) == ""
 
 
 def test_that_holds_beside_every_limit():

@@ -716,9 +716,11 @@ REFUSED: list[tuple[dict[str, Any], dict[str, Any]]] = [
 def test_a_number_that_the_program_refuses_shows_no_class(tmp_path: Path) -> None:
     """A date read out of 4/5 is a breadth of 450 m; metres below a header in cm are a needle; 25 of PFA is a percentage."""
     narrow = [{"type": "narrow", "breadth": 20, "width": 30, "height": 180}]
-    floors = [{"floor": str(at), "pfa_x": 0.5} | floor for at, (_, floor) in enumerate(REFUSED)]
-    items = [{"floor": str(at)} | item for at, (item, _) in enumerate(REFUSED)]
-    assert [row[5] for row in shown_rows(tmp_path, items, floors, narrow)] == ["check"] * len(REFUSED)
+    cases = [({}, {}), *REFUSED]
+    floors = [{"floor": str(at), "pfa_x": 0.5} | floor for at, (_, floor) in enumerate(cases)]
+    items = [{"floor": str(at)} | item for at, (item, _) in enumerate(cases)]
+    good, *others = (row[5] for row in shown_rows(tmp_path, items, floors, narrow))
+    assert (good, others) == ("▲ high", ["check"] * len(REFUSED))
 
 
 def breadths_and_widths(path: Path) -> Path:
@@ -742,9 +744,10 @@ def test_a_breadth_up_to_the_width_shows_its_class(tmp_path: Path) -> None:
 
 def test_whether_it_can_rock_rests_on_numbers_alone(tmp_path: Path) -> None:
     catalogue: Rows = [{"type": "light", "centre_of_gravity": 1}, {"type": "text", "centre_of_gravity": "40 %"}]
-    items: Rows = [{"centre_of_gravity": 0.6}, {"centre_of_gravity": "60"}, {"type": "light"}, {"type": "text"}]
-    shown = shown_rows(tmp_path, [{"breadth": 150, **item} for item in items], catalogue=catalogue)
-    assert [row[7] for row in shown] == ["check"] * 4
+    items: Rows = [{}, {"centre_of_gravity": 0.6}, {"centre_of_gravity": "60"}, {"type": "light"}, {"type": "text"}]
+    good, *others = shown_rows(tmp_path, [{"breadth": 150, **item} for item in items], catalogue=catalogue)
+    assert good[7] in ("yes", "no")
+    assert [row[7] for row in others] == ["check"] * 4
     for uncertainty in ("0,4", -1):
         assert shown_of(tmp_path, {"breadth": 150}, motion_uncertainty=uncertainty)[7] == "check"
 
@@ -757,9 +760,10 @@ def test_blank_looking_cells_are_blank(tmp_path: Path) -> None:
 
 
 def test_a_pfv_that_the_program_refuses_shows_no_class(tmp_path: Path) -> None:
-    floors = [{"floor": str(at), "pfa_x": 0.5, "pfv_x": pfv} for at, pfv in enumerate(("1,5", 0, -20, 2000))]
-    shown = shown_rows(tmp_path, [{"floor": str(at)} for at in range(4)], floors)
-    assert [row[1:] for row in shown] == [["check"] * 7] * 4
+    floors = [{"floor": str(at), "pfa_x": 0.5, "pfv_x": pfv} for at, pfv in enumerate((20, "1,5", 0, -20, 2000))]
+    good, *others = shown_rows(tmp_path, [{"floor": str(at)} for at in range(5)], floors)
+    assert good[1] == 0.5
+    assert [row[1:] for row in others] == [["check"] * 7] * 4
 
 
 # ---------------------------------------------------------------- more rows than prepared

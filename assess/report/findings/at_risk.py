@@ -28,10 +28,13 @@ from assess.report.findings.route_words import (
 from assess.results import ItemResult, Results
 from assess.route_results import RoomRow, RouteRow, RouteState, RouteTables
 
+LINE = 28
+"""Letters of what to fix or fill in for a route that the summary has room for."""
+
 
 @dataclass(frozen=True, slots=True)
 class RouteAtRisk:
-    """A route that is not open, the piece that most likely blocks it, and what to fix or fill in: "" where none.
+    """A route that is not open, the piece that most likely blocks it, and in short what to fix or fill in, if any.
 
     `risk` is the chosen one [-].
     """
@@ -72,7 +75,7 @@ def list_routes_at_risk(results: Results) -> list[RouteAtRisk]:
             one,
             routes.risk,
             "" if one.most_likely_piece is None or is_blocked_standing(one) else one.most_likely_piece.item,
-            _name_fixes(results, one) or say_missing(one.missing),
+            _name_fixes(results, one) or words.cut(say_missing(one.missing), LINE),
         )
         for one in found
     ]
@@ -80,7 +83,7 @@ def list_routes_at_risk(results: Results) -> list[RouteAtRisk]:
 
 def _name_fixes(results: Results, route: RouteRow) -> str:
     names = sorted((say_row(results.result(fix.item_index)) for fix in route.fixes), key=natural_key)
-    return ", ".join(words.join_runs(names, 60))
+    return words.fit_pieces(names, LINE)
 
 
 def say_row(one: ItemResult) -> str:
