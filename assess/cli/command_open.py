@@ -76,8 +76,8 @@ def command(
     code = find_language(language) if language else ""
     _check_packages()
     from assess.delivery.private_folder import private_folder
-    from assess.web.folders import PREFIX
     from assess.web.server import Place, Server, bind
+    from assess.web.sessions import PREFIX
 
     place = Place(host, port, tuple(allowed_host or ()), user_header or "", code)
     _check_place(place, path)

@@ -17,6 +17,7 @@ from assess.web.jobs import REPORT, Job
 from assess.web.request_errors import NOT_FOUND, UNUSABLE, RequestError
 from assess.web.safe_names import clean_name
 from assess.web.sessions import Session
+from assess.web.texts import PAGE
 
 if TYPE_CHECKING:
     from assess.web.book import Book
@@ -94,40 +95,32 @@ def edit(asked: Asked) -> Answer:
     edits = asked.body.get("edits")
     if not isinstance(edits, list):
         raise RequestError(fill("The request cannot be read."), UNUSABLE)
-    change = _named_book(asked).edit(_version(asked), edits, str(asked.body.get("label") or ""))
-    asked.note_edit(asked.session)
-    return _note_download(asked, change)
+    label = str(asked.body.get("label") or "")
+    return _change(asked, lambda book, version: book.edit(version, edits, label))
 
 
 def undo(asked: Asked) -> Answer:
     """Take back the last change."""
-    change = _named_book(asked).undo(_version(asked))
-    asked.note_edit(asked.session)
-    return _note_download(asked, change)
+    return _change(asked, lambda book, version: book.undo(version))
 
 
 def redo(asked: Asked) -> Answer:
     """Make a change that was taken back once more."""
-    change = _named_book(asked).redo(_version(asked))
-    asked.note_edit(asked.session)
-    return _note_download(asked, change)
+    return _change(asked, lambda book, version: book.redo(version))
 
 
-def _named_book(asked: Asked) -> "Book":
-    """Return the book that a change is for; VersionError where the page has another opening of it, or another book."""
+def _change(asked: Asked, change: "Callable[[Book, int], dict[str, Any]]") -> Answer:
+    """Change the workbook; VersionError where the page has another opening of it, or another book."""
     from assess.web.book import VersionError
 
-    book = asked.book
+    book, version = asked.book, asked.body.get("version")
     if asked.body.get("server") not in (None, book.opening):
         raise VersionError(book.state())
-    return book
-
-
-def _version(asked: Asked) -> int:
-    version = asked.body.get("version")
     if not isinstance(version, int) or isinstance(version, bool):
         raise RequestError(fill("The request does not name the version of the workbook."), UNUSABLE)
-    return version
+    answer = change(book, version)
+    asked.note_edit(asked.session)
+    return _note_download(asked, answer)
 
 
 def download(asked: Asked) -> Answer:
@@ -361,7 +354,6 @@ def describe_texts(asked: Asked) -> Answer:
 # ---------------------------------------------------------------- files of the page
 
 
-PAGE = Path(__file__).with_name("page")
 TYPES = {
     ".html": "text/html",
     ".css": "text/css",

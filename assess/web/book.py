@@ -11,12 +11,13 @@ from pathlib import Path
 from threading import RLock
 from typing import Any, Literal, Self
 
-from assess.errors import AssessError, InputError, OutputError, WorkbookError
+from assess.errors import AssessError, OutputError, WorkbookError
 from assess.i18n import fill
 from assess.web.cell_edits import CellPlace, Contents, EditsRefused, History, Locks, Step, say, take_edits
 from assess.web.columns import PageSheet, find_sheets, find_units, show
 from assess.web.disk_file import ChangedOutsideError, DiskFile, find_hash
 from assess.web.named_files import FILES, add_file, list_missing
+from assess.web.request_errors import CONFLICT, RequestError
 from assess.web.snapshot import Snapshot
 from assess.web.stored_values import LiveRows, find_live, write_changes
 from assess.workbook.held import HeldSheets
@@ -26,12 +27,12 @@ from assess.workbook.read import hold_sheets, parse_held
 __all__ = ["Book", "ChangedOutsideError", "EditsRefused", "Snapshot", "VersionError"]
 
 
-class VersionError(InputError):
+class VersionError(RequestError):
     """The book has another version than the one that was to be changed; `state` is its state."""
 
     def __init__(self, state: dict[str, Any]) -> None:
         self.state = state
-        super().__init__(fill("the workbook was changed meanwhile: its changes have to be read first."))
+        super().__init__(fill("The workbook was changed elsewhere."), CONFLICT, more={"state": state})
 
 
 class Book:

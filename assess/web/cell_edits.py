@@ -7,6 +7,7 @@ from typing import Any
 from assess.errors import InputError, WorkbookError
 from assess.i18n import Text, fill, gettext, nfill
 from assess.web.columns import PageColumn, PageSheet
+from assess.web.request_errors import UNUSABLE, RequestError
 from assess.workbook.habits import CellError
 from assess.workbook.held import HeldCells, HeldSheets
 from assess.workbook.open import MAX_COLUMNS, MAX_ROWS
@@ -74,7 +75,7 @@ Refused = list[list[Any]]
 """Sheet, row, column of each cell that is refused, and why."""
 
 
-class EditsRefused(InputError):  # noqa: N818 - what happened, as callers say it
+class EditsRefused(RequestError):  # noqa: N818 - what happened, as callers say it
     """Some cells cannot be edited as asked; nothing has changed. `refused` names each with the reason."""
 
     def __init__(self, refused: Refused) -> None:
@@ -83,7 +84,7 @@ class EditsRefused(InputError):  # noqa: N818 - what happened, as callers say it
             "{n:,} cell cannot be changed: {why}", "{n:,} cells cannot be changed: {why}",
             len(refused), why=refused[0][3],
         )  # fmt: skip
-        super().__init__(message)
+        super().__init__(message, UNUSABLE, more={"refused": refused})
 
 
 @dataclass(slots=True)

@@ -11,8 +11,9 @@ from pathlib import Path
 
 from assess.delivery.disk import flush_folder, write_through
 from assess.delivery.stages import NEW, staging
-from assess.errors import InputError, OutputError
+from assess.errors import OutputError
 from assess.i18n import fill
+from assess.web.request_errors import CONFLICT, RequestError
 from assess.workbook.open import read_file
 
 IN_USE = frozenset((errno.EACCES, errno.EBUSY, errno.ETXTBSY))
@@ -20,13 +21,12 @@ IN_USE = frozenset((errno.EACCES, errno.EBUSY, errno.ETXTBSY))
 FULL = frozenset((errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC)))
 
 
-class ChangedOutsideError(InputError):
+class ChangedOutsideError(RequestError):
     """The file was changed by another program since it was read; it is left as it is."""
 
     def __init__(self, path: Path) -> None:
-        super().__init__(
-            fill("{name} was changed by another program: read it again, or download your changes.", name=path.name)
-        )
+        text = fill("{name} was changed by another program: read it again, or download your changes.", name=path.name)
+        super().__init__(text, CONFLICT)
 
 
 def find_hash(data: bytes) -> str:

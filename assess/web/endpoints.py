@@ -5,7 +5,7 @@ import logging
 import math
 import shutil
 import time
-from collections.abc import Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -14,7 +14,7 @@ from urllib.parse import quote
 
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
-from starlette.requests import Request
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import Response
 from starlette.routing import Route
 
@@ -22,12 +22,11 @@ from assess.errors import AssessError
 from assess.i18n import fill, load_catalogue, speaking
 from assess.web import answers
 from assess.web.answers import Answer, Asked, Content
-from assess.web.guard import MODELS, MOST_MODEL, SESSION
+from assess.web.guard import MODELS, MOST_MODEL, MOST_SKIPPED, SESSION, skip_body
 from assess.web.importing import SOURCE
-from assess.web.request_errors import NOT_FOUND, RequestError, describe_fault
+from assess.web.request_errors import BAD_REQUEST, NOT_FOUND, TOO_LARGE, RequestError, describe_fault
 from assess.web.sessions import Session, check_share
 from assess.web.texts import COOKIE, choose_language
-from assess.web.uploads import check_size, parse_body, read_body, save_body, skip_body
 
 MOST_JSON = 32 * 2**20
 """Bytes of a request in JSON: a whole sheet that is pasted."""
@@ -73,56 +72,76 @@ SEND: dict[str, Handler] = {"/api/upload": answers.upload, "/api/file": answers.
 
 
 NoteEdit = Callable[[Session], None]
+Take = Callable[[Request, Asked], Awaitable[Asked]]
+"""Takes in the body of a request; RequestError or OSError where it cannot be taken."""
 
 
 def build_application(note_edit: NoteEdit) -> Starlette:
     """Return the application; `note_edit` is called after every change of a workbook."""
-    routes = [Route(path, partial(_read, note_edit, handler), methods=["GET"]) for path, handler in READ.items()]
-    routes += [Route(path, partial(_change, note_edit, handler), methods=["POST"]) for path, handler in CHANGE.items()]
-    routes += [Route(path, partial(_send, note_edit, handler), methods=["POST"]) for path, handler in SEND.items()]
-    routes += [Route(MODELS, partial(_receive, note_edit, answers.import_model), methods=["POST"])]
+
+    def route(path: str, method: str, take: Take, handler: Handler) -> Route:
+        async def serve(request: Request) -> Response:
+            asked, fault = _ask(request, note_edit), None
+            try:
+                asked = await take(request, asked)
+            except (RequestError, OSError) as error:
+                fault = error
+            return await run_in_threadpool(_carry_out, handler, asked, fault)
+
+        return Route(path, serve, methods=[method])
+
+    routes = [route(path, "GET", _take_nothing, handler) for path, handler in READ.items()]
+    routes += [route(path, "POST", _take_json, handler) for path, handler in CHANGE.items()]
+    routes += [route(path, "POST", _take_file, handler) for path, handler in SEND.items()]
+    routes += [route(MODELS, "POST", _take_model, answers.import_model)]
     routes += [Route("/{name:path}", _give_file, methods=["GET"])]
     return Starlette(routes=routes)
 
 
-async def _read(note_edit: NoteEdit, handler: Handler, request: Request) -> Response:
-    return await run_in_threadpool(_carry_out, handler, _ask(request, note_edit))
+# ---------------------------------------------------------------- bodies
 
 
-async def _change(note_edit: NoteEdit, handler: Handler, request: Request) -> Response:
+async def _take_nothing(_request: Request, asked: Asked) -> Asked:
+    return asked
+
+
+async def _take_json(request: Request, asked: Asked) -> Asked:
+    return replace(asked, body=parse_body(await _read_body(request, MOST_JSON)))
+
+
+async def _take_file(request: Request, asked: Asked) -> Asked:
+    return replace(asked, data=await _read_body(request, MOST_FILE))
+
+
+async def _read_body(request: Request, most: int) -> bytes:
+    return b"".join([part async for part in _stream(request, most, partial(_check_size, most))])
+
+
+async def _take_model(request: Request, asked: Asked) -> Asked:
+    """Save a file that is too large for the memory in a folder of its own, one at a time."""
+    session, place = asked.session, object()
     try:
-        body = parse_body(await read_body(request, MOST_JSON))
-    except RequestError as error:
-        return await run_in_threadpool(_carry_out, _fail(error), _ask(request, note_edit))
-    return await run_in_threadpool(_carry_out, handler, replace(_ask(request, note_edit), body=body))
+        session.sending_slots.take(place)
+        path, room = await run_in_threadpool(_make_room, session, request)
+    except (RequestError, OSError):
+        session.sending_slots.leave(place)
+        await skip_body(request.receive)
+        raise
 
+    def check(size: int) -> None:
+        _check_size(MOST_MODEL, size)
+        check_share(size, room, session.limits)
 
-async def _send(note_edit: NoteEdit, handler: Handler, request: Request) -> Response:
     try:
-        data = await read_body(request, MOST_FILE)
-    except RequestError as error:
-        return await run_in_threadpool(_carry_out, _fail(error), _ask(request, note_edit))
-    return await run_in_threadpool(_carry_out, handler, replace(_ask(request, note_edit), data=data))
-
-
-async def _receive(note_edit: NoteEdit, handler: Handler, request: Request) -> Response:
-    """Have a handler take a file that is too large for the memory, in a folder of its own; one file at a time."""
-    asked = _ask(request, note_edit)
-    slots, place = asked.session.sending_slots, object()
-    try:
-        slots.take(place)
-        path, room = await run_in_threadpool(_make_room, asked.session, request)
-    except (RequestError, OSError) as error:
-        slots.leave(place)
-        await skip_body(request)
-        return await run_in_threadpool(_carry_out, _fail(error), asked)
-    try:
-        await _save(asked.session, request, path, room)
-    except (RequestError, OSError) as error:
-        return await run_in_threadpool(_carry_out, _fail(error), asked)
+        with path.open("xb") as file:
+            async for part in _stream(request, min(room, MOST_MODEL), check):
+                await run_in_threadpool(file.write, part)
+    except BaseException:  # what is too large, or breaks off, leaves nothing
+        shutil.rmtree(path.parent, ignore_errors=True)
+        raise
     finally:
-        slots.leave(place)
-    return await run_in_threadpool(_carry_out, handler, replace(asked, file=path))
+        session.sending_slots.leave(place)
+    return replace(asked, file=path)
 
 
 def _make_room(session: Session, request: Request) -> tuple[Path, int]:
@@ -132,22 +151,52 @@ def _make_room(session: Session, request: Request) -> tuple[Path, int]:
     return session.make_import_folder() / SOURCE, room
 
 
-async def _save(session: Session, request: Request, path: Path, room: int) -> None:
-    """Save a body; what is too large, or breaks off, leaves nothing."""
+async def _stream(request: Request, most: int, check: Callable[[int], None]) -> AsyncIterator[bytes]:
+    """Yield the body of a request in parts, up to `most` bytes; then `check` its size.
+
+    What is too large is read to its end, so that the browser gets to the answer. Raises RequestError if it breaks off.
+    """
+    size = 0
     try:
-        size = await save_body(request, path, min(room, MOST_MODEL))
-        check_size(size, MOST_MODEL)
-        check_share(size, room, session.limits)
-    except BaseException:
-        shutil.rmtree(path.parent, ignore_errors=True)
-        raise
+        async for part in request.stream():
+            size += len(part)
+            if size > MOST_SKIPPED:
+                break
+            if size <= most:
+                yield part
+    except ClientDisconnect:
+        raise RequestError(fill("The request broke off."), BAD_REQUEST) from None
+    check(size)
 
 
-def _fail(error: RequestError | OSError) -> Handler:
-    def refuse(_asked: Asked) -> Answer:
-        raise error
+def _check_size(most: int, size: int) -> None:
+    if size > most:
+        raise RequestError(fill("It is larger than {most:.0f} MB.", most=most / 2**20), TOO_LARGE)
 
-    return refuse
+
+def parse_body(data: bytes) -> dict[str, Any]:
+    """Return a JSON body, {} for an empty one.
+
+    Raises RequestError if it is no JSON object, or holds what no workbook can: numbers that are not finite, halves of
+    characters.
+    """
+    if not data:
+        return {}
+    try:
+        found = json.loads(data, parse_constant=_refuse_constant)
+        json.dumps(found, ensure_ascii=False, allow_nan=False).encode()
+    except (ValueError, RecursionError):  # also UnicodeError, and a number such as 1e999
+        found = None
+    if not isinstance(found, dict):
+        raise RequestError(fill("The request cannot be read."), BAD_REQUEST)
+    return found
+
+
+def _refuse_constant(name: str) -> None:
+    raise ValueError(name)
+
+
+# ---------------------------------------------------------------- answers
 
 
 async def _give_file(request: Request) -> Response:
@@ -167,14 +216,15 @@ def _ask(request: Request, note_edit: NoteEdit) -> Asked:
     return Asked(session, {**request.query_params, **request.path_params}, language=language, note_edit=note_edit)
 
 
-def _carry_out(handler: Handler, asked: Asked) -> Response:
+def _carry_out(handler: Handler, asked: Asked, fault: Exception | None) -> Response:
     with speaking(load_catalogue(asked.language)):
         try:
+            if fault is not None:
+                raise fault
             return _respond(handler(asked))
         except Exception as error:
-            if isinstance(error, AssessError | OSError):
-                return _refuse(error)
-            LOG.exception("a request failed")
+            if not isinstance(error, AssessError | OSError):
+                LOG.exception("a request failed")
             return _refuse(error)
 
 

@@ -19,9 +19,9 @@ from assess.errors import AssessError, CancelledError
 from assess.i18n import Text, fill, gettext
 from assess.progress import Progress, Report
 from assess.web.jobs import STAGES, Slots
-from assess.web.request_errors import CONFLICT, NOT_FOUND, UNUSABLE, RequestError, describe_fault
+from assess.web.request_errors import CONFLICT, NOT_FOUND, RequestError, describe_fault
 from assess.web.safe_names import ENDINGS, make_safe
-from assess.web.starting import Made
+from assess.web.starting import Made, choose
 
 if TYPE_CHECKING:
     from assess.bim.import_workbook import ImportedBuilding
@@ -43,12 +43,7 @@ ROUTES: tuple[Routes, ...] = ("none", "draft")
 
 def choose_routes(text: str) -> Routes:
     """Return what is asked for of routes; RequestError where there is no such choice."""
-    if (text or ROUTES[0]) not in ROUTES:
-        known = ", ".join(ROUTES)
-        raise RequestError(
-            fill("{name} is {value!r}, expected one of: {known}", name="routes", value=text[:40], known=known), UNUSABLE
-        )
-    return cast(Routes, text or ROUTES[0])
+    return cast(Routes, choose({"routes": text}, "routes", ROUTES))
 
 
 def read(path: Path, name: str, progress: Progress, routes: Routes) -> "ImportedBuilding":

@@ -22,6 +22,7 @@ from assess.results import Results
 from assess.risk import RiskClass
 from assess.schedule_results import State
 from assess.settings import Settings, count_processors
+from assess.web.request_errors import describe_problem
 
 ORDER, INPUT, OUT, SUMMARY = "job.json", "input", "out", "summary.json"
 PLAIN = frozenset(("json", "csv", "xlsx"))
@@ -46,7 +47,14 @@ def main() -> None:
         try:
             tell({"state": "done", **assess_workbook(folder, order, tell)})
         except AssessError as error:
-            tell({"state": "failed", "message": gettext(error.message), "problems": _list_problems(error)})
+            problems = error.problems if isinstance(error, WorkbookError) else ()
+            tell(
+                {
+                    "state": "failed",
+                    "message": gettext(error.message),
+                    "problems": list(map(describe_problem, problems)),
+                }
+            )
         except OSError as error:
             tell({"state": "failed", "message": error.strerror or type(error).__name__, "problems": []})
     os._exit(0)  # without waiting for anything that is still computed aside
@@ -93,7 +101,7 @@ def assess_workbook(folder: Path, order: dict[str, Any], tell: Tell) -> dict[str
     except PdfUnavailableError as error:  # all other formats are there
         message = gettext(error.message)
     (folder / SUMMARY).write_text(json.dumps(summarise(results)), encoding="utf-8")
-    return {"message": message, "problems": [_describe(one) for one in results.problem_rows]}
+    return {"message": message, "problems": [describe_problem(one) for one in results.problem_rows]}
 
 
 class _Listener:
@@ -110,15 +118,6 @@ class _Listener:
         self._tell(
             {"stage": report.stage, "share": report.share, "detail": report.detail, "seconds_left": report.seconds_left}
         )
-
-
-def _list_problems(error: AssessError) -> list[dict[str, str]]:
-    return [_describe(one) for one in error.problems] if isinstance(error, WorkbookError) else []
-
-
-def _describe(problem: Any) -> dict[str, str]:
-    words = {"message": gettext(problem.message), "fix": gettext(problem.fix)}
-    return {"severity": problem.severity, "sheet": problem.sheet, "cell": problem.cell, **words}
 
 
 def summarise(results: Results) -> dict[str, Any]:

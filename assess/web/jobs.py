@@ -1,4 +1,4 @@
-"""The simulation of a session: a process of its own, how far it is, and what it leaves."""
+"""The simulation of a session: what it takes from the workbook, a process of its own, how far it is, what it leaves."""
 
 import io
 import json
@@ -10,19 +10,23 @@ import subprocess
 import sys
 import threading
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from contextvars import copy_context
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from assess.i18n import Text, fill, gettext
-from assess.web.job_inputs import list_stale, prepare
-from assess.web.job_process import INPUT, OUT, SUMMARY
-from assess.web.request_errors import CONFLICT, NOT_FOUND, TOO_MANY, RequestError
+from assess.errors import WorkbookError
+from assess.i18n import Text, fill, gettext, spoken
+from assess.model import Inventory
+from assess.report_formats import FILES
+from assess.settings import change_settings
+from assess.web.job_process import INPUT, ORDER, OUT, SUMMARY
+from assess.web.named_files import list_present
+from assess.web.request_errors import NOT_FOUND, TOO_MANY, UNUSABLE, RequestError
+from assess.workbook.records import find_place
 
 if TYPE_CHECKING:
-    from assess.model import Inventory
     from assess.web.book import Book
 
 PATIENCE = 0.5
@@ -69,23 +73,6 @@ class Slots:
             self._running.discard(job)
 
 
-@dataclass(slots=True)
-class _Progress:
-    state: str = "running"
-    stage: str = ""
-    detail: str = ""
-    share: float = 0.0
-    seconds_left: float | None = None
-    message: str = ""
-    problems: list[dict[str, Any]] = field(default_factory=list)
-
-    def take(self, said: Mapping[str, Any]) -> None:
-        """Take in a line of the process; what it does not mention stays."""
-        for name in ("state", "stage", "detail", "share", "seconds_left", "message", "problems"):
-            if name in said:
-                setattr(self, name, said[name])
-
-
 class Job:
     """One simulation of one version of a workbook.
 
@@ -106,7 +93,10 @@ class Job:
     def __init__(self, book: "Book", body: Mapping[str, Any], parent: Path, slots: Slots) -> None:
         self.id, self._slots, self._lock = secrets.token_hex(8), slots, threading.RLock()
         self._folder = parent / f"job-{self.id}"
-        self._progress, self._seen = _Progress(), _Seen()
+        self._now: dict[str, Any] = {
+            "state": "running", "stage": "", "detail": "", "share": 0.0, "seconds_left": None, "message": "",
+            "problems": [],
+        }  # fmt: skip
         slots.take(self)
         try:
             self._folder.mkdir(mode=0o700)
@@ -122,7 +112,7 @@ class Job:
     @property
     def is_running(self) -> bool:
         """Whether it has not ended yet."""
-        return self._progress.state == "running"
+        return bool(self._now["state"] == "running")
 
     # ------------------------------------------------------------ its course
 
@@ -136,7 +126,7 @@ class Job:
             if "state" in said:
                 last = said
             elif self.is_running:
-                self._progress.take(said)
+                self._now.update(said)
         self._process.wait()
         for stream in (self._process.stdin, self._process.stdout):
             if stream is not None:
@@ -144,28 +134,25 @@ class Job:
         self._slots.leave(self)
         with self._lock:
             if self.is_running:
-                self._progress.take(last)
-            self._clean(is_done=self._progress.state == "done")
+                self._now.update(last)
+            self._clean()
 
-    def _clean(self, *, is_done: bool) -> None:
+    def _clean(self) -> None:
         """Remove all that is no result; what a process wrote that broke down is shown in the window of the server."""
-        if self._progress.state == "failed" and not self._progress.problems and (said := self._read_errors()):
-            LOG.error("a simulation ended with:\n%s", said)
-        for name in (TEMPORARY, INPUT) if is_done else ("",):
+        if self._now["state"] == "failed" and not self._now["problems"]:
+            with suppress(OSError):
+                said = (self._folder / ERRORS).read_text(encoding="utf-8", errors="replace")[-MOST_SHOWN:]
+                if said:
+                    LOG.error("a simulation ended with:\n%s", said)
+        for name in (TEMPORARY, INPUT) if self._now["state"] == "done" else ("",):
             shutil.rmtree(self._folder / name, ignore_errors=True)
-
-    def _read_errors(self) -> str:
-        try:
-            return (self._folder / ERRORS).read_text(encoding="utf-8", errors="replace")[-MOST_SHOWN:]
-        except OSError:
-            return ""
 
     def cancel(self) -> None:
         """End it at once and remove what it has written."""
         with self._lock:
             if not self.is_running:
                 return
-            self._progress.state = "cancelled"
+            self._now["state"] = "cancelled"
         self._process.terminate()
         try:
             self._process.wait(PATIENCE)
@@ -184,35 +171,35 @@ class Job:
     def summarise(self) -> dict[str, Any]:
         """Return what the page shows of it wherever it is."""
         with self._lock:
-            now, version = self._progress, self._order["version"]
-            label = gettext(STAGES.get(now.stage, now.stage.capitalize()))
-            return {"id": self.id, "state": now.state, "label": label, "share": now.share, "version": version}
+            stage = self._now["stage"]
+            label = gettext(STAGES.get(stage, stage.capitalize()))
+            version = self._order["version"]
+            return {"id": self.id, "label": label, "version": version, **{k: self._now[k] for k in ("state", "share")}}
 
     def describe(self, book: "Book | None") -> dict[str, Any]:
         """Return all that the page shows; `book` is the workbook as it is now."""
         with self._lock:
-            now, order = self._progress, self._order
+            order, found = self._order, {"items": None, "before_after": None}
             is_old = book is None or book.version != order["version"]
+            if self._now["state"] == "done":
+                found = json.loads((self._folder / SUMMARY).read_text(encoding="utf-8"))
             return {
+                **self._now,
                 **self.summarise(),
-                "stage": now.stage,
-                "detail": now.detail,
-                "seconds_left": now.seconds_left,
                 "is_old": is_old,
-                "stale": self._seen.list_stale(self._inventory, book) if is_old and book else [],
-                "message": now.message,
-                "problems": now.problems,
+                "stale": self._find_stale(book) if is_old and book else [],
                 "formats": order["formats"],
                 "settings": order["settings"],
                 "files": self._list_files(),
-                **self._read_summary(),
+                **found,
             }
 
-    def _read_summary(self) -> dict[str, Any]:
-        if self._progress.state != "done":
-            return {"items": None, "before_after": None}
-        found: dict[str, Any] = json.loads((self._folder / SUMMARY).read_text(encoding="utf-8"))
-        return found
+    def _find_stale(self, book: "Book") -> list[int]:
+        """Return the rows that changed since, found once for each version of the workbook."""
+        from assess.web.evaluation import keep
+
+        now = book.snapshot()
+        return keep(now, ("stale", self.id), lambda: list_stale(self._inventory, now.inventory))
 
     def _list_files(self) -> list[dict[str, Any]]:
         paths = self._list_paths()
@@ -220,7 +207,7 @@ class Job:
         return [*listed, {"name": ARCHIVE, "bytes": sum(path.stat().st_size for path in paths)}] if listed else []
 
     def _list_paths(self) -> Sequence[Path]:
-        if self._progress.state != "done":
+        if self._now["state"] != "done":
             return ()
         return sorted(path for path in (self._folder / OUT).iterdir() if path.is_file() and path.name[0] != ".")
 
@@ -237,25 +224,6 @@ class Job:
         if name not in paths:
             raise RequestError(fill("The simulation has no file of this name."), NOT_FOUND)
         return paths[name]
-
-
-class _Seen:
-    """The rows that changed since the simulation, found once for each version of the workbook."""
-
-    def __init__(self) -> None:
-        self._version, self._rows = -1, list[int]()
-
-    def list_stale(self, before: "Inventory", book: "Book") -> list[int]:
-        snapshot = book.snapshot()
-        if snapshot.version != self._version:
-            self._version, self._rows = snapshot.version, list_stale(before, snapshot.inventory)
-        return self._rows
-
-
-def check_free(job: Job | None) -> None:
-    """Raise RequestError while a job runs."""
-    if job is not None and job.is_running:
-        raise RequestError(fill("A simulation is running already."), CONFLICT)
 
 
 _OWN_GROUP: int = getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0)
@@ -275,3 +243,109 @@ def _start(folder: Path) -> "subprocess.Popen[bytes]":
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=errors, cwd=folder, creationflags=_OWN_GROUP,
             env={**os.environ, **{name: str(value) for name, value in variables.items()}}, start_new_session=True,
         )  # fmt: skip
+
+
+# ---------------------------------------------------------------- what it takes from the workbook
+
+FORMATS = tuple(name for name in FILES if name not in ("npz", "parquet"))
+"""Files that the page offers; results.json is always written."""
+OPTIONS = ("verify", "runs", "seed", "scale", "scenario")
+"""Settings that the page may choose; fitted models and templates are code, and never come from a page."""
+
+ITEM_INPUTS = (
+    "item", "floor", "breadth", "width", "height", "centre_of_gravity", "weight", "bracket_height", "bracket_capacity",
+    "axis", "anchored", "friction", "angle_deg", "quantity",
+)  # fmt: skip
+"""Fields of a piece by which its simulated chance, whether it counts as anchored, or how many it is, is found."""
+BUILDING_INPUTS = (
+    "storeys", "height", "period", "structure", "azimuth_deg", "scenario_kind", "class_by", "ground_pga", "ground_pgv",
+    "sds", "shaking", "friction", "restitution", "motion_uncertainty", "piece_uncertainty",
+)  # fmt: skip
+"""Fields of the building by which the chances of all pieces are found."""
+FLOOR_INPUTS = ("floor", "elevation", "pfa", "pfv", "records")
+"""Likewise of a floor; those of one floor serve the floors between, so that a change counts for all."""
+
+
+def read_changes(body: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the settings that a request changes; SettingsError where one cannot be used."""
+    given = {name: body[name] for name in OPTIONS if body.get(name) not in (None, "")}
+    first = body.get("first") or 0
+    if isinstance(first, bool) or not isinstance(first, int) or first < 0:
+        raise RequestError(fill("first is {first}, expected a whole number, 0 or above.", first=str(first)), UNUSABLE)
+    changes = given | ({"anchor": f"first:{first}"} if first else {})
+    change_settings(None, changes)
+    return changes
+
+
+def read_formats(body: Mapping[str, Any], folder: Path) -> list[str]:
+    """Return the formats of a request.
+
+    Raises InputError if one is unknown, or needs a package that is not installed.
+    """
+    from assess.report import check_folder
+
+    given = body.get("formats", ["html"])
+    wanted = [str(one) for one in given] if isinstance(given, list) else [str(given)]
+    unknown = [one for one in wanted if one not in FORMATS] or ([] if wanted else [""])
+    if unknown:
+        known = ", ".join(FORMATS)
+        text = fill("formats: {name!r} is unknown, expected some of: {known}", name=unknown[0][:40], known=known)
+        raise RequestError(text, UNUSABLE)
+    check_folder(folder, wanted)
+    return list(dict.fromkeys(wanted))
+
+
+def prepare(book: "Book", body: Mapping[str, Any], folder: Path) -> tuple[dict[str, Any], Inventory]:
+    """Write the order of a job and a copy of the workbook with the files that it names.
+
+    Raises InputError if an option cannot be used, or the workbook has errors: as `assess run`, which works with whole
+    workbooks only.
+
+    Returns
+    -------
+    order : dict
+        What the process is told, with the version of the workbook.
+    inventory : Inventory
+        What the workbook holds.
+    """
+    changes, formats = read_changes(body), read_formats(body, folder / OUT)
+    snapshot, data = book.snapshot(), book.write()
+    while book.version != snapshot.version:
+        snapshot, data = book.snapshot(), book.write()
+    if any(one.severity == "error" for one in snapshot.problems):
+        raise WorkbookError(snapshot.problems, snapshot.inventory.language)
+    source = folder / INPUT
+    source.mkdir(parents=True)
+    (source / book.name).write_bytes(data)
+    for name, path in list_present(snapshot.cells, snapshot.sheets, snapshot.files).items():
+        target = find_place(name, source)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(path, target)
+    order = {"workbook": book.name, "version": snapshot.version, "settings": changes, "formats": formats}
+    (folder / ORDER).write_text(json.dumps({**order, "language": spoken().code}), encoding="utf-8")
+    return order, snapshot.inventory
+
+
+def list_stale(before: Inventory, now: Inventory) -> list[int]:
+    """Return the rows of furniture whose chance or number may be another one than when they were simulated.
+
+    Among them are rows that are gone, or now have an error.
+    """
+    known, left = {one.row: one for one in before.items}, {one.row for one in now.items}
+    is_other = not (
+        _is_alike(before.building, now.building, BUILDING_INPUTS)
+        and before.hazard == now.hazard
+        and before.site_ground == now.site_ground
+        and len(before.floors) == len(now.floors)
+        and all(_is_alike(one, other, FLOOR_INPUTS) for one, other in zip(before.floors, now.floors, strict=True))
+    )
+    changed = [
+        one.row
+        for one in now.items
+        if is_other or one.row not in known or not _is_alike(known[one.row], one, ITEM_INPUTS)
+    ]
+    return [*changed, *(row for row in known if row not in left)]
+
+
+def _is_alike(one: object, other: object, fields: Iterable[str]) -> bool:
+    return all(getattr(one, name) == getattr(other, name) for name in fields)

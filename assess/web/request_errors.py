@@ -39,9 +39,6 @@ def describe_fault(error: Exception) -> tuple[int, dict[str, Any]]:
     if isinstance(error, WorkbookError):
         message = fill("The workbook cannot be used.")
         return UNUSABLE, {**_say(message), "problems": [describe_problem(one) for one in error.problems[:MOST]]}
-    found = _find_book_error(error)
-    if found is not None:
-        return found
     if isinstance(error, OutputError | CancelledError):
         return CONFLICT, _say(error.message)
     if isinstance(error, AssessError):
@@ -49,18 +46,6 @@ def describe_fault(error: Exception) -> tuple[int, dict[str, Any]]:
     if isinstance(error, OSError) and error.strerror:
         return CONFLICT, _say(fill("A file cannot be used: {why}.", why=error.strerror))
     return BROKEN, _say(fill("Something went wrong here; nothing was changed. The window of assess shows more."))
-
-
-def _find_book_error(error: Exception) -> tuple[int, dict[str, Any]] | None:
-    from assess.web.book import ChangedOutsideError, EditsRefused, VersionError
-
-    if isinstance(error, EditsRefused):
-        return UNUSABLE, {**_say(error.message), "refused": error.refused}
-    if isinstance(error, VersionError):
-        return CONFLICT, {**_say(fill("The workbook was changed elsewhere.")), "state": error.state}
-    if isinstance(error, ChangedOutsideError):
-        return CONFLICT, _say(error.message)
-    return None
 
 
 def _say(message: str, fix: str = "") -> dict[str, Any]:

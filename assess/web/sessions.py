@@ -5,6 +5,8 @@ Behind a proxy that authenticates, every user whom the proxy names has a session
 """
 
 import hmac
+import json
+import os
 import secrets
 import shutil
 import tempfile
@@ -14,13 +16,15 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
+from starlette.requests import HTTPConnection
+
+from assess.delivery.private_folder import is_left, is_ours
 from assess.errors import AssessError
 from assess.i18n import fill
-from assess.web.folders import NOTE, PREFIX, find_other, note_opened
-from assess.web.jobs import Job, Slots, check_free
-from assess.web.request_errors import NOT_FOUND, TOO_MANY, RequestError
+from assess.web.jobs import Job, Slots
+from assess.web.request_errors import CONFLICT, NOT_FOUND, TOO_MANY, RequestError
 from assess.web.safe_names import make_safe
 
 if TYPE_CHECKING:
@@ -35,9 +39,10 @@ COOKIE = "assess"
 """Beginning of the name of the cookie; browsers send cookies of a host to all its ports, so its end is the port."""
 LONGEST_USER = 200
 """Characters of a name that a proxy may give."""
-
-Headers = Mapping[bytes, Sequence[bytes]]
-"""What a request says in its headers, by their names in small letters."""
+PREFIX = "assess-open-"
+"""Beginning of the name of the folder of a server."""
+NOTE = "opened.json"
+"""In the folder of a session: which workbook it has open, and the process; other servers of the same user read it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,8 +151,10 @@ class Session:
         """Tell other servers of this user which workbook is open, and the user where one of them has it open too."""
         if book.path is None or not self.folder.parent.name.startswith(PREFIX):
             return
-        other = find_other(self.folder, book.path)
-        note_opened(self.folder, book.path)
+        other = _find_other(self.folder, book.path)
+        note = json.dumps({"path": str(book.path.resolve()), "pid": os.getpid()})
+        with suppress(OSError):  # it only serves a warning
+            (self.folder / NOTE).write_text(note, encoding="utf-8")
         if other is not None:
             book.remark = fill(
                 "{name} is also open in another window that assess started (process {pid}). Use only one of them, so "
@@ -219,7 +226,8 @@ class Session:
     def simulate(self, body: Mapping[str, Any]) -> Job:
         """Start a simulation of the open workbook; the results of an earlier one are removed."""
         with self.lock:
-            check_free(self.job)
+            if self.job is not None and self.job.is_running:
+                raise RequestError(fill("A simulation is running already."), CONFLICT)
             if self.book is None:
                 raise RequestError(fill("No workbook is open."), NOT_FOUND)
             self.check_room(0)
@@ -255,35 +263,20 @@ class Session:
         shutil.rmtree(self.folder, ignore_errors=True)
 
 
-@dataclass(frozen=True, slots=True)
-class Visit:
-    """What decides who a request is from."""
+def _find_other(session: Path, workbook: Path) -> int | None:
+    """Return the process of another running server of this user that has a workbook open, None where there is none."""
+    for note in session.parent.parent.glob(f"{PREFIX}*/*/{NOTE}"):
+        with suppress(OSError, ValueError, KeyError, TypeError):
+            folder = note.parent.parent
+            if folder == session.parent or folder.is_symlink() or not is_ours(folder):
+                continue
+            found = json.loads(note.read_text(encoding="utf-8"))
+            if Path(found["path"]).samefile(workbook) and not is_left(folder):
+                return int(found["pid"])
+    return None
 
-    path: str
-    query: Mapping[str, str]
-    cookies: Mapping[str, str]
-    headers: Headers
 
-
-class Keys(Protocol):
-    """Who may come in."""
-
-    cookie: str
-
-    def find(self, visit: Visit) -> Session | None:
-        """Return the session of a request; None: it has none."""
-
-    def admit(self, visit: Visit) -> Session | None:
-        """Return the session of a request that comes in for the first time and may; None: it may not.
-
-        Raises RequestError if there is no room for another session.
-        """
-
-    def sessions(self) -> Sequence[Session]:
-        """Return all sessions."""
-
-    def expire(self, now: float) -> None:
-        """End the sessions whose users have asked for nothing for too long."""
+# ---------------------------------------------------------------- who may come in
 
 
 def _is_same(one: str, other: str) -> bool:
@@ -303,17 +296,17 @@ class LocalKeys:
             self._ticket = secrets.token_urlsafe(32)
             return self._ticket
 
-    def find(self, visit: Visit) -> Session | None:
+    def find(self, visit: HTTPConnection) -> Session | None:
         """Return the session where the cookie is its own."""
         found = visit.cookies.get(self.cookie, "")
         return self._session if _is_same(found, self._session.key) else None
 
-    def admit(self, visit: Visit) -> Session | None:
+    def admit(self, visit: HTTPConnection) -> Session | None:
         """Return the session where the ticket is the one that was issued, which is void from then on."""
-        if visit.path != ENTRANCE:
+        if visit.scope["path"] != ENTRANCE:
             return None
         with self._lock:
-            if not _is_same(visit.query.get("t", ""), self._ticket):
+            if not _is_same(visit.query_params.get("t", ""), self._ticket):
                 return None
             self._ticket = ""
         return self._session
@@ -331,25 +324,25 @@ class HostedKeys:
 
     def __init__(self, header: str, port: int, make: Callable[[str], Session], limits: Limits = HOSTED) -> None:
         self.cookie = f"{COOKIE}-{port}"
-        self._header, self._make, self._limits = header.lower().encode("ascii"), make, limits
+        self._header, self._make, self._limits = header, make, limits
         self._sessions: dict[str, Session] = {}
         self._lock = threading.Lock()
 
-    def _name(self, visit: Visit) -> str:
+    def _name(self, visit: HTTPConnection) -> str:
         """Return the user; blank where the header is missing, or there twice: then it is not the proxy's alone."""
-        values = visit.headers.get(self._header, ())
-        name = values[0].decode("utf-8", "replace").strip() if len(values) == 1 else ""
+        values = visit.headers.getlist(self._header)
+        name = values[0].encode("latin-1").decode("utf-8", "replace").strip() if len(values) == 1 else ""
         return name if len(name) <= LONGEST_USER else ""
 
-    def find(self, visit: Visit) -> Session | None:
+    def find(self, visit: HTTPConnection) -> Session | None:
         """Return the session of the user where the cookie is its own."""
         session = self._sessions.get(self._name(visit))
         return session if session and _is_same(visit.cookies.get(self.cookie, ""), session.key) else None
 
-    def admit(self, visit: Visit) -> Session | None:
+    def admit(self, visit: HTTPConnection) -> Session | None:
         """Return the session of a user who opens the page; a new one where there is room."""
         user = self._name(visit)
-        if visit.path != "/" or not user:
+        if visit.scope["path"] != "/" or not user:
             return None
         with self._lock:
             if user not in self._sessions:
@@ -370,3 +363,6 @@ class HostedKeys:
             ended = [self._sessions.pop(user) for user in idle]
         for session in ended:
             session.close()
+
+
+Keys = LocalKeys | HostedKeys

@@ -101,17 +101,17 @@ def build_workbook(request: Mapping[str, Any]) -> Made:
 
 
 def _read(request: Mapping[str, Any]) -> Wanted:
-    kind = _choose(request, "kind", ("template", "blank", "example"))
+    kind = choose(request, "kind", ("template", "blank", "example"))
     name = request.get("name") or (EXAMPLE if kind == "example" else request.get("building") or gettext("building"))
-    units = _choose(request, "units", ("si", "imperial"))
+    units = choose(request, "units", ("si", "imperial"))
     return Wanted(
         kind=kind,
         name=check_name(name),
-        use=_choose(request, "use", ("", *USES)),
+        use=choose(request, "use", ("", *USES)),
         building=_text(request, "building"),
         town=_text(request, "town"),
         shaking=choose_shaking(request),
-        language=_choose(request, "language", LANGUAGES),
+        language=choose(request, "language", LANGUAGES),
         units=cast(Units, units),
         floor=_text(request, "floor") or "1",
         room=_text(request, "room"),
@@ -121,7 +121,7 @@ def _read(request: Mapping[str, Any]) -> Wanted:
 
 def choose_shaking(request: Mapping[str, Any]) -> str:
     """Return the shaking that is chosen, blank where none is; RequestError where there is no such choice."""
-    return _choose(request, "shaking", ("", *SHAKINGS))
+    return choose(request, "shaking", ("", *SHAKINGS))
 
 
 def _text(request: Mapping[str, Any], name: str) -> str:
@@ -132,7 +132,8 @@ def _text(request: Mapping[str, Any], name: str) -> str:
     return text
 
 
-def _choose(request: Mapping[str, Any], name: str, choices: tuple[str, ...]) -> str:
+def choose(request: Mapping[str, Any], name: str, choices: tuple[str, ...]) -> str:
+    """Return one of the choices, the first where nothing is asked for; RequestError where there is no such choice."""
     value = _text(request, name) or choices[0]
     if value not in choices:
         known = ", ".join(filter(None, choices))

@@ -15,8 +15,8 @@ from urllib.parse import quote, urlsplit
 
 from assess.delivery.private_folder import private_folder
 from assess.web.book import Book
-from assess.web.folders import PREFIX
 from assess.web.server import Place, Server, bind
+from assess.web.sessions import PREFIX
 from tests.waiting import PATIENCE, wait_until
 
 ADDRESS = re.compile(r"https?://\S+")

@@ -1,9 +1,10 @@
 """A server for several users: behind a proxy that names them, sessions apart; what a session may take."""
 
 import pytest
+from starlette.requests import HTTPConnection
 
 from assess.web.request_errors import RequestError
-from assess.web.sessions import HostedKeys, Limits, Session, Visit
+from assess.web.sessions import HostedKeys, Limits, Session
 from tests.web.serving import Client, wait_for_job
 from tests.workbooks import write
 
@@ -84,7 +85,8 @@ def make(tmp_path):
 
 def _visit(user, cookie=""):
     names = (user,) if isinstance(user, str) else user
-    return Visit("/", {}, {"assess-80": cookie}, {b"x-user": [name.encode() for name in names]})
+    headers = [(b"cookie", f"assess-80={cookie}".encode()), *((b"x-user", name.encode()) for name in names)]
+    return HTTPConnection({"type": "http", "path": "/", "query_string": b"", "headers": headers})
 
 
 def test_a_name_that_comes_twice_is_not_the_proxys(make):
