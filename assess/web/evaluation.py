@@ -4,11 +4,8 @@ A workbook that is being filled in is rarely whole. Rows with errors have been l
 which the shaking is not known yet are left out here, with what stands on them, so that everything else has its class.
 """
 
-from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
-from threading import RLock
-from typing import TYPE_CHECKING, TypeVar
-from weakref import WeakKeyDictionary
+from typing import TYPE_CHECKING
 
 from assess.errors import Gap, Problem
 from assess.model import Inventory
@@ -25,8 +22,6 @@ if TYPE_CHECKING:
 
 BY_FORMULAS = Settings(verify="none")
 """How the page assesses while one types."""
-
-T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,11 +65,6 @@ def evaluate(inventory: Inventory, settings: Settings, progress: Progress = SILE
     return Evaluation(assessment, unserved, (*faults, *assessment.problems[known:]))
 
 
-def without_years(inventory: Inventory) -> Inventory:
-    """Return an inventory without annual chances, which nobody sees while typing."""
-    return replace(inventory, hazard=None)
-
-
 def evaluate_once(snapshot: "Snapshot", settings: Settings, *, routes: bool = False) -> Evaluation:
     """Return the evaluation of a snapshot, as `evaluate` does, once for all who ask.
 
@@ -83,13 +73,13 @@ def evaluate_once(snapshot: "Snapshot", settings: Settings, *, routes: bool = Fa
     inventory = snapshot.inventory
     if not routes or not inventory.routes:
         lean = replace(inventory, routes=(), hazard=None)
-        return keep(snapshot, settings, lambda: _evaluate(snapshot, lean, settings))
-    return keep(snapshot, (settings, "routes"), lambda: _evaluate(snapshot, without_years(inventory), settings))
+        return snapshot.keep(settings, lambda: _evaluate(snapshot, lean, settings))
+    return snapshot.keep((settings, "routes"), lambda: _evaluate(snapshot, replace(inventory, hazard=None), settings))
 
 
 def evaluate_other(snapshot: "Snapshot", settings: Settings) -> Evaluation:
     """Return an evaluation with settings of its own, routes among it, which is not kept."""
-    return _evaluate(snapshot, without_years(snapshot.inventory), settings)
+    return _evaluate(snapshot, replace(snapshot.inventory, hazard=None), settings)
 
 
 def _evaluate(snapshot: "Snapshot", inventory: Inventory, settings: Settings) -> Evaluation:
@@ -108,28 +98,6 @@ def list_floors(tables: Tables) -> list[Row]:
     for row in tables["Floors"].with_all("floor"):
         found.setdefault(key(row.get("floor")), row)
     return list(found.values())
-
-
-class _Kept:
-    """What was worked out from one snapshot, by what it is."""
-
-    def __init__(self) -> None:
-        self.lock = RLock()
-        self.found: dict[Hashable, object] = {}
-
-
-_LOCK = RLock()
-_OF_SNAPSHOTS: "WeakKeyDictionary[Snapshot, _Kept]" = WeakKeyDictionary()
-
-
-def keep(snapshot: "Snapshot", name: Hashable, make: Callable[[], T]) -> T:
-    """Return what `make` works out from a snapshot, once for as long as there is the snapshot."""
-    with _LOCK:
-        kept = _OF_SNAPSHOTS.setdefault(snapshot, _Kept())
-    with kept.lock:
-        if name not in kept.found:
-            kept.found[name] = make()
-        return kept.found[name]  # type: ignore[return-value]
 
 
 def _keep_floors(inventory: Inventory, floors: set[str]) -> Inventory:

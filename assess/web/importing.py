@@ -8,15 +8,15 @@ import secrets
 import shutil
 import threading
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextvars import copy_context
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import count
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any, Literal, cast
 
 from assess.errors import AssessError, CancelledError
-from assess.i18n import Text, fill, gettext
+from assess.i18n import fill, gettext
 from assess.progress import Progress, Report
 from assess.web.jobs import STAGES, Slots
 from assess.web.request_errors import CONFLICT, NOT_FOUND, RequestError, describe_fault
@@ -56,67 +56,43 @@ def read(path: Path, name: str, progress: Progress, routes: Routes) -> "Imported
 # ---------------------------------------------------------------- what came out
 
 
-_Rows = Sequence[tuple[str, int]]
-"""Types, and how many pieces of each."""
+def summarise(found: "ImportedBuilding") -> dict[str, Any]:
+    """Return what was taken of a building and what was skipped, what may be furniture first.
 
-
-@dataclass(frozen=True, slots=True)
-class Taken:
-    """What was taken and what was skipped: all that is kept of a reading once its workbook is open."""
-
-    pieces: int
-    types: int
-    floors: int
-    rooms: int
-    routes: int
-    plans: int
-    skipped: Sequence[tuple[Text, bool, _Rows]]
-    warnings: Sequence[Text]
-    remarks: Sequence[Text]
-
-    def describe(self) -> dict[str, Any]:
-        """Return it as the page shows it, in the language in use."""
-        groups = list(_cut(self.skipped))
-        maybe = sum(number for _, is_furniture, rows in self.skipped for _, number in rows if is_furniture)
-        return {
-            **{name: getattr(self, name) for name in ("pieces", "types", "floors", "rooms", "routes", "plans")},
-            "of": self.pieces + maybe,
-            "skipped": [
-                {"reason": gettext(reason), "is_furniture": is_furniture, "count": total, "types": rows, "more": more}
-                for reason, is_furniture, total, rows, more in groups
-            ],
-            "warnings": [gettext(text) for text in self.warnings],
-            "remarks": [gettext(text) for text in self.remarks],
-        }
-
-
-def _cut(skipped: Sequence[tuple[Text, bool, _Rows]]) -> Iterator[tuple[Text, bool, int, _Rows, int]]:
-    """Yield the groups with as many rows as the page gets, each with its pieces and how many rows it lacks."""
-    left = MOST_ROWS
-    for reason, is_furniture, rows in skipped:
-        shown = rows[:left]
-        left -= len(shown)
-        yield reason, is_furniture, sum(number for _, number in rows), shown, len(rows) - len(shown)
-
-
-def summarise(found: "ImportedBuilding") -> Taken:
-    """Return what was taken of a building and what was skipped: what may be furniture first."""
+    It is all that is kept of a reading once its workbook is open. Of `skipped` each group has its reason, whether it
+    may be furniture, and types with the number of pieces of each.
+    """
     from assess.bim.import_workbook import group_skipped
 
-    return Taken(
-        pieces=len(found.items),
-        types=len({row.get("type") for row in found.items}),
-        floors=len({row.get("floor") for row in found.items}),
-        rooms=sum(row.get("kind") == "room" for row in found.places),
-        routes=len({row.get("route") for row in found.routes}),
-        plans=sum(name.endswith(".svg") for name in found.files),
-        skipped=[
+    return {
+        "pieces": len(found.items),
+        "types": len({row.get("type") for row in found.items}),
+        "floors": len({row.get("floor") for row in found.items}),
+        "rooms": sum(row.get("kind") == "room" for row in found.places),
+        "routes": len({row.get("route") for row in found.routes}),
+        "plans": sum(name.endswith(".svg") for name in found.files),
+        "skipped": [
             (reason, group[0].is_furniture, [(one.type, one.count) for one in group])
             for reason, group in group_skipped(found.skipped)
         ],
-        warnings=found.warnings,
-        remarks=found.remarks,
-    )
+        "warnings": found.warnings,
+        "remarks": found.remarks,
+    }
+
+
+def describe_taken(taken: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a summary as the page shows it, in the language in use; of skipped types as many as `MOST_ROWS`."""
+    left, groups, maybe = MOST_ROWS, [], 0
+    for reason, is_furniture, rows in taken["skipped"]:
+        shown, total = rows[:left], sum(number for _, number in rows)
+        left -= len(shown)
+        maybe += total * is_furniture
+        more = len(rows) - len(shown)
+        groups.append({
+            "reason": gettext(reason), "is_furniture": is_furniture, "count": total, "types": shown, "more": more,
+        })  # fmt: skip
+    said = {name: [gettext(text) for text in taken[name]] for name in ("warnings", "remarks")}
+    return {**taken, "of": taken["pieces"] + maybe, "skipped": groups, **said}
 
 
 # ---------------------------------------------------------------- reading
@@ -156,7 +132,7 @@ class Import:
         self._started, self._latest = time.monotonic(), Report("", 0.0, "", None)
         self._error: Exception | None = None
         self._found: ImportedBuilding | None = None
-        self.taken: Taken | None = None
+        self.taken: dict[str, Any] | None = None
         self.book = ""
         try:
             slots.take(self)
@@ -224,7 +200,7 @@ class Import:
                 "message": fault.get("message", ""),
                 "fix": fault.get("fix", ""),
                 "problems": fault.get("problems", []),
-                "found": self.taken.describe() if self.taken else None,
+                "found": describe_taken(self.taken) if self.taken else None,
                 "workbook": name_workbook(self.name),
                 "book": self.book,
             }

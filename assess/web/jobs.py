@@ -196,10 +196,8 @@ class Job:
 
     def _find_stale(self, book: "Book") -> list[int]:
         """Return the rows that changed since, found once for each version of the workbook."""
-        from assess.web.evaluation import keep
-
         now = book.snapshot()
-        return keep(now, ("stale", self.id), lambda: list_stale(self._inventory, now.inventory))
+        return now.keep(("stale", self.id), lambda: list_stale(self._inventory, now.inventory))
 
     def _list_files(self) -> list[dict[str, Any]]:
         paths = self._list_paths()

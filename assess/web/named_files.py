@@ -30,7 +30,8 @@ def list_missing(held: HeldSheets, sheets: Mapping[str, PageSheet], folder: Path
     known: dict[str, bool] = {}
     for name, kind, cell in _list_named(held, sheets):
         if name not in known:
-            known[name] = _is_missing(name, folder)
+            path = _find(name, folder)
+            known[name] = path is not None and not path.exists()
         if known[name]:
             found.setdefault(name, {"name": name, "kind": kind, "cells": []})["cells"].append(cell)
     return list(found.values())
@@ -44,15 +45,15 @@ def list_present(held: HeldSheets, sheets: Mapping[str, PageSheet], folder: Path
     named = [(name, kind) for name, kind, _ in _list_named(held, sheets)]
     beside = [other for name, kind in named if kind == "hazard" for other in list_beside(name)]
     names = dict.fromkeys([*(name for name, _ in named), *beside])
-    return {name: path for name in names if (path := _find_present(name, folder)) is not None}
+    return {name: path for name in names if (path := _find(name, folder)) is not None and path.is_file()}
 
 
-def _find_present(name: str, folder: Path) -> Path | None:
+def _find(name: str, folder: Path) -> Path | None:
+    """Return where a file lies or would lie; None of a name that leads out of the folder."""
     try:
-        path = find_place(name, folder)
+        return find_place(name, folder)
     except CellError:
         return None
-    return path if path.is_file() else None
 
 
 def _list_named(held: HeldSheets, sheets: Mapping[str, PageSheet]) -> Iterator[tuple[str, str, list[Any]]]:
@@ -69,13 +70,6 @@ def _list_named(held: HeldSheets, sheets: Mapping[str, PageSheet]) -> Iterator[t
             text = read_text(value)
             names = [one.partition("#")[0].strip() for one in split_names(text)] if kind == "record" else [text]
             yield from ((one, kind, [sheet, row, column.at]) for one in dict.fromkeys(names) if one)
-
-
-def _is_missing(name: str, folder: Path) -> bool:
-    try:
-        return not find_place(name, folder).exists()
-    except CellError:
-        return False
 
 
 def add_file(name: str, data: bytes, missing: list[dict[str, Any]], folder: Path) -> None:

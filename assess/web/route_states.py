@@ -26,7 +26,7 @@ from assess.report.findings.route_words import (
 from assess.route_results import Chance, RoomRow, RouteRow, RouteState, RouteTables, SegmentRow
 from assess.routes.obstructions import find_route_problems
 from assess.web.evaluation import BY_FORMULAS, Evaluation, evaluate_once, list_floors
-from assess.web.problem_cells import describe_problems
+from assess.web.live import describe_problems
 from assess.workbook.names import key
 from assess.workbook.parse import Tables
 from assess.workbook.resolve import places_by_name

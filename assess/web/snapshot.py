@@ -1,8 +1,9 @@
 """A book at one version: nothing of it changes, so that answers can be worked out while the book is edited."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Hashable, Mapping
 from pathlib import Path
-from threading import Lock
+from threading import Lock, RLock
+from typing import TypeVar
 
 from assess.errors import Problem
 from assess.model import Inventory
@@ -14,6 +15,8 @@ from assess.workbook.kept_files import KeptFiles
 from assess.workbook.parse import Tables
 from assess.workbook.picture_files import PictureReader
 from assess.workbook.read import build_held, parse_held
+
+T = TypeVar("T")
 
 
 class Snapshot:
@@ -39,7 +42,8 @@ class Snapshot:
     ) -> None:  # fmt: skip
         self.version, self.cells, self.sheets, self.path, self.files = version, cells, sheets, path, files
         self._kept = kept
-        self._lock = Lock()
+        self._lock, self._keeping = Lock(), RLock()
+        self._found: dict[Hashable, object] = {}
         self._read: tuple[Tables, Inventory] | None = None
 
     @property
@@ -56,6 +60,13 @@ class Snapshot:
     def problems(self) -> tuple[Problem, ...]:
         """All problems, errors among them."""
         return self._reading()[1].problems
+
+    def keep(self, name: Hashable, make: Callable[[], T]) -> T:
+        """Return what `make` works out from it, once for all who ask under this name."""
+        with self._keeping:
+            if name not in self._found:
+                self._found[name] = make()
+            return self._found[name]  # type: ignore[return-value]
 
     def find_drawing(self, text: str, width: float | None) -> Drawing | None:
         """Return what is drawn of the plan of a floor, placed or not; None where its file cannot be used.

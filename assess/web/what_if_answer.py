@@ -14,9 +14,8 @@ from assess.pipeline.run import evaluate_route_tables, list_first_fixes
 from assess.pipeline.what_if import anchor_named, spell_names
 from assess.progress import SILENT
 from assess.settings import SCENARIOS, Settings
-from assess.web.evaluation import BY_FORMULAS, Evaluation, evaluate_once, evaluate_other, keep
-from assess.web.live import describe_rows, say_fault
-from assess.web.live_rows import count_classes, list_quantities, list_rows
+from assess.web.evaluation import BY_FORMULAS, Evaluation, evaluate_once, evaluate_other
+from assess.web.live import count_classes, describe_rows, list_quantities, list_rows, say_fault
 from assess.web.route_states import describe_states, describe_unknown
 from assess.workbook.names import key
 from assess.workbook.parse import Tables
@@ -49,8 +48,8 @@ def try_out(snapshot: "Snapshot", request: object) -> dict[str, Any]:
     inventory = snapshot.inventory
     with speaking(load_catalogue(inventory.language)):
         wanted = read_request(inventory, snapshot.tables, request)
-        before = keep(snapshot, "before", lambda: describe_present(snapshot))
-        present = keep(snapshot, "entries", lambda: _name_entries(evaluate_once(snapshot, BY_FORMULAS, routes=True)))
+        before = snapshot.keep("before", lambda: describe_present(snapshot))
+        present = snapshot.keep("entries", lambda: _name_entries(evaluate_once(snapshot, BY_FORMULAS, routes=True)))
         entries = (
             present
             if wanted.settings == BY_FORMULAS or not wanted.first
