@@ -10,8 +10,8 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from assess.web.jobs import list_stale
 
+from assess.web.jobs import list_stale
 from tests.waiting import wait_until
 from tests.web.model_reader import find_worker, is_gone, linux
 from tests.web.opened import write_one_floor

@@ -3,9 +3,9 @@
 import shutil
 
 import pytest
-from assess.web.jobs import prepare
 
 from assess.web.book import Book
+from assess.web.jobs import prepare
 from assess.web.named_files import list_present
 from tests.motion.grids import EPICENTRE
 from tests.workbooks import write
