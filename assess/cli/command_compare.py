@@ -64,8 +64,7 @@ def command(
     if out.exists() and not out.is_dir():
         raise InputError(f"--out: {out} is a file; name a folder")
     from assess.compare.changes import compare
-    from assess.compare.comparison_data import describe, dump
-    from assess.compare.comparison_files import check_out, write_comparison
+    from assess.compare.comparison_files import check_out, describe, dump, write_comparison
     from assess.compare.read_results import read_run
     from assess.report.report_options import ReportOptions
 

@@ -10,37 +10,25 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
-from typing import TypeVar
+from typing import Generic, TypeVar
 
-from assess.compare.past_run import (
-    ANCHORED,
-    APART,
-    CLASSES,
-    NOT_KNOWN,
-    PastChance,
-    PastPiece,
-    PastRun,
-    PastState,
-)
+from assess.compare.past_run import ANCHORED, APART, CLASSES, PastChance, PastPiece, PastRun, PastState
 from assess.errors import InputError
 from assess.i18n import fill
 from assess.natural import natural_key
 from assess.results import CANNOT_ROCK
+from assess.route_results import RouteState
 from assess.workbook.names import key
 
 SAME = 1e-6
 """Difference of chances [-] up to which they are equal: rounding of other machines."""
-SEVERITY: Mapping[str, int] = {
-    "open": 0,
-    "doubtful": 1,
-    "blocked": 2,
-}
-"""States of routes and rooms in rising order; from and to any other state no direction is told."""
+SEVERITY: Mapping[str, int] = {RouteState.OPEN: 0, RouteState.DOUBTFUL: 1, RouteState.BLOCKED: 2}
+"""States of routes and rooms in rising order; from and to any other state a change has no direction."""
 ABSENT = ""
-"""The standing of a piece in a run that does not have it."""
-
+"""The standing of a piece, or the state of a route or room, in a run that does not have it."""
 
 _Row = TypeVar("_Row")
+_Past = TypeVar("_Past", PastPiece, PastState)
 
 
 class Direction(StrEnum):
@@ -68,60 +56,58 @@ ONE_SIDED = (Direction.ADDED, Direction.REMOVED)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PieceChange:
-    """One row of furniture in both runs, or in one.
+class Change(Generic[_Past]):
+    """One row in both runs, or in one: a route or a room, or a piece of furniture (`PieceChange`).
 
-    `standing_before` and `standing_after` are a class in words or one of `past_run.APART`; `ABSENT` where the run
-    lacks it. `is_within` is whether the difference of the chances lies within the sampling interval, None where a
-    chance has none or the bases differ. `inputs` are the fields that differ, with their values before and after.
+    `states` are those before and after, of a piece its class in words or one of `past_run.APART`; `ABSENT` where the
+    run lacks it. `is_within` is whether the difference of the chances lies within the sampling interval, None where a
+    chance has none or the bases differ.
     """
 
-    before: PastPiece | None
-    after: PastPiece | None
-    standing_before: str
-    standing_after: str
+    before: _Past | None
+    after: _Past | None
+    states: tuple[str, str]
     direction: Direction
     is_within: bool | None
+
+    @property
+    def sides(self) -> tuple[_Past | None, _Past | None]:
+        """The row before and after."""
+        return self.before, self.after
+
+    @property
+    def row(self) -> _Past:
+        """The row as it is after, or was before."""
+        found = self.after or self.before
+        if found is None:
+            raise ValueError("a change has neither side")
+        return found
+
+
+StateChange = Change[PastState]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PieceChange(Change[PastPiece]):
+    """A row of furniture; `inputs` are the fields that differ, with their values before and after."""
+
     inputs: Mapping[str, tuple[object, object]]
 
     @property
-    def piece(self) -> PastPiece:
-        """The row as it is after, or was before."""
-        return _either(self.after, self.before)
-
-    @property
-    def more(self) -> int:
-        """Pieces that the row has more after than before; below 0 fewer."""
-        return (self.after.quantity if self.after else 0) - (self.before.quantity if self.before else 0)
+    def quantities(self) -> tuple[int, int]:
+        """Pieces of the row before and after."""
+        before, after = (one.quantity if one else 0 for one in self.sides)
+        return before, after
 
     @property
     def pieces(self) -> int:
         """Pieces that a change concerns: those of both runs, or of the one that has the row."""
-        if self.before is None or self.after is None:
-            return self.piece.quantity
-        return min(self.before.quantity, self.after.quantity)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StateChange:
-    """One route or room in both runs, or in one; `floor` is "" for a route. The rest is as in `PieceChange`."""
-
-    name: str
-    floor: str
-    before: PastState | None
-    after: PastState | None
-    direction: Direction
-    is_within: bool | None
-
-    @property
-    def states(self) -> tuple[str, str]:
-        """The states before and after; `ABSENT` where the run lacks it."""
-        return (self.before.state if self.before else ABSENT, self.after.state if self.after else ABSENT)
+        return min(self.quantities) if self.before and self.after else self.row.quantity
 
 
 @dataclass(frozen=True, slots=True)
 class Total:
-    """A sum before and after; `is_within` as in `PieceChange`, `is_comparable`: whether a difference means anything."""
+    """A sum before and after; `is_within` as in `Change`, `is_comparable`: whether a difference means anything."""
 
     before: float
     after: float
@@ -152,21 +138,12 @@ class Comparison:
     @property
     def is_other_building(self) -> bool:
         """Whether both runs name their building, differently."""
-        names = {key(run.name) for run in (self.before, self.after)}
-        return len(names - {""}) > 1
+        return len({key(run.name) for run in (self.before, self.after)} - {""}) > 1
 
     @property
     def is_same_file(self) -> bool:
         """Whether both are the same results."""
         return self.before.sha256 == self.after.sha256
-
-    @cached_property
-    def by_direction(self) -> Mapping[Direction, list[PieceChange]]:
-        """The pieces of every direction."""
-        found: dict[Direction, list[PieceChange]] = {one: [] for one in Direction}
-        for change in self.pieces:
-            found[change.direction].append(change)
-        return found
 
     def count(self, *directions: Direction) -> int:
         """Count pieces, not rows, of some directions."""
@@ -175,9 +152,9 @@ class Comparison:
     def list_counted(self, direction: Direction) -> list[tuple[PieceChange, int]]:
         """Return the rows of a direction with their pieces: a row that grows adds some, one that shrinks loses some."""
         if direction not in ONE_SIDED:
-            return [(one, one.pieces) for one in self.by_direction[direction]]
+            return [(one, one.pieces) for one in self.pieces if one.direction == direction]
         sign = 1 if direction == Direction.ADDED else -1
-        more = [(one, sign * one.more) for one in self.pieces]
+        more = [(one, sign * (one.quantities[1] - one.quantities[0])) for one in self.pieces]
         return [(one, count) for one, count in more if count > 0]
 
     @cached_property
@@ -189,11 +166,10 @@ class Comparison:
         """
         found: Counter[tuple[str, str]] = Counter()
         for one in self.pieces:
-            quantities = (one.before.quantity if one.before else 0, one.after.quantity if one.after else 0)
-            both = min(quantities)
-            found[one.standing_before, one.standing_after] += both
-            found[one.standing_before, ABSENT] += quantities[0] - both
-            found[ABSENT, one.standing_after] += quantities[1] - both
+            (was, now), (before, after), both = one.states, one.quantities, min(one.quantities)
+            found[was, now] += both
+            found[was, ABSENT] += before - both
+            found[ABSENT, now] += after - both
         return {move: count for move, count in found.items() if count}
 
     def standings(self) -> list[str]:
@@ -216,19 +192,16 @@ class Comparison:
     @property
     def falls_of_both(self) -> Total | None:
         """The same of the pieces that have a class in both runs; None where these are all, or none."""
-        both = [
-            (replace(one.before, quantity=one.pieces), replace(one.after, quantity=one.pieces))
-            for one in self.pieces
-            if one.before and one.after and self.before.is_counted(one.before) and self.after.is_counted(one.after)
-        ]
-        if not (self.has_same_basis and both) or all(self._is_whole(one) for one in self.pieces):
+        both, is_whole = [], True
+        for one in self.pieces:
+            was = one.before is not None and self.before.is_counted(one.before)
+            now = one.after is not None and self.after.is_counted(one.after)
+            is_whole &= was == now and (not was or one.quantities[0] == one.quantities[1])
+            if one.before and one.after and was and now:
+                both.append([replace(side, quantity=one.pieces) for side in (one.before, one.after)])
+        if is_whole or not (self.has_same_basis and both):
             return None
-        return _add_up([one for one, _ in both], [one for _, one in both], is_comparable=True)
-
-    def _is_whole(self, one: PieceChange) -> bool:
-        counted = [one.before is not None and self.before.is_counted(one.before)]
-        counted.append(one.after is not None and self.after.is_counted(one.after))
-        return counted[0] == counted[1] and (not counted[0] or not one.more)
+        return _add_up([was for was, _ in both], [now for _, now in both], is_comparable=True)
 
 
 def compare(before: PastRun, after: PastRun) -> Comparison:
@@ -242,21 +215,18 @@ def compare(before: PastRun, after: PastRun) -> Comparison:
                 after=after.path,
             )
         )
-    routes = _match(before.routes, after.routes, lambda one: key(one.name))
-    rooms = _match(before.rooms, after.rooms, lambda one: (key(one.floor), key(one.name)))
-    is_comparable = before.main_basis == after.main_basis
-    return Comparison(
-        before,
-        after,
+    states = [
         _arrange(
-            (_compare_piece(before, after, *pair) for pair in pieces),
-            lambda one: (one.direction, -_difference(one), one.piece.item),
-        ),
-        _arrange(
-            (_compare_states(*pair, is_comparable) for pair in routes), lambda one: (one.direction, 0.0, one.name)
-        ),
-        _arrange((_compare_states(*pair, is_comparable) for pair in rooms), lambda one: (one.direction, 0.0, one.name)),
-    )
+            [
+                _compare_states(*pair, before.main_basis == after.main_basis)
+                for pair in _match(was, now, lambda one: (key(one.floor), key(one.name)))
+            ],
+            lambda one: (0.0, one.row.name),
+        )
+        for was, now in ((before.routes, after.routes), (before.rooms, after.rooms))
+    ]
+    changes = [_compare_piece(before, after, *pair) for pair in pieces]
+    return Comparison(before, after, _arrange(changes, lambda one: (-_difference(one), one.row.item)), *states)
 
 
 def _match(
@@ -266,10 +236,15 @@ def _match(
     return [(was.get(one), now.get(one)) for one in dict.fromkeys((*was, *now))]
 
 
-def _arrange(changes: Iterable[_Row], rank: Callable[[_Row], tuple[Direction, float, str]]) -> tuple[_Row, ...]:
-    def place(one: _Row) -> tuple[object, ...]:
-        direction, number, name = rank(one)
-        return ORDER.index(direction), number, natural_key(name)
+_Changed = TypeVar("_Changed", PieceChange, StateChange)
+
+
+def _arrange(changes: Sequence[_Changed], rank: Callable[[_Changed], tuple[float, str]]) -> tuple[_Changed, ...]:
+    """Return changes by their direction, then by a number and a name."""
+
+    def place(one: _Changed) -> tuple[object, ...]:
+        number, name = rank(one)
+        return ORDER.index(one.direction), number, natural_key(name)
 
     return tuple(sorted(changes, key=place))
 
@@ -278,16 +253,18 @@ def _arrange(changes: Iterable[_Row], rank: Callable[[_Row], tuple[Direction, fl
 
 
 def _compare_piece(was: PastRun, now: PastRun, before: PastPiece | None, after: PastPiece | None) -> PieceChange:
-    standings = (was.standing(before) if before else ABSENT, now.standing(after) if after else ABSENT)
     direction, is_within = _direct(before, after)
+    inputs: dict[str, tuple[object, object]] = {}
+    if before and after:
+        pairs = {name: (one, after.inputs.get(name)) for name, one in before.inputs.items()}
+        inputs = {name: pair for name, pair in pairs.items() if not _is_equal(*pair)}
     return PieceChange(
         before=before,
         after=after,
-        standing_before=standings[0],
-        standing_after=standings[1],
+        states=(was.standing(before) if before else ABSENT, now.standing(after) if after else ABSENT),
         direction=direction,
         is_within=is_within,
-        inputs=_compare_inputs(before, after),
+        inputs=inputs,
     )
 
 
@@ -313,13 +290,6 @@ def _direct_chance(before: PastChance, after: PastChance, is_within: bool | None
     return Direction.RISES if difference > 0 else Direction.FALLS
 
 
-def _compare_inputs(before: PastPiece | None, after: PastPiece | None) -> dict[str, tuple[object, object]]:
-    if before is None or after is None:
-        return {}
-    pairs = {name: (before.inputs[name], after.inputs.get(name)) for name in before.inputs}
-    return {name: (one, other) for name, (one, other) in pairs.items() if not _is_equal(one, other)}
-
-
 def _is_equal(one: object, other: object) -> bool:
     if isinstance(one, int | float) and isinstance(other, int | float):
         return math.isclose(one, other, rel_tol=SAME, abs_tol=1e-9)
@@ -333,16 +303,9 @@ def _difference(change: PieceChange) -> float:
 
 
 def _compare_states(before: PastState | None, after: PastState | None, is_comparable: bool) -> StateChange:
-    one = _either(after, before)
     direction, is_within = _direct_state(before, after, is_comparable)
-    return StateChange(
-        name=one.name,
-        floor=one.floor,
-        before=before,
-        after=after,
-        direction=direction,
-        is_within=is_within,
-    )
+    states = (before.state if before else ABSENT, after.state if after else ABSENT)
+    return Change(before=before, after=after, states=states, direction=direction, is_within=is_within)
 
 
 def _direct_state(
@@ -363,13 +326,6 @@ def _direct_state(
     if was is None or now is None:
         return (Direction.SAME if was is now else Direction.UNCLEAR), None
     return _direct_chance(was, now, is_within), is_within
-
-
-def _either(one: _Row | None, other: _Row | None) -> _Row:
-    found = other if one is None else one
-    if found is None:
-        raise ValueError("a change has neither side")
-    return found
 
 
 # ---------------------------------------------------------------- sampling
@@ -396,10 +352,9 @@ def lies_within(before: PastChance, after: PastChance) -> bool | None:
 
 def _add_up(before: Sequence[PastPiece], after: Sequence[PastPiece], is_comparable: bool) -> Total:
     """Return the expected falls of pieces; the ends of their intervals add up, as one earthquake shakes them all."""
-    sums = [_sum(side) for side in (before, after)]
-    has_basis = is_comparable and all(one.low is not None for one in sums)
-    is_within = lies_within(*sums) if has_basis else None
-    return Total(sums[0].probability, sums[1].probability, is_comparable, is_within)
+    was, now = _sum(before), _sum(after)
+    is_within = lies_within(was, now) if is_comparable else None
+    return Total(was.probability, now.probability, is_comparable, is_within)
 
 
 def _sum(pieces: Sequence[PastPiece]) -> PastChance:
@@ -412,12 +367,8 @@ def _sum(pieces: Sequence[PastPiece]) -> PastChance:
     return PastChance(expected, total(lambda one: one.low), total(lambda one: one.high))
 
 
-def count_states(rows: Iterable[PastState]) -> Counter[str]:
-    """Count routes or rooms by their states."""
-    return Counter(one.state for one in rows)
-
-
-def list_states(*runs: Iterable[PastState]) -> list[str]:
-    """Return the states of the routes, or rooms, of runs: from the worst down, then those without a place in that."""
-    there = {one.state for rows in runs for one in rows}
-    return sorted(there, key=lambda state: (-SEVERITY.get(state, 0 if state == NOT_KNOWN else -1), state))
+def count_states(before: Iterable[PastState], after: Iterable[PastState]) -> dict[str, tuple[int, int]]:
+    """Count routes or rooms by their states, before and after: from the worst down, then those without a severity."""
+    was, now = (Counter(one.state for one in rows) for rows in (before, after))
+    there = sorted({*was, *now}, key=lambda one: (-SEVERITY.get(one, 0 if one == RouteState.NOT_KNOWN else -1), one))
+    return {state: (was[state], now[state]) for state in there}

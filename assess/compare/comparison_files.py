@@ -1,15 +1,20 @@
 """The files of a comparison, whole or none of them: compare.html, compare.pdf, compare.xlsx, and compare.json.
 
 As with reports, a later comparison replaces or removes only what compare.json lists, so that it is always written.
+compare.json is for other programs and the same in every language; units stand in the names. Its first two entries are
+those of results.json, so that a later comparison knows which files beside it are its own (`assess.report.ownership`).
+Standings, directions and states are the words of `assess.compare`; null is what a run lacks.
 """
 
+import json
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
-from assess.compare.changes import Comparison
-from assess.compare.comparison_data import write_data
+from assess.compare.changes import Comparison, PieceChange, StateChange, Total, count_states
 from assess.compare.comparison_view import View
+from assess.compare.past_run import PastChance, PastPiece, PastRun
+from assess.compare.read_results import COMPARISON
 from assess.delivery.deliver import Written, deliver, explain_fault, stage_for
 from assess.delivery.disk import find_digest, flush_file
 from assess.delivery.stages import NEW
@@ -19,7 +24,10 @@ from assess.progress import SILENT, Progress
 from assess.report import check_folder
 from assess.report.ownership import find_reports
 from assess.report.report_options import ReportOptions
+from assess.version import __version__
 
+SCHEMA = "1.1"
+"""Version of the shape of compare.json."""
 FILES: Mapping[str, str] = {
     "xlsx": "compare.xlsx",
     "html": "compare.html",
@@ -29,21 +37,6 @@ FILES: Mapping[str, str] = {
 """The formats in the order in which they are written: compare.json lists the others, and the PDF carries it."""
 FORMATS = ("html", "pdf", "xlsx")
 """The formats that are written where none are asked for, beside compare.json."""
-
-
-@dataclass(frozen=True)
-class _Job:
-    """One set of files; `listed` are those but for compare.json, with their SHA-256, None of what carries it."""
-
-    view: View
-    options: ReportOptions
-    progress: Progress
-    stage: Path
-    listed: dict[str, str | None] = field(default_factory=dict)
-
-    @property
-    def written(self) -> list[str]:
-        return [*self.listed, FILES["json"]]
 
 
 def write_comparison(
@@ -88,16 +81,17 @@ def write_comparison(
     folder, options = Path(folder), options or ReportOptions()
     wanted = _arrange(formats)
     check_out(folder, formats)
+    listed: dict[str, str | None] = {}
     try:
         with stage_for(folder) as stage, options.spoken():
-            job = _Job(View(comparison), options, progress, stage / NEW)
-            missing = _write_all(job, wanted)
-            gone = deliver(stage, folder, lambda target: _find_old(target, job.written), FILES["json"], progress)
+            missing = _write_all(View(comparison), stage / NEW, wanted, options, progress, listed)
+            names = [*listed, FILES["json"]]
+            gone = deliver(stage, folder, lambda target: _find_old(target, names), FILES["json"], progress)
     except OSError as error:
         raise explain_fault(folder, error, FILES.values()) from None
     if missing:
         raise missing
-    files = {name: folder / file for name, file in FILES.items() if file in job.written}
+    files = {name: folder / file for name, file in FILES.items() if file in names}
     return Written(files, removed=[folder / name for name in gone])
 
 
@@ -121,44 +115,170 @@ def _arrange(formats: Sequence[str]) -> list[str]:
     return [name for name in FILES if name in {*formats, "json"}]
 
 
-def _write_all(job: _Job, formats: Sequence[str]) -> PdfUnavailableError | None:
-    missing: PdfUnavailableError | None = None
-    with job.progress.stage("rendering", ", ".join(formats)) as stage:
+def _write_all(
+    view: View,
+    stage: Path,
+    formats: Sequence[str],
+    options: ReportOptions,
+    progress: Progress,
+    listed: dict[str, str | None],
+) -> PdfUnavailableError | None:
+    """Write the files; what does is imported only when it is wanted. Return the error of a PDF that cannot be made.
+
+    `listed` gets the files but for compare.json with their SHA-256: None of the PDF, which carries compare.json, unless
+    it has no identifiers that could be made to follow from it.
+    """
+    data, missing = stage / FILES["json"], None
+
+    def write_data() -> None:
+        data.write_text(dump(describe(view.found, dict(sorted(listed.items())))), encoding="utf-8")
+
+    with progress.stage("rendering", ", ".join(formats)) as part:
         for at, name in enumerate(formats):
-            stage.at(at / len(formats))
+            part.at(at / len(formats))
+            path = stage / FILES[name]
             if name == "json":
-                job.listed.update((FILES[each], None) for each in formats[at + 1 :])
-            try:
-                _write_one(job, name)
-            except PdfUnavailableError as error:
-                missing = error
-                del job.listed[FILES[name]]
-                _write_one(job, "json")
-        stage.check()
+                listed.update({FILES["pdf"]: None} if "pdf" in formats else {})
+                write_data()
+            elif name == "pdf":
+                from assess.compare.comparison_pages import write_print
+                from assess.report.pages.pdf_seal import seal
+
+                try:
+                    write_print(view, path, data, options, progress)
+                except PdfUnavailableError as error:
+                    missing = error
+                    del listed[path.name]
+                    write_data()
+                    continue
+                if not seal(path, data):
+                    listed[path.name] = find_digest(path)
+                    write_data()
+            else:
+                if name == "xlsx":
+                    from assess.compare.comparison_sheets import write_tables
+
+                    write_tables(view, path, progress)
+                else:
+                    from assess.compare.comparison_pages import render_comparison
+
+                    path.write_text(render_comparison(view, options, progress=progress), encoding="utf-8")
+                listed[path.name] = find_digest(path)
+            flush_file(path)
+        part.check()
     return missing
 
 
-def _write_one(job: _Job, name: str) -> None:
-    """Write a file; what does is imported only when it is wanted. A PDF without identifiers is listed by its hash."""
-    path, data = job.stage / FILES[name], job.stage / FILES["json"]
-    if name == "json":
-        write_data(job.view.found, path, dict(sorted(job.listed.items())))
-    elif name == "pdf":
-        from assess.compare.comparison_pages import write_print
-        from assess.report.pages.pdf_seal import seal
+# ---------------------------------------------------------------- compare.json
 
-        write_print(job.view, path, data, job.options, job.progress)
-        if not seal(path, data):
-            job.listed[path.name] = find_digest(path)
-            _write_one(job, "json")
-    elif name == "xlsx":
-        from assess.compare.comparison_sheets import write_tables
 
-        write_tables(job.view, path, job.progress)
-    else:
-        from assess.compare.comparison_pages import write_page
+def dump(record: Mapping[str, Any]) -> str:
+    """Return a document in JSON."""
+    return json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1) + "\n"
 
-        write_page(job.view, path, job.options, job.progress)
-    if name in ("xlsx", "html"):
-        job.listed[path.name] = find_digest(path)
-    flush_file(path)
+
+def describe(found: Comparison, files: Mapping[str, str | None] | None = None) -> dict[str, Any]:
+    """Return the document; `files` are listed where it is written among them."""
+    return {
+        "schema": SCHEMA,
+        "assess": {"version": __version__, **({} if files is None else {"files": dict(files)})},
+        COMPARISON: {
+            "same_code": found.has_same_code,
+            "same_basis": found.has_same_basis,
+            "same_results": found.is_same_file,
+            "other_building": found.is_other_building,
+        },
+        "before": _run(found.before),
+        "after": _run(found.after),
+        "counts": _counts(found),
+        "moves": [
+            {"before": was or None, "after": now or None, "pieces": count} for (was, now), count in found.moves.items()
+        ],
+        "items": [_piece(one) for one in found.pieces],
+        "routes": [{"route": one.row.name} | _state(one) for one in found.routes],
+        "rooms": [{"room": one.row.name} | _state(one) | {"floor": one.row.floor} for one in found.rooms],
+    }
+
+
+def _run(run: PastRun) -> dict[str, Any]:
+    return {
+        "results": run.path.name,
+        "results_sha256": run.sha256,
+        "results_written": f"{run.written:%Y-%m-%dT%H:%M:%SZ}",
+        "schema": run.schema,
+        "version": run.version,
+        "code": run.code or None,
+        "building": run.name,
+        "workbook": run.workbook,
+        "workbook_sha256": run.workbook_sha256,
+        "basis": run.main_basis,
+        "settings": dict(run.settings),
+        "unjoined_rooms": list(run.unjoined_rooms),
+    }
+
+
+def _counts(found: Comparison) -> dict[str, Any]:
+    was, now = found.before, found.after
+
+    def pair(before: float, after: float) -> dict[str, float]:
+        return {"before": before, "after": after}
+
+    def total(one: Total) -> dict[str, Any]:
+        return {
+            **pair(one.before, one.after),
+            "comparable": one.is_comparable,
+            "within_sampling_interval": one.is_within,
+        }
+
+    both = found.falls_of_both
+    return {
+        "pieces": {one: total(found.count_standing(one)) for one in found.standings()},
+        "expected_falls": total(found.falls),
+        "expected_falls_counted_in_both": both and total(both),
+        "routes": {state: pair(*sides) for state, sides in count_states(was.routes, now.routes).items()},
+        "blocked_routes_expected": pair(was.blocked_routes, now.blocked_routes),
+        "rooms": {state: pair(*sides) for state, sides in count_states(was.rooms, now.rooms).items()},
+        "unknown_routes": pair(was.unknown_routes, now.unknown_routes),
+        "unknown_rooms": pair(was.unknown_rooms, now.unknown_rooms),
+        "unjoined_rooms": pair(len(was.unjoined_rooms), len(now.unjoined_rooms)),
+        "cut_off_rooms_expected": pair(was.cut_off_rooms, now.cut_off_rooms),
+    }
+
+
+def _change(one: PieceChange | StateChange, before: object, after: object) -> dict[str, Any]:
+    return {
+        "change": one.direction.value,
+        "within_sampling_interval": one.is_within,
+        "before": before,
+        "after": after,
+    }
+
+
+def _piece(one: PieceChange) -> dict[str, Any]:
+    def side(piece: PastPiece | None, standing: str) -> dict[str, Any] | None:
+        if piece is None:
+            return None
+        return {
+            "floor": piece.floor,
+            "room": piece.room,
+            "quantity": piece.quantity,
+            "standing": standing,
+            "class": piece.risk.word,
+            "basis": piece.basis,
+            **_chance(piece.chance),
+        }
+
+    return {
+        "item": one.row.item,
+        **_change(one, side(one.before, one.states[0]), side(one.after, one.states[1])),
+        "inputs": {name: {"before": was, "after": now} for name, (was, now) in one.inputs.items()},
+    }
+
+
+def _state(one: StateChange) -> dict[str, Any]:
+    sides = [run and {"state": run.state, "chance": run.chance and _chance(run.chance)} for run in one.sides]
+    return _change(one, *sides)
+
+
+def _chance(chance: PastChance) -> dict[str, Any]:
+    return {"probability": chance.probability, "low": chance.low, "high": chance.high}

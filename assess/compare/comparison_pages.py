@@ -3,9 +3,9 @@
 from pathlib import Path
 from typing import Any
 
-from assess.compare import comparison_words as say
-from assess.compare.comparison_facts import list_facts
-from assess.compare.comparison_view import View, say_share
+from assess.compare import comparison_view as say
+from assess.compare.changes import Direction
+from assess.compare.comparison_view import View
 from assess.compare.past_run import PastPiece
 from assess.i18n import LANGUAGES, number
 from assess.i18n import gettext as _
@@ -19,11 +19,6 @@ from assess.version import __version__
 TEMPLATE, STYLE = "compare.html.j2", "compare.css"
 MOST_ROWS, MOST_PRINTED, MOST_STATES = 5000, 300, 300
 """Rows of pieces on a screen and on paper, and rows of routes and of rooms; the Excel file has all."""
-
-
-def write_page(view: View, path: Path, options: ReportOptions, progress: Progress = SILENT) -> None:
-    """Write compare.html; raises OSError if it cannot be written, CancelledError if the work was cancelled."""
-    path.write_text(render_comparison(view, options, progress=progress), encoding="utf-8")
 
 
 def write_print(view: View, path: Path, data: Path, options: ReportOptions, progress: Progress = SILENT) -> None:
@@ -43,8 +38,7 @@ def render_comparison(
 
 def _build_context(view: View, options: ReportOptions, *, for_print: bool) -> dict[str, Any]:
     changed = view.list_changed()
-    building = view.after.building
-    authors = [str(building.get(name) or "") for name in ("prepared_by", "organisation")]
+    authors = [str(view.after.building.get(name) or "") for name in ("prepared_by", "organisation")]
     return {
         "view": view,
         "language": options.language or LANGUAGES[0],
@@ -61,11 +55,11 @@ def _build_context(view: View, options: ReportOptions, *, for_print: bool) -> di
         "matrix": view.build_matrix(),
         "changed": changed,
         "unchanged": len(view.found.pieces) - len(changed),
-        "routes": view.list_changed_routes(),
-        "rooms": view.list_changed_rooms(),
-        "facts": list_facts(view.found),
-        "basis_before": say.name_basis(view.before.main_basis),
-        "basis_after": say.name_basis(view.after.main_basis),
+        "routes": [one for one in view.found.routes if one.direction != Direction.SAME],
+        "rooms": [one for one in view.found.rooms if one.direction != Direction.SAME],
+        "facts": view.list_facts(),
+        "basis_before": view.bases["before"],
+        "basis_after": view.bases["after"],
         "most_rows": MOST_PRINTED if for_print else MOST_ROWS,
         "most_states": MOST_STATES,
     }
@@ -79,7 +73,7 @@ def _say_adopted(piece: PastPiece) -> str:
 
 FILTERS = {
     "cut": words.cut,
-    "in_share": say_share,
+    "in_share": lambda count: number(count, ",d") if count else words.DASH,
     "in_whole": lambda value: number(value, ",d"),
     "say_adopted": _say_adopted,
     "say_chance": say.say_chance,
@@ -88,5 +82,6 @@ FILTERS = {
     "standing_label": say.label_standing,
     "standing_style": say.style_standing,
     "state_name": say.name_state,
+    "tone": say.find_tone,
 }
 """Filters of the template besides those of the reports."""

@@ -9,15 +9,13 @@ from typing import Any
 from assess.fields import Field, arrange_item_fields
 from assess.results import CANNOT_ROCK
 from assess.risk import RiskClass
-from assess.route_results import RouteState
 from assess.workbook.schema import ITEMS
 
-CLASSES = tuple(risk.word for risk in reversed(RiskClass))
-"""The words of the classes, the highest first."""
+CLASSES: Mapping[str, RiskClass] = {risk.word: risk for risk in reversed(RiskClass)}
+"""The classes by their words, the highest first."""
 UNCONFIRMED, BY_FORMULA, ANCHORED = "unconfirmed", "by formula", "anchored"
 APART = (UNCONFIRMED, BY_FORMULA, ANCHORED)
 """What stands outside the classes of a run."""
-NOT_KNOWN = str(RouteState.NOT_KNOWN)
 _EVERY = {one.key: one for one in arrange_item_fields((), ITEMS.name)}
 INPUTS: Mapping[str, Field] = {
     key: _EVERY[key]
@@ -43,22 +41,8 @@ class PastChance:
 class PastPiece:
     """One row of furniture.
 
-    Parameters
-    ----------
-    item, floor, room, description
-        As the workbook has them.
-    quantity : int
-        Pieces of the row.
-    is_held : bool
-        Whether it counts as anchored: then it has no class.
-    basis : str
-        What its chance rests on: one of `assess.results.BASES`.
-    risk : RiskClass
-        The adopted class.
-    chance : PastChance
-        The adopted chance; with the sampling interval where it was simulated.
-    inputs : mapping of str to object
-        What the run was given or used for it, by field.
+    `is_held`: it counts as anchored, and so has no class. `basis` is one of `assess.results.BASES`; `risk` and
+    `chance` are those adopted. `inputs` is what the run was given or used for it, by the fields of `INPUTS`.
     """
 
     item: str
@@ -75,16 +59,10 @@ class PastPiece:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PastState:
-    """A route or a room.
+    """A route (`floor` is "") or a room.
 
-    Parameters
-    ----------
-    name, floor : str
-        Of a route the floor is "".
-    state : str
-        Of the route, or of the best way from the room to the street, in the words of its run.
-    chance : PastChance, optional
-        Of being blocked, or of losing every exit; None where that was not evaluated.
+    `state` is that of the route, or of the best way from the room to the street, in the words of its run; `chance`
+    that of being blocked, or of losing every exit, None where that was not evaluated.
     """
 
     name: str
@@ -99,22 +77,14 @@ class PastRun:
 
     Parameters
     ----------
-    path : Path
-        Its results.json.
-    sha256 : str
-        Of that file.
-    written : datetime
-        When that file was last changed, in UTC.
+    path, sha256, written
+        Its results.json, the hash of that file, and when it was last changed, in UTC.
     schema, version, code : str
         Of results.json and of the program; SHA-256 of its code, "" where an earlier version did not write it.
     platform : mapping of str to str
         Versions of Python and its packages, system and processor.
-    settings : mapping of str to object
-        As given, by name.
-    building : mapping of str to object
-        The lines of the sheet Building.
-    uncertainty : mapping of str to object
-        What the draws of the simulation vary.
+    settings, building, uncertainty : mapping of str to object
+        Settings as given, lines of the sheet Building, and what the draws of the simulation vary.
     shaking : str
         Name of an assumed intensity; "" where none is assumed.
     site_ground : str
@@ -125,8 +95,6 @@ class PastRun:
         Hashes of the recorded motions, by the names of their files.
     is_simulated : bool
         Whether any piece was simulated: then pieces by formula alone stand outside its classes.
-    pieces, routes, rooms
-        The rows that are compared.
     route_risk : float
         Limit on the chance that a route is blocked [-].
     blocked_routes, cut_off_rooms : float
@@ -174,10 +142,7 @@ class PastRun:
         return "simulated" if self.is_simulated else "formula"
 
     def is_counted(self, piece: PastPiece) -> bool:
-        """Whether a piece is in the classes and sums of the run: free-standing, and of the basis of the run.
-
-        One that cannot rock is.
-        """
+        """Whether a piece is in the classes and sums: free-standing, and of the basis of the run or unable to rock."""
         return not piece.is_held and piece.basis in (self.main_basis, CANNOT_ROCK)
 
     def standing(self, piece: PastPiece) -> str:

@@ -29,7 +29,6 @@ COMPARISON = "comparison"
 """Entry that tells compare.json, which is no run, from results.json."""
 MOST_BYTES = 1 << 30
 """Size [bytes] above which a file is not read: 20,000 items take a tenth of it."""
-_CLASSES = {risk.word: risk for risk in RiskClass}
 _TOP = ("building", "floors", "items", "routes")
 _MISSING = object()
 _MOST = 1e15
@@ -59,7 +58,6 @@ def read_record(path: Path) -> tuple[past.PastRun, Mapping[str, Any], "Reader"]:
     file = path / DATA if path.is_dir() else path
     data, written = _load(path, file)
     record = _parse(file, data)
-    _check_origin(file, record)
     reader = Reader(file)
     return reader.run(record, hashlib.sha256(data).hexdigest(), written), record, reader
 
@@ -67,28 +65,12 @@ def read_record(path: Path) -> tuple[past.PastRun, Mapping[str, Any], "Reader"]:
 def _load(path: Path, file: Path) -> tuple[bytes, datetime.datetime]:
     try:
         if not file.exists():
-            if is_unfinished(file.parent, file.name):
-                raise InputError(explain_unfinished(file.parent))
-            if path.is_dir():
-                raise InputError(
-                    fill(
-                        "{folder} contains no {name}: name the folder of a report, or its {name}.",
-                        folder=path,
-                        name=DATA,
-                    )
-                )
-            raise InputError(
-                fill("{path} does not exist: name a {name}, or the folder that holds it.", path=path, name=DATA)
-            )
+            raise InputError(_explain_missing(path, file))
         status = file.stat()
         if status.st_size > MOST_BYTES:
+            sizes = {"size": status.st_size >> 20, "most": MOST_BYTES >> 20}
             raise InputError(
-                fill(
-                    "{path} is too large: {size:,} MB, at most {most:,} MB are read.",
-                    path=file,
-                    size=status.st_size >> 20,
-                    most=MOST_BYTES >> 20,
-                )
+                fill("{path} is too large: {size:,} MB, at most {most:,} MB are read.", path=file, **sizes)
             )
         return read_input(file, MOST_BYTES), datetime.datetime.fromtimestamp(status.st_mtime, datetime.UTC)
     except OSError as error:
@@ -96,20 +78,38 @@ def _load(path: Path, file: Path) -> tuple[bytes, datetime.datetime]:
         raise InputError(fill("{path} cannot be read: {why}.", path=file, why=why)) from None
 
 
+def _explain_missing(path: Path, file: Path) -> str:
+    if is_unfinished(file.parent, file.name):
+        return explain_unfinished(file.parent)
+    if path.is_dir():
+        return fill("{folder} contains no {name}: name the folder of a report, or its {name}.", folder=path, name=DATA)
+    return fill("{path} does not exist: name a {name}, or the folder that holds it.", path=path, name=DATA)
+
+
 def _parse(file: Path, data: bytes) -> Mapping[str, Any]:
+    """Return the record, which is that of a run by this major version of the schema."""
+    text = ""
     try:
         text = data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise InputError(
-            fill("{path} is not a JSON file: name a {name} written by assess, or its folder.", path=file, name=DATA)
-        ) from None
-    try:
-        found = json.loads(text, parse_constant=_refuse)
+        record = json.loads(text, parse_constant=_refuse)
     except (ValueError, RecursionError) as error:
         raise InputError(_describe_fault(file, text, error)) from None
-    if not isinstance(found, dict):
-        raise InputError(_describe_foreign(file))
-    return found
+    foreign = fill("{path} was not written by assess: name a {name} written by assess.", path=file, name=DATA)
+    if not isinstance(record, dict):
+        raise InputError(foreign)
+    schema = record.get("schema")
+    if not isinstance(schema, str) or not isinstance(record.get("assess"), dict):
+        raise InputError(foreign)
+    if COMPARISON in record:
+        raise InputError(fill("{path} is a comparison, not a run: name the {name} of each run.", path=file, name=DATA))
+    major, ours = (one.partition(".")[0] for one in (schema, VERSION))
+    if not (major.isascii() and major.isdigit() and len(major) < 6):
+        raise InputError(foreign)
+    if major.lstrip("0") != ours:
+        raise InputError(_describe_version(file, schema, ours, is_earlier=int(major) < int(ours)))
+    if missing := [name for name in _TOP if name not in record]:
+        raise InputError(fill("{path} is incomplete: {name} is missing. Run assess again.", path=file, name=missing[0]))
+    return record
 
 
 def _refuse(name: str) -> Never:
@@ -119,108 +119,76 @@ def _refuse(name: str) -> Never:
 def _describe_fault(file: Path, text: str, error: Exception) -> Text:
     """Return what is wrong with a text that is no JSON: it is cut off, or something else than a results.json."""
     whole = text.strip()
+    if isinstance(error, UnicodeDecodeError) or (whole and not whole.startswith(("{", "["))):
+        return fill("{path} is not a JSON file: name a {name} written by assess, or its folder.", path=file, name=DATA)
     if not whole:
         return fill("{path} is empty: run assess again, or use another copy of the file.", path=file)
     at_end = isinstance(error, json.JSONDecodeError) and error.pos >= len(text.rstrip())
     if whole.startswith("{") and (at_end or not whole.endswith("}")):
         return fill("{path} is truncated: run assess again, or use another copy of the file.", path=file)
-    if not whole.startswith(("{", "[")):
-        return fill("{path} is not a JSON file: name a {name} written by assess, or its folder.", path=file, name=DATA)
-    where = f"{error.lineno}" if isinstance(error, json.JSONDecodeError) else ""
-    if where:
-        return fill("{path} is damaged: line {line} is not valid JSON. Run assess again.", path=file, line=where)
+    if isinstance(error, json.JSONDecodeError):
+        line = f"{error.lineno}"
+        return fill("{path} is damaged: line {line} is not valid JSON. Run assess again.", path=file, line=line)
     return fill("{path} is damaged: it is not valid JSON. Run assess again.", path=file)
 
 
-def _describe_foreign(file: Path) -> Text:
-    return fill("{path} was not written by assess: name a {name} written by assess.", path=file, name=DATA)
-
-
-def _check_origin(file: Path, record: Mapping[str, Any]) -> None:
-    schema, origin = record.get("schema"), record.get("assess")
-    if not isinstance(schema, str) or not isinstance(origin, dict):
-        raise InputError(_describe_foreign(file))
-    if COMPARISON in record:
-        raise InputError(fill("{path} is a comparison, not a run: name the {name} of each run.", path=file, name=DATA))
-    major, ours = (text.partition(".")[0] for text in (schema, VERSION))
-    if not (major.isascii() and major.isdigit() and len(major) < 6):
-        raise InputError(_describe_foreign(file))
-    if major.lstrip("0") != ours:
-        raise InputError(_describe_version(file, schema, is_earlier=int(major) < int(ours)))
-    missing = [name for name in _TOP if name not in record]
-    if missing:
-        raise InputError(fill("{path} is incomplete: {name} is missing. Run assess again.", path=file, name=missing[0]))
-
-
-def _describe_version(file: Path, schema: str, *, is_earlier: bool) -> Text:
-    ours = VERSION.partition(".")[0]
+def _describe_version(file: Path, schema: str, ours: str, *, is_earlier: bool) -> Text:
+    values = {"path": file, "schema": schema[:20], "ours": ours}
     if is_earlier:
         return fill(
             "{path} was written by an earlier version of assess: its schema is {schema}, this version reads {ours}.x. "
             "Run its workbook again.",
-            path=file,
-            schema=schema[:20],
-            ours=ours,
+            **values,
         )
     return fill(
         "{path} was written by a later version of assess: its schema is {schema}, this version reads {ours}.x. Update "
         "assess.",
-        path=file,
-        schema=schema[:20],
-        ours=ours,
+        **values,
     )
 
 
 class Reader:
-    """Turns the parts of a record into rows; `file` is named where a value is not what it may be."""
+    """Turns the parts of a record into rows; `file` is named where a value is not what it may be.
+
+    A method that takes `row`, `name` and `place` returns the value of this name in a row, which stands at a place in
+    the record; it raises InputError where the value is missing or not what it may be.
+    """
 
     def __init__(self, file: Path) -> None:
         self.file = file
 
     def run(self, record: Mapping[str, Any], sha256: str, written: datetime.datetime) -> past.PastRun:
         """Return the run."""
-        items = self.rows(record, "items", "")
+        items, origin = self.rows(record, "items", ""), self.part(record, "assess", "")
+        routes = self.part(record, "routes", "")
+        inputs, inside = self.part(origin, "inputs", "assess"), "assess.inputs"
         return past.PastRun(
             path=self.file,
             sha256=sha256,
             written=written,
             schema=plain_line(record["schema"])[:20],
-            building=self.plainly(self.part(record, "building", "")),
+            version=self.text(origin, "version", "assess"),
+            code=self.text(origin, "code", "assess") if "code" in origin else "",
+            platform=self.texts(origin, "platform", "assess"),
+            settings=self.plainly(origin, "settings", "assess"),
+            building=self.plainly(record, "building", ""),
+            uncertainty=self.plainly(origin, "uncertainty", "assess"),
+            shaking=_read_shaking(origin),
+            site_ground=self.site_ground(origin),
+            workbook=self.text(inputs, "workbook", inside),
+            workbook_sha256=self.text(inputs, "sha256", inside),
+            motions=self.texts(inputs, "records", inside) | self.texts(inputs, "motions", inside),
             is_simulated=self.is_simulated(record, items),
             pieces=self.unique(items, "items", self.piece, lambda one: key(one.item)),
-            **self.origin(self.part(record, "assess", "")),
-            **self.routes(self.part(record, "routes", "")),
+            routes=self.states(routes, "routes", "route", "blocked"),
+            rooms=self.states(routes, "rooms", "room", "loses_every_exit"),
+            route_risk=self.share(routes, "risk", "routes"),
+            blocked_routes=self.number(routes, "blocked_routes_expected", "routes"),
+            cut_off_rooms=self.number(routes, "cut_off_rooms_expected", "routes"),
+            unknown_routes=self.count(routes, "unknown_routes", "routes"),
+            unknown_rooms=self.count(routes, "unknown_rooms", "routes"),
+            unjoined_rooms=self.list_texts(routes, "unjoined_rooms", "routes"),
         )
-
-    def origin(self, origin: Mapping[str, Any]) -> dict[str, Any]:
-        """Return what a run says of itself, by the fields of `PastRun`."""
-        inputs, place = self.part(origin, "inputs", "assess"), "assess.inputs"
-        return {
-            "version": self.text(origin, "version", "assess"),
-            "code": self.text(origin, "code", "assess") if "code" in origin else "",
-            "platform": self.texts(origin, "platform", "assess"),
-            "settings": self.plainly(self.part(origin, "settings", "assess")),
-            "uncertainty": self.plainly(self.part(origin, "uncertainty", "assess")),
-            "shaking": self.shaking(origin),
-            "site_ground": self.site_ground(origin),
-            "workbook": self.text(inputs, "workbook", place),
-            "workbook_sha256": self.text(inputs, "sha256", place),
-            "motions": self.texts(inputs, "records", place) | self.texts(inputs, "motions", place),
-        }
-
-    def routes(self, routes: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the routes and rooms, by the fields of `PastRun`."""
-        own, rooms = self.rows(routes, "routes", "routes"), self.rows(routes, "rooms", "routes")
-        return {
-            "routes": self.unique(own, "routes.routes", self.route, lambda one: key(one.name)),
-            "rooms": self.unique(rooms, "routes.rooms", self.room, lambda one: (key(one.floor), key(one.name))),
-            "route_risk": self.share(routes, "risk", "routes"),
-            "blocked_routes": self.number(routes, "blocked_routes_expected", "routes"),
-            "cut_off_rooms": self.number(routes, "cut_off_rooms_expected", "routes"),
-            "unknown_routes": self.count(routes, "unknown_routes", "routes"),
-            "unknown_rooms": self.count(routes, "unknown_rooms", "routes"),
-            "unjoined_rooms": self.list_texts(routes, "unjoined_rooms", "routes"),
-        }
 
     def is_simulated(self, record: Mapping[str, Any], items: Sequence[Mapping[str, Any]]) -> bool:
         """Whether the run simulated any piece."""
@@ -244,33 +212,26 @@ class Reader:
             quantity=self.count(row, "quantity", place),
             is_held=held if isinstance(held, bool) else row.get("anchored") == "yes",
             basis=self.choice(adopted, "basis", inside, BASES),
-            risk=_CLASSES[self.choice(adopted, "class", inside, tuple(_CLASSES))],
+            risk=past.CLASSES[self.choice(adopted, "class", inside, [risk.word for risk in RiskClass])],
             chance=self.chance(adopted, inside),
             inputs=_read_inputs(row),
         )
 
-    def route(self, row: Mapping[str, Any], place: str) -> past.PastState:
-        """Return a route."""
-        return past.PastState(
-            name=self.text(row, "route", place),
-            floor="",
-            state=self.text(row, "state", place),
-            chance=self.chance_or_none(row, "blocked", place),
-        )
+    def states(self, routes: Mapping[str, Any], name: str, kind: str, chance: str) -> tuple[past.PastState, ...]:
+        """Return the routes or the rooms; `chance` is the name of their chance, which may be null or absent."""
 
-    def room(self, row: Mapping[str, Any], place: str) -> past.PastState:
-        """Return a room."""
-        return past.PastState(
-            name=self.text(row, "room", place),
-            floor=self.text(row, "floor", place),
-            state=self.text(row, "state", place),
-            chance=self.chance_or_none(row, "loses_every_exit", place),
-        )
+        def read(row: Mapping[str, Any], place: str) -> past.PastState:
+            return past.PastState(
+                name=self.text(row, kind, place),
+                floor=self.text(row, "floor", place) if kind == "room" else "",
+                state=self.text(row, "state", place),
+                chance=None
+                if row.get(chance) is None
+                else self.chance(self.part(row, chance, place), f"{place}.{chance}"),
+            )
 
-    def shaking(self, origin: Mapping[str, Any]) -> str:
-        """Return the name of the assumed intensity; "" where there is none."""
-        found = origin.get("shaking")
-        return plain_line(str(found.get("name", ""))) if isinstance(found, dict) else ""
+        rows = self.rows(routes, name, "routes")
+        return self.unique(rows, f"routes.{name}", read, lambda one: (key(one.floor), key(one.name)))
 
     def site_ground(self, origin: Mapping[str, Any]) -> str:
         """Return file, PGA and hash of a ShakeMap or of scenarios; "" where the motion rests on none."""
@@ -279,11 +240,6 @@ class Reader:
         found, place = self.part(origin, "site_ground", "assess"), "assess.site_ground"
         file, sha256 = (self.text(found, name, place) for name in ("file", "sha256"))
         return f"{file}, {self.number(found, 'pga_g', place):.3f} g, SHA-256 {sha256[:16]}"
-
-    def chance_or_none(self, row: Mapping[str, Any], name: str, place: str) -> past.PastChance | None:
-        """Return a chance that may be null or absent."""
-        found = row.get(name)
-        return None if found is None else self.chance(self.part(row, name, place), f"{place}.{name}")
 
     def chance(self, row: Mapping[str, Any], place: str) -> past.PastChance:
         """Return a chance with its interval."""
@@ -302,14 +258,11 @@ class Reader:
         """Return the rows that `read` makes; raises InputError where two have one name."""
         found: dict[Any, _Row] = {}
         for at, row in enumerate(rows):
-            one = read(row, f"{place}[{at}]")
+            where = f"{place}[{at}]"
+            one = read(row, where)
             if name(one) in found:
                 raise InputError(
-                    fill(
-                        "{path}: {place}: duplicate name. Run assess again.",
-                        path=self.file,
-                        place=f"{place}[{at}]",
-                    )
+                    fill("{path}: {place}: duplicate name. Run assess again.", path=self.file, place=where)
                 )
             found[name(one)] = one
         return tuple(found.values())
@@ -317,17 +270,15 @@ class Reader:
     def get(
         self, row: Mapping[str, Any], name: str, place: str, expected: Text, is_right: Callable[[Any], bool]
     ) -> Any:
-        """Return a value; raises InputError where it is missing or not what it may be."""
+        """Return a value."""
         value = row.get(name, _MISSING)
         if value is _MISSING or not is_right(value):
-            where = f"{place}.{name}" if place else name
-            shown = fill("missing") if value is _MISSING else repr(value)[:40]
             raise InputError(
                 fill(
                     "{path}: {place} is {value}, expected {expected}. Run assess again.",
                     path=self.file,
-                    place=where,
-                    value=shown,
+                    place=f"{place}.{name}" if place else name,
+                    value=fill("missing") if value is _MISSING else repr(value)[:40],
                     expected=expected,
                 )
             )
@@ -339,15 +290,7 @@ class Reader:
 
     def rows(self, row: Mapping[str, Any], name: str, place: str) -> list[Mapping[str, Any]]:
         """Return a list of objects."""
-        return list(
-            self.get(
-                row,
-                name,
-                place,
-                fill("a list of objects"),
-                lambda value: isinstance(value, list) and all(isinstance(one, dict) for one in value),
-            )
-        )
+        return list(self.get(row, name, place, fill("a list of objects"), lambda value: _is_list(value, dict)))
 
     def text(self, row: Mapping[str, Any], name: str, place: str) -> str:
         """Return a text on one line, safe to show."""
@@ -362,13 +305,7 @@ class Reader:
         """Return a list of texts, each on one line; none where an earlier version did not write it."""
         if name not in row:
             return ()
-        found = self.get(
-            row,
-            name,
-            place,
-            fill("a list of texts"),
-            lambda value: isinstance(value, list) and all(isinstance(one, str) for one in value),
-        )
+        found = self.get(row, name, place, fill("a list of texts"), lambda value: _is_list(value, str))
         return tuple(plain_line(one) for one in found)
 
     def choice(self, row: Mapping[str, Any], name: str, place: str, choices: Sequence[str]) -> str:
@@ -378,15 +315,11 @@ class Reader:
 
     def count(self, row: Mapping[str, Any], name: str, place: str) -> int:
         """Return a whole number from 0."""
-        return int(
-            self.get(
-                row,
-                name,
-                place,
-                fill("a whole number, 0 or above"),
-                lambda value: _is_number(value) and isinstance(value, int) and value < 10**9,
-            )
-        )
+
+        def is_right(value: Any) -> bool:
+            return isinstance(value, int) and _is_number(value) and value < 10**9
+
+        return int(self.get(row, name, place, fill("a whole number, 0 or above"), is_right))
 
     def number(self, row: Mapping[str, Any], name: str, place: str) -> float:
         """Return a number from 0."""
@@ -394,16 +327,20 @@ class Reader:
 
     def share(self, row: Mapping[str, Any], name: str, place: str) -> float:
         """Return a number from 0 to 1."""
-        return float(
-            self.get(row, name, place, fill("a number from 0 to 1"), lambda value: _is_number(value) and value <= 1)
-        )
+        expected = fill("a number from 0 to 1")
+        return float(self.get(row, name, place, expected, lambda value: _is_number(value) and value <= 1))
 
-    def plainly(self, record: Mapping[str, Any]) -> dict[str, Any]:
+    def plainly(self, row: Mapping[str, Any], name: str, place: str) -> dict[str, Any]:
         """Return an object of values that are shown as they are; a list becomes a tuple of texts."""
         return {
-            plain_line(name): tuple(plain_line(str(one)) for one in value) if isinstance(value, list) else _plain(value)
-            for name, value in record.items()
+            plain_line(key): tuple(plain_line(str(one)) for one in value) if isinstance(value, list) else _plain(value)
+            for key, value in self.part(row, name, place).items()
         }
+
+
+def _read_shaking(origin: Mapping[str, Any]) -> str:
+    found = origin.get("shaking")
+    return plain_line(str(found.get("name", ""))) if isinstance(found, dict) else ""
 
 
 def _read_inputs(row: Mapping[str, Any]) -> dict[str, Any]:
@@ -412,7 +349,7 @@ def _read_inputs(row: Mapping[str, Any]) -> dict[str, Any]:
     anchor = row.get("anchor")
     if isinstance(anchor, dict) and anchor.get("is_height_assumed") is True:
         found["bracket_height_cm"] = None
-    found["sizes_from"] = found["sizes_from"] or MEASURED  # results before 5.2 do not tell it
+    found["sizes_from"] = found["sizes_from"] or MEASURED  # results before 5.2 do not have it
     return {name: _plain(value) for name, value in found.items()}
 
 
@@ -424,6 +361,9 @@ def _plain(value: Any) -> Any:
 
 
 def _is_number(value: Any) -> bool:
-    return (
-        isinstance(value, int | float) and not isinstance(value, bool) and 0 <= value < 1e300 and math.isfinite(value)
-    )
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    return is_number and 0 <= value < 1e300 and math.isfinite(value)
+
+
+def _is_list(value: Any, kind: type) -> bool:
+    return isinstance(value, list) and all(isinstance(one, kind) for one in value)

@@ -5,9 +5,8 @@ import math
 import pytest
 
 from assess.compare.changes import Direction, compare, lies_within
-from assess.compare.comparison_data import describe
-from assess.compare.comparison_view import View
-from assess.compare.comparison_words import say_anchor, say_inputs
+from assess.compare.comparison_files import describe
+from assess.compare.comparison_view import View, say_anchor, say_inputs
 from assess.compare.past_run import PastChance
 from assess.compare.read_results import read_run
 from assess.errors import InputError
@@ -38,7 +37,7 @@ def _adopt(record, name, **adopted):
 
 
 def _directions(found):
-    return {one.piece.item: one.direction.value for one in found.pieces}
+    return {one.row.item: one.direction.value for one in found.pieces}
 
 
 def test_a_run_against_itself_is_unchanged(source, routed):
@@ -50,7 +49,6 @@ def test_a_run_against_itself_is_unchanged(source, routed):
         assert View(found).headline == "Nothing changed: BEFORE and AFTER are the same results."
         assert not View(found).list_worse()
         assert not View(found).list_changed()
-        assert not View(found).list_changed_routes()
         assert all(was == now for was, now in found.moves)
 
 
@@ -65,7 +63,7 @@ def test_pieces_go_worse_and_better_by_class_chance_and_anchor(source, tmp_path)
     forth, back = compare(before, after), compare(after, before)
     assert _directions(forth) == {"A1": "worse", "A5": "worse", "A4": "better", "A2": "rises", "A3": "same"}
     assert _directions(back) == {"A4": "worse", "A2": "falls", "A1": "better", "A5": "better", "A3": "same"}
-    assert {one.piece.item for one in forth.pieces[:2]} == {"A1", "A5"}
+    assert {one.row.item for one in forth.pieces[:2]} == {"A1", "A5"}
     assert forth.count(Direction.WORSE) == 2
     assert View(forth).tone == View(back).tone == "worse"
     assert "2 pieces go to a higher class or are no longer anchored: A1, A5." in View(forth).list_worse()
@@ -82,7 +80,7 @@ def test_why_a_piece_is_anchored_no_longer_is_said(tmp_path):
     before = run("a", floors[0], bracket_capacity=9.0)
     after = run("b", floors[1], bracket_capacity=0.1, bracket_height=150, friction=0.3)
     (one,) = compare(before, after).pieces
-    assert (one.direction, one.standing_before) == (Direction.WORSE, "anchored")
+    assert (one.direction, one.states[0]) == (Direction.WORSE, "anchored")
     assert say_inputs(one) == [
         "Friction: – → 0.3",
         "Bracket height: – → 150 cm",
@@ -218,8 +216,8 @@ def test_states_of_routes_have_an_order_and_unknown_ones_have_none(routed, tmp_p
             one["state"] = states[one["route"]]
 
     after = read_changed(routed, tmp_path / "b", edit)
-    found = {one.name: one.direction.value for one in compare(before, after).routes}
-    back = {one.name: one.direction.value for one in compare(after, before).routes}
+    found = {one.row.name: one.direction.value for one in compare(before, after).routes}
+    back = {one.row.name: one.direction.value for one in compare(after, before).routes}
     assert found == {"West": "better", "Back": "better", "Yard": "unclear"}
     assert back == {"West": "worse", "Back": "worse", "Yard": "unclear"}
     labels = [line.label for line in View(compare(before, after)).list_route_counts()]
@@ -252,7 +250,7 @@ def test_a_room_whose_way_out_is_not_known_is_not_safe(routed, tmp_path):
     known = read_run(write_routed_run(tmp_path / "b", Settings(verify="none", scale=0.05), Items=ITEMS[:3]))
     assert {one.name: one.state for one in unknown.rooms} == {"Office": "blocked", "Archive": "not known"}
     found = compare(unknown, known)
-    assert {one.name: one.direction.value for one in found.rooms} == {"Office": "better", "Archive": "unclear"}
+    assert {one.row.name: one.direction.value for one in found.rooms} == {"Office": "better", "Archive": "unclear"}
     assert "1 room cannot be compared: Archive (not known → open)." in View(found).list_others()
     assert describe(found)["counts"]["rooms"] == {
         "blocked": {"before": 1, "after": 0},

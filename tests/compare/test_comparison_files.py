@@ -61,7 +61,7 @@ def test_the_page_leads_with_what_gets_worse_and_escapes_every_text(found, writt
     assert "&lt;script&gt;alert(1)&lt;/script&gt;" in page.replace("<wbr>", "")
     assert "BEFORE: motion × 0.4" in page
     for route in found.routes:
-        assert (route.name in page) == (route.direction != Direction.SAME)
+        assert (route.row.name in page) == (route.direction != Direction.SAME)
     assert not re.search(r"(src|href)=|<script|</h1><b>", page)
 
 
@@ -89,7 +89,7 @@ def test_the_workbook_has_every_row_and_text_stays_text(found, written):
     assert len(rows) == len(found.pieces)
     at = {name: position for position, name in enumerate(head)}
     for row, one in zip(rows, found.pieces, strict=True):
-        assert row[at["Item"]] == one.piece.item
+        assert row[at["Item"]] == one.row.item
         before = one.before and one.before.chance.probability
         assert row[at["Chance, BEFORE"]] == (None if before is None else pytest.approx(before, rel=1e-14))
     matrix = list(book["Moved classes"].values)
