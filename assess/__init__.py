@@ -25,7 +25,7 @@ if TYPE_CHECKING:
         RecordError,
         WorkbookError,
     )
-    from assess.methods._fitted import read_model
+    from assess.methods.fitted import read_model
     from assess.model import Inventory
     from assess.pipeline.run import run
     from assess.progress import Progress
@@ -49,7 +49,7 @@ _HOME = {
     "Settings": "assess.settings",
     "WorkbookError": "assess.errors",
     "read_inventory": "assess.workbook.read",
-    "read_model": "assess.methods._fitted",
+    "read_model": "assess.methods.fitted",
     "run": "assess.pipeline.run",
     "write_reports": "assess.report",
 }

@@ -19,8 +19,7 @@ from numpy.typing import NDArray
 from assess.annual_results import AnnualRow, AnnualTables
 from assess.errors import InputError, Problem
 from assess.i18n import Text, count, fill, join, nfill
-from assess.methods import MethodInfo, Outcome
-from assess.methods._method import ALIKE
+from assess.methods import ALIKE, MethodInfo, Outcome
 from assess.model import MEASURED, Building, CatalogueType, Place
 from assess.risk import RiskClass, classify
 from assess.rocking.draws import TRIED, Uncertainty

@@ -63,7 +63,7 @@ def _of_themselves() -> Iterator[tuple[str, str]]:
 
 def _of_methods() -> Iterator[tuple[str, str]]:
     from assess.methods import all_methods
-    from assess.methods._fitted_model import REASONS
+    from assess.methods.fitted import REASONS
     from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED
     from assess.results import MOTION_FLAGS, PIECE_FLAGS
     from assess.risk import RiskClass
@@ -73,7 +73,7 @@ def _of_methods() -> Iterator[tuple[str, str]]:
 
     for method in all_methods():
         yield from ((text, f"assess/methods/{method.key}.py") for text in method.texts)
-    yield from ((text, "assess/methods/_fitted_model.py") for text in REASONS)
+    yield from ((text, "assess/methods/fitted.py") for text in REASONS)
     for rule in RULES:
         yield rule.holds, "assess/routes/widths.py"
         yield rule.reference.remark, "assess/routes/widths.py"

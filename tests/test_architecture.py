@@ -17,9 +17,9 @@ ROOT = Path(assess.__file__).parents[1]
 PACKAGE = ROOT / "assess"
 
 LAYERS = {
-    "version": 0, "units": 0, "errors": 0, "risk": 0, "natural": 0, "resources": 0, "plain_text": 0, "cache_folder": 0,
-    "compiled": 0, "input_file": 1, "settings": 1, "i18n": 1, "extras": 1, "progress": 1, "pictures": 1, "plans": 1,
-    "environment": 1, "report_formats": 1,
+    "version": 0, "arrays": 0, "units": 0, "errors": 0, "risk": 0, "natural": 0, "resources": 0, "plain_text": 0,
+    "cache_folder": 0, "compiled": 0, "input_file": 1, "settings": 1, "i18n": 1, "extras": 1, "progress": 1,
+    "pictures": 1, "plans": 1, "environment": 1, "report_formats": 1,
     "delivery": 2, "motion": 2, "fragility": 2, "hazard": 2, "intensity": 2,
     "rocking": 3, "rates": 3, "bracket": 3, "details": 3,
     "methods": 4,

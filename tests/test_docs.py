@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import assess
-from assess.methods._fitted import write_model
+from assess.methods.fitted import write_model
 from assess.report.pages.pdf import DEBIAN
 from docs.bounds import replace_table
 from docs.reference import build_pages

@@ -25,8 +25,7 @@ from assess.i18n import (
     placeholders,
     speaking,
 )
-from assess.methods import all_methods
-from assess.methods._method import Reference
+from assess.methods import Reference, all_methods
 from assess.report.provenance import say_date, say_reference
 from docs.texts import collect
 

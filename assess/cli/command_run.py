@@ -274,7 +274,7 @@ def _read_methods(files: Sequence[Path]) -> "list[Method]":
         raise InputError(f"--method names {len(files)} files; a report has room for {MOST_METHODS}. Leave some out.")
     if not files:
         return []
-    from assess.methods._fitted import read_model
+    from assess.methods.fitted import read_model
 
     return [read_model(file) for file in files]
 

@@ -1,35 +1,42 @@
-"""The methods, found in this folder: a file that defines METHOD is one. Consumers ask for roles, never for keys."""
+"""The methods, found in this folder: a file that defines METHOD is one. Consumers ask for roles, never for keys.
+
+`cases` is what they are evaluated on, `method` how one describes itself; `expression` writes their formulas, `simulate`
+is what simulations share, and `fitted` makes a method of a model that a study fitted.
+"""
 
 import importlib
 import pkgutil
 from functools import cache
 
-from assess.methods._alike import Alike
-from assess.methods._info import Column, FittedOn, MethodInfo, Parameter, Range, Reason, Reference
-from assess.methods._method import Cases, Example, Joint, LiveCells, Method, Outcome
-from assess.methods._simulate import (
-    LOOKS,
-    LOOKS_Z,
-    interval_width,
-    make_batches,
-    rock_cases,
-    rock_draws,
-    run_side_by_side,
+from assess.methods.cases import ALIKE, NO_WALL, SIDE_UNKNOWN, Alike, Cases, Ensemble, Joint, Motions
+from assess.methods.method import (
+    FACTS,
+    PFV_FLAGS,
+    Column,
+    Example,
+    FittedOn,
+    LiveCells,
+    Method,
+    MethodInfo,
+    Outcome,
+    Parameter,
+    Range,
+    Reason,
+    Reference,
 )
 
 __all__ = [
-    "LOOKS", "LOOKS_Z", "Alike", "Cases", "Column", "Example", "FittedOn", "Joint", "LiveCells", "Method",
-    "MethodInfo", "Outcome", "Parameter", "Range", "Reason", "Reference", "adopted_formula", "all_methods",
-    "interval_width", "make_batches", "paper_formula", "rock_cases", "rock_draws", "run_side_by_side", "simulation",
+    "ALIKE", "FACTS", "NO_WALL", "PFV_FLAGS", "SIDE_UNKNOWN", "Alike", "Cases", "Column", "Ensemble", "Example",
+    "FittedOn", "Joint", "LiveCells", "Method", "MethodInfo", "Motions", "Outcome", "Parameter", "Range", "Reason",
+    "Reference", "adopted_formula", "all_methods", "paper_formula", "simulation",
 ]  # fmt: skip
 
 
 @cache
 def all_methods() -> tuple[Method, ...]:
     """Return every method of this folder, in the order of reports."""
-    names = [module.name for module in pkgutil.iter_modules(__path__) if not module.name.startswith("_")]
-    modules = [importlib.import_module(f"{__name__}.{name}") for name in names]
-    return tuple(sorted((module.METHOD for module in modules), key=lambda method: method.order))
+    modules = [importlib.import_module(f"{__name__}.{found.name}") for found in pkgutil.iter_modules(__path__)]
+    return tuple(sorted((one.METHOD for one in modules if hasattr(one, "METHOD")), key=lambda method: method.order))
 
 
 def adopted_formula(class_by: str | None = None) -> Method:
@@ -38,7 +45,7 @@ def adopted_formula(class_by: str | None = None) -> Method:
 
 
 def paper_formula() -> Method:
-    """Return the formula that the paper proposes: its class is shown beside that of the adopted one."""
+    """Return the formula that the paper proposes: its class is shown next to that of the adopted one."""
     return _find("proposed OR")
 
 

@@ -28,22 +28,11 @@ from typing import Any
 
 import numpy as np
 
+from assess.arrays import FloatArray
 from assess.i18n import Text
-from assess.methods._expression import G, number, show
-from assess.methods._method import (
-    PFV_FLAGS,
-    Cases,
-    Column,
-    Example,
-    FloatArray,
-    LiveCells,
-    Method,
-    Outcome,
-    Range,
-    Reason,
-    Reference,
-    normal_cdf,
-)  # fmt: skip
+from assess.methods.cases import Cases
+from assess.methods.expression import G, normal_cdf, number, show
+from assess.methods.method import PFV_FLAGS, Column, Example, LiveCells, Method, Outcome, Range, Reason, Reference
 from assess.rocking.block import STOCKY, critical_angle
 from assess.settings import Settings
 from assess.units import GRAVITY, VELOCITY

@@ -22,40 +22,36 @@ motion and the piece as exactly known; that is found as well (`ideal`), but adop
 this one, of a piece like this one: see `assess.rocking.draws`.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.methods._alike import Alike
-from assess.methods._beside import (
+from assess.arrays import BoolArray, FloatArray, IntArray
+from assess.i18n import Text, fill, nfill
+from assess.methods.cases import NO_WALL, Alike, Cases, Ensemble, Joint
+from assess.methods.expression import number, show
+from assess.methods.method import Column, Example, Method, Outcome, Reason, Reference
+from assess.methods.simulate import (
+    LOOKS,
     Beside,
-    BesideFound,
     find_branch,
-    find_extended,
-    find_walled,
-    name_branch,
+    interval_width,
+    make_batches,
+    rock_cases,
+    rock_draws,
+    run_side_by_side,
 )
-from assess.methods._housner_steps import steps
-from assess.methods._method import (
-    BoolArray,
-    Cases,
-    Column,
-    Ensemble,
-    FloatArray,
-    Joint,
-    Method,
-    Motions,
-    Outcome,
-    Reason,
-    Reference,
-)  # fmt: skip
-from assess.methods._simulate import LOOKS, interval_width, make_batches, rock_cases, rock_draws, run_side_by_side
 from assess.progress import SILENT, Progress, Stage
-from assess.risk import classify_all, wilson_interval
+from assess.risk import classify_all, wilson_end, wilson_interval
+from assess.rocking.block import MIDDLE
 from assess.rocking.draws import TRIED
+from assess.rocking.sliding import UNKNOWN, Branch, is_outside_shenton
 from assess.settings import AUTO, Settings
+from assess.units import GRAVITY, LENGTH
 
 BATCH = 500
 """Motions made at once."""
@@ -65,67 +61,70 @@ SHOWN = 3
 """Motions kept for reports."""
 
 
+WAYS = np.array([one.word for one in Branch] + [""])
+"""How a piece starts to move, of `Branch` and last of `UNKNOWN`."""
+COUNTS = ("runs", "draws", "fallen", "ideal")
+AS_FOUND = (
+    "if_slower", "if_faster", "record_overturned", "record_rotation", "sliding_branch", "slip_median_cm", "slip_84_cm",
+    "one_sided",
+)  # fmt: skip
+"""Columns that are found ensemble by ensemble."""
+FLAGS = ("shenton_extended", "wall_higher", "assumed_motion", "unknown_building", "weak_motions")
+"""Flags that are, after `fell_in_record`."""
+
+
 def evaluate(cases: Cases, settings: Settings, *, threads: int = 1, stage: Stage | None = None) -> Outcome:
     """Integrate the cases that have an ensemble, each of which is one part of `stage`; the others have no value."""
     known = (cases.ensemble >= 0) & ~cases.is_stocky & ~np.isnan(cases.threshold)
-    found = _Found.empty(cases.breadth.size)
     owns = [(number, np.flatnonzero(known & (cases.ensemble == number))) for number in range(len(cases.ensembles))]
     owns = [(number, own) for number, own in owns if own.size or (cases.slides_under == number).any()]
     side_by_side = min(threads, len(owns))
     stage = stage or Stage(SILENT, "verification", "", len(cases.ensembles))
+    count, way, joints = cases.breadth.size, find_branch(cases), []
+    found: dict[str, NDArray[Any]] = {name: np.zeros(count, dtype=np.int64) for name in COUNTS}
+    found |= {"tried": np.zeros((len(TRIED), count), dtype=np.int64)}
+    found |= {name: np.full(count, np.nan) for name in AS_FOUND} | {"sliding_branch": WAYS[way]}
+    found |= {name: np.zeros(count, dtype=np.bool_) for name in FLAGS}
+    found["shenton_extended"] = (way != UNKNOWN) & is_outside_shenton(cases.centre)
 
-    def work(number: int, own: NDArray[np.intp]) -> "_Rocked":
+    def work(number: int, own: NDArray[np.intp]) -> tuple[Joint, list[_Part]]:
         return _Run(cases, own, number, settings, max(1, threads // side_by_side), stage).integrate()
 
-    joints = []
-    for rocked in run_side_by_side(work, owns, side_by_side):
-        found.take(rocked, cases.ensembles[rocked.joint.ensemble])
-        joints += [rocked.joint] if rocked.joint.cases.size else []
+    for joint, parts in run_side_by_side(work, owns, side_by_side):
+        joints += [joint] if joint.cases.size else []
+        for own, values in parts:
+            for name, one in values.items():
+                found[name][..., own] = one
     return _summarise(found, cases, settings, joints)
 
 
-def _summarise(found: "_Found", cases: Cases, settings: Settings, joints: list[Joint]) -> Outcome:
-    done = found.runs > 0
-    drawn = _count(found.overturned, found.runs, found.draws, settings)
-    exact = found.runs if settings.ideal else np.where(found.assumed, 0, found.runs)  # what is drawn cannot recur
-    ideal = _count(found.ideal, exact, exact, settings)
-    open_low, open_high = (ideal if settings.ideal else drawn)[2:]
+_Part = tuple[NDArray[np.intp], dict[str, Any]]
+"""Some cases, and what was found of each by name."""
+
+
+def _summarise(found: dict[str, NDArray[Any]], cases: Cases, settings: Settings, joints: list[Joint]) -> Outcome:
+    runs, draws, done, assumed = found["runs"], found["draws"], found["runs"] > 0, found["assumed_motion"]
+    fallen, share, low, high = _count(found["fallen"], runs, draws, settings)
+    exact = runs if settings.ideal else np.where(assumed, 0, runs)  # what is drawn cannot recur
+    ideal = _count(found["ideal"], exact, exact, settings)
+    tried = [_count(one, runs, draws, settings)[1] for one in found["tried"]]
     detail = {
-        **{name: np.where(done, one, np.nan) for name, one in (("runs", found.runs), ("draws", found.draws))},
-        **dict(zip(("overturned", "low", "high"), (drawn[0], *drawn[2:]), strict=True)),
+        "runs": np.where(done, runs, np.nan),
+        "draws": np.where(done, draws, np.nan),
+        "overturned": fallen,
+        "low": low,
+        "high": high,
         **dict(zip(("ideal_overturned", "ideal", "ideal_low", "ideal_high"), ideal, strict=True)),
-        **{
-            f"dispersion_{one:g}": np.where(found.assumed, np.nan, _count(fallen, found.runs, found.draws, settings)[1])
-            for one, fallen in zip(TRIED, found.tried, strict=True)
-        },
-        "if_slower": found.if_slower,
-        "if_faster": found.if_faster,
-        "record_overturned": found.record_fell,
-        "record_rotation": found.record_rotation,
-        "sliding_branch": name_branch(find_branch(cases)),
-        "slip_median_cm": found.slip_median,
-        "slip_84_cm": found.slip_high,
-        "one_sided": found.one_sided,
+        **{f"dispersion_{one:g}": np.where(assumed, np.nan, way) for one, way in zip(TRIED, tried, strict=True)},
+        **{name: found[name] for name in AS_FOUND},
     }
+    open_low, open_high = ideal[2:] if settings.ideal else (low, high)
     undecided = done & (settings.runs == AUTO) & (classify_all(open_low) != classify_all(open_high))
-    return Outcome(drawn[1], detail, _list_flags(found, cases) | {"undecided": undecided}, tuple(joints))
+    flags = {"fell_in_record": found["record_overturned"] == 1, **{name: found[name] for name in FLAGS}}
+    return Outcome(share, detail, {**flags, "does_not_rock": cases.is_stocky, "undecided": undecided}, tuple(joints))
 
 
-def _list_flags(found: "_Found", cases: Cases) -> dict[str, BoolArray]:
-    return {
-        "fell_in_record": found.record_fell == 1,
-        "shenton_extended": find_extended(cases),
-        "wall_higher": found.wall_higher,
-        "assumed_motion": found.assumed,
-        "unknown_building": found.unknown,
-        "weak_motions": found.weak,
-        "does_not_rock": cases.is_stocky,
-    }
-
-
-def _count(
-    fallen: NDArray[np.int64], runs: NDArray[np.int64], draws: NDArray[np.int64], settings: Settings
-) -> tuple[FloatArray, ...]:
+def _count(fallen: IntArray, runs: IntArray, draws: IntArray, settings: Settings) -> tuple[FloatArray, ...]:
     """Return how many of the draws overturn each case, their share, and its interval; NaN where there are none.
 
     `draws` are those of all pieces alike, which have their earthquakes in common: the interval is that of `runs`.
@@ -134,76 +133,6 @@ def _count(
     share = fallen / np.maximum(draws, 1)
     ends = wilson_interval(share * some, some, interval_width(settings))
     return tuple(np.where(done, one, np.nan) for one in (fallen, share, *ends))
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Rocked:
-    """What the cases of one ensemble did.
-
-    `tried` (d, m) counts falls at each of `TRIED`, `record` is what they do under the record itself, `thirds` the
-    chance in the slower and in the faster third of drawn motions, (m,) each.
-    """
-
-    alike: Alike
-    joint: Joint
-    tried: NDArray[np.int64]
-    record: tuple[FloatArray, FloatArray]
-    thirds: tuple[FloatArray, FloatArray]
-    beside: BesideFound
-
-    def find_one_sided(self) -> tuple[FloatArray, BoolArray]:
-        """Return the chance of each walled case, and whether it is above that without the wall in the same draws."""
-        has_wall = np.isin(self.joint.cases, self.beside.walled)
-        free = self.joint.ideal if self.beside.is_ideal else self.joint.fell
-        one_sided = np.zeros(has_wall.size)
-        one_sided[has_wall] = self.beside.one_sided
-        alone = self.alike.average(free[:, : self.beside.draws].mean(axis=1))[has_wall]
-        chance = self.alike.average(one_sided)[has_wall]
-        return chance, np.asarray(chance > alone)
-
-
-@dataclass(slots=True)
-class _Found:
-    """What was found, case by case."""
-
-    runs: NDArray[np.int64]
-    draws: NDArray[np.int64]
-    overturned: NDArray[np.int64]
-    ideal: NDArray[np.int64]
-    tried: NDArray[np.int64]
-    record_fell: FloatArray
-    record_rotation: FloatArray
-    slip_median: FloatArray
-    slip_high: FloatArray
-    one_sided: FloatArray
-    if_slower: FloatArray
-    if_faster: FloatArray
-    assumed: BoolArray
-    unknown: BoolArray
-    weak: BoolArray
-    wall_higher: BoolArray
-
-    @classmethod
-    def empty(cls, count: int) -> "_Found":
-        runs, draws, overturned, ideal = (np.zeros(count, dtype=np.int64) for _ in range(4))
-        unknown = (np.full(count, np.nan) for _ in range(7))
-        no = (np.zeros(count, dtype=np.bool_) for _ in range(4))
-        tried = np.zeros((len(TRIED), count), dtype=np.int64)
-        return cls(runs, draws, overturned, ideal, tried, *unknown, *no)
-
-    def take(self, rocked: _Rocked, ensemble: Ensemble) -> None:
-        joint, alike = rocked.joint, rocked.alike
-        own = joint.cases
-        self.runs[own], self.draws[own] = joint.runs, joint.runs * alike.total
-        self.overturned[own], self.ideal[own] = alike.add_up(joint.fell.sum(axis=1)), joint.ideal.sum(axis=1)
-        self.tried[:, own] = alike.add_up(rocked.tried)
-        self.record_fell[own], self.record_rotation[own] = rocked.record
-        beside = rocked.beside
-        self.slip_median[beside.sliders], self.slip_high[beside.sliders] = beside.slip_median_cm, beside.slip_high_cm
-        self.one_sided[beside.walled], self.wall_higher[beside.walled] = rocked.find_one_sided()
-        self.if_slower[own], self.if_faster[own] = rocked.thirds
-        self.assumed[own], self.unknown[own] = ensemble.is_assumed, ensemble.is_unknown
-        self.weak[own] = joint.is_weak
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,14 +154,16 @@ class _Run:
     def progress(self) -> Progress:
         return self.stage.progress
 
-    def integrate(self) -> _Rocked:
+    def integrate(self) -> tuple[Joint, list[_Part]]:
         """Integrate the cases, check by check with runs="auto"; those that are decided leave."""
-        motions = self.ensemble.open(self.threads, self.progress)
+        motions, is_drawn = self.ensemble.open(self.threads, self.progress), self.ensemble.is_assumed
         checks = LOOKS if self.settings.runs == AUTO else (int(self.settings.runs),)
         count, runs = self.own.size, np.zeros(self.own.size, dtype=np.int64)
         fell, ideal = np.zeros((count, 0), np.bool_), np.zeros((count, 0), np.bool_)
         rotation, tried = np.zeros((count, 0), np.float32), np.zeros((len(TRIED), count), dtype=np.int64)
-        size, going, beside = min(BATCH, MOST_PAIRS // max(1, count) + 1), np.arange(count), self._beside()
+        size, going = min(BATCH, MOST_PAIRS // max(1, count) + 1), np.arange(count)
+        sliders, walled = self.cases.slides_under == self.number, self.own[self.cases.wall[self.own] != NO_WALL]
+        beside, others = Beside(self.cases, self.settings, np.flatnonzero(sliders), walled), () if is_drawn else TRIED
         alike, speeds = Alike.of(self.cases.alike[self.own], self.cases.quantity[self.own]), list[FloatArray]()
         for first, last in zip((0, *checks), checks, strict=False):
             wider = ((0, 0), (0, last - first))
@@ -240,12 +171,16 @@ class _Run:
             for at, batch, time_step in make_batches(motions, first, last, size):
                 here = slice(at, at + len(batch))
                 if going.size:
-                    drawn, turned = self._rock_draws(self.own[going], batch, time_step, at)
+                    own = self.own[going]
+                    drawn, turned = rock_draws(
+                        self.cases, own, batch, time_step, first=at, dispersions=(self.cases.dispersion[own], *others),
+                        seed=self.settings.seed, threads=self.threads, progress=self.progress,
+                    )  # fmt: skip
                     fell[going, here], rotation[going, here] = drawn[0], turned[0]
-                    tried[:, going] += 0 if self.ensemble.is_assumed else drawn[1:].sum(axis=2)
-                    speeds += [_find_speeds(batch, time_step)] if self.ensemble.is_assumed else []
-                    if self.settings.ideal or not self.ensemble.is_assumed:
-                        ideal[going, here], _ = self._rock(self.own[going], batch, time_step)
+                    tried[:, going] += 0 if is_drawn else drawn[1:].sum(axis=2)
+                    speeds += [_find_speeds(batch, time_step)] if is_drawn else []
+                    if self.settings.ideal or not is_drawn:
+                        ideal[going, here], _ = self._rock(own, batch, time_step)
                 if first == 0:
                     beside.add(batch, time_step, at, self.threads, self.progress)
                 self.stage.at(here.stop / checks[-1], self.number)
@@ -255,44 +190,43 @@ class _Run:
             if not going.size:
                 break
         self.stage.at(1.0, self.number)
-        joint, thirds = self._join(motions, runs, fell, ideal, rotation), _find_thirds(counted, runs, speeds, alike)
-        return _Rocked(alike, joint, tried, self._rock_under_record(), thirds, beside.finish())
-
-    def _join(
-        self, motions: Motions, runs: NDArray[np.int64], fell: BoolArray, ideal: BoolArray,
-        rotation: NDArray[np.float32],
-    ) -> Joint:  # fmt: skip
-        count = fell.shape[1]
-        return Joint(
+        shown = [(one.astype(np.float32), step) for many, step in motions.realise(0, min(SHOWN, last)) for one in many]
+        joint = Joint(
             ensemble=self.number, cases=self.own, runs=runs, fell=fell, ideal=ideal, rotation=rotation,
-            examples=_examples(motions, count), fit=motions.fit,
-            spectra=motions.spectra and motions.spectra.first(count), is_weak=motions.is_weak, bands=motions.bands,
+            examples=shown, fit=motions.fit, spectra=motions.spectra and motions.spectra.first(last),
+            is_weak=motions.is_weak, bands=motions.bands,
         )  # fmt: skip
+        slower, faster = _find_thirds(counted, runs, speeds, alike)
+        of_all = {
+            "runs": runs, "draws": runs * alike.total, "fallen": alike.add_up(fell.sum(axis=1)),
+            "ideal": ideal.sum(axis=1), "tried": alike.add_up(tried), "if_slower": slower, "if_faster": faster,
+            "assumed_motion": is_drawn, "unknown_building": self.ensemble.is_unknown, "weak_motions": joint.is_weak,
+        }  # fmt: skip
+        slips = dict(zip(("slip_median_cm", "slip_84_cm"), beside.find_slip(), strict=True))
+        return joint, [
+            (self.own, of_all | self._rock_under_record()),
+            (beside.sliders, slips),
+            (beside.walled, self._compare(joint, beside, alike)),
+        ]
 
-    def _beside(self) -> Beside:
-        sliders = np.flatnonzero(self.cases.slides_under == self.number)
-        return Beside(self.cases, self.settings, sliders, self.own[find_walled(self.cases)[self.own]])
+    def _compare(self, joint: Joint, beside: Beside, alike: Alike) -> dict[str, Any]:
+        """Return the chance of each walled case, and whether it is above that without the wall in the same draws."""
+        has_wall, one_sided = np.isin(self.own, beside.walled), np.zeros(self.own.size)
+        one_sided[has_wall], draws = beside.find_one_sided()
+        free = joint.ideal if self.settings.ideal else joint.fell
+        alone, chance = (alike.average(one)[has_wall] for one in (free[:, :draws].mean(axis=1), one_sided))
+        return {"one_sided": chance, "wall_higher": chance > alone}
 
-    def _rock_under_record(self) -> tuple[FloatArray, FloatArray]:
-        """Return whether each case overturns under the record itself, and how far it turns; NaN without a record."""
+    def _rock_under_record(self) -> dict[str, FloatArray]:
+        """Return whether each case overturns under the record itself, and how far it turns; nothing without one."""
         if self.ensemble.record is None or not self.own.size:
-            return np.full(self.own.size, np.nan), np.full(self.own.size, np.nan)
+            return {}
         motion, time_step = self.ensemble.record
         fell, rotation = self._rock(self.own, motion[np.newaxis], time_step)
-        return fell[:, 0].astype(np.float64), rotation[:, 0]
+        return {"record_overturned": fell[:, 0].astype(np.float64), "record_rotation": rotation[:, 0]}
 
     def _rock(self, own: NDArray[np.intp], motions: FloatArray, time_step: float) -> tuple[BoolArray, FloatArray]:
         return rock_cases(self.cases, own, motions, time_step, self.threads, self.progress)
-
-    def _rock_draws(
-        self, own: NDArray[np.intp], motions: FloatArray, time_step: float, first: int
-    ) -> tuple[BoolArray, FloatArray]:
-        """Return what the cases did at the floor's dispersion and, with a record, at each of `TRIED`, (1 + d, m, k)."""
-        others = () if self.ensemble.is_assumed else TRIED
-        return rock_draws(
-            self.cases, own, motions, time_step, first=first, dispersions=(self.cases.dispersion[own], *others),
-            seed=self.settings.seed, threads=self.threads, progress=self.progress,
-        )  # fmt: skip
 
 
 def _find_speeds(motions: FloatArray, time_step: float) -> FloatArray:
@@ -318,15 +252,115 @@ def _find_thirds(
     return slower, faster
 
 
-def _examples(motions: Motions, count: int) -> list[tuple[NDArray[np.float32], float]]:
-    batches = motions.realise(0, min(SHOWN, count))
-    return [(one.astype(np.float32), time_step) for batch, time_step in batches for one in batch]
-
-
 def _is_open(fallen: FloatArray, runs: int, settings: Settings) -> BoolArray:
     """Return which cases' intervals reach over more than one class, by how often they fell in so many draws."""
     low, high = wilson_interval(fallen, runs, interval_width(settings))
     return np.asarray(classify_all(low) != classify_all(high), dtype=np.bool_)
+
+
+# ---------------------------------------------------------------- worked through for one piece
+
+
+def steps(example: Example) -> list[Text]:
+    """Work the numbers of the block, then the share of motions that overturn it, and its interval."""
+    return [*_work_block(example), *_work_share(example), *_work_record(example)]
+
+
+def _work_block(example: Example) -> list[Text]:
+    B, H = (number(one * LENGTH["cm"], ".6g") for one in (example.breadth, example.height))
+    steps, eta, limit = _uniform(B, H) if example.centre == MIDDLE else _any_body(B, H, example.centre)
+    if not math.isnan(example.restitution):
+        eta = fill("η = {eta:g}, as set for the building.", eta=example.restitution)
+    starts = fill(
+        "The piece starts to rock where the floor's acceleration exceeds {limit:.4f} m/s².", limit=limit.value
+    )
+    return [*steps, eta, starts]
+
+
+def _uniform(B: Any, H: Any) -> tuple[list[Text], Text, Any]:
+    """Work a uniform block, as published: its numbers, its restitution, and where rocking starts."""
+    alpha, r, g = np.arctan(B / H), 0.5 * np.sqrt(B**2 + H**2), number(GRAVITY, ".5f")
+    limit = g * B / H
+    p = np.sqrt(3 * g / (4 * number(float(r.value), ".6g")))
+    steps = [
+        show("α = atan(B/H)", alpha, ".6f", "rad"),
+        show("r = ½·√(B² + H²)", r, ".5f", "m"),
+        show("p = √(3g/4r)", p, ".4f", "rad/s"),
+        show("g·B/H", limit, ".4f", "m/s²"),
+    ]
+    return steps, show("η = 1 - 1.5·sin² α", 1 - 1.5 * np.sin(number(float(alpha.value), ".6f")) ** 2, ".4f"), limit
+
+
+def _any_body(B: Any, H: Any, centre: float) -> tuple[list[Text], Text, Any]:
+    """Work a body whose centre of gravity is not at mid-height: its numbers, restitution, and where rocking starts."""
+    half, height = B / 2, number(centre, ".4g") * H
+    b, z, g = number(float(half.value), ".6g"), number(float(height.value), ".6g"), number(GRAVITY, ".5f")
+    limit, alpha, radius = g * b / z, np.arctan(b / z), np.sqrt(b**2 + z**2)
+    R = number(float(radius.value), ".6g")
+    inertia = (B**2 + H**2) / 12 + R**2
+    I = number(float(inertia.value), ".6g")  # noqa: E741 - the symbol of mechanics
+    steps = [
+        show("b = B/2", half, ".5f", "m"),
+        show("z_c", height, ".5f", "m"),
+        show("α = atan(b/z_c)", alpha, ".6f", "rad"),
+        show("R = √(b² + z_c²)", radius, ".5f", "m"),
+        show("I₀/m = (B² + H²)/12 + R²", inertia, ".5f"),
+        show("p = √(m·g·R/I₀)", np.sqrt(g * R / I), ".4f", "rad/s"),
+        show("g·b/z_c", limit, ".4f", "m/s²"),
+    ]
+    return steps, show("η = 1 - 2·m·R²·sin² α/I₀", 1 - 2 * b**2 / I, ".4f"), limit
+
+
+def _work_share(example: Example) -> list[Text]:
+    k, n, draws = (example.number(name) for name in ("overturned", "runs", "draws"))
+    z = interval_width(example.settings)
+    share, runs, width = number(example.value, ".5f"), number(n, ".0f"), number(z, ".4f")
+    numbers = {"low": example.number("low"), "high": example.number("high"), "z": z}
+    return [
+        nfill(
+            "It overturned in {k:,} of {n:,} draw of an earthquake like this one.",
+            "It overturned in {k:,} of {n:,} draws of an earthquake like this one.",
+            int(n),
+            k=int(k),
+        )
+        if draws == n
+        else fill(
+            "It and the pieces exactly like it on its floor overturned in {k:,} of {draws:,} draws of an earthquake "
+            "like this one, {n:,} each.",
+            k=int(k),
+            draws=int(draws),
+            n=int(n),
+        ),
+        show("R = k/n", number(k, ".0f") / number(draws, ".0f"), ".4f"),
+        show("R_low", wilson_end(share, runs, width, is_high=False), ".4f"),
+        show("R_high", wilson_end(share, runs, width, is_high=True), ".4f"),
+        fill("The 95 % interval reaches from {low:.4f} to {high:.4f} (Wilson, z = {z:.2f}).", **numbers),
+        *_work_ideal(example, int(n)),
+    ]
+
+
+def _work_ideal(example: Example, runs: int) -> list[Text]:
+    fallen = example.number("ideal_overturned")
+    if math.isnan(fallen):
+        return []  # what is drawn cannot recur
+    return [
+        nfill(
+            "If exactly this motion recurred and the piece were exactly as given, it would overturn under {k:,} of "
+            "{n:,} motion.",
+            "If exactly this motion recurred and the piece were exactly as given, it would overturn under {k:,} of "
+            "{n:,} motions.",
+            runs, k=int(fallen),
+        )
+    ]  # fmt: skip
+
+
+def _work_record(example: Example) -> list[Text]:
+    fell = example.number("record_overturned")
+    if math.isnan(fell):
+        return []
+    if fell:
+        return [fill("Under the recorded motion itself it overturns, so its class is at least high.")]
+    return [fill("Under the recorded motion itself it does not overturn.")]
 
 
 METHOD = Method(

@@ -25,8 +25,9 @@ from typing import Any
 import numpy as np
 
 from assess.i18n import Text, fill
-from assess.methods._expression import G, compare, number, show, show_ratio
-from assess.methods._method import PFV_FLAGS, Cases, Column, Example, Method, Outcome, Reference
+from assess.methods.cases import Cases
+from assess.methods.expression import G, compare, number, show, show_ratio
+from assess.methods.method import PFV_FLAGS, Column, Example, Method, Outcome, Reference
 from assess.settings import Settings
 from assess.units import ACCELERATION, LENGTH, VELOCITY
 

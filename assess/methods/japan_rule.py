@@ -22,8 +22,9 @@ from typing import Any
 import numpy as np
 
 from assess.i18n import Text, fill
-from assess.methods._expression import number, show
-from assess.methods._method import Cases, Column, Example, Method, Outcome, Reference
+from assess.methods.cases import Cases
+from assess.methods.expression import number, show
+from assess.methods.method import Column, Example, Method, Outcome, Reference
 from assess.settings import Settings
 from assess.units import LENGTH, ROUNDING
 

@@ -36,20 +36,10 @@ from typing import Any
 import numpy as np
 
 from assess.i18n import Text, fill
-from assess.methods._beside import find_sliding
-from assess.methods._expression import G, number, show, show_pfa, show_ratio
-from assess.methods._method import (
-    Cases,
-    Column,
-    Example,
-    LiveCells,
-    Method,
-    Outcome,
-    Parameter,
-    Reason,
-    Reference,
-    normal_cdf,
-)  # fmt: skip
+from assess.methods.cases import Cases
+from assess.methods.expression import G, normal_cdf, number, show, show_pfa, show_ratio
+from assess.methods.method import Column, Example, LiveCells, Method, Outcome, Parameter, Reason, Reference
+from assess.methods.simulate import SLIDING, find_branch
 from assess.settings import Settings
 from assess.units import ACCELERATION, LENGTH, ROUNDING, VELOCITY
 
@@ -117,7 +107,7 @@ def evaluate(cases: Cases, settings: Settings) -> Outcome:
     flags = {
         "pfv_unknown_upper_bound": branch == "bound",
         "near_switch": known & (np.abs(np.log(F_f / F_b)) <= math.log(NEAR_SWITCH) * (1 + ROUNDING)),
-        "slides": known & find_sliding(cases),
+        "slides": known & np.isin(find_branch(cases), SLIDING),
     }
     return Outcome(value, detail, flags)
 

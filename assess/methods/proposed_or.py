@@ -34,8 +34,9 @@ from typing import Any
 import numpy as np
 
 from assess.i18n import Text, fill
-from assess.methods._expression import G, localise, number, plain, show, show_pfa, show_ratio
-from assess.methods._method import Cases, Column, Example, LiveCells, Method, Outcome, Range, Reason, Reference
+from assess.methods.cases import Cases
+from assess.methods.expression import G, localise, number, plain, show, show_pfa, show_ratio
+from assess.methods.method import Column, Example, LiveCells, Method, Outcome, Range, Reason, Reference
 from assess.settings import Settings
 from assess.units import ACCELERATION
 

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.methods import Cases, Method, Outcome, adopted_formula, simulation
-from assess.methods._method import ALIKE, BoolArray, FloatArray
+from assess.arrays import BoolArray, FloatArray
+from assess.methods import ALIKE, Cases, Method, Outcome, adopted_formula, simulation
 from assess.model import Inventory
 from assess.results import BASES
 from assess.risk import RiskClass, classify_all

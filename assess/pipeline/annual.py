@@ -16,10 +16,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from assess.annual_results import Annual, AnnualRow, AnnualTables, AnnualWays
+from assess.arrays import BoolArray, FloatArray
 from assess.hazard import HazardCurve
 from assess.i18n import Text, fill, nfill
-from assess.methods import Cases, interval_width
-from assess.methods._method import BoolArray, FloatArray
+from assess.methods import Cases
+from assess.methods.simulate import interval_width
 from assess.pipeline.annual_integral import MOST_LEVELS, STEP, Integral, space
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.floor_demand import Demand

@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.annual_results import YEARS, AnnualRow
+from assess.arrays import BoolArray, FloatArray
 from assess.fragility import fit_fragility
 from assess.hazard import HazardCurve
-from assess.methods._method import BoolArray, FloatArray
 from assess.rates import AnnualRate, evaluate_rate, integrate_table
 from assess.risk import NORMAL_95
 from assess.rocking.draws import CUT

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.annual_results import Annual
+from assess.arrays import BoolArray
 from assess.errors import Problem
-from assess.methods import Cases, Method, Outcome, simulation
-from assess.methods._method import BoolArray, Joint
+from assess.methods import Cases, Joint, Method, Outcome, simulation
 from assess.model import Axis, Inventory
 from assess.pipeline.adopt import Adoption
 from assess.pipeline.anchors import Anchors

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.methods._method import BoolArray
+from assess.arrays import BoolArray
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.tables import find_falls
 from assess.progress import SILENT, Progress

@@ -11,8 +11,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.methods import Alike, Cases, Outcome, interval_width, simulation
-from assess.methods._method import BoolArray
+from assess.arrays import BoolArray
+from assess.methods import Alike, Cases, Outcome, simulation
+from assess.methods.simulate import interval_width
 from assess.model import AXES, Inventory, Item
 from assess.pipeline.adopt import SIMULATED, Adoption
 from assess.pipeline.floor_demand import Demand

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.arrays import BoolArray, FloatArray
 from assess.methods import Alike, Cases, Joint, Outcome, adopted_formula, simulation
-from assess.methods._method import BoolArray, FloatArray
 from assess.pipeline.adopt import adopt, build_falls, find_governing, find_ruling
 from assess.pipeline.anchors import find_held
 from assess.pipeline.assessment import Assessment

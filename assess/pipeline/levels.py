@@ -10,8 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.methods import Cases, make_batches, rock_cases, rock_draws, run_side_by_side
-from assess.methods._method import BoolArray, FloatArray, Motions
+from assess.arrays import BoolArray, FloatArray
+from assess.methods import Cases, Motions
+from assess.methods.simulate import make_batches, rock_cases, rock_draws, run_side_by_side
 from assess.motion.target_fit import measure_peaks
 from assess.pipeline.floor_demand import Demand
 from assess.pipeline.verify import check_pairs, describe_work

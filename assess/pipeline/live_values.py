@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 from assess.i18n import gettext
-from assess.methods import Cases, adopted_formula, paper_formula
-from assess.methods._method import ALIKE
+from assess.methods import ALIKE, Cases, adopted_formula, paper_formula
 from assess.model import AXES, Inventory, Item
 from assess.pipeline.adopt import find_can_rock
 from assess.pipeline.demand import build_demands

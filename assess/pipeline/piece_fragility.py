@@ -20,11 +20,11 @@ from typing import Literal, TypeVar, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.arrays import BoolArray, FloatArray
 from assess.errors import InputError
 from assess.fragility import Fragility, fit_fragility
 from assess.i18n import Text, fill
 from assess.methods import Cases
-from assess.methods._method import BoolArray, FloatArray
 from assess.model import AXES, Axis, Inventory, Item
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.either_axis import is_square

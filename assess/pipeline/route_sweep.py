@@ -25,8 +25,8 @@ from numpy.typing import NDArray
 
 from assess.errors import InputError
 from assess.i18n import fill
-from assess.methods import Cases, interval_width
-from assess.methods._method import Ensemble, Motions
+from assess.methods import Cases, Ensemble, Motions
+from assess.methods.simulate import interval_width
 from assess.model import AXES, Segment
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.ensembles import DrawnEnsemble, GeneratedEnsemble

@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 from assess.delivery.traces import make_folder, remove_folder
 from assess.errors import InputError, OutputError, Problem
 from assess.i18n import fill
-from assess.methods import Cases, Method, Outcome, all_methods, simulation
-from assess.methods._method import NO_WALL, SIDE_UNKNOWN
+from assess.methods import NO_WALL, SIDE_UNKNOWN, Cases, Method, Outcome, all_methods, simulation
 from assess.model import AXES, Inventory
 from assess.pipeline.adopt import (
     UNCONFIRMED,

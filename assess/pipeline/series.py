@@ -31,9 +31,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.arrays import FloatArray
 from assess.errors import CancelledError
-from assess.methods import Cases, Method
-from assess.methods._method import FloatArray, Joint
+from assess.methods import Cases, Joint, Method
 from assess.natural import natural_key
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.floor_demand import Demand

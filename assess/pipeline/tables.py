@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from assess.annual_results import AnnualWays
-from assess.methods import LOOKS, interval_width, simulation
-from assess.methods._method import Joint
+from assess.methods import Joint, simulation
+from assess.methods.simulate import LOOKS, interval_width
 from assess.model import AXES, Floor, FloorPlan, Inventory, Item
 from assess.motion.record import Record, treatment
 from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED, Profile

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.arrays import BoolArray
 from assess.errors import InputError, Problem
 from assess.i18n import Text, count, fill, join
-from assess.methods import LOOKS, Cases, Outcome, simulation
-from assess.methods._beside import may_slide
-from assess.methods._method import BoolArray
+from assess.methods import Cases, Outcome, simulation
+from assess.methods.simulate import LOOKS, may_slide
 from assess.model import Building, Inventory
 from assess.motion.assumed import RATIO_SCATTER
 from assess.motion.floor_medians import SCATTER

@@ -17,7 +17,7 @@ from operator import or_
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.methods._method import BoolArray, FloatArray
+from assess.arrays import BoolArray, FloatArray
 from assess.progress import SILENT, Progress
 from assess.risk import wilson_interval
 from assess.route_results import Chance

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from assess.i18n import count
-from assess.methods import interval_width
+from assess.methods.simulate import interval_width
 from assess.model import Inventory, Segment
 from assess.progress import SILENT, Progress
 from assess.route_results import (

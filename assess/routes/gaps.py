@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.methods._method import BoolArray, FloatArray
+from assess.arrays import BoolArray, FloatArray
 from assess.routes.chances import Key, union
 
 if TYPE_CHECKING:

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from assess.methods import interval_width
-from assess.methods._method import BoolArray
+from assess.arrays import BoolArray
+from assess.methods.simulate import interval_width
 from assess.model import Inventory
 from assess.progress import SILENT, Progress
 from assess.routes.chances import Falls, to_array

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from assess.methods._method import Reference
+from assess.methods import Reference
 from assess.model import Place, Segment
 
 NARROWER = 1e-6

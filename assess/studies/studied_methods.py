@@ -4,12 +4,22 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from assess.methods import Cases, FittedOn, Method, all_methods
-from assess.methods._fitted import Fitted, write_model
-from assess.methods._fitted_model import QUANTITIES, Base, Polynomial, Powers, Probit, expand, find_groups, write_sum
-from assess.methods._method import BoolArray, FloatArray, Range
-from assess.methods._simulate import rock_draws
+from assess.arrays import BoolArray, FloatArray
+from assess.methods import Cases, FittedOn, Method, Range, all_methods
+from assess.methods.fitted import (
+    QUANTITIES,
+    Base,
+    Fitted,
+    Polynomial,
+    Powers,
+    Probit,
+    expand,
+    find_groups,
+    write_model,
+    write_sum,
+)
 from assess.methods.proposed_or import COEFFICIENTS
+from assess.methods.simulate import rock_draws
 from assess.settings import Settings
 
 __all__ = [

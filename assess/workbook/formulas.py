@@ -9,9 +9,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from assess.i18n import gettext
-from assess.methods import LiveCells, Method, MethodInfo, all_methods
-from assess.methods._expression import EXCEL, Expression
-from assess.methods._method import ALIKE
+from assess.methods import ALIKE, LiveCells, Method, MethodInfo, all_methods
+from assess.methods.expression import EXCEL, Expression
 from assess.risk import LIMITS, RiskClass
 from assess.rocking.block import STOCKY
 from assess.units import ROUNDING

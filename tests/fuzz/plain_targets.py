@@ -17,7 +17,7 @@ import xlsxwriter
 from assess.errors import AssessError, InputError, RecordError, WorkbookError
 from assess.hazard import parse_hazard
 from assess.methods import Cases
-from assess.methods._fitted import read_model
+from assess.methods.fitted import read_model
 from assess.motion.formats import list_addresses, parse_records, select
 from assess.motion.record import MOST_ACCELERATION, treat
 from assess.pictures import SHOWN, PictureError, check_picture, prepare_photo, prepare_picture, prepare_plan

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from assess.methods._method import FloatArray
+from assess.arrays import FloatArray
 from assess.motion.target_fit import Fit, Spectra
 from assess.progress import SILENT, Progress
 

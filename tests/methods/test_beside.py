@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from assess.methods import Cases, simulation
-from assess.methods._beside import HIGH, find_branch, may_slide
-from assess.methods._method import SIDE_UNKNOWN, FloatArray
+from assess.arrays import FloatArray
+from assess.methods import SIDE_UNKNOWN, Cases, simulation
+from assess.methods.simulate import HIGH, find_branch, may_slide
 from assess.rocking.draws import MOTION, Uncertainty, draw_bodies, draw_earthquakes
 from assess.rocking.planar import Body, rock_bodies
 from assess.rocking.sliding import Branch, branch, peak_slip

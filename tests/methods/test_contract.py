@@ -12,8 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from assess.i18n import placeholders
-from assess.methods import Cases, Method, Outcome, adopted_formula, all_methods, paper_formula, simulation
-from assess.methods._info import FACTS
+from assess.methods import FACTS, Cases, Method, Outcome, adopted_formula, all_methods, paper_formula, simulation
 from assess.rocking.draws import MOTION, PEAK
 from assess.settings import Settings
 from assess.units import GRAVITY

@@ -15,10 +15,8 @@ from hypothesis import strategies as st
 
 from assess.errors import InputError
 from assess.i18n import load_catalogue, speaking
-from assess.methods import Cases, proposed_or
-from assess.methods._fitted import Fitted, Polynomial, Probit, parse_model, read_model, write_model
-from assess.methods._fitted_model import QUANTITIES
-from assess.methods._method import FittedOn, Method, Range
+from assess.methods import Cases, FittedOn, Method, Range, proposed_or
+from assess.methods.fitted import QUANTITIES, Fitted, Polynomial, Probit, parse_model, read_model, write_model
 from assess.settings import Settings
 from assess.units import GRAVITY
 from tests.methods import test_contract as contract
@@ -56,7 +54,7 @@ def spoilt(folder, old, new, model=SURFACE):
 
 
 def of(model) -> Method:
-    from assess.methods._fitted_model import build_method
+    from assess.methods.fitted import build_method
 
     return build_method(model, "m.toml")
 

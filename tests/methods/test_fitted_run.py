@@ -12,7 +12,7 @@ import pytest
 import assess
 from assess.errors import InputError
 from assess.methods import all_methods
-from assess.methods._fitted_model import Polynomial
+from assess.methods.fitted import Polynomial
 from assess.pipeline.run import compute
 from assess.report.data import SCHEMA
 from assess.settings import Settings

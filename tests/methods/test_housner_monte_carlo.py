@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike, NDArray
 
+from assess.arrays import FloatArray
 from assess.errors import CancelledError
-from assess.methods import LOOKS, LOOKS_Z, Cases, Outcome, interval_width
-from assess.methods._method import FloatArray
+from assess.methods import Cases, Outcome
 from assess.methods.housner_monte_carlo import BATCH, METHOD, evaluate
+from assess.methods.simulate import LOOKS, LOOKS_Z, interval_width
 from assess.motion.target_fit import Fit, Spectra
 from assess.progress import SILENT, Progress, Report
 from assess.risk import classify_all, wilson_interval

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import ArrayLike
 
 from assess.methods import Cases, Outcome
-from assess.methods._method import normal_cdf
+from assess.methods.expression import normal_cdf
 from assess.methods.kaneko_hayashi import METHOD
 from assess.settings import Settings
 from assess.units import GRAVITY

@@ -10,8 +10,8 @@ import pytest
 
 from assess.i18n import gettext, load_catalogue, speaking
 from assess.methods import Cases, Example, Method, all_methods, simulation
-from assess.methods._method import normal_cdf
-from assess.methods._simulate import interval_width
+from assess.methods.expression import normal_cdf
+from assess.methods.simulate import interval_width
 from assess.risk import wilson_interval
 from assess.settings import Settings
 from assess.units import GRAVITY

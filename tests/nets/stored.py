@@ -21,6 +21,8 @@ from assess.results import Results, Series
 _CURVES = ("example/", "spectra_g", "acceleration_g", "contours/")
 KIND = "$"
 """The entry that says what a record is."""
+MOVED = dict.fromkeys(("assess.methods._info", "assess.methods._method"), "assess.methods")
+"""Modules of which results were kept before their types moved, and where these are now."""
 
 
 def write_results(results: Results, path: Path) -> None:
@@ -123,4 +125,4 @@ def _name(kind: type) -> str:
 
 def _find(name: str) -> Any:
     module, _, kind = name.partition(":")
-    return getattr(importlib.import_module(module), kind)
+    return getattr(importlib.import_module(MOVED.get(module, module)), kind)

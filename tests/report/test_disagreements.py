@@ -8,7 +8,7 @@ import re
 import pytest
 
 import assess
-from assess.methods._fitted_model import Polynomial, build_method
+from assess.methods.fitted import Polynomial, build_method
 from assess.report.findings.disagreements import MOST_REASONS, find_disagreements, span
 from assess.risk import RiskClass, classify
 from tests.methods.test_fitted import PROBIT, SURFACE

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from assess.methods._method import BoolArray
+from assess.arrays import BoolArray
 from assess.model import Building, Floor, Inventory, Item, Place, Segment
 from assess.route_results import Chance, RouteTables, SegmentRow
 from assess.routes.chances import Falls

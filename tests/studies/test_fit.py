@@ -7,7 +7,7 @@ import pytest
 from scipy.special import ndtr
 
 from assess.methods import Cases
-from assess.methods._fitted import read_model, write_model
+from assess.methods.fitted import read_model, write_model
 from assess.settings import Settings
 from assess.studies import fit
 from assess.studies.fit.fits import find_errors, fit_all

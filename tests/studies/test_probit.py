@@ -11,7 +11,7 @@ from scipy.stats import norm
 
 from assess.errors import InputError
 from assess.methods import Cases
-from assess.methods._fitted_model import Probit, find_groups
+from assess.methods.fitted import Probit, find_groups
 from assess.studies.fit.fits import Counts, design, find_left_out, fit_probit, fit_without, loss
 from assess.units import GRAVITY
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from assess.errors import InputError
 from assess.methods import Cases, proposed_or
-from assess.methods._fitted_model import expand
+from assess.methods.fitted import expand
 from assess.studies.fit.surfaces import (
     CANDIDATES,
     CONSTANT,

@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 
 import assess
-from assess.methods import Cases, rock_draws
+from assess.methods import Cases
+from assess.methods.simulate import rock_draws
 from assess.motion.beam import find_shares, swing_modes
 from assess.motion.record import resample
 from assess.motion.target import TIME_STEP

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from assess.methods import Cases
-from assess.methods._expression import G
+from assess.methods.expression import G
 from assess.methods.kaneko_hayashi import METHOD
 from assess.settings import Settings
 

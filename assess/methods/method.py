@@ -1,9 +1,20 @@
-"""What a method says of itself: texts and numbers only, without functions, so that results can carry it."""
+"""What a method is: one published way to find whether a piece of furniture overturns.
 
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+`MethodInfo` holds its texts and numbers, without functions, so that results can carry it; `Method` adds the functions.
+"""
+
+import math
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, fields
 from typing import Any, Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.arrays import BoolArray, FloatArray
+from assess.methods.cases import Joint
+from assess.rocking.block import MIDDLE
+from assess.settings import Settings
 from assess.units import ROUNDING
 
 Role = Literal["best formula", "proposed OR", "simulation", "other"]
@@ -238,3 +249,98 @@ class MethodInfo:
         labels = (column.label for column in self.columns)
         found = (*own, *lists, *marks, *labels, *(reason.text for reason in self.reasons))
         return tuple(text for text in found if type(text) is str and any(character.isalpha() for character in text))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Outcome:
+    """What a method says of a batch of n cases.
+
+    Parameters
+    ----------
+    value : (n,) array
+        For a probability: the chance of overturning in [0, 1]. For a criterion: 1 met, 0 not met. NaN: not evaluated.
+    detail : mapping of name to (n,) array
+        What stands beside the value, ``raw`` or a median, under the name it has in results.json.
+    flags : mapping of flag to (n,) boolean array
+        Where a caution holds; the flag's meaning stands in `Method.flags`.
+    joints : sequence of Joint
+        What a method that integrates found, motion by motion.
+    """
+
+    value: FloatArray
+    detail: Mapping[str, NDArray[np.generic]] = field(default_factory=dict)
+    flags: Mapping[str, BoolArray] = field(default_factory=dict)
+    joints: Sequence[Joint] = ()
+
+
+Detail = float | str | bool | None
+"""One value of `Outcome.detail`; None is unknown."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Example:
+    """One case that is worked through in a report: sizes [cm], peaks [cm/s2] and [cm/s], NaN where unknown.
+
+    `value`, `detail` and `flags` are what the method found; `restitution` is the building's own [-], NaN for Housner's;
+    `centre` is the height of the centre of gravity as a share of the piece's [-].
+    """
+
+    breadth: float
+    height: float
+    pfa: float
+    pfv: float
+    restitution: float
+    settings: Settings
+    value: float
+    detail: Mapping[str, Detail]
+    flags: Collection[str]
+    centre: float = MIDDLE
+
+    def number(self, name: str) -> float:
+        """Return a number of `detail`; NaN where it is unknown."""
+        value = self.detail[name]
+        return math.nan if value is None else float(value)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LiveCells:
+    """What a live formula may read, as operands that accept operators and numpy functions.
+
+    `parameters` are the method's own, by setting. A `pfv_cm_s` that is no number is unknown (`numpy.isnan`).
+    """
+
+    breadth_to_height: Any
+    height_cm: Any
+    pfa_g: Any
+    pfv_cm_s: Any
+    parameters: Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Method(MethodInfo):
+    """One method: what it says of itself, and the functions that evaluate it.
+
+    Parameters
+    ----------
+    evaluate : callable
+        ``evaluate(cases, settings) -> Outcome``; inputs are left untouched. That of the simulation takes the keyword
+        arguments ``threads: int = 1`` and ``stage: Stage | None = None`` as well, of which each ensemble is a part.
+    steps : callable, optional
+        ``steps(example) -> sequence of texts``: the calculation for one piece, with its numbers. A step that computes
+        reads ``symbol = numbers = result [unit]``, so that a reader with a calculator finds the result again. Each is
+        passed through `assess.i18n.gettext` where it is shown.
+    live : callable, optional
+        ``live(cells) -> mapping``: the expression of "value", and of columns, from `LiveCells`.
+    """
+
+    evaluate: Callable[..., Outcome]
+    steps: Callable[[Example], Sequence[str]] | None = None
+    live: Callable[[LiveCells], Mapping[str, Any]] | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "is_live", self.live is not None)
+
+    @property
+    def info(self) -> MethodInfo:
+        """The method without its functions: it can be pickled."""
+        return MethodInfo(**{one.name: getattr(self, one.name) for one in fields(MethodInfo)})

@@ -4,6 +4,7 @@ A function such as ``b / B_H + c * PFA**2`` that gets an `Expression` in place o
 formula in a `Notation`: of a spreadsheet, or of a worked example with its numbers. So each equation stands once.
 """
 
+import math
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -13,11 +14,26 @@ import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from assess.i18n import Text, fill
-from assess.methods._method import NORMAL_CDF, Example
+from assess.methods.method import Example
 from assess.units import ACCELERATION, GRAVITY
 
 G = GRAVITY / ACCELERATION["cm/s2"]
 """Standard gravity [cm/s2], as the formulas of the paper take it."""
+
+
+def _normal_cdf(x: float) -> float:
+    return 0.5 * math.erfc(-x / math.sqrt(2))
+
+
+NORMAL_CDF = np.frompyfunc(_normal_cdf, 1, 1)
+"""Standard normal distribution function as a numpy function; `normal_cdf` gives floats."""
+
+
+def normal_cdf(x: Any) -> Any:
+    """Standard normal distribution function of `x` [-], accurate in both tails; NaN stays NaN."""
+    found = NORMAL_CDF(x)
+    return np.asarray(found, dtype=np.float64) if isinstance(found, (float, np.ndarray)) else found
+
 
 COMPARISON, SUM, PRODUCT, POWER, ATOM = range(5)
 """How tightly the outermost operator of a formula binds."""

@@ -1,44 +1,29 @@
-"""What a method is: one published way to tell whether a piece of furniture overturns."""
+"""What methods are evaluated on: a batch of cases, the motions of their floors, and what a simulation finds of both."""
 
 import math
-from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from assess.methods._info import (
-    PFV_FLAGS,
-    Column,
-    FittedOn,
-    MethodInfo,
-    Parameter,
-    Range,
-    Reason,
-    Reference,
-)
+from assess.arrays import BoolArray, FloatArray
 from assess.progress import SILENT, Progress
 from assess.rocking.block import MIDDLE, stocky_limit, threshold
 from assess.rocking.draws import PEAK, STILL, STILL_SCANNED, Earthquakes, Uncertainty
-from assess.settings import Settings
-
-__all__ = [
-    "ALIKE", "NORMAL_CDF", "PFV_FLAGS", "BoolArray", "Cases", "Column", "Ensemble",
-    "Example", "FittedOn", "FloatArray", "Joint", "LiveCells", "Method", "MethodInfo", "Motions", "Outcome",
-    "Parameter", "Range", "Reason", "Reference", "normal_cdf",
-]  # fmt: skip
 
 if TYPE_CHECKING:
     from assess.motion.target_fit import Fit, Spectra
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 ALIKE = 9
 """Decimals to which two PFA [g] or two probabilities are held against each other when one of them has to govern."""
 NO_WALL, SIDE_UNKNOWN = 0, 2
 """Of `Cases.wall`: nothing at the back of a piece, or a wall of which the side is not known."""
+_TYPES: Mapping[str, type] = {
+    "ensemble": np.intp, "name": np.int64, "scanned": np.bool_, "slides_under": np.intp, "wall": np.int8,
+}  # fmt: skip
+"""Of the arrays of `Cases` that hold no real numbers."""
 
 
 class Ensemble(Protocol):
@@ -180,19 +165,19 @@ class Cases:
         uncertainty: Uncertainty | None = None,
     ) -> Self:
         """Build a batch from numbers and arrays, brought to one length; what is left out is unknown."""
-        given = np.broadcast_arrays(
-            *np.atleast_1d(breadth, height, pfa, pfv, friction, restitution, centre, ensemble, name, slides_under, wall,
-                           scanned)
-        )  # fmt: skip
-        b, h, a, v, mu, eta, z = (np.array(values, dtype=np.float64) for values in given[:7])
-        which, names = np.array(given[7], dtype=np.intp), np.array(given[8], dtype=np.int64)
-        slides, walls = np.array(given[9], dtype=np.intp), np.array(given[10], dtype=np.int8)
-        by_scan, drawn = np.array(given[11], dtype=np.bool_), uncertainty or Uncertainty()
-        alike, quantity = np.arange(b.size), np.ones(b.size, dtype=np.int64)
-        spread, peak = (np.full(b.size, one) for one in (drawn.motion, PEAK))
+        given = {
+            "breadth": breadth, "height": height, "pfa": pfa, "pfv": pfv, "friction": friction,
+            "restitution": restitution, "ensemble": ensemble, "centre": centre, "name": name, "scanned": scanned,
+            "slides_under": slides_under, "wall": wall,
+        }  # fmt: skip
+        rows = np.broadcast_arrays(*np.atleast_1d(*given.values()))
+        columns: dict[str, Any] = {
+            key: np.array(row, dtype=_TYPES.get(key, float)) for key, row in zip(given, rows, strict=True)
+        }
+        count, drawn = rows[0].size, uncertainty or Uncertainty()
         return cls(
-            b, h, a, v, mu, eta, which, z, names, by_scan, slides, alike, quantity, walls, spread, peak, ensembles,
-            drawn,
+            **columns, alike=np.arange(count), quantity=np.ones(count, dtype=np.int64),
+            dispersion=np.full(count, drawn.motion), peak=np.full(count, PEAK), ensembles=ensembles, uncertainty=drawn,
         )  # fmt: skip
 
     @property
@@ -260,109 +245,43 @@ class Joint:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Outcome:
-    """What a method says of a batch of n cases.
+class Alike:
+    """Which of m rows are alike, and how much each counts among them.
 
     Parameters
     ----------
-    value : (n,) array
-        For a probability: the chance of overturning in [0, 1]. For a criterion: 1 met, 0 not met. NaN: not evaluated.
-    detail : mapping of name to (n,) array
-        What stands beside the value, ``raw`` or a median, under the name it has in results.json.
-    flags : mapping of flag to (n,) boolean array
-        Where a caution holds; the flag's meaning stands in `Method.flags`.
-    joints : sequence of Joint
-        What a method that integrates found, motion by motion.
+    group : (m,) integer array
+        The number of the group of each, from 0.
+    weight : (m,) integer array
+        The pieces of each over the largest number that divides those of its whole group [-].
     """
 
-    value: FloatArray
-    detail: Mapping[str, NDArray[np.generic]] = field(default_factory=dict)
-    flags: Mapping[str, BoolArray] = field(default_factory=dict)
-    joints: Sequence[Joint] = ()
+    group: NDArray[np.intp]
+    weight: NDArray[np.int64]
 
-
-Detail = float | str | bool | None
-"""One value of `Outcome.detail`; None is unknown."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Example:
-    """One case that is worked through in a report: sizes [cm], peaks [cm/s2] and [cm/s], NaN where unknown.
-
-    `value`, `detail` and `flags` are what the method found; `restitution` is the building's own [-], NaN for Housner's;
-    `centre` is the height of the centre of gravity as a share of the piece's [-].
-    """
-
-    breadth: float
-    height: float
-    pfa: float
-    pfv: float
-    restitution: float
-    settings: Settings
-    value: float
-    detail: Mapping[str, Detail]
-    flags: Collection[str]
-    centre: float = MIDDLE
-
-    def number(self, name: str) -> float:
-        """Return a number of `detail`; NaN where it is unknown."""
-        value = self.detail[name]
-        return math.nan if value is None else float(value)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LiveCells:
-    """What a live formula may read, as operands that accept operators and numpy functions.
-
-    `parameters` are the method's own, by setting. A `pfv_cm_s` that is no number is unknown (`numpy.isnan`).
-    """
-
-    breadth_to_height: Any
-    height_cm: Any
-    pfa_g: Any
-    pfv_cm_s: Any
-    parameters: Mapping[str, Any]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Method(MethodInfo):
-    """One method: what it says of itself, and the functions that evaluate it.
-
-    Parameters
-    ----------
-    evaluate : callable
-        ``evaluate(cases, settings) -> Outcome``; inputs are left untouched. That of the simulation takes the keyword
-        arguments ``threads: int = 1`` and ``stage: Stage | None = None`` as well, of which each ensemble is a part.
-    steps : callable, optional
-        ``steps(example) -> sequence of texts``: the calculation for one piece, with its numbers. A step that computes
-        reads ``symbol = numbers = result [unit]``, so that a reader with a calculator finds the result again. Each is
-        passed through `assess.i18n.gettext` where it is shown.
-    live : callable, optional
-        ``live(cells) -> mapping``: the expression of "value", and of columns, from `LiveCells`.
-    """
-
-    evaluate: Callable[..., Outcome]
-    steps: Callable[[Example], Sequence[str]] | None = None
-    live: Callable[[LiveCells], Mapping[str, Any]] | None = None
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "is_live", self.live is not None)
+    @classmethod
+    def of(cls, numbers: ArrayLike, quantity: ArrayLike) -> Self:
+        """Return the groups of rows with the same of `numbers` (m,); `quantity` (m,) are the pieces of each."""
+        _, group = np.unique(np.asarray(numbers), return_inverse=True)
+        group, pieces = group.ravel(), np.asarray(quantity, dtype=np.int64)
+        common = np.zeros(group.max(initial=-1) + 1, dtype=np.int64)
+        np.gcd.at(common, group, pieces)
+        return cls(group, pieces // common[group])
 
     @property
-    def info(self) -> MethodInfo:
-        """The method without its functions: it can be pickled."""
-        return MethodInfo(**{one.name: getattr(self, one.name) for one in fields(MethodInfo)})
+    def total(self) -> NDArray[np.int64]:
+        """The weight of the whole group of each, (m,)."""
+        return self._add_up(self.weight)
 
+    def add_up(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Return for each row the weighted sum over its group: of values (m,), or (d, m) of each of d rows."""
+        return self._add_up(self.weight * values)
 
-def _normal_cdf(x: float) -> float:
-    return 0.5 * math.erfc(-x / math.sqrt(2))
+    def average(self, values: NDArray[Any]) -> FloatArray:
+        """Return for each row the weighted mean over its group, (m,)."""
+        return np.asarray(self.add_up(values) / self.total)
 
-
-NORMAL_CDF = np.frompyfunc(_normal_cdf, 1, 1)
-"""Standard normal distribution function as a numpy function; `normal_cdf` gives floats."""
-
-
-def normal_cdf(x: Any) -> Any:
-    """Standard normal distribution function of `x` [-], accurate in both tails; NaN stays NaN."""
-    found = NORMAL_CDF(x)
-    return np.asarray(found, dtype=np.float64) if isinstance(found, (float, np.ndarray)) else found
+    def _add_up(self, values: NDArray[Any]) -> NDArray[Any]:
+        sums = np.zeros((*values.shape[:-1], self.group.max(initial=-1) + 1), dtype=values.dtype)
+        np.add.at(sums.T, self.group, values.T)
+        return sums[..., self.group]
