@@ -4,7 +4,8 @@ Lengths are in metres in the axes of the model, X and Y in plan and Z upwards; a
 Readers fill it in (`ifc_model`), and `model_rows`, `floor_drawing` and `draft_routes` use it.
 """
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -16,6 +17,10 @@ SILL = 0.3
 """Height of its lower edge above the floor up to which people walk through an opening [m]."""
 NOT_ON_FLOOR = fill("not on the floor: its lowest point is more than 15 cm above it")
 IS_TILTED = fill("not upright")
+LONGEST_NAME = 120
+"""Characters that are kept of a name."""
+SMALLEST_ROOM = 0.5
+"""Area below which an outline is no room [m2]."""
 
 Point = tuple[float, float]
 Ring = tuple[Point, ...]
@@ -151,14 +156,36 @@ class Piece:
 
 
 @dataclass(frozen=True, slots=True)
-class LeftOut:
-    """Elements of one class and type that were left out for one reason."""
+class Skipped:
+    """Elements of one type that were left out for one reason.
 
-    ifc_class: str
+    Attributes
+    ----------
+    type : str
+        Type, or class, as the file names it.
+    count : int
+        How many pieces.
+    reason : Text
+        Why.
+    is_furniture : bool
+        Whether they may be furniture that should be assessed; False where the file says that they are fixed.
+    """
+
     type: str
-    reason: Text
     count: int
-    is_furniture: bool
+    reason: Text
+    is_furniture: bool = True
+
+
+def name_skipped(ifc_class: str, kind: str) -> str:
+    """Return the type of an element that is left out: its class in the file, and its type where that says more."""
+    return (kind if kind == ifc_class else f"{ifc_class} {kind}")[:LONGEST_NAME]
+
+
+def count_skipped(each: Iterable[tuple[str, Text, bool]]) -> tuple[Skipped, ...]:
+    """Return what was left out from the type, the reason and `is_furniture` of each element."""
+    counts = Counter(each)
+    return tuple(Skipped(kind, number, reason, is_one) for (kind, reason, is_one), number in counts.items())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -181,7 +208,7 @@ class BuildingModel:
         What they hold.
     walls, windows : mapping of str to tuple of Area
         By the storey's key, cut at 1.2 m above its floor: walls with columns and curtain walls, and windows.
-    left_out : tuple of LeftOut
+    skipped : tuple of Skipped
         What was not taken, and why.
     azimuth_deg, latitude, longitude : float, optional
         Compass direction of X, and the site [deg], where the model tells them.
@@ -203,10 +230,15 @@ class BuildingModel:
     pieces: tuple[Piece, ...] = ()
     walls: Mapping[str, tuple[Area, ...]] = field(default_factory=dict)
     windows: Mapping[str, tuple[Area, ...]] = field(default_factory=dict)
-    left_out: tuple[LeftOut, ...] = ()
+    skipped: tuple[Skipped, ...] = ()
     azimuth_deg: float | None = None
     latitude: float | None = None
     longitude: float | None = None
     shift: Point = (0.0, 0.0)
     warnings: tuple[Text, ...] = ()
     remarks: tuple[Text, ...] = ()
+
+
+def name_some(names: Sequence[str], most: int) -> str:
+    """Return the first of some names."""
+    return ", ".join([*names[:most], *["..."] * (len(names) > most)])

@@ -7,22 +7,33 @@ AssetType, NominalLength, NominalWidth, NominalHeight) and Component (Name, Type
 Breadth is the shorter of NominalLength and NominalWidth. These are sizes of the product as its maker states them, not
 measured between the supports. A size of 0 counts as not given. COBie tells neither positions, which stand in its sheet
 Coordinate if anywhere, nor fixings: Anchored stays blank and counts as free-standing.
+
+Elevations in such files count from any datum: the ground, the sea level, 100 m for the ground floor. The inventory
+needs them above the ground. They are taken as they stand: from a datum below the ground all floors come out as the
+uppermost of a taller building. To count them from the lowest floor would do the contrary to a file that covers upper
+floors alone.
 """
 
+import math
 import re
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from assess.bim.cobie_floors import CobieFloor, list_rows, read_floors
-from assess.bim.cobie_sheets import CobieSheet, is_cobie, read_sheets, say
-from assess.bim.cobie_types import CobieType, check_unit, find_unit, read_types
-from assess.bim.import_workbook import ImportedBuilding, Skipped, build_workbook, name_apart
+from assess.bim.building_model import count_skipped
+from assess.bim.cobie_sheets import CobieSheet, Row, is_cobie, read_sheets, say
+from assess.bim.import_workbook import LOWEST_ROOF, ImportedBuilding, build_workbook, name_apart, note_datum
+from assess.errors import Problem, WorkbookError
 from assess.i18n import Text, fill, nfill
 from assess.progress import SILENT, Progress
+from assess.units import LENGTH, read_unit
+from assess.workbook.habits import CellError
 from assess.workbook.names import key
+from assess.workbook.open import UNSAVED
+from assess.workbook.ranges import is_within
+from assess.workbook.schema import BUILDING, CATALOGUE, FLOORS, Column
+from assess.workbook.values import read_cell, shorten
 
 __all__ = ["convert", "is_cobie", "read_cobie"]
 
@@ -31,6 +42,12 @@ THIN, SLENDER = 0.10, 0.10
 MOST_NAMED = 10
 _CODE = re.compile(r"^[\w .-]*\d[\w .-]*\s*:\s*")
 """The number of a classification before the words of a category: ``11-16 27 00: Dormitory``."""
+NO_STOREYS = frozenset({"site", "roof", "foundation"})
+"""Categories of rows of the sheet Floor that are no storeys."""
+MOVEABLE, FIXED = frozenset({"moveable", "movable", "mobile"}), frozenset({"fixed"})
+"""AssetType as COBie 2.4 writes it, and as files have it."""
+SIZES = ("NominalLength", "NominalWidth", "NominalHeight")
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d{1,3})?", re.ASCII)
 
 
 def convert(data: bytes, name: str = "COBie.xlsx") -> bytes:
@@ -48,99 +65,29 @@ def read_cobie(source: Path | bytes, name: str, progress: Progress = SILENT) -> 
     Returns pieces, floors and types, with what was left out and why.
     """
     sheets = read_sheets(source, name, progress)
-    unit = find_unit(sheets["Facility"])
-    check_unit(sheets["Facility"], sheets["Type"], unit)
-    floors, faults = read_floors(sheets["Floor"], unit)
-    found = _Sorted(types=read_types(sheets["Type"], unit), floors=floors, spaces=_read_spaces(sheets["Space"], floors))
+    facility = sheets["Facility"]
+    unit = _find_unit(facility)
+    _check_unit(facility, sheets["Type"], unit)
+    floors, faults = _read_floors(sheets["Floor"], unit)
+    found = _Sorted(_read_types(sheets["Type"], unit), _read_spaces(sheets["Space"], floors))
     for _, row in sheets["Component"].rows:
         found.take(row)
-    used = {piece.floor.name for piece in found.pieces}
-    rows, building, doubts = list_rows(floors, used)
-    kinds = dict.fromkeys(piece.type for piece in found.pieces)
+    rows, building, doubts = _list_floors(floors, {row["floor"] for _, row in found.pieces})
     origin = fill("COBie file {name}, sheet Type: nominal sizes", name=name)
+    names = name_apart(row["item"] for _, row in found.pieces)
     return ImportedBuilding(
         source=name,
-        building=_describe_building(sheets["Facility"]) | building,
+        building=_describe_building(facility) | building,
         floors=rows,
-        items=list(_list_items(found.pieces)),
-        types=[{"type": kind.name, **kind.sizes_cm(), "source": origin} for kind in kinds],
-        skipped=tuple(found.list_skipped()),
+        items=[{**row, "item": own} for own, (_, row) in zip(names, found.pieces, strict=True)],
+        types=[
+            {"type": kind.name, **kind.sizes_cm(), "source": origin}
+            for kind in dict.fromkeys(kind for kind, _ in found.pieces)
+        ],
+        skipped=count_skipped(found.skipped),
         warnings=(*faults, *doubts),
-        remarks=(*_note_facilities(sheets["Facility"]), *_note_pieces(found)),
+        remarks=tuple(_list_remarks(facility, found)),
     )
-
-
-@dataclass(frozen=True, slots=True)
-class _Piece:
-    name: str
-    type: CobieType
-    floor: CobieFloor
-    room: str
-    source_id: str
-
-
-@dataclass(slots=True)
-class _Sorted:
-    """Components sorted into pieces and what is left out."""
-
-    types: Mapping[str, CobieType]
-    floors: Mapping[str, CobieFloor]
-    spaces: Mapping[str, tuple[str, CobieFloor | None]]
-    pieces: list[_Piece] = field(default_factory=list)
-    skipped: Counter[tuple[str, Text, bool]] = field(default_factory=Counter)
-    with_several_spaces: int = 0
-
-    def take(self, row: Mapping[str, Any]) -> None:
-        """Sort one component in."""
-        named = say(row.get("TypeName"))
-        kind = self.types.get(key(named))
-        if kind is None:
-            self._skip(named or "-", fill("TypeName is blank") if not named else fill("not in the sheet Type"))
-        elif kind.reason is not None:
-            self._skip(kind.name, kind.reason, is_furniture=kind.is_furniture)
-        else:
-            self._place(row, kind)
-
-    def _place(self, row: Mapping[str, Any], kind: CobieType) -> None:
-        named = say(row.get("Space"))
-        room, floor = self._find_space(named)
-        if floor is None:
-            reason = fill("Space is blank, so that the floor is not known")
-            if named:
-                reason = fill("its Space is not in the sheet Space, or that has no floor of the sheet Floor")
-            self._skip(kind.name, reason)
-            return
-        own = say(row.get("ExtIdentifier")) or say(row.get("ExternalIdentifier"))
-        name = say(row.get("Name")) or own or kind.name
-        self.pieces.append(_Piece(name, kind, floor, room, own or name))
-
-    def _find_space(self, named: str) -> tuple[str, CobieFloor | None]:
-        if key(named) in self.spaces:
-            return self.spaces[key(named)]
-        for part in named.split(","):
-            room, floor = self.spaces.get(key(part.strip()), ("", None))
-            if floor is not None:
-                self.with_several_spaces += 1
-                return room, floor
-        return "", None
-
-    def _skip(self, kind: str, reason: Text, *, is_furniture: bool = True) -> None:
-        self.skipped[kind, reason, is_furniture] += 1
-
-    def list_skipped(self) -> Iterator[Skipped]:
-        """Yield what was left out, by type and reason."""
-        for (kind, reason, is_furniture), number in self.skipped.items():
-            yield Skipped(kind, number, reason, is_furniture)
-
-
-def _read_spaces(sheet: CobieSheet, floors: Mapping[str, CobieFloor]) -> dict[str, tuple[str, CobieFloor | None]]:
-    """Return name and floor of each space, by its name as names are compared; of two alike the first."""
-    found: dict[str, tuple[str, CobieFloor | None]] = {}
-    for _, row in sheet.rows:
-        name = say(row.get("Name"))
-        if name:
-            found.setdefault(key(name), (name, floors.get(key(say(row.get("FloorName"))))))
-    return found
 
 
 def _describe_building(sheet: CobieSheet) -> dict[str, Any]:
@@ -150,32 +97,16 @@ def _describe_building(sheet: CobieSheet) -> dict[str, Any]:
     return {name: text for name, text in texts.items() if text}
 
 
-def _list_items(pieces: Sequence[_Piece]) -> Iterator[dict[str, Any]]:
-    for name, piece in zip(name_apart(one.name for one in pieces), pieces, strict=True):
-        yield {
-            "item": name,
-            "floor": piece.floor.name,
-            "room": piece.room,
-            "description": piece.type.name,
-            "type": piece.type.name,
-            **piece.type.sizes_cm(),
-            "source_id": piece.source_id,
-        }
-
-
-def _note_facilities(sheet: CobieSheet) -> Iterator[Text]:
-    if len(sheet.rows) > 1:
-        yield fill("The sheet Facility has {n} rows; the first was taken.", n=len(sheet.rows))
-
-
-def _note_pieces(found: _Sorted) -> Iterator[Text]:
+def _list_remarks(facility: CobieSheet, found: "_Sorted") -> Iterator[Text]:
+    if len(facility.rows) > 1:
+        yield fill("The sheet Facility has {n} rows; the first was taken.", n=len(facility.rows))
     if found.with_several_spaces:
         yield nfill(
             "{n} piece names several spaces; the first that is known was taken.",
             "{n:,} pieces name several spaces; the first that is known was taken.",
             found.with_several_spaces,
         )
-    kinds = [one.type for one in found.pieces]
+    kinds = [kind for kind, _ in found.pieces]
     thin = list(dict.fromkeys(one.name for one in kinds if one.breadth < THIN or one.breadth < SLENDER * one.height))
     if thin:
         more = fill(" and {n} more", n=len(thin) - MOST_NAMED) if len(thin) > MOST_NAMED else ""
@@ -189,3 +120,260 @@ def _note_pieces(found: _Sorted) -> Iterator[Text]:
             "COBie files do not record fixings or positions: fill in Anchored where you have seen the fixing; blank "
             "counts as free-standing. Pieces without a position are not checked against evacuation routes."
         )
+
+
+# ---------------------------------------------------------------- floors
+
+
+@dataclass(frozen=True, slots=True)
+class CobieFloor:
+    """One row of the sheet Floor: `elevation` above the file's datum, `height` of the storey [m]; None if unknown."""
+
+    name: str
+    description: str = ""
+    category: str = ""
+    elevation: float | None = None
+    height: float | None = None
+
+
+def _read_floors(sheet: CobieSheet, unit: str) -> tuple[dict[str, CobieFloor], list[Text]]:
+    """Return the floors by their names as names are compared, of two alike the first, and warnings."""
+    found: dict[str, CobieFloor] = {}
+    remarks: list[Text] = []
+    for number, row in sheet.rows:
+        name = say(row.get("Name"))
+        if name and key(name) not in found:
+            cell = f"{sheet.name}!{sheet.letters['Elevation']}{number}"
+            found[key(name)] = _read_floor(name, row, unit, cell, remarks)
+    return found, remarks
+
+
+def _read_floor(name: str, row: Row, unit: str, cell: str, remarks: list[Text]) -> CobieFloor:
+    elevation = height = None
+    try:
+        if row.get("Elevation") is not None:
+            elevation = _read_length(FLOORS.column("elevation"), "Elevation", row["Elevation"], unit)
+    except CellError as error:
+        remarks.append(fill("{cell}: {message} It was left blank.", cell=cell, message=error.message))
+    try:
+        height = _read_length(BUILDING.column("height"), "Height", row.get("Height"), unit)
+    except CellError:  # only the height of the building rests on it, and that may stay blank
+        height = None
+    texts = say(row.get("Description")), say(row.get("Category"))
+    return CobieFloor(name, *texts, elevation=elevation, height=height)
+
+
+def _list_floors(
+    floors: Mapping[str, CobieFloor], used: Collection[str]
+) -> tuple[list[dict[str, Any]], dict[str, Any], list[Text]]:
+    """Return the rows of Floors from the lowest, the height as a field of Building if it is known, and warnings.
+
+    `used`: names of those with pieces, which stay even if they are no storeys.
+    """
+    kept = [floor for floor in floors.values() if floor.category.casefold() not in NO_STOREYS or floor.name in used]
+    kept.sort(key=lambda floor: floor.elevation or 0.0)
+    known = [(floor, floor.elevation) for floor in kept if floor.elevation is not None]
+    warnings = note_datum([(floor.name, elevation) for floor, elevation in known])
+    blank = [floor.name for floor in kept if floor.elevation is None]
+    if blank:
+        warnings.append(fill("No Elevation is given of: {floors}.", floors=", ".join(blank)))
+    tops = [one.elevation for one in floors.values() if one.category.casefold() == "roof" and one.elevation is not None]
+    tops += [elevation + floor.height for floor, elevation in known if floor.height is not None]
+    top, highest = max(tops, default=0.0), max((elevation for _, elevation in known), default=0.0)
+    height = {"height": round(top, 3)} if top > max(highest, LOWEST_ROOF) else {}
+    return [_list_floor(floor) for floor in kept], height, warnings
+
+
+def _list_floor(floor: CobieFloor) -> dict[str, Any]:
+    row: dict[str, Any] = {"floor": floor.name}
+    if floor.description and key(floor.description) != key(floor.name):
+        row["name"] = floor.description
+    if floor.elevation is not None:
+        row["elevation"] = round(floor.elevation, 3)
+    return row
+
+
+# ---------------------------------------------------------------- types and their sizes
+
+
+@dataclass(frozen=True, slots=True)
+class CobieType:
+    """One type: sizes in m, or the reason why its components are left out.
+
+    `is_furniture` is False where the file says that it is fixed.
+    """
+
+    name: str
+    breadth: float = math.nan
+    width: float = math.nan
+    height: float = math.nan
+    reason: Text | None = None
+    is_furniture: bool = True
+
+    def sizes_cm(self) -> dict[str, float]:
+        """Return its sizes by field, in cm."""
+        return {name: round(100 * getattr(self, name), 2) for name in ("breadth", "width", "height")}
+
+
+def _find_unit(sheet: CobieSheet) -> str:
+    """Return the unit of lengths of the file, one of `assess.units.LENGTH`.
+
+    Raises WorkbookError if LinearUnits is blank or names no unit that sizes of furniture are given in.
+    """
+    number, row = sheet.rows[0] if sheet.rows else (2, {})
+    typed = say(row.get("LinearUnits"))
+    found = next((unit for text in (typed, f"{typed}s") if (unit := read_unit(text)) in LENGTH), None)
+    if found is None:
+        message = fill("LinearUnits is blank, so that no size can be read.")
+        if typed:
+            message = fill("LinearUnits is {unit}, which is not read.", unit=shorten(typed))
+        fix = fill("Write the unit of NominalHeight: millimeters, centimeters, meters, inches or feet.")
+        cell = f"{sheet.letters['LinearUnits']}{number}"
+        raise WorkbookError([Problem("error", sheet.name, cell, message, fix)])
+    return found
+
+
+def _check_unit(facility: CobieSheet, types: CobieSheet, unit: str) -> None:
+    """Refuse the unit of a file if no size of its furniture is in range in it, and most are in another.
+
+    Raises WorkbookError if so; it names the cell of LinearUnits.
+    """
+    sizes = [
+        (say(row.get("Name")), column, number)
+        for _, row in types.rows
+        if say(row.get("AssetType")).casefold() in MOVEABLE
+        for column in SIZES
+        if (number := _read_number(row.get(column)))
+    ]
+    fits = {one: sum(is_within(CATALOGUE.column("height"), size, one) for *_, size in sizes) for one in LENGTH}
+    others = [one for one in LENGTH if 2 * fits[one] > len(sizes)]
+    if fits[unit] or not others:
+        return
+    name, column, number = sizes[0]
+    line, row = facility.rows[0]
+    message = fill(
+        "LinearUnits is {unit}, but all sizes of furniture are out of range in that unit: {column} of {name} would be "
+        "{number:g} {short}.",
+        unit=shorten(say(row.get("LinearUnits"))), column=column, name=shorten(name), number=number, short=unit,
+    )  # fmt: skip
+    fix = fill("Check LinearUnits: in {units} most of them are in range.", units=", ".join(others))
+    raise WorkbookError([Problem("error", facility.name, f"{facility.letters['LinearUnits']}{line}", message, fix)])
+
+
+def _read_types(sheet: CobieSheet, unit: str) -> dict[str, CobieType]:
+    """Return the types by their names as names are compared; of two alike the first."""
+    found: dict[str, CobieType] = {}
+    for _, row in sheet.rows:
+        name = say(row.get("Name"))
+        if name:
+            found.setdefault(key(name), _read_type(name, row, unit))
+    return found
+
+
+def _read_type(name: str, row: Mapping[str, Any], unit: str) -> CobieType:
+    kind = CobieType(name)
+    asset = say(row.get("AssetType"))
+    if asset.casefold() in FIXED:
+        return replace(kind, reason=fill("AssetType is Fixed"), is_furniture=False)
+    if asset.casefold() not in MOVEABLE:
+        reason = fill("AssetType is blank, so that it is not known whether they are furniture")
+        if asset:
+            reason = fill("AssetType is {value}, expected Fixed or Moveable", value=shorten(asset))
+        return replace(kind, reason=reason)
+    missing = [column for column in SIZES if _is_missing(row.get(column))]
+    if missing:
+        return replace(kind, reason=fill("no {columns}", columns=", ".join(missing)))
+    try:
+        length, width, height = (_read_length(CATALOGUE.column("height"), one, row[one], unit) for one in SIZES)
+    except CellError as error:
+        return replace(kind, reason=fill("{message}", message=error.message.rstrip(".")))
+    return replace(kind, breadth=min(length, width), width=max(length, width), height=height)
+
+
+def _read_length(column: Column, label: str, value: object, unit: str) -> float:
+    """Return a length [m] within the limits of a column of the inventory.
+
+    Numbers stored as texts are read as programs write them, with a point as the decimal sign.
+
+    Raises CellError if it is no number, or out of the limits.
+    """
+    typed = _read_number(value)
+    found, _ = read_cell(replace(column, label=label), value if typed is None else typed, unit)
+    if not isinstance(found, float):
+        raise CellError(fill("{label} is blank.", label=label))
+    return found
+
+
+def _read_number(value: object) -> float | None:
+    """Return the number of a cell, also where it is stored as a text; None where it is none."""
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return float(value)
+    text = value.strip() if isinstance(value, str) else ""
+    number = float(text) if _NUMBER.fullmatch(text) else math.nan
+    return number if math.isfinite(number) else None
+
+
+def _is_missing(value: object) -> bool:
+    """Tell whether a size is blank or 0, as programs write one that they do not know."""
+    return value is None or value is UNSAVED or _read_number(value) == 0
+
+
+# ---------------------------------------------------------------- components and their spaces
+
+
+@dataclass(slots=True)
+class _Sorted:
+    """Components sorted into pieces, each with its type and its row of Items, and what is left out.
+
+    `spaces`: room and floor by the name of a space as names are compared.
+    """
+
+    types: Mapping[str, CobieType]
+    spaces: Mapping[str, tuple[str, CobieFloor | None]]
+    pieces: list[tuple[CobieType, dict[str, Any]]] = field(default_factory=list)
+    skipped: list[tuple[str, Text, bool]] = field(default_factory=list)
+    with_several_spaces: int = 0
+
+    def take(self, row: Row) -> None:
+        """Sort one component in."""
+        named, space = say(row.get("TypeName")), say(row.get("Space"))
+        kind = self.types.get(key(named))
+        if kind is None:
+            reason = fill("not in the sheet Type") if named else fill("TypeName is blank")
+            self.skipped.append((named or "-", reason, True))
+            return
+        if kind.reason is not None:
+            self.skipped.append((kind.name, kind.reason, kind.is_furniture))
+            return
+        room, floor = self._find_space(space)
+        if floor is None:
+            reason = fill("Space is blank, so that the floor is not known")
+            if space:
+                reason = fill("its Space is not in the sheet Space, or that has no floor of the sheet Floor")
+            self.skipped.append((kind.name, reason, True))
+            return
+        own = say(row.get("ExtIdentifier")) or say(row.get("ExternalIdentifier"))
+        name = say(row.get("Name")) or own or kind.name
+        item = {"item": name, "floor": floor.name, "room": room, "description": kind.name, "type": kind.name,
+                **kind.sizes_cm(), "source_id": own or name}  # fmt: skip
+        self.pieces.append((kind, item))
+
+    def _find_space(self, named: str) -> tuple[str, CobieFloor | None]:
+        if key(named) in self.spaces:
+            return self.spaces[key(named)]
+        for part in named.split(","):
+            room, floor = self.spaces.get(key(part.strip()), ("", None))
+            if floor is not None:
+                self.with_several_spaces += 1
+                return room, floor
+        return "", None
+
+
+def _read_spaces(sheet: CobieSheet, floors: Mapping[str, CobieFloor]) -> dict[str, tuple[str, CobieFloor | None]]:
+    """Return name and floor of each space, by its name as names are compared; of two alike the first."""
+    found: dict[str, tuple[str, CobieFloor | None]] = {}
+    for _, row in sheet.rows:
+        name = say(row.get("Name"))
+        if name:
+            found.setdefault(key(name), (name, floors.get(key(say(row.get("FloorName"))))))
+    return found

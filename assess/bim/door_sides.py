@@ -4,16 +4,14 @@ IsExternal of IFC is not used: it is wrong in many models. A door leads out wher
 is on the ground storey; on another storey such a door leads onto a balcony, a roof or into a shaft.
 """
 
-import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from typing import Literal
 
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from assess.bim.building_model import Area, BuildingModel, Door, Point, Space, Storey
-from assess.bim.plan_shapes import to_polygon
-from assess.bim.space_search import SpaceSearch
+from assess.bim.building_model import BuildingModel, Door, Point, Storey
+from assess.bim.plan_shapes import SpaceSearch, direction_of, to_polygon
 
 Sides = tuple[str, str]
 """Keys of the spaces on the side to which the normal of a door points, and on the other; "" where there is none."""
@@ -33,14 +31,18 @@ BASEMENT = -1.0
 
 def find_sides(model: BuildingModel) -> dict[str, Sides]:
     """Return the spaces on both sides of every door, by the door's key; of spaces that overlap the smallest."""
-    found: dict[str, Sides] = {}
-    by_storey: dict[str, list[Door]] = {}
-    for door in model.doors:
-        by_storey.setdefault(door.storey, []).append(door)
-    for storey, doors in by_storey.items():
-        spaces, walls = [one for one in model.spaces if one.storey == storey], model.walls.get(storey, ())
-        found.update(zip((door.key for door in doors), _probe(doors, spaces, walls), strict=True))
-    return {door.key: found[door.key] for door in model.doors}
+    search = SpaceSearch(model.spaces)
+    solids = {storey: [to_polygon(one) for one in walls] for storey, walls in model.walls.items()}
+    trees = {storey: shapely.STRtree(polygons) for storey, polygons in solids.items()}
+
+    def probe(door: Door, sign: int) -> str:
+        (x, y), storey = direction_of(door.normal_deg), door.storey
+        way = shapely.LineString([(door.x, door.y), (door.x + sign * THICKEST * x, door.y + sign * THICKEST * y)])
+        near = [solids[storey][at] for at in sorted(trees[storey].query(way))] if storey in trees else []
+        places = _place_probes(door, way, shapely.union_all(near))
+        return next((held[0].key for place in places if (held := search.find(storey, place, REACH))), "")
+
+    return {door.key: (probe(door, 1), probe(door, -1)) for door in model.doors}
 
 
 def find_ground(model: BuildingModel) -> Storey | None:
@@ -64,64 +66,32 @@ def find_kinds(model: BuildingModel, sides: Mapping[str, Sides] | None = None) -
     """
     sides = find_sides(model) if sides is None else sides
     ground = find_ground(model)
-    return {door.key: _classify(door, sides[door.key], ground) for door in model.doors}
 
+    def classify(door: Door) -> DoorKind:
+        one, other = sides[door.key]
+        if one and other:
+            return "inside" if one != other else "same room"
+        if not (one or other):
+            return "no room"
+        return "exit" if ground is not None and door.storey == ground.key else "outside"
 
-def _classify(door: Door, sides: Sides, ground: Storey | None) -> DoorKind:
-    one, other = sides
-    if one and other:
-        return "inside" if one != other else "same room"
-    if not (one or other):
-        return "no room"
-    return "exit" if ground is not None and door.storey == ground.key else "outside"
-
-
-def find_normal(door: Door) -> tuple[float, float]:
-    """Return the direction of the normal of a door's wall, of length 1."""
-    turn = math.radians(door.normal_deg)
-    return math.cos(turn), math.sin(turn)
-
-
-def _probe(doors: Sequence[Door], spaces: Sequence[Space], walls: Sequence[Area]) -> Iterator[Sides]:
-    search, solids = SpaceSearch(spaces), [to_polygon(one) for one in walls]
-    tree = shapely.STRtree(solids)
-    for door in doors:
-        ways = [_look(door, sign) for sign in (1, -1)]
-        near = [shapely.union_all([solids[at] for at in sorted(tree.query(way))]) for way in ways]
-        probes = [_place_probes(door, way, wall) for way, wall in zip(ways, near, strict=True)]
-        one, other = (next((held[0].key for held in search.find_all(own, REACH) if held), "") for own in probes)
-        yield one, other
-
-
-def _look(door: Door, sign: int) -> shapely.LineString:
-    """Return the line from the centre of a door along its normal, or against it, through the thickest wall."""
-    x, y = find_normal(door)
-    return shapely.LineString([(door.x, door.y), (door.x + sign * THICKEST * x, door.y + sign * THICKEST * y)])
+    return {door.key: classify(door) for door in model.doors}
 
 
 def _place_probes(door: Door, way: shapely.LineString, walls: BaseGeometry) -> list[Point]:
-    """Return where spaces are looked for on one side of a door: from its face, and from that of the wall round it."""
+    """Return where spaces are looked for on one side of a door: from its face, and from that of the wall round it.
+
+    `way`: from the centre of the door through the thickest wall.
+    """
     face = max(door.thickness, THINNEST) / 2
-    away = [face + probe for probe in PROBES]
-    far = _find_face(way, walls, face)
-    if far > face:  # a leaf without an opening is often much thinner than its wall
-        away += [far + probe for probe in PROBES]
-    return [_reach(way, one) for one in away]
-
-
-def _find_face(way: shapely.LineString, walls: BaseGeometry, face: float) -> float:
-    """Return how far along a line from a door the wall round it ends [m]; `face` where it is thinner."""
-    start = shapely.Point(way.coords[0])
+    far, start = face, shapely.Point(way.coords[0])
     parts = [one for one in shapely.get_parts(way.intersection(walls)) if isinstance(one, shapely.LineString)]
     for part in sorted(parts, key=start.distance):
-        if start.distance(part) > face + REACH:
+        if start.distance(part) > far + REACH:
             break
-        face = max(face, start.hausdorff_distance(part))
-    return face
-
-
-def _reach(way: shapely.LineString, far: float) -> Point:
-    """Return the point so far along a line, or beyond its end [m]."""
+        far = max(far, start.hausdorff_distance(part))
+    away = [face + probe for probe in PROBES]
+    if far > face:  # a leaf without an opening is often much thinner than its wall
+        away += [far + probe for probe in PROBES]
     (x, y), (u, v) = way.coords
-    share = far / way.length
-    return x + share * (u - x), y + share * (v - y)
+    return [(x + one / way.length * (u - x), y + one / way.length * (v - y)) for one in away]

@@ -10,9 +10,9 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from assess.bim.building_model import ON_FLOOR, BuildingModel, Door, Piece, Point, Space, Storey
-from assess.bim.door_sides import Sides, find_normal
-from assess.bim.plan_shapes import list_polygons, to_polygon
+from assess.bim.building_model import ON_FLOOR, BuildingModel, Door, Point, Space, Storey
+from assess.bim.door_sides import Sides
+from assess.bim.plan_shapes import box_at, direction_of, find_largest, list_polygons, place_at, to_polygon
 
 LOW = 0.1
 """A piece that is no higher than this is stepped over [m]."""
@@ -124,28 +124,11 @@ def build_plan(model: BuildingModel, storey: Storey) -> FloorPlan:
         polygons=tuple(polygon for _, polygon in pairs),
         solids=tuple(polygon for area in areas if (polygon := to_polygon(area)).area > 0),
         footprints=tuple(
-            _footprint(piece)
+            box_at((piece.x, piece.y), direction_of(piece.angle_deg), piece.breadth / 2, piece.width / 2)
             for piece in model.pieces
             if piece.storey == storey.key and piece.bottom <= ON_FLOOR and piece.height > LOW
         ),
     )
-
-
-def _footprint(piece: Piece) -> shapely.Polygon:
-    turn = math.radians(piece.angle_deg)
-    return box_at((piece.x, piece.y), (math.cos(turn), math.sin(turn)), piece.breadth / 2, piece.width / 2)
-
-
-def box_at(at: Point, normal: Point, along: float, across: float, behind: float | None = None) -> shapely.Polygon:
-    """Return a rectangle: `along` a direction, `behind` against it (as far, if not given) and `across` each way [m]."""
-    back = -along if behind is None else -behind
-    return place_at(at, normal, ((along, -across), (along, across), (back, across), (back, -across)))
-
-
-def place_at(at: Point, normal: Point, corners: Sequence[Point]) -> shapely.Polygon:
-    """Return a polygon whose corners are given along a direction and to the left of it, from a point [m]."""
-    (x, y), (u, v) = at, normal
-    return shapely.Polygon([(x + a * u - b * v, y + a * v + b * u) for a, b in corners])
 
 
 # ---------------------------------------------------------------- doors and stairs
@@ -163,30 +146,24 @@ def link_door(door: Door, sides: Sides) -> Link:
     overall = drawn if stated <= 0 or 0 < drawn < stated - SAME else stated
     spaces = tuple(dict.fromkeys(key for key in sides if key))
     at, clear = (door.x, door.y), max(overall - DOOR_LESS, 0.0)
-    return Link(f"door {door.key}", at, find_normal(door), door.width, clear, spaces, overall)
+    return Link(f"door {door.key}", at, direction_of(door.normal_deg), door.width, clear, spaces, overall)
 
 
 def link_stairs(model: BuildingModel, plan: FloorPlan) -> list[Link]:
     """Return the ends of stairs on a storey, each joined to the nearest space that no wall keeps from it."""
     found = []
     for stair in model.stairs:
-        if stair.storey == plan.storey.key and plan.spaces:
-            at = shapely.Point(stair.x, stair.y)
-            space = _find_space(plan, at)
-            if space is not None:
-                spaces = (plan.spaces[space].key,)
-                found.append(Link(f"stair {stair.key} {stair.end}", (stair.x, stair.y), (0.0, 0.0), 1.0, 0.0, spaces))
+        if stair.storey != plan.storey.key or not plan.spaces:
+            continue
+        at = shapely.Point(stair.x, stair.y)
+        near = plan.tree.query(at, predicate="dwithin", distance=FAR).tolist()
+        for one in sorted(near, key=lambda one: (plan.polygons[one].distance(at), plan.polygons[one].area, one)):
+            way = shapely.shortest_line(at, plan.polygons[one])
+            if plan.solids_near(way).intersection(way).length <= JAMB:
+                name, spaces = f"stair {stair.key} {stair.end}", (plan.spaces[one].key,)
+                found.append(Link(name, (stair.x, stair.y), (0.0, 0.0), 1.0, 0.0, spaces))
+                break
     return found
-
-
-def _find_space(plan: FloorPlan, at: shapely.Point) -> int | None:
-    near = plan.tree.query(at, predicate="dwithin", distance=FAR).tolist()
-    sizes = [(plan.polygons[one].distance(at), plan.polygons[one].area, one) for one in near]
-    for _, _, one in sorted(sizes):
-        way = shapely.shortest_line(at, plan.polygons[one])
-        if plan.solids_near(way).intersection(way).length <= JAMB:
-            return int(one)
-    return None
 
 
 # ---------------------------------------------------------------- one room
@@ -286,15 +263,11 @@ def place_rooms(model: BuildingModel, plan: FloorPlan, rooms: Mapping[str, Room]
 
 
 def _find_middle(area: BaseGeometry, taken: BaseGeometry) -> Point:
-    polygon = max(list_polygons(area), key=lambda one: one.area)
-    near = taken.intersection(polygon.buffer(APART))
-    rest = max(list_polygons(polygon.difference(near.buffer(APART))), key=lambda one: one.area, default=polygon)
-    return _find_widest(rest)
-
-
-def _find_widest(polygon: shapely.Polygon) -> Point:
     from shapely.ops import polylabel
 
+    whole = find_largest(area)
+    near = taken.intersection(whole.buffer(APART))
+    polygon = find_largest(whole.difference(near.buffer(APART)), whole)
     low_x, low_y, high_x, high_y = polygon.bounds
     extent = math.hypot(high_x - low_x, high_y - low_y)
     try:
@@ -315,14 +288,6 @@ def _centre(polygon: shapely.Polygon, middle: shapely.Point) -> Point:
     far = middle.distance(shapely.LineString([(x, y), (x + 2 * near * u, y + 2 * near * v)]) & polygon.boundary)
     move = (far - near) / 2 if near < far < near + 2 * MIDWAY else 0.0
     return x + move * u, y + move * v
-
-
-# ---------------------------------------------------------------- sight
-
-
-def measure(one: Point, other: Point) -> float:
-    """Return the distance between two points [m]."""
-    return math.hypot(other[0] - one[0], other[1] - one[1])
 
 
 def see(area: BaseGeometry, pairs: Sequence[tuple[Point, Point]]) -> list[bool]:

@@ -5,6 +5,7 @@ other reach the same room over at least `NARROWEST_OPENING`, and meet no wall, w
 the part without furniture where that is wide enough.
 """
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby, pairwise
@@ -15,9 +16,8 @@ import shapely
 from numpy.typing import NDArray
 
 from assess.bim.building_model import Door, Point
-from assess.bim.door_sides import find_normal
-from assess.bim.draft_floor import FloorPlan, Link, box_at, measure
-from assess.bim.plan_shapes import list_polygons
+from assess.bim.draft_floor import FloorPlan, Link
+from assess.bim.plan_shapes import FloatArray, box_at, direction_of, list_polygons
 
 NARROWEST_OPENING = 0.6
 """Least width of an opening that a person walks through [m]."""
@@ -34,8 +34,6 @@ MOST_RAYS = 200_000
 """So many rays are followed on a storey; rooms with more edges than that are left out."""
 AT_ONCE, MOST_HITS = 5_000, 1_000_000
 """Rays that are followed at once, and hits of rooms after which no more are: rooms that lie in each other have many."""
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +61,7 @@ def find_openings(plan: FloorPlan, doors: Sequence[Door]) -> list[Link]:
     for stretch in (*_group(rays, reached, full), *_group(rays, reached, None)):
         link = _link(plan, stretch, rays)
         pair = found.setdefault(frozenset(link.spaces), [])
-        is_new = not pair or (stretch.is_free and all(measure(one.at, link.at) >= SAME for one in pair))
+        is_new = not pair or (stretch.is_free and all(math.dist(one.at, link.at) >= SAME for one in pair))
         if is_new and link.width >= NARROWEST_OPENING - STEP / 2:
             pair.append(link)
     return [link for pair in found.values() for link in pair]
@@ -74,7 +72,7 @@ def _cast(plan: FloorPlan) -> _Rays:
     count = 0
     for number, polygon in enumerate(plan.polygons):
         for start, end in _list_edges(polygon):
-            length = measure(start, end)
+            length = math.dist(start, end)
             n = int((length + 1e-6) // STEP)
             if n * STEP < NARROWEST_OPENING - STEP or len(room) + n > MOST_RAYS:
                 continue
@@ -103,7 +101,9 @@ def _find_reached(plan: FloorPlan, rays: _Rays, doors: Sequence[Door]) -> tuple[
     )
     shut, full = np.zeros(len(lines), dtype=np.bool_), np.zeros(len(lines), dtype=np.bool_)
     zones = [
-        box_at((one.x, one.y), find_normal(one), one.thickness / 2 + WIDEST_GAP, one.width / 2 + NEXT_TO_DOOR)
+        box_at(
+            (one.x, one.y), direction_of(one.normal_deg), one.thickness / 2 + WIDEST_GAP, one.width / 2 + NEXT_TO_DOOR
+        )
         for one in doors
     ]
     for shapes, met in ((plan.solids, shut), (zones, shut), (plan.footprints, full)):

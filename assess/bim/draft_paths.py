@@ -2,8 +2,12 @@
 
 Ways bend at corners of the floor that is left at a distance from walls and pieces. Where that leaves no way, the
 distance is reduced, then furniture is walked through: what stands in a way is for the assessment to find.
+
+In corridors, long narrow rooms that people pass through, ways run along the middle between the walls. So the ways from
+many rooms share their segments, and each segment lies in the middle of the free width.
 """
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise, product
@@ -14,9 +18,8 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from assess.bim.building_model import Point
-from assess.bim.draft_corridors import Axis, Spot, find_axes, find_spots, is_corridor, measure_width
-from assess.bim.draft_floor import Link, Room, measure, see
-from assess.bim.plan_shapes import list_polygons
+from assess.bim.draft_floor import Room, see
+from assess.bim.plan_shapes import NARROWEST, find_largest, find_width, list_rings
 
 TRIES = ((0.48, True, 1.0), (0.35, True, 1.5), (0.2, False, 3.0), (0.05, False, 5.0))
 """What is tried in this order: the distance kept [m], whether ways go round furniture, and the cost of a metre [-]."""
@@ -32,6 +35,21 @@ MOST_CORNERS, NEAREST = 100, 20
 """In a room with more corners, or more doors, than this each is joined to so many of its nearest only."""
 MOST_OF_ROOM = 1500
 """Corners of one room that are used; of more, those are left out that are far from its doors."""
+PARALLEL = 0.996
+"""Least cosine of the angle between two walls that face each other [-]: 5 degrees."""
+OVERLAP = 1.2
+"""Two walls face each other over at least so many times their distance [-]."""
+MUCH_WIDER = 1.6
+"""Walls that are so many times farther apart than the corridor is wide are not its two sides [-]."""
+MOST_WALLS = 80
+SNAP = 0.6
+"""Two places on the middle line that are nearer than this are one [m]."""
+BESIDE = 1.2
+"""A door up to this far outside the two walls is in one of them [m]."""
+BEYOND = 1.5
+"""What is up to so many widths beyond the end of a middle line is joined to that end [-]."""
+INSET = 0.45
+"""Middle lines end this far from the walls at their ends [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +86,7 @@ class Ways:
         """Join nodes that see each other in an area."""
         places = [(self.at(one), self.at(other)) for one, other in pairs]
         for (one, other), (start, end), seen in zip(pairs, places, see(area, places), strict=True):
-            length = measure(start, end)
+            length = math.dist(start, end)
             if seen and length >= SHORTEST:
                 self.found.append(Way(one, other, cost * length + BEND))
 
@@ -105,18 +123,24 @@ def find_ways(room: Room, own: str, place: Point) -> Ways:
 
 
 def _walk(ways: Ways, distance: float, floor: BaseGeometry, cost: float) -> None:
+    """Join the ends of a room over a floor, at a distance from its edge."""
     room = ways.room
     inner = floor.buffer(-distance, join_style="mitre")
-    passages = [_clear(room, link, distance, floor) for link in room.links]
-    reached = [_reach(room, inner, point) for point in ways.ends.values()]
-    area = shapely.union_all([inner, *passages, *reached]).buffer(TIGHT)
-    before = [
-        (link.at[0] + far * x, link.at[1] + far * y)
-        for link in room.links
-        if link.normal != (0.0, 0.0)
-        for x, y in (room.inward(link),)
-        for far in (room.floor.distance(shapely.Point(link.at)) + distance + TIGHT,)
-    ]
+    passages = [room.passage(link, distance) for link in room.links]
+    if floor is not room.floor:  # apart from furniture that they go round
+        pieces = room.floor.difference(floor)
+        around = [min(max(link.clear / 2, SHORTEST), distance) for link in room.links]
+        passages = [one.difference(pieces.buffer(free)) for one, free in zip(passages, around, strict=True)]
+    # from a point inside the room a strip leads to the floor at a distance from its walls
+    places = [] if inner.is_empty else [at for at in map(shapely.Point, ways.ends.values()) if room.floor.covers(at)]
+    strips = [shapely.shortest_line(at, inner).buffer(TIGHT).intersection(room.floor) for at in places]
+    area = shapely.union_all([inner, *passages, *strips]).buffer(TIGHT)
+    before = []
+    for link in room.links:
+        if link.normal != (0.0, 0.0):
+            (x, y), (u, v) = link.at, room.inward(link)
+            far = room.floor.distance(shapely.Point(link.at)) + distance + TIGHT
+            before.append((x + far * u, y + far * v))
     corners = ways.add(_choose(ways, [*before, *_list_corners(inner)]))
     near = {
         tuple(sorted(pair))
@@ -125,32 +149,13 @@ def _walk(ways: Ways, distance: float, floor: BaseGeometry, cost: float) -> None
     ways.join(sorted((one, other) for one, other in near if one != other), area, cost)
 
 
-def _clear(room: Room, link: Link, distance: float, floor: BaseGeometry) -> BaseGeometry:
-    """Return where ways may run through a link, apart from furniture that they go round."""
-    passage, around = room.passage(link, distance), min(max(link.clear / 2, SHORTEST), distance)
-    return passage if floor is room.floor else passage.difference(room.floor.difference(floor).buffer(around))
-
-
-def _reach(room: Room, inner: BaseGeometry, point: Point) -> BaseGeometry:
-    """Return a strip from a point inside a room to the floor at a distance from its walls."""
-    at = shapely.Point(point)
-    if inner.is_empty or not room.floor.covers(at):
-        return shapely.Polygon()
-    return shapely.shortest_line(at, inner).buffer(TIGHT).intersection(room.floor)
-
-
 def _list_corners(area: BaseGeometry) -> Iterator[Point]:
     """Yield the corners of an area round which a shortest way bends: where its edge turns to the right."""
-    for polygon in list_polygons(area):
-        for ring in (oriented := shapely.geometry.polygon.orient(polygon)).interiors, [oriented.exterior]:
-            for one in ring:
-                yield from _list_bends(np.array(one.simplify(SHORTEST).coords)[:-1, :2])
-
-
-def _list_bends(corners: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> Iterator[Point]:
-    before, after = corners - np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0) - corners
-    for at in np.flatnonzero(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0] < 0):
-        yield float(corners[at, 0]), float(corners[at, 1])
+    for ring in list_rings(area):
+        corners = np.array(ring.simplify(SHORTEST).coords)[:-1, :2]
+        before, after = corners - np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0) - corners
+        for at in np.flatnonzero(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0] < 0):
+            yield float(corners[at, 0]), float(corners[at, 1])
 
 
 def _choose(ways: Ways, points: Iterable[Point]) -> list[Point]:
@@ -174,6 +179,107 @@ def _near(own: Mapping[str, Point], others: Mapping[str, Point]) -> Iterator[tup
         yield from ((name, names[one]) for one in np.argsort(far, kind="stable")[: NEAREST + 1].tolist())
 
 
+# ---------------------------------------------------------------- corridors
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """The middle line between two walls that face each other: its ends, and the distance of the walls [m]."""
+
+    start: Point
+    end: Point
+    width: float
+
+    @property
+    def length(self) -> float:
+        """Its length [m]."""
+        return math.dist(self.start, self.end)
+
+    @property
+    def inset(self) -> float:
+        """How far from its ends ways along it begin [m]."""
+        return min(INSET, self.length / 3)
+
+    def find(self, point: Point) -> tuple[float, float]:
+        """Return how far along the axis, and how far from it, a point is [m]."""
+        (x, y), (u, v) = self.start, self.direction
+        dx, dy = point[0] - x, point[1] - y
+        return dx * u + dy * v, abs(dy * u - dx * v)
+
+    def point(self, along: float) -> Point:
+        """Return the point so far along it [m]."""
+        (x, y), (u, v) = self.start, self.direction
+        return x + along * u, y + along * v
+
+    @property
+    def direction(self) -> Point:
+        """Its direction, of length 1."""
+        (x, y), (u, v) = self.start, self.end
+        return (u - x) / self.length, (v - y) / self.length
+
+
+def is_corridor(room: Room) -> bool:
+    """Tell whether a room is a corridor: long and narrow, with more than one way out."""
+    return len(room.links) > 1 and find_width(room.area) > 0
+
+
+def find_axes(room: Room) -> list[Axis]:
+    """Return the middle lines of a corridor, the longest first; none where no walls face each other."""
+    width = find_width(room.area)
+    area = find_largest(room.floor)
+    smooth = area.buffer(-0.3 * width, join_style="mitre").buffer(0.3 * width, join_style="mitre").simplify(0.05)
+    walls = [wall for ring in list_rings(smooth) for wall in pairwise((x, y) for x, y, *_ in ring.coords)]
+    if len(walls) > MOST_WALLS:
+        return []
+    axes = [axis for at, one in enumerate(walls) for other in walls[:at] if (axis := _face(one, other, width))]
+    inside = area.buffer(0.05)
+    own = [axis for axis in axes if inside.covers(shapely.LineString([axis.start, axis.end]))]
+    return sorted(own, key=lambda axis: -axis.length)
+
+
+def _face(one: tuple[Point, Point], other: tuple[Point, Point], width: float) -> Axis | None:
+    """Return the middle line between two walls, None where they do not face each other."""
+    wall, back = Axis(*one, 0.0), Axis(*other, 0.0)
+    if not (wall.length > NARROWEST and back.length > NARROWEST):
+        return None
+    (x, y), (u, v), (p, q) = wall.start, wall.direction, back.direction
+    gap = sum(u * (b - y) - v * (a - x) for a, b in other) / 2
+    if u * p + v * q > -PARALLEL or not NARROWEST <= gap <= MUCH_WIDER * width:
+        return None
+    places = [wall.find(point)[0] for point in other]
+    low, high = max(0.0, min(places)), min(wall.length, max(places))
+    if high - low < OVERLAP * gap:
+        return None
+    start, end = ((a - gap / 2 * v, b + gap / 2 * u) for a, b in one)
+    middle = Axis(start, end, 0.0)
+    return Axis(middle.point(low), middle.point(high), gap)
+
+
+def find_spots(axis: Axis, nodes: Iterable[tuple[str, Point]]) -> list[tuple[float, list[str]]]:
+    """Return the places along an axis at which nodes are joined to it, with these nodes, and its two ends, in order."""
+    beyond = max(BESIDE, BEYOND * axis.width)
+    low, high = axis.inset, axis.length - axis.inset
+    found = [(low, ""), (high, "")]
+    for name, point in nodes:
+        along, away = axis.find(point)
+        if -beyond <= along <= axis.length + beyond and away <= axis.width / 2 + BESIDE:
+            found.append((min(max(along, low), high), name))
+    groups: list[list[tuple[float, str]]] = []
+    for one in sorted(found):
+        if groups and one[0] - groups[-1][0][0] < SNAP:
+            groups[-1].append(one)
+        else:
+            groups.append([one])
+    return [(sum(along for along, _ in own) / len(own), [name for _, name in own if name]) for own in groups]
+
+
+def measure_width(axis_width: float, ends: tuple[Point, Point], floor: BaseGeometry) -> float:
+    """Return the free width of a segment in the middle between two walls [m]: less what stands out of them."""
+    line = shapely.LineString(ends)
+    away = line.buffer(axis_width / 2, cap_style="flat").buffer(-0.02).difference(floor)
+    return min(axis_width, 2 * float(line.distance(away))) if not away.is_empty else axis_width
+
+
 def _follow_axes(ways: Ways) -> None:
     room = ways.room
     axes = find_axes(room)
@@ -188,7 +294,11 @@ def _follow_axes(ways: Ways) -> None:
     for at, axis in enumerate(axes):
         others = [one for one in every if one[0] not in (f"end {at} 0", f"end {at} 1")]
         names = _add_axis(ways, axis, find_spots(axis, others), own, at)
-        ways.found += _along(ways, axis, names)
+        # neighbours on an axis: such ways cost no more for being many
+        for one, other in pairwise(sorted(names, key=lambda name: axis.find(ways.at(name))[0])):
+            ends = ways.at(one), ways.at(other)
+            if math.dist(*ends) >= SHORTEST:
+                ways.found.append(Way(one, other, math.dist(*ends), measure_width(axis.width, ends, room.floor)))
     pairs = {(name, spot) for name, spots in own.items() for spot in spots if name in ways.ends and name != spot}
     pairs |= {(one, other) for at in range(len(joints)) for one in own.get(f"from {joints[at][0]}", ())
               for other in own.get(joints[at][0], ()) if one != other}  # fmt: skip
@@ -196,28 +306,22 @@ def _follow_axes(ways: Ways) -> None:
     ways.join(sorted(pairs), area, 1.0)
 
 
-def _add_axis(ways: Ways, axis: Axis, spots: Sequence[Spot], own: dict[str, list[str]], number: int) -> list[str]:
+def _add_axis(
+    ways: Ways, axis: Axis, spots: Sequence[tuple[float, list[str]]], own: dict[str, list[str]], number: int
+) -> list[str]:
     """Add the places on an axis, and note in `own` which nodes are joined to each; return their names."""
+
+    def is_on(name: str) -> bool:
+        along, away = axis.find(ways.ends[name])
+        return away < SHORTEST and axis.inset <= along <= axis.length - axis.inset
+
     names = []
-    for spot in spots:
-        on_axis = (name for name in spot.joined if name in ways.ends and _is_on(axis, ways.ends[name]))
-        name = next(on_axis, "") or next(iter(ways.add([axis.point(spot.along)])))
+    for along, joined in spots:
+        on_axis = (name for name in joined if name in ways.ends and is_on(name))
+        name = next(on_axis, "") or next(iter(ways.add([axis.point(along)])))
         names.append(name)
-        for joined in spot.joined:
-            own.setdefault(joined, []).append(name)
+        for one in joined:
+            own.setdefault(one, []).append(name)
     for end, name in ((0, names[0]), (1, names[-1])):
         own.setdefault(f"from end {number} {end}", []).append(name)
     return names
-
-
-def _is_on(axis: Axis, point: Point) -> bool:
-    along, away = axis.find(point)
-    return away < SHORTEST and axis.inset <= along <= axis.length - axis.inset
-
-
-def _along(ways: Ways, axis: Axis, names: Sequence[str]) -> Iterator[Way]:
-    """Yield the ways between neighbours on an axis; they cost no more for being many."""
-    for one, other in pairwise(sorted(names, key=lambda name: axis.find(ways.at(name))[0])):
-        ends = ways.at(one), ways.at(other)
-        if measure(*ends) >= SHORTEST:
-            yield Way(one, other, measure(*ends), measure_width(axis.width, ends, ways.room.floor))

@@ -7,24 +7,37 @@ A route is the union of the ways of all rooms that leave their storey by one exi
 once. The route to a stair ends with the flight, at whose other end the route of that storey goes on.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import count
 from typing import Any
 
+import networkx as nx
 import shapely
+from shapely.geometry.base import BaseGeometry
 
-from assess.bim.building_model import BuildingModel
-from assess.bim.door_sides import find_ground, find_kinds
-from assess.bim.draft_floor import Link
-from assess.bim.draft_network import Network, Node, Step, build_network, find_steps
-from assess.bim.draft_openings import NARROWEST_OPENING
-from assess.bim.draft_widths import measure_gap, set_widths
+from assess.bim.building_model import BuildingModel, Point, Storey, name_some
+from assess.bim.door_sides import DoorKind, Sides, find_ground, find_kinds, find_sides
+from assess.bim.draft_floor import (
+    DOOR_LESS,
+    JAMB,
+    FloorPlan,
+    Link,
+    build_plan,
+    build_rooms,
+    link_door,
+    link_stairs,
+    place_rooms,
+)
+from assess.bim.draft_openings import NARROWEST_OPENING, find_openings
+from assess.bim.draft_paths import find_ways
+from assess.bim.plan_shapes import box_at, list_polygons
 from assess.i18n import Text, fill, gettext, nfill
 from assess.natural import natural_key
 from assess.workbook.draft_names import DRAFT, mark_draft
 from assess.workbook.names import key
-from assess.workbook.schema import DEFAULT_WIDTH
+from assess.workbook.schema import DEFAULT_WIDTH, ROUTES
 
 Rows = Sequence[Mapping[str, Any]]
 
@@ -37,6 +50,230 @@ BEHIND_WALL = 1.0
 MOST_NAMED = 10
 SHORT = 40
 """Characters that are kept of a long name which a number tells apart."""
+NARROWEST = ROUTES.column("clear_width").low or 0.0
+"""Least clear width that a workbook takes [m]."""
+BESIDE = 1.5
+"""Walls and columns up to this far to the left and to the right of a segment bound it [m]."""
+SLIVER = 1e-4
+"""Area below which what stands beside a segment is an error of rounding [m2]."""
+SHORTEST = 0.02
+"""A part of a segment that is shorter than this has no sides [m]."""
+AT_STAIR = 0.5
+"""Around a stair, and so far beside it, no width is measured: ways lead to it from any side [m]."""
+PER_RISE = 2.5
+"""Length of the way on a stair to each metre that it rises [-]."""
+
+
+# ---------------------------------------------------------------- the network of all ways
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A point of the network: its position, its storey, and the key of its place; "" for one that routes add."""
+
+    at: Point
+    storey: str
+    place: str = ""
+    link: Link | None = None
+
+
+@dataclass(slots=True)
+class Network:
+    """The ways in a building: inside each room, through doors and openings, and over stairs.
+
+    `graph` joins nodes by name, with the cost, the space and the width of each way.
+    `plans` are those of storeys by their keys, `rooms` the nodes of rooms by the keys of their spaces, `openings` those
+    of openings, and `exits` and `stairs` the nodes to which ways lead.
+    """
+
+    graph: "nx.Graph[str]" = field(default_factory=nx.Graph)
+    nodes: dict[str, Node] = field(default_factory=dict)
+    plans: dict[str, FloorPlan] = field(default_factory=dict)
+    rooms: dict[str, str] = field(default_factory=dict)
+    openings: list[Link] = field(default_factory=list)
+    exits: list[str] = field(default_factory=list)
+    stairs: list[str] = field(default_factory=list)
+
+    def join(self, one: str, other: str, *, cost: float, space: str, width: float | None) -> None:
+        """Add a way, unless there is a cheaper one."""
+        if not self.graph.has_edge(one, other) or self.graph.edges[one, other]["cost"] > cost:
+            self.graph.add_edge(one, other, cost=cost, space=space, width=width)
+
+
+def build_network(model: BuildingModel) -> Network:
+    """Return the network of a building."""
+    sides = find_sides(model)
+    kinds = find_kinds(model, sides)
+    network = Network()
+    for storey in model.storeys:
+        _add_storey(network, model, storey, sides, kinds)
+    levels = {storey.key: storey.level for storey in model.storeys}
+    for stair in dict.fromkeys(one.key for one in model.stairs):
+        foot, head = (network.nodes.get(f"stair {stair} {end}") for end in ("foot", "head"))
+        if foot is not None and head is not None and foot.storey != head.storey:
+            rise = abs(levels[head.storey] - levels[foot.storey])
+            cost = math.hypot(math.dist(foot.at, head.at), PER_RISE * rise)
+            network.join(f"stair {stair} foot", f"stair {stair} head", cost=cost, space="", width=None)
+    return network
+
+
+def _add_storey(
+    network: Network, model: BuildingModel, storey: Storey, sides: Mapping[str, Sides], kinds: Mapping[str, DoorKind]
+) -> None:
+    plan = build_plan(model, storey)
+    if not plan.spaces:
+        return
+    network.plans[storey.key] = plan
+    doors = [door for door in model.doors if door.storey == storey.key]
+    links: list[Link] = []
+    for door in (door for door in doors if kinds[door.key] in ("inside", "exit")):
+        link = link_door(door, sides[door.key])
+        links.append(link)
+        network.nodes[link.name] = Node(link.at, storey.key, door.key, link)
+        if kinds[door.key] == "exit":
+            network.exits.append(link.name)
+    openings, stairs = find_openings(plan, doors), link_stairs(model, plan)
+    for link in stairs:
+        network.nodes[link.name] = Node(link.at, storey.key, link.name.removeprefix("stair "), link)
+        network.stairs.append(link.name)
+    network.nodes |= {link.name: Node(link.at, storey.key, "", link) for link in openings}
+    network.openings += openings
+    rooms = build_rooms(plan, [*links, *openings, *stairs])
+    places = place_rooms(model, plan, rooms)
+    for space, room in rooms.items():
+        own = f"room {space}"
+        network.rooms[space] = own
+        network.nodes[own] = Node(places[space], storey.key, space)
+        ways = find_ways(room, own, places[space])
+        network.nodes |= {name: Node(at, storey.key) for name, at in ways.points.items()}
+        for way in ways.found:
+            network.join(way.start, way.end, cost=way.cost, space=space, width=way.width)
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """The next step out from a node: to which node, how far it is from there to the end [m], and where that leads.
+
+    `target` is the exit or the stair end at which the way out leaves the storey.
+    """
+
+    start: str
+    end: str
+    far: float
+    target: str
+
+
+def find_steps(network: Network) -> dict[str, Step]:
+    """Return the steps of the ways out of all rooms, by the node from which each leads: way by way, the longest first.
+
+    Each is the shortest way to an exit, or, where no exit can be reached, to the end of a stair. A way ends where it
+    meets one before it.
+    """
+    tree: dict[str, Step] = {}
+    reached: set[str] = set()
+    for ends in (network.exits, network.stairs):
+        open_ends = [name for name in ends if name in network.graph and name not in reached]
+        grown = _grow(network.graph, open_ends, reached)
+        reached |= grown.keys() | set(open_ends)
+        tree |= grown
+    found: dict[str, Step] = {}
+    for first in sorted((tree[room] for room in network.rooms.values() if room in tree), key=lambda one: -one.far):
+        name = first.start
+        while name in tree and name not in found:
+            found[name] = tree[name]
+            name = tree[name].end
+    return found
+
+
+def _grow(graph: "nx.Graph[str]", ends: Sequence[str], without: Collection[str]) -> dict[str, Step]:
+    if not ends:
+        return {}
+    rest = graph.subgraph([name for name in graph if name not in without])
+    found: Any = nx.multi_source_dijkstra(rest, dict.fromkeys(ends), weight="cost")
+    far, paths = found
+    targets = {name: name for name in ends}
+    steps = {}
+    for name in sorted(far, key=lambda one: (far[one], len(paths[one]))):
+        if name in targets:
+            continue
+        following = paths[name][-2]
+        is_flight = not graph.edges[name, following]["space"]
+        targets[name] = name if is_flight else targets[following]
+        steps[name] = Step(name, following, float(far[name]), targets[name])
+    return steps
+
+
+# ---------------------------------------------------------------- widths
+
+
+def measure_gap(plan: FloorPlan, space: str, ends: tuple[Point, Point], links: Iterable[Link]) -> float | None:
+    """Return the least distance between what stands to the left and to the right of a segment [m].
+
+    It is None where nothing stands on one of its sides up to `BESIDE`.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+        The storey: its walls and windows bound a segment, and what is outside all rooms. Furniture does not.
+    space : str
+        Key of the space in which the segment lies.
+    ends : tuple of Point
+        Both ends of the segment [m].
+    links : iterable of Link
+        The doors, openings and stairs at its ends: in these no wall is met.
+    """
+    line = shapely.LineString(ends)
+    wide = line.buffer(BESIDE, cap_style="flat")
+    rooms = shapely.union_all([plan.polygons[at] for at in sorted(plan.tree.query(wide))])
+    solids = plan.solids_near(wide)
+    floor = plan.polygon(space).difference(solids)
+    passages = []
+    for link in links:
+        at = shapely.Point(link.at)
+        reach = floor.distance(at) if not floor.is_empty else 0.0
+        is_stair = link.normal == (0.0, 0.0)
+        through = box_at(link.at, link.normal, reach + JAMB / 2, link.width / 2)
+        passages.append(at.buffer(reach + AT_STAIR) if is_stair else through)
+    stands = shapely.union_all([wide.difference(rooms), wide.intersection(solids)])
+    stands = stands.difference(shapely.union_all(passages))
+    parts = [one for one in shapely.get_parts(line.difference(stands)) if one.length > SHORTEST]
+    gaps = [gap for part in parts if (gap := _measure_sides(part, stands)) is not None]
+    return min(gaps, default=None)
+
+
+def _measure_sides(line: shapely.LineString, stands: BaseGeometry) -> float | None:
+    sides = [line.buffer(far, single_sided=True).intersection(stands) for far in (BESIDE, -BESIDE)]
+    left, right = (shapely.union_all([one for one in list_polygons(side) if one.area > SLIVER]) for side in sides)
+    return None if left.is_empty or right.is_empty else float(left.distance(right))
+
+
+def set_widths(links: Sequence[Link], between_walls: float | None, gap: float | None) -> dict[str, Any]:
+    """Return the widths of a segment and what is assumed of them.
+
+    `between_walls`: the free width of a corridor in whose middle it lies [m].
+    `gap`: from `measure_gap`: it counts beside one of the others, and where it is less than the width that must stay
+    free otherwise.
+    """
+    narrow = [link for link in links if link.overall > 0 or 0 < link.clear < DEFAULT_WIDTH]
+    known = [link.clear for link in narrow] + ([] if between_walls is None else [between_walls])
+    if gap is not None and (known or gap < DEFAULT_WIDTH):
+        known.append(gap)
+    if not known:
+        return {}
+    clear = min(known)
+    tightest = next((link for link in narrow if link.clear == clear), None)
+    clear = max(int(100 * clear + 1e-6) / 100, NARROWEST)
+    notes = gettext("Clear width: between the walls of the model.")
+    if tightest is not None and tightest.overall > 0:
+        notes = gettext("Clear width: the door's {overall:.2f} m in the model less {less:g} m for frame and leaf, "
+                        "assumed.", overall=tightest.overall, less=DOOR_LESS)  # fmt: skip
+    if clear >= DEFAULT_WIDTH:
+        return {"clear_width": clear, "notes": notes}
+    same = gettext("Required width: the same, as that is less than {default:g} m.", default=DEFAULT_WIDTH)
+    return {"clear_width": clear, "required_width": clear, "notes": f"{notes} {same}"}
+
+
+# ---------------------------------------------------------------- routes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -127,21 +364,17 @@ class _Sheet:
         if own.place:
             return self.names[own.place]
         if node not in self._named:
-            self._named[node] = self._add(own)
+            floor = self._floor(own.storey)
+            names = (
+                gettext("{floor} opening {number}", floor=floor, number=number) if own.link
+                else gettext("{floor} point {number}", floor=floor, number=number)
+                for number in count(1)
+            )  # fmt: skip
+            name = self._named[node] = next(name for name in names if key(name) not in self._taken)
+            self._taken.add(key(name))
+            x, y = (round(one, 2) for one in own.at)
+            self.places.append({"place": name, "floor": floor, "x": x, "y": y})
         return self._named[node]
-
-    def _add(self, node: Node) -> str:
-        floor = self._floor(node.storey)
-        names = (
-            gettext("{floor} opening {number}", floor=floor, number=number) if node.link
-            else gettext("{floor} point {number}", floor=floor, number=number)
-            for number in count(1)
-        )  # fmt: skip
-        name = next(name for name in names if key(name) not in self._taken)
-        self._taken.add(key(name))
-        x, y = (round(one, 2) for one in node.at)
-        self.places.append({"place": name, "floor": floor, "x": x, "y": y})
-        return name
 
     def _floor(self, storey: str) -> str:
         own = {one.key: one.name for one in self.model.storeys}
@@ -221,12 +454,11 @@ def _note_exits(model: BuildingModel) -> Iterator[Text]:
 
 def _note_lost(lost: Sequence[str]) -> Iterator[Text]:
     if lost:
-        names = ", ".join(lost[:MOST_NAMED]) + (", ..." if len(lost) > MOST_NAMED else "")
         yield nfill(
             "No way out of {n} room was found in the model: {names}.",
             "No way out of {n} rooms was found in the model: {names}.",
             len(lost),
-            names=names,
+            names=name_some(lost, MOST_NAMED),
         )
 
 

@@ -1,4 +1,7 @@
-"""From where a topic of an export looks at its pieces and doors: all of them within the picture, if it can be.
+"""Where the elements of an export are, which door a piece obstructs, and from where a topic looks at both.
+
+Positions of the workbook are those of the model but for a shift of whole metres, which is found from the pieces that
+have both. A topic has all of its pieces and doors within the picture, if it can be.
 
 The camera stands in the room of the first piece; where not all is in view from there, it steps back through a wall.
 BCF 2.1 allows no wider field of view than 60 degrees. A viewer fits it to a picture of its own: here it is taken as the
@@ -8,14 +11,17 @@ axes of the model.
 
 import itertools
 import math
-from collections.abc import Sequence
+import statistics
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from assess.bim.export_model import Box, ModelDoor, ModelElement, Place, find_middle
-from assess.bim.export_results import ExportPiece, Point
+from assess.bim.export_results import ExportPiece, ExportSegment, Point
+from assess.bim.plan_shapes import FloatArray, direction_of
 
 FIELD_OF_VIEW = 60.0
 """Horizontal [deg]; BCF 2.1 allows 45 to 60."""
@@ -44,7 +50,64 @@ STEEPEST = 1e-3
 """Sine of the angle between the camera's direction and the vertical below which it looks straight down."""
 NO_SIDE = 0.5
 """Distance from the middle of the room up to which a piece whose back is not known is seen from anywhere [m]."""
-Floats = NDArray[np.float64]
+AGREE = 0.5
+"""Distance up to which the positions of workbook and model are the same, in the median [m]."""
+NEAR_DOOR = 1.0
+"""Distance from an end of a segment, or from its line, up to which a door belongs to it [m]."""
+SAME_STOREY = 2.0
+"""Difference in height up to which a door is on the storey of a piece [m]."""
+Pair = tuple[ExportPiece, ModelElement]
+
+
+def find_shift(pairs: Sequence[Pair]) -> Point | None:
+    """Return what is to be added to positions of the workbook to have those of the model [m].
+
+    Whole metres; None where no position is known, or where those of workbook and model do not agree.
+    """
+    known = [(one.place, middle) for one, element in pairs if one.place and (middle := element.middle)]
+    if not known:
+        return None
+    x, y = (round(statistics.median(model[axis] - book[axis] for book, model in known)) for axis in (0, 1))
+    left = statistics.median(math.dist((book[0] + x, book[1] + y), model[:2]) for book, model in known)
+    return (float(x), float(y)) if left <= AGREE else None
+
+
+def find_doors(
+    pairs: Sequence[Pair], segments: Sequence[ExportSegment], doors: Sequence[ModelDoor], shift: Point | None
+) -> list[ModelDoor]:
+    """Return the doors of the segments that some pieces may block: of each piece the nearest, without repetition.
+
+    Doors at an end of such a segment come before those that it passes.
+    """
+    found: dict[str, ModelDoor] = {}
+    for piece, element in pairs:
+        if shift is None or element.box is None:
+            continue
+        lines = [
+            shapely.LineString([(x + shift[0], y + shift[1]) for x, y in one.ends])
+            for one in segments
+            if one.ends and piece.past.item in one.items
+        ]
+        ends = [shapely.Point(end) for line in lines for end in line.coords]
+        here, bottom = shapely.Point(find_middle(element.box)[:2]), element.box[0][2]
+        storey = [(one, shapely.MultiPoint(one.points)) for one in doors if abs(one.bottom - bottom) <= SAME_STOREY]
+        at_end = [one for one in storey if any(one[1].distance(end) <= NEAR_DOOR for end in ends)]
+        near = at_end or [one for one in storey if any(one[1].distance(line) <= NEAR_DOOR for line in lines)]
+        if near:
+            door, _points = min(near, key=lambda one: (one[1].distance(here), one[0].key))
+            found[door.key] = door
+    return list(found.values())
+
+
+def find_centre(elements: Iterable[ModelElement]) -> Point:
+    """Return the middle of the elements whose place is known, (0, 0) where there is none."""
+    middles = [one.middle for one in elements if one.middle is not None]
+    if not middles:
+        return 0.0, 0.0
+    return statistics.fmean(one[0] for one in middles), statistics.fmean(one[1] for one in middles)
+
+
+# ---------------------------------------------------------------- the camera
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,23 +119,21 @@ class Camera:
     up: Place
 
 
-def find_camera(
-    pairs: Sequence[tuple[ExportPiece, ModelElement]], doors: Sequence[ModelDoor], centre: Point
-) -> Camera | None:
+def find_camera(pairs: Sequence[Pair], doors: Sequence[ModelDoor], centre: Point) -> Camera | None:
     """Return a camera that sees all of some pieces from above, from the side to which the first may fall.
 
     None where no place is known.
 
     Parameters
     ----------
-    pairs : sequence of (ExportPiece, ModelElement)
+    pairs : sequence of Pair
         The pieces with their elements, the most urgent first.
     doors : sequence of ModelDoor
         The doors that are seen as well, if they are not too far away.
     centre : Point
         From there a piece is seen whose back is not known, nor the room that it stands in.
     """
-    placed = [(piece, one, (one.low, one.high)) for piece, one in pairs if one.low is not None and one.high is not None]
+    placed = [(piece, one, one.box) for piece, one in pairs if one.box is not None]
     if not placed:
         return None
     piece, first, _ = placed[0]
@@ -94,7 +155,7 @@ def _find_side(piece: ExportPiece, middle: Point, centre: Point) -> Point:
     if piece.faces is None:
         length = math.hypot(dx, dy)
         return (dx / length, dy / length) if length > NO_SIDE else (-math.sqrt(0.5), -math.sqrt(0.5))
-    x, y = math.cos(math.radians(piece.faces)), math.sin(math.radians(piece.faces))
+    x, y = direction_of(piece.faces)
     is_turned = not piece.falls_one_way and x * dx + y * dy < 0
     return (-x, -y) if is_turned else (x, y)
 
@@ -144,7 +205,7 @@ def _step_back(boxes: Sequence[Box], side: Point, room: Box | None) -> Camera | 
     return _take_first(points, boxes)
 
 
-def _take_first(points: Floats, boxes: Sequence[Box]) -> Camera | None:
+def _take_first(points: FloatArray, boxes: Sequence[Box]) -> Camera | None:
     corners = np.unique([corner for low, high in boxes for corner in itertools.product(*zip(low, high, strict=True))],
                         axis=0)  # fmt: skip
     for part in np.array_split(points, max(1, len(points) // 32)):
@@ -155,12 +216,12 @@ def _take_first(points: Floats, boxes: Sequence[Box]) -> Camera | None:
     return None
 
 
-def _to_place(values: Floats) -> Place:
+def _to_place(values: FloatArray) -> Place:
     x, y, z = values.tolist()
     return x, y, z
 
 
-def _aim(points: Floats, corners: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+def _aim(points: FloatArray, corners: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
     """Return the directions, of shape (n, 3), in which corners are in the middle of the picture, and if all are in."""
     ways = corners[None] - points[:, None]
     forward = _scale((ways / np.maximum(np.linalg.norm(ways, axis=2, keepdims=True), NEAREST)).mean(axis=1))
@@ -175,12 +236,12 @@ def _aim(points: Floats, corners: Floats) -> tuple[Floats, NDArray[np.bool_]]:
     return forward, np.all(in_view, axis=1)
 
 
-def _scale(vectors: Floats) -> Floats:
-    lengths: Floats = np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), STEEPEST)
+def _scale(vectors: FloatArray) -> FloatArray:
+    lengths: FloatArray = np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), STEEPEST)
     return vectors / lengths
 
 
-def _find_axes(forward: Floats) -> tuple[Floats, Floats]:
+def _find_axes(forward: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return what is right and what is up in cameras that stand upright."""
     x, y, _z = forward.T
     flat = np.hypot(x, y)
@@ -189,7 +250,7 @@ def _find_axes(forward: Floats) -> tuple[Floats, Floats]:
     return right, np.cross(right, forward)
 
 
-def _project(ways: Floats, forward: Floats) -> tuple[Floats, Floats, Floats]:
+def _project(ways: FloatArray, forward: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return how far corners are along the direction of each camera, and how far off it over that, right and up."""
     depth, *off = (np.einsum("cna,ca->cn", ways, axis) for axis in (forward, *_find_axes(forward)))
     least = np.maximum(depth, NEAREST / 2)

@@ -4,12 +4,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from assess.bim.export_camera import Pair
 from assess.bim.export_model import PROPERTY_SET, read_elements
 from assess.bim.export_properties import add_properties
-from assess.bim.export_results import ExportPiece, ExportRun
+from assess.bim.export_results import ExportPiece, ExportRun, list_items
 from assess.bim.export_topics import Topics, list_entries, write_topics
-from assess.bim.export_views import Pair
-from assess.bim.ifc_file import check_installed, check_model
+from assess.bim.ifc_file import check_installed, check_model, unreadable
 from assess.bim.model_process import run_apart
 from assess.errors import ModelError
 from assess.i18n import fill
@@ -71,7 +71,7 @@ def build_export(
     placed = None
     if with_topics:
         keys = {one.past.item: one.source_id for one in found.pieces if one.source_id}
-        placed = [keys[item] for entry in list_entries(found, keys) for item in entry.items if item in keys]
+        placed = [keys[item] for entry in list_entries(found, keys) for item in list_items(entry) if item in keys]
     part = run_apart(model.name, progress, read_elements, model.resolve(), model.name, list(sharing), placed)
     elements = {one.key: one for one in part.elements}
     pairs = [(one, elements[one.source_id]) for one in found.pieces if one.source_id in elements]
@@ -88,8 +88,16 @@ def build_export(
                  results=found.run.path, model=model.name, id=key, name=name)
         )  # fmt: skip
     _check_pairs(found, model, worst, with_properties=with_properties)
+    changed = None
+    if with_properties:
+        try:
+            with open_input(model) as file:
+                data = file.read()
+        except OSError as error:
+            raise unreadable(model.name, error) from None
+        changed = add_properties(data, model.name, part, found, worst)
     return Export(
-        model=add_properties(_read_bytes(model), model.name, part, found, worst) if with_properties else None,
+        model=changed,
         topics=write_topics(model.name, part, found, pairs) if with_topics else None,
         written=len(worst),
         without_id=tuple(one.past.item for one in found.pieces if not one.source_id),
@@ -119,12 +127,3 @@ def _check_pairs(found: ExportRun, model: Path, pairs: Sequence[Pair], *, with_p
                  "Name the model without it, as it was before that export.",
                  model=model.name, set=PROPERTY_SET, n=len(done), name=done[0])
         )  # fmt: skip
-
-
-def _read_bytes(model: Path) -> bytes:
-    try:
-        with open_input(model) as file:
-            return file.read()
-    except OSError as error:
-        why = error.strerror or str(error)
-        raise ModelError(fill("{name} cannot be read: {why}.", name=model.name, why=why)) from None

@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from assess.bim.ifc_file import check_model, find_damage, open_model
-from assess.bim.ifc_site import find_unit
+from assess.bim.ifc_elements import find_unit, join_parts
+from assess.bim.ifc_file import read_with
 
 PROPERTY_SET = "Assess_OverturningRisk"
 """Name of the set; the prefix Pset_ is that of buildingSMART."""
@@ -20,37 +20,37 @@ Place = tuple[float, float, float]
 Box = tuple[Place, Place]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ModelElement:
     """An element of the model.
 
     Attributes
     ----------
-    key : str
-        Its GlobalId.
+    key, name : str
+        Its GlobalId and its name.
     number : int
         Its number in the file.
     owner : int
         That of the OwnerHistory for what is added to it, 0 for none.
-    ifc_class, name : str
-        Its class and name.
     has_set : bool
         Whether it has a property set `PROPERTY_SET` already.
-    low, high : Place, optional
-        Corners of the box around it in the axes of the model [m]; None where that was not asked for.
-    room : Box, optional
-        Corners of the box around the room that it stands in [m]; None where there is none, or that was not asked for.
+    box, room : Box, optional
+        Corners of the box around it, and around the room that it stands in, in the axes of the model [m]; None where
+        there is none, or that was not asked for.
     """
 
     key: str
+    name: str
     number: int
     owner: int
-    ifc_class: str
-    name: str
     has_set: bool
-    low: Place | None = None
-    high: Place | None = None
+    box: Box | None = None
     room: Box | None = None
+
+    @property
+    def middle(self) -> Place | None:
+        """The middle of its box."""
+        return None if self.box is None else find_middle(self.box)
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,12 +66,11 @@ class ModelDoor:
 
 @dataclass(frozen=True, slots=True)
 class ModelPart:
-    """What was found of a model: its schema, the GlobalId of its project, its highest number, elements and doors.
+    """What was found of a model: the GlobalId of its project, its highest number, elements and doors.
 
     `refused` are the classes, by GlobalId, of what was sought but is no furniture.
     """
 
-    schema: str
     project: str
     last_number: int
     elements: tuple[ModelElement, ...]
@@ -86,32 +85,37 @@ def read_elements(path: Path, name: str, keys: Sequence[str], placed: Sequence[s
     `placed`: those of which the place is needed, and with them the doors; None where no place is.
     Raises ModelError if it is no whole building model, or names no unit of length and places are needed.
     """
-    check_model(path, name)
-    model = open_model(path, name)
-    try:
-        return _understand(model, name, keys, placed)
-    except (AssertionError, AttributeError, TypeError, ValueError, LookupError, RuntimeError) as error:
-        raise find_damage(name, error) from error
+    return read_with(path, name, lambda model: _understand(model, name, keys, placed))
 
 
 def _understand(model: Any, name: str, keys: Sequence[str], placed: Sequence[str] | None) -> ModelPart:
-    """Return what was found of a model; errors of Python where an entity is not as its schema asks for."""
+    from ifcopenshell.util.element import get_psets
+
     known = {key: one for key in keys if (one := _find(model, key)) is not None}
     found = {
         key: one
         for key, one in known.items()
         if one.is_a("IfcElement") and not any(one.is_a(name) for name in NOT_FURNITURE)
     }
-    elements = [_describe(model, key, one) for key, one in found.items()]
+    boxes: dict[int, Box] = {}
+    rooms: dict[int, Box] = {}
     doors: list[ModelDoor] = []
     if placed is not None:
         unit = find_unit(model, name)
         boxes = _find_boxes(model, [found[key] for key in placed if key in found], unit)
         rooms = _find_boxes(model, model.by_type("IfcSpace"), unit) if boxes else {}
-        elements, doors = _place(elements, boxes, rooms), list(_list_doors(model, unit))
+        doors = list(_list_doors(model, unit))
+    elements = []
+    for key, one in found.items():
+        has_set = PROPERTY_SET in get_psets(one, psets_only=True, should_inherit=False)
+        box = boxes.get(one.id())
+        room = None if box is None else _find_room(find_middle(box), rooms.values())
+        elements.append(
+            ModelElement(key=key, name=str(one.Name or ""), number=one.id(), owner=_find_owner(model, one),
+                         has_set=has_set, box=box, room=room)
+        )  # fmt: skip
     projects = model.by_type("IfcProject")
     return ModelPart(
-        schema=str(model.schema),
         project=str(projects[0].GlobalId) if projects else "",
         last_number=max((one.id() for one in model), default=0),
         elements=tuple(elements),
@@ -135,22 +139,6 @@ def _find_owner(model: Any, one: Any) -> int:
     return int(others[0].id()) if others else 0
 
 
-def _describe(model: Any, key: str, one: Any) -> ModelElement:
-    from ifcopenshell.util.element import get_psets
-
-    has_set = PROPERTY_SET in get_psets(one, psets_only=True, should_inherit=False)
-    return ModelElement(key, one.id(), _find_owner(model, one), str(one.is_a()), str(one.Name or ""), has_set)
-
-
-def _place(elements: Sequence[ModelElement], boxes: Mapping[int, Box], rooms: Mapping[int, Box]) -> list[ModelElement]:
-    return [
-        replace(one, low=box[0], high=box[1], room=_find_room(find_middle(box), rooms.values()))
-        if (box := boxes.get(one.number)) is not None
-        else one
-        for one in elements
-    ]
-
-
 def _find_room(point: Place, rooms: Iterable[Box]) -> Box | None:
     around = [(low, high) for low, high in rooms if all(low[at] <= point[at] <= high[at] for at in range(3))]
     return min(around, key=lambda box: math.prod(box[1][at] - box[0][at] for at in range(3)), default=None)
@@ -163,8 +151,6 @@ def find_middle(box: Box) -> Place:
 
 
 def _find_boxes(model: Any, elements: Sequence[Any], unit: float) -> dict[int, Box]:
-    from assess.bim.ifc_elements import join_parts
-
     boxes = {one.id(): (place, place) for one in elements if (place := _find_origin(one, unit)) is not None}
     for number, shape in join_parts(model, elements):
         low, high = shape.points.min(axis=0).tolist(), shape.points.max(axis=0).tolist()

@@ -1,47 +1,48 @@
-"""Risk classes as property sets of a building model: STEP lines added to the file, of which every byte stays."""
+"""Risk classes as property sets of a building model: STEP lines added to the file, of which every byte stays.
 
+References
+----------
+ISO 10303-21. Industrial automation systems and integration: clear text encoding of the exchange structure.
+ISO 16739-1. Industry Foundation Classes: GlobalId, a number of 128 bits in 22 digits of base 64.
+"""
+
+import re
+import uuid
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from itertools import groupby
 
+from assess.bim.export_camera import Pair
 from assess.bim.export_model import PROPERTY_SET, ModelElement, ModelPart
-from assess.bim.export_results import ExportEntry, ExportPiece, ExportRun, ExportSegment, ExportWork
-from assess.bim.export_step import (
-    append_lines,
-    make_global_id,
-    write_integer,
-    write_label,
-    write_long_text,
-    write_real,
-    write_text,
-)
-from assess.bim.export_words import (
-    BASES,
-    describe,
-    say_program,
-    say_report,
-    say_scenario,
-    say_standing,
-)
-from assess.compare.past_run import PastRun
+from assess.bim.export_results import ExportPiece, ExportRun
+from assess.bim.export_words import BASES, describe, say_class, say_program, say_report, say_scenario
 from assess.details import DETAILS
+from assess.errors import ModelError
+from assess.i18n import fill
 from assess.i18n import gettext as _
+from assess.plain_text import plain_line
 from assess.report import words
+from assess.schedule_results import ScheduleRow, WorkRow
+
+LONGEST_LABEL = 255
+"""Characters of an IfcLabel."""
+_DIGITS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_$"
+_NAMESPACE = uuid.UUID("07e57c2d-3231-4d20-9929-8e605d3154f5")
+"""Of identifiers that are made from what they stand for, so that the same export gives the same ones."""
+_END = re.compile(rb"ENDSEC\s*;(?:\s|/\*(?:[^*]|\*(?!/))*\*/)*END-ISO-10303-21\s*;")
+_TAIL = 65536
 
 
-def add_properties(
-    data: bytes, name: str, part: ModelPart, found: ExportRun, pieces: Sequence[tuple[ExportPiece, ModelElement]]
-) -> bytes:
+def add_properties(data: bytes, name: str, part: ModelPart, found: ExportRun, pieces: Sequence[Pair]) -> bytes:
     """Return a building model with a property set on each of its pieces.
 
     `pieces`: the pieces with their elements: of several with one Source ID, the worst.
     Raises ModelError if the file does not end as an IFC file does.
     """
     lines: list[str] = []
-    planned, routes = find_works(found.entries), find_routes(found.segments)
     counts = Counter(one.source_id for one in found.pieces)
     for piece, element in pieces:
-        item = piece.past.item
-        properties = list_properties(found.run, piece, routes.get(item, ()), planned.get(item))
+        properties = list(_list_properties(found, piece))
         alike = counts[piece.source_id]
         if alike > 1:
             several = _("{n:,} pieces with this Source ID, the worst", n=alike)
@@ -59,94 +60,124 @@ def _write_set(properties: Sequence[tuple[str, str]], element: ModelElement, fir
     last = first + len(properties)
     own = ",".join(f"#{number}" for number in range(first, last))
     set_key, relation_key = (make_global_id(kind, element.key) for kind in ("property set", "relation"))
-    what = write_text(say_meaning())
+    what = write_text(_("Chance that the piece overturns in the earthquake named in Scenario, not per year. Forces are "
+                        "for screening, not design."))  # fmt: skip
     yield f"#{last}=IFCPROPERTYSET('{set_key}',{owner},{write_text(PROPERTY_SET)},{what},({own}));"
     yield f"#{last + 1}=IFCRELDEFINESBYPROPERTIES('{relation_key}',{owner},$,$,(#{element.number}),#{last});"
 
 
-def say_meaning() -> str:
-    """Return what the set is, for its Description."""
-    return _("Chance that the piece overturns in the earthquake named in Scenario, not per year. Forces are for "
-             "screening, not design.")  # fmt: skip
-
-
-Planned = tuple[ExportEntry, ExportWork]
-"""A part of the schedule, in its entry."""
-
-
-def find_works(entries: Sequence[ExportEntry]) -> dict[str, Planned]:
-    """Return the part of the schedule that each piece in it belongs to, by its name."""
-    return {item: (entry, work) for entry in entries for work in entry.works for item in work.items}
-
-
-def find_routes(segments: Sequence[ExportSegment]) -> dict[str, list[str]]:
-    """Return the routes that each piece may block, by its name."""
-    found: dict[str, dict[str, None]] = {}
-    for one in segments:
-        for item in one.items:
-            found.setdefault(item, {})[one.route] = None
-    return {item: list(routes) for item, routes in found.items()}
-
-
-def list_properties(
-    run: PastRun, one: ExportPiece, routes: Sequence[str], planned: Planned | None
-) -> list[tuple[str, str]]:
-    """Return the properties of a piece: names, the same in every language, and values as STEP text.
+def _list_properties(found: ExportRun, one: ExportPiece) -> Iterator[tuple[str, str]]:
+    """Yield the properties of a piece: names, the same in every language, and values as STEP text.
 
     RiskClass is the class in the words of the report, so that what is outside its classes is no class here either.
-
-    `routes`: those that it may block.
-    `planned`: its part of the schedule; None where it has none.
     """
-    return [
-        *_list_risk(run, one),
-        *_list_inputs(one),
-        *_list_importance(one, routes),
-        *(_list_fixing(*planned) if planned else ()),
-        ("Scenario", write_long_text(say_scenario(run))),
-        ("AssessedBy", write_label(say_program(run))),
-        ("Report", write_long_text(say_report(run))),
-    ]
-
-
-def _list_risk(run: PastRun, one: ExportPiece) -> Iterator[tuple[str, str]]:
-    chance = one.past.chance
-    yield "RiskClass", write_label(say_standing(run, one))
-    if one.upper != one.past.risk:
+    past, run = one.past, found.run
+    chance, inputs = past.chance, past.inputs
+    yield "RiskClass", write_label(say_class(run, one, one.upper, is_short=True))
+    if one.upper != past.risk:
         yield "ClassUpper", write_label(words.risk_word(one.upper))
     yield "Probability", write_real(chance.probability)
     if chance.low is not None and chance.high is not None:
         yield "ProbabilityLow", write_real(chance.low)
         yield "ProbabilityHigh", write_real(chance.high)
-    yield "Basis", write_label(_(BASES[one.past.basis]))
-
-
-def _list_inputs(one: ExportPiece) -> Iterator[tuple[str, str]]:
-    inputs = one.past.inputs
-    yield "Item", write_label(one.past.item)
+    yield "Basis", write_label(_(BASES[past.basis]))
+    yield "Item", write_label(past.item)
     yield "Description", write_label(describe(one))
     if inputs.get("anchored"):
         yield "Anchored", write_label(_(str(inputs["anchored"])))
-    for key, field in (("Breadth_cm", "breadth_cm"), ("Height_cm", "height_cm"), ("PFA_g", "pfa_g")):
-        value = inputs.get(field)
+    for key, name in (("Breadth_cm", "breadth_cm"), ("Height_cm", "height_cm"), ("PFA_g", "pfa_g")):
+        value = inputs.get(name)
         if isinstance(value, int | float):
             yield key, write_real(value)
     if one.pfa_source:
         yield "PFASource", write_label(one.pfa_source)
-
-
-def _list_importance(one: ExportPiece, routes: Sequence[str]) -> Iterator[tuple[str, str]]:
-    if routes:
-        yield "MayBlockRoutes", write_long_text(", ".join(routes))
+    if past.item in found.routes:
+        yield "MayBlockRoutes", write_long_text(", ".join(found.routes[past.item]))
     if one.importance:
         yield "Importance", write_label(_(one.importance))
+    if past.item in found.works:
+        yield from _list_fixing(*found.works[past.item])
+    yield "Scenario", write_long_text(say_scenario(run))
+    yield "AssessedBy", write_label(say_program(run))
+    yield "Report", write_long_text(say_report(run))
 
 
-def _list_fixing(entry: ExportEntry, work: ExportWork) -> Iterator[tuple[str, str]]:
-    yield "FixOrder", write_integer(entry.place)
+def _list_fixing(entry: ScheduleRow, work: WorkRow) -> Iterator[tuple[str, str]]:
+    yield "FixOrder", f"IFCINTEGER({entry.place})"
     yield "FixingDetail", write_label(_(DETAILS[work.detail].title))
     yield "FixingTension_kN", write_real(work.tension_kn)
     yield "FixingTension84_kN", write_real(work.tension_high_kn)
     if work.tension_code_kn is not None:
         yield "FixingTensionCode_kN", write_real(work.tension_code_kn)
     yield "BaseShear_kN", write_real(work.shear_kn)
+
+
+# ---------------------------------------------------------------- STEP
+
+
+def make_uuid(kind: str, *keys: str) -> uuid.UUID:
+    """Return the identifier of what is made of something in a model: always the same for the same kind and keys."""
+    return uuid.uuid5(_NAMESPACE, "\n".join((kind, *keys)))
+
+
+def make_global_id(kind: str, *keys: str) -> str:
+    """Return `make_uuid` as a GlobalId: 22 digits, the first of which holds 2 bits."""
+    number = make_uuid(kind, *keys).int
+    digits = [_DIGITS[(number >> shift) & 63] for shift in range(126, -1, -6)]
+    return "".join(digits)
+
+
+def write_text(text: str) -> str:
+    r"""Return a text on one line in quotes: ' and \ doubled, what is not printable ASCII as \X2\ or \X4\."""
+    found = []
+    for kind, signs in groupby(plain_line(text), key=_find_kind):
+        part = "".join(signs)
+        if kind:
+            digits = "".join(f"{ord(sign):0{2 * kind}X}" for sign in part)
+            found.append(f"\\X{kind}\\{digits}\\X0\\")
+        else:
+            found.append(part.replace("\\", "\\\\").replace("'", "''"))
+    return f"'{''.join(found)}'"
+
+
+def _find_kind(sign: str) -> int:
+    if " " <= sign <= "~":
+        return 0
+    return 2 if ord(sign) <= 0xFFFF else 4
+
+
+def write_label(text: str) -> str:
+    """Return an IfcLabel, cut where it is too long."""
+    text = plain_line(text)
+    return f"IFCLABEL({write_text(text if len(text) <= LONGEST_LABEL else f'{text[: LONGEST_LABEL - 1]}…')})"
+
+
+def write_long_text(text: str) -> str:
+    """Return an IfcText."""
+    return f"IFCTEXT({write_text(text)})"
+
+
+def write_real(value: float) -> str:
+    """Return an IfcReal: a number with a decimal point."""
+    mantissa, _mark, exponent = repr(float(value)).partition("e")
+    whole = mantissa if "." in mantissa else f"{mantissa}."
+    return f"IFCREAL({whole}{f'E{int(exponent)}' if exponent else ''})"
+
+
+def append_lines(data: bytes, lines: Sequence[str], name: str) -> bytes:
+    """Return a file with lines at the end of its data, whose other bytes all stay; line ends as those of the file.
+
+    `lines`: entities in ASCII, each with its semicolon.
+    Raises ModelError if its data do not end where the file does.
+    """
+    *_rest, last = [None, *_END.finditer(data, max(0, len(data) - _TAIL))]  # the ENDSEC of the last section
+    if last is None:
+        raise ModelError(
+            fill("{name} does not end as an IFC file does: its last lines lack 'ENDSEC;' or 'END-ISO-10303-21;'. "
+                 "Export it again from the program that made it.", name=name)
+        )  # fmt: skip
+    at = last.start()
+    end = b"\r\n" if b"\r\n" in data[:4096] else b"\n"
+    added = b"".join(line.encode("ascii") + end for line in lines)
+    starts_line = data[at - 1 : at] in (b"\n", b"\r")
+    return b"".join((data[:at], b"" if starts_line else end, added, data[at:]))

@@ -5,6 +5,7 @@ The file is read and checked as `assess compare` does it, and further values by 
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from assess.methods import simulation
 from assess.report.ranking import RouteStep
 from assess.risk import RiskClass
 from assess.route_results import RouteState
+from assess.schedule_results import ScheduleRow, WorkRow
 from assess.workbook.names import key
 
 _CLASSES = {risk.word: risk for risk in RiskClass}
@@ -61,41 +63,6 @@ class ExportPiece:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ExportWork:
-    """Alike pieces of the schedule that are fixed in the same way; fields as in `assess.schedule_results.WorkRow`."""
-
-    items: tuple[str, ...]
-    pieces: int
-    detail: str
-    tension_kn: float
-    tension_high_kn: float
-    tension_code_kn: float | None
-    shear_kn: float
-    fixings: int
-    is_least: bool
-    weights_assumed: int
-    heights_assumed: int
-    is_per_metre: bool
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ExportEntry:
-    """One entry of the schedule; fields as in `assess.schedule_results.ScheduleRow`."""
-
-    place: int
-    floor: str
-    room: str
-    pieces: int
-    is_together: bool
-    works: tuple[ExportWork, ...]
-
-    @property
-    def items(self) -> tuple[str, ...]:
-        """Names of its pieces, the most urgent first."""
-        return tuple(name for work in self.works for name in work.items)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class ExportSegment:
     """A segment of a route that is not open, or would be blocked by one piece alone.
 
@@ -108,7 +75,7 @@ class ExportSegment:
     items: frozenset[str]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class ExportRun:
     """The results of a run; `steps` are what to fix for its routes, `item_index` of which is a place in `pieces`.
 
@@ -118,9 +85,28 @@ class ExportRun:
     run: PastRun
     language: str
     pieces: tuple[ExportPiece, ...]
-    entries: tuple[ExportEntry, ...]
+    entries: tuple[ScheduleRow, ...]
     segments: tuple[ExportSegment, ...]
     steps: tuple[RouteStep, ...]
+
+    @cached_property
+    def works(self) -> dict[str, tuple[ScheduleRow, WorkRow]]:
+        """The part of the schedule that each piece in it belongs to, in its entry, by the name of the piece."""
+        return {item: (entry, work) for entry in self.entries for work in entry.works for item in work.items}
+
+    @cached_property
+    def routes(self) -> dict[str, list[str]]:
+        """The routes that each piece may block, by its name."""
+        found: dict[str, dict[str, None]] = {}
+        for one in self.segments:
+            for item in one.items:
+                found.setdefault(item, {})[one.route] = None
+        return {item: list(routes) for item, routes in found.items()}
+
+
+def list_items(entry: ScheduleRow) -> list[str]:
+    """Return the names of the pieces of an entry, the most urgent first."""
+    return [name for work in entry.works for name in work.items]
 
 
 def read_export(path: Path) -> ExportRun:
@@ -142,13 +128,13 @@ def read_export(path: Path) -> ExportRun:
         )  # fmt: skip
     routes = reader.part(record, "routes", "")
     schedule = reader.part(record, "schedule", "")
-    known = {one.past.item for one in pieces}
+    places = {one.past.item: at for at, one in enumerate(pieces)}
     return ExportRun(
         run=run,
         language=str(reader.part(record, "assess", "").get("language") or ""),
         pieces=pieces,
         entries=tuple(
-            _read_entry(reader, row, f"schedule.entries[{at}]", known)
+            _read_entry(reader, row, f"schedule.entries[{at}]", places)
             for at, row in enumerate(reader.rows(schedule, "entries", "schedule"))
         ),
         segments=tuple(_read_segments(reader, routes)),
@@ -183,22 +169,33 @@ def _number(row: Mapping[str, Any], name: str) -> float | None:
     return float(value) if is_number and abs(value) < 1e9 else None  # type: ignore[arg-type]
 
 
-def _read_entry(reader: Reader, row: Mapping[str, Any], place: str, known: set[str]) -> ExportEntry:
-    works = reader.rows(row, "works", place)
-    return ExportEntry(
+def _read_entry(reader: Reader, row: Mapping[str, Any], place: str, known: Mapping[str, int]) -> ScheduleRow:
+    works = tuple(
+        _read_work(reader, work, f"{place}.works[{at}]", known)
+        for at, work in enumerate(reader.rows(row, "works", place))
+    )
+    return ScheduleRow(
         place=reader.count(row, "place", place),
         floor=reader.text(row, "floor", place),
         room=reader.text(row, "room", place),
+        item_indices=tuple(at for work in works for at in work.item_indices),
         pieces=reader.count(row, "pieces", place),
         is_together=row.get("only_together") is True,
-        works=tuple(_read_work(reader, work, f"{place}.works[{at}]", known) for at, work in enumerate(works)),
+        works=works,
+        falls_avoided=reader.number(row, "falls_avoided", place),
+        falls_left=reader.number(row, "falls_left", place),
     )
 
 
-def _read_work(reader: Reader, row: Mapping[str, Any], place: str, known: set[str]) -> ExportWork:
+def _read_work(reader: Reader, row: Mapping[str, Any], place: str, known: Mapping[str, int]) -> WorkRow:
+    """Return a part of an entry, without its costs; pieces that the results do not hold are left out."""
+    items = tuple(one for one in reader.list_texts(row, "items", place) if one in known)
     has_code = row.get("tension_code_kn") is not None
-    return ExportWork(
-        items=tuple(one for one in reader.list_texts(row, "items", place) if one in known),
+    return WorkRow(
+        floor=reader.text(row, "floor", place),
+        room=reader.text(row, "room", place),
+        items=items,
+        item_indices=tuple(known[one] for one in items),
         pieces=reader.count(row, "pieces", place),
         detail=reader.choice(row, "detail", place, tuple(DETAILS)),
         tension_kn=reader.number(row, "tension_kn", place),
@@ -206,10 +203,12 @@ def _read_work(reader: Reader, row: Mapping[str, Any], place: str, known: set[st
         tension_code_kn=reader.number(row, "tension_code_kn", place) if has_code else None,
         shear_kn=reader.number(row, "shear_kn", place),
         fixings=reader.count(row, "fixings", place),
-        is_least=row.get("fixings_are_least") is True,
         weights_assumed=reader.count(row, "weights_assumed", place),
         heights_assumed=reader.count(row, "heights_assumed", place),
         is_per_metre=row.get("is_per_metre") is True,
+        unit_cost=None,
+        cost=None,
+        cost_source="",
     )
 
 

@@ -12,22 +12,22 @@ import datetime
 import io
 import zipfile
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from xml.etree import ElementTree
 
-from assess.bim.export_camera import FIELD_OF_VIEW, Camera, find_camera
-from assess.bim.export_model import ModelDoor, ModelElement, ModelPart, Place
-from assess.bim.export_results import ExportEntry, ExportRun
-from assess.bim.export_step import make_uuid
-from assess.bim.export_views import Pair, find_centre, find_doors, find_shift
-from assess.bim.export_words import list_lines, list_routes, say_program, say_title
+from assess.bim.export_camera import FIELD_OF_VIEW, Camera, Pair, find_camera, find_centre, find_doors, find_shift
+from assess.bim.export_model import ModelDoor, ModelPart
+from assess.bim.export_properties import make_uuid
+from assess.bim.export_results import ExportRun, list_items
+from assess.bim.export_words import list_importance, list_lines, list_routes, say_program, say_title
 from assess.compare.past_run import UNCONFIRMED, PastRun
 from assess.environment import find_source_date
 from assess.i18n import gettext as _
 from assess.plain_text import plain_text
 from assess.report import words
 from assess.risk import RiskClass
+from assess.schedule_results import ScheduleRow
 
 MOST = 200
 """Topics in a file; the rest are counted."""
@@ -60,12 +60,12 @@ class Topics:
     is_placed: bool
 
 
-def list_entries(found: ExportRun, keys: Mapping[str, str]) -> list[ExportEntry]:
+def list_entries(found: ExportRun, items: Collection[str]) -> list[ScheduleRow]:
     """Return the entries of the schedule that have a piece in the model, `MOST` at most.
 
-    `keys` are the GlobalIds of the pieces in the model by their names.
+    `items` are the names of the pieces in the model.
     """
-    return [one for one in found.entries if any(item in keys for item in one.items)][:MOST]
+    return [one for one in found.entries if any(item in items for item in list_items(one))][:MOST]
 
 
 def write_topics(name: str, part: ModelPart, found: ExportRun, pairs: Sequence[Pair]) -> Topics:
@@ -74,20 +74,20 @@ def write_topics(name: str, part: ModelPart, found: ExportRun, pairs: Sequence[P
     `part`: what was found of it, with the boxes of the pieces in the schedule.
     """
     by_item = {piece.past.item: (piece, element) for piece, element in pairs}
-    entries = list_entries(found, {item: element.key for item, (_piece, element) in by_item.items()})
-    shift = find_shift(pairs)
-    centre = find_centre({element.key: element for _piece, element in pairs})
+    entries = list_entries(found, by_item)
+    shift, centre = find_shift(pairs), find_centre({element.key: element for _piece, element in pairs}.values())
     files: dict[str, bytes] = {"bcf.version": VERSION.encode()}
     counts = Counter(element.key for _piece, element in pairs)
     with_door = 0
     for entry in entries:
-        own = [by_item[item] for item in entry.items if item in by_item]
+        own = [by_item[item] for item in list_items(entry) if item in by_item]
         doors = find_doors(own, found.segments, part.doors, shift)
         with_door += bool(doors)
-        files |= _write_topic(
-            name, part, found, Topic(_identify(own, counts), entry, own, doors, find_camera(own, doors, centre))
-        )
-    all_placed = sum(any(item in by_item for item in one.items) for one in found.entries)
+        # of pieces that share an element the names tell the topics apart
+        names = (one.key if counts[one.key] == 1 else f"{one.key} {piece.past.item}" for piece, one in own)
+        topic = _Topic(str(make_uuid("topic", *sorted(names))), entry, own, doors, find_camera(own, doors, centre))
+        files |= _write_topic(name, part, found, topic)
+    all_placed = sum(any(item in by_item for item in list_items(one)) for one in found.entries)
     return Topics(
         _pack(files), len(entries), len(found.entries) - all_placed, all_placed - len(entries), with_door,
         shift is not None,
@@ -95,31 +95,20 @@ def write_topics(name: str, part: ModelPart, found: ExportRun, pairs: Sequence[P
 
 
 @dataclass(frozen=True, slots=True)
-class Topic:
-    """An entry of the schedule: its identifier, its pieces in the model, the doors that they obstruct, its camera."""
+class _Topic:
+    """An entry of the schedule: its identifier, its pieces in the model, the doors that they obstruct, its camera.
+
+    The identifier is made of that of its pieces, so that a later export of theirs is the same topic.
+    """
 
     guid: str
-    entry: ExportEntry
+    entry: ScheduleRow
     pairs: Sequence[Pair]
     doors: Sequence[ModelDoor]
     camera: Camera | None
 
-    @property
-    def elements(self) -> list[ModelElement]:
-        """The elements of its pieces, the most urgent first."""
-        return [element for _piece, element in self.pairs]
 
-
-def _identify(pairs: Sequence[Pair], counts: Mapping[str, int]) -> str:
-    """Return the identifier of a topic: that of its pieces, so that a later export of theirs is the same topic.
-
-    `counts` tells how many pieces each element is; of those of which it is several, the names tell them apart.
-    """
-    names = (one.key if counts[one.key] == 1 else f"{one.key} {piece.past.item}" for piece, one in pairs)
-    return str(make_uuid("topic", *sorted(names)))
-
-
-def _write_topic(name: str, part: ModelPart, found: ExportRun, topic: Topic) -> dict[str, bytes]:
+def _write_topic(name: str, part: ModelPart, found: ExportRun, topic: _Topic) -> dict[str, bytes]:
     view = _build_view(topic)
     key = str(make_uuid("viewpoint", topic.guid, _dump(view).decode()))
     view.set("Guid", key)
@@ -135,45 +124,35 @@ def _write_topic(name: str, part: ModelPart, found: ExportRun, topic: Topic) -> 
     return {folder: b"", f"{folder}markup.bcf": _dump(markup), f"{folder}viewpoint.bcfv": _dump(view)}
 
 
-def _build_topic(found: ExportRun, topic: Topic) -> _Element:
+def _build_topic(found: ExportRun, topic: _Topic) -> _Element:
     entry, run = topic.entry, found.run
     pieces = [piece for piece, _element in topic.pairs]
-    upper = max(one.upper for one in pieces)
+    risk, upper = max(one.past.risk for one in pieces), max(one.upper for one in pieces)
     one = _Element("Topic", Guid=topic.guid, TopicType=TYPE, TopicStatus=STATUS)
     _add(one, "Title", say_title(found, entry, pieces))
     _add(one, "Priority", PRIORITIES[upper])
     _add(one, "Index", str(entry.place))
-    for label in _list_labels(found, topic):
+    # by labels programs group topics
+    labels = [_("earthquake"), *map(words.risk_word, sorted({risk, upper})), entry.floor]
+    apart = dict.fromkeys(one.past.basis for one in pieces if one.past.basis != run.main_basis)
+    labels += [_("unconfirmed") if basis == UNCONFIRMED else _("by formula only") for basis in apart]
+    if list_routes(found, list_items(entry)):
+        labels.append(_("evacuation route"))
+    for label in (*labels, *map(_, list_importance(pieces))):
         _add(one, "Labels", label)
     _add(one, "CreationDate", find_date(run).strftime("%Y-%m-%dT%H:%M:%SZ"))
     _add(one, "CreationAuthor", str(run.building.get("prepared_by") or "") or say_program(run))
-    _add(one, "Description", "\n".join((*list_lines(found, entry, pieces), *_list_selected(topic))))
-    return one
-
-
-def _list_labels(found: ExportRun, topic: Topic) -> list[str]:
-    """Return the labels of a topic, by which programs group them: the highest class of its pieces, the upper one."""
-    pieces = [piece for piece, _element in topic.pairs]
-    classes = {max(one.past.risk for one in pieces), max(one.upper for one in pieces)}
-    labels = [_("earthquake"), *map(words.risk_word, sorted(classes)), topic.entry.floor]
-    apart = dict.fromkeys(one.past.basis for one in pieces if one.past.basis != found.run.main_basis)
-    labels += [_("unconfirmed") if basis == UNCONFIRMED else _("by formula only") for basis in apart]
-    if list_routes(found, topic.entry.items):
-        labels.append(_("evacuation route"))
-    importance = dict.fromkeys(one.importance for one in pieces if one.importance)
-    return [*labels, *(_(text) for text in importance)]
-
-
-def _list_selected(topic: Topic) -> list[str]:
     lines = [
-        _("Also selected: door {name} ({key}), on the route that may be blocked.", name=one.name, key=one.key)
-        for one in topic.doors
-    ]
-    known = {piece.past.item for piece, _element in topic.pairs}
-    missing = [item for item in topic.entry.items if item not in known]
+        *list_lines(found, entry, pieces),
+        *(_("Also selected: door {name} ({key}), on the route that may be blocked.", name=door.name, key=door.key)
+          for door in topic.doors),
+    ]  # fmt: skip
+    known = {piece.past.item for piece in pieces}
+    missing = [item for item in list_items(entry) if item not in known]
     if missing:
         lines.append(_("Not in this model: {names}.", names=words.name_first(missing, 8)))
-    return lines
+    _add(one, "Description", "\n".join(lines))
+    return one
 
 
 def find_date(run: PastRun) -> datetime.datetime:
@@ -185,26 +164,22 @@ def find_date(run: PastRun) -> datetime.datetime:
     return datetime.datetime(day.year, day.month, day.day, tzinfo=datetime.UTC)
 
 
-def _build_view(topic: Topic) -> _Element:
+def _build_view(topic: _Topic) -> _Element:
     view = _Element("VisualizationInfo")
     components = _add(view, "Components")
     selection = _add(components, "Selection")
-    for key in dict.fromkeys((*(one.key for one in topic.elements), *(one.key for one in topic.doors))):
+    for key in dict.fromkeys((*(one.key for _piece, one in topic.pairs), *(one.key for one in topic.doors))):
         _add(selection, "Component", IfcGuid=key)
     _add(components, "Visibility", DefaultVisibility="true")
     if topic.camera is not None:
         camera = _add(view, "PerspectiveCamera")
-        _add_place(camera, "CameraViewPoint", topic.camera.point)
-        _add_place(camera, "CameraDirection", topic.camera.direction)
-        _add_place(camera, "CameraUpVector", topic.camera.up)
+        named = {"ViewPoint": topic.camera.point, "Direction": topic.camera.direction, "UpVector": topic.camera.up}
+        for name, place in named.items():
+            one = _add(camera, f"Camera{name}")
+            for axis, value in zip("XYZ", place, strict=True):
+                _add(one, axis, f"{value:.6f}")
         _add(camera, "FieldOfView", f"{FIELD_OF_VIEW:g}")
     return view
-
-
-def _add_place(parent: _Element, name: str, place: Place) -> None:
-    one = _add(parent, name)
-    for axis, value in zip("XYZ", place, strict=True):
-        _add(one, axis, f"{value:.6f}")
 
 
 def _add(parent: _Element, name: str, text: str | None = None, **attributes: str) -> _Element:

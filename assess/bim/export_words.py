@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from assess.bim.export_results import ExportEntry, ExportPiece, ExportRun, ExportWork
+from assess.bim.export_results import ExportPiece, ExportRun, list_items
 from assess.compare.past_run import UNCONFIRMED, PastRun
 from assess.details import DETAILS
 from assess.i18n import fill, ngettext
@@ -20,6 +20,7 @@ from assess.report.findings.schedule_words import (
 from assess.report.ranking import RouteStep, say_effect
 from assess.results import CANNOT_ROCK
 from assess.risk import RiskClass, classify
+from assess.schedule_results import ScheduleRow, WorkRow
 from assess.settings import SCENARIOS
 
 BASES = {
@@ -28,7 +29,6 @@ BASES = {
     "unconfirmed": fill("unconfirmed"),
     CANNOT_ROCK: fill("cannot rock"),
 }
-AS_FILLED = SCENARIOS[0]
 LONGEST = 60
 """Characters of a description that a title shows."""
 MOST_KINDS = 3
@@ -37,18 +37,14 @@ MOST_CHANCES = 20
 """Pieces of a topic whose chances its description lists; the Excel report holds all."""
 
 
-def say_standing(run: PastRun, one: ExportPiece) -> str:
-    """Return the class of a piece in words, with what it could be; of one outside the classes, on what it rests."""
-    return _say_class(run, one, one.upper, is_short=True)
-
-
 def say_risk(run: PastRun, pieces: Sequence[ExportPiece]) -> str:
     """Return the highest class of some pieces in words, with what any of them could be, and why it is no lower."""
     highest = max(pieces, key=lambda one: one.past.risk)
-    return _say_class(run, highest, max(one.upper for one in pieces), is_short=False)
+    return say_class(run, highest, max(one.upper for one in pieces), is_short=False)
 
 
-def _say_class(run: PastRun, one: ExportPiece, upper: RiskClass, *, is_short: bool) -> str:
+def say_class(run: PastRun, one: ExportPiece, upper: RiskClass, *, is_short: bool) -> str:
+    """Return the class of a piece in words, with what it could be; of one outside the classes, on what it rests."""
     past, word = one.past, words.risk_word(one.past.risk)
     is_by_faster = past.basis == UNCONFIRMED and one.has_simulated  # nothing is known of the building
     if past.basis == UNCONFIRMED:
@@ -63,12 +59,6 @@ def _say_class(run: PastRun, one: ExportPiece, upper: RiskClass, *, is_short: bo
         notes.append(words.could_be(words.risk_word(upper)))
     word = ", ".join(notes)
     return _("depends on its anchor (free-standing: {risk})", risk=word) if past.is_held else word
-
-
-def say_chance(one: ExportPiece) -> str:
-    """Return the chance of overturning with its interval, and what it rests on."""
-    chance = one.past.chance
-    return f"{words.say_chance(chance.probability, chance.low, chance.high)}, {_(BASES[one.past.basis])}"
 
 
 def describe(one: ExportPiece) -> str:
@@ -86,13 +76,12 @@ def say_scenario(run: PastRun) -> str:
     """Return the earthquake in words, and where the floor motion comes from."""
     building, settings = run.building, run.settings
     kind = str(settings.get("scenario") or building.get("scenario_kind") or "")
-    kind = "" if kind == AS_FILLED else kind
     choice = next((one.choice for one in SHAKINGS.values() if one.name == run.shaking), run.shaking)
     parts = [
         str(building.get("scenario") or ""),
         _("{intensity} (assumed)", intensity=_(choice)) if choice else "",
         run.site_ground,
-        kind,
+        "" if kind == SCENARIOS[0] else kind,  # as filled in
     ]
     pga, scale = building.get("ground_pga_g"), settings.get("scale")
     if isinstance(pga, int | float):
@@ -117,9 +106,9 @@ def say_program(run: PastRun) -> str:
     return f"assess {run.version}"
 
 
-def say_title(found: ExportRun, entry: ExportEntry, pieces: Sequence[ExportPiece]) -> str:
+def say_title(found: ExportRun, entry: ScheduleRow, pieces: Sequence[ExportPiece]) -> str:
     """Return the title of the topic of an entry: class, pieces, and why they are to be fixed."""
-    routes = list_routes(found, entry.items)
+    routes = list_routes(found, list_items(entry))
     values = {"risk": say_risk(found.run, pieces), "names": _name_with_kind(entry, pieces)}
     if routes:
         text = ngettext(
@@ -129,17 +118,12 @@ def say_title(found: ExportRun, entry: ExportEntry, pieces: Sequence[ExportPiece
         )  # fmt: skip
     else:
         text = _("{risk}: {names} may overturn", **values)
-    return ", ".join((text, *(_(one) for one in _list_importance(pieces))))
+    return ", ".join((text, *map(_, list_importance(pieces))))
 
 
-def say_names(entry: ExportEntry, pieces: Sequence[ExportPiece]) -> str:
-    """Return the names of the pieces of an entry in short."""
-    named = join_names(shorten_names(one.past.item for one in pieces))
-    return _("{names} together", names=named) if entry.is_together else named
-
-
-def _name_with_kind(entry: ExportEntry, pieces: Sequence[ExportPiece]) -> str:
-    names, kind = say_names(entry, pieces), name_kinds(map(describe, pieces))
+def _name_with_kind(entry: ScheduleRow, pieces: Sequence[ExportPiece]) -> str:
+    names, kind = join_names(shorten_names(one.past.item for one in pieces)), name_kinds(map(describe, pieces))
+    names = _("{names} together", names=names) if entry.is_together else names
     return names if kind == names else f"{names} ({kind})"
 
 
@@ -148,26 +132,25 @@ def name_kinds(kinds: Iterable[str]) -> str:
     return words.name_first(list(dict.fromkeys(words.cut(one, LONGEST) for one in kinds)), MOST_KINDS, "; ")
 
 
-def _name(one: ExportPiece, pieces: Sequence[ExportPiece]) -> str:
-    kind, item = describe(one), one.past.item
-    return item if kind == item or all(describe(other) == kind for other in pieces) else f"{item} ({kind})"
-
-
-def _list_importance(pieces: Sequence[ExportPiece]) -> list[str]:
+def list_importance(pieces: Sequence[ExportPiece]) -> list[str]:
+    """Return what is told of the importance of some pieces, each once."""
     return list(dict.fromkeys(one.importance for one in pieces if one.importance))
 
 
-def list_lines(found: ExportRun, entry: ExportEntry, pieces: Sequence[ExportPiece]) -> Iterator[str]:
+def list_lines(found: ExportRun, entry: ScheduleRow, pieces: Sequence[ExportPiece]) -> Iterator[str]:
     """Yield the lines of the description of a topic: where, how likely, why, how to fix it, with what force."""
     run = found.run
     where = _("Floor {floor}, room {room}.", floor=entry.floor, room=entry.room or words.DASH)
     yield f"{_name_with_kind(entry, pieces)}: {words.plural(entry.pieces, 'piece')}. {where}"
     yield _("Risk of overturning: {risk}.", risk=say_risk(run, pieces))
+    are_alike = len(set(map(describe, pieces))) == 1
     for one in pieces[:MOST_CHANCES]:
-        pfa = one.past.inputs.get("pfa_g")
-        peak = words.in_g(float(pfa)) if isinstance(pfa, int | float) else words.DASH
-        yield _("{item}: chance of overturning {chance}; PFA {pfa} g ({source}).", item=_name(one, pieces),
-                chance=say_chance(one), pfa=peak, source=one.pfa_source or words.DASH)  # fmt: skip
+        item, kind, pfa, chance = one.past.item, describe(one), one.past.inputs.get("pfa_g"), one.past.chance
+        said = f"{words.say_chance(chance.probability, chance.low, chance.high)}, {_(BASES[one.past.basis])}"
+        yield _("{item}: chance of overturning {chance}; PFA {pfa} g ({source}).",
+                item=item if are_alike or kind == item else f"{item} ({kind})", chance=said,
+                pfa=words.in_g(float(pfa)) if isinstance(pfa, int | float) else words.DASH,
+                source=one.pfa_source or words.DASH)  # fmt: skip
     yield _("Earthquake: {scenario}. The chance is for this earthquake, not per year.",
             scenario=say_scenario(run))  # fmt: skip
     reason = say_reason(found, entry, pieces)
@@ -187,43 +170,38 @@ def list_lines(found: ExportRun, entry: ExportEntry, pieces: Sequence[ExportPiec
             n=len(found.entries), report=say_report(run), program=say_program(run))  # fmt: skip
 
 
-def say_reason(found: ExportRun, entry: ExportEntry, pieces: Sequence[ExportPiece]) -> str:
+def say_reason(found: ExportRun, entry: ScheduleRow, pieces: Sequence[ExportPiece]) -> str:
     """Return why an entry comes where it does: its importance, its routes and the effect of fixing it on them."""
-    places = {one.past.item: at for at, one in enumerate(found.pieces)}
-    own = {places[item] for item in entry.items}
     steps: dict[str, list[RouteStep]] = {}
     for step in sorted(found.steps, key=lambda step: (step.route, step.place)):
-        if step.item_index in own:
+        if step.item_index in entry.item_indices:
             steps.setdefault(step.route, []).append(step)
-    others = [words.cut(one, LONGEST) for one in list_routes(found, entry.items) if one not in steps]
+    others = [words.cut(one, LONGEST) for one in list_routes(found, list_items(entry)) if one not in steps]
     beside = ngettext("route {routes}", "routes {routes}", len(others), routes=words.name_first(others, NAMED))
     return ", ".join(
-        [*map(_, _list_importance(pieces)), *map(say_effect, steps.values()), *([beside] if others else [])]
+        [*map(_, list_importance(pieces)), *map(say_effect, steps.values()), *([beside] if others else [])]
     )
 
 
-def _list_work(work: ExportWork, *, is_only: bool) -> Iterator[str]:
+def _list_work(work: WorkRow, *, is_only: bool) -> Iterator[str]:
     title = _(DETAILS[work.detail].title)
     named = "" if is_only else f"{join_names(shorten_names(work.items))}: "
     least = _("at least {n}, as no capacity is printed", n=work.fixings) if work.is_least else f"{work.fixings:,}"
     yield _("{names}How to fix: {title}. Fixings of each piece: {fixings}.", names=named, title=title, fixings=least)
-    force = _("Force on the fixings of each piece: tension {pfa} kN at PFA, {high} kN at 84 % of PFA; shear at the "
-              "base {shear} kN.", pfa=say_force(work.tension_kn), high=say_force(work.tension_high_kn),
-              shear=say_force(work.shear_kn))  # fmt: skip
-    yield " ".join((force, *_list_remarks(work)))
-
-
-def _list_remarks(work: ExportWork) -> Iterator[str]:
+    lines = [_("Force on the fixings of each piece: tension {pfa} kN at PFA, {high} kN at 84 % of PFA; shear at the "
+               "base {shear} kN.", pfa=say_force(work.tension_kn), high=say_force(work.tension_high_kn),
+               shear=say_force(work.shear_kn))]  # fmt: skip
     if work.tension_code_kn is not None:
-        yield _("Tension by the code: {code} kN.", code=say_force(work.tension_code_kn))
+        lines.append(_("Tension by the code: {code} kN.", code=say_force(work.tension_code_kn)))
     if work.tension_high_kn == 0:
-        yield f"{_capital(say_held())}."
+        lines.append(f"{_capital(say_held())}.")
     if work.is_per_metre:
-        yield _("Forces and fixings are per metre of width, as the width is not known.")
+        lines.append(_("Forces and fixings are per metre of width, as the width is not known."))
     if work.weights_assumed:
-        yield _("The weight is assumed.")
+        lines.append(_("The weight is assumed."))
     if work.heights_assumed:
-        yield _("The height of the bracket is assumed: 0.9 of the piece's height.")
+        lines.append(_("The height of the bracket is assumed: 0.9 of the piece's height."))
+    yield " ".join(lines)
 
 
 def _capital(text: str) -> str:

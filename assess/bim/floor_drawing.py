@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from itertools import chain
 
 from assess.bim.building_model import Area, BuildingModel, Door, Piece, Point, Storey
+from assess.bim.plan_shapes import direction_of
 
 MARGIN = 0.5
 """Room round what is drawn [m]."""
@@ -83,8 +84,7 @@ def name_plans(source: str, storeys: Iterable[str]) -> list[str]:
 
 
 def _span(door: Door) -> tuple[Point, Point]:
-    turn = math.radians(door.normal_deg + 90)
-    dx, dy = math.cos(turn) * door.width / 2, math.sin(turn) * door.width / 2
+    dx, dy = (one * door.width / 2 for one in direction_of(door.normal_deg + 90))
     return (door.x - dx, door.y - dy), (door.x + dx, door.y + dy)
 
 

@@ -1,5 +1,6 @@
-"""Elements of an open building model: by class, their parts, storeys and shapes."""
+"""Elements of an open building model: its unit, elements by class, their texts, parts, storeys and shapes."""
 
+import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
@@ -7,6 +8,9 @@ from typing import Any
 import numpy as np
 
 from assess.bim.plan_shapes import FloatArray, Shape, join
+from assess.errors import ModelError
+from assess.i18n import fill
+from assess.workbook.values import ERRORS, read_text
 
 Element = Any
 """An entity of ifcopenshell."""
@@ -18,6 +22,37 @@ MOST_TRIANGLES = 2_000_000
 """Triangles of one element beyond which its shape is not taken."""
 FARTHEST = 1e8
 """Distance from the origin beyond which a shape is not taken [m]: no map grid reaches as far."""
+
+_PLACEHOLDERS = ("enter address here", "//", "default", "<default>", "project number", "project name", "undefined")
+"""What programs write where nobody has typed a name or an address."""
+LONGEST = 1000
+"""Characters that are kept of a text."""
+
+
+def find_unit(model: Any, name: str) -> float:
+    """Return the metres in a unit of length of the model; raises ModelError if it names no unit of length."""
+    from ifcopenshell.util.unit import calculate_unit_scale
+
+    assigned = [one for project in model.by_type("IfcProject") if (one := project.UnitsInContext)]
+    units = [unit for one in assigned for unit in one.Units or ()]
+    if not any(getattr(unit, "UnitType", "") == "LENGTHUNIT" for unit in units):
+        raise ModelError(
+            fill("{name} has no unit of length, so its sizes are unknown. Set the unit in the program that made "
+                 "it, and export again.", name=name)
+        )  # fmt: skip
+    scale = float(calculate_unit_scale(model))
+    if not (math.isfinite(scale) and 1e-6 < scale < 1e4):
+        raise ModelError(fill("{name}: its unit of length cannot be understood. Export it in metres.", name=name))
+    return scale
+
+
+def say(value: object) -> str:
+    """Return a text of the model in one line; "" for none, and for what programs write in its place.
+
+    What is no text is taken out as from cells (`assess.workbook.values`): else names that are read alike would differ.
+    """
+    text = " ".join(read_text(value).split())[:LONGEST] if value is not None else ""
+    return "" if text.casefold().startswith(_PLACEHOLDERS) or text in ERRORS else text
 
 
 def list_elements(model: Any, classes: Iterable[str]) -> list[Element]:
@@ -120,9 +155,12 @@ def list_shapes(model: Any, elements: Sequence[Element], *, with_openings: bool 
                 yield number, shape
     except RuntimeError:  # one of the elements is damaged: the others one by one, which takes longer
         for element in (one for one in drawn if one.id() not in done):
-            one = _create(settings, element)
-            if one is not None:
-                yield element.id(), one
+            try:
+                found = _to_shape(ifcopenshell.geom.create_shape(settings, element))
+            except (RuntimeError, ValueError, AttributeError):
+                continue
+            if found is not None:
+                yield element.id(), found
 
 
 def _iterate(model: Any, settings: Any, elements: Sequence[Element]) -> Iterator[tuple[int, Shape]]:
@@ -137,15 +175,6 @@ def _iterate(model: Any, settings: Any, elements: Sequence[Element]) -> Iterator
         if shape is not None:
             yield one.id, shape
         goes_on = bool(iterator.next())
-
-
-def _create(settings: Any, element: Element) -> Shape | None:
-    import ifcopenshell.geom
-
-    try:
-        return _to_shape(ifcopenshell.geom.create_shape(settings, element))
-    except (RuntimeError, ValueError, AttributeError):
-        return None
 
 
 def _to_shape(found: Any) -> Shape | None:

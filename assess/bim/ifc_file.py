@@ -5,8 +5,9 @@ first. STEP physical files: ISO 10303-21, of which a first line, a header and a 
 """
 
 import re
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from assess.errors import ModelError
 from assess.extras import say_install
@@ -21,6 +22,7 @@ _SCHEMA = re.compile(rb"FILE_SCHEMA\s*\(\s*\(\s*'([^']{1,80})'", re.IGNORECASE)
 SCHEMAS = ("IFC2X3", "IFC4", "IFC4X3")
 """Schemas that are read, with their corrections such as IFC4X3_ADD2."""
 _NO_MODEL = fill("it does not begin as an IFC file (ISO-10303-21) does. Export the building as IFC (.ifc, STEP)")
+_Found = TypeVar("_Found")
 
 
 def is_model(start: bytes) -> bool:
@@ -40,10 +42,16 @@ def check_model(path: Path, name: str) -> None:
             file.seek(max(0, size - _LOOKED_AT))
             end = file.read()
     except OSError as error:
-        raise ModelError(fill("{name} cannot be read: {why}.", name=name, why=error.strerror or str(error))) from None
+        raise unreadable(name, error) from None
     why = _find_fault(size, start, end)
     if why is not None:
-        raise ModelError(fill("{name} cannot be read: {why}.", name=name, why=why))
+        raise unreadable(name, why)
+
+
+def unreadable(name: str, why: OSError | Text) -> ModelError:
+    """Return the error of a file that cannot be read."""
+    reason = why.strerror or str(why) if isinstance(why, OSError) else why
+    return ModelError(fill("{name} cannot be read: {why}.", name=name, why=reason))
 
 
 def _find_fault(size: int, start: bytes, end: bytes) -> Text | None:
@@ -80,24 +88,29 @@ def check_installed() -> None:
         raise ModelError(fill("Building models (IFC) need the library ifcopenshell. {how}", how=say_install("ifc")))
 
 
-def open_model(path: Path, name: str) -> Any:
-    """Return the model of a file that `check_model` has passed.
+def read_with(path: Path, name: str, understand: Callable[[Any], _Found]) -> _Found:
+    """Return what `understand` finds in the model of a file; call it in a process of its own.
 
-    Raises ModelError if the library cannot make sense of it.
+    `understand` may raise errors of Python where an entity is of another kind than its schema asks for.
+    Raises ModelError as `check_model`, or if the library or `understand` cannot make sense of the file.
     """
     import ifcopenshell
 
+    check_model(path, name)
     try:
         model = ifcopenshell.open(str(path))
     except (ifcopenshell.Error, RuntimeError, ValueError, OSError) as error:
         if "unsupported schema" in str(error).lower():
             schema = str(error).strip().split()[-1]
-            raise ModelError(fill("{name} cannot be read: {why}.", name=name, why=_say_schema(schema))) from None
-        raise find_damage(name, error) from None
+            raise unreadable(name, _say_schema(schema)) from None
+        raise _find_damage(name, error) from None
     if not isinstance(model, ifcopenshell.file):
-        raise ModelError(fill("{name} cannot be read: {why}.", name=name, why=_NO_MODEL))
+        raise unreadable(name, _NO_MODEL)
     _set_clearances_aside(model)
-    return model
+    try:
+        return understand(model)
+    except (AssertionError, AttributeError, TypeError, ValueError, LookupError, RuntimeError) as error:
+        raise _find_damage(name, error) from error
 
 
 def _set_clearances_aside(model: Any) -> None:
@@ -118,7 +131,7 @@ def _set_clearances_aside(model: Any) -> None:
             one.ContextOfItems = contexts[whole.id()]
 
 
-def find_damage(name: str, error: Exception) -> ModelError:
+def _find_damage(name: str, error: Exception) -> ModelError:
     """Return what is said of a model that the library cannot make sense of."""
     first = str(error).strip().split("\n")[0][:120].rstrip(".")
     return ModelError(fill("{name} is damaged: {why}. Export it again.", name=name, why=first or type(error).__name__))

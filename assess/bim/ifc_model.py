@@ -4,18 +4,50 @@ Shapes are trusted, names and properties are not: sizes are those of the shapes,
 sides of a door, whatever its IsExternal says.
 """
 
-from collections.abc import Sequence
+import math
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from assess.bim.building_model import BuildingModel, Storey
-from assess.bim.ifc_file import check_model, find_damage, open_model
-from assess.bim.ifc_pieces import FoundPieces, find_pieces
-from assess.bim.ifc_rooms import cut_walls, list_doors, list_spaces, list_stairs
-from assess.bim.ifc_site import find_azimuth, find_names, find_position, find_unit, list_storeys
+import numpy as np
+from shapely import Polygon
+
+from assess.bim.building_model import Area, BuildingModel, Door, Piece, Point, Space, Stair, Storey
+from assess.bim.ifc_elements import (
+    Element,
+    find_storey,
+    find_unit,
+    join_parts,
+    list_elements,
+    list_outer,
+    list_shapes,
+    say,
+    tell_apart,
+)
+from assess.bim.ifc_file import read_with
+from assess.bim.ifc_pieces import FURNITURE, find_pieces
 from assess.bim.model_position import bring_near
+from assess.bim.plan_shapes import FloatArray, Rectangle, Shape, cut, find_base, find_rectangle, merge
 from assess.errors import ModelError
 from assess.i18n import Text, fill, nfill
+
+SAME = 0.05
+"""Difference up to which two heights are the same [m]."""
+MOST_NAMED = 20
+_ARC = (1.0, 60.0, 3600.0, 3.6e9)
+"""Parts of an IfcCompoundPlaneAngleMeasure in a degree: degrees, minutes, seconds, millionths of a second."""
+CUT = 1.2
+"""Height above the floor at which walls are cut for the plan [m]."""
+WALLS = ("IfcWall", "IfcColumn", "IfcCurtainWall", "IfcPlate", "IfcMember")
+STAIRS = ("IfcStair", "IfcStairFlight", "IfcRamp", "IfcRampFlight")
+CLEARLY_LONGER = 2.0
+"""Ratio of sides from which a plan tells the direction of a wall by itself [-]."""
+RISER = 0.35
+"""Height within which the first and the last step of a stair lie [m]."""
+AT_FOOT, LEAST_RISE, ABOVE_HEAD = 0.7, 1.5, 0.3
+"""A stair's foot lies within this of its storey's floor; its head is at the highest storey between these above its foot
+and its top [m]."""
 
 
 def read_model(path: Path, name: str, also: Sequence[str] = ()) -> BuildingModel:
@@ -24,18 +56,11 @@ def read_model(path: Path, name: str, also: Sequence[str] = ()) -> BuildingModel
     `also`: further classes whose elements are pieces, such as IfcBuildingElementProxy.
     Raises ModelError if it is no whole building model, names no unit of length, holds no building, or `also` names no
     class.
-
     """
-    check_model(path, name)
-    model = open_model(path, name)
-    try:
-        return _understand(model, name, also)
-    except (AssertionError, AttributeError, TypeError, ValueError, LookupError, RuntimeError) as error:
-        raise find_damage(name, error) from error
+    return read_with(path, name, lambda model: _understand(model, name, also))
 
 
 def _understand(model: Any, name: str, also: Sequence[str]) -> BuildingModel:
-    """Return what a model holds; errors of Python where an entity is of another kind than its schema asks for."""
     unit = find_unit(model, name)
     storeys, warnings = list_storeys(model, unit)
     if not storeys:
@@ -44,14 +69,24 @@ def _understand(model: Any, name: str, also: Sequence[str]) -> BuildingModel:
             fill("The model has no storeys: all of it was put on one floor, {floor}. Check Floor in Items.",
                  floor=storeys[0].name)
         )  # fmt: skip
-    return _read(model, name, unit, storeys, also, tuple(warnings))
+    known = {one.key for one in storeys}
+    spaces = tuple(list_spaces(model, known))
+    found = find_pieces(model, storeys, spaces, also)
+    walls, windows = cut_walls(model, found.storeys)
+    title, address = find_names(model)
+    latitude, longitude = find_position(model) or (None, None)
+    read = BuildingModel(
+        source=name, schema=model.schema_identifier, name=title, address=address, storeys=tuple(found.storeys),
+        spaces=spaces, doors=tuple(list_doors(model, known, unit)), stairs=tuple(list_stairs(model, found.storeys)),
+        pieces=tuple(found.pieces), walls=walls, windows=windows, skipped=found.skipped,
+        azimuth_deg=find_azimuth(model), latitude=latitude, longitude=longitude,
+        warnings=(*warnings, *found.warnings), remarks=tuple(_note_rooms(model, spaces, found.pieces)),
+    )  # fmt: skip
+    return bring_near(read)
 
 
 def _stand_in(model: Any, name: str) -> Storey:
     """Return a storey for a model that has none: its floor is the lowest point of its furniture or rooms."""
-    from assess.bim.ifc_elements import list_elements, list_shapes
-    from assess.bim.ifc_pieces import FURNITURE
-
     for classes in (("IfcSpace",), FURNITURE, ("IfcWall",)):
         bottoms = [shape.bottom for _, shape in list_shapes(model, list_elements(model, classes))]
         if bottoms:
@@ -62,44 +97,193 @@ def _stand_in(model: Any, name: str) -> Storey:
     )  # fmt: skip
 
 
-def _read(
-    model: Any, name: str, unit: float, storeys: Sequence[Storey], also: Sequence[str], warnings: tuple[Text, ...]
-) -> BuildingModel:
-    known = {one.key: one for one in storeys}
-    spaces = tuple(list_spaces(model, known))
-    found = find_pieces(model, storeys, spaces, also)
-    storeys = found.storeys
-    known = {one.key: one for one in storeys}
-    walls, windows = cut_walls(model, storeys)
-    title, address = find_names(model)
-    latitude, longitude = find_position(model) or (None, None)
-    read = BuildingModel(
-        source=name, schema=model.schema_identifier, name=title, address=address, storeys=tuple(storeys), spaces=spaces,
-        doors=tuple(list_doors(model, known, unit)), stairs=tuple(list_stairs(model, storeys)),
-        pieces=tuple(found.pieces), walls=walls, windows=windows, left_out=found.list_left_out(),
-        azimuth_deg=find_azimuth(model), latitude=latitude, longitude=longitude,
-        warnings=(*warnings, *found.warnings),
-        remarks=tuple(_note_rooms(model, spaces, found)),
-    )  # fmt: skip
-    return bring_near(read)
-
-
-def _note_rooms(model: Any, spaces: Sequence[Any], found: FoundPieces) -> list[Text]:
-    remarks = []
+def _note_rooms(model: Any, spaces: Sequence[Space], pieces: Sequence[Piece]) -> Iterator[Text]:
     missing = len(model.by_type("IfcSpace")) - len(spaces)
     if not spaces and not missing:
-        remarks.append(
-            fill("The model has no rooms (IfcSpace): Room stays blank, and heights are taken from the storeys.")
-        )
+        yield fill("The model has no rooms (IfcSpace): Room stays blank, and heights are taken from the storeys.")
     if missing:
-        remarks.append(
-            nfill("{n:,} room of the model has no plan or no storey: left out.",
-                  "{n:,} rooms of the model have no plan or no storey: left out.", missing)
-        )  # fmt: skip
-    outside = sum(not piece.space for piece in found.pieces) if spaces else 0
+        yield nfill("{n:,} room of the model has no plan or no storey: left out.",
+                    "{n:,} rooms of the model have no plan or no storey: left out.", missing)  # fmt: skip
+    outside = sum(not piece.space for piece in pieces) if spaces else 0
     if outside:
-        remarks.append(
-            nfill("{n:,} piece stands in no room of the model: its Room stays blank.",
-                  "{n:,} pieces stand in no room of the model: their Room stays blank.", outside)
+        yield nfill("{n:,} piece stands in no room of the model: its Room stays blank.",
+                    "{n:,} pieces stand in no room of the model: their Room stays blank.", outside)  # fmt: skip
+
+
+# ---------------------------------------------------------------- the site and its storeys
+
+
+def find_names(model: Any) -> tuple[str, str]:
+    """Return the name and the address of the building, "" where it has none."""
+    buildings, projects = model.by_type("IfcBuilding"), model.by_type("IfcProject")
+    named = [say(one.LongName) or say(one.Name) for one in (*buildings, *projects)]
+    address = next((one.BuildingAddress for one in buildings if one.BuildingAddress), None)
+    lines = [*(address.AddressLines or ())] if address is not None else []
+    lines += [getattr(address, name, None) for name in ("PostalCode", "Town", "Region", "Country")]
+    return next(filter(None, named), ""), ", ".join(filter(None, map(say, lines)))
+
+
+def find_position(model: Any) -> tuple[float, float] | None:
+    """Return latitude and longitude of the site [deg], None where the model gives none, no such, or both are 0."""
+    for site in model.by_type("IfcSite"):
+        latitude, longitude = to_degrees(site.RefLatitude), to_degrees(site.RefLongitude)
+        if latitude is not None and longitude is not None and (latitude or longitude) and abs(latitude) <= 90:
+            return latitude, longitude
+    return None
+
+
+def to_degrees(angle: Sequence[int] | None) -> float | None:
+    """Return an IfcCompoundPlaneAngleMeasure in degrees; None if there is none, or it is no angle of a site."""
+    if not angle or len(angle) > len(_ARC):
+        return None
+    degrees = sum(part / size for part, size in zip(angle, _ARC, strict=False))
+    return round(degrees, 6) if abs(degrees) <= 180 else None
+
+
+def find_azimuth(model: Any) -> float | None:
+    """Return the compass direction of the X axis [deg], None where no true north is given."""
+    for context in model.by_type("IfcGeometricRepresentationContext", include_subtypes=False):
+        if context.TrueNorth is not None:
+            x, y = context.TrueNorth.DirectionRatios[:2]
+            return round(math.degrees(math.atan2(y, x)), 3) % 360
+    return None
+
+
+def list_storeys(model: Any, unit: float) -> tuple[list[Storey], list[Text]]:
+    """Return all storeys of a model, from the lowest, and warnings.
+
+    Elevation counts from the building's zero, the placement from that of the model: they differ by one height in all
+    storeys. Where they do not, Elevation was not kept up, and the placements tell the elevations.
+    """
+    from ifcopenshell.util.placement import get_storey_elevation
+
+    storeys, found = model.by_type("IfcBuildingStorey"), []
+    keys = tell_apart(storeys)
+    for number, one in enumerate(storeys, 1):
+        own = None if one.Elevation is None else float(one.Elevation) * unit
+        level = float(get_storey_elevation(one)) * unit if one.ObjectPlacement is not None else own or 0.0
+        name = say(one.Name) or say(one.LongName) or str(number)
+        if math.isfinite(level) and (own is None or math.isfinite(own)):
+            found.append((Storey(keys[one.id()], name, level, level), own))
+    levels = {round(storey.level, 2) for storey, _ in found}
+    if len(found) > 1 and len(levels) == 1:  # none is placed: what is in them is
+        found = [(replace(storey, level=storey.level if own is None else own), own) for storey, own in found]
+    found.sort(key=lambda pair: (pair[0].level, pair[0].name))
+    return _count_from_zero(found)
+
+
+def _count_from_zero(found: Sequence[tuple[Storey, float | None]]) -> tuple[list[Storey], list[Text]]:
+    """Return storeys with their elevations, of which each may state its own [m], and warnings."""
+    datum = next((own - storey.level for storey, own in found if own is not None), 0.0)
+    kept = [replace(storey, elevation=storey.level + datum) for storey, _ in found]
+    odd = [
+        storey.name
+        for storey, (_, own) in zip(kept, found, strict=True)
+        if own is not None and abs(own - storey.elevation) > SAME
+    ]
+    if not odd:
+        return kept, []
+    text = fill("Elevation in the model differs from where these storeys are placed, which was taken: {names}. Check "
+                "Elevation in Floors.", names=", ".join(odd[:MOST_NAMED]))  # fmt: skip
+    return kept, [text]
+
+
+# ---------------------------------------------------------------- rooms, doors, stairs and walls
+
+
+def list_spaces(model: Any, storeys: Collection[str]) -> Iterator[Space]:
+    """Yield the rooms that have a plan, on the storeys that are given."""
+    spaces = {one.id(): one for one in model.by_type("IfcSpace")}
+    keys = tell_apart(spaces.values())
+    shapes = dict(list_shapes(model, list(spaces.values())))
+    for number, one in spaces.items():
+        storey = _find_known(one, storeys)
+        shape = shapes.get(number)
+        area = find_base(shape) if shape is not None and storey is not None else None
+        if shape is None or storey is None or area is None:
+            continue
+        name, title = say(one.Name), say(one.LongName)
+        yield Space(keys[number], storey, name or title, "" if title == name else title, area, shape.bottom, shape.top)
+
+
+def _find_known(element: Element, storeys: Collection[str]) -> str | None:
+    storey = find_storey(element)
+    if storey in storeys:
+        return storey
+    return "" if "" in storeys else None
+
+
+def list_doors(model: Any, storeys: Collection[str], unit: float) -> Iterator[Door]:
+    """Yield the doors that have a plan: that of their opening, else their own."""
+    doors = model.by_type("IfcDoor")
+    keys = tell_apart(doors)
+    fills = [(one.id(), fill.RelatingOpeningElement) for one in doors for fill in one.FillsVoids]
+    openings = {number: opening for number, opening in fills if opening is not None}
+    shapes = dict(list_shapes(model, [*doors, *openings.values()]))
+    for one in doors:
+        storey = _find_known(one, storeys)
+        opening = openings.get(one.id())
+        shape = (shapes.get(opening.id()) if opening is not None else None) or shapes.get(one.id())
+        plan = find_rectangle(shape.points[:, :2]) if shape is not None else None
+        if plan is not None:
+            plan = _turn_to_leaf(plan, shapes.get(one.id()))
+        if storey is None or plan is None:
+            continue
+        overall = float(one.OverallWidth or 0.0) * unit
+        yield Door(
+            keys[one.id()], storey, say(one.Name), plan.x, plan.y, plan.angle_deg, plan.long, plan.short,
+            overall if math.isfinite(overall) and overall > 0 else 0.0,
         )  # fmt: skip
-    return remarks
+
+
+def _turn_to_leaf(plan: Rectangle, leaf: Shape | None) -> Rectangle:
+    """Return the plan of an opening with the direction of the door's normal, which a leaf tells if it is squarish."""
+    own = find_rectangle(leaf.points[:, :2]) if leaf is not None else None
+    if own is None or plan.long >= CLEARLY_LONGER * plan.short or own.long < CLEARLY_LONGER * own.short:
+        return plan
+    # the short side of a rectangle is taken for the thickness of the wall; here the door itself tells it
+    is_across = abs(math.sin(math.radians(own.angle_deg - plan.angle_deg))) > 0.9
+    return replace(plan, short=plan.long, long=plan.short, angle_deg=own.angle_deg) if is_across else plan
+
+
+def list_stairs(model: Any, storeys: Sequence[Storey]) -> Iterator[Stair]:
+    """Yield foot and head of each stair and ramp, on the storeys that they join."""
+    stairs = {one.id(): one for one in list_outer(list_elements(model, STAIRS))}
+    keys = tell_apart(stairs.values())
+    for number, shape in sorted(join_parts(model, list(stairs.values())), key=lambda one: one[0]):
+        key, name, low, high = keys[number], say(stairs[number].Name), shape.bottom, shape.top
+        feet = [one for one in storeys if abs(one.level - low) < AT_FOOT]
+        heads = [one for one in storeys if low + LEAST_RISE < one.level < high + ABOVE_HEAD]
+        if feet:
+            foot = min(feet, key=lambda one: abs(one.level - low))
+            yield Stair(key, foot.key, name, "foot", *_find_step(shape.points, low))
+        if heads:
+            head = max(heads, key=lambda one: one.level)
+            yield Stair(key, head.key, name, "head", *_find_step(shape.points, min(head.level, high)))
+
+
+def _find_step(points: FloatArray, level: float) -> Point:
+    near = points[np.abs(points[:, 2] - level) < RISER]
+    plan = (near if len(near) else points)[:, :2]
+    x, y = (plan.max(axis=0) + plan.min(axis=0)) / 2
+    return float(x), float(y)
+
+
+Plans = dict[str, tuple[Area, ...]]
+"""Areas by the key of their storey."""
+
+
+def cut_walls(model: Any, storeys: Sequence[Storey]) -> tuple[Plans, Plans]:
+    """Return what stands and what is glazed at 1.2 m above the floor of each storey."""
+    elements = {one.id(): one for one in list_elements(model, (*WALLS, "IfcWindow"))}
+    walls: dict[str, list[Polygon]] = {}
+    windows: dict[str, list[Polygon]] = {}
+    cuts = {
+        number: [cut(shape, storey.level + CUT) for storey in storeys]
+        for number, shape in list_shapes(model, list(elements.values()), with_openings=True)
+    }
+    for number in sorted(cuts):
+        kept = windows if elements[number].is_a("IfcWindow") else walls
+        for storey, polygons in zip(storeys, cuts[number], strict=True):
+            kept.setdefault(storey.key, []).extend(polygons)
+    return {key: merge(some) for key, some in walls.items()}, {key: merge(some) for key, some in windows.items()}

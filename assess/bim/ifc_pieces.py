@@ -1,13 +1,22 @@
 """The furniture of a building model: which elements are pieces, where they stand, and what is left out."""
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from assess.bim.building_model import NOT_ON_FLOOR, ON_FLOOR, LeftOut, Piece, Space, Storey
+from assess.bim.building_model import (
+    NOT_ON_FLOOR,
+    ON_FLOOR,
+    Piece,
+    Point,
+    Skipped,
+    Space,
+    Storey,
+    count_skipped,
+    name_skipped,
+)
 from assess.bim.ifc_elements import (
     Element,
     find_holders,
@@ -17,12 +26,10 @@ from assess.bim.ifc_elements import (
     join_parts,
     list_elements,
     list_outer,
+    say,
     tell_apart,
 )
-from assess.bim.ifc_site import say
-from assess.bim.plan_shapes import FloatArray, Shape, find_box, join
-from assess.bim.space_search import SpaceSearch
-from assess.bim.stacked_parts import join_stacked, note_stacked
+from assess.bim.plan_shapes import FloatArray, Shape, SpaceSearch, find_box, join, join_stacked, note_stacked
 from assess.errors import ModelError
 from assess.i18n import Text, fill
 
@@ -52,25 +59,14 @@ _NEAR_FLOOR = 0.3
 """How far below the floor of a room a piece may begin to stand in it [m]."""
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class FoundPieces:
-    """Pieces, storeys with the levels of their floors, and how many elements were left out.
+    """Pieces, storeys with the levels of their floors, what was left out, and warnings."""
 
-    They are counted by class, type, reason and whether they may be furniture.
-    """
-
-    storeys: Sequence[Storey] = ()
-    pieces: list[Piece] = field(default_factory=list)
-    warnings: list[Text] = field(default_factory=list)
-    left_out: Counter[tuple[str, str, Text, bool]] = field(default_factory=Counter)
-
-    def leave_out(self, element: Element, reason: Text, *, is_furniture: bool = True) -> None:
-        """Count an element that is left out."""
-        self.left_out[element.is_a(), name_type(element), reason, is_furniture] += 1
-
-    def list_left_out(self) -> tuple[LeftOut, ...]:
-        """Return what was left out."""
-        return tuple(LeftOut(*one[:3], count=number, is_furniture=one[3]) for one, number in self.left_out.items())
+    storeys: Sequence[Storey]
+    pieces: Sequence[Piece]
+    skipped: tuple[Skipped, ...]
+    warnings: Sequence[Text]
 
 
 def find_pieces(
@@ -81,41 +77,50 @@ def find_pieces(
     Raises ModelError if `also` names a class that the schema of the model does not have, or there are over
     `MOST_PIECES` pieces.
     """
-    found = FoundPieces()
     _check_classes(model, also)
     wanted = {one.id() for one in list_elements(model, (*FURNITURE, *also))}
     every = list_outer(list_elements(model, (*FURNITURE, *OTHERS, *also)))
-    pieces = {one.id(): one for one in every if one.id() in wanted or _is_appliance(one)}
-    if len(pieces) > MOST_PIECES:
+    elements = {one.id(): one for one in every if one.id() in wanted or _is_appliance(one)}
+    if len(elements) > MOST_PIECES:
         raise ModelError(
-            fill("The model holds {n:,} pieces of furniture, more than {most:,}. Export fewer storeys.", n=len(pieces),
-                 most=MOST_PIECES)
+            fill("The model holds {n:,} pieces of furniture, more than {most:,}. Export fewer storeys.",
+                 n=len(elements), most=MOST_PIECES)
         )  # fmt: skip
+    skipped: list[tuple[str, Text, bool]] = []
+
+    def skip(one: Element, reason: Text, *, is_furniture: bool = True) -> None:
+        skipped.append((name_skipped(one.is_a(), name_type(one)), reason, is_furniture))
+
     for one in every:
-        if one.id() not in pieces:
-            found.leave_out(one, NO_PIECE, is_furniture=False)
-    shaped = _Shaped(model, pieces, _Places(storeys, spaces))
-    found.storeys, warnings = shaped.settle_levels(storeys)
+        if one.id() not in elements:
+            skip(one, NO_PIECE, is_furniture=False)
+    shaped = _Shaped(model, elements, storeys, spaces)
+    warnings = shaped.settle_levels()
     parts = shaped.join_groups()
-    for number, element in pieces.items():
+    pieces = []
+    for number, element in elements.items():
         piece = shaped.pieces.get(number)
         if piece is None and number not in parts:
-            found.leave_out(element, NO_SHAPE)
+            skip(element, NO_SHAPE)
         elif piece is not None and piece.bottom > ON_FLOOR:
-            found.leave_out(element, NOT_ON_FLOOR)
+            skip(element, NOT_ON_FLOOR)
         elif piece is not None:
-            found.pieces.append(piece)
-    found.warnings = [*warnings, *shaped.note_stacked()]
-    return found
+            pieces.append(piece)
+    own = tuple(shaped.storeys.values())
+    return FoundPieces(own, pieces, count_skipped(skipped), [*warnings, *shaped.note_stacked()])
 
 
 class _Shaped:
     """The pieces that have a shape, by the number of their element, and the box round each in the model's axes."""
 
-    def __init__(self, model: Any, elements: Mapping[int, Element], places: "_Places") -> None:
-        self.elements, self.places, self.keys = elements, places, tell_apart(elements.values())
+    def __init__(
+        self, model: Any, elements: Mapping[int, Element], storeys: Sequence[Storey], spaces: Sequence[Space]
+    ) -> None:
+        self.elements, self.keys = elements, tell_apart(elements.values())
+        self.storeys = {one.key: one for one in storeys}
         self.pieces: dict[int, Piece] = {}
         self.bounds: dict[int, FloatArray] = {}
+        self._spaces, self._search = {one.key: one for one in spaces}, SpaceSearch(spaces)
         self._wholes = {number: whole for number, one in elements.items() if (whole := find_whole(one)) is not None}
         self._shapes: dict[int, Shape] = {}  # of parts alone: a building may hold thousands of chairs
         for number, shape in join_parts(model, list(elements.values())):
@@ -124,25 +129,44 @@ class _Shaped:
                 self._shapes[number] = shape
 
     def _take(self, number: int, shape: Shape, name: str = "") -> None:
-        self.pieces[number] = _to_piece(self.elements[number], self.keys[number], shape, self.places, name)
+        element, box = self.elements[number], find_box(shape)
+        storey, space = self._find_place(element, (box.x, box.y), shape.bottom)
+        floor = space.bottom if space is not None else self.storeys[storey].level
+        kind = name or name_type(element)
+        self.pieces[number] = Piece(
+            key=self.keys[number], storey=storey, space=space.key if space is not None else "",
+            ifc_class=element.is_a(), name=name or say(element.Name), type=kind, bottom=shape.bottom - floor,
+            is_fitted=any(word in kind.casefold() for word in FITTED), **asdict(box),
+        )  # fmt: skip
         self.bounds[number] = np.concatenate([shape.points.min(axis=0), shape.points.max(axis=0)])
 
-    def settle_levels(self, storeys: Sequence[Storey]) -> tuple[Sequence[Storey], list[Text]]:
-        """Return the storeys and warnings; where nearly all pieces are off the floor by one height, it is moved."""
-        settled, warnings = [], list[Text]()
-        for storey in storeys:
+    def _find_place(self, element: Element, at: Point, bottom: float) -> tuple[str, Space | None]:
+        """Return storey and room of an element: what holds it in the model, else the smallest that it stands in."""
+        holder = next((find_key(one) for one in find_holders(element) if one.is_a("IfcSpace")), "")
+        if holder in self._spaces:
+            return self._spaces[holder].storey, self._spaces[holder]
+        storey = find_storey(element)
+        if storey not in self.storeys:
+            below = [one for one in self.storeys.values() if one.level <= bottom + _NEAR_FLOOR]
+            storey = (max(below, key=lambda one: one.level) if below else next(iter(self.storeys.values()))).key
+        there = self._search.find(storey, at)
+        return storey, next((one for one in there if one.bottom - _NEAR_FLOOR <= bottom <= one.top), None)
+
+    def settle_levels(self) -> list[Text]:
+        """Move the floor of a storey where nearly all pieces are off it by one height; return warnings."""
+        warnings = []
+        for storey in self.storeys.values():
             own = [number for number, one in self.pieces.items() if one.storey == storey.key and not one.space]
             shift = find_shift([self.pieces[number].bottom for number in own], storey.elevation - storey.level)
-            for number in own if shift else ():
-                self.pieces[number] = replace(self.pieces[number], bottom=self.pieces[number].bottom - shift)
-            settled.append(replace(storey, level=storey.level + shift))
             if shift:
+                for number in own:
+                    self.pieces[number] = replace(self.pieces[number], bottom=self.pieces[number].bottom - shift)
+                self.storeys[storey.key] = replace(storey, level=storey.level + shift)
                 warnings.append(
                     fill("The furniture of {storey} stands {shift:.2f} m above where the model has its floor: that "
                          "height was taken as its floor. Check Elevation in Floors.", storey=storey.name, shift=shift)
                 )  # fmt: skip
-        self.places.move(settled)
-        return settled, warnings
+        return warnings
 
     def join_groups(self) -> set[int]:
         """Make one piece of the parts of an assembly that stand on each other; return those that are no longer one."""
@@ -231,46 +255,3 @@ def name_type(element: Element) -> str:
             parts.pop()
         return " ".join(dict.fromkeys(filter(None, parts)))
     return type_name or say(getattr(element, "ObjectType", None)) or name or element.is_a()
-
-
-class _Places:
-    """Finds the storey and the room of an element: that which holds it in the model, else the smallest it stands in."""
-
-    def __init__(self, storeys: Sequence[Storey], spaces: Sequence[Space]) -> None:
-        self.storeys = {one.key: one for one in storeys}
-        self._spaces = {one.key: one for one in spaces}
-        of_storey: dict[str, list[Space]] = {}
-        for one in spaces:
-            of_storey.setdefault(one.storey, []).append(one)
-        self._searches = {storey: SpaceSearch(own) for storey, own in of_storey.items()}
-
-    def move(self, storeys: Sequence[Storey]) -> None:
-        """Take other levels for the floors."""
-        self.storeys = {one.key: one for one in storeys}
-
-    def find(self, element: Element, x: float, y: float, bottom: float) -> tuple[str, Space | None]:
-        """Return the key of the storey, and the space."""
-        holder = next((find_key(one) for one in find_holders(element) if one.is_a("IfcSpace")), "")
-        if holder in self._spaces:
-            return self._spaces[holder].storey, self._spaces[holder]
-        storey = find_storey(element)
-        if storey not in self.storeys:
-            below = [one for one in self.storeys.values() if one.level <= bottom + _NEAR_FLOOR]
-            storey = (max(below, key=lambda one: one.level) if below else next(iter(self.storeys.values()))).key
-        there = self._searches[storey].find_all([(x, y)])[0] if storey in self._searches else ()
-        return storey, next((one for one in there if one.bottom - _NEAR_FLOOR <= bottom <= one.top), None)
-
-
-def _to_piece(element: Element, key: str, shape: Shape, places: _Places, name: str = "") -> Piece:
-    box = find_box(shape)
-    storey, space = places.find(element, box.x, box.y, shape.bottom)
-    floor = space.bottom if space is not None else places.storeys[storey].level
-    kind = name or name_type(element)
-    return Piece(
-        key=key, storey=storey, space=space.key if space is not None else "",
-        ifc_class=element.is_a(), name=name or say(element.Name), type=kind, x=box.x, y=box.y, breadth=box.breadth,
-        width=box.width, height=box.height, angle_deg=box.angle_deg, support_breadth=box.support_breadth,
-        support_width=box.support_width, bottom=shape.bottom - floor,
-        is_fitted=any(word in kind.casefold() for word in FITTED),
-        support_reach=box.base.reach, support_angle_deg=box.base.angle_deg, support_across=box.base.across,
-    )  # fmt: skip

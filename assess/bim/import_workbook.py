@@ -3,23 +3,27 @@
 The workbook is that of `assess new`, filled in. Motions of the floors are not known to such files: it lacks shaking.
 """
 
+import hashlib
 from collections import Counter
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path, PurePath
 from typing import Any
 
+from assess.bim.building_model import LONGEST_NAME, Skipped
 from assess.delivery.private_folder import private_folder
 from assess.errors import Problem
 from assess.i18n import Text, count, fill
+from assess.input_file import open_input
 from assess.pipeline.new_content import store_live
+from assess.plain_text import plain_text
+from assess.version import __version__
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.names import key
 from assess.workbook.schema import SHEETS
 from assess.workbook.template import Content, Rows, write_workbook
 from assess.workbook.values import clean
 
-LONGEST_NAME = 120
-"""Characters that are kept of a name."""
 LONGEST_CELL = 32_767
 """Characters that a spreadsheet takes in a cell."""
 _LONG = frozenset(
@@ -29,28 +33,12 @@ MOST_NAMED, FEW_NAMED = 500, 5
 """Types that a text names, of what may be furniture, and of what is none."""
 MOST_LIVE = 5000
 """Rows up to which the results of the live columns are stored; a spreadsheet program works them out in any case."""
-
-
-@dataclass(frozen=True, slots=True)
-class Skipped:
-    """Pieces of one type that were left out for one reason.
-
-    Attributes
-    ----------
-    type : str
-        Type, or class, as the file names it.
-    count : int
-        How many pieces.
-    reason : Text
-        Why.
-    is_furniture : bool
-        Whether they may be furniture that should be assessed; False where the file says that they are fixed.
-    """
-
-    type: str
-    count: int
-    reason: Text
-    is_furniture: bool = True
+NEAR_GROUND = (-1.0, 3.0)
+"""Elevations [m] of a lowest floor that lies at the ground, as far as can be known."""
+LOWEST_ROOF = 2.0
+"""Least height of a building that a workbook takes [m]."""
+ENDING = "-import.txt"
+"""How the name of the file that records an import ends; it begins with that of the model."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -130,12 +118,15 @@ def _cut_texts(row: Mapping[str, Any], long: Collection[str]) -> dict[str, Any]:
     }
 
 
-def name_apart(names: Iterable[str]) -> list[str]:
-    """Return names as cells hold them, cut to `LONGEST_NAME`, each its own: a second "Desk" becomes "Desk (2)"."""
+def name_apart(names: Iterable[str], others: Sequence[str] = ()) -> list[str]:
+    """Return names as cells hold them, cut to `LONGEST_NAME`, each its own: a second "Desk" becomes "Desk (2)".
+
+    `others`: names that are taken.
+    """
     taken: set[str] = set()
     next_number: Counter[str] = Counter()
     found = []
-    for name in names:
+    for name in (*others, *names):
         bare = " ".join(clean(name)[0].split())[:LONGEST_NAME].rstrip()
         one = bare
         while key(one) in taken:
@@ -144,7 +135,28 @@ def name_apart(names: Iterable[str]) -> list[str]:
             one = bare[: LONGEST_NAME - len(mark)] + mark
         taken.add(key(one))
         found.append(one)
-    return found
+    return found[len(others) :]
+
+
+def note_datum(known: Sequence[tuple[str, float]]) -> list[Text]:
+    """Return what has to be checked of the floors' names and elevations [m], from the lowest."""
+    if not known or NEAR_GROUND[0] <= known[0][1] <= NEAR_GROUND[1]:
+        return []
+    if known[0][1] > NEAR_GROUND[1]:
+        text = fill(
+            "The lowest floor, {floor}, is at {elevation:g} m in the file. If it lies at the ground, subtract that "
+            "from every Elevation in Floors and from Height in Building: else it shakes as the top of a taller "
+            "building.",
+            floor=known[0][0], elevation=round(known[0][1], 3),
+        )  # fmt: skip
+        return [text]
+    below = [name for name, elevation in known if elevation < NEAR_GROUND[0]]
+    text = fill(
+        "Below the ground by their elevation, so that they shake as the ground does: {floors}. Correct Elevation in "
+        "Floors if the file does not count from the ground.",
+        floors=", ".join(below),
+    )
+    return [text]
 
 
 def list_remarks(imported: ImportedBuilding) -> tuple[Problem, ...]:
@@ -174,3 +186,28 @@ def say_skipped(group: Sequence[Skipped], most: int) -> Text:
     if len(group) <= most:
         return fill("{pieces} left out ({reason}): {types}.", **values)
     return fill("{pieces} left out ({reason}): {types} and {n:,} more types.", n=len(group) - most, **values)
+
+
+def describe(found: ImportedBuilding) -> Iterator[str]:
+    """Yield what was taken, what was left out by reason and type, and what has to be checked, in English."""
+    kinds, floors = ({row.get(name) for row in found.items} for name in ("type", "floor"))
+    where = f"of {count(len(kinds), 'type')} on {count(len(floors or found.floors), 'floor')}"
+    left = sum(one.count for one in found.skipped if one.is_furniture)
+    pieces = count(len(found.items) + left, "piece")
+    yield f"{found.source}: {f'{len(found.items):,} of ' if left else ''}{pieces} {where} taken."
+    if not found.items:
+        yield "No furniture was found: fill in Items by hand."
+    yield from (say_skipped(group, MOST_NAMED) for _, group in group_skipped(found.skipped))
+    yield from (f"Check: {text}" for text in (*found.warnings, *found.remarks))
+
+
+def keep_record(found: ImportedBuilding, path: Path) -> ImportedBuilding:
+    """Return an import with its record among its files: those lines, the hash of the model and the version.
+
+    Raises OSError if the file cannot be read again.
+    """
+    with open_input(path) as file:
+        digest = hashlib.file_digest(file, "sha256").hexdigest()
+    lines = (f"Imported by assess {__version__} from {found.source}, SHA-256 {digest}", "", *describe(found))
+    text = "\n".join(map(plain_text, lines)) + "\n"
+    return replace(found, files={**found.files, PurePath(found.source).stem + ENDING: text.encode()})

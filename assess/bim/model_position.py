@@ -1,13 +1,12 @@
 """Building models far from their origin brought near it, without what lies far from the rest of the building."""
 
-from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from statistics import median
-from typing import Any, TypeVar
+from typing import Any
 
-from assess.bim.building_model import Area, BuildingModel, Door, LeftOut, Piece, Point, Stair
-from assess.i18n import Text, fill
+from assess.bim.building_model import BuildingModel, Door, Piece, Point, Stair, count_skipped, name_skipped
+from assess.i18n import fill
 
 FARTHEST = 10_000.0
 """Distance from the origin up to which positions are kept as they are [m]."""
@@ -16,8 +15,6 @@ ROUND = 100.0
 REACH = 2000.0
 """Distance from the middle of the building up to which something belongs to it, along X and Y [m]."""
 FAR = fill("more than {reach:g} km from the middle of the building", reach=REACH / 1000)
-
-_Placed = TypeVar("_Placed", Door, Stair)
 
 
 def bring_near(model: BuildingModel) -> BuildingModel:
@@ -49,49 +46,38 @@ def _leave_out_far(model: BuildingModel) -> BuildingModel:
     def is_near(*some: Point) -> bool:
         return all(abs(one - x) <= REACH and abs(other - y) <= REACH for one, other in some)
 
+    def keep_areas(plans: Any) -> Any:
+        return {key: tuple(one for one in areas if is_near(*one[0])) for key, areas in plans.items()}
+
     spaces = tuple(one for one in model.spaces if is_near(*one.area[0]))
-    kept = {one.key for one in spaces}
-    pieces, far = _part_pieces(model.pieces, is_near)
+    known = {one.key for one in spaces}
+    pieces, far = [], []
+    for one in model.pieces:
+        if is_near((one.x - one.width, one.y - one.width), (one.x + one.width, one.y + one.width)):
+            pieces.append(one if one.space in known else replace(one, space=""))
+        else:
+            far.append((name_skipped(one.ifc_class, one.type), FAR, True))
     near = replace(
         model,
         spaces=spaces,
-        doors=_keep(model.doors, is_near),
-        stairs=_keep(model.stairs, is_near),
-        pieces=tuple(one if one.space in kept else replace(one, space="") for one in pieces),
-        walls=_keep_areas(model.walls, is_near),
-        windows=_keep_areas(model.windows, is_near),
-        left_out=(*model.left_out, *far),
+        doors=tuple(one for one in model.doors if is_near((one.x, one.y))),
+        stairs=tuple(one for one in model.stairs if is_near((one.x, one.y))),
+        pieces=tuple(pieces),
+        walls=keep_areas(model.walls),
+        windows=keep_areas(model.windows),
+        skipped=(*model.skipped, *count_skipped(far)),
     )
-    return replace(near, remarks=(*near.remarks, *_note_far(_count(model) - _count(near))))
-
-
-def _part_pieces(pieces: Sequence[Piece], is_near: Callable[..., bool]) -> tuple[list[Piece], list[LeftOut]]:
-    """Return the pieces that are near with their whole width, and the others by class and type as left out."""
-    near = [
-        one for one in pieces if is_near((one.x - one.width, one.y - one.width), (one.x + one.width, one.y + one.width))
-    ]
-    kept = {id(one) for one in near}
-    far = Counter((one.ifc_class, one.type) for one in pieces if id(one) not in kept)
-    return near, [LeftOut(*kind, FAR, count=number, is_furniture=True) for kind, number in far.items()]
-
-
-def _keep(placed: Sequence[_Placed], is_near: Callable[..., bool]) -> tuple[_Placed, ...]:
-    return tuple(one for one in placed if is_near((one.x, one.y)))
-
-
-def _keep_areas(plans: Mapping[str, tuple[Area, ...]], is_near: Callable[..., bool]) -> dict[str, tuple[Area, ...]]:
-    return {key: tuple(one for one in areas if is_near(*one[0])) for key, areas in plans.items()}
+    lost = _count(model) - _count(near)
+    if not lost:
+        return near
+    text = fill("Rooms, doors, stairs and parts of walls that lie more than {reach:g} km from the middle of the "
+                "building were left out: {n:,}.", n=lost, reach=REACH / 1000)  # fmt: skip
+    return replace(near, remarks=(*near.remarks, text))
 
 
 def _count(model: BuildingModel) -> int:
     areas = sum(map(len, (*model.walls.values(), *model.windows.values())))
     return len(model.spaces) + len(model.doors) + len(model.stairs) + areas
-
-
-def _note_far(count: int) -> Iterator[Text]:
-    if count:
-        yield fill("Rooms, doors, stairs and parts of walls that lie more than {reach:g} km from the middle of the "
-                   "building were left out: {n:,}.", n=count, reach=REACH / 1000)  # fmt: skip
 
 
 def _move(model: BuildingModel, by: Point) -> BuildingModel:

@@ -15,20 +15,19 @@ from typing import Any, Literal
 
 import numpy as np
 
-from assess.bim.building_model import Area, BuildingModel, Door, Piece, Space, Stair, Storey
-from assess.bim.cobie_floors import LOWEST_ROOF, note_datum
+from assess.bim.building_model import LONGEST_NAME, Area, BuildingModel, Door, Piece, Skipped, Space, Stair, Storey
 from assess.bim.door_sides import REACH, find_kinds, find_sides
-from assess.bim.draft_corridors import find_width
 from assess.bim.draft_floor import find_room_points
 from assess.bim.floor_drawing import Drawn, draw_storey, name_plans
-from assess.bim.import_workbook import LONGEST_NAME, ImportedBuilding, Skipped, name_apart
-from assess.bim.model_names import Names, name_floors, name_items, name_places, sort_pieces
-from assess.bim.plan_shapes import find_rectangle, to_polygon
-from assess.bim.space_search import SpaceSearch
+from assess.bim.import_workbook import LOWEST_ROOF, ImportedBuilding, name_apart, note_datum
+from assess.bim.plan_shapes import SpaceSearch, find_rectangle, find_width, to_polygon
 from assess.i18n import Text, fill, gettext, nfill
+from assess.natural import natural_key
+from assess.workbook.names import key
 from assess.workbook.outlines import MOST, OutlineError, parse_outline
 from assess.workbook.schema import BUILDING, FLOORS, ITEMS
 
+Row = dict[str, Any]
 Drafts = Literal["none", "draft"]
 """Whether evacuation routes are drafted."""
 CENTIMETRES = 100.0
@@ -63,38 +62,170 @@ def list_building(model: BuildingModel, routes: Drafts = "none") -> ImportedBuil
     `model`: from `assess.bim.ifc_model` and its like.
     `routes`: whether evacuation routes are drafted from the rooms to the exits.
     """
-    holders: Sequence[Piece | Space | Door | Stair] = (*model.pieces, *model.spaces, *model.doors, *model.stairs)
-    used = {one.storey for one in holders}
-    storeys = [one for one in model.storeys if one.key in used] or list(model.storeys)
-    floors = name_floors(storeys)
-    places = name_places(model, floors)
-    pieces, outside = _sort_by_size(sort_pieces(model.pieces, storeys, places))
-    drawn = {one.key: plan for one in storeys if (plan := draw_storey(model, one)) is not None}
-    files = dict(zip(drawn, name_plans(model.source, (floors[key] for key in drawn)), strict=True))
-    found = dict.fromkeys(_type_key(one) for one in pieces)
-    types = dict(zip(found, name_apart(one[0] for one in found), strict=True))
-    draft = _draft(model, {**places, **floors}, routes)
-    values = {
-        "building": model.name, "address": model.address, "latitude": model.latitude, "longitude": model.longitude,
-        "azimuth_deg": model.azimuth_deg, "height": _find_height(model, storeys),
-    }  # fmt: skip
-    source = gettext("shapes in {name}", name=model.source)
-    return ImportedBuilding(
-        source=model.source,
-        building={name: value for name, value in values.items() if value not in (None, "")},
-        floors=[_list_floor(one, floors, drawn.get(one.key), files) for one in storeys],
-        items=list(_list_items(model, pieces, types, floors, places)),
-        places=[*_list_spaces(model, floors, places), *_list_points(model, floors, places), *draft.places],
-        routes=draft.routes,
-        types=[
-            {"type": name, "breadth": breadth, "width": width, "height": height, "source": source}
-            for (_, breadth, width, height), name in types.items()
-        ],
-        skipped=(*_list_skipped(model), *outside),
-        warnings=(*model.warnings, *_note_elevations(storeys, floors), *_warn_of_supports(pieces), *draft.warnings),
-        remarks=(*model.remarks, *_note(model, storeys, pieces)),
-        files={files[key]: plan.svg for key, plan in drawn.items()},
-    )
+    return _Building(model).build(routes)
+
+
+class _Building:
+    """A model with the names of its floors, by the keys of storeys, and of its places, and its pieces in their order.
+
+    Keys of places are those of rooms and doors, and of stairs with their end: ``KEY foot``.
+    """
+
+    def __init__(self, model: BuildingModel) -> None:
+        self.model = model
+        holders: Sequence[Piece | Space | Door | Stair] = (*model.pieces, *model.spaces, *model.doors, *model.stairs)
+        used = {one.storey for one in holders}
+        self.storeys = [one for one in model.storeys if one.key in used] or list(model.storeys)
+        self.floors = dict(
+            zip((one.key for one in self.storeys), name_apart(one.name for one in self.storeys), strict=True)
+        )
+        self.spaces = [one for one in model.spaces if one.storey in self.floors]
+        self.doors = [one for one in model.doors if one.storey in self.floors]
+        self.stairs = [one for one in model.stairs if one.storey in self.floors]
+        self.sides = find_sides(model)
+        self.kinds = find_kinds(model, self.sides)
+        self.places = self._name_places()
+        self.pieces, self.outside = _sort_by_size(self._sort_pieces())
+
+    def build(self, routes: Drafts) -> ImportedBuilding:
+        """Return the rows."""
+        model = self.model
+        drawn = {one.key: plan for one in self.storeys if (plan := draw_storey(model, one)) is not None}
+        files = dict(zip(drawn, name_plans(model.source, (self.floors[key] for key in drawn)), strict=True))
+        found = dict.fromkeys(one.type_key for one in self.pieces)
+        types = dict(zip(found, name_apart(one[0] for one in found), strict=True))
+        source = gettext("shapes in {name}", name=model.source)
+        values = {
+            "building": model.name, "address": model.address, "latitude": model.latitude, "longitude": model.longitude,
+            "azimuth_deg": model.azimuth_deg, "height": _find_height(model, self.storeys),
+        }  # fmt: skip
+        places, drafted, doubts = [*self._list_spaces(), *self._list_points()], (), ()
+        if routes != "none":
+            from assess.bim.draft_routes import draft_routes
+
+            draft = draft_routes(model, {**self.places, **self.floors})
+            places, drafted, doubts = [*places, *draft.places], draft.routes, draft.remarks
+        return ImportedBuilding(
+            source=model.source,
+            building={name: value for name, value in values.items() if value not in (None, "")},
+            floors=[self._list_floor(one, drawn.get(one.key), files) for one in self.storeys],
+            items=list(self._list_items(types)),
+            places=places,
+            routes=drafted,
+            types=[
+                {"type": name, "breadth": breadth, "width": width, "height": height, "source": source}
+                for (_, breadth, width, height), name in types.items()
+            ],
+            skipped=(*model.skipped, *self.outside),
+            warnings=(*model.warnings, *self._note_elevations(), *_warn_of_supports(self.pieces), *doubts),
+            remarks=(*model.remarks, *_note(self)),
+            files={files[key]: plan.svg for key, plan in drawn.items()},
+        )
+
+    # ------------------------------------------------------------ names and order
+
+    def _name_places(self) -> dict[str, str]:
+        """Return the names of rooms, doors and ends of stairs: of `floors` alone."""
+        counts = Counter(key(one.name) for one in self.spaces)
+        short = {
+            one.key: one.name
+            if one.name and counts[key(one.name)] == 1
+            else f"{self.floors[one.storey]} {one.name}".strip()  # other floors have a room of that name
+            for one in self.spaces
+        }
+        named = [(one.key, f"{short[one.key]} {one.title}".strip()) for one in self.spaces]
+        for door in self.doors:
+            rooms = " / ".join(sorted({short[side] for side in self.sides[door.key] if side in short}, key=natural_key))
+            rooms = rooms or self.floors[door.storey]
+            is_exit = self.kinds[door.key] == "exit"
+            text = gettext("Exit {room}", room=rooms) if is_exit else gettext("Door {rooms}", rooms=rooms)
+            named.append((door.key, text))
+        ends = {"foot": fill("foot"), "head": fill("head")}
+        for stair in self.stairs:
+            text = gettext("Stair {floor}, {end}", floor=self.floors[stair.storey], end=gettext(ends[stair.end]))
+            named.append((f"{stair.key} {stair.end}", text))
+        return dict(zip((key for key, _ in named), name_apart(name for _, name in named), strict=True))
+
+    def _sort_pieces(self) -> list[Piece]:
+        """Return pieces by storey, room and type, as people look for them; those in no room last."""
+        order = {one.key: at for at, one in enumerate(self.storeys)}
+
+        def place(one: Piece) -> tuple[Any, ...]:
+            room = not one.space, natural_key(self.places.get(one.space, ""))
+            return order[one.storey], *room, natural_key(one.type), one.x, one.y
+
+        return sorted(self.model.pieces, key=place)
+
+    def _name_items(self) -> list[str]:
+        """Return names such as ``A203-02``: the room, or else the floor, and a number in it."""
+        numbers: Counter[str] = Counter()
+        spaces = {one.key: one for one in self.model.spaces}
+        rooms = Counter(key(one.name) for one in spaces.values())
+        found = []
+        for one in self.pieces:
+            room, at = spaces.get(one.piece.space), self.floors[one.piece.storey]
+            if room is not None and room.name and rooms[key(room.name)] == 1:
+                at = room.name
+            numbers[key(at)] += 1
+            found.append(f"{at}-{numbers[key(at)]:02}")
+        return name_apart(found)
+
+    # ------------------------------------------------------------ rows
+
+    def _list_floor(self, storey: Storey, plan: Drawn | None, files: Mapping[str, str]) -> Row:
+        row: Row = {"floor": self.floors[storey.key]}
+        if _is_known(storey):
+            row["elevation"] = round(storey.elevation, 3) + 0.0
+        if plan is not None:
+            row |= {"plan": files[storey.key], "plan_left": plan.left, "plan_bottom": plan.bottom,
+                    "plan_width": plan.width}  # fmt: skip
+        return row
+
+    def _list_items(self, types: Mapping[Any, str]) -> Iterator[Row]:
+        for name, one in zip(self._name_items(), self.pieces, strict=True):
+            piece = one.piece
+            row = {
+                "item": name, "floor": self.floors[piece.storey], "room": self.places.get(piece.space, ""),
+                "description": piece.type, "type": types[one.type_key], **one.sizes, "x": round(piece.x, 3),
+                "y": round(piece.y, 3), "angle_deg": one.angle_deg, "anchored": "unknown" if piece.is_fitted else "",
+                "source_id": piece.key, "sizes_from": self.model.sizes_from, "notes": "; ".join(_list_notes(one)),
+            }  # fmt: skip
+            yield {field: value for field, value in row.items() if value != ""}
+
+    def _list_spaces(self) -> Iterator[Row]:
+        points, search = find_room_points(self.model), SpaceSearch(self.model.spaces)
+        held = (search.find(one.storey, (one.x, one.y), REACH) for one in self.model.stairs)
+        with_stair = {own[0].key for own in held if own}
+        doors = Counter(key for sides in self.sides.values() for key in set(sides))
+        for one in self.spaces:
+            x, y = points[one.key]
+            kind = find_kind(one, doors[one.key], holds_stair=one.key in with_stair)
+            row = {"place": self.places[one.key], "floor": self.floors[one.storey], "x": x, "y": y, "kind": kind}
+            outline = _write_outline(one.area)
+            yield row | ({"outline": outline} if outline else {})
+
+    def _list_points(self) -> Iterator[Row]:
+        for door in self.doors:
+            kind = "exit" if self.kinds[door.key] == "exit" else "door"
+            yield self._list_point(door, door.key, kind)
+        for stair in self.stairs:
+            yield self._list_point(stair, f"{stair.key} {stair.end}", "stair")
+
+    def _list_point(self, one: Door | Stair, key: str, kind: str) -> Row:
+        row = {"place": self.places[key], "floor": self.floors[one.storey], "kind": kind}
+        return row | {"x": round(one.x, 3), "y": round(one.y, 3)}
+
+    # ------------------------------------------------------------ what is to be checked
+
+    def _note_elevations(self) -> list[Text]:
+        odd = [self.floors[one.key] for one in self.storeys if not _is_known(one)]
+        notes = note_datum([(self.floors[one.key], one.elevation) for one in self.storeys if _is_known(one)])
+        if odd:
+            notes.append(
+                fill("Elevation is blank for {floors}: in the model it is outside {low:g} to {high:g} m. Fill in the "
+                     "height above the ground.", floors=", ".join(odd[:20]), low=LOWEST, high=HIGHEST)
+            )  # fmt: skip
+        return notes
 
 
 # ---------------------------------------------------------------- sizes
@@ -123,6 +254,11 @@ class Sized:
     def is_off_middle(self) -> bool:
         """Whether it tips over one edge sooner than its Breadth says: its supports do not stand about its middle."""
         return self.safe < self.breadth
+
+    @property
+    def type_key(self) -> tuple[str, float, float, float]:
+        """What pieces of one type share."""
+        return self.piece.type, self.breadth, self.width, self.height
 
     @property
     def sizes(self) -> dict[str, float]:
@@ -175,11 +311,7 @@ def _sort_by_size(pieces: Sequence[Piece]) -> tuple[list[Sized], list[Skipped]]:
     return kept, [Skipped(kind, number, reason) for (kind, reason), number in counts.items()]
 
 
-def _type_key(one: Sized) -> tuple[str, float, float, float]:
-    return one.piece.type, one.breadth, one.width, one.height
-
-
-# ---------------------------------------------------------------- rows
+# ---------------------------------------------------------------- values of rows
 
 
 def _find_height(model: BuildingModel, storeys: Sequence[Storey]) -> float | None:
@@ -192,44 +324,8 @@ def _find_height(model: BuildingModel, storeys: Sequence[Storey]) -> float | Non
     return round(top, 2) if max(highest, LOWEST_ROOF) < top <= TALLEST else None
 
 
-def _list_floor(storey: Storey, floors: Names, plan: Drawn | None, files: Names) -> dict[str, Any]:
-    row: dict[str, Any] = {"floor": floors[storey.key]}
-    if _is_known(storey):
-        row["elevation"] = round(storey.elevation, 3) + 0.0
-    if plan is not None:
-        row |= {"plan": files[storey.key], "plan_left": plan.left, "plan_bottom": plan.bottom, "plan_width": plan.width}
-    return row
-
-
 def _is_known(storey: Storey) -> bool:
     return LOWEST <= storey.elevation <= HIGHEST
-
-
-def _note_elevations(storeys: Sequence[Storey], floors: Names) -> list[Text]:
-    odd = [floors[one.key] for one in storeys if not _is_known(one)]
-    notes = note_datum([(floors[one.key], one.elevation) for one in storeys if _is_known(one)])
-    if odd:
-        notes.append(
-            fill("Elevation is blank for {floors}: in the model it is outside {low:g} to {high:g} m. Fill in the "
-                 "height above the ground.", floors=", ".join(odd[:20]), low=LOWEST, high=HIGHEST)
-        )  # fmt: skip
-    return notes
-
-
-def _list_items(
-    model: BuildingModel, pieces: Sequence[Sized], types: Mapping[Any, str], floors: Names, places: Names
-) -> Iterator[dict[str, Any]]:
-    spaces = {one.key: one for one in model.spaces}
-    names = name_items([one.piece for one in pieces], spaces, floors)
-    for name, one in zip(names, pieces, strict=True):
-        piece = one.piece
-        row = {
-            "item": name, "floor": floors[piece.storey], "room": places.get(piece.space, ""), "description": piece.type,
-            "type": types[_type_key(one)], **one.sizes, "x": round(piece.x, 3), "y": round(piece.y, 3),
-            "angle_deg": one.angle_deg, "anchored": "unknown" if piece.is_fitted else "", "source_id": piece.key,
-            "sizes_from": model.sizes_from, "notes": "; ".join(_list_notes(one)),
-        }  # fmt: skip
-        yield {field: value for field, value in row.items() if value != ""}
 
 
 def _list_notes(one: Sized) -> Iterator[str]:
@@ -254,27 +350,6 @@ def _note_supports(one: Sized) -> str:
         return gettext("{body}, which are off the middle: to one side it tips as with a Breadth of {safe:g} cm",
                        body=body, safe=one.safe)  # fmt: skip
     return body
-
-
-def _list_spaces(model: BuildingModel, floors: Names, places: Names) -> Iterator[dict[str, Any]]:
-    points, stairs = find_room_points(model), _find_stair_rooms(model)
-    doors = Counter(key for sides in find_sides(model).values() for key in set(sides))
-    for one in model.spaces:
-        if one.storey in floors:
-            x, y = points[one.key]
-            kind = find_kind(one, doors[one.key], holds_stair=one.key in stairs)
-            row = {"place": places[one.key], "floor": floors[one.storey], "x": x, "y": y, "kind": kind}
-            outline = _write_outline(one.area)
-            yield row | ({"outline": outline} if outline else {})
-
-
-def _find_stair_rooms(model: BuildingModel) -> set[str]:
-    found = set()
-    for storey in {one.storey for one in model.stairs}:
-        search = SpaceSearch([one for one in model.spaces if one.storey == storey])
-        held = search.find_all([(one.x, one.y) for one in model.stairs if one.storey == storey], REACH)
-        found |= {own[0].key for own in held if own}
-    return found
 
 
 def find_kind(space: Space, doors: int = 0, *, holds_stair: bool = False) -> Literal["room", "corridor", "stair"]:
@@ -312,47 +387,6 @@ def _write_outline(area: Area) -> str:
     return text
 
 
-def _list_points(model: BuildingModel, floors: Names, places: Names) -> Iterator[dict[str, Any]]:
-    kinds = find_kinds(model)
-    for door in model.doors:
-        if door.storey in floors:
-            kind = "exit" if kinds[door.key] == "exit" else "door"
-            row = {"place": places[door.key], "floor": floors[door.storey], "kind": kind}
-            yield row | {"x": round(door.x, 3), "y": round(door.y, 3)}
-    for stair in model.stairs:
-        if stair.storey in floors:
-            row = {"place": places[f"{stair.key} {stair.end}"], "floor": floors[stair.storey], "kind": "stair"}
-            yield row | {"x": round(stair.x, 3), "y": round(stair.y, 3)}
-
-
-# ---------------------------------------------------------------- routes
-
-
-@dataclass(frozen=True, slots=True)
-class _Draft:
-    places: Sequence[Mapping[str, Any]] = ()
-    routes: Sequence[Mapping[str, Any]] = ()
-    warnings: tuple[Text, ...] = ()
-
-
-def _draft(model: BuildingModel, places: Names, routes: Drafts) -> _Draft:
-    if routes == "none":
-        return _Draft()
-    from assess.bim.draft_routes import draft_routes
-
-    drafted = draft_routes(model, places)
-    return _Draft(drafted.places, drafted.routes, tuple(drafted.remarks))
-
-
-# ---------------------------------------------------------------- what was left out, and what is to be checked
-
-
-def _list_skipped(model: BuildingModel) -> Iterator[Skipped]:
-    for one in model.left_out:
-        kind = one.type if one.ifc_class in ("", one.type) else f"{one.ifc_class} {one.type}"
-        yield Skipped(kind[:LONGEST_NAME], one.count, one.reason, one.is_furniture)
-
-
 def _warn_of_supports(pieces: Sequence[Sized]) -> Iterator[Text]:
     off = sum(one.is_off_middle for one in pieces)
     if off:
@@ -364,15 +398,16 @@ def _warn_of_supports(pieces: Sequence[Sized]) -> Iterator[Text]:
         )  # fmt: skip
 
 
-def _note(model: BuildingModel, storeys: Sequence[Storey], pieces: Sequence[Sized]) -> Iterator[Text]:
-    fitted = sum(one.piece.is_fitted for one in pieces)
+def _note(own: _Building) -> Iterator[Text]:
+    model = own.model
+    fitted = sum(one.piece.is_fitted for one in own.pieces)
     if fitted:
         yield nfill(
             "{n:,} piece is fitted furniture by its name: usually fixed, free-standing until Anchored says yes.",
             "{n:,} pieces are fitted furniture by their names: usually fixed, free-standing until Anchored says yes.",
             fitted,
         )  # fmt: skip
-    inset = sum(one.is_inset for one in pieces)
+    inset = sum(one.is_inset for one in own.pieces)
     if inset:
         yield nfill(
             "{n:,} piece stands on supports inside its body: Breadth is between these, and Notes give the body.",
@@ -380,13 +415,12 @@ def _note(model: BuildingModel, storeys: Sequence[Storey], pieces: Sequence[Size
             inset,
         )  # fmt: skip
     if model.doors:
-        kinds = find_kinds(model)
-        out = sum(kind == "exit" for kind in kinds.values())
+        out = sum(kind == "exit" for kind in own.kinds.values())
         yield fill("Doors that lead out of the ground storey (a room on one side only): {n:,} of {all:,}.", n=out,
                    all=len(model.doors))  # fmt: skip
     if model.latitude is not None:
         yield fill("Latitude and Longitude are those of the model, {latitude:g} and {longitude:g}: check them, as "
                    "programs fill in a default town.", latitude=model.latitude, longitude=model.longitude)  # fmt: skip
-    empty = [one.name for one in model.storeys if one not in storeys]
+    empty = [one.name for one in model.storeys if one not in own.storeys]
     if empty:
         yield fill("Storeys without furniture, rooms and doors were left out: {names}.", names=", ".join(empty[:20]))

@@ -1,4 +1,7 @@
-"""Sizes and outlines of shapes made of triangles: boxes of pieces, plans of rooms, sections of walls. Metres, Z up."""
+"""Sizes and outlines of shapes made of triangles: boxes of pieces, plans of rooms, sections of walls. Metres, Z up.
+
+Also which room holds a point of a plan, and which bodies stand on each other.
+"""
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
@@ -10,7 +13,8 @@ import shapely
 from numpy.typing import NDArray
 from shapely import MultiPoint, Polygon
 
-from assess.bim.building_model import Area, Point, Ring
+from assess.bim.building_model import Area, Point, Space, name_some
+from assess.i18n import Text, nfill
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -29,6 +33,12 @@ JOINED = 1e-3
 """Gap across which two parts of an outline are joined [m]."""
 NEAREST = 1e-3
 """Edges of a base whose distances from the middle differ by less are as near [m]."""
+SLENDER, NARROW = 3.0, 2.5
+LONG, WIDE = 6.0, 5.0
+"""A corridor is `SLENDER` times as long as wide and up to `NARROW` wide [m], or `LONG` times and up to `WIDE` [m]."""
+NARROWEST = 0.6
+"""Walls that are nearer than this to each other have no way between them [m]."""
+NOTHING = Polygon()
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,10 +69,6 @@ class Shape:
         """Z of its highest point [m]."""
         return float(self.points[:, 2].max())
 
-    def moved(self, dx: float, dy: float) -> "Shape":
-        """Return the shape moved in plan [m]."""
-        return Shape(self.points + np.array([dx, dy, 0.0]), self.triangles, self.axes)
-
 
 def join(shapes: Sequence[Shape]) -> Shape:
     """Return the shapes of the parts of an element as one; its axes are those of the first."""
@@ -78,8 +84,7 @@ def join(shapes: Sequence[Shape]) -> Shape:
 class Box:
     """The box round a piece: centre of its plan, shorter and longer side, height [m]; direction of the shorter [deg].
 
-    `support_breadth` and `support_width` are the distances between its outermost points at the floor along both [m];
-    `base` is what the edge of its base that is nearest to the middle leaves it.
+    The fields are those of `assess.bim.building_model.Piece`; the base is the convex hull of the points at the floor.
     """
 
     x: float
@@ -90,20 +95,9 @@ class Box:
     angle_deg: float
     support_breadth: float
     support_width: float
-    base: "Base"
-
-
-@dataclass(frozen=True, slots=True)
-class Base:
-    """The base of a piece about the middle of its plan: the convex hull of its points at the floor.
-
-    `reach` is the distance from the middle to the nearest edge [m], 0 where the middle lies beside the base;
-    `angle_deg` the direction to that edge, in [-90, 90); `across` the extent of the whole plan across that [m].
-    """
-
-    reach: float
-    angle_deg: float
-    across: float
+    support_reach: float
+    support_angle_deg: float
+    support_across: float
 
 
 def find_box(shape: Shape) -> Box:
@@ -120,12 +114,12 @@ def find_box(shape: Shape) -> Box:
         middle = plan.mean(axis=0)
         rectangle = Rectangle(float(middle[0]), float(middle[1]), 0.0, float(np.ptp(plan, axis=0).max()), 0.0)
     feet = plan[shape.points[:, 2] <= shape.bottom + AT_FLOOR]
-    turn = math.radians(rectangle.angle_deg)
-    along, across = np.array([math.cos(turn), math.sin(turn)]), np.array([-math.sin(turn), math.cos(turn)])
+    x, y = direction_of(rectangle.angle_deg)
+    along, across = np.array([x, y]), np.array([-y, x])
     supports = float(np.ptp(feet @ along)), float(np.ptp(feet @ across))
     sides, height = (rectangle.short, rectangle.long), shape.top - shape.bottom
-    base = _find_base_edge(plan, feet, rectangle)
-    return Box(rectangle.x, rectangle.y, *sides, height, rectangle.angle_deg, *supports, base)
+    edge = _find_base_edge(plan, feet, rectangle)
+    return Box(rectangle.x, rectangle.y, *sides, height, rectangle.angle_deg, *supports, *edge)
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,21 +138,23 @@ class Rectangle:
         return self.short * self.long
 
 
-def _find_base_edge(plan: FloatArray, feet: FloatArray, rectangle: Rectangle) -> Base:
-    """Return what the nearest edge of the base leaves a piece; of edges that are as near, that along the short side."""
+def _find_base_edge(plan: FloatArray, feet: FloatArray, rectangle: Rectangle) -> tuple[float, float, float]:
+    """Return distance and direction of the nearest edge of the base, and the extent of the plan across that.
+
+    Of edges that are as near, that along the short side is taken.
+    """
     middle, hull = np.array([rectangle.x, rectangle.y]), MultiPoint(feet).convex_hull
     if not isinstance(hull, Polygon) or not hull.covers(shapely.Point(middle)):
-        return Base(0.0, rectangle.angle_deg, rectangle.long)
+        return 0.0, rectangle.angle_deg, rectangle.long
     corners = np.array(shapely.geometry.polygon.orient(hull).exterior.coords)
     edges = np.diff(corners, axis=0)
     normals = np.stack([edges[:, 1], -edges[:, 0]], axis=1) / np.hypot(edges[:, 0], edges[:, 1])[:, None]
     far = ((corners[:-1] - middle) * normals).sum(axis=1)
-    turn = math.radians(rectangle.angle_deg)
-    along = np.abs(normals @ np.array([math.cos(turn), math.sin(turn)]))
+    along = np.abs(normals @ np.array(direction_of(rectangle.angle_deg)))
     near = np.flatnonzero(far < far.min() + NEAREST)
     x, y = normals[near[along[near].argmax()]].tolist()
     angle = (math.degrees(math.atan2(y, x)) + 90) % 180 - 90
-    return Base(max(float(far.min()), 0.0), angle, float(np.ptp(plan @ np.array([-y, x]))))
+    return max(float(far.min()), 0.0), angle, float(np.ptp(plan @ np.array([-y, x])))
 
 
 def _in_own_axes(shape: Shape) -> Rectangle | None:
@@ -201,9 +197,8 @@ def find_base(shape: Shape) -> Area | None:
         flat = _list(shapely.polygons(chosen[:, :, :2])) if len(chosen) else []
         parts = [one for one in flat if one.area > SMALLEST]
         area = shapely.union_all(parts).buffer(JOINED, join_style="mitre").buffer(-JOINED, join_style="mitre")
-        found = max(list_polygons(area), key=lambda one: one.area, default=None)
-        if found is not None:
-            return to_area(found)
+        if not area.is_empty:
+            return to_area(find_largest(area))
     return None
 
 
@@ -258,23 +253,162 @@ def list_polygons(geometry: Any) -> Iterator[Polygon]:
 
 def to_area(polygon: Polygon) -> Area:
     """Return a polygon as plain data, to the millimetre."""
-    return tuple(_to_ring(ring.coords) for ring in (polygon.exterior, *polygon.interiors))
-
-
-def _to_ring(coordinates: Iterable[Sequence[float]]) -> Ring:
-    corners: list[Point] = [(round(float(one[0]), 3), round(float(one[1]), 3)) for one in coordinates]
-    return tuple(corners[:-1])
+    rings = (polygon.exterior, *polygon.interiors)
+    return tuple(tuple((round(float(x), 3), round(float(y), 3)) for x, y, *_ in ring.coords[:-1]) for ring in rings)
 
 
 def to_polygon(area: Area) -> Polygon:
     """Return plain data as a polygon of shapely; where its sides cross, its largest valid part, which may be empty."""
-    polygon = Polygon(area[0], area[1:])
-    if polygon.is_valid:
-        return polygon
-    return max(list_polygons(shapely.make_valid(polygon)), key=lambda one: one.area, default=Polygon())
+    return find_valid(Polygon(area[0], area[1:]))
+
+
+def find_valid(polygon: Polygon) -> Polygon:
+    """Return a polygon; where its sides cross, its largest valid part, which may be empty."""
+    return polygon if polygon.is_valid else find_largest(shapely.make_valid(polygon))
+
+
+def find_largest(geometry: Any, otherwise: Polygon = NOTHING) -> Polygon:
+    """Return the largest polygon of a geometry of shapely; `otherwise` where it has none."""
+    return max(list_polygons(geometry), key=lambda one: one.area, default=otherwise)
+
+
+def list_rings(geometry: Any) -> Iterator[shapely.LinearRing]:
+    """Yield the rings of the polygons of a geometry: their holes clockwise, then their outer ring anticlockwise."""
+    for one in list_polygons(geometry):
+        oriented = shapely.geometry.polygon.orient(one)
+        yield from (*oriented.interiors, oriented.exterior)
+
+
+def direction_of(angle_deg: float) -> Point:
+    """Return a direction, anticlockwise from X, as a vector of length 1."""
+    turn = math.radians(angle_deg)
+    return math.cos(turn), math.sin(turn)
+
+
+def place_at(at: Point, direction: Point, corners: Sequence[Point]) -> Polygon:
+    """Return a polygon whose corners are given along a direction and to the left of it, from a point [m]."""
+    (x, y), (u, v) = at, direction
+    return Polygon([(x + a * u - b * v, y + a * v + b * u) for a, b in corners])
+
+
+def box_at(at: Point, direction: Point, along: float, across: float, behind: float | None = None) -> Polygon:
+    """Return a rectangle: `along` a direction, `behind` against it (as far, if not given) and `across` each way [m]."""
+    back = -along if behind is None else -behind
+    return place_at(at, direction, ((along, -across), (along, across), (back, across), (back, -across)))
 
 
 def merge(polygons: Iterable[Polygon]) -> tuple[Area, ...]:
     """Return the union of polygons as plain data."""
     union = shapely.union_all(list(polygons))
     return tuple(to_area(one) for one in list_polygons(union.simplify(JOINED / 2)) if one.area > SMALLEST)
+
+
+# ---------------------------------------------------------------- rooms
+
+
+def find_width(area: shapely.geometry.base.BaseGeometry) -> float:
+    """Return the width of a long narrow area [m], that of the rectangle of its area and perimeter; 0 for others."""
+    half, size = area.length / 2, area.area
+    root = half**2 - 4 * size
+    if root <= 0:
+        return 0.0
+    width = (half - math.sqrt(root)) / 2
+    ratio = (half - width) / width if width > 0 else math.inf
+    is_narrow = width <= NARROW and ratio >= SLENDER
+    return width if width >= NARROWEST and (is_narrow or (width <= WIDE and ratio >= LONG)) else 0.0
+
+
+class SpaceSearch:
+    """Finds the spaces that hold points of a storey.
+
+    Some programs export the gross area of a storey, or a zone, as a space beside its rooms, and before them.
+    """
+
+    def __init__(self, spaces: Iterable[Space]) -> None:
+        self._spaces: dict[str, list[Space]] = {}
+        for one in spaces:
+            self._spaces.setdefault(one.storey, []).append(one)
+        self._polygons = {storey: [to_polygon(one.area) for one in own] for storey, own in self._spaces.items()}
+        self._trees = {storey: shapely.STRtree(polygons) for storey, polygons in self._polygons.items()}
+
+    def find(self, storey: str, point: Point, reach: float = 0.0) -> list[Space]:
+        """Return the spaces that hold a point in plan, the smallest first; of those that are as large the first.
+
+        `reach`: how far a space may be from a point that it holds [m].
+        """
+        if storey not in self._trees:
+            return []
+        hits = self._trees[storey].query(shapely.Point(point), predicate="dwithin", distance=reach).tolist()
+        polygons, spaces = self._polygons[storey], self._spaces[storey]
+        return [spaces[at] for at in sorted(hits, key=lambda at: (polygons[at].area, at))]
+
+
+# ---------------------------------------------------------------- bodies that stand on each other
+
+
+TOUCHING = 0.02
+"""Gap up to which two bodies touch [m]."""
+LEAST_COVER = 0.5
+"""Share of the plan of the lower body from which the upper one belongs to it; a lamp on a table covers less [-]."""
+MOST_NAMED = 5
+
+Bounds = FloatArray
+"""Least and largest X, Y and Z of bodies, (n, 6): x, y, z, X, Y, Z [m]."""
+
+
+def find_pairs(upper: Bounds, lower: Bounds, *, beside: bool = False) -> list[tuple[int, int]]:
+    """Return the pairs of an upper body, which does not stand on the floor, and one on which it stands.
+
+    `beside`: also of one that it touches at a side, as a shelf between the sides of a bookcase does.
+    """
+    tree = shapely.STRtree(shapely.box(lower[:, 0], lower[:, 1], lower[:, 3], lower[:, 4]))
+    gap = TOUCHING
+    wide = shapely.box(upper[:, 0] - gap, upper[:, 1] - gap, upper[:, 3] + gap, upper[:, 4] + gap)
+    above, below = tree.query(wide)
+    bottom = upper[above, 2]
+    least = lower[below, 2 if beside else 5] - gap
+    reach = (least <= bottom) & (bottom <= lower[below, 5] + gap)
+    over = np.minimum(upper[above, 3:5], lower[below, 3:5]) - np.maximum(upper[above, :2], lower[below, :2])
+    cover = _areas(upper)[above] if beside else over.clip(0).prod(axis=1)
+    found = reach & (cover >= LEAST_COVER * _areas(lower)[below])
+    return [(int(one), int(other)) for one, other in zip(above[found], below[found], strict=True)]
+
+
+def _areas(bounds: Bounds) -> FloatArray:
+    found: FloatArray = (bounds[:, 3:5] - bounds[:, :2]).prod(axis=1)
+    return found
+
+
+def join_stacked(bounds: Bounds, is_on_floor: Sequence[bool], *, beside: bool = False) -> list[list[int]]:
+    """Return which bodies of a group are one piece, by their places: what is off the floor belongs to what it touches.
+
+    Bodies that stand beside each other on the floor stay apart. `beside`: see `find_pairs`. Each piece begins with its
+    lowest body.
+    """
+    floor = np.asarray(is_on_floor, bool)
+    label = list(range(len(bounds)))
+    off = np.flatnonzero(~floor)
+    for at, other in find_pairs(bounds[off], bounds, beside=beside):
+        one, two = label[int(off[at])], label[other]
+        label = [min(one, two) if each in (one, two) else each for each in label]
+    pieces = [[at for at, each in enumerate(label) if each == kind] for kind in dict.fromkeys(label)]
+    return [sorted(piece, key=lambda at: (not floor[at], bounds[at, 2], at)) for piece in pieces]
+
+
+def note_stacked(names: Sequence[str], bounds: Bounds, left: Bounds) -> list[Text]:
+    """Return the warning about the taken pieces on which others stand that were left out."""
+    if not len(bounds) or not len(left):
+        return []
+    carriers = dict.fromkeys(other for _, other in find_pairs(left, bounds))
+    if not carriers:
+        return []
+    shown = name_some([names[at] for at in carriers], MOST_NAMED)
+    return [
+        nfill(
+            "Something that was left out stands on {n:,} piece, whose height is then not the whole: {names}. Check its "
+            "Height in Items.",
+            "Something that was left out stands on {n:,} pieces, whose heights are then not the whole: {names}. Check "
+            "their Height in Items.",
+            len(carriers), names=shown,
+        )
+    ]  # fmt: skip

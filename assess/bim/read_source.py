@@ -5,11 +5,16 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from assess.bim.building_model import BuildingModel
-from assess.bim.ifc_file import check_installed, check_model, is_model
-from assess.bim.import_record import keep_record
-from assess.bim.import_workbook import ImportedBuilding
+from assess.bim.cobie import read_cobie
+from assess.bim.ifc_file import check_installed, check_model, is_model, unreadable
+from assess.bim.ifc_model import read_model
+from assess.bim.import_workbook import ImportedBuilding, keep_record
 from assess.bim.model_process import run_apart
 from assess.bim.model_rows import Drafts, list_building
+from assess.bim.roomplan import read_roomplan
+from assess.bim.scan_values import MOST_BYTES as MOST_OF_SCAN
+from assess.bim.sweet_home import HOME, OLD_HOME, read_sweet_home
+from assess.bim.sweet_home import MOST_BYTES as MOST_OF_HOME
 from assess.errors import InputError, ModelError
 from assess.i18n import fill, load_catalogue, speaking, spoken
 from assess.input_file import open_input, read_input
@@ -19,8 +24,6 @@ Reader = Callable[[Path, str, Sequence[str]], BuildingModel]
 """Reads a file, by its path, its name and further classes of furniture."""
 KINDS = (".ifc", ".json", ".sh3d", ".xlsx", ".xlsm")
 """Ends of names of files that are imported."""
-HOME, OLD_HOME = "Home.xml", "Home"
-"""Parts of a file of Sweet Home 3D."""
 _ZIP = b"PK\x03\x04"
 _BRACES = (b"{", b"[")
 _LOOKED_AT = 4096
@@ -46,7 +49,7 @@ def read_source(
             start = file.read(_LOOKED_AT)
         return keep_record(_read(path, name, start, progress, routes, also), path)
     except OSError as error:
-        raise InputError(fill("{name} cannot be read: {why}.", name=name, why=error.strerror or str(error))) from None
+        raise unreadable(name, error) from None
 
 
 def _read(
@@ -64,7 +67,7 @@ def _read(
         )  # fmt: skip
     check_model(path, name)
     check_installed()
-    return _build_apart(read_ifc, path, name, progress, routes, also)
+    return _build_apart(read_model, path, name, progress, routes, also)
 
 
 def _build_apart(
@@ -79,44 +82,26 @@ def build(read: Reader, path: Path, name: str, routes: Drafts, also: Sequence[st
         return list_building(read(path, name, also), routes)
 
 
-def read_ifc(path: Path, name: str, also: Sequence[str]) -> BuildingModel:
-    """Read a building model in IFC; errors as of `assess.bim.ifc_model.read_model`."""
-    from assess.bim.ifc_model import read_model
-
-    return read_model(path, name, also)
-
-
 def read_scan(path: Path, name: str, _also: Sequence[str]) -> BuildingModel:
     """Read a RoomPlan scan; errors as of `assess.bim.roomplan.read_roomplan`."""
-    from assess.bim.roomplan import read_roomplan
-    from assess.bim.scan_values import MOST_BYTES
-
-    return read_roomplan(read_input(path, MOST_BYTES), name)
+    return read_roomplan(read_input(path, MOST_OF_SCAN), name)
 
 
 def read_home(path: Path, name: str, _also: Sequence[str]) -> BuildingModel:
     """Read a home of Sweet Home 3D; errors as of `assess.bim.sweet_home.read_sweet_home`."""
-    from assess.bim.sweet_home import MOST_BYTES, read_sweet_home
-
-    return read_sweet_home(read_input(path, MOST_BYTES), name)
+    return read_sweet_home(read_input(path, MOST_OF_HOME), name)
 
 
 def _read_packed(path: Path, name: str, progress: Progress, routes: Drafts) -> ImportedBuilding:
-    parts = _list_parts(path, name)
+    try:
+        with zipfile.ZipFile(path) as archive:
+            parts = archive.namelist()
+    except (OSError, zipfile.BadZipFile, NotImplementedError, ValueError):
+        raise ModelError(fill("{name} is damaged: it cannot be unpacked. Copy or save it again.", name=name)) from None
     if any(part.lower().endswith((".ifc", ".ifcxml")) for part in parts):
         check_model(path, name)
     if HOME in parts or OLD_HOME in parts:
         return _build_apart(read_home, path, name, progress, routes)
-    from assess.bim.cobie import read_cobie
-
     if routes != "none":
         raise ModelError(fill("{name} holds no positions, so that no routes can be drafted from it.", name=name))
     return progress.wait_for(lambda: read_cobie(path, name, progress))
-
-
-def _list_parts(path: Path, name: str) -> list[str]:
-    try:
-        with zipfile.ZipFile(path) as archive:
-            return archive.namelist()
-    except (OSError, zipfile.BadZipFile, NotImplementedError, ValueError):
-        raise ModelError(fill("{name} is damaged: it cannot be unpacked. Copy or save it again.", name=name)) from None

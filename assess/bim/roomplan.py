@@ -9,33 +9,32 @@ begins its axes wherever the scan began: the plan is turned so that most walls r
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from statistics import median
+
+import numpy as np
+import shapely
+from shapely import LineString, Point, Polygon
 
 from assess.bim.building_model import (
     IS_TILTED,
     NOT_ON_FLOOR,
     ON_FLOOR,
     SILL,
+    SMALLEST_ROOM,
+    Area,
     BuildingModel,
     Door,
-    LeftOut,
     Piece,
+    Skipped,
     Space,
     Stair,
     Storey,
+    count_skipped,
+    name_skipped,
 )
-from assess.bim.scan_plan import (
-    draw_walls,
-    draw_windows,
-    find_level,
-    find_rooms,
-    find_turn,
-    is_upright,
-    turn_by,
-)
-from assess.bim.scan_values import Scan, Scanned, parse_scan, say_word
-from assess.bim.space_search import find_rooms_at
+from assess.bim.plan_shapes import SpaceSearch, find_valid, list_polygons, merge, to_area
+from assess.bim.scan_values import MOST_SURFACES, FloatArray, Label, Scan, Scanned, parse_scan, say_word
 from assess.i18n import Text, fill, gettext, nfill
 
 SCHEMA = "RoomPlan"
@@ -49,6 +48,12 @@ BUILT_IN = ("oven", "dishwasher", "stove", "washerDryer", "refrigerator")
 FITTED = ("oven", "dishwasher")
 """Categories that are usually built in."""
 LOW = "low"
+WALL = 0.1
+"""Thickness with which walls are drawn: a scan knows their faces alone [m]."""
+UPRIGHT = 0.999
+"""Least Z of the vertical axis of what stands upright [-]: within 2.6 degrees."""
+JOINS = 0.15
+"""Gap at a corner across which two walls are joined to close a room [m]."""
 
 IS_FIXED = fill("fixed to the building")
 IS_BUILT_IN = fill("built into a cabinet, which is imported")
@@ -78,11 +83,11 @@ def read_roomplan(data: bytes, name: str) -> BuildingModel:
     ``objects[3]``.
     """
     scan = parse_scan(data, name)
-    scan = scan.turned(turn_by(-find_turn(scan.walls)))
+    scan = scan.turned(_turn_by(-_find_turn(scan.walls)))
     storeys = _list_storeys(scan)
     levels = {int(one.key): one.level for one in storeys}
-    rooms = find_rooms(scan, levels)
-    found = _find_pieces(scan, rooms, levels)
+    rooms = _find_rooms(scan, levels)
+    pieces, unsure, skipped = _find_pieces(scan, rooms, levels)
     doors = tuple(_list_doors(scan, levels))
     return BuildingModel(
         source=name,
@@ -92,19 +97,19 @@ def read_roomplan(data: bytes, name: str) -> BuildingModel:
         spaces=tuple(rooms),
         doors=doors,
         stairs=tuple(_list_stairs(scan, levels)),
-        pieces=tuple(found.pieces),
-        walls={str(story): draw_walls(scan, story) for story in levels},
-        windows={str(story): draw_windows(scan, story) for story in levels},
-        left_out=found.list_left_out(),
+        pieces=tuple(pieces),
+        walls={str(story): _draw_walls(scan, story) for story in levels},
+        windows={str(story): _draw_windows(scan, story) for story in levels},
+        skipped=skipped,
         warnings=(EXPERIMENTAL, SCANNED_SIZES, UNKNOWN_AXES, *((EXITS,) if doors else ()), *_warn_of_rooms(scan)),
-        remarks=tuple(_remark(scan, found)),
+        remarks=tuple(_remark(scan, unsure)),
     )
 
 
 def _list_storeys(scan: Scan) -> tuple[Storey, ...]:
     """Return the storeys that hold something, from the lowest; the lowest is taken to be at 0 m."""
     every = (*scan.objects, *scan.walls, *scan.floors, *scan.doors)
-    levels = {story: find_level(scan, story) for story in sorted({one.story for one in every})}
+    levels = {story: _find_level(scan, story) for story in sorted({one.story for one in every})}
     ground = min(levels.values(), default=0.0)
     return tuple(
         Storey(str(story), gettext("Storey {n}", n=story), level - ground, level)
@@ -112,40 +117,30 @@ def _list_storeys(scan: Scan) -> tuple[Storey, ...]:
     )
 
 
-@dataclass(slots=True)
-class _Found:
-    """Pieces, how many were recognised with low confidence, and how many objects were left out, by category."""
-
-    pieces: list[Piece] = field(default_factory=list)
-    unsure: Counter[str] = field(default_factory=Counter)
-    left_out: Counter[tuple[str, Text, bool]] = field(default_factory=Counter)
-
-    def list_left_out(self) -> tuple[LeftOut, ...]:
-        """Return what was left out."""
-        return tuple(
-            LeftOut(SCHEMA, kind, reason, number, is_furniture)
-            for (kind, reason, is_furniture), number in self.left_out.items()
-        )
-
-
-def _find_pieces(scan: Scan, rooms: Sequence[Space], levels: dict[int, float]) -> _Found:
-    found, kinds = _Found(), {one.key: one.kind for one in scan.objects}
-    places = [(str(one.story), (float(one.origin[0]), float(one.origin[1]))) for one in scan.objects]
-    for one, room in zip(scan.objects, find_rooms_at(places, rooms), strict=True):
+def _find_pieces(
+    scan: Scan, rooms: Sequence[Space], levels: Mapping[int, float]
+) -> tuple[list[Piece], Counter[str], tuple[Skipped, ...]]:
+    """Return the pieces, how many were recognised with low confidence by category, and what was left out."""
+    pieces, unsure, skipped = list[Piece](), Counter[str](), list[tuple[str, Text, bool]]()
+    kinds, search = {one.key: one.kind for one in scan.objects}, SpaceSearch(rooms)
+    for one in scan.objects:
+        held = search.find(str(one.story), (float(one.origin[0]), float(one.origin[1])))
+        room = held[0] if held else None
         kind = say_word(one.kind) or gettext("Object")
+        left = name_skipped(SCHEMA, kind)
         bottom = one.bottom - (room.bottom if room else levels[one.story])
         if one.kind in (*FIXED, STAIRS):
-            found.left_out[kind, IS_FIXED, False] += 1
+            skipped.append((left, IS_FIXED, False))
         elif one.kind in BUILT_IN and kinds.get(one.parent) == "storage":
-            found.left_out[kind, IS_BUILT_IN, False] += 1
-        elif not is_upright(one):
-            found.left_out[kind, IS_TILTED, True] += 1
+            skipped.append((left, IS_BUILT_IN, False))
+        elif not _is_upright(one):
+            skipped.append((left, IS_TILTED, True))
         elif bottom > ON_FLOOR:
-            found.left_out[kind, NOT_ON_FLOOR, True] += 1
+            skipped.append((left, NOT_ON_FLOOR, True))
         else:
-            found.pieces.append(_to_piece(one, kind, room, bottom))
-            found.unsure[kind] += one.confidence == LOW
-    return found
+            pieces.append(_to_piece(one, kind, room, bottom))
+            unsure[kind] += one.confidence == LOW
+    return pieces, unsure, count_skipped(skipped)
 
 
 def _to_piece(one: Scanned, kind: str, room: Space | None, bottom: float) -> Piece:
@@ -161,12 +156,12 @@ def _to_piece(one: Scanned, kind: str, room: Space | None, bottom: float) -> Pie
     )  # fmt: skip
 
 
-def _list_doors(scan: Scan, levels: dict[int, float]) -> Iterator[Door]:
+def _list_doors(scan: Scan, levels: Mapping[int, float]) -> Iterator[Door]:
     taken: set[str] = set()
     named = ((gettext("Door"), scan.doors), (gettext("Opening"), scan.openings))
     for name, one in ((name, one) for name, several in named for one in several):
         is_passable = one.bottom - levels.get(one.story, one.bottom) <= SILL
-        if one.key not in taken and is_upright(one) and is_passable and one.sizes[0] > 0:
+        if one.key not in taken and _is_upright(one) and is_passable and one.sizes[0] > 0:
             taken.add(one.key)
             normal = math.degrees(math.atan2(one.axes[1, 2], one.axes[0, 2]))
             yield Door(
@@ -176,7 +171,7 @@ def _list_doors(scan: Scan, levels: dict[int, float]) -> Iterator[Door]:
             )  # fmt: skip
 
 
-def _list_stairs(scan: Scan, levels: dict[int, float]) -> Iterator[Stair]:
+def _list_stairs(scan: Scan, levels: Mapping[int, float]) -> Iterator[Stair]:
     for one in scan.objects:
         if one.kind == STAIRS:
             x, y, top = float(one.origin[0]), float(one.origin[1]), one.bottom + one.sizes[1]
@@ -194,13 +189,12 @@ def _warn_of_rooms(scan: Scan) -> Iterator[Text]:
         )
 
 
-def _remark(scan: Scan, found: _Found) -> Iterator[Text]:
+def _remark(scan: Scan, unsure: Counter[str]) -> Iterator[Text]:
     if not scan.objects:
         yield fill("The scan holds no objects: fill in Items by hand.")
-    unsure = [(kind, number) for kind, number in found.unsure.items() if number]
-    total = sum(number for kind, number in unsure)
-    if unsure:
-        kinds = ", ".join(f"{kind} ({number:,})" for kind, number in unsure)
+    total = unsure.total()
+    if total:
+        kinds = ", ".join(f"{kind} ({number:,})" for kind, number in unsure.items() if number)
         yield nfill(
             "{n:,} piece was recognised with low confidence: check what it is: {kinds}.",
             "{n:,} pieces were recognised with low confidence: check what they are: {kinds}.",
@@ -209,3 +203,122 @@ def _remark(scan: Scan, found: _Found) -> Iterator[Text]:
     curved = sum(one.is_curved for one in scan.walls)
     if curved:
         yield nfill("{n:,} curved wall is not drawn.", "{n:,} curved walls are not drawn.", curved)
+
+
+# ---------------------------------------------------------------- the plan
+
+
+def _find_turn(walls: Sequence[Scanned]) -> float:
+    """Return the direction in which the walls run, within 45 degrees of X [deg]: the mean of all, by their lengths."""
+    ways = [(wall.sizes[0], math.atan2(wall.axes[1, 0], wall.axes[0, 0])) for wall in walls if _is_upright(wall)]
+    x, y = (sum(length * way(4 * angle) for length, angle in ways) for way in (math.cos, math.sin))
+    return math.degrees(math.atan2(y, x)) / 4 if math.hypot(x, y) > 0 else 0.0
+
+
+def _turn_by(angle_deg: float) -> FloatArray:
+    """Return the matrix that turns a plan about the origin, anticlockwise, (3, 3)."""
+    turn = math.radians(angle_deg)
+    return np.array([[math.cos(turn), -math.sin(turn), 0.0], [math.sin(turn), math.cos(turn), 0.0], [0.0, 0.0, 1.0]])
+
+
+def _is_upright(one: Scanned) -> bool:
+    """Return whether the second of its own axes is vertical."""
+    return bool(abs(one.axes[2, 1]) >= UPRIGHT)
+
+
+def _find_level(scan: Scan, story: int) -> float:
+    """Return the height of the floor of a storey [m]: of its floors, else where its walls, else its objects begin."""
+    floors = [_height_of(one) for one in scan.floors if one.story == story]
+    if floors:
+        return median(floors)
+    walls = [one.bottom for one in scan.walls if one.story == story and _is_upright(one)]
+    if walls:
+        return median(walls)
+    return min((one.bottom for one in scan.objects if one.story == story), default=0.0)
+
+
+def _height_of(floor: Scanned) -> float:
+    return float(floor.corners[:, 2].mean() if len(floor.corners) else floor.origin[2])
+
+
+def _draw_walls(scan: Scan, story: int) -> tuple[Area, ...]:
+    """Return the walls of a storey with gaps at its doors, windows and openings; those of cylinders are left out."""
+    walls = [_lay(one, WALL) for one in scan.walls if one.story == story and _is_upright(one) and not one.is_curved]
+    holes = [
+        _lay(one, 3 * WALL)
+        for one in (*scan.doors, *scan.windows, *scan.openings)
+        if one.story == story and _is_upright(one)
+    ]
+    return merge(list_polygons(shapely.union_all(walls).difference(shapely.union_all(holes))))
+
+
+def _draw_windows(scan: Scan, story: int) -> tuple[Area, ...]:
+    """Return the windows of a storey."""
+    return merge(_lay(one, WALL) for one in scan.windows if one.story == story and _is_upright(one))
+
+
+def _lay(one: Scanned, least: float) -> Polygon:
+    width, thick = one.sizes[0] / 2, max(one.sizes[2], least) / 2
+    along, across = (one.axes[:2, axis] for axis in (0, 2))
+    return Polygon([one.origin[:2] + x * along + y * across for x, y in _around(width, thick)])
+
+
+def _around(x: float, y: float) -> tuple[tuple[float, float], ...]:
+    return (-x, -y), (x, -y), (x, y), (-x, y)
+
+
+def _find_rooms(scan: Scan, stories: Iterable[int]) -> list[Space]:
+    """Return the rooms of the storeys: the outlines of floors, else those that walls close."""
+    found = [
+        (key, story, polygon, level)
+        for story in stories
+        for key, polygon, level in (list(_list_floors(scan, story)) or list(_close_walls(scan, story)))
+    ]
+    taken: set[str] = set()
+    rooms = []
+    for number, (key, story, polygon, level) in enumerate(found, 1):
+        own = key if key not in taken else f"{key} {number}"
+        taken.add(own)
+        name = _name(scan.labels, story, polygon, is_only=len(found) == 1) or gettext("Room {n}", n=number)
+        # How high a ceiling lies says nothing of the roof of the building: a space without height tells none.
+        rooms.append(Space(own, str(story), name, "", to_area(polygon), level, level))
+    return rooms
+
+
+def _list_floors(scan: Scan, story: int) -> Iterator[tuple[str, Polygon, float]]:
+    for one in scan.floors:
+        if one.story == story:
+            corners = one.corners if len(one.corners) >= 3 else _corners_of(one)
+            polygon = find_valid(Polygon(corners[:, :2]))
+            if polygon.area >= SMALLEST_ROOM:
+                yield one.key, polygon, _height_of(one)
+
+
+def _corners_of(floor: Scanned) -> FloatArray:
+    width, height, depth = (size / 2 for size in floor.sizes)
+    is_flat = height <= depth
+    local = np.array([(x, 0.0, y) if is_flat else (x, y, 0.0) for x, y in _around(width, depth if is_flat else height)])
+    corners: FloatArray = floor.origin + local @ floor.axes.T
+    return corners
+
+
+def _close_walls(scan: Scan, story: int) -> Iterator[tuple[str, Polygon, float]]:
+    """Yield the areas that the walls of a storey close, each lengthened by `JOINS` so that they meet at corners."""
+    level, lines = _find_level(scan, story), []
+    for one in scan.walls:
+        if one.story == story and _is_upright(one) and not one.is_curved:
+            reach = (one.sizes[0] / 2 + JOINS) * one.axes[:2, 0]
+            lines.append(LineString([one.origin[:2] - reach, one.origin[:2] + reach]))
+    rings = list(list_polygons(shapely.polygonize([shapely.union_all(lines)]))) if lines else []
+    for number, polygon in enumerate(rings[:MOST_SURFACES], 1):
+        if polygon.area >= SMALLEST_ROOM:
+            yield f"room {story} {number}", polygon, level
+
+
+def _name(labels: Sequence[Label], story: int, polygon: Polygon, *, is_only: bool) -> str:
+    own = [
+        one.words
+        for one in labels
+        if is_only or (one.story == story and one.centre is not None and polygon.covers(Point(one.centre[:2])))
+    ]
+    return " / ".join(dict.fromkeys(own))

@@ -25,19 +25,28 @@ from assess.bim.building_model import (
     NOT_ON_FLOOR,
     ON_FLOOR,
     SILL,
+    SMALLEST_ROOM,
     Area,
     BuildingModel,
     Door,
-    LeftOut,
     Piece,
     Point,
     Space,
     Stair,
     Storey,
+    count_skipped,
+    name_skipped,
 )
-from assess.bim.plan_shapes import list_polygons, merge, to_area, to_polygon
-from assess.bim.space_search import find_rooms_at
-from assess.bim.stacked_parts import join_stacked, note_stacked
+from assess.bim.plan_shapes import (
+    SpaceSearch,
+    join_stacked,
+    list_polygons,
+    merge,
+    note_stacked,
+    place_at,
+    to_area,
+    to_polygon,
+)
 from assess.errors import ModelError
 from assess.i18n import Text, fill, gettext, nfill
 
@@ -52,8 +61,6 @@ MOST_PIECES, MOST_WALLS, MOST_LEVELS = 10_000, 1_000, 100
 FARTHEST = 1e6
 """Largest number of a length [cm]."""
 CENTIMETRE = 0.01
-SMALLEST_ROOM = 0.5
-"""Area below which an outline is no room [m2]."""
 FURNITURE = ("pieceOfFurniture", "light", "shelfUnit", "doorOrWindow")
 
 IS_HIDDEN = fill("hidden in the plan")
@@ -63,8 +70,6 @@ DRAWN_SIZES = fill(
     "furniture."
 )
 
-_Attributes = dict[str, str]
-
 
 @dataclass(slots=True)
 class _Element:
@@ -72,9 +77,14 @@ class _Element:
 
     place: str
     tag: str
-    values: _Attributes
+    values: dict[str, str]
     corners: list[Point] = field(default_factory=list)
     group: "_Element | None" = None
+
+    @property
+    def name(self) -> str:
+        """Its name; "" without one."""
+        return " ".join(self.values.get("name", "").split())
 
 
 def read_sweet_home(data: bytes, name: str) -> BuildingModel:
@@ -139,17 +149,23 @@ class _Home:
         self.furniture: list[_Element] = []
         self.walls: list[_Element] = []
         self.rooms: list[_Element] = []
+        self.kept = {
+            "level": (self.levels, MOST_LEVELS),
+            "wall": (self.walls, MOST_WALLS),
+            "room": (self.rooms, MOST_WALLS),
+            **dict.fromkeys(FURNITURE, (self.furniture, MOST_PIECES)),
+        }
         self.compass: _Element | None = None
         self.root = ""
         self.remarks: list[Text] = []
-        self.left_out: Counter[tuple[str, Text, bool]] = Counter()
+        self.skipped: list[tuple[str, Text, bool]] = []
         self._open: list[_Element] = []
         self._counts: Counter[str] = Counter()
 
     def parse(self, data: bytes) -> None:
         """Take in Home.xml."""
         parser = expat.ParserCreate()
-        parser.StartElementHandler, parser.EndElementHandler = self._enter, self._leave
+        parser.StartElementHandler, parser.EndElementHandler = self._enter, lambda _: self._open.pop()
         parser.EntityDeclHandler = self._refuse
         try:
             parser.Parse(data, True)
@@ -161,7 +177,7 @@ class _Home:
     def _refuse(self, *_: object) -> None:
         raise _damaged(self.name)
 
-    def _enter(self, tag: str, values: _Attributes) -> None:
+    def _enter(self, tag: str, values: dict[str, str]) -> None:
         self.root = self.root or tag
         self._counts[""] += 1
         if self._counts[""] > MOST_ELEMENTS or len(self._open) >= DEEPEST:
@@ -171,31 +187,19 @@ class _Home:
         if tag == "point" and self._open and self._open[-1].tag == "room":
             self._open[-1].corners.append((self.metres(element, "x"), -self.metres(element, "y")))
         self._open.append(element)
-        self._keep(element)
-
-    def _keep(self, element: _Element) -> None:
-        kept = {
-            "level": self.levels,
-            "wall": self.walls,
-            "room": self.rooms,
-            **dict.fromkeys(FURNITURE, self.furniture),
-        }
-        if element.tag == "compass":
+        if tag == "compass":
             self.compass = element
-        if element.tag in kept:
+        if tag in self.kept:
             group = next((one for one in reversed(self._open[:-1]) if one.tag == "furnitureGroup"), None)
             if group is not None:  # what is hidden or lies on a level as a whole
                 for name in ("level", "visible"):
                     if name in group.values:
-                        element.values.setdefault(name, group.values[name])
+                        values.setdefault(name, group.values[name])
                 element.group = group.group or group
-            kept[element.tag].append(element)
-            most = {"level": MOST_LEVELS, "wall": MOST_WALLS, "room": MOST_WALLS}.get(element.tag, MOST_PIECES)
-            if len(kept[element.tag]) > most:
+            kept, most = self.kept[tag]
+            kept.append(element)
+            if len(kept) > most:
                 raise self._too_many(fill("pieces, walls, rooms or levels"), most)
-
-    def _leave(self, _: str) -> None:
-        self._open.pop()
 
     def _too_many(self, what: Text, most: int) -> ModelError:
         return ModelError(
@@ -250,18 +254,17 @@ class _Home:
                 one.key: merge(box.polygon for box in passages if box.storey == one.key and box not in doors)
                 for one in storeys
             },
-            left_out=tuple(LeftOut(SCHEMA, *one[:2], number, one[2]) for one, number in self.left_out.items()),
+            skipped=count_skipped(self.skipped),
             azimuth_deg=round((90 - math.degrees(north)) % 360, 1) if north else None,
             warnings=(*((DRAWN_SIZES,) if pieces else ()), *_note_stacked(boxes)),
             remarks=tuple(self.remarks),
         )
 
     def _list_storeys(self) -> tuple[Storey, ...]:
-        found = [
-            Storey(one.values.get("id", one.place), _say(one.values.get("name")) or one.place, height, height)
-            for one in self.levels
-            for height in (self.metres(one, "elevation"),)
-        ]
+        found = []
+        for one in self.levels:
+            height = self.metres(one, "elevation")
+            found.append(Storey(one.values.get("id", one.place), one.name or one.place, height, height))
         single = Storey("", gettext("Storey {n}", n=0), 0.0, 0.0)
         return tuple(sorted(found, key=lambda one: one.level)) or (single,)
 
@@ -275,7 +278,7 @@ class _Home:
             storey = self._storey_of(one, storeys)
             polygon = to_polygon((tuple(one.corners),)) if len(one.corners) >= 3 else Polygon()
             if polygon.area >= SMALLEST_ROOM:
-                name = _say(one.values.get("name")) or gettext("Room {n}", n=number)
+                name = one.name or gettext("Room {n}", n=number)
                 key = f"{one.values.get('id', '')} {one.place}".strip()
                 yield Space(key, storey.key, name, "", to_area(polygon), storey.level, storey.level)
 
@@ -286,7 +289,7 @@ class _Home:
             element=one,
             key=one.values.get("id", ""),
             storey=self._storey_of(one, storeys).key,
-            name=_say(one.values.get("name")) or one.tag,
+            name=one.name or one.tag,
             x=self.metres(one, "x"),
             y=-self.metres(one, "y"),
             angle=math.remainder(angle, math.tau),
@@ -298,13 +301,14 @@ class _Home:
         )
 
     def _list_pieces(self, boxes: Sequence["_Box"], spaces: Sequence[Space]) -> Iterator[Piece]:
-        rooms = find_rooms_at([(one.storey, (one.x, one.y)) for one in boxes], spaces)
-        for one, room in zip(boxes, rooms, strict=True):
+        search = SpaceSearch(spaces)
+        for one in boxes:
             reason = one.why_left_out()
             if reason is None:
-                yield one.to_piece(room.key if room else "")
+                rooms = search.find(one.storey, (one.x, one.y))
+                yield one.to_piece(rooms[0].key if rooms else "")
             else:
-                self.left_out[one.name, reason, reason is not IS_STAIR] += 1
+                self.skipped.append((name_skipped(SCHEMA, one.name), reason, reason is not IS_STAIR))
 
     def _draw_walls(self, storey: str, passages: Sequence["_Box"]) -> tuple[Area, ...]:
         own = [one for one in self.walls if self.levels == [] or one.values.get("level", storey) == storey]
@@ -312,19 +316,14 @@ class _Home:
         if len(straight) < len(own):
             left = len(own) - len(straight)
             self.remarks.append(nfill("{n:,} round wall is not drawn.", "{n:,} round walls are not drawn.", left))
-        bands = [self._lay(one) for one in straight]
+        bands = [
+            LineString([(self.metres(one, f"x{end}"), -self.metres(one, f"y{end}")) for end in ("Start", "End")])
+            .buffer(self.metres(one, "thickness") / 2, cap_style="square")
+            for one in straight
+        ]  # fmt: skip
         thick = [self.metres(one, "thickness") for one in straight]
         holes = [one.widened(median(thick) if thick else 0.0) for one in passages if one.storey == storey]
         return merge(list_polygons(shapely.union_all(bands).difference(shapely.union_all(holes))))
-
-    def _lay(self, wall: _Element) -> Polygon:
-        ends = [(self.metres(wall, f"x{end}"), -self.metres(wall, f"y{end}")) for end in ("Start", "End")]
-        band: Polygon = LineString(ends).buffer(self.metres(wall, "thickness") / 2, cap_style="square")
-        return band
-
-
-def _say(value: str | None) -> str:
-    return " ".join((value or "").split())
 
 
 # ---------------------------------------------------------------- pieces, doors, stairs
@@ -373,10 +372,9 @@ class _Box:
 
     def widened(self, least: float) -> Polygon:
         """Return its plan, a little deeper than `least` and than itself where that is not 0."""
-        c, s = math.cos(self.angle), math.sin(self.angle)
         u, v = self.width / 2, max(self.depth, 1.5 * least) / 2
-        corners = ((-u, -v), (u, -v), (u, v), (-u, v))
-        return Polygon([(self.x + c * p - s * q, self.y + s * p + c * q) for p, q in corners])
+        along = math.cos(self.angle), math.sin(self.angle)
+        return place_at((self.x, self.y), along, ((-u, -v), (u, -v), (u, v), (-u, v)))
 
     def why_left_out(self) -> Text | None:
         """Return why it is not taken as a piece."""
@@ -390,7 +388,7 @@ class _Box:
 
     @property
     def bounds(self) -> tuple[float, ...]:
-        """Least and largest X, Y and Z, as `assess.bim.stacked_parts` takes them; storeys lie far from each other."""
+        """Least and largest X, Y and Z, as `join_stacked` takes them; storeys lie far from each other."""
         left, low, right, high = self.polygon.bounds
         return left, low, self.bottom, right, high, self.bottom + self.height
 
@@ -437,7 +435,7 @@ def _join_groups(boxes: Sequence[_Box]) -> list[_Box]:
         for places in join_stacked(np.array([one.bounds for one in own]), [one.bottom <= ON_FLOOR for one in own]):
             if len(places) > 1:
                 group = own[0].element.group if len(places) == len(own) else None
-                name = _say(group.values.get("name")) if group is not None else ""
+                name = group.name if group is not None else ""
                 joined[members[places[0]]] = _join_boxes([own[at] for at in places], name)
                 gone |= {members[at] for at in places[1:]}
     return [joined.get(at, one) for at, one in enumerate(boxes) if at not in gone]

@@ -1,15 +1,19 @@
-"""Cells of one sheet that follow a building model: compared in their unit, set or kept, and listed as changes."""
+"""Cells that follow a building model: compared in their unit, set or kept, and listed as changes; and new rows.
+
+New rows are added only where it is certain that they belong there.
+"""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from assess.i18n import Text, fill
+from assess.errors import Problem
+from assess.i18n import Text, fill, nfill
 from assess.units import QUANTITIES
 from assess.workbook.held import HeldCells, Place
-from assess.workbook.names import key, say_choices
+from assess.workbook.names import is_live, key, say_choices, split_header
 from assess.workbook.number_formats import Percent
-from assess.workbook.open import UNSAVED
+from assess.workbook.open import MAX_ROWS, UNSAVED
 from assess.workbook.outlines import OutlineError, parse_outline
 from assess.workbook.parse import Row, Table
 from assess.workbook.patch import Value
@@ -18,6 +22,7 @@ from assess.workbook.plain_rows import column_letters
 from assess.workbook.schema import NO, YES, Column
 from assess.workbook.values import is_blank, read_text, shorten
 
+Rows = Sequence[Mapping[str, Any]]
 Kind = Literal["changed", "added", "missing", "kept", "left_out"]
 RENAMED = fill("it seems to have been renamed")
 """Why a name stays."""
@@ -57,32 +62,23 @@ class Change:
 
 def describe(change: Change) -> Text:
     """Return a change as a sentence: "Items H14 Breadth [cm] of Wardrobe 3: 54.5 -> 60"."""
-    if change.kind == "changed":
-        return fill("{what}: {was} -> {now}", what=_name(change), was=_say(change.was), now=_say(change.now))
-    if change.kind == "added":
-        return fill("{what} was added", what=_name(change))
-    if change.kind == "missing":
-        return fill("{what} is missing in the model; its row stays", what=_name(change))
-    text = _describe_kept(change)
-    return fill("{text}: {reason}", text=text, reason=change.reason) if change.reason else text
-
-
-def _describe_kept(change: Change) -> Text:
-    if change.kind == "left_out":
-        return fill("{what} of the model was left out", what=_name(change))
-    if not change.label:
-        return fill("{what} stays as it is", what=_name(change))
-    return fill(
-        "{what} stays {was}; the model has {now}", what=_name(change), was=_say(change.was), now=_say(change.now)
-    )
-
-
-def _name(change: Change) -> Text:
-    """Return where something is and what it is: "Items H14 Breadth [cm] of Wardrobe 3"."""
     place = f"{change.sheet} {change.cell}".strip()
+    what = fill("{place} {name}", place=place, name=change.label or change.item)
     if change.label and change.item:
-        return fill("{place} {label} of {name}", place=place, label=change.label, name=change.item)
-    return fill("{place} {name}", place=place, name=change.label or change.item)
+        what = fill("{place} {label} of {name}", place=place, label=change.label, name=change.item)
+    if change.kind == "changed":
+        return fill("{what}: {was} -> {now}", what=what, was=_say(change.was), now=_say(change.now))
+    if change.kind == "added":
+        return fill("{what} was added", what=what)
+    if change.kind == "missing":
+        return fill("{what} is missing in the model; its row stays", what=what)
+    if change.kind == "left_out":
+        text = fill("{what} of the model was left out", what=what)
+    elif change.label:
+        text = fill("{what} stays {was}; the model has {now}", what=what, was=_say(change.was), now=_say(change.now))
+    else:
+        text = fill("{what} stays as it is", what=what)
+    return fill("{text}: {reason}", text=text, reason=change.reason) if change.reason else text
 
 
 def _say(value: Value) -> Text | str:
@@ -130,26 +126,21 @@ class SheetUpdate:
         """Tell whether the sheet has a column, or a line, for a field, in a unit that is known."""
         return name in self.table.places and name not in self.table.blind
 
-    def label(self, name: str) -> str:
-        """Return the header of a field as the workbook has it, with its unit."""
-        unit = self.table.units.get(name)
-        return f"{self.table.label(name)} [{unit}]" if unit else self.table.label(name)
-
     def address(self, name: str, row: Row) -> str:
         """Return the cell of a field of a row."""
         return self.table.cell(name, row.number)
 
-    def place(self, name: str, row: Row) -> Place:
+    def _place(self, name: str, row: Row) -> Place:
         """Return row and column of a cell."""
         at = self.table.places[name]
         return (at, 1) if self.table.sheet.layout == "form" else (row.number, at)
 
-    def raw(self, name: str, row: Row) -> Any:
+    def _raw(self, name: str, row: Row) -> Any:
         """Return what a cell holds, unread; None where it is blank."""
-        value = self.cells.value(self.place(name, row))
+        value = self.cells.value(self._place(name, row))
         return None if is_blank(value) else value
 
-    def to_cell(self, name: str, wanted: Any) -> Value:
+    def _to_cell(self, name: str, wanted: Any) -> Value:
         """Return what a cell has to hold for a value in the unit of SI headers; None where nothing can be written."""
         return _to_cell(self.table.sheet.column(name), self.table.units.get(name, ""), wanted)
 
@@ -157,16 +148,14 @@ class SheetUpdate:
         """Set a cell that the model owns, unless it holds the same but for rounding; nothing never clears a cell."""
         if not self._differs(row, name, wanted):
             return
-        why = self._find_lock(self.place(name, row))
-        if why:
-            self._note("kept", row, name, wanted, why)
-            return
-        self._note("changed", row, name, wanted)
-        self.values[self.address(name, row)] = self.to_cell(name, wanted)
+        why = self._find_lock(self._place(name, row))
+        self._note("kept" if why else "changed", row, name, wanted, why)
+        if not why:
+            self.values[self.address(name, row)] = self._to_cell(name, wanted)
 
     def fill_blank(self, row: Row, name: str, wanted: Any) -> None:
         """Set a cell if it is blank; note where it holds something else than the model has."""
-        if self.can_hold(name) and self.raw(name, row) is None:
+        if self.can_hold(name) and self._raw(name, row) is None:
             self.replace(row, name, wanted)
         else:
             self.keep(row, name, wanted)
@@ -179,7 +168,7 @@ class SheetUpdate:
     def _differs(self, row: Row, name: str, wanted: Any) -> bool:
         if wanted is None or wanted == "" or not self.can_hold(name):
             return False
-        value, raw = self.to_cell(name, wanted), self.raw(name, row)
+        value, raw = self._to_cell(name, wanted), self._raw(name, row)
         if value is None or (raw == value and isinstance(raw, bool) == isinstance(value, bool)):
             return False
         read = row.get(name)
@@ -197,20 +186,27 @@ class SheetUpdate:
         return ""
 
     def _note(self, kind: Kind, row: Row, name: str, wanted: Any, reason: Text | str = "") -> None:
-        cell, item = self.address(name, row), self.name_of(row)
-        was, now = _show(self.raw(name, row)), self.to_cell(name, wanted)
-        self.changes.append(Change(kind, self.cells.title, cell, item, self.label(name), was, now, reason))
+        raw, unit, label = self._raw(name, row), self.table.units.get(name), self.table.label(name)
+        was = float(raw) if isinstance(raw, Percent) else raw
+        if was is UNSAVED:
+            was = None
+        elif not isinstance(was, bool | int | float | str | None):
+            was = read_text(was)
+        label = f"{label} [{unit}]" if unit else label
+        self.changes.append(
+            Change(kind, self.cells.title, self.address(name, row), self._name_of(row), label, was,
+                   self._to_cell(name, wanted), reason)
+        )  # fmt: skip
 
-    def name_of(self, row: Row) -> str:
+    def _name_of(self, row: Row) -> str:
         """Return the name of a row, that in the first column of its table; "" for a form."""
-        if self.table.sheet.layout == "form":
-            return ""
-        return str(row.get(self.table.sheet.columns[0].name) or "")
+        is_form = self.table.sheet.layout == "form"
+        return "" if is_form else str(row.get(self.table.sheet.columns[0].name) or "")
 
     def note_row(self, kind: Kind, row: Row, reason: Text | str = "") -> None:
         """Note something of a row as a whole."""
         cell = self.address(self.table.sheet.columns[0].name, row)
-        self.changes.append(Change(kind, self.cells.title, cell, self.name_of(row), reason=reason))
+        self.changes.append(Change(kind, self.cells.title, cell, self._name_of(row), reason=reason))
 
     def note_columns(self, names: Iterable[str], rows: Iterable[Mapping[str, Any]]) -> None:
         """Note the fields of a model's rows that have no column here."""
@@ -223,14 +219,108 @@ class SheetUpdate:
                 label = self.table.label(name)
                 self.changes.append(Change("left_out", self.cells.title, "", label=label, reason=why))
 
-    def write_row(self, number: int, row: Mapping[str, Any]) -> None:
-        """Fill in a row that is free."""
+    # ------------------------------------------------------------ new rows
+
+    def add_rows(self, rows: Rows) -> Problem | None:
+        """Fill in new rows after the last one that is filled; formulas that are prepared there stay.
+
+        Returns why no row was added, where it is not certain that they belong there: a warning.
+        """
+        last = self._find_last()
+        total = next((row for row in sorted(self.totals) if last < row <= last + len(rows)), None)
+        why = self._find_hindrance(last, len(rows))
+        if not why and total is not None:
+            why = fill("row {row} is the totals row of a table", row=str(total))
+        if not why:
+            for number, row in enumerate(rows, last + 1):
+                self._write_row(number, row)
+            return None
+        message = nfill(
+            "{n:,} new row of the model was not added: {why}.", "{n:,} new rows of the model were not added: {why}.",
+            len(rows), why=why,
+        )  # fmt: skip
+        fix = fill("Move what stands below the last complete row of this sheet elsewhere, then import again.")
+        if total is not None:
+            fix = fill("Turn the totals row of the table off (Table Design), import again, and turn it on.")
+        return Problem("warning", self.cells.title, self.cells.address(last, 0) if last else "", message, fix)
+
+    def _write_row(self, number: int, row: Mapping[str, Any]) -> None:
         for name, wanted in row.items():
             if self.can_hold(name) and wanted not in (None, ""):
-                self.values[f"{column_letters(self.table.places[name])}{number}"] = self.to_cell(name, wanted)
+                self.values[f"{column_letters(self.table.places[name])}{number}"] = self._to_cell(name, wanted)
         first = self.table.sheet.columns[0].name
         cell = f"{column_letters(self.table.places[first])}{number}"
         self.changes.append(Change("added", self.cells.title, cell, str(row[first])))
+
+    def _find_last(self) -> int:
+        table, cells = self.table, self.cells
+        headers = cells.cells.get(table.header, {})
+        named = {at: split_header(read_text(value))[0] for at, value in headers.items() if isinstance(value, str)}
+        typed = {at for at, label in named.items() if not is_live(table.sheet, label)}
+        known = {*table.places.values()}
+        formulas = cells.marks.formulas
+        for number in sorted(cells.cells, reverse=True):
+            if number <= table.header:
+                break
+            if number in self.totals:
+                continue
+            filled = {at for at, value in cells.cells[number].items() if at in typed and not is_blank(value)}
+            if any(at in known or (number, at) not in formulas for at in filled):
+                return number
+        return table.header
+
+    def _find_hindrance(self, last: int, count: int) -> Text | str:
+        table = self.table
+        needed = [column.name for column in table.sheet.columns if column.required]
+        if not table.header or not all(name in table.places for name in needed):
+            return fill("the sheet lacks its headers")
+        entry = next((row for row in table.rows if row.number == last), None)
+        is_entry = entry is not None and all(entry.get(name) is not None for name in needed)
+        if last > table.header and not is_entry:
+            return fill("row {row}, the last that holds something, is not a complete entry", row=str(last))
+        if last + count > MAX_ROWS:
+            return fill("at most {most:,} rows are read", most=MAX_ROWS)
+        areas = [span for one in self.cells.merged if (span := split_range(one))]
+        areas += [area for area, _ in self.cells.marks.locked]
+        if any(top <= last + count and bottom > last for _, _, top, bottom in areas):
+            return fill("merged cells or a formula of several cells stand below row {row}", row=str(last))
+        return ""
+
+
+@dataclass(slots=True)
+class BookUpdate:
+    """A workbook while it is updated.
+
+    Attributes
+    ----------
+    sheets : mapping of str to SheetUpdate
+        Those that it has, by their English names.
+    changes : list of Change
+        All that was done, and not done.
+    problems : list of Problem
+        Why rows could not be added.
+    """
+
+    sheets: Mapping[str, SheetUpdate]
+    changes: list[Change]
+    problems: list[Problem] = field(default_factory=list)
+
+    def add(self, sheet: str, rows: Rows) -> bool:
+        """Add rows to a sheet, and return whether there was room for them; else each is listed as left out."""
+        if not rows:
+            return True
+        update = self.sheets.get(sheet)
+        problem = update.add_rows(rows) if update else None
+        if update and problem is None:
+            return True
+        self.problems += [problem] if problem else []
+        title, why = (update.cells.title, "") if update else (sheet, fill("the workbook lacks the sheet"))
+        for row in rows:
+            self.changes.append(Change("left_out", title, "", str(next(iter(row.values()))), reason=why))
+        return False
+
+
+# ---------------------------------------------------------------- values
 
 
 def _to_cell(column: Column, unit: str, wanted: Any) -> Value:
@@ -289,11 +379,3 @@ def _is_same_outline(column: Column, read: Any, wanted: str) -> bool:
 def _is_inside(place: Place, area: tuple[int, int, int, int]) -> bool:
     left, right, top, bottom = area
     return left <= place[1] + 1 <= right and top <= place[0] <= bottom
-
-
-def _show(value: Any) -> Value:
-    if value is None or value is UNSAVED:
-        return None
-    if isinstance(value, Percent):
-        return float(value)
-    return value if isinstance(value, bool | int | float | str) else read_text(value)

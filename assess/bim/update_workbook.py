@@ -13,35 +13,40 @@ Cells are set in the bytes of the sheets; the stored results of the live formula
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
+from math import hypot
 from pathlib import Path
 from typing import Any, TypeVar
 
 from assess.bim.building_model import Point
 from assess.bim.import_workbook import ImportedBuilding, list_rows, name_apart
-from assess.bim.update_cells import RENAMED, Change, SheetUpdate, describe
-from assess.bim.update_names import match_floors, match_rooms
-from assess.bim.update_origin import Pair, find_offset, move_rows
-from assess.bim.update_places import update_places
+from assess.bim.update_cells import RENAMED, TOLERANCE, BookUpdate, Change, Rows, SheetUpdate, describe
+from assess.bim.update_names import Named, Pair, find_offset, match_alike, match_floors, match_rooms, move_rows
 from assess.bim.update_plans import PLAN, Files, PlanUpdate
-from assess.bim.update_rows import BookUpdate, Rows
-from assess.bim.update_types import SIZES, TypeUpdate
 from assess.errors import InputError, Problem, WorkbookError
-from assess.i18n import fill
+from assess.i18n import LANGUAGES, fill, load_catalogue, speaking
 from assess.model import MEASURED
 from assess.pipeline.corrected import find_results
 from assess.progress import SILENT, Progress
+from assess.workbook.catalogue import read_catalogue
 from assess.workbook.names import key
 from assess.workbook.parse import Row, Table
 from assess.workbook.patch import patch_workbook
 from assess.workbook.patch_parts import find_totals
 from assess.workbook.read import hold_sheets, parse_held, read_inventory
+from assess.workbook.schema import CATALOGUE
 from assess.workbook.values import read_text
 
 __all__ = ["Change", "Updated", "describe", "update_workbook"]
 
+SIZES = ("breadth", "width", "height")
 POSITION = ("x", "y", "angle_deg")
+PLACE = ("x", "y", "outline")
+"""Fields of Places that the model owns."""
 SITE = ("latitude", "longitude", "azimuth_deg")
 """Lines of Building that are filled in where they are blank."""
+NEAR = 0.05
+"""Distance up to which two places are at one position [m]."""
 _IDLE = frozenset({"Places"})
 """Sheets on which no live formula rests."""
 _Row = TypeVar("_Row", Row, Mapping[str, Any])
@@ -136,6 +141,102 @@ def update_workbook(
     return Updated(data, tuple(changes), tuple(book.problems), building.moved, building.plans.files)
 
 
+# ---------------------------------------------------------------- types
+
+
+@dataclass(slots=True)
+class _TypeUpdate:
+    """The types of a model in a workbook.
+
+    Attributes
+    ----------
+    book : BookUpdate
+        The workbook.
+    rows : sequence of mapping
+        The types of the model.
+    names : dict of str to str
+        What the Catalogue calls a type of the model, or will call it, by its name as names are compared.
+    renamed : dict of str to str
+        Likewise what Items calls it, where that is another type.
+    """
+
+    book: BookUpdate
+    rows: Rows
+    names: dict[str, str] = field(default_factory=dict)
+    renamed: dict[str, str] = field(default_factory=dict)
+    _own: Sequence[Row] = ()
+    _found: Mapping[int, int] = field(default_factory=dict)
+
+    def match(self, pairs: Iterable[tuple[str, str]]) -> None:
+        """Find out which types are which.
+
+        `pairs`: the types, in the model and in the workbook, of every piece that both have.
+        """
+        sheet = self.book.sheets.get("Catalogue")
+        self._own = sheet.table.with_all("type") if sheet else ()
+        own = [Named(row.get("type"), tuple(row.get(name) for name in SIZES)) for row in self._own]
+        model = [Named(row["type"], _find_sizes(row)) for row in self.rows]
+        self._found = match_alike(model, own, _are_same)
+        taken = [one.name for one in own]
+        new = [one for at, one in enumerate(model) if at not in self._found]
+        added = iter(name_apart((one.name for one in new), taken))
+        for at, kind in enumerate(model):
+            self.names[key(kind.name)] = own[self._found[at]].name if at in self._found else next(added)
+        known = {*self.names, *map(key, self.names.values())}
+        found = match_rooms((("", one, other) for one, other in pairs), known)
+        sizes = {key(one.name): one.content for one in model}
+        for (_, one), other in found.items():
+            if self._is_of_people(other, sizes.get(one, ())):
+                self.renamed[one] = other
+
+    def find(self, name: str) -> str:
+        """Return what Items calls a type of the model."""
+        return self.renamed.get(key(name)) or self.names.get(key(name), name)
+
+    def update(self) -> None:
+        """Update the sizes of the types that both have, and add those of the model alone."""
+        sheet = self.book.sheets.get("Catalogue")
+        for at, other in self._found.items():
+            row, model = self._own[other], self.rows[at]
+            for name in SIZES:
+                if sheet is None:
+                    continue
+                if _is_built_in(row):
+                    sheet.keep(row, name, model.get(name), fill("the type comes with the program"))
+                else:
+                    sheet.replace(row, name, model.get(name))
+        new = [row for at, row in enumerate(self.rows) if at not in self._found]
+        self.book.add("Catalogue", [{**row, "type": self.names[key(row["type"])]} for row in new])
+
+    def _is_of_people(self, name: str, sizes: Sequence[float | None]) -> bool:
+        """Tell whether people chose a type for pieces of a model, rather than the model that gave it another before."""
+        row = next((row for row in self._own if key(row.get("type")) == key(name)), None)
+        return row is None or _is_built_in(row) or _are_same(sizes, [row.get(one) for one in SIZES])
+
+
+def _find_sizes(row: Mapping[str, Any]) -> tuple[float | None, ...]:
+    return tuple(None if row.get(name) is None else row[name] * CATALOGUE.column(name).factor for name in SIZES)
+
+
+def _are_same(sizes: Sequence[float | None], others: Sequence[float | None]) -> bool:
+    pairs = list(zip(sizes, others, strict=False))
+    return bool(pairs) and all(one == other if one is None or other is None else abs(one - other) <= TOLERANCE["length"]
+                               for one, other in pairs)  # fmt: skip
+
+
+def _is_built_in(row: Row) -> bool:
+    return (key(row.get("type")), key(row.get("source") or "")) in _list_built_in()
+
+
+@cache
+def _list_built_in() -> frozenset[tuple[str, str]]:
+    found = set()
+    for code in LANGUAGES:
+        with speaking(load_catalogue(code)):
+            found |= {(key(row["type"]), key(row.get("source") or "")) for row in read_catalogue()}
+    return frozenset(found)
+
+
 # ---------------------------------------------------------------- the building
 
 
@@ -148,7 +249,7 @@ class _BuildingUpdate:
         rows = list_rows(imported)
         self.moved = find_offset(_pair(self.items.table.rows, rows["Items"]))
         self.rows = move_rows(rows, self.moved)
-        self.types = TypeUpdate(book, self.rows["Catalogue"][: len(imported.types)])
+        self.types = _TypeUpdate(book, self.rows["Catalogue"][: len(imported.types)])
         self.floors: dict[str, str] = {}
         self.rooms: dict[tuple[str, str], str] = {}
         sources = set(_list_sources(book, Path(imported.source).suffix))
@@ -174,7 +275,7 @@ class _BuildingUpdate:
         for one, rows in _by_id(self.items.table.rows).items():
             for row in rows if one not in known else ():
                 self.items.note_row("missing", row)
-        update_places(self.book, self.rows["Places"], self._find_floor, self._find_room)
+        self._update_places()
         self.types.update()
 
     # ------------------------------------------------------------ who is who
@@ -280,6 +381,41 @@ class _BuildingUpdate:
                 sheet.fill_blank(row, "elevation", model.get("elevation"))
                 self.plans.update(model, row)
 
+    # ------------------------------------------------------------ places
+
+    def _update_places(self) -> None:
+        """Move the places that both have, and add those of the model alone: rooms, doors, stairs and exits.
+
+        They have no identifier. Points that drafted routes pass have no kind. They do not follow: their names are
+        numbers of one draft, by which another draft calls other points, and routes are drafted into new workbooks only.
+        """
+        sheet = self.book.sheets.get("Places")
+        own = sheet.table.with_all("place") if sheet else []
+        named = {key(row.get("place")) for row in own}
+        model = [{**row, "floor": self._find_floor(row["floor"])} for row in self.rows["Places"] if row.get("kind")]
+        for row in model:
+            renamed = self._find_room(row["floor"], row["place"])
+            row["place"] = renamed if key(renamed) in named else row["place"]
+        found = match_alike(
+            [Named(row["place"], (key(row["floor"]), row.get("x"), row.get("y"))) for row in model],
+            [Named(row.get("place"), (key(row.get("floor") or ""), row.get("x"), row.get("y"))) for row in own],
+            _is_near,
+            by_content=True,
+        )
+        if sheet:
+            sheet.note_columns(PLACE, model)
+            for at, other in found.items():
+                row, new = own[other], model[at]
+                if key(row.get("floor") or "") != key(new["floor"]):
+                    sheet.keep(row, "floor", new["floor"])
+                    continue
+                sheet.keep(row, "place", new["place"], RENAMED)
+                for name in PLACE:
+                    sheet.replace(row, name, new.get(name))
+        added = [row for at, row in enumerate(model) if at not in found]
+        names = name_apart((row["place"] for row in added), [str(row.get("place")) for row in own])
+        self.book.add("Places", [{**row, "place": name} for name, row in zip(names, added, strict=True)])
+
     # ------------------------------------------------------------ pieces
 
     def _update_item(self, model: Mapping[str, Any], row: Row) -> None:
@@ -313,7 +449,7 @@ class _BuildingUpdate:
 
     def _name_new(self, new: Rows) -> list[dict[str, Any]]:
         taken = [str(row.get("item")) for row in self.items.table.with_all("item")]
-        names = name_apart([*taken, *(row["item"] for row in new)])[len(taken) :]
+        names = name_apart((row["item"] for row in new), taken)
         found = []
         for name, row in zip(names, new, strict=True):
             floor = self._find_floor(row["floor"])
@@ -347,3 +483,9 @@ def _list_sources(book: BookUpdate, suffix: str) -> Iterator[str]:
 
 def _by_floor(table: Table) -> dict[str, Row]:
     return {key(row.get("floor")): row for row in reversed(table.with_all("floor"))}
+
+
+def _is_near(one: Sequence[Any], other: Sequence[Any]) -> bool:
+    if one[0] != other[0] or None in (*one, *other):
+        return False
+    return hypot(one[1] - other[1], one[2] - other[2]) <= NEAR

@@ -75,7 +75,7 @@ def command(
             f"--update: --routes {routes.value}: routes are drafted into a new workbook only: leave out one of the two."
         )
     _check_names(source, out, replaces=force, updates=update)
-    from assess.bim.import_record import describe
+    from assess.bim.import_workbook import describe
 
     choices = {"routes": routes.value, "also": also or ()}
     with show_progress() as progress, progress.stage("reading", source.name):
@@ -114,7 +114,7 @@ def _build(source: Path, out: Path, progress: Progress, choices: Mapping[str, An
 
 def _update(source: Path, out: Path, progress: Progress, choices: Mapping[str, Any]) -> _Made:
     """Read the model in the workbook's language, for the names of places; OutputError if it was saved meanwhile."""
-    from assess.bim.import_record import ENDING
+    from assess.bim.import_workbook import ENDING
     from assess.bim.read_source import read_source
     from assess.bim.update_workbook import update_workbook
     from assess.i18n import load_catalogue, speaking

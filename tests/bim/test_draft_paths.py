@@ -5,9 +5,9 @@ import pytest
 from shapely import LineString, MultiPolygon, Polygon, box
 
 from assess.bim.building_model import Space, Storey
-from assess.bim.draft_corridors import find_axes, find_spots, find_width, is_corridor, measure_width
 from assess.bim.draft_floor import FloorPlan, Link, Room, build_rooms
-from assess.bim.draft_paths import Ways, find_ways
+from assess.bim.draft_paths import Ways, find_axes, find_spots, find_ways, is_corridor, measure_width
+from assess.bim.plan_shapes import find_width
 
 STOREY = Storey("0", "Level 0", 0.0, 0.0)
 
@@ -138,7 +138,7 @@ def test_doors_that_face_each_other_share_a_place_on_the_middle_line():
     doors = link("one", 5.0, -0.05), link("two", 5.3, 1.85), link("three", 12.0, 1.85)
     axis = find_axes(build(BAR, *doors))[0]
     spots = find_spots(axis, [(one.name, one.at) for one in doors])
-    assert sorted(sorted(one.joined) for one in spots if one.joined) == [["one", "two"], ["three"]]
+    assert sorted(sorted(joined) for _along, joined in spots if joined) == [["one", "two"], ["three"]]
 
 
 def test_columns_and_niches_change_the_free_width():

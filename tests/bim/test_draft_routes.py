@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from shapely import LineString, Point, union_all
 
 from assess.bim.building_model import BuildingModel, Door, Piece, Space, Stair, Storey
-from assess.bim.door_sides import find_kinds, find_normal
-from assess.bim.draft_floor import FAR, box_at, build_plan, find_room_points
+from assess.bim.door_sides import find_kinds
+from assess.bim.draft_floor import FAR, build_plan, find_room_points
 from assess.bim.draft_routes import DraftRoutes, draft_routes
-from assess.bim.plan_shapes import to_polygon
+from assess.bim.plan_shapes import box_at, direction_of, to_polygon
 from assess.i18n import load_catalogue, speaking
 from assess.workbook.draft_names import LONGEST, is_draft
 from assess.workbook.names import key
@@ -80,7 +80,7 @@ def test_every_segment_lies_in_its_rooms_and_their_doors_and_crosses_no_wall_or_
     for row, line, storey in list_lines(model, found):
         assert line.length > 0.02
         assert line.intersection(plans[storey].solids_near(line)).length <= BESIDE, row
-        doors = [box_at((one.x, one.y), find_normal(one), one.thickness / 2 + BESIDE, one.width / 2)
+        doors = [box_at((one.x, one.y), direction_of(one.normal_deg), one.thickness / 2 + BESIDE, one.width / 2)
                  for one in model.doors if one.storey == storey]  # fmt: skip
         area = union_all([*(rooms[name] for name in row["room"].split("; ")), *doors]).buffer(BESIDE)
         outside = line.difference(area)

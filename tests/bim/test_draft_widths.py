@@ -7,8 +7,7 @@ import pytest
 
 from assess.bim.building_model import BuildingModel, Space, Storey
 from assess.bim.draft_floor import build_plan, link_door
-from assess.bim.draft_routes import draft_routes
-from assess.bim.draft_widths import measure_gap, set_widths
+from assess.bim.draft_routes import draft_routes, measure_gap, set_widths
 from tests.bim.office_models import door, name_all, rectangle
 
 STOREY = Storey("0", "Level 0", 0.0, 0.0)

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from assess.bim.export_step import (
+from assess.bim.export_properties import (
     LONGEST_LABEL,
     append_lines,
     make_global_id,

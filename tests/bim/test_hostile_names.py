@@ -9,7 +9,7 @@ import openpyxl
 import pytest
 
 import assess
-from assess.bim.import_workbook import LONGEST_NAME
+from assess.bim.building_model import LONGEST_NAME
 from assess.bim.read_source import read_source
 from assess.errors import ModelError
 from assess.workbook.read import read_inventory

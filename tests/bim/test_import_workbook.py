@@ -1,9 +1,8 @@
 import pytest
 
+from assess.bim.building_model import LONGEST_NAME, Skipped
 from assess.bim.import_workbook import (
-    LONGEST_NAME,
     ImportedBuilding,
-    Skipped,
     build_workbook,
     list_remarks,
     list_rows,

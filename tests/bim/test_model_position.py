@@ -34,8 +34,8 @@ def test_what_was_forgotten_at_the_origin_leaves_the_building_where_it_is(tmp_pa
     found = read(model, tmp_path)
     assert [one.name for one in found.pieces] == ["Shelf"]
     assert found.shift == pytest.approx((412_000, 5_653_900))
-    assert [(one.type, str(one.reason)) for one in found.left_out] == [
-        ("Forgotten", "more than 2 km from the middle of the building")
+    assert [(one.type, str(one.reason)) for one in found.skipped] == [
+        ("IfcFurniture Forgotten", "more than 2 km from the middle of the building")
     ]
     remark = (
         "Rooms, doors, stairs and parts of walls that lie more than 2 km from the middle of the building were left "
@@ -54,7 +54,7 @@ def test_a_size_beyond_reason_leaves_the_plan_as_it_is(tmp_path, size):
     model.element("IfcWall", "Ridge", (0, 0, 0, size, 0.2, 3), within=storey)
     found = read(model, tmp_path)
     assert [one.name for one in found.pieces] == ["Shelf"]
-    assert [one.type for one in found.left_out] == ["Mountain"]
+    assert [one.type for one in found.skipped] == ["IfcFurniture Mountain"]
     (floor,) = check(found, tmp_path).floors
     assert floor.plan is not None
 

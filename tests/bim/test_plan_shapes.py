@@ -27,7 +27,7 @@ def on_circle(radius: float, *degrees: float) -> list[tuple[float, float]]:
 
 
 def base(box: Box) -> tuple[float, float]:
-    return box.base.reach, box.base.angle_deg
+    return box.support_reach, box.support_angle_deg
 
 
 WARDROBE = (-0.3, -0.5, 0.1, 0.3, 0.5, 2.0)
@@ -39,7 +39,7 @@ def test_a_plinth_set_back_at_the_front_only(turn):
     found = find_box(draw(WARDROBE, (-0.3, -0.5, 0.0, 0.2, 0.5, 0.1), turn=turn))
     assert (found.breadth, found.support_breadth) == pytest.approx((0.6, 0.5))
     assert base(found) == pytest.approx((0.2, turn))
-    assert found.base.across == pytest.approx(1.0)
+    assert found.support_across == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("turn", [0.0, 30.0, -75.0])
@@ -50,15 +50,15 @@ def test_feet_at_the_corners_of_a_rectangle_about_the_middle(body, turn):
     x, y = breadth / 2 - 0.05, width / 2 - 0.05
     found = find_box(draw((-breadth / 2, -width / 2, 0.5, breadth / 2, width / 2, 0.6),
                           *(leg(i * x, j * y) for i in (-1, 1) for j in (-1, 1)), turn=turn))  # fmt: skip
-    assert found.base.reach == pytest.approx(found.support_breadth / 2)
-    assert found.base.angle_deg == pytest.approx(found.angle_deg)
-    assert found.base.across == pytest.approx(found.width)
+    assert found.support_reach == pytest.approx(found.support_breadth / 2)
+    assert found.support_angle_deg == pytest.approx(found.angle_deg)
+    assert found.support_across == pytest.approx(found.width)
 
 
 def test_a_plinth_off_the_middle_along_the_longer_side():
     found = find_box(draw(WARDROBE, (-0.3, -0.1, 0.0, 0.3, 0.5, 0.1)))
     assert base(found) == pytest.approx((0.1, -90.0))
-    assert found.base.across == pytest.approx(0.6)
+    assert found.support_across == pytest.approx(0.6)
 
 
 def test_a_base_in_the_form_of_a_cross():
@@ -66,16 +66,16 @@ def test_a_base_in_the_form_of_a_cross():
     body = (-0.35, -0.35, 0.5, 0.35, 0.35, 1.0)
     found = find_box(draw(body, *(leg(x, y) for x, y in on_circle(0.349, 0, 90, 180, 270))))
     assert found.support_breadth == pytest.approx(0.7)
-    assert found.base.reach == pytest.approx(0.35 / math.sqrt(2), abs=2e-3)
-    assert abs(found.base.angle_deg) == pytest.approx(45, abs=0.5)
-    assert found.base.across == pytest.approx(0.7 * math.sqrt(2))
+    assert found.support_reach == pytest.approx(0.35 / math.sqrt(2), abs=2e-3)
+    assert abs(found.support_angle_deg) == pytest.approx(45, abs=0.5)
+    assert found.support_across == pytest.approx(0.7 * math.sqrt(2))
 
 
 def test_three_legs():
     top = [(x - 0.001, y - 0.001, 0.5, x + 0.001, y + 0.001, 0.6) for x, y in on_circle(0.5, *range(0, 360, 10))]
     found = find_box(draw(*top, *(leg(x, y) for x, y in on_circle(0.4, 90, 210, 330))))
     assert (found.x, found.y) == pytest.approx((0, 0), abs=1e-6)
-    assert found.base.reach == pytest.approx(0.2, abs=2e-3)
+    assert found.support_reach == pytest.approx(0.2, abs=2e-3)
 
 
 @pytest.mark.parametrize(
@@ -98,5 +98,5 @@ def test_no_direction_is_nearer_than_the_edge_that_is_found():
         steps = np.linspace(0, 1, 500)[:, None]
         around = np.vstack([np.array(one) + steps * np.subtract(other, one) for one, other in pairwise(ring)])
         nearest = around[np.hypot(*around.T).argmin()]
-        assert found.base.reach == pytest.approx(np.hypot(*nearest), abs=1e-3)
-        assert found.base.across >= 2 * found.base.reach
+        assert found.support_reach == pytest.approx(np.hypot(*nearest), abs=1e-3)
+        assert found.support_across >= 2 * found.support_reach

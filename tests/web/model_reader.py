@@ -36,7 +36,7 @@ def _runs(pid, name):
 
 def hold_reader(server):
     """Have the process stand still once it has begun; return its number. SIGCONT has it go on, SIGKILL ends it."""
-    pid = wait_until(lambda: find_worker(server, b"assess.bim.model_worker"))
+    pid = wait_until(lambda: find_worker(server, b"assess.bim.model_process"))
     os.kill(pid, signal.SIGSTOP)
     return pid
 
