@@ -405,13 +405,13 @@ class _BuildingUpdate:
         if sheet:
             sheet.note_columns(PLACE, model)
             for at, other in found.items():
-                row, new = own[other], model[at]
-                if key(row.get("floor") or "") != key(new["floor"]):
-                    sheet.keep(row, "floor", new["floor"])
+                line, new = own[other], model[at]
+                if key(line.get("floor") or "") != key(new["floor"]):
+                    sheet.keep(line, "floor", new["floor"])
                     continue
-                sheet.keep(row, "place", new["place"], RENAMED)
+                sheet.keep(line, "place", new["place"], RENAMED)
                 for name in PLACE:
-                    sheet.replace(row, name, new.get(name))
+                    sheet.replace(line, name, new.get(name))
         added = [row for at, row in enumerate(model) if at not in found]
         names = name_apart((row["place"] for row in added), [str(row.get("place")) for row in own])
         self.book.add("Places", [{**row, "place": name} for name, row in zip(names, added, strict=True)])
