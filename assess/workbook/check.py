@@ -278,7 +278,8 @@ def check_items(tables: Tables) -> Iterator[Problem]:
                 message = fill("{label} is blank and no {type} gives it.", **values)
                 yield table.habit(name, row, message, fill("Fill it in, or choose a {type} that has one.", **values))
         yield from _check_sizes(table, row, sizes, types.get(key(row.get("type") or "")))
-        yield from _check_position(table, row)
+        if "x" in row.values or "y" in row.values:
+            yield from _check_position(table, row)
         axis, turned = row.get("axis"), turned_axis(row)
         if axis is not None and turned is not None and axis != turned:
             values = {"axis": axis, "angle": row.get("angle_deg"), "turned": turned}
@@ -286,7 +287,8 @@ def check_items(tables: Tables) -> Iterator[Problem]:
                 "Axis is {axis}, but an Angle of {angle:g} deg lies along {turned}; {axis} is used.", **values
             )
             yield table.habit("axis", row, message, fill("Correct one of the two."), "warning")
-        yield from _check_bracket(table, row, sizes.get("height"))
+        if "bracket_height" in row.values or "bracket_capacity" in row.values:
+            yield from _check_bracket(table, row, sizes.get("height"))
         if "width" not in sizes:
             yield from _check_reach(table, row)
     for name, rows in lacking.items():

@@ -37,7 +37,7 @@ def fill_building(
     new_ones = [one for one in found if one.cell not in cells]
     of_index = (replace(one, message=fill("of the index: {message}", message=one.message)) for one in new_ones)
     problems = [*problems, *of_index]
-    values = {name: value for name, value in new.rows[0].filled().items() if name not in unused}
+    values = {name: value for name, value in new.rows[0].values.items() if name not in unused}
     if not values:
         return tables, problems
     labels = join(", ", [own.label(name) for name in values])

@@ -37,7 +37,8 @@ def split_header(header: str) -> tuple[str, str | None]:
 @lru_cache(maxsize=4096)  # the same floors and choices stand in row after row
 def key(text: str) -> str:
     """Return a name as names are compared: letter case, the number of spaces and the kind of dash ignored."""
-    return " ".join(unicodedata.normalize("NFKC", text.translate(DASHES)).split()).casefold()
+    plain_signs = text if text.isascii() else unicodedata.normalize("NFKC", text.translate(DASHES))
+    return " ".join(plain_signs.split()).casefold()
 
 
 def fold(text: str) -> str:

@@ -445,21 +445,28 @@ class SheetCells(Part):
         if self.marks_cells:
             self._close_cells(list_cells(cells))
         elif not is_empty:
-            self._close_cells(self._take_strings(list_cells(cells)))
+            self._close_cells(self._take_common(list_cells(cells)))
         elif unsaved := list_unsaved(cells):
             self.last_row = self._number
             self._cells.update(dict.fromkeys(unsaved, UNSAVED))
         self._texts, self._tags = None, set()
 
-    def _take_strings(self, cells: list[PlainCell]) -> Iterator[PlainCell]:
-        """Keep the texts that cells share, at once: most of a table are; yield the other cells."""
+    def _take_common(self, cells: list[PlainCell]) -> Iterator[PlainCell]:
+        """Keep shared texts and numbers without a style at once: most cells hold one; yield the other cells."""
+        found, strings, is_styled = self._cells, self.shared.strings, self._format("") is not None
         for cell in cells:
-            letters, _, _, kind, _, value = cell
-            if kind == "s" and len(value) > _NO_VALUE and (at := column_number(letters)) <= MAX_COLUMNS:
-                self.last_row = self._number
-                self._cells[at - 1] = self.shared.strings[int(value[3:-4])]
-            else:
+            letters, _, style, kind, formula, value = cell
+            if len(value) <= _NO_VALUE or (at := column_number(letters)) > MAX_COLUMNS:
                 yield cell
+            elif kind == "s":
+                found[at - 1] = strings[int(value[3:-4])]
+            elif kind or style or formula or is_styled:
+                yield cell
+            else:
+                text = value[3:-4]
+                found[at - 1] = float(text) if "." in text or "e" in text or "E" in text else int(text)
+        if found:
+            self.last_row = self._number
 
     def _close_cells(self, cells: Iterable[PlainCell]) -> None:
         for letters, digits, self._style, kind, formula, value in cells:

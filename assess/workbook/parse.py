@@ -30,7 +30,7 @@ from assess.workbook.sections import (
     find_lone_text,
     list_spanned,
 )
-from assess.workbook.values import is_blank, read_cell, read_text, shorten
+from assess.workbook.values import CellReader, cell_reader, is_blank, read_text, shorten
 
 _ROWS = re.compile(r"\brow (\d+)|^[A-Z]+(\d+)(?::[A-Z]+(\d+))?$")
 
@@ -85,7 +85,10 @@ Source = SheetCells | HeldCells | CodeCells
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One row of a table: its number, its values by field name (SI), and the texts of the unknown columns."""
+    """One row of a table: its number, its values by field name (SI), and the texts of the unknown columns.
+
+    `values` leaves out what is blank or could not be read.
+    """
 
     number: int
     values: Mapping[str, Any]
@@ -98,10 +101,6 @@ class Row:
     def quote(self, name: str) -> str:
         """Return the value of a field as messages quote it."""
         return shorten(self.values.get(name))
-
-    def filled(self) -> dict[str, Any]:
-        """Return the values that are not blank."""
-        return {name: value for name, value in self.values.items() if value is not None}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -197,7 +196,8 @@ class Table:
 
     def with_all(self, *names: str) -> list[Row]:
         """Return the rows that have these fields; why others lack one has been reported."""
-        return [row for row in self.rows if all(row.get(name) is not None for name in names)]
+        wanted = {*names}
+        return [row for row in self.rows if wanted <= row.values.keys()]
 
     def with_failed(self, problems: Sequence[Problem]) -> "Table":
         """Return the table with the cells of errors noted."""
@@ -273,8 +273,10 @@ class _Parser:
         self.headers: dict[str, Column] = {}  # by the address of the header
         self.columns: dict[int, Column] = {}
         self.others: dict[int, str] = {}
+        self.required: set[int] = set()
         self.places: dict[str, int] = {}
         self.units: dict[str, str] = {}
+        self.readers: dict[str, CellReader] = {}
         self.blind: set[str] = set()
         self.covered: list[str] = []  # addresses of the cells that a reported merge hides
         self.header = 0
@@ -294,7 +296,8 @@ class _Parser:
             column, is_wrong = self._match(text, cell)
             if column:
                 self.places[column.name] = number
-                values[column.name] = self._value(column, value, number, 1)
+                if (found := self._value(column, value, number, 1)) is not None:
+                    values[column.name] = found
             elif value is not None and not is_wrong:
                 message = fill("{name} is not known; it is not used.", name=shorten(text))
                 self.report(cell, message, severity="note")
@@ -333,7 +336,7 @@ class _Parser:
     def _read_rows(self, header: int, headers: Cells, body: Iterable[tuple[int, Cells]]) -> list[Row]:
         """Return the entries below the headers, with a note on every heading between them."""
         known, first = {*self.columns, *self.others}, sorted(self.columns)[:FIRST_COLUMNS]
-        needed = [at for at, column in self.columns.items() if column.required]
+        needed = sorted(self.required)
         found: dict[int, Row | None] = {}
         lone: dict[int, tuple[int, Cells]] = {}
         for number, cells in body:
@@ -416,6 +419,8 @@ class _Parser:
             column, is_wrong = self._match(text, cell, labels)
             if column:
                 self.columns[at], self.places[column.name] = column, at
+                if column.required:
+                    self.required.add(at)
             elif not is_wrong:
                 self.others[at] = text
                 message = fill("the column {name} is not known; it is kept, not used.", name=shorten(text))
@@ -454,6 +459,7 @@ class _Parser:
     def _read_unit(self, column: Column, unit: str | None, cell: str) -> None:
         spelt = read_unit(unit or "")
         self.units[column.name] = spelt if column.quantity else ""
+        self.readers[column.name] = cell_reader(column, self.units[column.name])
         if column.quantity and spelt not in QUANTITIES[column.quantity]:
             self.blind.add(column.name)
             wrong = fill("{label} has no unit.", label=column.label)
@@ -493,15 +499,19 @@ class _Parser:
         return found
 
     def _row(self, number: int, cells: Cells) -> Row | None:
-        if cells.keys().isdisjoint(self.columns) or all(is_blank(cells.get(at)) for at in self.columns):
+        columns = self.columns
+        if all(is_blank(value) for at, value in cells.items() if at in columns):
             stray = next((at for at in self.others if not is_blank(_shown(cells.get(at)))), None)
             if stray is not None:
                 message = fill("stands in a row without an entry; the row is left out.")
                 self.report(self.source.address(number, stray), message, severity="warning")
             return None
-        shown = (_shown(cells.get(at)) for at in self.others)
-        extra = tuple("" if is_blank(value) else read_text(value) for value in shown)
-        values = {column.name: self._value(column, cells.get(at), number, at) for at, column in self.columns.items()}
+        shown = [_shown(cells.get(at)) for at in self.others]
+        extra = tuple(["" if is_blank(value) else read_text(value) for value in shown])
+        values = {}
+        for at in cells if self.required <= cells.keys() else columns:
+            if at in columns and (value := self._value(columns[at], cells.get(at), number, at)) is not None:
+                values[columns[at].name] = value
         return Row(number, values, extra)
 
     # ------------------------------------------------------------------ cells
@@ -510,10 +520,10 @@ class _Parser:
         """Return a cell's value in SI, None where it is blank or wrong."""
         if value is None and not column.required:
             return None
-        if column.name in self.blind and value is not UNSAVED:
+        if self.blind and column.name in self.blind and value is not UNSAVED:
             return None  # the unit in the header is not known, and has been reported there
         try:
-            found, remarks = read_cell(column, value, self.units[column.name])
+            found, remarks = self.readers[column.name](value)
         except CellError as error:
             self.report(self.source.address(number, at), error.message, error.fix, group=column.name)
             return None

@@ -70,7 +70,8 @@ def list_segments(routes: Table) -> Segments:
 
 def resolve(tables: Tables) -> Tables:
     """Return the tables with every name spelt as where it is defined, and blank floors of segments filled in."""
-    names = {sheet: defined(table) for sheet, table in tables.items() if table.sheet.layout == "table"}
+    sources = {"Routes", *(column.source for table in tables.values() for column in table.sheet.columns)} - {""}
+    names = {sheet: defined(tables[sheet]) for sheet in sources}
     spelt = {sheet: _spell(table, sheet, names) for sheet, table in tables.items()}
     spelt["Routes"] = _map(spelt["Routes"], _floor_filler(spelt, names["Floors"]))
     spelt["Items"] = _map(spelt["Items"], _segment_speller(spelt["Items"], list_segments(spelt["Routes"])))
@@ -79,7 +80,8 @@ def resolve(tables: Tables) -> Tables:
 
 def _map(table: Table, change: Callable[[Row], Mapping[str, Any]]) -> Table:
     rows = ((row, change(row)) for row in table.rows)
-    return replace(table, rows=tuple(replace(row, values={**row.values, **new}) if new else row for row, new in rows))
+    changed = (replace(row, values={**row.values, **new}) if new else row for row, new in rows)
+    return replace(table, rows=tuple(changed))
 
 
 def _spell(table: Table, sheet: str, names: Mapping[str, Mapping[str, str]]) -> Table:
@@ -88,8 +90,13 @@ def _spell(table: Table, sheet: str, names: Mapping[str, Mapping[str, str]]) -> 
     sources |= {_DEFINED_BY[sheet]: sheet} if sheet == "Routes" else {}
 
     def change(row: Row) -> dict[str, str]:
-        named = {name: (row.get(name), names[source]) for name, source in sources.items()}
-        return {name: known[key(text)] for name, (text, known) in named.items() if text and key(text) in known}
+        new = {}
+        for name, source in sources.items():
+            text = row.values.get(name)
+            spelt = names[source].get(key(text)) if text else None
+            if spelt is not None and spelt != text:
+                new[name] = spelt
+        return new
 
     return _map(table, change)
 
@@ -110,6 +117,8 @@ def _floor_filler(tables: Tables, floors: Mapping[str, str]) -> Callable[[Row], 
 
 def _segment_speller(items: Table, segments: Segments) -> Callable[[Row], Mapping[str, str]]:
     def spell(row: Row) -> dict[str, str]:
+        if row.get("segment") is None:
+            return {}
         route, segment = items.sound("route", row), items.sound("segment", row)
         found = segments.get(key(route or ""), {}).get(key(segment or ""))
         return {"segment": found.get("segment")} if found else {}
@@ -122,14 +131,14 @@ def _segment_speller(items: Table, segments: Segments) -> Callable[[Row], Mappin
 
 def build_building(table: Table, logo: Path | None) -> Building:
     """Return the building; `logo` is the picture that its line names."""
-    values = table.rows[0].filled() if table.rows else {}
+    values = table.rows[0].values if table.rows else {}
     cells = {name: table.cell(name, 0) for name in table.places}
     return Building(**{**values, "logo": logo}, cells=cells)
 
 
 def build_rows(kind: type[T], table: Table, *needed: str) -> tuple[T, ...]:
     """Return the rows of a table that have the fields they need as rows of the model: places, segments or types."""
-    return tuple(kind(row=row.number, **row.filled()) for row in table.with_all(*needed))
+    return tuple(kind(row=row.number, **row.values) for row in table.with_all(*needed))
 
 
 def build_catalogue(table: Table) -> tuple[CatalogueType, ...]:
@@ -169,8 +178,8 @@ def build_items(table: Table, types: Mapping[str, CatalogueType]) -> tuple[Item,
 
 
 def _build_item(table: Table, row: Row, types: Mapping[str, CatalogueType]) -> Item | None:
-    values, typed = row.filled(), _fill_from_type(table, row, types, FROM_TYPE)
-    assumed = [name for name in typed if name not in values]
+    values, typed = dict(row.values), _find_in_type(table, row, types, FROM_TYPE)
+    assumed = [*typed]
     values |= typed
     if "axis" not in values and (axis := turned_axis(row)):
         values["axis"] = axis
@@ -178,26 +187,23 @@ def _build_item(table: Table, row: Row, types: Mapping[str, CatalogueType]) -> I
     assumed += [name for name in ("quantity", "anchored") if name not in values]
     if any(name not in values for name in ("item", "floor", "breadth", "height")):
         return None
-    own = {name: value for name, value in values.items() if name in _ITEM_FIELDS}
-    more = {name: value for name, value in values.items() if name not in _ITEM_FIELDS}
-    return Item(row=row.number, **own, assumed=tuple(assumed), extra=row.extra, more=more)
+    more = {name: values.pop(name) for name in [*values] if name not in _ITEM_FIELDS}
+    return Item(row=row.number, **values, assumed=tuple(assumed), extra=row.extra, more=more)
 
 
 def filled_sizes(table: Table, row: Row, types: Mapping[str, CatalogueType]) -> dict[str, float]:
     """Return the sizes of an item [m]: its own, else those of its type."""
-    return _fill_from_type(table, row, types, SIZES)
+    own = {name: row.values[name] for name in SIZES if name in row.values}
+    return own | _find_in_type(table, row, types, SIZES)
 
 
-def _fill_from_type(
+def _find_in_type(
     table: Table, row: Row, types: Mapping[str, CatalogueType], names: Iterable[str]
 ) -> dict[str, float]:
-    kind, found = types.get(key(row.get("type") or "")), {}
-    for name in names:
-        own = row.get(name)
-        value = own if own is not None or table.spoilt(name, row) else getattr(kind, name, None)
-        if value is not None:
-            found[name] = value
-    return found
+    """Return what the type of an item gives of the fields that are blank in its row."""
+    kind = types.get(key(row.get("type") or ""))
+    blank = (name for name in names if kind is not None and name not in row.values and not table.spoilt(name, row))
+    return {name: value for name in blank if (value := getattr(kind, name)) is not None}
 
 
 def turned_axis(row: Row) -> Axis | None:
@@ -292,7 +298,7 @@ def _correct_column(
     table: Table, column: Column, known: dict[str, str], notes: list[Problem], corrections: list[Correction]
 ) -> None:
     spellings = {None, *known.values()}
-    for row in (row for row in table.rows if row.values[column.name] not in spellings):
+    for row in (row for row in table.rows if row.get(column.name) not in spellings):
         typed = row.get(column.name)
         spelt = known.get(key(typed), typed)
         if spelt.casefold() == typed.casefold():

@@ -7,7 +7,7 @@ import datetime
 import math
 import re
 from collections.abc import Callable, Mapping
-from functools import lru_cache
+from functools import lru_cache, partial
 
 from assess.errors import InputError
 from assess.i18n import fill, find_language, nfill
@@ -21,6 +21,9 @@ from assess.workbook.outlines import OutlineError, parse_outline
 from assess.workbook.ranges import find_slip, is_unusual, is_within, span
 from assess.workbook.schema import YES, Column
 from assess.workbook.typed import is_free, understand
+
+CellReader = Callable[[object], tuple[object, tuple[Remark, ...]]]
+"""Returns a cell's value in SI, and what is remarkable about it; raises CellError."""
 
 ERRORS = frozenset({"#DIV/0!", "#N/A", "#NAME?", "#NULL!", "#NUM!", "#REF!", "#VALUE!", "#GETTING_DATA", "#SPILL!"})
 _TIMES = (datetime.datetime, datetime.date, datetime.time)
@@ -73,11 +76,23 @@ def read_cell(column: Column, value: object, unit: str) -> tuple[object, tuple[R
 
     Raises CellError if the cell does not hold what the column needs.
     """
-    is_rare = (isinstance(value, str) and len(value) > _SHOWN) or value == 0  # 0 and -0 are equal, and not the same
-    return (_read_cell if is_rare else _read_known)(column, value, unit)
+    return cell_reader(column, unit)(value)
 
 
-def _read_cell(column: Column, value: object, unit: str) -> tuple[object, tuple[Remark, ...]]:
+@lru_cache(maxsize=512)
+def cell_reader(column: Column, unit: str) -> CellReader:
+    """Return `read_cell` for one column and unit: the same values stand in row after row, book after book."""
+    read_new = partial(_read_cell, column, unit)
+    read_known = lru_cache(maxsize=1024, typed=True)(read_new)
+
+    def read(value: object) -> tuple[object, tuple[Remark, ...]]:
+        is_rare = (isinstance(value, str) and len(value) > _SHOWN) or value == 0  # 0 and -0 are equal, not the same
+        return (read_new if is_rare else read_known)(value)
+
+    return read
+
+
+def _read_cell(column: Column, unit: str, value: object) -> tuple[object, tuple[Remark, ...]]:
     meant, remark = value, None
     if not (type(value) is float or type(value) is int):
         if is_blank(value):
@@ -93,9 +108,6 @@ def _read_cell(column: Column, value: object, unit: str) -> tuple[object, tuple[
             meant, remark = understand(column, value, unit, shorten)
     found, more = READERS[column.kind](column, meant, unit), _remark_on(column, value, meant, unit)
     return found, () if remark is more is None else tuple(one for one in (remark, more) if one)
-
-
-_read_known = lru_cache(maxsize=8192, typed=True)(_read_cell)  # the same stands in row after row, book after book
 
 
 def _remark_on(column: Column, typed: object, value: object, unit: str) -> Remark | None:
