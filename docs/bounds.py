@@ -11,7 +11,7 @@ REFUSED = "refused, with how to cut it down"
 BY_CELL = "an error at the cell that names it"
 OPEN, FORMATS, ARCHIVE = "assess.workbook.open", "assess.motion.formats", "assess.motion.formats._archive"
 COMMON, CSV, TEXT = (f"assess.motion.formats.{name}" for name in ("_format", "plain_csv", "_text"))
-ALLOWANCE, PICTURES, PLANS = "assess.workbook.allowance", "assess.pictures", "assess.plans"
+ALLOWANCE, PICTURES, PLANS = "assess.workbook.kept_files", "assess.pictures", "assess.plans"
 
 MODEL, PROCESS = "assess.bim.ifc_file", "assess.bim.model_process"
 SCAN, HOME = "assess.bim.scan_values", "assess.bim.sweet_home"

@@ -107,9 +107,8 @@ def _of_the_workbook() -> Iterator[tuple[str, str]]:
     """Yield what the empty workbook and the example hold beside the names of the columns."""
     from assess.workbook import lists, live_row, template
     from assess.workbook.catalogue import catalogue_texts
-    from assess.workbook.example import example_texts
+    from assess.workbook.example import example_texts, room_texts
     from assess.workbook.schema import HELP, LISTS
-    from assess.workbook.uses import room_texts
 
     texts = (
         template.TITLE,

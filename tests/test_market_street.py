@@ -20,8 +20,7 @@ from assess.results import MAY_BE_LOWER
 from assess.risk import RiskClass
 from assess.settings import Settings
 from assess.units import GRAVITY
-from assess.workbook.layout import PLACES
-from assess.workbook.lists import RUN_ASSESS
+from assess.workbook.lists import PLACES, RUN_ASSESS
 from assess.workbook.live_row import IS_ANCHORED
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import CLASS, CLASS_OR, LIVE

@@ -12,7 +12,7 @@ from assess.i18n import gettext
 from assess.results import Results
 from assess.settings import Settings
 from assess.workbook.catalogue import read_catalogue
-from assess.workbook.layout import LETTERS, PLACES
+from assess.workbook.lists import LETTERS, PLACES
 from assess.workbook.schema import CATALOGUE, SHEETS
 from assess.workbook.template import Units
 

@@ -12,13 +12,11 @@ from assess.i18n import Text, fill, nfill
 from assess.units import QUANTITIES
 from assess.workbook.held import HeldCells, Place
 from assess.workbook.names import is_live, key, say_choices, split_header
-from assess.workbook.number_formats import Percent
-from assess.workbook.open import MAX_ROWS, UNSAVED
+from assess.workbook.open import MAX_ROWS, UNSAVED, Percent
 from assess.workbook.outlines import OutlineError, parse_outline
 from assess.workbook.parse import Row, Table
 from assess.workbook.patch import Value
-from assess.workbook.places import split_range
-from assess.workbook.plain_rows import column_letters
+from assess.workbook.plain_rows import column_letters, split_range
 from assess.workbook.schema import NO, YES, Column
 from assess.workbook.values import is_blank, read_text, shorten
 

@@ -31,8 +31,7 @@ from assess.progress import SILENT, Progress
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.names import key
 from assess.workbook.parse import Row, Table
-from assess.workbook.patch import patch_workbook
-from assess.workbook.patch_parts import find_totals
+from assess.workbook.patch import find_totals, patch_workbook
 from assess.workbook.read import hold_sheets, parse_held, read_inventory
 from assess.workbook.schema import CATALOGUE
 from assess.workbook.values import read_text

@@ -68,7 +68,7 @@ def _report(inventory: "Inventory", path: Path) -> None:
     """Print what a workbook without errors holds, and what is remarkable."""
     from assess.pipeline.demand import find_shaking
     from assess.pipeline.run import compute
-    from assess.workbook.completing import BETTER
+    from assess.workbook.habits import BETTER
 
     with show_progress() as progress:
         assessment = compute(inventory, Settings(verify="none"), progress=progress)

@@ -160,7 +160,7 @@ def print_problems(problems: Sequence[Problem]) -> None:
 
 def print_ways(problems: Sequence[Problem]) -> None:
     """Print to standard error what completes a workbook that lacks the shaking or the furniture."""
-    from assess.workbook.completing import list_ways
+    from assess.workbook.habits import list_ways
 
     print_numbered("To fill in what is missing:", list_ways(problems))
 

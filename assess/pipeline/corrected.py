@@ -17,8 +17,7 @@ from assess.progress import SILENT, Progress
 from assess.workbook.names import is_live, plain, say_live, split_header
 from assess.workbook.open import HEADER_ROWS, Book
 from assess.workbook.patch import Value, Values, list_formulas, patch_workbook
-from assess.workbook.places import split_address
-from assess.workbook.plain_rows import column_letters
+from assess.workbook.plain_rows import column_letters, split_address
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import ITEMS, LISTS, LIVE
 

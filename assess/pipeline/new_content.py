@@ -4,9 +4,8 @@ from dataclasses import replace
 
 from assess.errors import WorkbookError
 from assess.pipeline.live_values import with_live, without_shaking
-from assess.workbook.example import example_content
+from assess.workbook.example import example_content, room_content
 from assess.workbook.template import Content, Units
-from assess.workbook.uses import room_content
 
 
 def fill_content(units: Units, use: str, *, is_example: bool) -> Content:

@@ -9,10 +9,9 @@ from typing import Any
 from assess.i18n import load_catalogue, speaking
 from assess.units import QUANTITIES
 from assess.workbook.held import HeldCells, HeldSheets
-from assess.workbook.layout import FROZEN, PLACES
+from assess.workbook.lists import FROZEN, PLACES
 from assess.workbook.names import is_live, plain, say_choices, say_live, split_header, translate
-from assess.workbook.number_formats import Percent
-from assess.workbook.open import MAX_ROWS, UNSAVED
+from assess.workbook.open import MAX_ROWS, UNSAVED, Percent
 from assess.workbook.parse import Table, Tables
 from assess.workbook.plain_rows import column_letters
 from assess.workbook.schema import CLASS, ITEMS, LIVE, SHEETS, Column, Sheet

@@ -12,10 +12,10 @@ from assess.i18n import Text, fill, join, nfill
 from assess.model import AXES, MEASURED, CatalogueType
 from assess.motion.assumed import find_lowest_number, find_storey
 from assess.units import ROUNDING
-from assess.workbook.ground_files import SHAKEN
 from assess.workbook.names import find_near_name, key
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.resolve import build_catalogue, defined, filled_sizes, turned_axis
+from assess.workbook.schema import SHAKEN
 from assess.workbook.values import shorten
 
 Check = Callable[[Tables], Iterable[Problem]]
@@ -278,8 +278,7 @@ def check_items(tables: Tables) -> Iterator[Problem]:
                 message = fill("{label} is blank and no {type} gives it.", **values)
                 yield table.habit(name, row, message, fill("Fill it in, or choose a {type} that has one.", **values))
         yield from _check_sizes(table, row, sizes, types.get(key(row.get("type") or "")))
-        if "x" in row.values or "y" in row.values:
-            yield from _check_position(table, row)
+        yield from _check_position(table, row)
         axis, turned = row.get("axis"), turned_axis(row)
         if axis is not None and turned is not None and axis != turned:
             values = {"axis": axis, "angle": row.get("angle_deg"), "turned": turned}

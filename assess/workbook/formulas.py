@@ -5,15 +5,16 @@ The formulas are written by the methods' own functions, so the sheet and the pro
 workbooks in a spreadsheet engine and holds both to 1e-9.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-from assess.i18n import gettext
+from assess.i18n import LANGUAGES, gettext
 from assess.methods import ALIKE, LiveCells, Method, MethodInfo, all_methods
 from assess.methods.expression import EXCEL, Expression
 from assess.risk import LIMITS, RiskClass
 from assess.rocking.block import STOCKY
 from assess.units import ROUNDING
+from assess.workbook.names import fold, plain, say_choices
 from assess.workbook.schema import Column
 
 LIVE_METHODS = tuple(one for one in all_methods() if one.is_live)
@@ -92,3 +93,43 @@ def between(number: str, column: Column, scale: float = 1.0) -> str:
 def worse_axis(x: str, y: str) -> str:
     """Return the axis of the larger peak, X where they are alike to `ALIKE` decimals, as conversions leave them."""
     return f'IF(ROUND({x},{ALIKE})>=ROUND({y},{ALIKE}),"X","Y")'
+
+
+# ---------------------------------------------------------------- names and choices in cells
+
+_SPACE = "\u00a0"
+"""The space that breaks no line, which texts from documents and pages hold; TRIM leaves it."""
+
+_WILD = "~*?"
+"""Signs that MATCH takes for other signs unless a tilde stands before them."""
+
+
+def trim(cell: str) -> str:
+    """Return an expression for the text of a cell without leading, trailing and repeated spaces."""
+    return f'TRIM(SUBSTITUTE({cell},"{_SPACE}"," "))'
+
+
+def find_row(name: str, keys: str) -> str:
+    """Return an expression for the place of a trimmed name among `keys`, an error where it is none of them."""
+    for sign in _WILD:
+        name = f'SUBSTITUTE({name},"{sign}","~{sign}")'
+    return f"MATCH({name},{keys},0)"
+
+
+def is_among(cell: str, words: str) -> str:
+    """Return an expression for whether a cell holds one of `words`, written by `list_words`."""
+    return f'ISNUMBER(FIND("|"&LOWER({trim(cell)})&"|",{words}))'
+
+
+def list_words(choices: tuple[str, ...], choice: str) -> str:
+    """Return the ways to type a choice, in every language and short, as one text: ``|yes|y|``."""
+    return f"|{'|'.join(dict.fromkeys(_spell(choices, choice)))}|"
+
+
+def _spell(choices: tuple[str, ...], choice: str) -> Iterator[str]:
+    for code in LANGUAGES:
+        said = dict(zip(choices, say_choices(choices, code), strict=True))
+        word, others = said.pop(choice), [fold(other) for other in said.values()]
+        yield from (fold(word), plain(word), f"{plain(word)}'")
+        if not any(other.startswith(plain(word)[0]) for other in others):
+            yield plain(word)[0]

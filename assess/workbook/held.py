@@ -12,11 +12,9 @@ from typing import Any, ClassVar
 
 from assess.errors import Problem
 from assess.i18n import Text
-from assess.workbook.number_formats import Percent, read_number
-from assess.workbook.open import HEADER_ROWS, TRUE, Book, Cells, SheetCells
+from assess.workbook.open import HEADER_ROWS, TRUE, Book, Cells, Percent, SheetCells, read_number
 from assess.workbook.patch import LOCKED, Area, Value, read_back
-from assess.workbook.places import split_range
-from assess.workbook.plain_rows import column_letters
+from assess.workbook.plain_rows import column_letters, split_range
 
 Place = tuple[int, int]
 """The row of a cell, from 1, and its column, from 0."""

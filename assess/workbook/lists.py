@@ -18,9 +18,32 @@ from assess.rocking.block import MIDDLE
 from assess.units import ALIASES, GRAVITY, QUANTITIES
 from assess.workbook import formulas as live
 from assess.workbook import live_ground
-from assess.workbook.cell_texts import list_words, trim
-from assess.workbook.layout import LETTERS
-from assess.workbook.schema import BUILDING, CATALOGUE, FLOORS, LISTS, SHEETS, YES
+from assess.workbook.formulas import list_words, trim
+from assess.workbook.schema import BUILDING, CATALOGUE, CLASS, FLOORS, ITEMS, LISTS, LIVE, SHEETS, WORKINGS, YES, Sheet
+
+FROZEN = {ITEMS.name: 2}
+"""Columns that stay in view while a table is scrolled; one where a sheet is not named."""
+
+
+def list_columns(sheet: Sheet) -> list[str]:
+    """Return the columns of a sheet from the left: the field of each to fill in, the label of each that is computed."""
+    return list(_order(sheet))
+
+
+def _order(sheet: Sheet) -> Iterator[str]:
+    first, *others = (column.name for column in sheet.columns)
+    yield first
+    if sheet is ITEMS:
+        others = [CLASS, *others, *(label for label in LIVE if label != CLASS), *WORKINGS]
+    yield from others
+
+
+PLACES = {(sheet.name, name): at for sheet in SHEETS for at, name in enumerate(list_columns(sheet))}
+"""Column, from 0, in which the workbook has a field or a column that is computed; of a form, the line."""
+
+LETTERS = {where: xl_col_to_name(at) for where, at in PLACES.items()}
+"""The same as letters."""
+
 
 Units = Literal["si", "imperial"]
 

@@ -18,8 +18,7 @@ from assess.motion.floor_medians import ALIKE, PERIODS, PLACES, RATIOS, SCATTER,
 from assess.motion.scenario import PGA_OF_SDS
 from assess.rocking.draws import MOTION
 from assess.units import GRAVITY
-from assess.workbook.cell_texts import find_row, trim
-from assess.workbook.formulas import between
+from assess.workbook.formulas import between, find_row, trim
 from assess.workbook.schema import BUILDING, FLOORS, LISTS
 
 HELPERS = ("z", "at_grade", "place", "place_at", "place_part")

@@ -12,9 +12,8 @@ from assess.rocking.draws import BASE, CENTRE, CUT, HEIGHT, MARGIN, SCANNED_BASE
 from assess.settings import Settings
 from assess.units import ROUNDING
 from assess.workbook import formulas as live
-from assess.workbook.cell_texts import find_row, is_among, trim
-from assess.workbook.layout import LETTERS
-from assess.workbook.lists import NO_SHAKING, NO_UNIT, RUN_ASSESS, WRONG
+from assess.workbook.formulas import find_row, is_among, trim
+from assess.workbook.lists import LETTERS, NO_SHAKING, NO_UNIT, RUN_ASSESS, WRONG
 from assess.workbook.schema import CLASS_OR, ITEMS, LIVE, NO, WORKINGS, YES
 
 ROW = "\x00"

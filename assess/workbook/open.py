@@ -10,7 +10,7 @@ import posixpath
 import re
 import zipfile
 import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Self, TypeVar
@@ -20,8 +20,45 @@ from assess.errors import Problem, WorkbookError
 from assess.i18n import Text, fill
 from assess.input_file import open_input
 from assess.progress import SILENT, Progress
-from assess.workbook.number_formats import find_format, read_number
 from assess.workbook.plain_rows import PlainCell, RowCutter, column_letters, column_number, list_cells, list_unsaved
+
+_DATES = frozenset({*range(14, 23), 45, 46, 47})
+"""Numbers of the built-in formats that show a number as a date or a time."""
+
+
+class Percent(float):
+    """A number that its cell shows as a percentage."""
+
+
+def find_format(number: str, codes: Mapping[str, str]) -> str | None:
+    """Return the format that shows a number as a date or a time, or as a percentage ("%"); else None."""
+    code = codes.get(number, "")
+    if number in ("9", "10") or "%" in code:
+        return "%"
+    if not code:
+        return ("[h]" if number == "46" else "d") if number.isdigit() and int(number) in _DATES else None
+    if not any(letter in "dmhys" for letter in code.lower()):
+        return None
+    from openpyxl.styles.numbers import is_date_format
+
+    return code if is_date_format(code) else None
+
+
+def read_number(number: float, code: str | None, *, is_1904: bool) -> Any:
+    """Return what the number of a cell means: a date, a time or a percentage where its format shows it so."""
+    if code is None:
+        return number
+    if code == "%":
+        return Percent(number)
+    from openpyxl.styles.numbers import is_timedelta_format
+    from openpyxl.utils.datetime import MAC_EPOCH, WINDOWS_EPOCH, from_excel
+
+    try:
+        epoch = MAC_EPOCH if is_1904 else WINDOWS_EPOCH
+        return from_excel(number, epoch, timedelta=is_timedelta_format(code))
+    except (OverflowError, ValueError):
+        return "#VALUE!"
+
 
 MAX_FILE, MAX_PARTS, MAX_TOTAL, MAX_RATIO = 100 * 2**20, 2000, 128 * 2**20, 200
 MAX_ROWS, MAX_COLUMNS = 100_000, 256

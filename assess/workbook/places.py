@@ -13,7 +13,7 @@ from assess.errors import WorkbookError
 from assess.i18n import Text, fill
 from assess.progress import SILENT, Progress
 from assess.workbook.open import Part, damaged, unreadable
-from assess.workbook.plain_rows import column_letters
+from assess.workbook.plain_rows import column_letters, split_address, split_range
 
 _TAG = re.compile(rb"""<[^>"']*(?:(?:"[^"]*"|'[^']*')[^>"']*)*>""")
 _ATTRIBUTE = re.compile(rb"""\s+([^\s=/>]+)\s*=\s*(?:"[^"]*"|'[^']*')""")
@@ -148,24 +148,6 @@ class SmallPart(LocatedPart):
 
 
 # ---------------------------------------------------------------- sheets
-
-
-def split_address(address: str) -> tuple[int, int] | None:
-    """Return column and row of a cell, both from 1, by its address ``C3``; None if it is none."""
-    found = re.fullmatch(r"([A-Z]{1,3})([1-9]\d{0,6})", address)
-    if found is None:
-        return None
-    column = 0
-    for letter in found[1]:
-        column = 26 * column + ord(letter) - 64
-    return column, int(found[2])
-
-
-def split_range(reference: str) -> tuple[int, int, int, int] | None:
-    """Return first and last column, first and last row of a range ``A1:C5`` or ``A1``; None if it is none."""
-    first, _, last = reference.replace("$", "").partition(":")
-    one, other = split_address(first), split_address(last or first)
-    return (one[0], other[0], one[1], other[1]) if one and other else None
 
 
 @dataclass(slots=True)

@@ -130,3 +130,16 @@ def column_number(letters: str) -> int:
     for letter in letters.upper():
         number = 26 * number + ord(letter) - ord("A") + 1
     return number
+
+
+def split_address(address: str) -> tuple[int, int] | None:
+    """Return column and row of a cell, both from 1, by its address ``C3``; None if it is none."""
+    found = re.fullmatch(r"([A-Z]{1,3})([1-9]\d{0,6})", address)
+    return (column_number(found[1]), int(found[2])) if found else None
+
+
+def split_range(reference: str) -> tuple[int, int, int, int] | None:
+    """Return first and last column, first and last row of a range ``A1:C5`` or ``A1``; None if it is none."""
+    first, _, last = reference.replace("$", "").partition(":")
+    one, other = split_address(first), split_address(last or first)
+    return (one[0], other[0], one[1], other[1]) if one and other else None

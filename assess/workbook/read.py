@@ -14,14 +14,12 @@ from assess.motion.site_ground import GroundField
 from assess.progress import SILENT, Progress, Stage
 from assess.workbook import check, check_routes, draft_names
 from assess.workbook.check import Check
-from assess.workbook.ground_files import fill_building, replace_ground
-from assess.workbook.held import HeldSheets, hold_cells
 from assess.workbook.kept_files import KeptFiles
 from assess.workbook.names import ENGLISH, find_near, find_sheet, is_cobie_list, key, plain, translate, versions
 from assess.workbook.open import Book, read_file
 from assess.workbook.parse import CodeCells, Source, Table, Tables, first_row, parse_sheet
 from assess.workbook.picture_files import PictureReader
-from assess.workbook.records import FileReader, Files
+from assess.workbook.records import FileReader, Files, fill_building, replace_ground
 from assess.workbook.resolve import (
     build_building,
     build_catalogue,
@@ -36,6 +34,8 @@ from assess.workbook.schema import SHEETS, Sheet
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from assess.workbook.held import HeldSheets
 
 IN_CODE = "inventory.xlsx"
 """What an inventory without a file is called in reports."""
@@ -138,11 +138,13 @@ def read_tables(data: bytes, name: str, progress: Progress = SILENT) -> tuple[Ta
         return _parse({name: (book.cells(own), code) for name, (own, code) in found.items()}, language, problems)
 
 
-def hold_sheets(data: bytes, name: str, progress: Progress = SILENT) -> HeldSheets:
+def hold_sheets(data: bytes, name: str, progress: Progress = SILENT) -> "HeldSheets":
     """Read the cells of every sheet of a workbook and hold them in memory, for `parse_held`.
 
     Raises WorkbookError if the file cannot be opened as a workbook at all.
     """
+    from assess.workbook.held import HeldSheets, hold_cells
+
     with Book(data, name, progress) as book:
         found, language, problems = _find_sheets(list(book.sheets), book.hidden)
         return HeldSheets(
@@ -154,7 +156,7 @@ def hold_sheets(data: bytes, name: str, progress: Progress = SILENT) -> HeldShee
         )
 
 
-def parse_held(held: HeldSheets) -> tuple[Tables, list[Problem]]:
+def parse_held(held: "HeldSheets") -> tuple[Tables, list[Problem]]:
     """Return the tables of sheets that are held in memory, and all problems, as `read_tables` does."""
     found: dict[str, tuple[Source, str]] = {name: (one, held.languages[name]) for name, one in held.cells.items()}
     return _parse(found, held.language, held.problems)

@@ -197,9 +197,7 @@ def filled_sizes(table: Table, row: Row, types: Mapping[str, CatalogueType]) -> 
     return own | _find_in_type(table, row, types, SIZES)
 
 
-def _find_in_type(
-    table: Table, row: Row, types: Mapping[str, CatalogueType], names: Iterable[str]
-) -> dict[str, float]:
+def _find_in_type(table: Table, row: Row, types: Mapping[str, CatalogueType], names: Iterable[str]) -> dict[str, float]:
     """Return what the type of an item gives of the fields that are blank in its row."""
     kind = types.get(key(row.get("type") or ""))
     blank = (name for name in names if kind is not None and name not in row.values and not table.spoilt(name, row))

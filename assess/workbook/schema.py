@@ -366,6 +366,9 @@ SHEETS = (BUILDING, FLOORS, ITEMS, PLACES_SHEET, ROUTES, CATALOGUE, COSTS)
 PICTURE_FIELDS = frozenset({"photo", "plan", "plan_left", "plan_bottom", "plan_width", "plan_turn"})
 """Fields of tables that only reports and plans show: a row in which they are wrong is assessed without them."""
 
+SHAKEN = ("ground_pga", "ground_pgv", "sds", "shakemap", "shaking")
+"""Fields of Building that tell how the ground shakes; any one will do."""
+
 HELP, LISTS = "Help", "Lists"
 """Sheets of the empty workbook that hold no data; reading leaves them out."""
 

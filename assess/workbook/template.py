@@ -20,8 +20,7 @@ from assess.i18n import gettext
 from assess.risk import RiskClass
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, write_plainly
-from assess.workbook.layout import FROZEN, LETTERS, PLACES
-from assess.workbook.lists import ROWS, ListsWriter, Units
+from assess.workbook.lists import FROZEN, LETTERS, PLACES, ROWS, ListsWriter, Units
 from assess.workbook.live_row import ROW, LiveRow
 from assess.workbook.names import say_live
 from assess.workbook.schema import CATALOGUE, CLASS, CLASS_OR, HELP, ITEMS, LISTS, LIVE, SHEETS, WORKINGS, Column, Sheet

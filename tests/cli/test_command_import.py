@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from assess.workbook.layout import PLACES
+from assess.workbook.lists import PLACES
 from assess.workbook.patch import patch_workbook
 from assess.workbook.read import read_inventory, read_tables
 from tests.bim.cobie_files import COMPONENTS, TYPES, one_type, write_cobie

@@ -12,7 +12,7 @@ import pytest
 from assess.errors import InputError, WorkbookError
 from assess.pipeline.live_values import with_live
 from assess.web.book import Book, EditsRefused, VersionError
-from assess.workbook.layout import LETTERS, PLACES
+from assess.workbook.lists import LETTERS, PLACES
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import LIVE
 from assess.workbook.template import Content, write_workbook

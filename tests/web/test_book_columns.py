@@ -9,8 +9,7 @@ from assess.i18n import load_catalogue, speaking
 from assess.model import ANCHORED
 from assess.web.book import Book, EditsRefused
 from assess.web.columns import show
-from assess.workbook.number_formats import Percent
-from assess.workbook.open import UNSAVED
+from assess.workbook.open import UNSAVED, Percent
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import LIVE, SHEETS, WORKINGS
 from assess.workbook.template import Content, write_workbook

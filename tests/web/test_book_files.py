@@ -9,7 +9,7 @@ import pytest
 
 from assess.errors import InputError, OutputError, WorkbookError
 from assess.web.book import Book, ChangedOutsideError
-from assess.workbook.layout import PLACES
+from assess.workbook.lists import PLACES
 from assess.workbook.read import read_inventory
 from assess.workbook.template import Content, write_workbook
 from tests.pictures import picture

@@ -10,7 +10,7 @@ from openpyxl import load_workbook
 from assess.pipeline.live_values import with_live
 from assess.web.book import Book
 from assess.workbook import template
-from assess.workbook.layout import LETTERS, PLACES
+from assess.workbook.lists import LETTERS, PLACES
 from assess.workbook.schema import LIVE
 from assess.workbook.template import Content, write_workbook
 from assess.workbook.writer import write_book

@@ -8,7 +8,7 @@ import pytest
 from assess.pipeline.live_values import live_values, with_live
 from assess.pipeline.run import run
 from assess.workbook.example import SCENARIO, example_content
-from assess.workbook.layout import PLACES
+from assess.workbook.lists import PLACES
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import LIVE, SHEETS
 from assess.workbook.template import write_workbook

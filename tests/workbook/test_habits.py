@@ -14,8 +14,8 @@ from assess.model import Inventory
 from assess.report.content import build_content
 from assess.results import Results
 from assess.workbook.habits import count_kinds, group_problems
+from assess.workbook.parse import list_ranges
 from assess.workbook.read import read_inventory
-from assess.workbook.sections import list_ranges
 from tests.cli.calling import run
 from tests.workbook.books import FLOORS, ITEMS, Sheet, errors_of, read, remarks, write
 from tests.workbooks import UNVERIFIED

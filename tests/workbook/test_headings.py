@@ -8,7 +8,7 @@ import openpyxl
 import pytest
 
 from assess.i18n import LANGUAGES, gettext, load_catalogue, speaking
-from assess.workbook.layout import list_columns
+from assess.workbook.lists import list_columns
 from assess.workbook.names import say_choices, translate
 from assess.workbook.schema import CLASS, LISTS, SHEETS, Sheet
 from assess.workbook.template import (

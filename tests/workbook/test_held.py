@@ -16,7 +16,7 @@ from assess.model import Inventory
 from assess.plans import Drawing, read_plan
 from assess.workbook.held import HeldSheets, Place
 from assess.workbook.kept_files import KeptFiles
-from assess.workbook.layout import PLACES
+from assess.workbook.lists import PLACES
 from assess.workbook.patch import Value, patch_workbook
 from assess.workbook.plain_rows import column_letters
 from assess.workbook.read import build_held, hold_sheets, parse_held, read_inventory
@@ -218,7 +218,7 @@ def test_limits_hold_for_files_that_were_kept(
 ) -> None:
     kept, data = KeptFiles(), (named / "book.xlsx").read_bytes()
     assert not _read_kept(named, kept).problems
-    monkeypatch.setattr(f"assess.workbook.allowance.{limit}", most)
+    monkeypatch.setattr(f"assess.workbook.kept_files.{limit}", most)
     expected = _read_bytes(data, named).problems
     assert expected
     assert _read_kept(named, kept).problems == expected

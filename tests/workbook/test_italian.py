@@ -14,7 +14,7 @@ from assess.cli.command_new import write_new_workbook
 from assess.errors import WorkbookError
 from assess.i18n import LANGUAGES, find_language, gettext, load_catalogue, speaking
 from assess.model import Inventory
-from assess.workbook.layout import LETTERS, list_columns
+from assess.workbook.lists import LETTERS, list_columns
 from assess.workbook.names import fold, plain, say_choices, say_live, translate
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import CLASS, LISTS, LIVE, SHEETS, WORKINGS

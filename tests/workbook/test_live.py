@@ -20,7 +20,7 @@ from assess.pipeline.live_values import live_values, without_shaking
 from assess.units import QUANTITIES
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.formulas import LIVE_METHODS
-from assess.workbook.layout import LETTERS, PLACES
+from assess.workbook.lists import LETTERS, PLACES
 from assess.workbook.names import say_live
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import LIVE, SHEETS, WORKINGS

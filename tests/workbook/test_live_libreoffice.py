@@ -13,7 +13,7 @@ import openpyxl
 import pytest
 
 from assess.i18n import load_catalogue, speaking
-from assess.workbook.layout import PLACES
+from assess.workbook.lists import PLACES
 from assess.workbook.schema import LIVE
 from assess.workbook.template import Units
 from tests.recalculate import libreoffice_all, needs_libreoffice, same

@@ -9,8 +9,7 @@ import pytest
 
 from assess.i18n import LANGUAGES, gettext, load_catalogue, speaking
 from assess.workbook.catalogue import read_catalogue
-from assess.workbook.layout import LETTERS, list_columns
-from assess.workbook.lists import NO_SHAKING, NO_UNIT, RUN_ASSESS, WRONG
+from assess.workbook.lists import LETTERS, NO_SHAKING, NO_UNIT, RUN_ASSESS, WRONG, list_columns
 from assess.workbook.live_row import NO_AXIS, NO_FLOOR
 from assess.workbook.names import say_live
 from assess.workbook.read import read_inventory

@@ -12,7 +12,7 @@ from assess.errors import Correction
 from assess.units import GRAVITY, QUANTITIES
 from assess.workbook.habits import CellError
 from assess.workbook.names import translate
-from assess.workbook.number_formats import Percent
+from assess.workbook.open import Percent
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import BUILDING, FLOORS, ITEMS, Column
 from assess.workbook.typed import find_meant, straighten, understand

@@ -9,11 +9,10 @@ from assess.cli.command_new import Use, write_new_workbook
 from assess.i18n import load_catalogue, speaking
 from assess.pipeline.live_values import live_values
 from assess.workbook.catalogue import read_catalogue, read_table
-from assess.workbook.example import SCENARIO
-from assess.workbook.layout import PLACES
+from assess.workbook.example import ROOM, SCENARIO, room_content
+from assess.workbook.lists import PLACES
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import ITEMS, LIVE, USES
-from assess.workbook.uses import ROOM, room_content
 from tests.cli.calling import error, run
 from tests.workbook.test_live import AGREEMENT, by_formualizer, poison
 
