@@ -134,7 +134,7 @@ class Table:
     blind: frozenset[str] = frozenset()
     failed: frozenset[str] = frozenset()
     corrections: tuple[Correction, ...] = ()
-    source: Source | None = None
+    source: "Source | None" = None
     header: int = 0
     units: Mapping[str, str] = field(default_factory=dict)
 
