@@ -262,7 +262,7 @@ def _read_options(language: str | None, templates: Path | None, accessible: bool
         language=find_language(language) if language else "", templates=templates, accessible=accessible
     )
     if templates is not None:
-        from assess.report.pages.html import check_templates
+        from assess.report.templates import check_templates
 
         check_templates(options)
     return options

@@ -11,9 +11,10 @@ from assess.i18n import LANGUAGES, number
 from assess.i18n import gettext as _
 from assess.progress import SILENT, Progress
 from assess.report import words
-from assess.report.pages.html import build_style, render_page
+from assess.report.pages.html import build_style
 from assess.report.pages.pdf import attach, print_page
 from assess.report.report_options import ReportOptions
+from assess.report.templates import render_template
 from assess.version import __version__
 
 TEMPLATE, STYLE = "compare.html.j2", "compare.css"
@@ -33,7 +34,7 @@ def render_comparison(
 ) -> str:
     """Return the page in the language in use (see `ReportOptions.spoken`)."""
     context = progress.wait_for(lambda: _build_context(view, options, for_print=for_print))
-    return render_page(TEMPLATE, context, options, progress, filters=FILTERS)
+    return render_template(TEMPLATE, options, context, progress, filters=FILTERS)
 
 
 def _build_context(view: View, options: ReportOptions, *, for_print: bool) -> dict[str, Any]:

@@ -17,8 +17,8 @@ from assess.portfolio.page_data import STOREYS, list_heads, write_data
 from assess.progress import SILENT, Progress
 from assess.report import words
 from assess.report.pages.html import build_style, hash_script
-from assess.report.pages.html import render_page as render_template
 from assess.report.report_options import ReportOptions
+from assess.report.templates import render_template
 from assess.version import __version__
 
 TEMPLATE, STYLE, SCRIPT = "city.html.j2", "city.css", "script/city.js"
@@ -69,7 +69,7 @@ def render_page(
                 lambda: write_data(content, repeat, indexed)
             ),
         }  # fmt: skip
-        return render_template(TEMPLATE, context, options, progress).encode()
+        return render_template(TEMPLATE, options, context, progress).encode()
 
 
 def build_context(

@@ -12,9 +12,10 @@ from assess.portfolio.city_map import Isoline
 from assess.portfolio.city_page import STYLE, build_context
 from assess.portfolio.city_totals import CityView
 from assess.progress import SILENT, Progress
-from assess.report.pages.html import build_style, render_page
+from assess.report.pages.html import build_style
 from assess.report.pages.pdf import print_page
 from assess.report.report_options import ReportOptions
+from assess.report.templates import render_template
 from assess.workbook.template import CREATED
 
 TEMPLATE = "city_summary.html.j2"
@@ -61,4 +62,4 @@ def _render(view: CityView, background: Background | None, isolines: Sequence[Is
         "building_heads": [_("Building"), _("Share expected to fall"), _("Expected falls"),
                            _("People on blocked routes"), _("Routes blocked")],
     }  # fmt: skip
-    return render_page(TEMPLATE, context, options)
+    return render_template(TEMPLATE, options, context)

@@ -11,7 +11,7 @@ from assess.errors import Problem
 from assess.i18n import gettext as _
 from assess.i18n import number
 from assess.report import statements, words
-from assess.report.counts import Bars, Counts, build_bars, count, count_rooms
+from assess.report.counts import Counts, count, count_rooms
 from assess.report.findings import cautions, motions, trials
 from assess.report.findings.annual_chances import AnnualChances, build_annual
 from assess.report.findings.apart import list_apart, list_parts
@@ -71,9 +71,9 @@ class FloorPage(ByBasis):
         return sum(one.item.x_m is not None and one.item.y_m is not None for one in self.results)
 
     @property
-    def rooms(self) -> Bars | None:
-        """The pieces of each room as bars: what is shown where no piece has a position."""
-        return build_bars(count_rooms(self.results))
+    def rooms(self) -> Sequence[Counts]:
+        """The pieces of each room: what is shown where no piece has a position."""
+        return count_rooms(self.results)
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,16 +21,17 @@ import json, sys, time
 import matplotlib.figure, weasyprint
 import assess
 from assess.report.fonts import print_fonts
-from assess.report.pages import context, html
+from assess.report.pages import html
 from assess.report.pages.pdf_layout import open_page
 from assess.report.content import build_content
-from assess.progress import SILENT
+from assess.report.cover import build_document
 from assess.report.report_options import ReportOptions
+from assess.report.view import View
 found = assess.run(sys.argv[1], verify="none")
 options, content = ReportOptions(), build_content(found)
 with options.spoken():
     start = time.perf_counter()
-    context._of_figures(content, SILENT)
+    build_document(View(content=content, for_print=True))
     figures = time.perf_counter() - start
     page = html.render(content, options, for_print=True)
 start = time.perf_counter()

@@ -17,10 +17,10 @@ from typing import Any
 import pytest
 
 import assess
+from assess.report import html_blocks
 from assess.report.figures import motion_figures, risk_contours
 from assess.report.figures.math_figures import MathFigure
-from assess.report.pages import html
-from assess.report.word import drawings
+from assess.report.word import writer
 from assess.report.word.drawings import Picture
 from assess.results import Results
 from assess.settings import Settings
@@ -87,8 +87,8 @@ def show(name: str, results: Results, folder: Path, formats: Collection[str] = Q
         patch.setenv("SOURCE_DATE_EPOCH", DATE)
         for module in (motion_figures, risk_contours):
             patch.setattr(module, "draw", lambda *_, **__: b"")
-        patch.setattr(html, "draw_math", leave_room if set(formats) & set(PDFS) else lambda _: NO_ROOM)
-        patch.setattr(drawings, "draw_all", lambda given, *_: [Picture(EMPTY, one.width, "") for one in given])
+        patch.setattr(html_blocks, "draw_math", leave_room if set(formats) & set(PDFS) else lambda _: NO_ROOM)
+        patch.setattr(writer, "draw_all", lambda given, *_: [Picture(EMPTY, one.width, "") for one in given])
         found = render(results, folder, formats)
     if "json" in found:
         found["json"] = [line for line in found["json"] if not _is_far(line)]

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import assess
-from assess.report.pages import html
+from assess.report import html_blocks
 from docs import samples
 from tests.report.reading import leave_room
 
@@ -15,7 +15,7 @@ def _equations_without_letters(request):
     """Leave room for equations, but in a module that sets `DRAWS_EQUATIONS`: drawn they take half the time of a PDF."""
     with pytest.MonkeyPatch.context() as patch:
         if not getattr(request.module, "DRAWS_EQUATIONS", False):
-            patch.setattr(html, "draw_math", leave_room)
+            patch.setattr(html_blocks, "draw_math", leave_room)
         yield
 
 

@@ -16,9 +16,9 @@ from assess.report.figures import math_figures, motion_figures, risk_contours
 from assess.report.figures.math_figures import MathFigure
 from assess.report.fonts import print_fonts
 from assess.report.pages import html as pages
-from assess.report.pages.editions import Edition
 from assess.report.pages.pdf_layout import open_page
 from assess.report.report_options import ReportOptions
+from assess.report.view import Edition
 from assess.results import Results
 
 

@@ -11,7 +11,8 @@ import pytest
 import assess
 from assess.cli.command_run import describe_result
 from assess.report.content import build_content
-from assess.report.counts import build_bars, count
+from assess.report.counts import count
+from assess.report.figures.bars import draw_bars
 from assess.report.figures.plan import build_plan
 from assess.report.findings.apart import list_parts, list_ways_to_settle
 from assess.results import BASES
@@ -113,8 +114,8 @@ def test_lists_never_rank_what_stands_apart_among_simulated_pieces(mixed):
 def test_bars_and_plans_give_them_no_class(mixed):
     content = build_content(mixed)
     counts = next(one for one in content.by_floor if one.label == "Floor 2")
-    (bar,) = build_bars([counts]).bars
-    assert [(part.symbol, part.pieces) for part in bar.parts] == [("◌", 4), ("ƒ", 1), ("⚓", 1)]
+    drawn, _left = draw_bars([counts], "Bars")
+    assert re.findall(">([^<>]+)</text>", drawn.source) == ["Floor 2", "◌ 4", "ƒ 1", "⚓ 1", "6"]
     floor = next(one for one in content.floors if one.floor.floor == "2")
     (piece,) = build_plan(floor, mixed).pieces
     assert (piece.symbol, piece.class_name, piece.upper, piece.marks) == ("◌", "apart-unconfirmed", None, "")

@@ -10,8 +10,7 @@ import pytest
 import assess
 from assess.report.content import build_content
 from assess.report.groups import PieceGroup, choose_groups, group_rows
-from assess.report.pages import editions
-from assess.report.report_options import ReportOptions
+from assess.report.view import View, list_all_parts
 from tests.pictures import picture
 from tests.report.reading import read_text, render
 from tests.shaking import write_records
@@ -65,17 +64,21 @@ def written(results, tmp_path_factory):
 
 
 @pytest.mark.slow
-def test_every_section_has_a_heading_and_a_template_or_is_left_out(results):
-    headings = editions._headings()
-    assert {name for names in editions.SECTIONS.values() for name in names} == set(headings)
-    both = {*editions.SECTIONS["client"], *editions.SECTIONS["annex"]}
-    assert {*editions.SECTIONS["all"], "pieces"} == both | {"about"}
+def test_every_section_is_shown_in_its_order_and_no_two_have_a_place(results):
+    both = {key for edition in ("client", "annex") for key in _keys(edition)}
+    assert {*_keys("all"), "pieces"} == both | {"about"}
     content = build_content(results)
-    for edition in editions.SECTIONS:
-        parts = [name for name, _ in editions.list_parts(edition, content, ReportOptions(), is_compact=False)]
+    for edition in ("client", "annex", "all"):
+        places = [part.places[edition] for part in list_all_parts() if edition in part.places]
+        assert len(set(places)) == len(places)
+        view = View(content=content, edition=edition, for_print=edition != "all")
         page = render(results, for_print=edition != "all", edition=edition)
-        found = [one for one in re.findall(r'<section id="([^"]+)"', page) if one in headings]
-        assert found == parts
+        found = [one for one in re.findall(r'<section id="([^"]+)"', page) if one in both | {"about"}]
+        assert found == [part.key for part in view.parts]
+
+
+def _keys(edition):
+    return {part.key for part in list_all_parts() if edition in part.places}
 
 
 @pytest.mark.slow

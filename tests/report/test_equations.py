@@ -9,10 +9,11 @@ from assess.cache_folder import examine_folder
 from assess.i18n import gettext, load_catalogue, speaking
 from assess.methods import all_methods
 from assess.motion.scenario import PROFILES
+from assess.report.blocks import Equation, lower_indices
 from assess.report.equations import NotationError, Part, split_line, write_tex
 from assess.report.figures import math_figures
 from assess.report.figures.math_figures import draw_math
-from assess.report.pages.html import lower_indices, write_equation
+from assess.report.html_blocks import HtmlWriter
 
 NAMED = {
     "alpha": "α", "beta": "β", "gamma": "γ", "varepsilon": "ε", "zeta": "ζ", "eta": "η", "theta": "θ", "lambda": "λ",
@@ -139,11 +140,11 @@ def _symbols(text):
     ],
 )
 def test_indices(text, html):
-    assert str(lower_indices(text)) == html
+    assert HtmlWriter(for_print=True).words(lower_indices(text)) == html
 
 
 def test_an_equation_is_a_picture_with_the_plain_text_as_its_alternative():
-    html = str(write_equation('Rocking where |a_g|/g > B/H & "so" <on>'))
+    html = HtmlWriter(for_print=True).words(Equation('Rocking where |a_g|/g > B/H & "so" <on>'))
     head, picture, rest = re.fullmatch(r"(.*?)<img (.*?)>(.*)", html).groups()
     assert head == "Rocking where "
     assert 'alt="|a_g|/g &gt; B/H"' in picture
@@ -152,12 +153,12 @@ def test_an_equation_is_a_picture_with_the_plain_text_as_its_alternative():
 
 
 def test_a_page_holds_each_letter_of_its_equations_once():
-    letters: dict[str, str] = {}
-    lines = [str(write_equation(text, letters)) for text in ("B/H = 0.5", "B/H = 0.25")]
+    writer = HtmlWriter(for_print=False)
+    lines = [writer.words(Equation(text)) for text in ("B/H = 0.5", "B/H = 0.25")]
     used = [re.findall(r'href="#([^"]+)"', line) for line in lines]
     assert [len(one) for one in used] == [6, 7]
-    assert set(letters) == {name for one in used for name in one}
-    assert len(letters) == 7  # B H = 0 . 5 2
+    assert set(writer.letters) == {name for one in used for name in one}
+    assert len(writer.letters) == 7  # B H = 0 . 5 2
     assert all('role="img"' in line for line in lines)
     assert 'aria-label="B/H = 0.25"' in lines[1]
 

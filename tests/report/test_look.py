@@ -11,7 +11,6 @@ import assess
 from assess.cli.app import app
 from assess.errors import InputError
 from assess.i18n import load_catalogue
-from assess.report.pages.context import LIMITS
 from assess.report.report_options import ReportOptions
 from tests.nets.nets import find_shown
 from tests.pictures import picture
@@ -39,14 +38,16 @@ def own(folder, name, text):
 
 
 @pytest.mark.slow
-def test_a_file_of_the_firms_own_stands_in(assessment, tmp_path):
-    look = own(
-        tmp_path, "sections/limits.html.j2", '<section id="limits"><h2>Our limits: {{ content.title }}</h2></section>'
-    )
-    html = render(assessment, look)
-    assert "Our limits: Town hall" in html
-    assert "Every piece is a rigid block" not in html
-    assert "Data-quality log" in html
+def test_cover_order_and_choice_of_sections_can_be_the_firms_own(assessment, tmp_path):
+    own(tmp_path, "cover.html.j2", "<h1>Ours: {{ page.document.title }}</h1>")
+    frame = """{% include "cover.html.j2" %}{% for one in page.sections | reverse if one.id in ("limits", "summary") %}
+<div title="{{ one.heading }}">{{ one.html }}</div>{% endfor %}"""
+    html = render(assessment, own(tmp_path, "page.html.j2", frame))
+    assert "<h1>Ours: Furniture in earthquakes: Town hall</h1>" in html
+    assert re.findall('<section id="([^"]+)"', html) == ["limits", "summary"]
+    assert '<div title="Limits of the methods">' in html
+    assert "Every piece is a rigid block" in html
+    assert "Data-quality log" not in html
 
 
 @pytest.mark.slow
@@ -56,28 +57,28 @@ def test_a_style_of_the_firms_own_stands_in(assessment, tmp_path):
 
 def test_texts_of_the_firms_own_come_first(assessment, tmp_path):
     look = own(tmp_path, "texts/en.po", HEAD + 'msgid "Summary"\nmsgstr "What matters"\n')
-    assert "<h2>What matters</h2>" in render(assessment, look)
+    assert '<h2 id="summary-heading">What matters</h2>' in render(assessment, look)
 
 
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("{{ content.nothing }}", r"sections/limits\.html\.j2, line 2: .*has no attribute 'nothing'"),
-        ("{% if %}", r"sections/limits\.html\.j2, line 2: "),
-        ("{{ content.__class__ }}", r"sections/limits\.html\.j2, line 2: access to attribute '__class__' .* is unsafe"),
-        ("{{ 1 / 0 }}", r"sections/limits\.html\.j2, line 2: division by zero"),
+        ("{{ page.nothing }}", r"cover\.html\.j2, line 2: .*has no attribute 'nothing'"),
+        ("{% if %}", r"cover\.html\.j2, line 2: "),
+        ("{{ page.__class__ }}", r"cover\.html\.j2, line 2: access to attribute '__class__' .* is unsafe"),
+        ("{{ 1 / 0 }}", r"cover\.html\.j2, line 2: division by zero"),
         ("{% include 'other.j2' %}", r"other\.j2"),
     ],
 )
 def test_a_fault_in_a_template_is_told_with_its_place(assessment, tmp_path, text, told):
     with pytest.raises(InputError, match=f"^templates: .*{told}"):
-        render(assessment, own(tmp_path, "sections/limits.html.j2", f"\n{text}"))
+        render(assessment, own(tmp_path, "cover.html.j2", f"\n{text}"))
 
 
 @pytest.mark.parametrize(
     ("name", "text", "told"),
     [
-        ("sections/limits.html.j2", "{% if %}", "sections/limits.html.j2, line 1: Expected an expression"),
+        ("cover.html.j2", "{% if %}", "cover.html.j2, line 1: Expected an expression"),
         ("texts/en.po", "msgid no quotes", "the texts cannot be read"),
     ],
 )
@@ -94,7 +95,7 @@ def test_what_cannot_be_read_is_told_before_the_work(tmp_path, name, text, told)
 
 @pytest.mark.slow
 def test_a_fault_in_a_template_writes_nothing(assessment, tmp_path):
-    look = own(tmp_path / "firm", "sections/limits.html.j2", "{{ nothing }}")
+    look = own(tmp_path / "firm", "cover.html.j2", "{{ nothing }}")
     with pytest.raises(InputError, match="'nothing' is undefined"):
         assess.write_reports(assessment, tmp_path / "out", ("json", "html"), look)
     assert [path.name for path in tmp_path.iterdir()] == ["firm"]
@@ -103,8 +104,9 @@ def test_a_fault_in_a_template_writes_nothing(assessment, tmp_path):
 @pytest.mark.parametrize(
     ("name", "told"),
     [
-        ("sections/limit.html.j2", r"replaces no standard template. Did you mean sections/limits.html"),
-        (".hidden", "holds no template: expected some of city.html.j2, city_summary.html.j2, compare.html.j2, macros"),
+        ("covers.html.j2", r"replaces no standard template. Did you mean cover.html"),
+        ("sections/limits.html.j2", "sections are no templates any more. Order and choose them in page.html.j2, word"),
+        (".hidden", "holds no template: expected some of city.html.j2, city_summary.html.j2, compare.html.j2, cover"),
     ],
 )
 def test_a_folder_without_templates_is_told(tmp_path, name, told):
@@ -148,7 +150,7 @@ def test_the_files_for_programs_are_the_same_in_every_language(assessment, tmp_p
 
 
 def test_a_long_list_is_cut_with_a_word(assessment, monkeypatch):
-    monkeypatch.setattr("assess.report.pages.context.LIMITS", LIMITS | {"most_rows": 3})
+    monkeypatch.setattr("assess.report.sections.items.MOST_ROWS", 3)
     assert "5 rows, the first 3 of which are shown: the Excel report holds all" in read_text(render(assessment))
 
 

@@ -10,9 +10,8 @@ import assess
 from assess import fields
 from assess.fields import EVERYWHERE, Field, item_fields
 from assess.i18n import load_catalogue, speaking
-from assess.report.pages.compact import list_lines
-from assess.report.pages.page_columns import ROUTE_TABLES, list_columns, route_columns, say_value
-from assess.resources import templates
+from assess.report.compact import list_lines
+from assess.report.page_columns import ROUTE_TABLES, list_columns, route_columns, say_value
 from assess.route_fields import route_fields
 from assess.settings import Settings
 from tests.report.reading import render
@@ -60,13 +59,6 @@ def test_tables_of_routes_name_fields_that_have_labels():
     assert len(route_columns(has_anchors=True)["routes"]) == len(route_columns(has_anchors=False)["routes"]) + 1
     with speaking(load_catalogue("it")):
         assert route_columns(has_anchors=True)["segments"][3].heading == "Libera"
-
-
-def test_templates_read_no_field_of_a_piece_into_a_cell():
-    """The columns of `page_columns` do; the appendix names the pieces that the workbook has a note on."""
-    cell = re.compile(r"<t[dh][^>]*>\{\{ \w+\.(?:item|governing|motion|adopted)\.")
-    paths = sorted((templates() / "sections").glob("*.j2"))
-    assert [path.name for path in paths if cell.search(path.read_text(encoding="utf-8"))] == ["appendix.html.j2"]
 
 
 @pytest.mark.parametrize(

@@ -14,10 +14,11 @@ from assess.pipeline.schedule import fix_first
 from assess.report import statements, words
 from assess.report.content import build_content
 from assess.report.findings import at_risk, route_page
-from assess.report.pages.context import LIMITS
 from assess.report.ranking import list_steps, say_effect, say_step
 from assess.report.report_options import ReportOptions
+from assess.report.sections import routes_detail
 from assess.report.summary import FIXES
+from assess.report.view import MOST_SEGMENTS
 from assess.risk import RiskClass
 from assess.route_results import RouteState
 from assess.settings import Settings
@@ -277,8 +278,8 @@ def test_long_lists_are_bounded_and_what_is_left_out_is_least_likely(tmp_path):
     places.append({"place": "Exit", "floor": "1", "kind": "exit"})
     html = render(assess_routed(tmp_path / "w.xlsx", settings, Places=places, Routes=routes, Items=items))
     text = _text(_section(html))
-    for name in ("routes", "segments", "rooms"):
-        assert len(_rows(html, name)) == LIMITS[f"most_{name}"]
+    most = {"routes": routes_detail.MOST_ROUTES, "segments": MOST_SEGMENTS, "rooms": routes_detail.MOST_ROOMS}
+    assert {name: len(_rows(html, name)) for name in most} == most
     assert len(_rows(html, "beside")) == len(_rows(html, "steps")) == 20
     assert [row[0] for row in _rows(html, "routes")[:20]] == [f"Route {at}" for at in range(count - 20, count)]
     assert "80 more routes, less likely to be blocked, are in the Excel report." in text

@@ -206,7 +206,7 @@ def test_names_without_room_have_a_number_and_a_key(tmp_path):
     assert {str(number) for number in numbered} < shown
     assert len(plan.keys) + len([name for name in shown if name.startswith("Meeting")]) == 40
     html = render(results)
-    assert f"<b>1</b> {plan.keys[0].name} (" in html
+    assert f"<strong>1</strong> {plan.keys[0].name} (" in html
 
 
 def test_where_even_a_number_has_no_room_the_key_has_the_position_alone():

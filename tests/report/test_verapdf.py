@@ -19,10 +19,10 @@ from assess.compare.changes import compare
 from assess.compare.comparison_files import write_comparison
 from assess.compare.read_results import read_run
 from assess.report.content import build_content
-from assess.report.pages.editions import Edition
 from assess.report.pages.html import render
 from assess.report.pages.pdf import write_pdf
 from assess.report.report_options import ReportOptions
+from assess.report.view import Edition
 from assess.settings import Settings
 from tests.compare.past import write_routed_run
 from tests.pictures import picture

@@ -1,7 +1,6 @@
 """The Word edition: the client's report as headings, paragraphs, tables and pictures of Word."""
 
 import base64
-import itertools
 import re
 import zipfile
 from importlib import util
@@ -15,11 +14,12 @@ import assess
 from assess.errors import CancelledError, InputError
 from assess.extras import say_install
 from assess.progress import Progress
+from assess.report.blocks import Image
 from assess.report.content import build_content
 from assess.report.pages.html import render
 from assess.report.report_options import ReportOptions
 from assess.report.word import drawings
-from assess.report.word.word_tables import SPACE, _fit, place_cells
+from assess.report.word.writer import SPACE, _fit
 from assess.settings import Settings
 from tests.cli.calling import run
 from tests.workbooks import assessed, write
@@ -49,34 +49,6 @@ def written(tmp_path_factory):
 
 def _words(text):
     return " ".join(text.split())
-
-
-def _said(element):
-    """Return the text of an element of the page but what its drawings hold."""
-    parts = [element.text or ""]
-    for child in element:
-        inside = child.tag in ("svg", "wbr", "style") or not isinstance(child.tag, str)
-        parts += [" " if child.tag == "br" else "" if inside else _said(child), child.tail or ""]
-    return "".join(parts)
-
-
-def _grid(table):
-    """Return the texts of a table of the page as Word gives them: a cell that spans several stands in each of them."""
-    rows = list(table.iter("tr"))
-    found: dict[tuple[int, int], str] = {}
-    for one in place_cells(rows):
-        spots = itertools.product(range(one.rows), range(one.columns))
-        found |= {(one.row + down, one.column + right): _words(_said(one.cell)) for down, right in spots}
-    width = 1 + max(column for _row, column in found)
-    return [[found.get((row, column), "") for column in range(width)] for row in range(len(rows))]
-
-
-def test_heads_stand_over_their_columns():
-    page = html.fromstring(
-        "<table><tr><th rowspan=2>No.</th><th colspan=2>Force</th><th rowspan=2>Left</th></tr>"
-        "<tr><th>T</th><th>V</th></tr><tr><td>1</td><td>2</td><td>3</td><td>4</td></tr></table>"
-    )
-    assert _grid(page) == [["No.", "Force", "Force", "Left"], ["No.", "T", "V", "Left"], ["1", "2", "3", "4"]]
 
 
 def test_what_is_drawn_has_words(written):
@@ -131,12 +103,10 @@ def test_columns_fit_the_page_and_hold_their_words():
     assert crowded[0] > crowded[3]
 
 
-def test_drawings_are_taken_out_of_the_page_in_their_order():
+def test_a_drawing_has_its_size_and_its_words():
     inner = '<svg viewBox="0 0 300 150"><title>out</title><svg x="1"><rect/></svg></svg>'
     coded = base64.b64encode(b'<svg width="72pt" height="36pt"/>').decode()
-    page = f'<p>a{inner}b<img alt="say" src="data:image/svg+xml;base64,{coded}">c</p>'
-    left, found = drawings.take_drawings(page)
-    assert left == '<p>a<img data-drawing="0">b<img data-drawing="1">c</p>'
+    found = [drawings.measure(Image(inner)), drawings.measure(Image(f"data:image/svg+xml;base64,{coded}", "say"))]
     assert [one.alternative for one in found] == ["out", "say"]
     assert (found[0].width, found[0].height) == pytest.approx((166, 83))
     assert (found[1].width, found[1].height) == pytest.approx((25.4, 12.7))

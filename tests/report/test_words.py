@@ -1,5 +1,6 @@
 """Numbers and sentences of the reports: none contradicts the class, the counts, or another report."""
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -7,7 +8,8 @@ import pytest
 from assess.i18n import Catalogue, speaking
 from assess.report import words
 from assess.report.content import build_content
-from assess.report.counts import build_bars, count
+from assess.report.counts import count
+from assess.report.figures.bars import draw_bars
 from assess.report.findings.route_words import name_few
 from assess.report.statements import list_assumptions
 from assess.report.summary import say_plainly
@@ -143,12 +145,13 @@ def test_pieces_that_cannot_rock_are_counted_and_told(tmp_path):
 
 def test_bars_show_every_piece_in_proportion(tmp_path):
     counts = count("1", list(assessed(tmp_path / "w.xlsx")))
-    bars = build_bars([counts, count("empty", []), count("left out", [])], most=2)
-    (bar,) = bars.bars
-    assert (bar.total, sum(part.pieces for part in bar.parts), bars.left_out) == (counts.total, counts.total, 0)
-    assert len({round(part.width / part.pieces, 6) for part in bar.parts}) == 1
-    assert build_bars([counts] * 3, most=2).left_out == 1
-    assert build_bars([]) is None
+    drawn, left_out = draw_bars([counts, count("empty", []), count("left out", [])], "Bars", most=2)
+    widths = [float(width) for width in re.findall(' width="([^"]+)" height', drawn.source)]
+    pieces = [int(text.split()[-1]) for text in re.findall(">([^<>]+)</text>", drawn.source)[1:-1]]
+    assert (sum(pieces), left_out) == (counts.total, 0)
+    assert [width / sum(widths) for width in widths] == pytest.approx([n / sum(pieces) for n in pieces], abs=1e-3)
+    assert draw_bars([counts] * 3, "Bars", most=2)[1] == 1
+    assert draw_bars([], "Bars") is None
 
 
 @pytest.mark.slow

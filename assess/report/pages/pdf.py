@@ -20,12 +20,11 @@ from assess.progress import SILENT, Progress
 from assess.report.content import Content
 from assess.report.fonts import find_missing, find_nowhere, print_fonts, replace_signs
 from assess.report.pages import glyphs
-from assess.report.pages.context import list_missing_figures
-from assess.report.pages.editions import Edition
-from assess.report.pages.html import render, with_problems
+from assess.report.pages.html import list_missing_figures, render, with_problems
 from assess.report.pages.pdf_layout import MISSING, UNWRITTEN
 from assess.report.provenance import report_time
 from assess.report.report_options import ReportOptions
+from assess.report.view import Edition
 from assess.results import Results
 
 DEBIAN = "apt install libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"
@@ -67,7 +66,7 @@ def write_pdf(
     content, path, options, progress
         What to write, where to, and how.
     edition : {"client", "annex", "all"}
-        The sections that it shows, of `assess.report.pages.editions`.
+        The sections that it shows, of `assess.report.view`.
     data : Path, optional
         results.json where it has been written already.
 

@@ -1,7 +1,7 @@
 """The Word edition of the client's report: the same page as report.pdf, as paragraphs, tables and pictures to edit.
 
-A page is rendered once by the templates; `drawings` turns what is drawn into pictures, `document` writes styles,
-headers and footers, `blocks` and `runs` write what stands between the tags.
+`writer` writes the blocks of the document, `drawings` turns what is drawn into pictures, `document` holds styles,
+headers and footers.
 """
 
 import importlib.util
@@ -59,13 +59,15 @@ def write_word(content: Content, path: Path, options: ReportOptions, progress: P
         If the work was cancelled; nothing is written.
     """
     check_word()
-    from assess.report.pages.html import render
-    from assess.report.word.blocks import write_page
+    from assess.i18n import LANGUAGES
+    from assess.report.cover import build_document
+    from assess.report.pages.html import build_style
+    from assess.report.view import View
     from assess.report.word.document import Word
-    from assess.report.word.drawings import draw_all, take_drawings
+    from assess.report.word.writer import WordWriter
 
-    page = render(content, options, for_print=True, edition="client", progress=progress)
-    page, drawings = progress.wait_for(lambda: take_drawings(page))
-    word = Word(content, options, draw_all(drawings, page, progress), progress)
-    write_page(word, page)
+    view = View(content=content, edition="client", for_print=True, options=options, progress=progress)
+    document = progress.wait_for(lambda: build_document(view))
+    word = Word(document, options.language or LANGUAGES[0], progress)
+    WordWriter(word).write(document, build_style(options, True, "edition.css"))
     word.save(path)

@@ -2,16 +2,14 @@
 
 import io
 import zipfile
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from assess.i18n import gettext as _
 from assess.progress import Progress
-from assess.report.content import Content
+from assess.report.blocks import Document
 from assess.report.provenance import report_time
-from assess.report.report_options import ReportOptions
-from assess.report.word.drawings import Picture
+from assess.version import __version__
 
 FACE, FIXED = "Arial", "Courier New"
 """Faces that every word processor has, or replaces by one of the same widths."""
@@ -35,19 +33,16 @@ _OWN = {
 
 
 class Word:
-    """A document that is being written; `pictures` are the drawings of the page in their order."""
+    """A document of Word that is being written."""
 
-    def __init__(
-        self, content: Content, options: ReportOptions, pictures: Sequence[Picture], progress: Progress
-    ) -> None:
+    def __init__(self, document: Document, language: str, progress: Progress) -> None:
         import docx
 
-        self.content, self.options, self.pictures, self.progress = content, options, pictures, progress
+        self.progress = progress
         self.file: Any = docx.Document()
-        self.bookmarks = 0
         _set_page(self.file)
-        _set_styles(self.file, options.language or "en")
-        _set_properties(self.file, content, options)
+        _set_styles(self.file, language)
+        _set_properties(self.file, document, language)
         self._ids = {one.name: one.style_id for one in self.file.styles}
 
     def add(self, style: str, text: str = "") -> Any:
@@ -124,16 +119,14 @@ def _set_face(style: Any, size: float, colour: str, after: float) -> None:
     style.paragraph_format.line_spacing = 1.1 if style.name in ("Normal", "Lead", "Caution") else 1.0
 
 
-def _set_properties(file: Any, content: Content, options: ReportOptions) -> None:
-    told, building = file.core_properties, content.run.building
-    told.title = _("Furniture in earthquakes: {building}", building=content.title)[:255]
-    told.author = ", ".join(filter(None, (building.prepared_by, building.organisation)))[:255]
-    told.comments = f"assess {content.version}"
-    told.language = options.language or "en"
-    told.created = told.modified = report_time().replace(tzinfo=None)
+def _set_properties(file: Any, document: Document, language: str) -> None:
+    properties = file.core_properties
+    properties.title, properties.author = document.title[:255], document.author[:255]
+    properties.comments, properties.language = f"assess {__version__}", language
+    properties.created = properties.modified = report_time().replace(tzinfo=None)
 
 
-def write_margins(word: Word, short: str, status: str, conditions: str, page: str, of: str) -> None:
+def write_margins(word: Word, short: str, status: str, conditions: str) -> None:
     """Write the header and the footer: what every page has to say, the building, and the page of all pages."""
     from docx.enum.text import WD_TAB_ALIGNMENT
     from docx.shared import Mm
@@ -147,7 +140,7 @@ def write_margins(word: Word, short: str, status: str, conditions: str, page: st
     footer.add_run(" · ".join(filter(None, (short, status))) + "\t")
     footer.paragraph_format.tab_stops.clear_all()
     footer.paragraph_format.tab_stops.add_tab_stop(Mm(WIDTH - 2 * SIDE), WD_TAB_ALIGNMENT.RIGHT)
-    for text, field in ((f"{page} ", "PAGE"), (f" {of} ", "NUMPAGES")):
+    for text, field in ((f"{_('Page')} ", "PAGE"), (f" {_('of')} ", "NUMPAGES")):
         footer.add_run(text)
         add_field(footer, field, "1")
 

@@ -2,14 +2,15 @@
 
 import base64
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from html import escape, unescape
+from html import escape
 from pathlib import Path
 from xml.etree import ElementTree
 
 from assess.delivery.private_folder import private_folder
 from assess.progress import Progress
+from assess.report.blocks import Image
 
 WIDEST, TALLEST = 166.0, 150.0
 """Largest size of a picture [mm]: a page of A4 has room for it with its heading, its caption and a short table."""
@@ -21,13 +22,7 @@ POINTS = 220 / 72
 """Pixels per point of the page: 220 dpi, which prints sharply."""
 WIDE_FROM = 60.0
 """Width [mm] from which a drawing is no sign within a line, but fills the page's width."""
-MARK = "data-drawing"
-
-_TAG = re.compile(r"<(/?)svg\b[^>]*?(/?)>", re.IGNORECASE)
-_IMAGE = re.compile(r'<img\b[^>]*?\bsrc="data:(image/svg\+xml);base64,([^"]*)"[^>]*>', re.IGNORECASE)
-_STYLE = re.compile(r"<style>.*?</style>", re.IGNORECASE | re.DOTALL)
 _SIZE = re.compile(r"\s*([\d.]+)\s*([a-z]*)\s*$", re.IGNORECASE)
-_ALTERNATIVE = re.compile(r'\balt="([^"]*)"')
 _CORNERS = ("top-left", "top-center", "top-right", "bottom-left", "bottom-center", "bottom-right")
 
 
@@ -55,40 +50,12 @@ class Picture:
     alternative: str
 
 
-def take_drawings(page: str) -> tuple[str, list[Drawing]]:
-    """Return a page with a mark in place of each drawing, ``<img data-drawing="0">``, and the drawings."""
-    drawings: list[Drawing] = []
-    parts, at = [], 0
-    for start, end, svg, alternative in sorted((*_find_inline(page), *_find_images(page))):
-        drawings.append(_measure(svg, alternative))
-        parts += [page[at:start], f'<img {MARK}="{len(drawings) - 1}">']
-        at = end
-    return "".join([*parts, page[at:]]), drawings
-
-
-def _find_inline(page: str) -> Iterator[tuple[int, int, str, str]]:
-    depth, start = 0, 0
-    for tag in _TAG.finditer(page):
-        if tag[2]:
-            continue
-        if tag[1]:
-            depth -= 1
-            if depth == 0:
-                yield start, tag.end(), page[start : tag.end()], ""
-        else:
-            start = tag.start() if depth == 0 else start
-            depth += 1
-
-
-def _find_images(page: str) -> Iterator[tuple[int, int, str, str]]:
-    for image in _IMAGE.finditer(page):
-        svg = base64.b64decode(image[2]).decode()
-        said = _ALTERNATIVE.search(image[0])
-        yield image.start(), image.end(), svg[svg.index("<svg") :], unescape(said[1]) if said else ""
-
-
-def _measure(svg: str, alternative: str) -> Drawing:
+def measure(image: Image) -> Drawing:
     """Return a drawing with its size: that which it states, else that of its view box in pixels."""
+    svg = image.source
+    if not image.is_drawn:
+        svg = base64.b64decode(svg.partition(",")[2]).decode()
+        svg = svg[svg.index("<svg") :]
     root = ElementTree.fromstring(_declare(svg))  # noqa: S314 - drawn by this program
     box = [float(one) for one in (root.get("viewBox") or "0 0 100 100").split()]
     width, height = (
@@ -98,7 +65,7 @@ def _measure(svg: str, alternative: str) -> Drawing:
         scale = min(WIDEST / width, TALLEST / height)
         width, height = scale * width, scale * height
     title = root.find("{*}title")
-    said = alternative or root.get("aria-label") or (title.text if title is not None else "") or ""
+    said = image.alternative or root.get("aria-label") or (title.text if title is not None else "") or ""
     return Drawing(svg, max(width, LEAST), max(height, LEAST), said)
 
 
@@ -117,8 +84,8 @@ def _length(text: str | None) -> float | None:
     return float(found[1]) * MILLIMETRES[found[2].lower()] if found and found[2].lower() in MILLIMETRES else None
 
 
-def draw_all(drawings: Sequence[Drawing], page: str, progress: Progress) -> list[Picture]:
-    """Return the drawings as pictures; `page` gives the style that they are drawn with.
+def draw_all(drawings: Sequence[Drawing], style: str, progress: Progress) -> list[Picture]:
+    """Return the drawings as pictures, drawn with a style.
 
     Raises
     ------
@@ -133,7 +100,7 @@ def draw_all(drawings: Sequence[Drawing], page: str, progress: Progress) -> list
 
     with private_folder("assess-page-") as folder:
         path = folder / "drawings.pdf"
-        lay_out_page(_write_sheet(drawings, "".join(_STYLE.findall(page))), path, progress)
+        lay_out_page(_write_sheet(drawings, f"<style>{style}</style>"), path, progress)
         return progress.wait_for(lambda: _read_pictures(path, drawings))
 
 

@@ -1,0 +1,113 @@
+"""Templates: the frame of a page, the cover and the drawings of plans, the standard ones or a firm's own."""
+
+import traceback
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from assess.errors import InputError
+from assess.i18n import markup, nmarkup
+from assess.progress import SILENT, Progress
+from assess.report import words
+from assess.report.report_options import ReportOptions
+
+
+def open_template(name: str, options: ReportOptions) -> Any:
+    """Return a template: it escapes every text and is strict about names.
+
+    Those of a firm's own are rendered in a sandbox, which takes longer.
+    """
+    return _environment(options.templates, options.folders).get_template(name)
+
+
+def render_template(
+    name: str,
+    options: ReportOptions,
+    values: Mapping[str, Any],
+    progress: Progress = SILENT,
+    *,
+    filters: Mapping[str, Any] | None = None,
+) -> str:
+    """Return a template with its names filled in, with `filters` besides the few of all.
+
+    Raises
+    ------
+    InputError
+        If a template of the firm's own cannot be used: it names the file, the line and the reason.
+    CancelledError
+        If the work was cancelled.
+    """
+    TemplateError, SecurityError = progress.wait_for(_import_errors)
+    parts = []
+    try:
+        environment = progress.wait_for(lambda: _environment(options.templates, options.folders))
+        environment.filters |= filters or {}
+        for part in progress.wait_for(lambda: environment.get_template(name)).generate(**values):
+            progress.check()
+            parts.append(part)
+    except (TemplateError, SecurityError, TypeError, ValueError, ArithmeticError, LookupError, AttributeError) as error:
+        if options.templates is None:
+            raise  # the standard templates are right, or it is a fault of this program
+        raise InputError(_describe(error, options)) from None
+    return "".join(parts)
+
+
+def check_templates(options: ReportOptions) -> None:
+    """Raise InputError if a template or catalogue of the firm's own cannot be read: before the long work.
+
+    What only shows when a report is rendered, such as an undefined name, is found by `render_template`.
+    """
+    if options.templates is None:
+        return
+    TemplateError, _SecurityError = _import_errors()
+    with options.spoken():
+        for path in sorted(options.templates.rglob("*.j2")):
+            try:
+                open_template(path.relative_to(options.templates).as_posix(), options)
+            except TemplateError as error:
+                raise InputError(_describe(error, options)) from None
+
+
+def _describe(error: Exception, options: ReportOptions) -> str:
+    """Return where in the templates something is wrong, and what."""
+    name, line = getattr(error, "name", None), getattr(error, "lineno", None)
+    if line is None:  # one that came up while rendering has its place in the traceback alone
+        frames = [one for one in traceback.extract_tb(error.__traceback__) if one.filename.endswith(".j2")]
+        if frames:
+            path, line = Path(frames[-1].filename), frames[-1].lineno
+            name = next(path.relative_to(one).as_posix() for one in options.folders if path.is_relative_to(one))
+    place = f"{name or 'a template'}{f', line {line}' if line else ''}"
+    return f"templates: {place}: {error}"
+
+
+@cache
+def _environment(own: Path | None, folders: tuple[Path, ...]) -> Any:
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+    from jinja2.sandbox import ImmutableSandboxedEnvironment
+
+    environment = (Environment if own is None else ImmutableSandboxedEnvironment)(
+        loader=FileSystemLoader(folders),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        optimized=False,  # what is compiled holds no text, so that all languages share it
+    )
+    environment.globals |= {"_": markup, "ngettext": nmarkup}
+    environment.filters |= {"cut": words.cut, "in_m": words.in_m, "breakable": break_words}
+    return environment
+
+
+def break_words(text: str) -> Any:
+    """Return a text as HTML whose words may be broken only where they are too long for a column."""
+    from markupsafe import Markup, escape
+
+    return Markup("<wbr>").join(escape(part) for part in words.list_breaks(text))
+
+
+def _import_errors() -> tuple[type[Exception], type[Exception]]:
+    from jinja2 import TemplateError
+    from jinja2.exceptions import SecurityError
+
+    return TemplateError, SecurityError

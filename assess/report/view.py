@@ -1,0 +1,205 @@
+"""What the sections of a report read: its content, the edition and medium that they are shown in, and their order."""
+
+import importlib
+import pkgutil
+from collections.abc import Callable, Mapping, Sequence, Set
+from dataclasses import dataclass, field, replace
+from functools import cache, cached_property, partial
+from typing import Any, Literal, TypeAlias
+
+from assess.i18n import gettext as _
+from assess.i18n import number
+from assess.progress import SILENT, Progress
+from assess.report import words
+from assess.report.blocks import Inline, Section, Span, Words
+from assess.report.content import Content
+from assess.report.embedded import Photos
+from assess.report.figures.plan import Plan, build_plan
+from assess.report.figures.ways import build_stretches
+from assess.report.findings.route_rows import list_segments
+from assess.report.page_columns import PageColumn, list_columns, short_columns
+from assess.report.report_options import ReportOptions
+from assess.results import Results
+from assess.route_results import SegmentRow
+
+Edition = Literal["client", "annex", "all"]
+"""What a manager acts on; what that rests on; both, the answer first, for a screen."""
+FULL_ROWS = 150
+"""Rows up to which a PDF shows whole tables of all pieces; longer ones go to the appendix in a compact form."""
+MOST_ROWS = 5000
+"""Rows that the table of all pieces shows; the Excel report holds all."""
+MOST_SEGMENTS = 150
+"""Segments of routes that are listed, those most likely to be blocked; the Excel report holds all."""
+MOST_ASSUMPTIONS = 36
+"""Assumptions that the client's edition has room for on a page; where there are more, the annex has all."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class View:
+    """A report as it is shown: `content` in an edition, for a screen or for print."""
+
+    content: Content
+    edition: Edition = "all"
+    for_print: bool = False
+    options: ReportOptions = field(default_factory=ReportOptions)
+    progress: Progress = field(default=SILENT, repr=False)
+
+    @property
+    def run(self) -> Results:
+        """The results."""
+        return self.content.run
+
+    @property
+    def is_long(self) -> bool:
+        """Whether there are too many rows for whole tables in print."""
+        return len(self.content.results) > FULL_ROWS
+
+    @property
+    def is_compact(self) -> bool:
+        """Whether the pieces have an appendix of lines in place of whole tables."""
+        return self.is_long and self.for_print and not self.options.accessible
+
+    @property
+    def has_apart(self) -> bool:
+        """Whether pieces are counted apart, as they are unconfirmed or not simulated."""
+        return bool(self.content.total.unconfirmed or self.content.total.by_formula)
+
+    @cached_property
+    def parts(self) -> Sequence["Part"]:
+        """The sections that are shown, in their order."""
+        return self.list_parts(self.edition)
+
+    def list_parts(self, edition: Edition) -> Sequence["Part"]:
+        """Return the sections of an edition that the run has something on, in their order."""
+        own = replace(self, edition=edition) if edition != self.edition else self
+        found = [part for part in list_all_parts() if edition in part.places and part.is_shown(own)]
+        return sorted(found, key=lambda part: part.places[edition])
+
+    def shows(self, key: str) -> bool:
+        """Tell whether a section is shown."""
+        return any(part.key == key for part in self.parts)
+
+    @cached_property
+    def marks(self) -> str:
+        """The legend of the marks as a sentence, "" where nothing was simulated."""
+        return f"{words.marks()}." if self.content.verified.done else ""
+
+    @cached_property
+    def photos(self) -> Photos:
+        """The photos that the report embeds."""
+        return Photos(self.run)
+
+    @cached_property
+    def plans(self) -> Mapping[str, Plan | None]:
+        """The plans by floor, None of one without a position; none in an edition that has no floors."""
+        if not self.shows("floors"):
+            return {}
+        stretches = build_stretches(self.run.route_tables)
+        return {
+            page.floor.floor: self.once(
+                f"plan {page.floor.floor}",
+                partial(build_plan, page, self.run, stretches.get(page.floor.floor, ())),
+            )
+            for page in self.progress.checked(self.content.shown_floors)
+        }
+
+    @cached_property
+    def segment_rows(self) -> Set[int]:
+        """The numbers of the segments that have a row in the section on routes."""
+        return {number for number, _one in self.shown_segments}
+
+    @cached_property
+    def shown_segments(self) -> Sequence[tuple[int, SegmentRow]]:
+        """The segments that are listed, with their numbers from 1."""
+        found = self.run.route_tables
+        return list_segments(found, MOST_SEGMENTS, is_short=self.for_print) if self.run.has_routes else ()
+
+    @cached_property
+    def floor_titles(self) -> Mapping[str, str]:
+        """The titles of the floors by their names."""
+        return {page.floor.floor: page.title for page in self.content.floors}
+
+    def once(self, name: str, draw: Callable[[], Any]) -> Any:
+        """Return what is drawn once for HTML, PDF and Word."""
+        if name not in self.content.drawn:
+            self.content.drawn[name] = draw()
+        return self.content.drawn[name]
+
+    def columns(self, *keys: str) -> Sequence[PageColumn]:
+        """Return the columns of a list of pieces: all of "pieces", "risky" or "methods", or those of some keys."""
+        return list_columns(self.run, keys[0]) if len(keys) == 1 else short_columns(self.run, *keys)  # type: ignore[arg-type]
+
+    def lead_to(self, key: str, text: str) -> list[Inline]:
+        """Return a text that leads to a section, or says that the annex has it."""
+        if self.shows(key):
+            return [Span(text, href=f"#{key}")]
+        annex = _("(annex)")
+        return [f"{text} {annex}" if self.edition == "client" else text]
+
+    def name_piece(self, at: int, longest: int = 20) -> Inline:
+        """Return the name of a piece by its index, a link to its row where that is shown."""
+        name = words.cut(self.content.results[at].item.item, longest)
+        if self.for_print or self.is_compact or at >= MOST_ROWS:
+            return name
+        return Span(name, "whole" if len(name) <= 10 else "", f"#row-{at + 1}")  # a short one is not broken at a hyphen
+
+    def name_row(self, at: int, longest: int = 20) -> list[Inline]:
+        """Return the name of a piece, with how many pieces its row has where they are several."""
+        count = self.content.results[at].item.quantity
+        return [self.name_piece(at, longest), *([f" ({words.plural(count, 'piece')})"] if count > 1 else [])]
+
+
+Built: TypeAlias = "Section | Sequence[Section]"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Part:
+    """A section of the report: one file in `assess.report.sections`, which is found there.
+
+    Parameters
+    ----------
+    key : str
+        Its anchor.
+    heading : str
+        In English; it stands in the contents as well.
+    places : mapping of str to int
+        By edition, where it stands: a section of a smaller number comes first.
+    build : callable
+        From the view to its blocks, as a section, or several of which the first has the heading.
+    is_shown : callable
+        Whether the run has something on it; by default it has.
+    """
+
+    key: str
+    heading: str
+    places: Mapping[Edition, int]
+    build: Callable[[View], Built]
+    is_shown: Callable[[View], bool] = lambda _view: True
+
+    def build_sections(self, view: View) -> list[Section]:
+        """Return its sections with anchor and heading, in the language in use."""
+        built = self.build(view)
+        first, *others = [built] if isinstance(built, Section) else built
+        return [replace(first, id=self.key, heading=_(self.heading)), *others]
+
+
+@cache
+def list_all_parts() -> Sequence[Part]:
+    """Return every section there is: those of the modules in `assess.report.sections`."""
+    from assess.report import sections
+
+    names = sorted(one.name for one in pkgutil.iter_modules(sections.__path__))
+    return [importlib.import_module(f"{sections.__name__}.{name}").PART for name in names]
+
+
+def in_whole(value: float) -> str:
+    """Return a count."""
+    return number(value, ",d")
+
+
+def shorten(rows: Sequence[Any], most: int) -> tuple[Sequence[Any], int]:
+    """Return the first rows, and how many are left out."""
+    return rows[:most], max(len(rows) - most, 0)
+
+
+__all__ = ["Built", "Edition", "Part", "View", "Words"]

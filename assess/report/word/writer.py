@@ -1,0 +1,392 @@
+"""Blocks as paragraphs, tables and pictures of Word, in their order."""
+
+import base64
+import io
+import math
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from assess.plain_text import plain_text
+from assess.report.blocks import (
+    BREAK,
+    Block,
+    Box,
+    Bullets,
+    Cell,
+    Column,
+    Contents,
+    Document,
+    Equation,
+    Equations,
+    Figure,
+    Heading,
+    Image,
+    Inline,
+    Listing,
+    Paragraph,
+    Row,
+    Section,
+    Span,
+    Table,
+    Terms,
+    Tiles,
+    Title,
+    Words,
+    list_words,
+    lower_indices,
+    plain_words,
+)
+from assess.report.word.document import HEAD, SIDE, WIDTH, Word, make, shade, write_margins
+from assess.report.word.drawings import Drawing, draw_all, measure
+from assess.report.words import NO_BREAK, class_name
+from assess.risk import RiskClass
+
+STYLES = {"lead": "Lead", "caution": "Caution", "small": "Small", "legend": "Small", "note": "Small",
+          "kind": "Subtitle", "scenario": "Subtitle"}  # fmt: skip
+"""Styles of paragraphs by their kind; the others are plain."""
+FILLS = {
+    **{class_name(risk): (risk.fill, risk.ink) for risk in RiskClass},
+    "anchored": ("#e3e3e3", "#1c1c1c"),
+}
+"""Ground and ink of badges and tiles, by their kind."""
+LOGO, PHOTO = 40.0, 24.0
+"""Widths of a logo and of a photo of a piece [mm]."""
+SPACE = WIDTH - 2 * SIDE
+LEAST, MOST = 5.0, 34.0
+"""Characters that the width of a column without one of its own is reckoned from."""
+CHARACTER, MARGINS = 2.05, 2.4
+"""Width of a character of a cell and of the margins of one [mm]."""
+SIZE, SMALLEST = 9.0, 6.5
+"""Sizes of the letters of a cell [pt]: that of its style, and the least."""
+_OWN_WIDTH = re.compile(r"^w(\d+)$")
+_SPACES = re.compile(r"[ \t\r\n\f]+")
+_GROUND, _RULE = "E9EDF0", "C9CED3"
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """How text looks: what the spans around it say."""
+
+    is_bold: bool = False
+    is_italic: bool = False
+    rise: str = ""
+    ground: str = ""
+    ink: str = ""
+
+
+class WordWriter:
+    """Writes the blocks of a document; what is drawn is put in its place at the end, as all is drawn at once."""
+
+    def __init__(self, word: Word) -> None:
+        self.word = word
+        self.bookmarks = 0
+        self.drawn: list[tuple[Any, Drawing]] = []
+
+    def write(self, document: Document, style: str) -> None:
+        """Write a document; `style` is the style sheet that drawings are drawn with."""
+        self.blocks(document.cover)
+        for section in document.sections:
+            self.section(section)
+        pictures = draw_all([drawing for _run, drawing in self.drawn], style, self.word.progress)
+        for (run, _drawing), picture in zip(self.drawn, pictures, strict=True):
+            _add_picture(run, picture.png, picture.width, picture.alternative)
+
+    def section(self, one: Section) -> None:
+        """Write a section, on a new page unless it runs on."""
+        if one.heading:
+            self._head(one.heading, 1, one.id, is_new="run-on" not in one.kind.split())
+        self.blocks(one.blocks)
+
+    def blocks(self, blocks: Iterable[Block], *, is_first: bool = False) -> None:
+        """Write blocks; those of an article begin a page unless it is brief or the first of its section."""
+        before: Block | None = None
+        for one in blocks:
+            self.word.progress.check()
+            self._block(one, is_after_article=isinstance(before, Box) and before.tag == "article")
+            before = one
+
+    def _block(self, one: Block, *, is_after_article: bool) -> None:  # noqa: C901 - one case a kind of block
+        match one:
+            case Paragraph(words, kind):
+                kinds = kind.split()
+                style = next((STYLES[name] for name in kinds if name in STYLES), "Normal")
+                self._paragraph(style, words, keep="lead-in" in kinds)
+            case Title(words, short, status, conditions):
+                write_margins(self.word, short, status, conditions)
+                self._paragraph("Title", words)
+            case Heading(words, level):
+                self._paragraph(f"Heading {level - 1}", words)
+            case Bullets(items):
+                for item in items:
+                    self._paragraph("List Bullet", item)
+            case Terms(items):
+                for term, text in items:
+                    self._paragraph("Normal", [Span(term, "strong"), ": ", *list_words(text)])
+            case Table():
+                self._table(one)
+            case Tiles():
+                self._tiles(one)
+            case Figure(image, caption, _, legend):
+                self._paragraph("Normal", image, keep=True)
+                self.blocks(legend)
+                if caption:
+                    self._paragraph("Caption", caption)
+            case Listing(head, lines):
+                for text in (head, *map(plain_words, lines)):
+                    self.word.add("Listing", text)
+            case Equations(lines):
+                for line in lines:
+                    self._paragraph("Normal", line)
+            case Contents():
+                self._contents(one)
+            case Box(blocks, kind, "article", id_) if blocks and isinstance(blocks[0], Heading):
+                is_next = is_after_article and "brief" not in kind.split()
+                self._head(blocks[0].words, blocks[0].level - 1, id_, is_new=is_next)
+                self.blocks(blocks[1:])
+            case Box(blocks, "caution", _, _):
+                self.blocks(blocks)
+            case Box(blocks):
+                self.blocks(blocks)
+
+    def _head(self, words: Words, level: int, name: str, *, is_new: bool) -> None:
+        """Write a heading that links lead to."""
+        paragraph = self._paragraph(f"Heading {level}", words)
+        paragraph.paragraph_format.page_break_before = is_new
+        if name:
+            self.bookmarks += 1
+            number = str(self.bookmarks)
+            start = make("w:bookmarkStart", {"w:id": number, "w:name": name})
+            paragraph._p.insert(1 if paragraph._p.pPr is not None else 0, start)
+            paragraph._p.append(make("w:bookmarkEnd", {"w:id": number}))
+
+    def _paragraph(self, style: str, words: Words, *, keep: bool = False) -> Any:
+        paragraph = self.word.add(style)
+        self._fill(paragraph, words)
+        if keep:
+            paragraph.paragraph_format.keep_with_next = True
+        return paragraph
+
+    def _contents(self, one: Contents) -> None:
+        """Write a field that Word fills with pages, which shows the headings until then."""
+        self._paragraph("Subtitle", one.heading)
+        paragraph = self.word.add("Normal")
+        code = make("w:r")
+        text = make("w:instrText")
+        text.text = ' TOC \\o "1-1" \\h \\z '
+        code.append(text)
+        for part in (_field_part("begin"), code, _field_part("separate")):
+            paragraph._p.append(part)
+        for at, (line, _inner) in enumerate(one.lines):
+            paragraph = self.word.add("Normal") if at else paragraph
+            link = next(span for span in list_words(line) if isinstance(span, Span))
+            made, run, text = make("w:hyperlink", {"w:anchor": link.href[1:]}), make("w:r"), make("w:t")
+            text.text = plain_words(line)
+            run.append(text)
+            made.append(run)
+            paragraph._p.append(made)
+            paragraph.paragraph_format.space_after = 0
+        paragraph._p.append(_field_part("end"))
+        if one.after:
+            self._paragraph("Small", one.after)
+
+    # ------------------------------------------------------------ on a line
+
+    def _fill(self, paragraph: Any, words: Words, look: Look | None = None) -> None:
+        for one in list_words(words):
+            self._inline(paragraph, one, look or Look())
+
+    def _inline(self, paragraph: Any, one: Inline, look: Look) -> None:
+        match one:
+            case str():
+                text = _SPACES.sub(NO_BREAK if look.ground else " ", plain_text(one))
+                if text:
+                    _dress(paragraph.add_run(text), look)
+            case Span() if one == BREAK:
+                paragraph.add_run().add_break()
+            case Span(words, kind):
+                self._fill(paragraph, words, _look(kind, look))
+            case Equation(text):
+                self._fill(paragraph, lower_indices(text), look)
+            case Image(source, alternative, kind):
+                if kind == "photo":
+                    paragraph.add_run().add_break()
+                run = paragraph.add_run()
+                if one.is_drawn or source.startswith("data:image/svg+xml"):
+                    self.drawn.append((run, measure(one)))
+                else:
+                    data = base64.b64decode(source.partition(",")[2])
+                    _add_picture(run, data, PHOTO if kind == "photo" else LOGO, alternative)
+
+    # ------------------------------------------------------------ tables
+
+    def _table(self, one: Table) -> None:
+        """Write a table, its caption above it: heads repeat on every page, rows stay whole."""
+        from docx.shared import Pt
+
+        if one.caption:
+            self._paragraph("Caption", one.caption)
+        heads = [Row([column.heading for column in one.columns], "head")] if any(c.heading for c in one.columns) else []
+        rows = [*heads, *(row for group in one.groups for row in group)]
+        made = self.word.file.add_table(len(rows), len(one.columns))
+        made.autofit = False
+        widths, scale = _find_widths(one.columns, rows)
+        _set_columns(made, widths)
+        slots = [list(tr.tc_lst) for tr in made._tbl.tr_lst]
+        for at, (tr, row) in enumerate(zip(made._tbl.tr_lst, rows, strict=True)):
+            self.word.progress.check()
+            properties = tr.get_or_add_trPr()
+            properties.append(make("w:cantSplit"))
+            if row.kind == "head":
+                properties.append(make("w:tblHeader"))
+            self._row(made, row, one.columns, slots[at], scale, Pt)
+        _set_borders(made)
+        self.word.add("Small")
+
+    def _row(self, made: Any, row: Row, columns: Sequence[Column], slots: list[Any], scale: float, Pt: Any) -> None:
+        from docx.enum.text import WD_ALIGN_PARAGRAPH
+        from docx.table import _Cell
+
+        at, is_head = 0, row.kind in ("head", "part")
+        for given in row.cells:
+            cell = given if isinstance(given, Cell) else Cell(given)
+            slot = _Cell(slots[at], made)
+            if cell.columns > 1:
+                slot = slot.merge(_Cell(slots[at + cell.columns - 1], made))
+            paragraph = slot.paragraphs[0]
+            self.word.set_style(paragraph, "Cell Head" if is_head else "Cell")
+            if columns[at].is_number and cell.columns == 1 and not cell.is_head:
+                paragraph.alignment = WD_ALIGN_PARAGRAPH.RIGHT
+            paragraph.paragraph_format.keep_with_next = is_head
+            self._fill(paragraph, cell.words, Look(is_bold=is_head or cell.is_head))
+            for run in paragraph.runs if scale < 1 else ():  # else the words would not fit the page
+                run.font.size = Pt(round(max(SMALLEST, SIZE * scale), 1))
+            if is_head:
+                shade(slot._tc.get_or_add_tcPr(), _GROUND)
+            at += cell.columns
+
+    def _tiles(self, one: Tiles) -> None:
+        """Write counts as one row of cells, each with the colour of its class."""
+        from docx.enum.text import WD_ALIGN_PARAGRAPH
+        from docx.shared import Pt, RGBColor
+        from docx.table import _Cell
+
+        made = self.word.file.add_table(1, len(one.tiles))
+        for tc, tile in zip(made._tbl.tr_lst[0].tc_lst, one.tiles, strict=True):
+            slot, colours = _Cell(tc, made), FILLS.get(tile.kind)
+            for at, text in enumerate((tile.name, tile.number, tile.note)):
+                paragraph = slot.paragraphs[0] if at == 0 else slot.add_paragraph()
+                self.word.set_style(paragraph, "Cell")
+                paragraph.alignment = WD_ALIGN_PARAGRAPH.CENTER
+                run = paragraph.add_run(plain_text(text))
+                run.bold, run.font.size = (True, Pt(18)) if at == 1 else (None, None)
+                if colours:
+                    run.font.color.rgb = RGBColor.from_string(colours[1].lstrip("#").upper())
+            if colours:
+                shade(tc.get_or_add_tcPr(), colours[0])
+        _set_borders(made)
+        self.word.add("Small")
+
+
+def _field_part(kind: str) -> Any:
+    run = make("w:r")
+    run.append(make("w:fldChar", {"w:fldCharType": kind}))
+    return run
+
+
+def _look(kind: str, look: Look) -> Look:
+    if kind in ("strong", "em"):
+        return replace(look, is_bold=look.is_bold or kind == "strong", is_italic=look.is_italic or kind == "em")
+    if kind in ("sub", "sup"):
+        return replace(look, rise=kind)
+    names = kind.split()
+    colours = next((FILLS[name] for name in names if name in FILLS), None) if "badge" in names else None
+    return replace(look, ground=colours[0], ink=colours[1]) if colours else look
+
+
+def _dress(run: Any, look: Look) -> None:
+    run.bold = look.is_bold or None
+    run.italic = look.is_italic or None
+    run.font.subscript = look.rise == "sub" or None
+    run.font.superscript = look.rise == "sup" or None
+    if look.ground:
+        from docx.shared import RGBColor
+
+        run.font.color.rgb = RGBColor.from_string(look.ink.lstrip("#").upper())
+        shade(run._r.get_or_add_rPr(), look.ground)
+
+
+def _add_picture(run: Any, data: bytes, width: float, alternative: str) -> None:
+    """Add a picture to a run, with its text for those who do not see it."""
+    from docx.shared import Mm
+
+    shape = run.add_picture(io.BytesIO(data), width=Mm(width))
+    shape._inline.docPr.set("descr", plain_text(alternative)[:1000])
+
+
+# ---------------------------------------------------------------- widths
+
+
+def _find_widths(columns: Sequence[Column], rows: Sequence[Row]) -> tuple[list[float], float]:
+    """Return the width of each column [mm], its own in percent, else by what it holds; and a scale.
+
+    None is narrower than its longest word; the scale is that of the letters at which there is room for all.
+    """
+    texts: list[list[str]] = [[] for _column in columns]
+    for row in rows:
+        at = 0
+        for given in row.cells:
+            cell = given if isinstance(given, Cell) else Cell(given)
+            if cell.columns == 1:
+                texts[at].append(plain_words(cell.words))
+            at += cell.columns
+    own = [float(found[1]) if (found := _OWN_WIDTH.match(column.width)) else None for column in columns]
+    shares = [min(MOST, max(LEAST, *map(_reckon, one), LEAST)) for one in texts]
+    left = max(100.0 - sum(one or 0.0 for one in own), 10.0)
+    rest = sum(share for share, one in zip(shares, own, strict=True) if one is None)
+    wanted = [one if one is not None else left * share / rest for share, one in zip(shares, own, strict=True)]
+    longest = [max((len(word) for text in one for word in _SPACES.split(text)), default=0) for one in texts]
+    needed = [min(one, MOST) * CHARACTER + MARGINS for one in longest]
+    return _fit([SPACE * one / sum(wanted) for one in wanted], needed), min(1.0, SPACE / sum(needed))
+
+
+def _fit(wanted: list[float], needed: list[float]) -> list[float]:
+    """Return widths that sum up to the page's: as wanted, but none below what it needs while the others have room."""
+    widths = [max(pair) for pair in zip(wanted, needed, strict=True)]
+    slack = sum(width - need for width, need in zip(widths, needed, strict=True))
+    excess = sum(widths) - SPACE
+    if excess > slack:
+        return [SPACE * need / sum(needed) for need in needed]
+    share = excess / slack if slack else 0.0
+    return [width - share * (width - need) for width, need in zip(widths, needed, strict=True)]
+
+
+def _reckon(text: str) -> float:
+    """Return how many characters wide a cell would be: its longest word, or some of its text."""
+    longest = max(map(len, _SPACES.split(text)))
+    return max(float(longest), math.pow(len(text), 0.75))
+
+
+def _set_columns(table: Any, widths: list[float]) -> None:
+    from docx.shared import Mm
+
+    for column, width in zip(table._tbl.tblGrid.gridCol_lst, widths, strict=True):
+        column.w = Mm(width)
+    for tr in table._tbl.tr_lst:
+        for tc, width in zip(tr.tc_lst, widths, strict=True):
+            tc.width = Mm(width)
+
+
+def _set_borders(table: Any) -> None:
+    properties = table._tbl.tblPr
+    borders = make("w:tblBorders")
+    for side in ("top", "left", "bottom", "right", "insideH", "insideV"):
+        is_drawn = side in ("top", "bottom", "insideH")
+        value = {"w:val": "single" if is_drawn else "nil", "w:sz": "4", "w:space": "0"}
+        borders.append(make(f"w:{side}", {**value, "w:color": HEAD if side in ("top", "bottom") else _RULE}))
+    margins = make("w:tblCellMar")
+    for side, width in (("top", 25), ("left", 60), ("bottom", 25), ("right", 60)):
+        margins.append(make(f"w:{side}", {"w:w": str(width), "w:type": "dxa"}))
+    properties.append(borders)
+    properties.append(margins)
