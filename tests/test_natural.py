@@ -77,4 +77,4 @@ def test_equal_pieces_and_rooms_are_ranked_by_name(results):
     assert [one.item.item for one in content.summary.worst][:3] == ["A2", "A10", "B3"]
     fixed = [one.item.item for entry in content.summary.fixes for one in entry.results]
     assert fixed.index("A2") < fixed.index("A10") < fixed.index("B3")
-    assert [bar.label for bar in content.floors[0].rooms.bars] == ["Room 10", "Room 9"]  # the riskier one first
+    assert [bar.label for bar in content.floors[0].rooms] == ["Room 10", "Room 9"]  # the riskier one first
