@@ -114,8 +114,9 @@ def test_lists_never_rank_what_stands_apart_among_simulated_pieces(mixed):
 def test_bars_and_plans_give_them_no_class(mixed):
     content = build_content(mixed)
     counts = next(one for one in content.by_floor if one.label == "Floor 2")
-    drawn, _left = draw_bars([counts], "Bars") or pytest.fail()
-    assert re.findall(">([^<>]+)</text>", drawn.source) == ["Floor 2", "◌ 4", "ƒ 1", "⚓ 1", "6"]
+    bars = draw_bars([counts], "Bars")
+    assert bars
+    assert re.findall(">([^<>]+)</text>", bars[0].source) == ["Floor 2", "◌ 4", "ƒ 1", "⚓ 1", "6"]
     floor = next(one for one in content.floors if one.floor.floor == "2")
     (piece,) = build_plan(floor, mixed).pieces
     assert (piece.symbol, piece.class_name, piece.upper, piece.marks) == ("◌", "apart-unconfirmed", None, "")

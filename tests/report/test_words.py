@@ -145,12 +145,16 @@ def test_pieces_that_cannot_rock_are_counted_and_told(tmp_path):
 
 def test_bars_show_every_piece_in_proportion(tmp_path):
     counts = count("1", list(assessed(tmp_path / "w.xlsx")))
-    drawn, left_out = draw_bars([counts, count("empty", []), count("left out", [])], "Bars", most=2) or pytest.fail()
+    found = draw_bars([counts, count("empty", []), count("left out", [])], "Bars", most=2)
+    assert found
+    drawn, left_out = found
     widths = [float(width) for width in re.findall(' width="([^"]+)" height', drawn.source)]
     pieces = [int(text.split()[-1]) for text in re.findall(">([^<>]+)</text>", drawn.source)[1:-1]]
     assert (sum(pieces), left_out) == (counts.total, 0)
     assert [width / sum(widths) for width in widths] == pytest.approx([n / sum(pieces) for n in pieces], abs=1e-3)
-    assert (draw_bars([counts] * 3, "Bars", most=2) or pytest.fail())[1] == 1
+    cut = draw_bars([counts] * 3, "Bars", most=2)
+    assert cut
+    assert cut[1] == 1
     assert draw_bars([], "Bars") is None
 
 

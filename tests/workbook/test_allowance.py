@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from assess.workbook import allowance
+from assess.workbook import kept_files
 from tests.motion.writers import EAST, at2, zipped
 from tests.workbook.books import errors_of, read, write
 
@@ -37,11 +37,11 @@ def three(tmp_path: Path) -> Path:
     ],
 )
 def test_records(three: Path, monkeypatch: pytest.MonkeyPatch, limit: str, most: int, message: str) -> None:
-    monkeypatch.setattr(allowance, limit, most)
+    monkeypatch.setattr(kept_files, limit, most)
     assert errors_of(three) == {f"Floors!B4: {message}. {FEWER}"}
 
 
 def test_a_file_counts_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(allowance, "MOST_RECORD_SAMPLES", EAST.acceleration.size)
+    monkeypatch.setattr(kept_files, "MOST_RECORD_SAMPLES", EAST.acceleration.size)
     (tmp_path / "a.at2").write_bytes(at2())
     assert len(read(tmp_path, floors=floors_with("a.at2", "a.at2#1", "a.at2")).floors) == 3

@@ -9,7 +9,7 @@ import assess
 from assess.model import FloorPlan, Inventory
 from assess.plans import Drawing, read_plan
 from assess.plans.linework import unpack
-from assess.workbook import allowance, picture_files
+from assess.workbook import kept_files, picture_files
 from assess.workbook.read import read_inventory
 from assess.workbook.template import Units
 from tests.pictures import picture
@@ -150,7 +150,7 @@ def test_a_drawing_is_read_once_whatever_its_widths_and_a_picture_for_each(
 
 @pytest.mark.parametrize(("name", "most"), [("MOST_DRAWINGS", 1), ("MOST_DRAWING_BYTES", len(PLAN_SVG) + 9)])
 def test_too_many_drawings(folder: Path, monkeypatch: pytest.MonkeyPatch, name: str, most: int) -> None:
-    monkeypatch.setattr(allowance, name, most)
+    monkeypatch.setattr(kept_files, name, most)
     (folder / "q.svg").write_bytes(PLAN_SVG)
     (error,) = errors_of(_write_floors(folder, ["p.svg", "p.svg", "p.png", "q.svg"]))
     assert error.startswith(f"Floors!{address('plan', 5, 'Floors')}: this workbook names more than ")
