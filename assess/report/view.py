@@ -186,8 +186,7 @@ class Part:
 @cache
 def list_all_parts() -> Sequence[Part]:
     """Return every section there is: those of the modules in `assess.report.sections`."""
-    from assess.report import sections
-
+    sections = importlib.import_module("assess.report.sections")
     names = sorted(one.name for one in pkgutil.iter_modules(sections.__path__))
     return [importlib.import_module(f"{sections.__name__}.{name}").PART for name in names]
 
