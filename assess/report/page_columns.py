@@ -141,7 +141,7 @@ def badge(one: ItemResult) -> Words:
     if one.is_anchored:
         free = ", ".join([words.apart_words(one) or words.risk_word(one.adopted.risk), *notes])
         return [
-            Span(f"{words.ANCHORED} {_('depends on its anchor')}", "badge anchored"),
+            Span(f"{words.ANCHORED} " + _("depends on its anchor"), "badge anchored"),
             note(" (" + _("free-standing: {words}", words=free) + ")"),
         ]
     sign = Span(words.class_label(one), f"badge {words.style_name(one)}")
@@ -153,7 +153,7 @@ def mark(one: ItemResult) -> Runs:
     """Return the class of a piece as a badge, with its marks, where there is no room for words."""
     if one.is_anchored:
         doubt = note(words.say_bracket(one)) if words.has_doubtful_bracket(one) else ""
-        return join_words((Span(f"{words.ANCHORED} {_('anchored')}", "badge anchored"), doubt))
+        return join_words((Span(words.apart_label("anchored"), "badge anchored"), doubt))
     return [Span([Span(words.class_label(one), f"badge {words.style_name(one)}"), words.class_marks(one)], "unit")]
 
 

@@ -425,6 +425,15 @@ def class_label(one: ItemResult) -> str:
     return f"{BY_FORMULA} {risk_word(one.adopted.risk)}" if one.apart else risk_label(one.adopted.risk)
 
 
+def apart_label(name: str) -> str:
+    """Return sign and words of what stands outside the classes: "unconfirmed", "formula" or "anchored"."""
+    return {
+        "unconfirmed": f"{UNCONFIRMED} " + _("unconfirmed"),
+        "formula": f"{BY_FORMULA} " + _("by formula only"),
+        "anchored": f"{ANCHORED} " + _("anchored"),
+    }[name]
+
+
 def class_symbol(one: ItemResult) -> str:
     """Return the sign of a piece: that of its class, or of why it stands outside the classes."""
     if one.is_anchored:

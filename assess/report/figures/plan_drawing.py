@@ -24,11 +24,11 @@ def list_legend(plan: Plan, view: View) -> list[Block]:
         Span(words.risk_label(risk), f"badge {words.class_name(risk)}") for risk, _limits in view.content.class_limits
     ]
     badges += [
-        Span(f"{sign} {name}", "badge apart")
-        for sign, name in ((words.UNCONFIRMED, _("unconfirmed")), (words.BY_FORMULA, _("by formula only")))
+        Span(words.apart_label(name), "badge apart")
+        for sign, name in ((words.UNCONFIRMED, "unconfirmed"), (words.BY_FORMULA, "formula"))
         if any(one.symbol == sign for one in plan.pieces)
     ]
-    badges.append(Span(f"{words.ANCHORED} {_('anchored')}", "badge anchored"))
+    badges.append(Span(words.apart_label("anchored"), "badge anchored"))
     blocks: list[Block] = [Paragraph(join_words(badges), "small legend")]
     if plan.ways:
         signs = open_template("signs.svg.j2", view.options).module

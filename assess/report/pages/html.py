@@ -21,7 +21,7 @@ from assess.report.report_options import ReportOptions
 from assess.report.sections.appendix import is_drawn
 from assess.report.templates import render_template
 from assess.report.view import Edition, View
-from assess.report.words import BY_FORMULA, UNCONFIRMED, class_name, risk_label
+from assess.report.words import apart_label, class_name, risk_label
 from assess.risk import RiskClass
 from assess.version import __version__
 
@@ -118,8 +118,8 @@ def render(
         return render_document(document, options, "edition.css", for_print=True, progress=progress)
     total = content.total
     filters = [(class_name(risk), risk_label(risk)) for risk in RiskClass]
-    filters += [("apart-unconfirmed", f"{UNCONFIRMED} {_('unconfirmed')}")] if total.unconfirmed else []
-    filters += [("apart-formula", f"{BY_FORMULA} {_('by formula only')}")] if total.by_formula else []
+    filters += [("apart-unconfirmed", apart_label("unconfirmed"))] if total.unconfirmed else []
+    filters += [("apart-formula", apart_label("formula"))] if total.by_formula else []
     filters += [("anchored", _("anchored"))]
     return render_document(
         document, options, script=options.read(SCRIPT), filters=filters if content.results else (), progress=progress

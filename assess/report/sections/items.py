@@ -30,8 +30,8 @@ def build(view: View) -> Section:
     )
     parts: Sequence[tuple[str, Sequence[ItemResult]]] = (
         (first, content.risky),
-        (f"{words.UNCONFIRMED} {_('Unconfirmed, counted apart:')}", content.unconfirmed),
-        (f"{words.BY_FORMULA} {_('By formula only, counted apart:')}", content.risky_by_formula),
+        (f"{words.UNCONFIRMED} " + _("Unconfirmed, counted apart:"), content.unconfirmed),
+        (f"{words.BY_FORMULA} " + _("By formula only, counted apart:"), content.risky_by_formula),
     )
     for at, (text, rows) in enumerate(parts):
         if rows or not at:

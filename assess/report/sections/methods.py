@@ -52,7 +52,9 @@ def _describe(method: "MethodInfo") -> Iterator[Block]:
     yield _set(method.equations)
     if method.valid:
         ranges = [
-            f"{QUANTITIES.get(name, name)} {_('{low:g} to {high:g}', low=one.low, high=one.high)} {one.unit}".rstrip()
+            " ".join(
+                (QUANTITIES.get(name, name), _("{low:g} to {high:g}", low=one.low, high=one.high), one.unit)
+            ).rstrip()
             for name, one in method.valid.items()
         ]
         yield Paragraph([strong(words.name_ranges(method)), f" {', '.join(ranges)}."])

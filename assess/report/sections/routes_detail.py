@@ -313,7 +313,7 @@ def _list_near(
     }
     cells = _build_row(columns, near, shown).cells
     sign = "" if piece.is_anchored else f" {piece.adopted.risk.symbol}{words.class_marks(piece)}"
-    anchored = f"{words.ANCHORED} {_('anchored')}" if piece.is_anchored else ""
+    anchored = words.apart_label("anchored") if piece.is_anchored else ""
     return [*first, *cells, f"{words.chance(piece)}{sign}", join_words((anchored, flags(near.flags)))]
 
 

@@ -51,7 +51,7 @@ def build(view: View) -> Section:
         blocks.append(Paragraph([lead, f" {content.annual.paragraphs[0]}"]))
     blocks += _list_routes(view, is_tight=is_tight)
     legend = [view.marks, f"{words.apart_legend()}." if view.has_apart else ""]
-    anchored = f"{words.ANCHORED} {_('anchored: depends on its anchors')}."
+    anchored = f"{words.ANCHORED} " + _("anchored: depends on its anchors") + "."
     return Section([*blocks, Paragraph(join_words([*legend, anchored]), "small legend")])
 
 
@@ -80,12 +80,12 @@ def _list_tiles(view: View) -> Iterator[Tile]:
         name = words.class_name(risk)
         yield Tile(name, words.risk_label(risk), total.say(risk), said.replace(" %", f"{words.NO_BREAK}%"))
     if total.unconfirmed:
-        name = f"{words.UNCONFIRMED} {_('unconfirmed')}"
+        name = words.apart_label("unconfirmed")
         yield Tile("apart-unconfirmed", name, in_whole(total.unconfirmed), _("counted apart"))
     if total.by_formula:
-        name = f"{words.BY_FORMULA} {_('by formula only')}"
+        name = words.apart_label("formula")
         yield Tile("apart-formula", name, in_whole(total.by_formula), _("not simulated"))
-    name = f"{words.ANCHORED} {_('anchored')}"
+    name = words.apart_label("anchored")
     yield Tile("anchored", name, in_whole(total.anchored), _("not classified"))
 
 
@@ -157,7 +157,7 @@ def _list_routes(view: View, *, is_tight: bool) -> list[Block]:
                          (_("Chance blocked (interval)"), "w24", "num"), (_("To anchor or move"), "w24"))  # fmt: skip
     rows = [
         (words.cut(one.route, 30), words.cut(one.floors, 16), one.state, one.chance,
-         (one.needed or words.DASH) + (f"; {_('then not known')}" if one.result.missing_after else ""))
+         (one.needed or words.DASH) + ("; " + _("then not known") if one.result.missing_after else ""))
         for one in summary.routes[:most]
     ]  # fmt: skip
     return [lead, table(heads, rows, "short named")]

@@ -90,7 +90,7 @@ def _list_changes(view: View) -> list[Block]:
         text = ngettext("{n:,} row, raised ones and the largest changes first.",
                         "{n:,} rows, raised ones and the largest changes first.", len(changed))  # fmt: skip
         if len(changed) > LISTED:
-            text = f"{text} {_('The first {listed} are shown; the Excel report lists all.', listed=LISTED)}"
+            text += " " + _("The first {listed} are shown; the Excel report lists all.", listed=LISTED)
         columns = view.columns(
             "item", "floor", "description", "quantity", "formula", "ideal", "adopted_probability", "adopted_class"
         )

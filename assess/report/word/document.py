@@ -140,7 +140,7 @@ def write_margins(word: Word, short: str, status: str, conditions: str) -> None:
     footer.add_run(" · ".join(filter(None, (short, status))) + "\t")
     footer.paragraph_format.tab_stops.clear_all()
     footer.paragraph_format.tab_stops.add_tab_stop(Mm(WIDTH - 2 * SIDE), WD_TAB_ALIGNMENT.RIGHT)
-    for text, field in ((f"{_('Page')} ", "PAGE"), (f" {_('of')} ", "NUMPAGES")):
+    for text, field in ((_("Page") + " ", "PAGE"), (" " + _("of") + " ", "NUMPAGES")):
         footer.add_run(text)
         add_field(footer, field, "1")
 
