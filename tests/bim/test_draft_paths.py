@@ -6,7 +6,7 @@ from shapely import LineString, MultiPolygon, Polygon, box
 
 from assess.bim.building_model import Space, Storey
 from assess.bim.draft_floor import FloorPlan, Link, Room, build_rooms
-from assess.bim.draft_paths import Ways, find_axes, find_spots, find_ways, is_corridor, measure_width
+from assess.bim.draft_paths import Ways, find_ways, is_corridor, measure_width
 from assess.bim.plan_shapes import find_width
 
 STOREY = Storey("0", "Level 0", 0.0, 0.0)
@@ -105,17 +105,6 @@ def test_corridors_are_long_and_narrow(area, width):
     assert is_corridor(build(area, one, other)) == (width > 0)
 
 
-@pytest.mark.parametrize(
-    ("area", "axes"), [(BAR, [20.0]), (ELL, [18.2, 10.2]), (TEE, [9.1, 9.1, 10.2]), (RING, [16.4, 16.4, 12.4, 12.4])]
-)
-def test_the_middle_lines_between_facing_walls(area, axes):
-    found = find_axes(build(area))
-    assert sorted(one.length for one in found) == pytest.approx(sorted(axes), abs=0.1)
-    for one in found:
-        assert one.width == pytest.approx(1.8, abs=0.01)
-        assert LineString([one.start, one.end]).buffer(0.85, cap_style="flat").difference(area).area < 0.01
-
-
 @pytest.mark.parametrize("area", [BAR, ELL, TEE, RING], ids=["straight", "bent", "branching", "round"])
 def test_ways_in_a_corridor_run_in_its_middle(area):
     doors = [link(f"door {x}", x, -0.05) for x in (2.0, 5.0, 8.0, 13.0, 16.0)]
@@ -132,13 +121,6 @@ def test_a_branch_and_both_arms_are_joined():
         way = follow(ways, start, end)
         assert TEE.buffer(0.06).covers(way)
         assert way.length < most
-
-
-def test_doors_that_face_each_other_share_a_place_on_the_middle_line():
-    doors = link("one", 5.0, -0.05), link("two", 5.3, 1.85), link("three", 12.0, 1.85)
-    axis = find_axes(build(BAR, *doors))[0]
-    spots = find_spots(axis, [(one.name, one.at) for one in doors])
-    assert sorted(sorted(joined) for _along, joined in spots if joined) == [["one", "two"], ["three"]]
 
 
 def test_columns_and_niches_change_the_free_width():

@@ -1,7 +1,9 @@
 """Routes drafted from building models: every room is joined to a way out, through doors and not through walls."""
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import networkx as nx
@@ -10,16 +12,24 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import LineString, Point, union_all
 
+import assess
 from assess.bim.building_model import BuildingModel, Door, Piece, Space, Stair, Storey
 from assess.bim.door_sides import find_kinds
-from assess.bim.draft_floor import FAR, build_plan, find_room_points
-from assess.bim.draft_routes import DraftRoutes, draft_routes
+from assess.bim.draft_floor import FAR, build_plan, find_room_points, link_door
+from assess.bim.draft_routes import DraftRoutes, draft_routes, measure_gap
+from assess.bim.import_workbook import build_workbook
+from assess.bim.model_rows import list_building
 from assess.bim.plan_shapes import box_at, direction_of, to_polygon
 from assess.i18n import load_catalogue, speaking
+from assess.model import Inventory
+from assess.results import Results
+from assess.route_results import RouteState
 from assess.workbook.draft_names import LONGEST, is_draft
 from assess.workbook.names import key
+from assess.workbook.read import read_inventory
 from assess.workbook.schema import DEFAULT_WIDTH
 from tests.bim.office_models import build_office, door, name_all, piece, rectangle
+from tests.workbooks import UNVERIFIED
 
 BESIDE = 0.05
 """By so much a segment may leave rooms and doors [m]."""
@@ -147,12 +157,6 @@ def test_rooms_of_a_basement_go_up():
     assert found.unreached == ()
     flights = {(row["start"], row["end"]) for row in found.routes if "floor" not in row}
     assert flights == {("Stair 1 s0, foot", "Stair 1 s0, head"), ("Stair 2 s0, head", "Stair 2 s0, foot")}
-
-
-def test_rooms_that_reach_a_stair_alone_are_drafted_to_it():
-    found = draft(build_office(1, 3, storeys=2, exits=False))
-    assert found.unreached == ()
-    assert "To Stair 1 s0, foot (draft)" in {row["route"] for row in found.routes}
 
 
 def test_the_nearest_exit_is_taken_and_each_step_leads_on_to_the_next():
@@ -344,3 +348,154 @@ def test_a_room_with_many_corners_is_bounded():
     assert draft(model).unreached == ()
     at = find_room_points(model)["r"]
     assert to_polygon(comb.area).buffer(0.02).covers(Point(at))
+
+
+# ---------------------------------------------------------------- clear widths of drafted segments
+
+
+LEVEL = Storey("0", "Level 0", 0.0, 0.0)
+HALL = Space("h", "0", "Hall", "", rectangle(0, 0, 10, 6), 0.0, 3.0)
+EXIT = replace(door("out", 10.05, 3.0, 0.0, overall=1.3), width=1.3)
+WALLS = (
+    rectangle(10, 0, 10.1, 2.35), rectangle(10, 3.65, 10.1, 6), rectangle(-0.1, 0, 0, 6), rectangle(0, -0.1, 10, 0),
+    rectangle(0, 6, 10, 6.1),
+)  # fmt: skip
+
+
+def column(x: float, y: float, half: float = 0.2):
+    return rectangle(x - half, y - half, x + half, y + half)
+
+
+def hall(*columns, **more: object) -> BuildingModel:
+    values = {"doors": (EXIT,), "walls": {"0": (*WALLS, *columns)}} | more
+    return BuildingModel(source="a.ifc", schema="IFC4", storeys=(LEVEL,), spaces=(HALL,), **values)
+
+
+def measure_in(model: BuildingModel, *ends: tuple[float, float]) -> float | None:
+    at = (model.doors[0].x, model.doors[0].y)
+    links = [link_door(model.doors[0], ("h", ""))] if at in ends else []
+    return measure_gap(build_plan(model, LEVEL), "h", ends, links)
+
+
+@pytest.mark.parametrize(
+    ("stated", "drawn", "clear"),
+    [(1.8, 0.9, 0.8), (0.9, 1.8, 0.8), (0.0, 1.2, 1.1), (1.2, 0.0, 1.1), (0.9, 0.898, 0.8), (0.0, 0.0, 0.0)],
+)
+def test_of_the_stated_width_of_a_door_and_its_opening_the_smaller_counts(stated, drawn, clear):
+    link = link_door(replace(EXIT, overall=stated, width=drawn), ("h", ""))
+    assert link.clear == pytest.approx(clear)
+
+
+def test_the_door_bounds_its_segment():
+    for leaf, clear, words in (
+        (EXIT, 1.2, "the door's 1.30 m"),
+        (replace(EXIT, width=0.9, overall=1.8), 0.8, "the door's 0.90 m in the model less 0.1 m"),
+    ):
+        (row,) = draft_routes(hall(doors=(leaf,)), name_all(hall())).routes
+        assert row["clear_width"] == pytest.approx(clear)
+        assert row["notes"].startswith(f"Clear width: {words}")
+    assert row["required_width"] == 0.8
+    assert measure_in(hall(), (4.0, 3.0), (10.05, 3.0)) == pytest.approx(1.3)
+
+
+def test_two_columns_before_an_exit_bound_the_segment_to_it():
+    """The exit is 1.3 m wide, the columns stand 0.8 m apart."""
+    for x in (6.0, 9.0, 9.7):
+        assert measure_in(hall(column(x, 2.4), column(x, 3.6)), (4.0, 3.0), (10.05, 3.0)) == pytest.approx(0.8)
+    model = hall(column(9.0, 2.4), column(9.0, 3.6))  # people walk between them: they begin in the widest part
+    last = next(row for row in draft_routes(model, name_all(model)).routes if row["end"] == "Door out")
+    assert last["clear_width"] == pytest.approx(0.8, abs=0.011)
+    assert "Clear width: between the walls of the model." in last["notes"]
+
+
+@pytest.mark.parametrize("turn", [-60.0, -40.0, 0.0, 40.0, 60.0])
+def test_a_door_that_is_reached_at_an_angle_is_as_wide_as_it_is(turn):
+    ends = (10.05 - 4 * math.cos(math.radians(turn)), 3.0 - 2.5 * math.sin(math.radians(turn))), (10.05, 3.0)
+    whole = hall(walls={"0": (rectangle(10, 0, 10.1, 6),)})  # a wall that is not cut at the door does not close it
+    for found in (measure_in(hall(), *ends), measure_in(whole, *ends)):
+        assert found is None or found >= 1.2
+
+
+@pytest.mark.parametrize("turn", [0.0, 25.0, -25.0])
+def test_columns_that_are_passed_at_an_angle_are_as_far_apart(turn):
+    x, y = 3 * math.cos(math.radians(turn)), 3 * math.sin(math.radians(turn))
+    model = hall(column(5.0, 2.4), column(5.0, 3.6))
+    assert measure_in(model, (5.0 - x, 3.0 - y), (5.0 + x, 3.0 + y)) == pytest.approx(0.8)
+
+
+def test_a_segment_near_one_wall_is_as_wide_as_to_the_other():
+    """A room of 0.85 m is narrow wherever one walks in it; a hall of 6 m is not."""
+    slim = replace(HALL, area=rectangle(0, 0, 10, 0.85))
+    plan = build_plan(replace(hall(), spaces=(slim,), walls={}), LEVEL)
+    assert measure_gap(plan, "h", ((1.0, 0.3), (8.0, 0.3)), ()) == pytest.approx(0.85)
+    assert measure_in(hall(), (1.0, 0.3), (8.0, 0.3)) is None
+
+
+# ---------------------------------------------------------------- drafted routes in use
+
+
+SHAKEN = {"shaking": "MMI VIII, severe"}
+
+
+def build(model: BuildingModel, folder: Path) -> Inventory:
+    """Write the workbook of a model with its plans, and read it."""
+    found = list_building(model, "draft")
+    found = replace(found, building={**found.building, **SHAKEN})
+    for name, data in found.files.items():
+        (folder / name).write_bytes(data)
+    (folder / "book.xlsx").write_bytes(build_workbook(found))
+    return read_inventory(folder / "book.xlsx")
+
+
+@pytest.fixture(scope="module")
+def results(duplex, tmp_path_factory) -> Results:
+    return assess.run(build(duplex, tmp_path_factory.mktemp("duplex")), UNVERIFIED)
+
+
+@pytest.mark.slow
+def test_a_draft_is_a_workbook_without_errors(published, tmp_path):
+    inventory = build(published, tmp_path)
+    assert inventory.errors == ()
+    assert len(inventory.routes) > 0
+    drafted = [one for one in inventory.problems if "drafted from a building model" in one.message]
+    assert [one.severity for one in drafted] == ["warning"]
+
+
+def test_every_segment_on_a_storey_is_on_the_plan_and_no_piece_stands_in_it(results):
+    segments = results.route_tables.segments
+    flights = [one for one in segments if one.floor is None]
+    assert len(flights) == 2
+    for one in segments:
+        assert (one.length_m is None) == (one in flights), one.segment
+        assert one in flights or 0 < one.length_m < 12
+        assert not one.is_blocked_standing
+    assert not any("with nothing fallen" in one for one in results.problems["message"])
+    assert any(one.pieces for one in segments)
+
+
+def test_rooms_of_both_storeys_have_a_way_to_an_exit(results):
+    rooms = {one.room: one for one in results.route_tables.rooms}
+    assert not any(one.by_stairs for one in rooms.values())
+    assert all(one.exits for one in rooms.values())
+    upstairs = next(one for name, one in rooms.items() if "A203" in name)
+    assert upstairs.exits == ("Exit A101",)
+    assert results.route_tables.unjoined_rooms == ("R301 Roof",)
+    assert len(results.route_tables.routes) == 6
+    assert all(one.route.endswith(" (draft)") for one in results.route_tables.routes)
+    assert {one.state for one in results.route_tables.routes} <= set(RouteState)
+
+
+@pytest.mark.slow
+def test_rooms_upstairs_are_not_known_until_the_width_of_the_stair_is_filled_in(tmp_path):
+    """The model does not tell it; all else of their ways is."""
+    inventory = build(build_office(1, 3, storeys=2), tmp_path)
+    upstairs = [one.place for one in inventory.places if one.kind == "room" and one.floor == "Level 1"]
+    assert len(upstairs) == 7
+
+    def find_unknown(inventory: Inventory) -> set[str]:
+        rooms = assess.run(inventory, UNVERIFIED).route_tables.rooms
+        return {one.room for one in rooms if "clear_width" in {lack.what for lack in one.missing}}
+
+    assert find_unknown(inventory) >= set(upstairs)
+    filled = tuple(one if one.floor else replace(one, clear_width=1.2) for one in inventory.routes)
+    assert find_unknown(replace(inventory, routes=filled)) == set()

@@ -1,14 +1,17 @@
 """Which floor and room is which: by the pieces that stand there, then by names and elevations."""
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
-from assess.bim.update_names import Named, match_alike, match_floors, match_rooms
+from assess.bim.import_workbook import ImportedBuilding
+from assess.bim.update_names import match_floors
+from tests.bim.update_books import FLOORS, ITEMS, PLACES, building, piece, row, texts, typed, update
 
 LEVELS = {"1": 0.0, "2": 3.0, "3": 6.0}
 ALL_THREE = {"1": "1", "2": "2", "3": "3"}
-FLOORS: dict[str, tuple[Any, Any, list[tuple[str, str, int]], dict[str, str]]] = {
+RENAMINGS: dict[str, tuple[Any, Any, list[tuple[str, str, int]], dict[str, str]]] = {
     "the same names": (LEVELS, LEVELS, [("1", "1", 3), ("2", "2", 1)], ALL_THREE),
     "most pieces tell that a floor was renamed": (
         {"1": 0.0, "2": 3.0}, {"eg": None, "2": None}, [("1", "eg", 4), ("1", "2", 1), ("2", "2", 2)],
@@ -33,22 +36,61 @@ FLOORS: dict[str, tuple[Any, Any, list[tuple[str, str, int]], dict[str, str]]] =
 """Elevations of the model and of the workbook, how many pieces stand on which floor of both, and what is the same."""
 
 
-@pytest.mark.parametrize("case", FLOORS)
+@pytest.mark.parametrize("case", RENAMINGS)
 def test_which_floor_of_the_workbook_is_that_of_the_model(case: str) -> None:
-    model, own, counts, same = FLOORS[case]
+    model, own, counts, same = RENAMINGS[case]
     pairs = [(one, other) for one, other, number in counts for _ in range(number)]
     assert match_floors(model, own, pairs) == same
 
 
-def test_a_room_was_renamed_where_the_model_does_not_know_its_name() -> None:
-    trios = [("1", "101", "Archive"), ("1", "101", "archive"), ("1", "102", "101"), ("2", "101", "101")]
-    assert match_rooms(trios, {"101", "102"}) == {("1", "101"): "Archive"}
-    assert match_rooms([("1", "101", "Archive")] * 3 + [("1", "101", "101")], {"101"}) == {}
+# ---------------------------------------------------------------- the origin
 
 
-def test_alike_are_those_of_one_name_but_for_a_number_and_of_one_content() -> None:
-    model = [Named("Desk", (160,)), Named("Desk (2)", (120,)), Named("Desk (3)", (80,)), Named("Sofa", (200,))]
-    own = [Named("desk", (120,)), Named("Desk (2)", (160,)), Named("Desk (3)", (90,)), Named("Couch", (200,))]
-    same = {0: 1, 1: 0, 2: 2}
-    assert match_alike(model, own, lambda one, other: one == other) == same
-    assert match_alike(model, own, lambda one, other: one == other, by_content=True) == same | {3: 3}
+def shift(model: ImportedBuilding, x: float, y: float) -> ImportedBuilding:
+    """The model as an import sees it that takes more, or less, off all positions."""
+
+    def move(one: dict[str, Any]) -> dict[str, Any]:
+        moved = dict(one)
+        for name, by in (("x", x), ("y", y), ("plan_left", x), ("plan_bottom", y)):
+            if name in one:
+                moved[name] = one[name] + by
+        if "outline" in one:
+            corners = (corner.split() for corner in one["outline"].split(";"))
+            moved["outline"] = "; ".join(f"{float(a) + x:g} {float(b) + y:g}" for a, b in corners)
+        return moved
+
+    return replace(
+        model, **{name: [move(dict(one)) for one in getattr(model, name)] for name in ("floors", "items", "places")}
+    )
+
+
+@pytest.mark.parametrize("by", [(100.0, 0.0), (-200.0, 1300.0), (0.0, 0.0)])
+def test_another_origin_of_the_model_is_no_change(book: bytes, by: tuple[float, float]) -> None:
+    own = {"item": "Own", "floor": "Level 1", "breadth": 40, "height": 180, "x": 5, "y": 5}
+    data = typed(book, row=12, **own)
+    found = update(data, shift(building(), *by))
+    assert (found.changes, found.data) == ((), data)
+    assert found.moved == (-by[0], -by[1])
+
+
+@pytest.mark.slow
+def test_new_rows_and_moved_pieces_get_the_origin_of_the_workbook(book: bytes) -> None:
+    place = {"place": "B202", "floor": "Level 2", "x": 9.0, "y": 2.0, "kind": "room", "outline": "6 0; 12.5 0; 12.5 4"}
+    items = [{**ITEMS[0], "x": 7.0}, *ITEMS[1:], piece(7, "Level 3", "C301")]
+    floor = {"floor": "Level 3", "elevation": 6.2, "plan": "house-Level-3.svg", "plan_left": -0.5, "plan_bottom": -0.5}
+    model = building(floors=[*FLOORS, floor], items=items, places=[*PLACES, place])
+    found, same = (update(book, one) for one in (shift(model, 100, -100), model))
+    assert texts(found) == texts(same)
+    assert len(found.changes) == 4
+    assert found.data == same.data
+
+
+@pytest.mark.slow
+def test_a_building_that_moved_by_no_whole_step_and_half_of_its_pieces_are_moved(book: bytes) -> None:
+    found = update(book, shift(building(), 103.0, 0.0))
+    assert found.moved == (0.0, 0.0)
+    assert row(found.data).get("x") == 104
+    moved = shift(building(), 100, 0).items
+    found = update(book, building(items=[*moved[:3], *ITEMS[3:]]))
+    assert found.moved == (0.0, 0.0)
+    assert [one.now for one in found.changes] == [101, 102, 103]
