@@ -29,7 +29,7 @@ from assess.settings import ROUTE_RISK, VERIFY, Settings
 if TYPE_CHECKING:
     from assess.motion.site_ground import GroundField
     from assess.portfolio.background import Background
-    from assess.portfolio.city_totals import CityTotals, Group
+    from assess.portfolio.city import Group
     from assess.portfolio.run_portfolio import PortfolioResult
 
 ORDER = 3.5
@@ -213,13 +213,12 @@ def _read_background(file: Path | None) -> "Background | None":
 
 def _tell(result: "PortfolioResult", settings: Settings) -> None:
     """Print what was found; exit status 1 where a building was skipped."""
-    from assess.portfolio.city_totals import build_totals
-    from assess.portfolio.piece_words import name_skipped
+    from assess.portfolio.city_words import name_skipped
 
-    for line in describe_city(build_totals(result.view), result, settings):
+    for line in describe_city(result, settings):
         say(line)
     say_written(result.files, result.removed)
-    names = dict(zip(result.view.buildings["path"], result.view.buildings["building"], strict=True))
+    names = {row["path"]: row["building"] for row in result.city.skipped}
     for path, why in result.skipped[:MOST_SKIPPED]:
         print_error(f"{plain_line(name_skipped(names.get(path), path))}: skipped. {plain_line(why)}")
     if len(result.skipped) > MOST_SKIPPED:
@@ -229,24 +228,25 @@ def _tell(result: "PortfolioResult", settings: Settings) -> None:
         raise typer.Exit(1)
 
 
-def describe_city(totals: "CityTotals", result: "PortfolioResult", settings: Settings) -> Iterator[str]:
+def describe_city(result: "PortfolioResult", settings: Settings) -> Iterator[str]:
     """Yield what was assessed, what is expected to fall, apart by inventory and basis, and what was skipped."""
-    from assess.portfolio.city_totals import is_made_up
     from assess.portfolio.city_words import list_copies, list_ground_cautions, list_setting_cautions, say_ground
 
     earlier = f" ({result.kept:,} of them by an earlier run)" if result.kept else ""
-    yield f"{count(totals.assessed, 'building')} assessed{earlier}, {totals.skipped:,} skipped."
-    if is_made_up(result.view):
+    city = result.city
+    skipped = len(city.skipped)
+    yield f"{count(len(city.ranked) - skipped, 'building')} assessed{earlier}, {skipped:,} skipped."
+    if city.is_made_up:
         yield "All buildings are made up: their places, furniture, routes, people and costs are random numbers."
-    yield say_ground(result.view)
-    yield from list_ground_cautions(result.view)
-    yield from list_setting_cautions(result.view)
-    yield from list_copies(result.view)
-    for group in totals.groups:
+    yield say_ground(city)
+    yield from list_ground_cautions(city)
+    yield from list_setting_cautions(city)
+    yield from list_copies(city)
+    for group in city.groups:
         yield from _describe_group(group)
-    if totals.groups:
+    if city.groups:
         yield "Falls and people are expected numbers in this scenario, not per year."
-    if settings.verify == "none" and totals.groups:
+    if settings.verify == "none" and city.groups:
         yield "Not simulated: the formula takes the median of the ground motion, and no ranges over the city are known."
 
 

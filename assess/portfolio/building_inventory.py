@@ -50,7 +50,7 @@ def read_building(source: Source, data: bytes | None, ground: GroundField | None
     """
     if source.kind == "assumed" and source.index is not None:
         assumed = build_assumed(source.index)
-        origin = Origin(path=source.path, inventory="assumed", index=source.index, low=assumed.low, high=assumed.high)
+        origin = Origin(inventory="assumed", low=assumed.low, high=assumed.high)
         return origin, _read_rows(assumed.rows, assumed.problems, {}, ground)
     if source.file is None:
         raise WorkbookError([Problem("error", "", "", fill("it has no workbook."))])
@@ -58,11 +58,10 @@ def read_building(source: Source, data: bytes | None, ground: GroundField | None
     if data is not None and is_cobie(data):
         imported = read_cobie(data, source.file.name)
         left_out = sum(one.count for one in imported.skipped if one.is_furniture)
-        origin = Origin(path=source.path, inventory="handover", index=source.index, left_out=left_out)
+        origin = Origin(inventory="handover", left_out=left_out)
         return origin, _compare(_read_handover(imported, source.file, row, ground), row, is_survey=False)
     inventory = read_inventory(source.file, building=row.as_building(), ground=ground)
-    origin = Origin(path=source.path, inventory="surveyed", index=source.index)
-    return origin, _compare(inventory, row, is_survey=True)
+    return Origin(inventory="surveyed"), _compare(inventory, row, is_survey=True)
 
 
 def _read_handover(imported: ImportedBuilding, file: Path, row: IndexRow, ground: GroundField | None) -> Inventory:

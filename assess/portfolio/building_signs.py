@@ -5,20 +5,15 @@ The signs are those of the reports: each has a shape of its own, so that it read
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
 
 from assess.i18n import gettext as _
 from assess.i18n import number
+from assess.portfolio.city import Row
+from assess.portfolio.table_schemas import CLASS_COLUMNS, STATE_COLUMNS
 from assess.report.findings.route_words import name_state
 from assess.report.words import ANCHORED, ANCHORED_FILL, APART_FILL, BY_FORMULA, INK, UNCONFIRMED, class_name, risk_word
 from assess.risk import LIMITS, RiskClass, classify
 from assess.route_results import RouteState
-
-if TYPE_CHECKING:
-    import pandas
-
-Row = Mapping[str, Any]
-"""One row of a table: values by column, None for what is not known."""
 
 CIRCLE = "M-5 0A5 5 0 1 0 5 0A5 5 0 1 0-5 0Z"
 DIAMOND = "M0-6.5 6.5 0 0 6.5-6.5 0Z"
@@ -81,10 +76,6 @@ BY_SHARE: Mapping[str, Sign] = {key: BY_CLASS[key] for key in BY_CLASS if key no
 _ROUTE_SHAPES = {
     RouteState.OPEN: TICK, RouteState.DOUBTFUL: DIAMOND, RouteState.NOT_KNOWN: CIRCLE, RouteState.BLOCKED: SQUARE,
 }  # fmt: skip
-_STATE_COUNTS = {
-    RouteState.BLOCKED: "routes_blocked", RouteState.NOT_KNOWN: "routes_not_known",
-    RouteState.DOUBTFUL: "routes_doubtful", RouteState.OPEN: "routes_open",
-}  # fmt: skip
 BY_ROUTES: Mapping[str, Sign] = {
     "skipped": BY_CLASS["skipped"],
     "no-routes": Sign("no-routes", "–", "#ffffff", "M-5-1.5H5V1.5H-5Z", 1),
@@ -99,22 +90,12 @@ BY_ROUTES: Mapping[str, Sign] = {
 
 
 def find_share(row: Row) -> float | None:
-    """Return the share of a building's pieces in the classes that is expected to fall [-]; None where it has none."""
-    counted = sum(row[_column(risk)] or 0 for risk in RiskClass)
-    return share_of(row["expected_falls"], counted) if row["status"] == "assessed" else None
-
-
-def share_of(expected_falls: float, pieces: int) -> float | None:
-    """Return expected falls over pieces [-], None where there are no pieces.
+    """Return the share of a building's pieces in the classes that is expected to fall [-]; None where it has none.
 
     It is rounded to 1e-9: three chances of 0.3 sum up to a hair below 0.9, and belong to the band from 0.3.
     """
-    return round(expected_falls / pieces, 9) if pieces else None
-
-
-def _column(risk: RiskClass) -> str:
-    """Return the column of the table buildings that counts the pieces of a class."""
-    return risk.word.replace(" ", "_")
+    counted = sum(row[column] or 0 for column in CLASS_COLUMNS.values())
+    return round(row["expected_falls"] / counted, 9) if counted and row["status"] == "assessed" else None
 
 
 def sign_of_share(row: Row) -> Sign:
@@ -126,7 +107,7 @@ def sign_of_share(row: Row) -> Sign:
 
 def sign_of_class(row: Row) -> Sign:
     """Return the sign of a row of the table buildings by the highest class that any of its pieces has."""
-    found = next((risk for risk in reversed(RiskClass) if row[_column(risk)]), None)
+    found = next((risk for risk, column in reversed([*CLASS_COLUMNS.items()]) if row[column]), None)
     return _sign_without_class(row) if found is None else BY_CLASS[class_name(found)]
 
 
@@ -134,18 +115,17 @@ def _sign_without_class(row: Row) -> Sign:
     """Return the sign of a building of which nothing is in the classes."""
     if row["status"] != "assessed":
         return BY_CLASS["skipped"]
-    for column, key in (("unconfirmed", "unconfirmed"), ("by_formula", "by-formula"), ("anchored", "anchored")):
-        if row[column]:
-            return BY_CLASS[key]
-    return BY_CLASS["none"]
+    found = next((column for column in ("unconfirmed", "by_formula", "anchored") if row[column]), "none")
+    return BY_CLASS[found.replace("_", "-")]
 
 
 def sign_of_routes(row: Row) -> Sign:
     """Return the sign of a row of the table buildings by the worst state that any of its routes has."""
     if row["status"] != "assessed":
         return BY_ROUTES["skipped"]
-    found = next((state for state, column in _STATE_COUNTS.items() if row[column]), None)
-    return BY_ROUTES["no-routes" if found is None else found.replace(" ", "-")]
+    worst_first = sorted(RouteState, key=lambda one: -one.severity)
+    found = next((state for state in worst_first if row[STATE_COLUMNS[state]]), "no-routes")
+    return BY_ROUTES[found.replace(" ", "-")]
 
 
 def say_sign(sign: Sign) -> str:
@@ -170,26 +150,14 @@ def say_sign(sign: Sign) -> str:
 
 def _say_band(risk: RiskClass) -> str:
     """Return the band of the share that has the limits of a class."""
-    low, high = ("", *_list_limits())[risk], (*_list_limits(), "")[risk]
+    limits = [number(100 * limit, "g") for limit in LIMITS]
     if risk == min(RiskClass):
-        return _("below {high} % of its pieces expected to fall", high=high)
+        return _("below {high} % of its pieces expected to fall", high=limits[risk])
     if risk == max(RiskClass):
-        return _("{low} % or more of its pieces expected to fall", low=low)
-    return _("{low} to {high} % of its pieces expected to fall", low=low, high=high)
-
-
-def _list_limits() -> list[str]:
-    """Return the limits of the classes [%]."""
-    return [number(100 * limit, "g") for limit in LIMITS]
+        return _("{low} % or more of its pieces expected to fall", low=limits[risk - 1])
+    return _("{low} to {high} % of its pieces expected to fall", low=limits[risk - 1], high=limits[risk])
 
 
 def ink_of(sign: Sign) -> str:
     """Return the colour of the outline of a mark, or of its strokes."""
     return sign.fill if sign.is_open else INK
-
-
-def list_records(frame: "pandas.DataFrame") -> list[Row]:
-    """Return the rows of a table as mappings, None for what is not known."""
-    names = [str(name) for name in frame.columns]
-    columns = [frame[name].astype(object).where(frame[name].notna(), None).tolist() for name in names]
-    return [dict(zip(names, values, strict=True)) for values in zip(*columns, strict=True)]

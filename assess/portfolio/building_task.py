@@ -2,15 +2,24 @@
 
 What it gives depends on nothing but the building itself and the settings. Whatever goes wrong ends in a building that
 is `skipped` with the reason.
+
+A part is what was found of one building, in a file whose name is its key: that is how a run goes on where it was. It is
+compressed JSON, which carries a checksum: a part that was cut off or damaged is computed again. It is written under a
+temporary name and renamed, so that a process that is killed leaves no half of a part. It is not flushed to the disk:
+what a power cut takes is computed again.
 """
 
+import gzip
 import hashlib
-import time
+import json
+import os
 import traceback
-from collections.abc import Mapping
+import zlib
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 from assess.delivery.disk import find_digest
 from assess.errors import AssessError, Problem, WorkbookError
@@ -18,10 +27,51 @@ from assess.i18n import fill
 from assess.model import Inventory
 from assess.motion.site_ground import GroundField
 from assess.portfolio.building_rows import build_skipped, build_tables
-from assess.portfolio.part_files import Part, find_key, find_place, is_done, read_part, write_part, write_whole
 from assess.portfolio.sources import Source
+from assess.portfolio.table_schemas import TABLES
 from assess.settings import Settings
 from assess.version import find_code
+
+FOLDER = "parts"
+"""Folder of the parts in the folder of the results."""
+ENDING = ".part"
+_COMPRESSION = 6
+_WRITING = ".writing-"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Part:
+    """What was found of one building.
+
+    Parameters
+    ----------
+    path : str
+        The building, as in the tables.
+    key : str
+        By what it was computed.
+    status : str
+        One of `assess.portfolio.table_schemas.STATUSES`.
+    tables : mapping of str to lists of rows
+        Rows of buildings, pieces, routes and problems, in the order of the columns of `TABLES`.
+    draws : mapping of str to lists of whole numbers
+        By the column of the table draws; empty where nothing was simulated in common draws.
+    files : mapping of str to str
+        Files that the workbook names, relative to its folder, with their SHA-256.
+    """
+
+    path: str
+    key: str
+    status: str
+    tables: Mapping[str, list[list[Any]]]
+    draws: Mapping[str, list[int]] = field(default_factory=dict)
+    files: Mapping[str, str] = field(default_factory=dict)
+
+    def rows(self, name: str) -> list[list[Any]]:
+        """Return the rows of a table, draws included."""
+        if name != "draws":
+            return self.tables.get(name, [])
+        columns = [self.draws[column.name] for column in TABLES["draws"][2:]] if self.draws else []
+        return [[self.path, number, *row] for number, row in enumerate(zip(*columns, strict=True))]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,10 +104,6 @@ class Summary:
     ----------
     path, key, status : str
         As in the part.
-    pieces : int
-        Pieces that were assessed.
-    seconds : float
-        Time that it took [s].
     is_kept : bool
         Whether the part of an earlier run was there.
     part : Part, optional
@@ -69,8 +115,6 @@ class Summary:
     path: str
     key: str
     status: str
-    pieces: int = 0
-    seconds: float = 0.0
     is_kept: bool = False
     part: Part | None = None
     content: str = ""
@@ -78,45 +122,40 @@ class Summary:
 
 def run_task(task: Task) -> Summary:
     """Assess a building and write its part, unless it is there already."""
-    start = time.monotonic()
-    data = _read_workbook(task.source)
+    source = task.source
+    data = _read_workbook(source)
     content = None if data is None else hashlib.sha256(data).hexdigest()
-    return replace(_run(task, _find_key(task, content), data, start), content=content or "")
+    key, lost = _find_key(task, content), None
+    part = read_part(task.out, key)
+    is_kept = is_done(part, None if source.file is None else source.file.parent)
+    if part is None or not is_kept:
+        part = _assess_surely(task, key, data)
+        try:
+            write_part(task.out, part)
+        except OSError as error:
+            why = error.strerror or str(error)
+            fault = fill("what was found could not be written to {folder}: {why}.", folder=task.out, why=why)
+            fix = fill("Make room there and run the same command again: the other buildings are kept.")
+            part = lost = skip(source, key, fault, fix)
+    return Summary(path=part.path, key=key, status=part.status, is_kept=is_kept, part=lost, content=content or "")
 
 
-def _run(task: Task, key: str, data: bytes | None, start: float) -> Summary:
-    known = read_part(task.out, key)
-    folder = None if task.source.file is None else task.source.file.parent
-    if known is not None and is_done(known, folder):
-        return _sum_up(known, start, is_kept=True)
-    part = _assess_surely(task, key, data)
-    try:
-        write_part(task.out, part)
-    except OSError as error:
-        why = error.strerror or str(error)
-        fault = fill("what was found could not be written to {folder}: {why}.", folder=task.out, why=why)
-        fix = fill("Make room there and run the same command again: the other buildings are kept.")
-        lost = skip(task.source, key, [Problem("error", "", "", fault, fix)])
-        return replace(_sum_up(lost, start), part=lost)
-    return _sum_up(part, start)
+def skip(source: Source, key: str, fault: str, fix: str = "") -> Part:
+    """Return the part of a building that is not assessed, with the reason and how to fix it."""
+    return _skip(source, key, [Problem("error", "", "", fault, fix)])
 
 
-def skip(source: Source, key: str, problems: list[Problem], inventory: str | None = None) -> Part:
-    """Return the part of a building that is not assessed, with the reasons."""
-    kind = "assumed" if source.kind == "assumed" else inventory
-    tables = build_skipped(source.path, problems, source.index, kind)
-    return Part(path=source.path, key=key, status="skipped", tables=tables)
-
-
-def _sum_up(part: Part, start: float, *, is_kept: bool = False) -> Summary:
-    return Summary(
-        path=part.path,
-        key=part.key,
-        status=part.status,
-        pieces=len(part.rows("pieces")),
-        seconds=time.monotonic() - start,
-        is_kept=is_kept,
+def give_up(task: Task) -> Summary:
+    """Return the summary of a building that every process died of."""
+    fault = fill(
+        "every process that assessed it was ended by the system: its workbook may need more memory than there is."
     )
+    fix = fill("Assess it by itself with `assess run`, on a machine with more memory.")
+    return Summary(path=task.source.path, key="", status="skipped", part=skip(task.source, "", fault, fix))
+
+
+def _skip(source: Source, key: str, problems: Sequence[Problem]) -> Part:
+    return Part(path=source.path, key=key, status="skipped", tables=build_skipped(source, problems))
 
 
 def _read_workbook(source: Source) -> bytes | None:
@@ -134,9 +173,7 @@ def _read_workbook(source: Source) -> bytes | None:
 def _find_key(task: Task, content: str | None) -> str:
     source = task.source
     ground = None if task.ground is None else (type(task.ground).__name__, task.ground.file, task.ground.sha256)
-    row = None
-    if source.index is not None:  # a row may move in the index
-        row = {name: getattr(source.index, name) for name in source.index.__slots__} | {"line": 0}
+    row = None if source.index is None else asdict(replace(source.index, line=0))  # a row may move in the index
     return find_key(source.path, source.kind, content, row, task.settings.as_record(), ground, find_code())
 
 
@@ -147,23 +184,22 @@ def _assess_surely(task: Task, key: str, data: bytes | None) -> Part:
     """Return the part of a building, skipped with the reason if anything is wrong with it."""
     source = task.source
     if source.refused:
-        return skip(source, key, [Problem("error", "", "", source.refused, source.fix)])
+        return skip(source, key, source.refused, source.fix)
     try:
         return _assess(task, key, data)
     except WorkbookError as error:
-        return skip(source, key, list(error.problems))
+        return _skip(source, key, error.problems)
     except AssessError as error:
-        return skip(source, key, [Problem("error", "", "", error.message)])
+        return skip(source, key, error.message)
     except MemoryError:
         fault = fill("the memory of this machine does not suffice for it.")
-        return skip(source, key, [Problem("error", "", "", fault, fill("Run fewer jobs at once."))])
+        return skip(source, key, fault, fill("Run fewer jobs at once."))
     except Exception as error:  # whatever is wrong with one building, the others are assessed
+        trace = find_place(Path(), key).with_suffix(".txt")
         with suppress(OSError):
-            text = traceback.format_exc()
-            write_whole(find_place(task.out, key).with_suffix(".txt"), text.encode("utf-8", "backslashreplace"))
+            _write_whole(task.out / trace, traceback.format_exc().encode("utf-8", "backslashreplace"))
         fault = fill("it cannot be assessed: an unforeseen error ({kind}) in this program.", kind=type(error).__name__)
-        fix = fill("Please report it, with the file {file}.", file=f"{find_place(Path(), key).with_suffix('.txt')}")
-        return skip(source, key, [Problem("error", "", "", fault, fix)])
+        return skip(source, key, fault, fill("Please report it, with the file {file}.", file=f"{trace}"))
 
 
 def _assess(task: Task, key: str, data: bytes | None) -> Part:
@@ -175,19 +211,14 @@ def _assess(task: Task, key: str, data: bytes | None) -> Part:
     assessment = compute(inventory, task.settings, jobs=1)
     results = build_results(assessment, figures=False)
     sums = sum_draws(assessment, results)
-    draws = {}
-    if sums.falls is not None and sums.people_blocked is not None and sums.routes_blocked is not None:
-        draws = {
-            "falls": sums.falls.tolist(),
-            "people_blocked": sums.people_blocked.tolist(),
-            "routes_blocked": sums.routes_blocked.tolist(),
-        }
+    drawn = {"falls": sums.falls, "people_blocked": sums.people_blocked, "routes_blocked": sums.routes_blocked}
+    known = {name: values.tolist() for name, values in drawn.items() if values is not None}
     return Part(
         path=task.source.path,
         key=key,
         status="assessed",
-        tables=build_tables(origin, inventory, results, sums),
-        draws=draws,
+        tables=build_tables(task.source, origin, inventory, results, sums),
+        draws=known if len(known) == len(drawn) else {},
         files=_list_files(inventory, task.source.file),
     )
 
@@ -204,3 +235,73 @@ def _list_files(inventory: Inventory, file: Path | None) -> Mapping[str, str]:
         if digest := find_digest(path):
             named[path.relative_to(folder).as_posix()] = digest
     return dict(sorted(named.items()))
+
+
+# ---------------------------------------------------------------- parts
+
+
+def find_key(*parts: object) -> str:
+    """Return the SHA-256 [hex] of what a part depends on: texts, numbers, None, mappings and sequences of these."""
+    text = json.dumps(parts, sort_keys=True, ensure_ascii=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def find_place(out: Path, key: str) -> Path:
+    """Return where the part of a key lies: in one of 256 folders, as file systems dislike many files in one."""
+    return out / FOLDER / key[:2] / f"{key}{ENDING}"
+
+
+def write_part(out: Path, part: Part) -> None:
+    """Write a part; OSError if it cannot be written."""
+    record = {name: getattr(part, name) for name in Part.__slots__}
+    text = json.dumps(record, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    _write_whole(find_place(out, part.key), gzip.compress(text.encode("utf-8", "replace"), _COMPRESSION, mtime=0))
+
+
+def _write_whole(place: Path, data: bytes) -> None:
+    """Write a file under another name and rename it; OSError if it cannot be written, and nothing is left then."""
+    place.parent.mkdir(parents=True, exist_ok=True)
+    writing = place.with_name(f"{_WRITING}{os.getpid()}-{os.urandom(4).hex()}")
+    try:
+        writing.write_bytes(data)
+        writing.replace(place)
+    except BaseException:
+        with suppress(OSError):
+            writing.unlink()
+        raise
+
+
+def read_part(out: Path, key: str) -> Part | None:
+    """Return the part of a key; None where there is none, it cannot be read, or tables have other columns now."""
+    try:
+        part = Part(**json.loads(gzip.decompress(find_place(out, key).read_bytes())))
+    except (OSError, EOFError, zlib.error, ValueError, TypeError, RecursionError):
+        return None
+    is_whole = (
+        part.key == key
+        and part.status != ""
+        and all(
+            len(row) == len(columns) for name, columns in TABLES.items() if name != "draws" for row in part.rows(name)
+        )
+    )
+    return part if is_whole else None
+
+
+def is_done(part: Part | None, folder: Path | None) -> bool:
+    """Whether a part need not be computed again.
+
+    It was assessed, and the files that its workbook names are what they were. What was skipped is tried again: a file
+    may have been put there, or memory be free now.
+    """
+    if part is None or part.status != "assessed":
+        return False
+    with suppress(OSError):
+        return all(folder is not None and find_digest(folder / name) == found for name, found in part.files.items())
+    return False
+
+
+def sweep_parts(out: Path) -> None:
+    """Remove what killed processes have left half written; nobody else may write to the folder."""
+    for path in (out / FOLDER).glob(f"*/{_WRITING}*"):
+        with suppress(OSError):
+            path.unlink()

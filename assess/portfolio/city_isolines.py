@@ -11,8 +11,8 @@ from assess.i18n import gettext as _
 from assess.i18n import number
 from assess.motion.site_ground import GroundField
 from assess.portfolio.background import Place
+from assess.portfolio.city import City
 from assess.portfolio.city_map import Isoline, build_frame
-from assess.portfolio.city_totals import CityView
 from assess.units import GRAVITY
 
 LEVELS = (0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0)
@@ -21,11 +21,11 @@ STEPS = 48
 """Points along each side of the map at which the ground is asked: about the grid of a ShakeMap for a city."""
 
 
-def list_isolines(view: CityView, ground: GroundField | None) -> tuple[Isoline, ...]:
+def list_isolines(city: City, ground: GroundField | None) -> tuple[Isoline, ...]:
     """Return the lines for the map of a city; none without a ShakeMap."""
-    if ground is None or view.ground is None or view.ground.kind != "shakemap":
+    if ground is None or city.ground is None or city.ground.kind != "shakemap":
         return ()
-    placed = view.buildings[["longitude", "latitude"]].dropna().astype("float64")
+    placed = city.buildings[["longitude", "latitude"]].dropna().astype("float64")
     return build_isolines(ground, [(longitude, latitude) for longitude, latitude in placed.to_numpy().tolist()])
 
 

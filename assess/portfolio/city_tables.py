@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 from assess.errors import InputError, OutputError
 from assess.extras import say_install
 from assess.i18n import fill
-from assess.portfolio.part_files import Part
-from assess.portfolio.table_schemas import TABLES, TableColumn, Type
+from assess.portfolio.building_task import Part
+from assess.portfolio.table_schemas import TABLES, Type
 
 if TYPE_CHECKING:
     import duckdb
@@ -25,12 +25,8 @@ FRAME_TYPES: dict[Type, str] = {"text": "object", "number": "float64", "count": 
 """Types of pandas: what is not known is None, NaN, NA and NA."""
 
 
-def check_tables() -> None:
-    """Raise InputError unless the tables can be written."""
-    _import()
-
-
-def _import() -> Any:
+def check_tables() -> Any:
+    """Return the package that writes the tables; InputError if it is not installed."""
     try:
         import duckdb
     except ImportError:
@@ -40,102 +36,29 @@ def _import() -> Any:
     return duckdb
 
 
-# ---------------------------------------------------------------- rows to frames
-
-
 def build_frame(name: str, rows: Sequence[Sequence[Any]]) -> "pd.DataFrame":
     """Return rows of a table as a frame with the types of its columns."""
     import pandas as pd
 
     columns = TABLES[name]
-    values = zip(*rows, strict=True) if rows else ([] for _ in columns)
+    values = [list(own) for own in zip(*rows, strict=True)] if rows else [[] for _ in columns]
+    for at, column in enumerate(columns):
+        if column.type == "text":
+            known: dict[Any, Any] = {}
+            values[at] = [known.setdefault(value, value) for value in values[at]]  # one text for many rows
     return pd.DataFrame(
-        {column.name: _to_series(column, list(own)) for column, own in zip(columns, values, strict=True)}
+        {one.name: pd.Series(own, dtype=FRAME_TYPES[one.type]) for one, own in zip(columns, values, strict=True)}
     )
-
-
-def _to_series(column: TableColumn, values: list[Any]) -> "pd.Series[Any]":
-    import pandas as pd
-
-    if column.type == "text":
-        known: dict[Any, Any] = {}
-        values = [known.setdefault(value, value) for value in values]  # one text for many rows: names repeat
-    return pd.Series(values, dtype=FRAME_TYPES[column.type])
-
-
-def _retype(frame: "pd.DataFrame", columns: Sequence[TableColumn]) -> "pd.DataFrame":
-    """Return a frame with the types of the columns of a table, whatever it was read as."""
-    found = frame.astype({one.name: FRAME_TYPES[one.type] for one in columns})
-    for one in columns:
-        if one.type == "text":
-            found[one.name] = found[one.name].where(found[one.name].notna(), None)
-    return found
 
 
 # ---------------------------------------------------------------- Parquet
 
 
-class TableWriter:
-    """Writes a table block by block, as ``NAME.parquet``, or as ``NAME-0001.parquet`` and so on with several blocks.
+def write_tables(parts: Iterable[Part], folder: Path | None) -> "dict[str, pd.DataFrame]":
+    """Write all tables from parts in their order, each read once; return them as frames.
 
-    Parameters
-    ----------
-    name : str
-        One of `TABLES`.
-    folder : Path, optional
-        Where to; None where no files are wanted.
-    keeps : bool
-        Whether the rows are kept, for `frame`.
-    """
-
-    def __init__(self, name: str, folder: Path | None, *, keeps: bool) -> None:
-        self.name, self._folder, self._keeps = name, folder, keeps
-        self._rows: list[Sequence[Any]] = []
-        self._frames: list[pd.DataFrame] = []
-        self._written: list[Path] = []
-
-    def add(self, rows: Iterable[Sequence[Any]]) -> None:
-        """Add rows; a block that is full is written."""
-        self._rows.extend(rows)
-        while len(self._rows) >= ROWS:
-            block, self._rows = self._rows[:ROWS], self._rows[ROWS:]
-            self._flush(block)
-
-    def close(self) -> list[Path]:
-        """Write what is left, and return the files.
-
-        Raises
-        ------
-        InputError
-            If DuckDB is not installed.
-        OutputError
-            If a file cannot be written.
-        """
-        if self._rows or not self._frames:
-            self._flush(self._rows)
-            self._rows = []
-        if len(self._written) == 1:
-            self._written = [self._written[0].rename(self._written[0].with_name(f"{self.name}.parquet"))]
-        return self._written
-
-    @property
-    def frame(self) -> "pd.DataFrame":
-        """All rows, with the types of their columns."""
-        import pandas as pd
-
-        return self._frames[0] if len(self._frames) == 1 else pd.concat(self._frames, ignore_index=True)
-
-    def _flush(self, rows: Sequence[Sequence[Any]]) -> None:
-        frame = build_frame(self.name, rows)
-        if self._folder is not None:
-            path = self._folder / f"{self.name}-{len(self._written) + 1:04}.parquet"
-            _write_file(self.name, frame, path)
-            self._written.append(path)
-        self._frames.append(frame if self._keeps else frame.iloc[:0])
-
-
-def write_tables(parts: Iterable[Part], folder: Path | None, *, keeps: bool = True) -> "dict[str, TableWriter]":
-    """Write all tables from parts in their order, each read once, and return the writers by the names of tables.
+    A table is written block by block, as ``NAME.parquet``, or as ``NAME-0001.parquet`` and so on with several blocks;
+    `folder` is None where no files are wanted.
 
     Raises
     ------
@@ -144,17 +67,48 @@ def write_tables(parts: Iterable[Part], folder: Path | None, *, keeps: bool = Tr
     OutputError
         If a file cannot be written.
     """
-    writers = {name: TableWriter(name, folder, keeps=keeps) for name in TABLES}
+    writers = {name: _TableWriter(name, folder) for name in TABLES}
     for part in parts:
         for name, writer in writers.items():
             writer.add(part.rows(name))
-    for writer in writers.values():
-        writer.close()
-    return writers
+    return {name: writer.close() for name, writer in writers.items()}
+
+
+class _TableWriter:
+    """Writes a table block by block, and keeps it as frames, which take less than rows."""
+
+    def __init__(self, name: str, folder: Path | None) -> None:
+        self._name, self._folder = name, folder
+        self._rows: list[Sequence[Any]] = []
+        self._frames: list[pd.DataFrame] = []
+
+    def add(self, rows: Iterable[Sequence[Any]]) -> None:
+        self._rows.extend(rows)
+        while len(self._rows) >= ROWS:
+            self._flush()
+
+    def close(self) -> "pd.DataFrame":
+        """Write what is left; return the whole table."""
+        import pandas as pd
+
+        if self._rows or not self._frames:
+            self._flush()
+        if self._folder is not None and len(self._frames) == 1:
+            self._find_path(1).rename(self._folder / f"{self._name}.parquet")
+        return self._frames[0] if len(self._frames) == 1 else pd.concat(self._frames, ignore_index=True)
+
+    def _find_path(self, number: int) -> Path:
+        return Path(self._folder or "", f"{self._name}-{number:04}.parquet")
+
+    def _flush(self) -> None:
+        block, self._rows = self._rows[:ROWS], self._rows[ROWS:]
+        self._frames.append(build_frame(self._name, block))
+        if self._folder is not None:
+            _write_file(self._name, self._frames[-1], self._find_path(len(self._frames)))
 
 
 def _write_file(name: str, frame: "pd.DataFrame", path: Path) -> None:
-    duckdb = _import()
+    duckdb = check_tables()
     columns = ", ".join(f'"{one.name}"::{SQL_TYPES[one.type]} AS "{one.name}"' for one in TABLES[name])
     try:
         with _connect(duckdb) as connection:
@@ -204,7 +158,7 @@ def read_table(folder: str | Path, name: str) -> "pd.DataFrame":
         raise InputError(
             fill("{name!r} is an unknown table; expected one of: {names}", name=name, names=", ".join(TABLES))
         )
-    duckdb, files = _import(), find_files(Path(folder), name)
+    duckdb, files = check_tables(), find_files(Path(folder), name)
     if not files:
         raise InputError(fill("{folder}: there is no {name}.parquet.", folder=folder, name=name))
     listed = ", ".join(map(_quote, files))
@@ -217,4 +171,8 @@ def read_table(folder: str | Path, name: str) -> "pd.DataFrame":
         raise InputError(
             fill("{folder}: {name}.parquet cannot be read: {why}", folder=folder, name=name, why=why)
         ) from None
-    return _retype(frame, TABLES[name])
+    frame = frame.astype({one.name: FRAME_TYPES[one.type] for one in TABLES[name]})
+    for one in TABLES[name]:
+        if one.type == "text":
+            frame[one.name] = frame[one.name].where(frame[one.name].notna(), None)
+    return frame

@@ -1,17 +1,19 @@
-"""What the page, the summary and the ranking of a city say in words: sums with their ranges, what they leave out."""
+"""What the page, the summary and the ranking of a city say in words: sums with their ranges, rows, what is left out."""
 
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Iterator
 
 from assess.hazard import FAR
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
 from assess.motion.ground_scenarios import FAR_CAUTION
+from assess.portfolio.city import City, Group, Row
 from assess.portfolio.city_spread import Spread
-from assess.portfolio.city_totals import CityTotals, CityView, Group, is_made_up
 from assess.report import words
+from assess.report.findings.route_words import say_state
 from assess.risk import RiskClass
 from assess.route_results import RouteState
+
+_CLASSES = {risk.word: risk for risk in RiskClass}
 
 
 def say_number(value: float | None) -> str:
@@ -35,11 +37,11 @@ def say_range(low: float | None, high: float | None) -> str:
     return _("{low} to {high}", low=number(low, ",.0f"), high=number(high, ",.0f"))
 
 
-def say_interval(spread: Spread) -> str:
-    """Return the sampling interval of an expected number; a dash where nothing was drawn."""
-    if spread.sampling_low is None or spread.sampling_high is None:
+def say_interval(low: float | None, high: float | None) -> str:
+    """Return a range of expected numbers, ``12.0 to 34.5``; a dash where it is not known."""
+    if low is None or high is None:
         return words.DASH
-    return _("{low} to {high}", low=say_number(spread.sampling_low), high=say_number(spread.sampling_high))
+    return _("{low} to {high}", low=say_number(low), high=say_number(high))
 
 
 def name_inventory(inventory: str | None) -> str:
@@ -66,30 +68,31 @@ def name_group(group: Group) -> str:
     return _("{inventory}, {basis}", inventory=heads[group.inventory], basis=name_basis(group.basis))
 
 
-def say_title(view: CityView) -> str:
+def say_title(city: City) -> str:
     """Return the title: how many buildings were assessed, and whether they are made up."""
-    n, listed = int((view.buildings["status"] == "assessed").sum()), len(view.buildings)
+    listed = len(city.ranked)
+    n = listed - len(city.skipped)
     if n < listed:
         return _("Furniture in an earthquake: {n:,} of {listed:,} buildings", n=n, listed=listed)
-    if is_made_up(view):
+    if city.is_made_up:
         return ngettext("Furniture in an earthquake: {n:,} made-up building",
                         "Furniture in an earthquake: {n:,} made-up buildings", n)  # fmt: skip
     return ngettext("Furniture in an earthquake: {n:,} building", "Furniture in an earthquake: {n:,} buildings", n)
 
 
-def say_ground(view: CityView) -> str:
+def say_ground(city: City) -> str:
     """Return in one sentence what earthquake it is."""
-    if view.ground is None:
+    if city.ground is None:
         return _("Every building has the ground motion of its own workbook or index row: they are not under one "
                  "earthquake.")  # fmt: skip
-    if view.ground.kind == "shakemap":
-        return _("Ground motion: the ShakeMap {file}.", file=view.ground.file)
-    return _("Ground motion: the scenarios of {file}.", file=view.ground.file)
+    if city.ground.kind == "shakemap":
+        return _("Ground motion: the ShakeMap {file}.", file=city.ground.file)
+    return _("Ground motion: the scenarios of {file}.", file=city.ground.file)
 
 
-def list_facts(view: CityView) -> list[tuple[str, str]]:
+def list_facts(city: City) -> list[tuple[str, str]]:
     """Return what is to be known of the ground motion, as label and value."""
-    return [(_(label), _(value)) for label, value in view.ground.facts] if view.ground else []
+    return [(_(label), _(value)) for label, value in city.ground.facts] if city.ground else []
 
 
 # ---------------------------------------------------------------- the answer
@@ -215,32 +218,32 @@ def say_nothing(group: Group) -> str:
 # ---------------------------------------------------------------- what is not in it
 
 
-def list_cautions(view: CityView, totals: CityTotals) -> list[str]:
+def list_cautions(city: City) -> list[str]:
     """Return what a reader has to know before the numbers: what is left out, and what is in none of them."""
-    return [text for text in (*_of_buildings(view, totals), *_of_groups(totals)) if text]
+    return [text for text in (*_of_buildings(city), *_of_groups(city)) if text]
 
 
-def _of_buildings(view: CityView, totals: CityTotals) -> Iterator[str]:
-    if is_made_up(view):
+def _of_buildings(city: City) -> Iterator[str]:
+    if city.is_made_up:
         yield _("All buildings are made up: their places, furniture, routes, people and costs are random numbers.")
-    yield from list_ground_cautions(view)
-    if totals.skipped:
+    yield from list_ground_cautions(city)
+    if city.skipped:
         yield ngettext("{n:,} building could not be assessed and is in no number: see the list of skipped buildings.",
                        "{n:,} buildings could not be assessed and are in no number: see the list of skipped buildings.",
-                       totals.skipped)  # fmt: skip
-    if len(totals.groups) > 1:
+                       len(city.skipped))  # fmt: skip
+    if len(city.groups) > 1:
         yield _("Surveyed, handed-over and assumed inventories, and simulated and formula results, are not added up: "
                 "their uncertainties differ.")  # fmt: skip
-    yield from list_setting_cautions(view)
-    yield from list_copies(view)
+    yield from list_setting_cautions(city)
+    yield from list_copies(city)
 
 
-def list_ground_cautions(view: CityView) -> Iterator[str]:
+def list_ground_cautions(city: City) -> Iterator[str]:
     """Yield what holds for the ground motion of all buildings, and how many are far from the sites of its scenarios."""
-    common = view.ground.cautions if view.ground else ()
+    common = city.ground.cautions if city.ground else ()
     for text in (_(caution) for caution in common if caution.template != FAR_CAUTION):  # counted below
         yield f"{text[:1].upper()}{text[1:]}."
-    distances = view.buildings["ground_distance_km"].dropna().astype("float64")
+    distances = city.buildings["ground_distance_km"].dropna().astype("float64")
     far = distances[distances > FAR / 1000]
     if len(far):
         yield ngettext(
@@ -252,33 +255,33 @@ def list_ground_cautions(view: CityView) -> Iterator[str]:
         )  # fmt: skip
 
 
-def list_setting_cautions(view: CityView) -> Iterator[str]:
+def list_setting_cautions(city: City) -> Iterator[str]:
     """Yield what the settings of the run change in every number."""
-    if view.settings.scale != 1:
-        yield _("The motion of every floor is multiplied by {scale:g}.", scale=view.settings.scale)
-    if view.settings.scenario:
-        yield _("The motion of every floor follows {scenario}, as the settings ask.", scenario=view.settings.scenario)
-    if view.settings.ideal:
+    if city.settings.scale != 1:
+        yield _("The motion of every floor is multiplied by {scale:g}.", scale=city.settings.scale)
+    if city.settings.scenario:
+        yield _("The motion of every floor follows {scenario}, as the settings ask.", scenario=city.settings.scenario)
+    if city.settings.ideal:
         yield _("The uncertainty of the earthquake and of the pieces is left out, as the settings ask.")
 
 
-def list_copies(view: CityView) -> Iterator[str]:
+def list_copies(city: City) -> Iterator[str]:
     """Yield how many workbooks have the same content as another one: their pieces and people are counted again."""
-    copies = int(view.buildings["same_as"].notna().sum())
+    copies = int(city.buildings["same_as"].notna().sum())
     if copies:
         yield ngettext("{n:,} workbook has the same content as another; it is counted as a building of its own.",
                        "{n:,} workbooks have the same content as others; each is counted as a building of its own.",
                        copies)  # fmt: skip
 
 
-def _of_groups(totals: CityTotals) -> Iterator[str]:
-    own = sum(group.own_motions for group in totals.groups)
+def _of_groups(city: City) -> Iterator[str]:
+    own = sum(group.own_motions for group in city.groups)
     if own:
         yield ngettext("{n:,} building has floors with a record or a PFA of their own, which may not be of this "
                        "earthquake; its falls are in the sums.",
                        "{n:,} buildings have floors with a record or a PFA of their own, which may not be of this "
                        "earthquake; their falls are in the sums.", own)  # fmt: skip
-    unplaced = sum(group.unplaced for group in totals.groups)
+    unplaced = sum(group.unplaced for group in city.groups)
     if unplaced:
         yield ngettext("{n:,} building has no Latitude and Longitude: it is not on the map.",
                        "{n:,} buildings have no Latitude and Longitude: they are not on the map, and their draws are "
@@ -298,7 +301,7 @@ def list_total_heads() -> list[str]:
             _("People on routes of unknown state")]  # fmt: skip
 
 
-def list_total_rows(totals: CityTotals) -> list[list[str]]:
+def list_total_rows(city: City) -> list[list[str]]:
     """Return the table of groups; there is no line of all, as groups are never added up."""
     return [
         [
@@ -310,17 +313,120 @@ def list_total_rows(totals: CityTotals) -> list[list[str]]:
             say_range(group.people.low, group.people.high) if group.people_known else words.DASH,
             say_whole(group.people_not_known),
         ]
-        for group in totals.groups
+        for group in city.groups
     ]  # fmt: skip
 
 
-def say_place(row: dict[str, Any] | Any) -> str:
+def say_place(row: Row) -> str:
     """Return the place of a building in degrees; a dash where it is not known."""
     if row["latitude"] is None or row["longitude"] is None:
         return words.DASH
     return f"{number(row['latitude'], '.5f')}, {number(row['longitude'], '.5f')}"
 
 
-def join_names(names: Sequence[str]) -> str:
-    """Return names with commas between them."""
-    return ", ".join(names)
+# ---------------------------------------------------------------- rows
+
+
+def label_piece(row: Row, basis: str | None) -> str:
+    """Return the class of a piece as sign and words.
+
+    `basis` is that of its building: where this is simulated, a piece that was not stands outside the classes.
+    """
+    risk = _CLASSES.get(row["risk_class"] or "")
+    if row["is_held"]:
+        said = _("anchored")
+        return f"{words.ANCHORED} {said}"
+    if risk is None:
+        return words.DASH
+    if row["basis"] == "unconfirmed":
+        said = _("unconfirmed ({risk})", risk=words.risk_word(risk))
+        return f"{words.UNCONFIRMED} {said}"
+    if row["basis"] == "formula" and basis != "formula":
+        said = _("{risk} by formula only", risk=words.risk_word(risk))
+        return f"{words.BY_FORMULA} {said}"
+    upper = _CLASSES.get(row["risk_class_upper"] or "")
+    note = f", {words.could_be(words.risk_word(upper))}" if upper is not None and upper > risk else ""
+    return f"{words.risk_label(risk)}{note}"
+
+
+def say_probability(row: Row) -> str:
+    """Return a chance with its interval where it has one: ``12.3 % (10.1 to 15.0 %)``.
+
+    Of an anchored piece it is said that it is the chance if it stood free; a route whose state is not known has none,
+    as what is missing is left out of it.
+    """
+    if row.get("state") == RouteState.NOT_KNOWN:
+        return words.DASH
+    said = words.say_chance(row["probability"], row["probability_low"], row["probability_high"])
+    return _("free-standing: {chance}", chance=said) if row.get("is_held") else said
+
+
+def say_size(row: Row) -> str:
+    """Return breadth, width and height [cm], a dash for what is not known."""
+    return " × ".join(words.in_cm(row[name]) for name in ("breadth_cm", "width_cm", "height_cm"))
+
+
+def say_kind(row: Row) -> str:
+    """Return what a piece is: its description, else its type."""
+    return str(row["description"] or row["type"] or "")
+
+
+def label_state(state: str | None) -> str:
+    """Return the state of a route as sign and words."""
+    return say_state(RouteState(state or RouteState.NOT_KNOWN))
+
+
+def say_severity(severity: str) -> str:
+    """Return how grave a problem is."""
+    return {"error": _("error"), "warning": _("warning"), "note": _("note")}.get(severity, severity)
+
+
+def say_spot(row: Row) -> str:
+    """Return where a problem is: sheet and cell."""
+    return " ".join(str(row[name]) for name in ("sheet", "cell") if row[name])
+
+
+def say_falls(row: Row) -> str:
+    """Return the expected falls of a building, with the pieces that could fall as well and are not in them."""
+    apart = [
+        *([_("{pieces} unconfirmed", pieces=say_whole(row["unconfirmed"]))] if row["unconfirmed"] else []),
+        *([_("{pieces} by formula only", pieces=say_whole(row["by_formula"]))] if row["by_formula"] else []),
+        *([_("{pieces} left out of the COBie file", pieces=say_whole(row["left_out"]))] if row["left_out"] else []),
+    ]
+    expected = say_number(row["expected_falls"])
+    return _("{falls} and up to {apart}", falls=expected, apart=", ".join(apart)) if apart else expected
+
+
+def say_people(row: Row) -> str:
+    """Return the expected people on blocked routes of those on routes that are known; the others next to them.
+
+    A dash where no people are filled in.
+    """
+    occupants, missing = row["occupants"], row["people_not_known"] or 0
+    if not occupants:
+        return words.DASH
+    if missing >= occupants:
+        return _("not known: {people} on routes not known", people=say_whole(missing))
+    expected = say_number(row["people_blocked"])
+    said = _("{people} of {occupants}", people=expected, occupants=say_whole(occupants - missing))
+    return said + (_("; {people} on routes not known", people=say_whole(missing)) if missing else "")
+
+
+def say_blocked(row: Row) -> str:
+    """Return how many routes are blocked, and how many are not known; a dash where there are no routes."""
+    missing = row["routes_not_known"] or 0
+    if not row["routes"]:
+        return words.DASH
+    if missing >= row["routes"]:
+        return _("not known")
+    return say_whole(row["routes_blocked"]) + (_("; {routes} not known", routes=say_whole(missing)) if missing else "")
+
+
+def mark_own_motions(text: str, row: Row) -> str:
+    """Return a text with the mark of a building of which floors keep motions that may not be of this earthquake."""
+    return _("{text} (floors with motions of their own)", text=text) if row["own_motions"] else text
+
+
+def name_skipped(building: str | None, path: str) -> str:
+    """Return the name of a building that was skipped, with its file where this differs; else its file alone."""
+    return path if not building or building == path else f"{building} ({path})"

@@ -13,20 +13,18 @@ import platform
 import re
 import time
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from assess.errors import InputError, OutputError
+from assess.errors import CancelledError, InputError, OutputError
 from assess.extras import say_install
 from assess.i18n import fill, join
 from assess.plain_text import plain_line
-from assess.portfolio.building_task import Summary, Task, run_task
-from assess.portfolio.local_pool import give_up
-from assess.portfolio.part_files import FOLDER
+from assess.portfolio.building_task import FOLDER, Summary, Task, give_up, run_task
 from assess.progress import SILENT, Progress
 from assess.version import __version__, find_code
 
@@ -51,7 +49,7 @@ _ADDRESS = re.compile(
 class Site:
     """What every worker has to agree with: versions, a probe in the folder of the results, files to find."""
 
-    versions: tuple[tuple[str, str], ...]
+    versions: Mapping[str, str]
     probe: Path
     token: str
     seen: tuple[Path, ...]
@@ -71,33 +69,23 @@ class Batch:
         return f"assess-{hashlib.sha256(text.encode()).hexdigest()[:20]}-{self.attempt}-{os.getpid()}"
 
 
-def list_versions() -> tuple[tuple[str, str], ...]:
+def list_versions() -> dict[str, str]:
     """Return the versions that results depend on."""
     import numba
     import numpy
     import scipy
 
-    return (
-        ("assess", f"{__version__} ({find_code()[:12]})"),
-        ("Python", ".".join(platform.python_version_tuple()[:2])),
-        ("numpy", numpy.__version__),
-        ("scipy", scipy.__version__),
-        ("numba", numba.__version__),
-    )
+    return {
+        "assess": f"{__version__} ({find_code()[:12]})",
+        "Python": ".".join(platform.python_version_tuple()[:2]),
+        "numpy": numpy.__version__,
+        "scipy": scipy.__version__,
+        "numba": numba.__version__,
+    }
 
 
-def check_cluster() -> None:
-    """Raise InputError unless dask is installed."""
-    try:
-        import distributed  # noqa: F401
-    except ImportError:
-        raise InputError(
-            fill("scheduler: dask is needed, which is not installed. {how}", how=say_install("cluster"))
-        ) from None
-
-
-def check_address(scheduler: str) -> None:
-    """Raise InputError unless an address has the form of one of a scheduler."""
+def check_cluster(scheduler: str) -> None:
+    """Raise InputError unless the address has the form of that of a scheduler, and dask is installed."""
     match = _ADDRESS.fullmatch(scheduler)
     if match is None or not 0 < int(match[1]) < 65536:
         raise InputError(
@@ -107,6 +95,12 @@ def check_address(scheduler: str) -> None:
                 address=plain_line(scheduler)[:100],
             )
         )
+    try:
+        import distributed  # noqa: F401
+    except ImportError:
+        raise InputError(
+            fill("scheduler: dask is needed, which is not installed. {how}", how=say_install("cluster"))
+        ) from None
 
 
 def run_on_cluster(
@@ -135,8 +129,7 @@ def run_on_cluster(
     CancelledError
         If the work was cancelled; parts that are written stay.
     """
-    check_cluster()
-    check_address(scheduler)
+    check_cluster(scheduler)
     size = 1 if is_simulated else BATCH
     batches = deque(Batch(tuple(tasks[at : at + size])) for at in range(0, len(tasks), size))
     with _connect(scheduler, progress) as client, _probe(tasks) as site:
@@ -149,17 +142,17 @@ def run_on_cluster(
 def _connect(scheduler: str, progress: Progress) -> Iterator["Client"]:
     from distributed import Client
 
-    # a Client that fails says so for itself, at length and late
-    with ThreadPoolExecutor(1) as thread:  # the caller may have a loop of its own
-        answer = thread.submit(asyncio.run, _ask(scheduler, progress)).result()
-    if isinstance(answer, Exception):
-        raise _describe_silence(scheduler, answer)
-    if not isinstance(answer, dict) or answer.get("type") != "Scheduler":
-        raise _describe_other(scheduler)
+    # a Client that fails says so for itself, at length and late: who is there is asked first
     try:
+        with ThreadPoolExecutor(1) as thread:  # the caller may have a loop of its own
+            answer = thread.submit(asyncio.run, _ask(scheduler, progress)).result()
+        if not isinstance(answer, dict) or answer.get("type") != "Scheduler":
+            raise ValueError  # a worker, or another program
         client = Client(scheduler, timeout=CONNECTING, set_as_default=False)
+    except CancelledError:
+        raise
     except Exception as error:  # whatever dask makes of what it was sent
-        raise _describe_silence(scheduler, error) from None
+        raise _explain_silence(scheduler, error) from None
     try:
         yield client
     finally:
@@ -168,16 +161,16 @@ def _connect(scheduler: str, progress: Progress) -> Iterator["Client"]:
 
 
 async def _ask(scheduler: str, progress: Progress) -> Any:
-    """Return what is answered at the address to the question who is there, or the error that came instead."""
+    """Return what is answered at the address to the question who is there; raises what comes instead."""
     asking = asyncio.ensure_future(_ask_identity(scheduler))
-    latest = time.monotonic() + CONNECTING
-    while not asking.done() and time.monotonic() < latest:
-        progress.check()
-        await asyncio.wait((asking,), timeout=_ASKED_EVERY / 5)
-    if not asking.done():
+    try:
+        async with asyncio.timeout(CONNECTING):
+            while not asking.done():
+                progress.check()
+                await asyncio.wait((asking,), timeout=_ASKED_EVERY / 5)
+        return asking.result()
+    finally:
         asking.cancel()
-        return TimeoutError()
-    return asking.exception() or asking.result()
 
 
 async def _ask_identity(scheduler: str) -> Any:
@@ -192,33 +185,22 @@ async def _ask_identity(scheduler: str) -> Any:
         comm.abort()
 
 
-def _describe_silence(scheduler: str, error: Exception) -> InputError:
-    """Return an error that says that nobody is at the address, or what is not a scheduler."""
-    is_silent = isinstance(error, OSError) and not isinstance(error, TimeoutError)
-    if not is_silent and not isinstance(error, TypeError | ImportError):  # these: no certificate, no package
-        return _describe_other(scheduler)
-    why = plain_line(_find_reason(error)).strip() or type(error).__name__
-    return InputError(fill("scheduler {address} cannot be reached: {why}. Is it running?", address=scheduler, why=why))
-
-
-def _find_reason(error: Exception) -> str:
-    """Return what the system refused, which dask wraps; else the text of the error."""
-    inner: BaseException | None = error
-    while inner is not None:
-        if isinstance(inner, OSError) and inner.strerror:
-            return str(inner.strerror)
-        inner = getattr(inner, "real_error", None) or inner.__cause__
-    return str(error)
-
-
-def _describe_other(scheduler: str) -> InputError:
-    return InputError(
-        fill(
+def _explain_silence(scheduler: str, error: Exception) -> InputError:
+    """Return an error that says that nobody is at the address, or something that is not a scheduler."""
+    # a TypeError: there is no certificate; an ImportError: no package for the protocol
+    if isinstance(error, OSError | TypeError | ImportError) and not isinstance(error, TimeoutError):
+        inner: BaseException | None = error
+        while inner is not None and not (isinstance(inner, OSError) and inner.strerror):
+            inner = getattr(inner, "real_error", None) or inner.__cause__  # what the system refused, which dask wraps
+        why = plain_line(str(getattr(inner, "strerror", None) or error)).strip() or type(error).__name__
+        text = fill("scheduler {address} cannot be reached: {why}. Is it running?", address=scheduler, why=why)
+    else:
+        text = fill(
             "scheduler {address}: what is there does not answer as a dask scheduler of this version. Check host and "
             "port: a scheduler prints its address when it starts.",
             address=scheduler,
         )
-    )
+    return InputError(text)
 
 
 def _wait_for_worker(client: "Client", scheduler: str, progress: Progress) -> None:
@@ -259,11 +241,11 @@ def _probe(tasks: Sequence[Task]) -> Iterator[Site]:
 def check_workers(client: "Client", site: Site) -> None:
     """Raise InputError unless every worker can do the work."""
     answers = client.run(answer_probe, site, on_error="return")
-    faults = []
-    for address, answer in sorted(answers.items()):
-        fault = _judge(answer, site)
-        if fault:
-            faults.append(fill("worker {address}: {fault}", address=plain_line(str(address)), fault=fault))
+    faults = [
+        fill("worker {address}: {fault}", address=plain_line(str(address)), fault=fault)
+        for address, answer in sorted(answers.items())
+        if (fault := _judge(answer, site))
+    ]
     if faults:
         raise InputError(join("\n", faults[:10]))
 
@@ -274,14 +256,12 @@ def answer_probe(site: Site, dask_worker: Any = None) -> dict[str, Any]:
     if dask_worker is not None:
         found["threads"] = dask_worker.state.nthreads
     try:
-        is_seen = site.probe.read_text(encoding="ascii") == site.token
-        if is_seen:
+        if site.probe.read_text(encoding="ascii") == site.token:
             answer = site.probe.with_name(f"{site.probe.name}-{os.urandom(6).hex()}")
             answer.write_text(site.token, encoding="ascii")
             found["name"] = answer.name
     except OSError as error:
-        is_seen, found["fault"] = False, error.strerror or str(error)
-    found["is_seen"] = is_seen
+        found["fault"] = error.strerror or str(error)
     found["unseen"] = next((str(path) for path in site.seen if not path.exists()), "")
     return found
 
@@ -293,15 +273,15 @@ def _judge(answer: Any, site: Site) -> str:
     if not isinstance(answer, dict):
         return fill("it does not answer ({why}).", why=f"{type(answer).__name__}: {str(answer)[:200]}")
     others = [
-        fill("{name} {theirs} there, {ours} here", name=name, theirs=dict(answer["versions"]).get(name, "?"), ours=ours)
-        for name, ours in site.versions
-        if dict(answer["versions"]).get(name) != ours
+        fill("{name} {theirs} there, {ours} here", name=name, theirs=answer["versions"].get(name, "?"), ours=ours)
+        for name, ours in site.versions.items()
+        if answer["versions"].get(name) != ours
     ]
     if others:
         return fill("other versions: {list}. Install the same everywhere.", list=join("; ", others))
     if answer.get("threads", 1) != 1:
         return fill("it has {n} threads. Start it with one thread.", n=answer["threads"])
-    if not answer["is_seen"] or not (site.probe.parent / answer["name"]).is_file():
+    if not (site.probe.parent / answer["name"]).is_file():
         why = answer["fault"] or fill("it sees another folder of this name")
         return fill(
             "it does not share the folder {folder} ({why}). Name a folder that all machines see under one path.",
@@ -339,67 +319,49 @@ def run_batch(site: Site, tasks: Sequence[Task]) -> list[Summary]:
 def _hand_over(
     client: "Client", site: Site, batches: "deque[Batch]", scheduler: str, progress: Progress
 ) -> Iterator[Summary]:
-    """Keep a window of batches with the scheduler, and yield what comes back."""
-    running: dict[Future, Batch] = {}
-    try:
-        while batches or running:
-            _fill_window(client, site, batches, running, scheduler)
-            for future in _wait(client, running, scheduler, progress):
-                yield from _take(future, running.pop(future), batches, scheduler)
-    finally:
-        with suppress(Exception):  # a scheduler that is gone
-            client.cancel(list(running), force=True)
-
-
-def _fill_window(
-    client: "Client", site: Site, batches: "deque[Batch]", running: "dict[Future, Batch]", scheduler: str
-) -> None:
-    """Hand batches over until the window is full; OutputError if the scheduler is gone."""
-    try:
-        most = WINDOW * max(1, len(client.nthreads()))
-    except (OSError, TimeoutError):
-        raise _describe_loss(scheduler) from None
-    while batches and len(running) < most:
-        batch = batches.popleft()
-        future = client.submit(run_batch, site, batch.tasks, key=batch.key, pure=False, retries=_RETRIES)
-        running[future] = batch
-
-
-def _wait(client: "Client", running: "dict[Future, Batch]", scheduler: str, progress: Progress) -> "list[Future]":
-    """Return batches that have ended; raises OutputError if the scheduler is gone."""
-    while True:
-        progress.check()
-        done = [future for future in running if future.status not in ("pending",)]
-        if done:
-            return done
-        if client.status != "running":
-            raise _describe_loss(scheduler)
-        time.sleep(_ASKED_EVERY / 10)
-
-
-def _describe_loss(scheduler: str) -> OutputError:
-    return OutputError(
+    """Keep a window of batches with the scheduler, and yield what comes back; OutputError if the scheduler is gone."""
+    lost = OutputError(
         fill(
             "the scheduler {address} is gone. What is done is kept: start it and run the same command again.",
             address=scheduler,
         )
     )
+    running: dict[Future, Batch] = {}
+    try:
+        while batches or running:
+            try:
+                most = WINDOW * max(1, len(client.nthreads()))
+            except (OSError, TimeoutError):
+                raise lost from None
+            while batches and len(running) < most:
+                batch = batches.popleft()
+                future = client.submit(run_batch, site, batch.tasks, key=batch.key, pure=False, retries=_RETRIES)
+                running[future] = batch
+            while not (done := [future for future in running if future.status != "pending"]):
+                progress.check()
+                if client.status != "running":
+                    raise lost
+                time.sleep(_ASKED_EVERY / 10)
+            for future in done:
+                batch = running.pop(future)
+                if future.status in ("cancelled", "lost"):
+                    raise lost
+                error = future.exception() if future.status == "error" else None
+                yield from future.result() if error is None else _give_up(error, batch, batches)
+    finally:
+        with suppress(Exception):  # a scheduler that is gone
+            client.cancel(list(running), force=True)
 
 
-def _take(future: "Future", batch: Batch, batches: "deque[Batch]", scheduler: str) -> Iterator[Summary]:
-    """Yield the summaries of a batch; hand one that killed its workers over again, building by building."""
+def _give_up(error: BaseException, batch: Batch, batches: "deque[Batch]") -> list[Summary]:
+    """Hand a batch that killed its workers over again, building by building; skip a building that did so alone."""
     from distributed import KilledWorker
 
-    if future.status in ("cancelled", "lost"):
-        raise _describe_loss(scheduler)
-    error = future.exception() if future.status == "error" else None
-    if error is None:
-        yield from future.result()
-    elif isinstance(error, KilledWorker) and len(batch.tasks) > 1:
+    if isinstance(error, KilledWorker) and len(batch.tasks) > 1:
         batches.extendleft(Batch((one,), batch.attempt + 1) for one in reversed(batch.tasks))
-    elif isinstance(error, KilledWorker):
-        yield give_up(batch.tasks[0])
-    elif isinstance(error, WorkerUnfitError):
+        return []
+    if isinstance(error, KilledWorker):
+        return [give_up(batch.tasks[0])]
+    if isinstance(error, WorkerUnfitError):
         raise InputError(fill("a worker that joined later cannot do the work: {why}", why=error)) from None
-    else:
-        raise OutputError(fill("a worker failed: {why}", why=f"{type(error).__name__}: {str(error)[:300]}")) from error
+    raise OutputError(fill("a worker failed: {why}", why=f"{type(error).__name__}: {str(error)[:300]}")) from error

@@ -16,9 +16,9 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from assess.errors import OutputError, Problem
+from assess.errors import OutputError
 from assess.i18n import fill
-from assess.portfolio.building_task import Summary, Task, skip
+from assess.portfolio.building_task import Summary, Task, give_up
 from assess.portfolio.local_worker import ALONE, READY, receive, send
 from assess.progress import SILENT, Progress
 
@@ -28,6 +28,7 @@ MOST_STARTS = 3
 """Processes in a row that may end before they are ready: then none can be started here."""
 _ASKED_EVERY = 0.1
 """Time [s] after which it is looked whether the work is to stop."""
+Worker = subprocess.Popen[bytes]
 
 
 def run_local(tasks: Sequence[Task], jobs: int, progress: Progress = SILENT) -> Iterator[Summary]:
@@ -49,26 +50,26 @@ def run_local(tasks: Sequence[Task], jobs: int, progress: Progress = SILENT) -> 
     OutputError
         If no process can be started.
     """
-    desk = _Desk(tasks)
-    seats = [threading.Thread(target=desk.work, daemon=True) for _ in range(min(jobs, len(tasks)))]
-    for one in seats:
+    pool = _Pool(tasks)
+    threads = [threading.Thread(target=pool.work, daemon=True) for _ in range(min(jobs, len(tasks)))]
+    for one in threads:
         one.start()
     try:
         for _ in tasks:
-            yield desk.take_answer(progress)
+            yield pool.take_answer(progress)
     finally:
-        desk.close()
-        for one in seats:
+        pool.close()
+        for one in threads:
             one.join()
 
 
-class _Desk:
+class _Pool:
     """The tasks that are left, and the processes that work on them, one a thread."""
 
     def __init__(self, tasks: Sequence[Task]) -> None:
         self._left = deque((task, 0) for task in tasks)
         self._answers: queue.SimpleQueue[Summary | Exception] = queue.SimpleQueue()
-        self._workers: set[subprocess.Popen[bytes]] = set()
+        self._workers: set[Worker] = set()
         self._lock, self._is_closed, self._failed_starts = threading.Lock(), False, 0
 
     def take_answer(self, progress: Progress) -> Summary:
@@ -93,42 +94,33 @@ class _Desk:
         """Have one process after another do tasks, until none is left."""
         try:
             while worker := self._start():
-                self._serve(worker)
+                try:
+                    if self._is_ready(worker):
+                        self._serve(worker)
+                finally:
+                    self._end(worker)
         except Exception as error:  # raised in the thread that waits
             self._answers.put(error)
 
-    def _start(self) -> "subprocess.Popen[bytes] | None":
+    def _start(self) -> Worker | None:
         """Return a new process; None where nothing is left to do."""
         with self._lock:
             if self._is_closed or not self._left:
                 return None
-            worker = start_worker()
+            worker = _start_process()
             self._workers.add(worker)
             return worker
 
-    def _serve(self, worker: "subprocess.Popen[bytes]") -> None:
-        """Hand tasks to a process until none is left, or it dies."""
-        try:
-            if not self._wait_until_ready(worker):
-                return
-            while self._left:
-                try:
-                    task, deaths = self._left.popleft()
-                except IndexError:  # another thread took the last one
-                    return
-                summary = ask(worker, task)
-                if isinstance(summary, Exception):
-                    raise summary
-                if summary is None:
-                    self._note_death(task, deaths + 1)
-                    return
-                self._answers.put(summary)
-        finally:
-            with self._lock:
-                self._workers.discard(worker)
-            end_worker(worker)
+    def _end(self, worker: Worker) -> None:
+        with self._lock:
+            self._workers.discard(worker)
+        worker.kill()
+        for stream in filter(None, (worker.stdin, worker.stdout)):
+            with suppress(OSError):
+                stream.close()
+        worker.wait()
 
-    def _wait_until_ready(self, worker: "subprocess.Popen[bytes]") -> bool:
+    def _is_ready(self, worker: Worker) -> bool:
         """Wait for the first message of a process; return whether it came. OutputError if many end without it."""
         if worker.stdout is not None and receive(worker.stdout) == READY:
             self._failed_starts = 0
@@ -138,17 +130,26 @@ class _Desk:
             raise OutputError(fill("processes end as soon as they are started (exit status {how}).", how=worker.wait()))
         return False
 
-    def _note_death(self, task: Task, deaths: int) -> None:
-        """Have a task tried again by another process, or skip it."""
-        if self._is_closed:
-            return
-        if deaths < MOST_DEATHS:
-            self._left.appendleft((task, deaths))
-        else:
-            self._answers.put(give_up(task))
+    def _serve(self, worker: Worker) -> None:
+        """Hand tasks to a process until none is left, or it dies."""
+        while True:
+            try:
+                task, deaths = self._left.popleft()
+            except IndexError:  # nothing is left
+                return
+            answer = _ask(worker, task)
+            if isinstance(answer, Exception):
+                raise answer
+            if answer is None:  # it died
+                if deaths + 1 >= MOST_DEATHS:
+                    self._answers.put(give_up(task))
+                elif not self._is_closed:
+                    self._left.appendleft((task, deaths + 1))
+                return
+            self._answers.put(answer)
 
 
-def start_worker() -> "subprocess.Popen[bytes]":
+def _start_process() -> Worker:
     """Return a new process; Ctrl-C in the terminal does not reach it, as the process that started it ends it."""
     package = str(Path(__file__).parents[2])
     path = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH"))))
@@ -162,7 +163,7 @@ def start_worker() -> "subprocess.Popen[bytes]":
     )
 
 
-def ask(worker: "subprocess.Popen[bytes]", task: Task) -> Summary | Exception | None:
+def _ask(worker: Worker, task: Task) -> Summary | Exception | None:
     """Have a process do a task; None if it dies, an error if it cannot do any."""
     assert worker.stdin is not None and worker.stdout is not None  # noqa: S101, PT018 - both are pipes
     try:
@@ -171,23 +172,3 @@ def ask(worker: "subprocess.Popen[bytes]", task: Task) -> Summary | Exception | 
     except OSError:
         return None
     return None if data is None else pickle.loads(data)  # noqa: S301 - of our own process
-
-
-def end_worker(worker: "subprocess.Popen[bytes]") -> None:
-    """End a process that has nothing left to do."""
-    worker.kill()
-    for stream in (worker.stdin, worker.stdout):
-        if stream is not None:
-            with suppress(OSError):
-                stream.close()
-    worker.wait()
-
-
-def give_up(task: Task) -> Summary:
-    """Return the summary of a building that every process died of."""
-    fault = fill(
-        "every process that assessed it was ended by the system: its workbook may need more memory than there is."
-    )
-    fix = fill("Assess it by itself with `assess run`, on a machine with more memory.")
-    part = skip(task.source, "", [Problem("error", "", "", fault, fix)])
-    return Summary(path=task.source.path, key="", status="skipped", part=part)

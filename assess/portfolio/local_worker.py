@@ -24,25 +24,19 @@ def main() -> None:
     waiting: queue.SimpleQueue[bytes] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(sys.stdin.buffer, waiting), daemon=True).start()
     try:
-        import assess.portfolio.building_task  # noqa: F401
+        from assess.errors import AssessError
+        from assess.portfolio.building_task import run_task
     except Exception as error:
         os.write(2, f"error  a process cannot start: {type(error).__name__}: {error}\n".encode("utf-8", "replace"))
         os._exit(1)
     send(answers, READY)
     while True:
-        send(answers, pickle.dumps(_answer(waiting.get())))
-
-
-def _answer(data: bytes) -> object:
-    """Return the summary of a task, or the error if its ground motion is not what it was."""
-    from assess.errors import AssessError
-    from assess.portfolio.building_task import run_task
-
-    try:
-        task = pickle.loads(data)  # noqa: S301 - from the process that started this one
-    except AssessError as error:
-        return type(error)(str(error))
-    return run_task(task)
+        try:
+            task = pickle.loads(waiting.get())  # noqa: S301 - from the process that started this one
+            answer: object = run_task(task)
+        except AssessError as error:  # its ground motion is not what it was
+            answer = type(error)(str(error))
+        send(answers, pickle.dumps(answer))
 
 
 def _listen(stream: IO[bytes], waiting: "queue.SimpleQueue[bytes]") -> None:

@@ -11,23 +11,11 @@ from typing import Any
 
 from assess.i18n import gettext as _
 from assess.intensity import name_mmi
-from assess.portfolio import piece_words as say
-from assess.portfolio.building_signs import Row, find_share, sign_of_class, sign_of_routes, sign_of_share
-from assess.portfolio.city_content import CityContent
-from assess.portfolio.city_words import name_basis, name_inventory, say_number, say_place, say_range, say_whole
-from assess.portfolio.piece_words import (
-    find_state,
-    label_piece,
-    label_state,
-    order_pieces,
-    say_count,
-    say_kind,
-    say_probability,
-    say_severity,
-    say_size,
-    say_spot,
-)
+from assess.portfolio import city_words as say
+from assess.portfolio.building_signs import find_share, sign_of_class, sign_of_routes, sign_of_share
+from assess.portfolio.city import City, Row
 from assess.report import words
+from assess.route_results import RouteState
 from assess.units import GRAVITY
 
 MOST_ROWS = 150
@@ -64,7 +52,7 @@ class Table:
         }  # fmt: skip
 
 
-def write_data(content: CityContent, repeat: str, indexed: Collection[str] = ()) -> str:
+def write_data(city: City, repeat: str, indexed: Collection[str] = ()) -> str:
     """Return the data of the page as JSON that may stand inside a script element.
 
     `repeat` is the command that assesses one building alone, with ``{path}`` in it; "" where there is none. `indexed`
@@ -72,10 +60,8 @@ def write_data(content: CityContent, repeat: str, indexed: Collection[str] = ())
     """
     data = {
         "heads": [label for label, _read in _FACTS()],
-        "buildings": [
-            _pack_building(row, content, repeat) | {"indexed": row["path"] in indexed} for row in content.buildings
-        ],
-        "tables": _pack_tables(content),
+        "buildings": [_pack_building(row, city, repeat) | {"indexed": row["path"] in indexed} for row in city.ranked],
+        "tables": _pack_tables(city),
         "styles": _list_styles(),
         "texts": _list_texts(),
     }
@@ -83,15 +69,15 @@ def write_data(content: CityContent, repeat: str, indexed: Collection[str] = ())
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 
-def _pack_building(row: Row, content: CityContent, repeat: str) -> dict[str, Any]:
+def _pack_building(row: Row, city: City, repeat: str) -> dict[str, Any]:
     is_assessed = row["status"] == "assessed"
     return {
-        "name": words.cut(content.name_building(row["building"], row["path"]), LONGEST),
+        "name": words.cut(city.name_building(row), LONGEST),
         "path": words.cut(row["path"], LONGEST),
         "share": sign_of_share(row).key,
         "kind": sign_of_class(row).key,
         "state": sign_of_routes(row).key,
-        "use": words.cut(content.spell_use(row), 60),
+        "use": words.cut(city.spell_use(row), 60),
         "inventory": row["inventory"] or "",
         "basis": row["basis"] or "",
         "storeys": row["storeys"],
@@ -120,34 +106,26 @@ def _list_cells(row: Row) -> list[str]:
     """Return the cells of the ranking after the first; the class is written by its sign."""
     if row["status"] != "assessed":
         return [str(row["use"] or ""), "", "", *("" for _at in range(6))]
-    inventory = name_inventory(row["inventory"])
-    basis = "" if row["basis"] == "simulated" else f", {name_basis(row['basis'])}"
+    inventory = say.name_inventory(row["inventory"])
+    basis = "" if row["basis"] == "simulated" else f", {say.name_basis(row['basis'])}"
     return [
-        words.cut(str(row["use"] or ""), 60), say.mark_own_motions(f"{inventory}{basis}", row["own_motions"]), "",
-        say_count(row["pieces"]),
-        words.percent(find_share(row)), _say_expected(row),
-        say_range(row["falls_p05"], row["falls_p95"]), _say_people(row),
-        say.say_blocked(row["routes"], row["routes_blocked"], row["routes_not_known"]),
+        words.cut(str(row["use"] or ""), 60), say.mark_own_motions(f"{inventory}{basis}", row), "",
+        say.say_whole(row["pieces"]),
+        words.percent(find_share(row)), say.say_falls(row),
+        say.say_range(row["falls_p05"], row["falls_p95"]), say.say_people(row),
+        say.say_blocked(row),
     ]  # fmt: skip
-
-
-def _say_expected(row: Row) -> str:
-    return say.say_falls(row["expected_falls"], row["unconfirmed"], row["by_formula"], row["left_out"])
-
-
-def _say_people(row: Row) -> str:
-    return say.say_people(row["people_blocked"], row["occupants"], row["people_not_known"])
 
 
 def _FACTS() -> list[tuple[str, Callable[[Row], str]]]:  # noqa: N802 - a table, in the language in use
     """Return what the page of a building says of it: label, and how it is read from its row."""
     return [
         (_("File"), lambda row: str(row["path"])),
-        (_("Inventory"), lambda row: name_inventory(row["inventory"])),
-        (_("Results"), lambda row: name_basis(row["basis"])),
+        (_("Inventory"), lambda row: say.name_inventory(row["inventory"])),
+        (_("Results"), lambda row: say.name_basis(row["basis"])),
         (_("Use"), lambda row: str(row["use"] or words.DASH)),
-        (_("Place"), say_place),
-        (_("Storeys"), lambda row: say_count(row["storeys"])),
+        (_("Place"), say.say_place),
+        (_("Storeys"), lambda row: say.say_whole(row["storeys"])),
         (_("Height [m]"), lambda row: words.fixed(row["height_m"], 1)),
         (_("Ground motion"), _say_ground),
         (_("Largest PFA of its floors [g]"), lambda row: words.in_g(row["largest_pfa_g"])),
@@ -156,8 +134,8 @@ def _FACTS() -> list[tuple[str, Callable[[Row], str]]]:  # noqa: N802 - a table,
         (_("Expected falls"), _say_falls),
         (_("Share of its pieces in the classes that is expected to fall"), lambda row: words.percent(find_share(row))),
         (_("Falls with few and with many pieces (10 and 90 % quantities)"), _say_assumed),
-        (_("People on blocked routes"), _say_people),
-        (_("Falls that the work list avoids"), lambda row: say_number(row["falls_avoided"])),
+        (_("People on blocked routes"), say.say_people),
+        (_("Falls that the work list avoids"), lambda row: say.say_number(row["falls_avoided"])),
         (_("Known costs"), _say_cost),
     ]
 
@@ -184,65 +162,69 @@ def _say_classes(row: Row) -> str:
         "unconfirmed": _("unconfirmed"), "by_formula": _("by formula only"), "anchored": _("anchored"),
         "left_out": _("left out of the COBie file"),
     }  # fmt: skip
-    return "; ".join(f"{label} {say_whole(row[name])}" for name, label in named.items() if row[name])
+    return "; ".join(f"{label} {say.say_whole(row[name])}" for name, label in named.items() if row[name])
 
 
 def _say_falls(row: Row) -> str:
-    expected = _say_expected(row)
+    expected = say.say_falls(row)
     if row["falls_p05"] is None or row["falls_p95"] is None:
         return expected
     return _("{expected}; in nine of ten earthquakes like this one {range}",
              expected=expected,
-             range=say_range(row["falls_p05"], row["falls_p95"]))  # fmt: skip
+             range=say.say_range(row["falls_p05"], row["falls_p95"]))  # fmt: skip
 
 
 def _say_assumed(row: Row) -> str:
-    if row["inventory"] != "assumed":
-        return ""
-    return _(
-        "{low} to {high}", low=say_number(row["falls_low_inventory"]), high=say_number(row["falls_high_inventory"])
-    )
+    is_assumed = row["inventory"] == "assumed"
+    return say.say_interval(row["falls_low_inventory"], row["falls_high_inventory"]) if is_assumed else ""
 
 
 def _say_cost(row: Row) -> str:
     if row["cost"] is None:
         return _("not known") if row["works"] else ""
-    missing = say_count(row["works_without_cost"]) if row["works_without_cost"] else ""
-    return say_whole(row["cost"]) + (_(" and {pieces} pieces without a cost", pieces=missing) if missing else "")
+    missing = say.say_whole(row["works_without_cost"]) if row["works_without_cost"] else ""
+    return say.say_whole(row["cost"]) + (_(" and {pieces} pieces without a cost", pieces=missing) if missing else "")
 
 
 # ---------------------------------------------------------------- rows of a building
 
 
-def _pack_tables(content: CityContent) -> dict[str, Any]:
+def _pack_tables(city: City) -> dict[str, Any]:
     pieces = Table([_("Item"), _("Floor"), _("Room"), _("What"), _("Size [cm]"), _("Pieces"), _("Class"), _("Chance"),
                     _("Fix: place"), _("How to fix it")], (5, 7, 8))  # fmt: skip
     routes = Table([_("Route"), _("State"), _("Chance of a blockage"), _("People"), _("Pieces that may block it"),
                     _("To fill in")], (2, 3))  # fmt: skip
     problems = Table([_("Severity"), _("Place"), _("What"), _("How to fix it")], ())
-    for building in content.buildings:
+    for building in city.ranked:
         path, basis = building["path"], building["basis"]
-        pieces.add(order_pieces(content.pieces.get(path, [])), partial(_read_piece, basis))
-        routes.add(content.routes.get(path, []), _read_route)
-        problems.add(content.problems.get(path, []), _read_problem)
+        pieces.add(sorted(city.pieces_of.get(path, []), key=_order), partial(_read_piece, basis))
+        routes.add(city.routes_of.get(path, []), _read_route)
+        problems.add(city.problems_of.get(path, []), _read_problem)
     return {"pieces": pieces.pack(), "routes": routes.pack(), "problems": problems.pack()}
 
 
+def _order(row: Row) -> tuple[float, float, int]:
+    """Pieces as the building's work list has them, then the others, the likeliest to fall first."""
+    place = float("inf") if row["work_place"] is None else row["work_place"]
+    return place, -(row["probability"] or 0.0), row["row"] or 0
+
+
 def _read_piece(basis: str | None, row: Row) -> list[str]:
-    place = "" if row["work_place"] is None else say_count(row["work_place"])
+    place = "" if row["work_place"] is None else say.say_whole(row["work_place"])
     return [
-        row["item"] or "", row["floor"] or "", row["room"] or "", say_kind(row), say_size(row),
-        say_count(row["quantity"]), label_piece(row, basis)[0], say_probability(row), place, row["detail"] or "",
+        row["item"] or "", row["floor"] or "", row["room"] or "", say.say_kind(row), say.say_size(row),
+        say.say_whole(row["quantity"]), say.label_piece(row, basis), say.say_probability(row), place,
+        row["detail"] or "",
     ]  # fmt: skip
 
 
 def _read_route(row: Row) -> list[str]:
-    return [row["route"] or "", label_state(row["state"]), say_probability(row), say_count(row["occupants"]),
-            row["blockers"] or "", row["to_fill_in"] or ""]  # fmt: skip
+    return [row["route"] or "", say.label_state(row["state"]), say.say_probability(row),
+            say.say_whole(row["occupants"]), row["blockers"] or "", row["to_fill_in"] or ""]  # fmt: skip
 
 
 def _read_problem(row: Row) -> list[str]:
-    return [say_severity(row["severity"] or ""), say_spot(row), row["message"] or "", row["fix"] or ""]
+    return [say.say_severity(row["severity"] or ""), say.say_spot(row), row["message"] or "", row["fix"] or ""]
 
 
 def _list_styles() -> dict[str, str]:
@@ -250,8 +232,7 @@ def _list_styles() -> dict[str, str]:
     risks = ("low", "medium", "high", "very-high")
     signs = dict(zip("○◇▲■", risks, strict=True))
     apart = {words.ANCHORED: "anchored", words.UNCONFIRMED: "apart-unconfirmed", words.BY_FORMULA: "apart-formula"}
-    states = {find_state(state).symbol: f"way-state {state.replace(' ', '-')}"
-              for state in ("open", "doubtful", "blocked", "not known")}  # fmt: skip
+    states = {state.symbol: f"way-state {state.replace(' ', '-')}" for state in RouteState}
     return signs | apart | states
 
 

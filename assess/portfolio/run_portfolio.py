@@ -3,35 +3,46 @@
 What was done stays in the folder of parts, so that a run that was killed goes on where it was.
 """
 
+import json
 import re
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field, replace
-from pathlib import Path
+from dataclasses import dataclass, replace
+from pathlib import Path, PurePath
 from threading import Event
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from assess.delivery.deliver import explain_fault
+from assess.delivery.deliver import deliver, explain_fault, stage_for
+from assess.delivery.disk import find_digest, write_through
 from assess.delivery.folder_lock import FolderLock
-from assess.errors import InputError, OutputError
+from assess.delivery.stages import NEW
+from assess.errors import InputError, OutputError, PdfUnavailableError, Problem
 from assess.i18n import fill
 from assess.motion.site_ground import GroundField
-from assess.plain_text import plain_line
-from assess.portfolio.building_task import Summary, Task
-from assess.portfolio.part_files import ENDING, FOLDER, sweep_parts
-from assess.portfolio.portfolio_output import FORMATS, Output, find_old, list_names, list_skipped, write_output
-from assess.portfolio.sources import find_sources
+from assess.plain_text import plain_line, plain_text
+from assess.portfolio.building_rows import list_problems, to_row
+from assess.portfolio.building_task import ENDING, FOLDER, Part, Summary, Task, read_part, sweep_parts
+from assess.portfolio.sources import Source, find_sources
+from assess.portfolio.table_schemas import STATUSES, TABLES
 from assess.progress import Listener, Progress, Report
 from assess.report import check_folder
+from assess.report.ownership import find_reports
 from assess.report.report_options import ReportOptions
 from assess.settings import AUTO, Settings, count_processors
+from assess.version import __version__, find_code
 
 if TYPE_CHECKING:
     from assess.portfolio.background import Background
-    from assess.portfolio.city_totals import CityView
+    from assess.portfolio.city import City, RunGround
 
 STAGE = "buildings"
+VERSION = "1"
+"""Of the shape of portfolio.json."""
+DATA = "portfolio.json"
+FILES: Mapping[str, str] = {"xlsx": "ranking.xlsx", "html": "city.html", "pdf": "city.pdf"}
+"""Reports by their format; the format parquet gives files of the names of `TABLES`."""
+FORMATS = ("parquet", *FILES)
 _KEY = re.compile(r"[0-9a-f]{64}")
 
 
@@ -49,7 +60,7 @@ class PortfolioResult:
         Buildings whose part of an earlier run was there.
     skipped : tuple of pairs of str
         Buildings that could not be assessed, with the reason.
-    view : CityView
+    city : City
         The tables, and what the run rests on.
     """
 
@@ -58,7 +69,22 @@ class PortfolioResult:
     removed: tuple[Path, ...]
     kept: int
     skipped: tuple[tuple[str, str], ...]
-    view: "CityView"
+    city: "City"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Job:
+    """One run: its buildings, what they are assessed by, and what is written where; see `run_portfolio`."""
+
+    sources: tuple[Source, ...]
+    out: Path
+    settings: Settings
+    ground: GroundField | None
+    formats: tuple[str, ...]
+    background: "Background | None"
+    repeat: str
+    options: ReportOptions
+    progress: Progress
 
 
 def run_portfolio(
@@ -117,13 +143,14 @@ def run_portfolio(
         If the work was cancelled; nothing was written, but the buildings that are done are kept.
     """
     source, out = Path(source), Path(out).absolute()
+    path = getattr(ground, "path", None)  # other processes may be in another folder
     check_extras(formats, scheduler)
     _check_out(source, out, formats)
-    job = Output(
+    job = _Job(
         sources=find_sources(source, out),
         out=out,
         settings=_check_settings(settings or Settings(), ground),
-        ground=_locate(ground),
+        ground=ground if path is None else replace(ground, path=path.resolve()),  # type: ignore[type-var]
         formats=tuple(name for name in FORMATS if name in formats),
         background=background,
         repeat=repeat,
@@ -132,15 +159,15 @@ def run_portfolio(
     )
     with _reserving(out):
         summaries = _assess_all(job, jobs or count_processors(), scheduler)
-        files, removed, view = write_output(job, summaries)
+        files, removed, city = _write_output(job, summaries)
         _remove_unused(out, {one.key for one in summaries.values()})
     return PortfolioResult(
         folder=out,
         files=files,
         removed=removed,
         kept=sum(one.is_kept for one in summaries.values()),
-        skipped=tuple(list_skipped(view)),
-        view=view,
+        skipped=tuple(_list_skipped(city)),
+        city=city,
     )
 
 
@@ -149,16 +176,6 @@ def run_portfolio(
 
 def check_extras(formats: Sequence[str], scheduler: str | None) -> None:
     """Raise InputError if a format or the address is none, or a package is not installed that the run needs."""
-    check_formats(formats)
-    if scheduler is not None:
-        from assess.portfolio.cluster import check_address, check_cluster
-
-        check_address(scheduler)
-        check_cluster()
-
-
-def check_formats(formats: Sequence[str]) -> None:
-    """Raise InputError if a format is unknown, or needs a package that is not installed."""
     for name in formats:
         if name not in FORMATS:
             known = ", ".join(FORMATS)
@@ -167,6 +184,10 @@ def check_formats(formats: Sequence[str]) -> None:
         from assess.portfolio.city_tables import check_tables
 
         check_tables()
+    if scheduler is not None:
+        from assess.portfolio.cluster import check_cluster
+
+        check_cluster(scheduler)
 
 
 def _check_out(source: Path, out: Path, formats: Sequence[str]) -> None:
@@ -178,7 +199,20 @@ def _check_out(source: Path, out: Path, formats: Sequence[str]) -> None:
         raise InputError(fill("out: {folder} holds the workbooks; name another folder.", folder=shown))
     check_folder(out)
     if out.is_dir():
-        find_old(out, list_names(formats))
+        _find_old(out, _list_names(formats))
+
+
+def _list_names(formats: Sequence[str]) -> list[str]:
+    """Return the names of the files of some formats, where no table takes more than one."""
+    tables = [f"{name}.parquet" for name in TABLES] if "parquet" in formats else []
+    return [*tables, *(FILES[name] for name in formats if name in FILES), DATA]
+
+
+def _find_old(out: Path, wanted: Collection[str]) -> frozenset[str]:
+    """Return the names of the files that an earlier run wrote into a folder; InputError as `find_reports`."""
+    tables = "|".join(TABLES)
+    written = re.compile(rf"(?:{tables})(?:-\d{{4}})?\.parquet|" + "|".join(map(re.escape, FILES.values())))
+    return find_reports(out, wanted, lambda name: written.fullmatch(name) is not None, DATA)
 
 
 def _check_settings(settings: Settings, ground: GroundField | None) -> Settings:
@@ -193,12 +227,6 @@ def _check_settings(settings: Settings, ground: GroundField | None) -> Settings:
 
         choose_runs(scenarios, settings.runs)
     return replace(settings, city=True)
-
-
-def _locate(ground: GroundField | None) -> GroundField | None:
-    """Return the ground motion with the whole path of its file, as other processes may stand elsewhere."""
-    path = getattr(ground, "path", None)
-    return ground if path is None else replace(ground, path=path.resolve())  # type: ignore[type-var]
 
 
 @contextmanager
@@ -222,51 +250,35 @@ def _reserving(out: Path) -> Iterator[None]:
 # ---------------------------------------------------------------- the work
 
 
-@dataclass(slots=True)
-class _Count:
-    """How far the buildings are."""
-
-    total: int
-    start: float = field(default_factory=time.monotonic)
-    done: int = 0
-    kept: int = 0
-    skipped: int = 0
-
-    def take(self, summary: Summary) -> None:
-        self.done += 1
-        self.kept += summary.is_kept
-        self.skipped += summary.status == "skipped"
-
-    def report(self) -> Report:
-        detail = f"{self.done:,} of {self.total:,} buildings; {self.skipped:,} skipped"
-        computed, spent = self.done - self.kept, time.monotonic() - self.start
-        left = spent / computed * (self.total - self.done) if computed > 0 else None
-        return Report(STAGE, min(self.done / self.total, 0.9999), detail, left)
-
-
-def _assess_all(job: Output, jobs: int, scheduler: str | None) -> dict[str, Summary]:
+def _assess_all(job: _Job, jobs: int, scheduler: str | None) -> dict[str, Summary]:
     """Return the summary of every building by its path."""
     tasks = [Task(source=one, settings=job.settings, ground=job.ground, out=job.out) for one in job.sources]
-    found: dict[str, Summary] = {}
-    count = _Count(len(tasks))
-    job.progress.tell(count.report())
-    for summary in _run(tasks, jobs, scheduler, job):
-        found[summary.path] = summary
-        count.take(summary)
-        job.progress.tell(count.report())
-    job.progress.check()
-    return found
-
-
-def _run(tasks: Sequence[Task], jobs: int, scheduler: str | None, job: Output) -> Iterator[Summary]:
     if scheduler is None:
         from assess.portfolio.local_pool import run_local
 
-        return run_local(tasks, jobs, job.progress)
-    from assess.portfolio.cluster import run_on_cluster
+        summaries = run_local(tasks, jobs, job.progress)
+    else:
+        from assess.portfolio.cluster import run_on_cluster
 
-    is_simulated = job.settings.verify != "none"
-    return run_on_cluster(tasks, scheduler, is_simulated=is_simulated, progress=job.progress)
+        is_simulated = job.settings.verify != "none"
+        summaries = run_on_cluster(tasks, scheduler, is_simulated=is_simulated, progress=job.progress)
+    found: dict[str, Summary] = {}
+    start, total, kept, skipped = time.monotonic(), len(tasks), 0, 0
+
+    def tell() -> None:
+        done, computed = len(found), len(found) - kept
+        left = (time.monotonic() - start) / computed * (total - done) if computed else None
+        detail = f"{done:,} of {total:,} buildings; {skipped:,} skipped"
+        job.progress.tell(Report(STAGE, min(done / total, 0.9999), detail, left))
+
+    tell()
+    for summary in summaries:
+        found[summary.path] = summary
+        kept += summary.is_kept
+        skipped += summary.status == "skipped"
+        tell()
+    job.progress.check()
+    return found
 
 
 def _remove_unused(out: Path, keys: set[str]) -> None:
@@ -275,3 +287,174 @@ def _remove_unused(out: Path, keys: set[str]) -> None:
         if _KEY.fullmatch(path.stem) and path.suffix in (ENDING, ".txt") and path.stem not in keys:
             with suppress(OSError):
                 path.unlink()
+
+
+# ---------------------------------------------------------------- what is written
+
+
+def _write_output(job: _Job, summaries: Mapping[str, Summary]) -> "tuple[tuple[Path, ...], tuple[Path, ...], City]":
+    """Write tables and reports; return the files, those that were removed, and the city.
+
+    Raises
+    ------
+    OutputError
+        If something cannot be written; all is as it was.
+    PdfUnavailableError
+        If the native libraries of the PDF are missing; all else has been written.
+    CancelledError
+        If the work was cancelled; all is as it was.
+    """
+    names = _list_names(job.formats)
+    try:
+        with stage_for(job.out) as stage, job.progress.stage("rendering", ", ".join(job.formats)):
+            city = _build_city(job, summaries, stage / NEW)
+            missing = _write_reports(job, city, stage / NEW)
+            names = sorted(path.name for path in (stage / NEW).iterdir())
+            write_through(stage / NEW / DATA, _describe_run(job, city, stage / NEW, names))
+            names.append(DATA)
+            gone = deliver(stage, job.out, lambda target: _find_old(target, names), DATA, job.progress)
+    except OSError as error:
+        raise explain_fault(job.out, error, names) from None
+    if missing is not None:
+        raise missing
+    return tuple(job.out / name for name in names), tuple(job.out / name for name in gone), city
+
+
+def _build_city(job: _Job, summaries: Mapping[str, Summary], folder: Path) -> "City":
+    """Write the tables, where they are wanted, and return the city of them."""
+    from assess.portfolio.city import City
+    from assess.portfolio.city_tables import write_tables
+
+    alike = find_alike(job.sources, summaries)
+    parts = (
+        _note_alike(_find_part(job.out, summaries[one.path]), alike.get(one.path))
+        for one in job.progress.checked(job.sources)
+    )
+    frames = write_tables(parts, folder if "parquet" in job.formats else None)
+    return City(**frames, settings=job.settings, ground=_describe_ground(job.ground, frames["buildings"]))
+
+
+def find_alike(sources: Sequence[Source], summaries: Mapping[str, Summary]) -> dict[str, str]:
+    """Return the buildings whose workbook has the same bytes as that of an earlier one, with the path of the first."""
+    first: dict[str, str] = {}
+    found = {}
+    for path, summary in ((one.path, summaries[one.path]) for one in sources):
+        if summary.content and summary.status == "assessed":
+            same = first.setdefault(summary.content, path)
+            if same != path:
+                found[path] = same
+    return found
+
+
+def _note_alike(part: Part, first: str | None) -> Part:
+    """Return a part with a note where its workbook is a copy; what is kept on the disk has none."""
+    if first is None:
+        return part
+    fault = fill("its workbook has the same content as {path}: it counts as a building of its own.",
+                 path=plain_line(first))  # fmt: skip
+    fix = fill("Remove one of them if they are the same building.")
+    notes = [to_row("problems", one) for one in list_problems(part.path, [Problem("note", "", "", fault, fix)])]
+    at = [column.name for column in TABLES["buildings"]].index("same_as")
+    rows = [[*row[:at], first, *row[at + 1 :]] for row in part.rows("buildings")]
+    return replace(part, tables={**part.tables, "buildings": rows, "problems": [*part.rows("problems"), *notes]})
+
+
+def _find_part(out: Path, summary: Summary) -> Part:
+    part = summary.part or read_part(out, summary.key)
+    if part is None:
+        raise OutputError(
+            fill(
+                "{folder}: what was found of {path} is gone, or damaged. Run the same command again.",
+                folder=plain_line(str(out / FOLDER)),
+                path=plain_line(summary.path),
+            )
+        )
+    return part
+
+
+def _write_reports(job: _Job, city: "City", folder: Path) -> PdfUnavailableError | None:
+    """Write the reports; return why there is no PDF, where one was to be written.
+
+    What writes a format is imported only where it is wanted.
+    """
+    if "xlsx" in job.formats:
+        from assess.portfolio.ranking_workbook import render_ranking
+
+        write_through(folder / FILES["xlsx"], render_ranking(city, options=job.options, progress=job.progress))
+    if not {"html", "pdf"} & set(job.formats):
+        return None
+    from assess.portfolio.city_isolines import list_isolines
+    from assess.portfolio.city_page import render_page, render_summary
+
+    common: dict[str, Any] = {"options": job.options, "progress": job.progress,
+                              "isolines": list_isolines(city, job.ground)}  # fmt: skip
+    if "html" in job.formats:
+        indexed = {one.path for one in job.sources if one.index is not None and one.index.as_building()}
+        page = render_page(city, job.background, repeat=job.repeat, indexed=indexed, **common)
+        write_through(folder / FILES["html"], page)
+    if "pdf" in job.formats:
+        try:
+            write_through(folder / FILES["pdf"], render_summary(city, job.background, **common))
+        except PdfUnavailableError as error:
+            return error
+    return None
+
+
+def _describe_ground(ground: GroundField | None, buildings: Any) -> "RunGround | None":
+    """Return the ground motion of the run, with the facts that hold for all its buildings."""
+    if ground is None:
+        return None
+    from assess.portfolio.city import RunGround
+
+    placed = buildings[buildings["ground_source"].isin(("shakemap", "scenarios"))]
+    sites = []
+    for latitude, longitude in zip(placed["latitude"], placed["longitude"], strict=True):
+        with suppress(InputError):
+            sites.append(ground.at(float(latitude), float(longitude)))
+    common = [fact for fact in sites[0].facts if all(fact in one.facts for one in sites)] if sites else []
+    kind = sites[0].kind if sites else "scenarios" if hasattr(ground, "event_count") else "shakemap"
+    cautions = [text for text in sites[0].cautions if all(text in one.cautions for one in sites)] if sites else []
+    return RunGround(
+        kind=kind,
+        file=ground.file,
+        sha256=ground.sha256,
+        facts=tuple(common),
+        cautions=tuple(cautions),
+        is_known=bool(sites) and not any(one.dispersion for one in sites),
+    )
+
+
+def _list_skipped(city: "City") -> Iterator[tuple[str, str]]:
+    """Yield the buildings that were skipped, each with its first problem and how to fix it."""
+    for building in city.skipped:
+        path, problems = building["path"], city.problems_of.get(building["path"])
+        if problems:
+            first = problems[0]
+            place = "!".join(one for one in (first["sheet"], first["cell"]) if one)
+            said = " ".join(first[name] for name in ("message", "fix") if first[name])
+            file = f"{plain_text(PurePath(path).name)} "
+            said = f"it {said.removeprefix(file)}" if said.startswith(file) else said  # the path stands before it
+            yield path, f"{place}: {said}" if place else said[:1].upper() + said[1:]
+        else:
+            yield path, ""
+
+
+def _describe_run(job: _Job, city: "City", folder: Path, names: Sequence[str]) -> bytes:
+    """Return portfolio.json: what the run rests on, its files with their hashes, and the columns of the tables."""
+    ground: dict[str, Any] | None = None
+    if city.ground is not None:
+        facts = [[str(label), str(value)] for label, value in city.ground.facts]
+        ground = {"kind": city.ground.kind, "file": city.ground.file, "sha256": city.ground.sha256, "facts": facts}
+    record = {
+        "schema": VERSION,
+        "assess": {
+            "version": __version__,
+            "code": find_code(),
+            "settings": job.settings.as_record(),
+            "ground": ground,
+            "files": {name: find_digest(folder / name) for name in names},
+        },
+        "buildings": {status: int((city.buildings["status"] == status).sum()) for status in STATUSES},
+        "tables": {name: [[one.name, one.type, str(one.help)] for one in columns] for name, columns in TABLES.items()},
+    }
+    return (json.dumps(record, indent=1, ensure_ascii=False) + "\n").encode("utf-8", "replace")

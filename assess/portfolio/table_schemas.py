@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from assess.i18n import fill
+from assess.risk import RiskClass
+from assess.route_results import RouteState
 
 Type = Literal["text", "number", "count", "flag"]
 """text: VARCHAR; number: DOUBLE; count: BIGINT; flag: BOOLEAN. All may be NULL: what is unknown."""
@@ -16,6 +18,10 @@ STATUSES = ("assessed", "skipped")
 INVENTORIES = ("surveyed", "handover", "assumed")
 """Where the pieces of a building come from: its workbook, a COBie file, or quantities by use and floor area. Sums never
 mix them."""
+
+CLASS_COLUMNS: Mapping[RiskClass, str] = {risk: risk.word.replace(" ", "_") for risk in RiskClass}
+STATE_COLUMNS: Mapping[RouteState, str] = {state: f"routes_{state.replace(' ', '_')}" for state in RouteState}
+"""Columns of the table buildings that count pieces by class, and routes by state."""
 
 MADE_UP = "(made up)"
 """What the names of the buildings of the worked city end with."""

@@ -20,7 +20,7 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 import duckdb
 
 from assess.portfolio.example_city import GRID, write_example_city
-from assess.portfolio.portfolio_output import FORMATS
+from assess.portfolio.run_portfolio import FORMATS
 
 TABLES = "parquet"
 QUERY = "SELECT type, count(*), sum(quantity * probability) FROM read_parquet('{}') GROUP BY type ORDER BY 3 DESC"

@@ -13,14 +13,13 @@ from typer.testing import CliRunner
 
 from assess.cli.app import app
 from assess.cli.command_portfolio import FORMATS, _say_repeat, describe_city
-from assess.portfolio import example_city, portfolio_output
+from assess.portfolio import example_city, run_portfolio
 from assess.portfolio.city_tables import read_table
-from assess.portfolio.city_totals import build_totals
 from assess.portfolio.example_city import BUILDINGS, write_example_city
 from assess.portfolio.run_portfolio import PortfolioResult
 from assess.settings import Settings
 from tests.portfolio.staged import write_building, write_city
-from tests.portfolio.test_city_totals import view
+from tests.portfolio.test_city import view
 from tests.waiting import PATIENCE, wait_until
 
 run = CliRunner().invoke
@@ -76,7 +75,7 @@ def test_the_same_command_goes_on_from_what_is_there(tmp_path):
 
 
 def test_bad_usage_is_named_with_its_option_and_writes_nothing(tmp_path, monkeypatch):
-    assert FORMATS == portfolio_output.FORMATS
+    assert FORMATS == run_portfolio.FORMATS
     monkeypatch.chdir(tmp_path)
     _write(tmp_path, 1)
     for words, message in (
@@ -230,8 +229,8 @@ def test_the_terminal_tells_what_is_not_known_of_people_and_motions(states, said
         for name, state, people in zip("AB", states, (20, 30), strict=True)
     ]  # fmt: skip
     city = view([BUILDING], routes=routes)
-    result = PortfolioResult(folder=Path("out"), files=(), removed=(), kept=0, skipped=(), view=city)
-    lines = [line.strip() for line in describe_city(build_totals(city), result, Settings())]
+    result = PortfolioResult(folder=Path("out"), files=(), removed=(), kept=0, skipped=(), city=city)
+    lines = [line.strip() for line in describe_city(result, Settings())]
     assert f"People whose route is blocked: {said}" in lines
     assert "With motions of their own, which may not be of this earthquake: 1 building, in the sums above." in lines
     assert lines[1].startswith("All buildings are made up")

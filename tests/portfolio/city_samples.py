@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from assess.i18n import fill
-from assess.portfolio.city_totals import CityView, RunGround
+from assess.portfolio.city import City, RunGround
 from assess.portfolio.example_city import list_buildings
 from assess.portfolio.table_schemas import TABLES
 from assess.risk import classify
@@ -67,7 +67,7 @@ def make_view(count=40, *, draws=200, pieces=12, verify="all", seed=1):
     facts = ((fill("Event"), fill("Loma Prieta, magnitude 6.9")), (fill("Map status"), fill("RELEASED")))
     ground = RunGround(kind="shakemap", file="grid.xml", sha256="0" * 64, facts=facts)
     tables = {"buildings": buildings, "pieces": rows, "routes": routes, "problems": problems, "draws": drawn}
-    return CityView(
+    return City(
         **{name: frame(name, own) for name, own in tables.items()}, settings=Settings(verify=verify), ground=ground
     )
 

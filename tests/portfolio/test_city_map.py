@@ -3,9 +3,14 @@
 import math
 import re
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 
 import pytest
 
+from assess.errors import InputError
+from assess.i18n import fill
+from assess.motion.shakemap import read_shakemap
+from assess.motion.site_ground import SiteGround
 from assess.portfolio.background import Background
 from assess.portfolio.building_signs import (
     BY_CLASS,
@@ -17,8 +22,11 @@ from assess.portfolio.building_signs import (
     sign_of_routes,
     sign_of_share,
 )
-from assess.portfolio.city_content import build_content
+from assess.portfolio.city_isolines import build_isolines, list_isolines
 from assess.portfolio.city_map import GROUND, SEA, Isoline, MapPoint, build_frame, draw_map, find_bar
+from assess.portfolio.city_page import list_legend, list_points
+from assess.resources import city_file
+from assess.units import GRAVITY
 from tests.portfolio.city_samples import NASTY, make_view
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -160,15 +168,60 @@ def test_lines_of_equal_shaking_carry_their_value_and_names_are_escaped():
 
 
 def test_buildings_of_a_view_are_marked_by_their_sums():
-    content = build_content(make_view(24, draws=20))
-    placed = [row for row in content.buildings if row["latitude"] is not None]
-    assert len(content.points) == len(placed) == 24 - 2 - 1  # two skipped without a place, one assessed without
-    for legend in (content.share_legend, content.class_legend, content.route_legend):
+    city = make_view(24, draws=20)
+    points = list_points(city)
+    placed = [row for row in city.ranked if row["latitude"] is not None]
+    assert len(points) == len(placed) == 24 - 2 - 1  # two skipped without a place, one assessed without
+    for legend in (list_legend(city, key) for key in ("share", "kind", "state")):
         assert sum(count for _sign, count in legend) == 24
         assert legend[-1][0].key == "skipped"
-    for point in content.points:
-        row = content.buildings[point.at]
+    for point in points:
+        row = city.ranked[point.at]
         share = row["expected_falls"] / (row["low"] + row["medium"] + row["high"] + row["very_high"])
         band = sum(share >= limit for limit in (0.03, 0.3, 0.7))
         assert point.sign.key == ("share-low", "share-medium", "share-high", "share-very-high")[band]
-    assert len({point.sign.key for point in content.points}) > 1
+    assert len({point.sign.key for point in points}) > 1
+
+
+# ---------------------------------------------------------------- lines of equal PGA
+
+PLACES = [(-122.45, 37.3), (-121.9, 37.9)]
+
+
+class Slope:
+    """A ground motion that grows to the north, known south of a latitude."""
+
+    file, sha256 = "slope", ""
+
+    def at(self, latitude, longitude):
+        if latitude > 37.7:
+            raise InputError(fill("outside"))
+        pga = (0.1 + 0.5 * (latitude - 37.3)) * GRAVITY
+        return SiteGround(kind="shakemap", file="", sha256="", pga=pga, dispersion=0.3, dispersion_source=fill("x"))
+
+
+def test_a_line_runs_where_the_ground_has_its_value_and_ends_where_it_is_not_known():
+    found = build_isolines(Slope(), PLACES)
+    assert {one.label for one in found} >= {"0.1 g", "0.2 g"}
+    for one in found:
+        pga = float(one.label.removesuffix(" g"))
+        assert all(y == pytest.approx(37.3 + (pga - 0.1) / 0.5, abs=1e-6) for _x, y in one.line)
+    assert max(y for one in found for _x, y in one.line) <= 37.7
+
+
+@pytest.mark.slow
+def test_lines_of_the_loma_prieta_map_agree_with_it():
+    ground = read_shakemap(city_file("grid.xml"))
+    found = build_isolines(ground, PLACES)
+    assert len({one.label for one in found}) >= 3
+    for one in found:
+        longitude, latitude = one.line[len(one.line) // 2]
+        assert ground.at(latitude, longitude).pga / GRAVITY == pytest.approx(float(one.label[:-2]), rel=0.1)
+
+
+def test_without_places_or_a_shakemap_there_are_no_lines():
+    assert build_isolines(Slope(), []) == ()
+    view = make_view(12, draws=5)
+    assert list_isolines(view, Slope())
+    assert list_isolines(view, None) == ()
+    assert list_isolines(replace(view, ground=None), Slope()) == ()

@@ -6,13 +6,15 @@ import re
 import shlex
 from dataclasses import replace
 
+import pypdfium2
 import pytest
 from playwright.sync_api import expect
 
-from assess.portfolio.city_content import build_content
-from assess.portfolio.city_page import render_page
+from assess.portfolio.background import read_background
+from assess.portfolio.city_page import render_page, render_summary
 from assess.report.pages.html import hash_script
 from assess.report.report_options import ReportOptions
+from assess.resources import city_file
 from docs.screenshot import find_browser
 from tests.portfolio.city_samples import NASTY, make_view
 from tests.web.looking import examine
@@ -103,7 +105,7 @@ def test_the_list_holds_the_share_beside_the_expected_falls(html, data, view):
 @pytest.mark.slow
 def test_what_is_not_known_of_a_building_stands_beside_its_numbers(view):
     rows = view.buildings.copy()
-    first = build_content(view).buildings[0]["path"]
+    first = view.ranked[0]["path"]
     changed = {"unconfirmed": 25, "own_motions": 2, "occupants": 100, "people_not_known": 58, "routes": 3,
                "routes_blocked": 1, "routes_not_known": 1}  # fmt: skip
     rows.loc[rows["path"] == first, list(changed)] = list(changed.values())
@@ -164,6 +166,26 @@ def test_letter_case_makes_no_other_use(view):
     assert {one["use"] for one in _read_data(html)["buildings"]} == {"OFFICE"}
     choices = html.split('id="filter-use"')[1].split("</select>")[0]
     assert re.findall(r'value="([^"]*)"', choices) == ["", "OFFICE"]
+
+
+@pytest.mark.slow
+def test_the_summary_has_two_to_four_pages_with_the_answer_first_then_all_parts():
+    data = render_summary(make_view(220, draws=40), read_background(city_file("coast.geojson")))
+    document = pypdfium2.PdfDocument(data)
+    pages = [" ".join(page.get_textpage().get_text_range().split()) for page in document]
+    assert 2 <= len(pages) <= 4
+    assert "Surveyed buildings, simulated" in pages[0]
+    assert "In nine of ten earthquakes like this one between" in pages[0]
+    assert "20 buildings could not be assessed" in pages[0]
+    text = " ".join(pages)
+    for words in (
+        "20 km", "by the share of its free-standing pieces that is expected to fall", "Share expected to fall",
+        "30 to 70 % of its pieces expected to fall: ", "Where to start: Surveyed buildings, simulated",
+        "Storage cabinet steel", "Skipped buildings", "Did you type metres?", "8 more are in ranking.xlsx",
+        "10.1002/eqe.922", "not per year",
+    ):  # fmt: skip
+        assert words in text, words
+    assert "highest class that any" not in text, "its map shows the share"
 
 
 @pytest.fixture

@@ -14,18 +14,17 @@ import pytest
 
 from assess.errors import InputError, OutputError
 from assess.portfolio import cluster, local_pool
-from assess.portfolio.building_task import Task
+from assess.portfolio.building_task import FOLDER, Task
 from assess.portfolio.cluster import (
     Site,
     WorkerUnfitError,
     answer_probe,
-    check_address,
+    check_cluster,
     check_workers,
     list_versions,
     run_batch,
     run_on_cluster,
 )
-from assess.portfolio.part_files import FOLDER
 from assess.portfolio.run_portfolio import run_portfolio
 from assess.portfolio.sources import find_sources
 from assess.settings import Settings
@@ -242,9 +241,9 @@ def test_an_address_of_another_form_is_refused_at_once():
         with pytest.raises(
             InputError, match=r"^scheduler is .*, expected tcp://HOST:PORT, such as tcp://10\.0\.0\.5:8786"
         ):
-            check_address(address)
+            check_cluster(address)
     for address in ("tcp://10.0.0.5:8786", "a-host.local:1", "wss://[::1]:65535", "tls://h_1:2"):
-        check_address(address)
+        check_cluster(address)
 
 
 # ---------------------------------------------------------------- what workers have to have
@@ -279,8 +278,7 @@ def _refuse(site, answer):
 
 def test_a_worker_with_another_version_is_refused(site):
     def answer(asked):
-        versions = tuple((name, "0.0.1" if name in ("assess", "numpy") else own) for name, own in list_versions())
-        return answer_probe(asked) | {"versions": versions}
+        return answer_probe(asked) | {"versions": list_versions() | {"assess": "0.0.1", "numpy": "0.0.1"}}
 
     text = _refuse(site, answer)
     assert text.startswith("worker bad: other versions: assess 0.0.1 there, ")
@@ -318,6 +316,6 @@ def test_a_worker_that_joins_later_is_asked_as_well(site, tmp_path):
     task = Task(source=source, settings=replace(FORMULAS, city=True), ground=StagedGround(tmp_path), out=tmp_path)
     assert [one.status for one in run_batch(site, [task])] == ["assessed"]
     assert [path.name for path in tmp_path.glob("probe*")] == ["probe"]
-    other = replace(site, versions=(("assess", "0.0.1"),))
+    other = replace(site, versions={"assess": "0.0.1"})
     with pytest.raises(WorkerUnfitError, match=r"other versions: assess .* there, 0\.0\.1 here"):
         run_batch(other, [task])

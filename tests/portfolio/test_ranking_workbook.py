@@ -6,7 +6,6 @@ from dataclasses import replace
 import openpyxl
 import pytest
 
-from assess.portfolio.city_content import build_content
 from assess.portfolio.ranking_workbook import list_first_pieces, render_ranking
 from assess.report.report_options import ReportOptions
 from tests.portfolio.city_samples import NASTY, make_view
@@ -72,7 +71,7 @@ def test_the_sums_of_surveyed_and_assumed_buildings_stand_in_columns_of_their_ow
 
 
 def test_pieces_come_by_their_place_on_the_work_lists(view):
-    found = list_first_pieces(build_content(view))
+    found = list_first_pieces(view)
     places = [piece["work_place"] for _building, piece in found]
     assert places == sorted(places)
     assert all(building["path"] == piece["path"] for building, piece in found)
@@ -93,7 +92,7 @@ def test_skipped_buildings_say_why(book):
 @pytest.mark.slow
 def test_what_is_not_known_of_a_building_stands_beside_its_numbers(view):
     rows = view.buildings.copy()
-    paths = [one["path"] for one in build_content(view).buildings[:2]]
+    paths = [one["path"] for one in view.ranked[:2]]
     changed = {"occupants": 100, "people_not_known": 58, "routes": 1, "routes_blocked": 0, "routes_not_known": 1,
                "unconfirmed": 25, "own_motions": 2}  # fmt: skip
     rows.loc[rows["path"] == paths[0], list(changed)] = list(changed.values())

@@ -15,9 +15,8 @@ from typer.testing import CliRunner
 
 from assess import resources
 from assess.cli.app import app
-from assess.portfolio.building_task import Task, run_task
+from assess.portfolio.building_task import Task, read_part, run_task
 from assess.portfolio.city_tables import read_table
-from assess.portfolio.part_files import read_part
 from assess.portfolio.sources import find_sources
 from assess.portfolio.table_schemas import TABLES
 from assess.settings import Settings

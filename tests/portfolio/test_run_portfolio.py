@@ -16,9 +16,8 @@ import pytest
 from assess.delivery.folder_lock import FolderLock
 from assess.errors import CancelledError, InputError, OutputError
 from assess.portfolio import local_pool
-from assess.portfolio.building_task import Task, run_task
+from assess.portfolio.building_task import FOLDER, Task, run_task
 from assess.portfolio.city_tables import read_table
-from assess.portfolio.part_files import FOLDER
 from assess.portfolio.run_portfolio import run_portfolio
 from assess.portfolio.sources import find_sources
 from assess.progress import Report
@@ -52,7 +51,7 @@ def test_a_plain_loop_one_process_and_two_give_the_same_bytes(tmp_path):
     _run(tmp_path, "two", settings=settings, jobs=2)
     loop = tmp_path / "loop"
     for source in reversed(find_sources(tmp_path / "city")):
-        run_task(Task(source=source, settings=one.view.settings, ground=StagedGround(tmp_path), out=loop))
+        run_task(Task(source=source, settings=one.city.settings, ground=StagedGround(tmp_path), out=loop))
     looped = _run(tmp_path, "loop", settings=settings, formats=formats, jobs=1)
     assert looped.kept == 2  # computed by the loop alone, but for the one that is skipped
     first = read_results(tmp_path / "one")

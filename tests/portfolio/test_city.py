@@ -2,7 +2,7 @@
 
 import pytest
 
-from assess.portfolio.city_totals import FIRST, CityView, build_totals, is_made_up
+from assess.portfolio.city import FIRST, City
 from assess.risk import RiskClass
 from assess.route_results import RouteState
 from assess.settings import Settings
@@ -26,7 +26,7 @@ def view(buildings, pieces=(), routes=(), draws=None):
         for path, every in (draws or {}).items()
         for k, (falls, people) in enumerate(every)
     ]
-    return CityView(
+    return City(
         buildings=frame("buildings", [BUILDING | one for one in buildings]),
         pieces=frame("pieces", [PIECE | one for one in pieces]),
         routes=frame("routes", routes),
@@ -40,7 +40,7 @@ DRAWS = [(0, 0), (0, 0), (1, 10), (3, 10)]
 
 
 @pytest.fixture(scope="module")
-def totals():
+def sums():
     buildings = [
         {"path": "a.xlsx"},
         {"path": "b.xlsx", "is_placed": False, "cost": None, "works_without_cost": 2},
@@ -55,64 +55,58 @@ def totals():
         {"path": "a.xlsx", "route": "B", "state": "not known", "probability": None, "occupants": 30},
     ]
     draws = {"a.xlsx": DRAWS, "b.xlsx": DRAWS, "assumed": [(10, 0), (20, 0), (20, 0), (30, 0)]}
-    return build_totals(view(buildings, routes=routes, draws=draws))
+    return view(buildings, routes=routes, draws=draws)
 
 
-def find(totals, inventory, basis):
-    return next(one for one in totals.groups if (one.inventory, one.basis) == (inventory, basis))
+def find(sums, inventory, basis):
+    return next(one for one in sums.groups if (one.inventory, one.basis) == (inventory, basis))
 
 
-def test_inventories_and_bases_are_never_in_one_sum(totals):
-    assert [(one.inventory, one.basis, one.buildings, one.falls.expected) for one in totals.groups] == [
+def test_inventories_and_bases_are_never_in_one_sum(sums):
+    assert [(one.inventory, one.basis, one.buildings, one.falls.expected) for one in sums.groups] == [
         ("surveyed", "simulated", 2, 2.0),
         ("surveyed", "formula", 1, 40.0),
         ("handover", "formula", 1, 7.0),
         ("assumed", "simulated", 1, 20.0),
     ]
-    assert (totals.assessed, totals.skipped) == (5, 1)
+    assert [one["path"] for one in sums.skipped] == ["bad.xlsx"]
 
 
-def test_falls_have_a_range_over_earthquakes_where_they_were_simulated(totals):
-    surveyed = find(totals, "surveyed", "simulated").falls
+def test_falls_have_a_range_over_earthquakes_where_they_were_simulated(sums):
+    surveyed = find(sums, "surveyed", "simulated").falls
     assert (surveyed.low, surveyed.high, surveyed.draws, surveyed.apart) == (0, 6, 4, 0)
-    formula = find(totals, "surveyed", "formula").falls
+    formula = find(sums, "surveyed", "formula").falls
     assert (formula.low, formula.draws, formula.apart) == (None, 0, 40.0)
 
 
-def test_people_on_routes_without_joint_outcomes_and_of_an_unknown_state_stand_apart(totals):
+def test_people_on_routes_without_joint_outcomes_and_of_an_unknown_state_stand_apart(sums):
     """Of 12 expected people 10 are in the draws."""
-    group = find(totals, "surveyed", "simulated")
+    group = find(sums, "surveyed", "simulated")
     assert (group.people.expected, group.people.apart, group.people.high) == (12, pytest.approx(2), 20)
     assert (group.occupants, group.people_not_known, group.people_known) == (100, 30, 70)
     assert (group.routes[RouteState.NOT_KNOWN], group.routes[RouteState.OPEN]) == (2, 2)
 
 
-def test_pieces_are_counted_by_class_and_costs_that_are_not_known_are_not_taken_as_nothing(totals):
-    group = find(totals, "surveyed", "simulated")
+def test_pieces_are_counted_by_class_and_costs_that_are_not_known_are_not_taken_as_nothing(sums):
+    group = find(sums, "surveyed", "simulated")
     assert (group.pieces, group.counted, group.unconfirmed, group.anchored) == (20, 16, 2, 2)
     assert list(group.by_class.items()) == list(zip(RiskClass, (8, 6, 2, 0), strict=True))
     assert (group.cost, group.works, group.works_without_cost) == (150, 4, 3)
-    blank = build_totals(view([{"path": "a", "cost": None, "draws": 0, "basis": "formula"}]))
+    blank = view([{"path": "a", "cost": None, "draws": 0, "basis": "formula"}])
     assert blank.groups[0].cost is None
 
 
-def test_buildings_that_are_not_of_this_earthquake_or_without_a_place_are_counted(totals):
-    assert find(totals, "surveyed", "simulated").unplaced == 1
-    assert find(totals, "assumed", "simulated").unplaced == 1
-    own = find(totals, "surveyed", "formula")
-    assert (own.own_motions, own.own_motion_falls) == (1, 40)
-
-
-def test_assumed_inventories_have_a_low_and_a_high_quantity(totals):
-    assumed = find(totals, "assumed", "simulated")
+def test_buildings_that_are_not_of_this_earthquake_without_a_place_or_assumed_are_counted(sums):
+    surveyed, assumed = find(sums, "surveyed", "simulated"), find(sums, "assumed", "simulated")
+    assert (surveyed.unplaced, assumed.unplaced) == (1, 1)
+    assert find(sums, "surveyed", "formula").own_motions == 1
     assert (assumed.falls_low_inventory, assumed.falls_high_inventory) == (5, 60)
-    assert find(totals, "surveyed", "simulated").falls_low_inventory is None
-    assert assumed.people.expected == 0
+    assert (surveyed.falls_low_inventory, assumed.people.expected) == (None, 0)
 
 
 def test_a_city_of_skipped_buildings_has_no_sums():
-    found = build_totals(view([{"path": "bad", "status": "skipped", "inventory": None, "basis": None}]))
-    assert (found.groups, found.skipped) == ((), 1)
+    found = view([{"path": "bad", "status": "skipped", "inventory": None, "basis": None}])
+    assert (found.groups, len(found.skipped)) == ((), 1)
 
 
 def test_buildings_with_most_people_on_blocked_routes_come_first_then_most_falls():
@@ -123,13 +117,11 @@ def test_buildings_with_most_people_on_blocked_routes_come_first_then_most_falls
         {"path": "people", "people_blocked": 30.0, "expected_falls": 0.5},
         {"path": "nothing", "people_blocked": 0.0, "expected_falls": 0.0},
     ]
-    found = build_totals(view([one | {"basis": "formula"} for one in rows])).groups[0].first_buildings
-    assert [one.path for one in found] == ["people", "few people", "falls", "a tenth of a person"]
-    assert found[0].people_not_known == 0
-    assert (found[0].people_blocked, found[0].expected_falls, found[0].occupants) == (30, 0.5, 50)
+    found = view([one | {"basis": "formula"} for one in rows]).groups[0].first_buildings
+    assert [one["path"] for one in found] == ["people", "few people", "falls", "a tenth of a person"]
     alike = [{"path": f"{at:02d}", "basis": "formula"} for at in reversed(range(25))]
-    found = build_totals(view(alike)).groups[0].first_buildings
-    assert [one.path for one in found] == [f"{at:02d}" for at in range(FIRST)], "in the order of paths where alike"
+    found = view(alike).groups[0].first_buildings
+    assert [one["path"] for one in found] == [f"{at:02d}" for at in range(FIRST)], "in the order of paths where alike"
 
 
 def test_types_with_most_expected_falls_come_first_and_blank_ones_by_size():
@@ -141,7 +133,7 @@ def test_types_with_most_expected_falls_come_first_and_blank_ones_by_size():
         {"path": "a", "type": "Shelf", "quantity": 100, "basis": "unconfirmed"},
         {"path": "a", "type": "Desk", "quantity": 100, "probability": 0.0},
     ]
-    first = build_totals(view([{"path": "a"}, {"path": "b"}], pieces, draws={})).groups[0].first_types
+    first = view([{"path": "a"}, {"path": "b"}], pieces, draws={}).groups[0].first_types
     assert [(str(one.label), one.pieces, one.buildings, one.expected_falls) for one in first] == [
         ("no Type: Breadth 30 to 40 cm, Height 180 to 200 cm", 20, 1, 5.0),
         ("Bookcase", 6, 2, 1.5),
@@ -151,6 +143,11 @@ def test_types_with_most_expected_falls_come_first_and_blank_ones_by_size():
 def test_a_city_is_made_up_where_all_its_names_say_so():
     names = [{"path": "a", "building": "Home 1 (made up)"}, {"path": "b", "building": "Home 2 (made up)"}]
     unnamed = {"path": "bad.xlsx", "status": "skipped", "building": None}
-    assert is_made_up(view([*names, unnamed]))
-    assert not is_made_up(view([*names, {"path": "c", "building": "City hall"}]))
-    assert not is_made_up(view([unnamed]))
+    assert view([*names, unnamed]).is_made_up
+    assert not view([*names, {"path": "c", "building": "City hall"}]).is_made_up
+    assert not view([unnamed]).is_made_up
+
+
+def test_buildings_of_one_name_are_named_with_their_files():
+    city = view([{"path": "a", "building": "School"}, {"path": "b", "building": "School"}, {"path": "c"}])
+    assert [city.name_building(row) for row in city.ranked] == ["School (a)", "School (b)", "c"]

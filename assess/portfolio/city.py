@@ -1,0 +1,346 @@
+"""A city: the tables of a portfolio, its rows in the order of the ranking, and its sums.
+
+Buildings are summed apart by where their pieces come from and by what their numbers rest on: surveyed, handover and
+assumed inventories, and simulated and formula results, are never in one sum. Each pair of them is a `Group`. What falls
+is summed draw by draw (`assess.portfolio.city_spread`).
+"""
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, Literal, NamedTuple
+
+import pandas as pd
+
+from assess.i18n import Text, fill
+from assess.portfolio.city_spread import Spread, build_spread
+from assess.portfolio.table_schemas import CLASS_COLUMNS, INVENTORIES, MADE_UP, STATE_COLUMNS
+from assess.results import CANNOT_ROCK
+from assess.risk import RiskClass
+from assess.route_results import RouteState
+from assess.settings import Settings
+
+BASES = ("simulated", "formula")
+GROUPS = tuple((inventory, basis) for inventory in INVENTORIES for basis in BASES)
+"""Inventory and basis of each group, in the order in which they are shown."""
+FIRST = 10
+"""Buildings, and types of furniture, that are named as those to start with."""
+BUILDING_RULE = fill(
+    "Ranked by the expected number of people on blocked routes (in whole people), then by expected falls."
+)
+PEOPLE_RULE = fill(
+    "People are counted once for each route that they leave by, as the sheet Routes has them: who takes the route of a "
+    "floor and then that of a stair is counted twice."
+)
+TYPE_RULE = fill("Ranked by expected falls; pieces without a Type are grouped by their size.")
+BREADTH_STEP, HEIGHT_STEP = 10, 20
+"""Widths of the groups of sizes [cm]."""
+
+Row = Mapping[str, Any]
+"""One row of a table: values by column, None for what is not known."""
+RangeOver = Literal["earthquakes", "known ground", "own grounds", "motions"]
+"""What a range is over: earthquakes like the one of the map; the buildings' own motions on a ground that is taken as
+known; earthquakes in which every building has the ground motion of its own workbook; motions without uncertainty."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunGround:
+    """The ground motion of the run: its kind, the name and hash of its file, and what a reader has to know of it.
+
+    Facts and cautions are those that hold for all buildings; `is_known` tells that it has no scatter at any of them.
+    """
+
+    kind: Literal["shakemap", "scenarios"]
+    file: str
+    sha256: str
+    facts: tuple[tuple[Text, Text], ...] = ()
+    cautions: tuple[Text, ...] = ()
+    is_known: bool = False
+
+
+class FirstType(NamedTuple):
+    """A type of furniture to start with: pieces in the classes, buildings that have them, and expected falls."""
+
+    label: str | Text
+    pieces: int
+    buildings: int
+    expected_falls: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Group:
+    """Buildings whose pieces come from one kind of inventory, and whose numbers rest on one basis.
+
+    Numbers with the name of a column of the table buildings are the sums of that column.
+
+    Parameters
+    ----------
+    inventory, basis : str
+        One of `GROUPS`.
+    buildings : int
+        How many.
+    by_class : mapping of RiskClass to int
+        Free-standing pieces of the basis.
+    range_over : str
+        What differs from draw to draw, one of `RangeOver`: not every range is one over earthquakes.
+    falls : Spread
+        Number of pieces that fall, of those in the classes.
+    falls_low_inventory, falls_high_inventory : float, optional
+        Expected falls with all 10 % and all 90 % quantities of assumed inventories, as if all buildings had few or
+        many pieces together; None for others.
+    people : Spread
+        Number of people whose route is blocked, by `PEOPLE_RULE`.
+    people_not_known : int
+        People on routes whose state is not known: they are in no other number.
+    routes : mapping of RouteState to int
+        Routes by state.
+    cost : float, optional
+        Sum of the known costs; None where there are none.
+    unplaced : int
+        Buildings without latitude and longitude: their draws are fully correlated with one another.
+    own_motions : int
+        Buildings of which floors keep a record or a PFA of their own: these are not of this earthquake.
+    first_buildings : tuple of Row
+        What to start with, by `BUILDING_RULE`; buildings of which nothing is expected are left out.
+    first_types : tuple of FirstType
+        Likewise, by `TYPE_RULE`.
+    """
+
+    inventory: str
+    basis: str
+    buildings: int
+    pieces: int
+    by_class: Mapping[RiskClass, int]
+    unconfirmed: int
+    by_formula: int
+    anchored: int
+    left_out: int
+    cannot_rock: int
+    range_over: RangeOver
+    falls: Spread
+    falls_low_inventory: float | None
+    falls_high_inventory: float | None
+    falls_avoided: float
+    people: Spread
+    occupants: int
+    people_not_known: int
+    routes: Mapping[RouteState, int]
+    works: int
+    works_without_cost: int
+    cost: float | None
+    unplaced: int
+    own_motions: int
+    first_buildings: tuple[Row, ...]
+    first_types: tuple[FirstType, ...]
+
+    @property
+    def counted(self) -> int:
+        """Pieces in the classes."""
+        return sum(self.by_class.values())
+
+    @property
+    def people_known(self) -> int:
+        """People on routes whose state is known: those that the expected number is out of."""
+        return self.occupants - self.people_not_known
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class City:
+    """The tables of a portfolio with the columns and types of `table_schemas`, and what the run rests on.
+
+    `ground` is None where every workbook has a ground motion of its own.
+    """
+
+    buildings: pd.DataFrame
+    pieces: pd.DataFrame
+    routes: pd.DataFrame
+    problems: pd.DataFrame
+    draws: pd.DataFrame
+    settings: Settings
+    ground: RunGround | None = None
+
+    @cached_property
+    def ranked(self) -> list[Row]:
+        """The buildings in the order of `BUILDING_RULE`, over all groups; skipped ones come last, by path."""
+        return sorted(list_records(self.buildings), key=_rank)
+
+    @property
+    def skipped(self) -> list[Row]:
+        """The buildings that could not be assessed, by path."""
+        return [row for row in self.ranked if row["status"] != "assessed"]
+
+    @property
+    def is_made_up(self) -> bool:
+        """Whether all assessed buildings with a name are made up, as those of the worked city are."""
+        names = [row["building"] for row in self.ranked if row["status"] == "assessed" and row["building"]]
+        return bool(names) and all(name.endswith(MADE_UP) for name in names)
+
+    @cached_property
+    def pieces_of(self) -> Mapping[str, list[Row]]:
+        """Rows of the table pieces by the path of their building."""
+        return _group(self.pieces)
+
+    @cached_property
+    def routes_of(self) -> Mapping[str, list[Row]]:
+        """Rows of the table routes likewise."""
+        return _group(self.routes)
+
+    @cached_property
+    def problems_of(self) -> Mapping[str, list[Row]]:
+        """Rows of the table problems likewise."""
+        return _group(self.problems)
+
+    @cached_property
+    def groups(self) -> tuple[Group, ...]:
+        """The sums over the buildings that were assessed, in the order of `GROUPS`.
+
+        Raises
+        ------
+        ValueError
+            If the table draws does not hold the same draws for all buildings of a group.
+        """
+        rows = self.buildings[self.buildings["status"] == "assessed"]
+        found = []
+        for inventory, basis in GROUPS:
+            own = rows[(rows["inventory"] == inventory) & (rows["basis"] == basis)]
+            if not own.empty:
+                found.append(self._build_group(own, inventory, basis))
+        return tuple(found)
+
+    def _build_group(self, rows: pd.DataFrame, inventory: str, basis: str) -> Group:
+        draws, routes, pieces = (
+            table[table["path"].isin(rows["path"])] for table in (self.draws, self.routes, self.pieces)
+        )
+        unknown = (routes["state"] == RouteState.NOT_KNOWN.value) | routes["probability"].isna()
+        not_known, occupants = _count(routes[unknown], "occupants"), _count(rows, "occupants")
+        by_class = {risk: _count(rows, column) for risk, column in CLASS_COLUMNS.items()}
+        falls = build_spread(draws, "falls", _sum(rows, "expected_falls"), sum(by_class.values()))
+        if falls.draws:
+            falls = replace(falls, apart=0.0)  # pieces alike have one chance, and draws of their own
+        ranked = [row for row in self.ranked if (row["inventory"], row["basis"]) == (inventory, basis)]
+        return Group(
+            inventory=inventory,
+            basis=basis,
+            buildings=len(rows),
+            by_class=by_class,
+            range_over=self._range_over,
+            falls=falls,
+            falls_low_inventory=_sum_known(rows, "falls_low_inventory"),
+            falls_high_inventory=_sum_known(rows, "falls_high_inventory"),
+            falls_avoided=_sum(rows, "falls_avoided"),
+            people=build_spread(draws, "people_blocked", _sum(rows, "people_blocked"), occupants - not_known),
+            occupants=occupants,
+            people_not_known=not_known,
+            routes={state: _count(rows, column) for state, column in STATE_COLUMNS.items()},
+            cost=_sum_known(rows, "cost"),
+            unplaced=int((~_flags(rows, "is_placed")).sum()),
+            own_motions=int((_numbers(rows, "own_motions") > 0).sum()),
+            first_buildings=tuple([row for row in ranked if row["people_blocked"] or row["expected_falls"]][:FIRST]),
+            first_types=_list_types(pieces, basis),
+            **{name: _count(rows, name) for name in _ADDED},
+        )
+
+    @property
+    def _range_over(self) -> RangeOver:
+        if self.settings.ideal:
+            return "motions"
+        if self.ground is None:
+            return "own grounds"
+        return "known ground" if self.ground.is_known else "earthquakes"
+
+    def name_building(self, row: Row) -> str:
+        """Return the name of a building, its path where it has none, and both where others have the same name."""
+        name, path = str(row["building"] or row["path"]), row["path"]
+        return name if self._names[name] < 2 or name == path else f"{name} ({path})"
+
+    @cached_property
+    def _names(self) -> Mapping[str, int]:
+        return Counter(str(row["building"] or row["path"]) for row in self.ranked)
+
+    def spell_use(self, row: Row) -> str:
+        """Return the use of a building as the first building with it spells it: letter case makes no other use."""
+        use = str(row["use"] or "").strip()
+        return self._uses.get(use.casefold(), use)
+
+    @cached_property
+    def _uses(self) -> Mapping[str, str]:
+        uses = [str(use).strip() for use in self.buildings["use"].dropna()]
+        return {use.casefold(): use for use in reversed(uses)}
+
+
+def list_records(frame: pd.DataFrame) -> list[Row]:
+    """Return the rows of a table as mappings, None for what is not known."""
+    names = [str(name) for name in frame.columns]
+    columns = [frame[name].astype(object).where(frame[name].notna(), None).tolist() for name in names]
+    return [dict(zip(names, values, strict=True)) for values in zip(*columns, strict=True)]
+
+
+def _group(frame: pd.DataFrame) -> dict[str, list[Row]]:
+    found: dict[str, list[Row]] = {}
+    for row in list_records(frame):
+        found.setdefault(row["path"], []).append(row)
+    return found
+
+
+def _rank(row: Row) -> tuple[Any, ...]:
+    people, falls = row["people_blocked"] or 0.0, row["expected_falls"] or 0.0
+    return row["status"] != "assessed", -round(people), -round(falls, 6), row["path"]
+
+
+_ADDED = ("pieces", "unconfirmed", "by_formula", "cannot_rock", "anchored", "left_out", "works", "works_without_cost")
+"""Fields of a group that are plain sums of a column of the same name."""
+
+
+def _numbers(rows: pd.DataFrame, column: str) -> "pd.Series[float]":
+    """Return a column as numbers, 0 where nothing is known."""
+    return pd.to_numeric(rows[column]).astype("Float64").fillna(0.0).astype("float64")
+
+
+def _flags(rows: pd.DataFrame, column: str) -> "pd.Series[bool]":
+    return rows[column].astype("boolean").fillna(False).astype("bool")
+
+
+def _sum(rows: pd.DataFrame, column: str) -> float:
+    return float(_numbers(rows, column).sum())
+
+
+def _sum_known(rows: pd.DataFrame, column: str) -> float | None:
+    """Return the sum of what is known; None where nothing is."""
+    return _sum(rows, column) if rows[column].notna().any() else None
+
+
+def _count(rows: pd.DataFrame, column: str) -> int:
+    return round(_sum(rows, column))
+
+
+def _list_types(pieces: pd.DataFrame, basis: str) -> tuple[FirstType, ...]:
+    """Return the types to start with, by `TYPE_RULE`, of pieces in the classes; those that never fall are left out."""
+    counted = pieces[pieces["basis"].isin([basis, CANNOT_ROCK]) & ~_flags(pieces, "is_held")]
+    names = counted["type"].astype(object).where(counted["type"].notna(), "")
+    quantity = _numbers(counted, "quantity")
+    kinds = list(map(_name_type, names, _numbers(counted, "breadth_cm"), _numbers(counted, "height_cm")))
+    labels = dict(reversed(kinds))  # the first spelling of a type is shown
+    sums = (
+        counted.assign(
+            key=[key for key, _label in kinds], n=quantity, falls=quantity * _numbers(counted, "probability")
+        )
+        .groupby("key")
+        .agg(pieces=("n", "sum"), buildings=("path", "nunique"), falls=("falls", "sum"))
+    )
+    rows = [(key, *row) for key, row in zip(sums.index, sums.to_numpy().tolist(), strict=True)]
+    rows.sort(key=lambda one: (-round(one[3], 6), one[0]))
+    first = [one for one in rows if one[3] > 0][:FIRST]
+    return tuple(FirstType(labels[key], round(n), int(count), falls) for key, n, count, falls in first)
+
+
+def _name_type(name: str, breadth: float, height: float) -> tuple[str, str | Text]:
+    """Return what a type is sorted by, and its name; without one its size group."""
+    if name.strip():
+        return " ".join(name.casefold().split()), name
+    b, h = (int(size // step * step) for size, step in ((breadth, BREADTH_STEP), (height, HEIGHT_STEP)))
+    label = fill(
+        "no Type: Breadth {b} to {b_end} cm, Height {h} to {h_end} cm",
+        b=b, b_end=b + BREADTH_STEP, h=h, h_end=h + HEIGHT_STEP,
+    )  # fmt: skip
+    return f"\uffff{b:06d} {h:06d}", label
