@@ -113,8 +113,8 @@ def test_what_is_not_known_stands_next_to_the_number_of_a_building():
     assert say.mark_own_motions("School", {"own_motions": 2}) == "School (floors with motions of their own)"
     assert say.name_skipped("School", "s.xlsx") == "School (s.xlsx)"
     assert say.name_skipped(None, "s.xlsx") == say.name_skipped("s.xlsx", "s.xlsx") == "s.xlsx"
-    row = {"risk_class": "high", "risk_class_upper": "very high", "is_held": False, "basis": "unconfirmed"}
-    assert say.label_piece(row, "simulated") == "◌ unconfirmed (high)", "not said to be that of the formula"
+    piece = {"risk_class": "high", "risk_class_upper": "very high", "is_held": False, "basis": "unconfirmed"}
+    assert say.label_piece(piece, "simulated") == "◌ unconfirmed (high)", "not said to be that of the formula"
 
 
 # ---------------------------------------------------------------- method
