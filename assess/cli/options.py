@@ -233,8 +233,9 @@ def check_size(option: str, value: float, name: str = "") -> None:
 
     column = ITEMS.column(name or option)
     low, high = column.low or 0.0, column.high or float("inf")
+    unit = f" {column.unit}" if column.unit else ""
     if not low <= value <= high:
-        raise InputError(f"--{option} is {value:g} {column.unit}, expected {low:g} to {high:g} {column.unit}")
+        raise InputError(f"--{option} is {value:g}{unit}, expected {low:g} to {high:g}{unit}")
 
 
 # ---------------------------------------------------------------- levels of shaking

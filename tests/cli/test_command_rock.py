@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from assess.cli import command_rock
-from assess.cli.command_rock import describe_outcome, read_case, write_figure
+from assess.cli import rock_output
+from assess.cli.rock_output import describe_outcome, draw_figure, read_case
 from tests.cli.calling import error, run
 from tests.motion.writers import THREE, csmip_v2, zipped
 
@@ -228,7 +228,7 @@ def test_a_motion_is_scaled_as_a_whole():
 
 def paint(one, found):
     figure = Figure(figsize=(8, 4.6), layout="constrained")
-    command_rock._paint(one, found, figure)
+    rock_output.paint(one, found, figure)
     return figure
 
 
@@ -274,7 +274,7 @@ def test_a_long_path_is_thinned_out_and_keeps_its_peak_and_its_end():
         theta[at], theta[-1] = 0.19, 0.05
         _, bottom = paint(case(), Found(rotation=0.95, times=times, theta=theta)).axes
         drawn = bottom.lines[0]
-        assert drawn.get_xdata().size <= command_rock.MOST_POINTS + 2
+        assert drawn.get_xdata().size <= rock_output.MOST_POINTS + 2
         assert drawn.get_ydata().max() == pytest.approx(0.95)
         assert (drawn.get_xdata()[-1], drawn.get_ydata()[-1]) == (30, pytest.approx(0.25))
 
@@ -283,7 +283,6 @@ def test_a_long_path_is_thinned_out_and_keeps_its_peak_and_its_end():
 def test_names_that_look_like_mathematics_are_drawn_as_they_are(tmp_path):
     path = tmp_path / "$x$_{.csv"
     path.write_bytes(SWEEP.read_bytes())
-    write_figure(case(record=f"{path}#north"), fallen(), tmp_path / "x.svg")
-    text = (tmp_path / "x.svg").read_text(encoding="utf-8")
+    text = draw_figure(case(record=f"{path}#north"), fallen(), "svg").decode()
     assert ET.fromstring(text).tag.endswith("svg")
     assert re.search(r"\$x\$_\{", text)
