@@ -5,25 +5,28 @@ Such a file defines ``command``, whose docstring and options are its help, ``EXA
 answers at once. Exit status: see `assess.cli.console`.
 """
 
+import contextlib
+import errno
 import gc
 import importlib
 import os
 import pkgutil
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from types import ModuleType
-from typing import Annotated
+from typing import Annotated, TextIO
 
 import typer
 
 import assess.cli
 from assess.cli.completion import ASKED, PROGRAM, find_typed_command
-from assess.cli.console import guard, say
-from assess.cli.ending import run_to_the_end
+from assess.cli.console import describe_fault, guard, print_error, say
 from assess.cli.interrupts import answer_signals
 from assess.version import __version__
 
 PREFIX = "command_"
+BAD_USAGE, NOT_WRITTEN = 2, 1
+"""Exit status of a blank word, and of an output that cannot be written."""
 START = """\b
 Start here:
   assess new building.xlsx     a workbook to fill in; with --example a filled one
@@ -53,6 +56,51 @@ def main() -> None:
         os.environ["COLUMNS"] = ONE_LINE
     app = build_app([typed] if typed in list_names() else ())
     run_to_the_end(lambda: app(prog_name=PROGRAM), sys.argv[1:])
+
+
+def run_to_the_end(app: Callable[[], object], words: Sequence[str]) -> None:
+    """Call the command line; whatever its output does, there is one line and an exit status, and no traceback.
+
+    A blank word is refused: as a path it would mean the folder that one is in.
+    """
+    if (blank := find_blank(words)) is not None:
+        print_error(f"{blank} is blank: fill it in, or leave it out.")
+        sys.exit(BAD_USAGE)
+    try:
+        try:
+            app()
+        finally:
+            # None where it was closed before the program began
+            if sys.stdout is not None and not sys.stdout.closed:
+                sys.stdout.flush()
+    except OSError as error:
+        _drop(sys.stdout)
+        if error.errno != errno.EPIPE:  # whoever reads the output may stop, as head does
+            with contextlib.suppress(OSError):
+                print_error(describe_fault(error))
+        _drop(sys.stderr)
+        sys.exit(NOT_WRITTEN)
+
+
+def find_blank(words: Sequence[str]) -> str | None:
+    """Return what the first blank word of a command line is called: the option before it, or its place."""
+    for at, word in enumerate(words):
+        if word == "--":
+            return None
+        if word.startswith("--") and word.endswith("="):
+            return word[:-1]
+        if not word.strip():
+            before = words[at - 1] if at else ""
+            return before if before.startswith("-") else f"word {at + 1} of the command"
+    return None
+
+
+def _drop(stream: TextIO | None) -> None:
+    """Have what cannot be written go nowhere, or Python would try again at its own end."""
+    with contextlib.suppress(OSError, ValueError, AttributeError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, stream.fileno())  # type: ignore[union-attr]
+        os.close(nowhere)
 
 
 def list_names() -> list[str]:

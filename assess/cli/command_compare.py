@@ -1,5 +1,7 @@
 """``assess compare``: two runs of a building, and what changed between them."""
 
+import hashlib
+import shlex
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
@@ -10,9 +12,11 @@ import typer
 from assess.cli.completion import list_of, one_of
 from assess.cli.console import say, say_written, show_progress
 from assess.cli.options import AsJson, read_formats
-from assess.cli.other_code import check_code
 from assess.errors import InputError
 from assess.i18n import LANGUAGES, find_language
+from assess.input_file import read_input
+from assess.settings import CLASS_BY, SCENARIOS, Settings
+from assess.version import find_code
 
 if TYPE_CHECKING:
     from assess.compare.changes import Comparison
@@ -28,6 +32,15 @@ EXAMPLES = (
 FORMATS = ("html", "pdf", "xlsx", "json")
 """Those of `assess.compare.comparison_files`, which takes long to import."""
 FOLDER = Path("compare")
+OPTIONS = (
+    "scenario", "class_by", "verify", "runs", "seed", "scale", "anchor", "ideal", "scale_motions", "city", "route_risk",
+)  # fmt: skip
+"""Settings that `assess run` has an option for."""
+_FILLED = (SCENARIOS[0], CLASS_BY[0])
+"""What stands for the workbook's own, where that says nothing else."""
+PDF = "report.pdf"
+MOST_BYTES = 1 << 28
+"""Size [bytes] above which a workbook is not looked at."""
 
 Run = Annotated[
     Path, typer.Argument(help="A results.json of assess run, or the folder that holds it.", show_default=False)
@@ -90,6 +103,42 @@ def _find_own_language(run: "PastRun") -> str:
         return find_language(str(run.building.get("language") or LANGUAGES[0]))
     except InputError:
         return LANGUAGES[0]
+
+
+def check_code(before: "PastRun", after: "PastRun") -> None:
+    """Raise InputError where two runs were computed by different code, with the commands that make them comparable."""
+    if before.code == after.code:
+        return
+    fault = (
+        f"{before.path.parent} and {after.path.parent} were computed by different code of assess: what differs between "
+        "them may come from the program, not from the furniture."
+    )
+    runs = {"BEFORE": before, "AFTER": after}
+    ways = [way for name, run in runs.items() if run.code != find_code() for way in _list_ways(name, run)]
+    raise InputError("\n".join((fault, *ways, "To compare them as they are: --as-is.")))
+
+
+def _list_ways(name: str, run: "PastRun") -> Iterator[str]:
+    """Yield the command that assesses the workbook of a run again, and where that workbook is."""
+    folder, workbook = run.path.parent, Path(run.workbook).name  # a name alone: results.json may come from anybody
+    places = (folder / workbook, folder.parent / workbook, Path(workbook))
+    found = next((one for one in places if _is_file(one, run.workbook_sha256)), None)
+    default = Settings().as_record()
+    parts = ["assess", "run", str(found or workbook), "--out", f"{folder.resolve().name}-again"]
+    for option in OPTIONS:
+        value = run.settings.get(option)
+        if value not in (None, default[option], *_FILLED):
+            parts += [f"--{option.replace('_', '-')}", *(() if value is True else (str(value),))]
+    yield f"Assess {name} again, and compare that: {shlex.join(parts)}"
+    if found is None and (folder / PDF).is_file():
+        yield f"{workbook} is attached to {folder / PDF}: save it from there."
+
+
+def _is_file(path: Path, sha256: str) -> bool:
+    try:
+        return hashlib.sha256(read_input(path, MOST_BYTES)).hexdigest() == sha256
+    except (OSError, ValueError):
+        return False
 
 
 def describe_comparison(found: "Comparison") -> Iterator[str]:

@@ -20,6 +20,7 @@ from assess.cli.options import (
     Span,
     Workbook,
     check_file,
+    check_out,
     read_formats,
     read_settings,
     save_with_figure,
@@ -127,11 +128,7 @@ def command(
     )
     folder = out or Path(f"{path.stem}-fragility")
     if wanted:
-        from assess.report import check_folder
-
-        if folder.exists() and not folder.is_dir():
-            raise InputError(f"--out: {folder} is a file; name a folder")
-        check_folder(folder)
+        check_out(folder)
     check_file(plot, "figure")
     with show_progress() as progress:
         curves = _find(path, by, im, span, settings, "nrml" in wanted, jobs, progress)
@@ -168,21 +165,13 @@ def _find(
 
 def _write(curves: "Curves", written: "Sequence[Exchange]", folder: Path, plot: Path | None) -> None:
     """Write the files and the figure, all of them or none; exit status 1 where a format could not hold every curve."""
+    from assess.cli.curve_figures import draw_curves
     from assess.cli.fragility_output import say_left_out
 
     files = {folder / name: data for one in written for name, data in one.files.items()}
-    save_with_figure(files, plot, partial(_draw, curves), "curve")
+    save_with_figure(files, plot, partial(draw_curves, curves), "curve")
     lines = [line for one in written for line in say_left_out(one)]
     for line in lines:
         say(line, err=True)
     if lines:
         raise typer.Exit(1)
-
-
-def _draw(curves: "Curves", kind: str) -> tuple[bytes, int]:
-    """Return the figure, and how many curves it has no room for."""
-    from assess.cli.fragility_figure import choose_drawn, paint, size
-    from assess.report.figures.draw import draw
-
-    panels, left = choose_drawn(curves.found.curves)
-    return draw(*size(panels), partial(paint, curves, panels), kind), left

@@ -12,22 +12,24 @@ from assess.cli.console import InterruptedWorkError, count, print_error, say, sa
 from assess.cli.options import (
     ClassBy,
     GroundMotions,
+    Ideal,
     Runs,
     Scale,
     Scenario,
     Seed,
     ShakeMapFile,
+    Verify,
+    fit_runs,
     read_formats,
     read_ground,
-    read_settings,
+    read_run_settings,
 )
 from assess.errors import CancelledError, InputError
 from assess.i18n import LANGUAGES, find_language
 from assess.plain_text import plain_line
-from assess.settings import ROUTE_RISK, VERIFY, Settings
+from assess.settings import ROUTE_RISK, Settings
 
 if TYPE_CHECKING:
-    from assess.motion.site_ground import GroundField
     from assess.portfolio.background import Background
     from assess.portfolio.city import Group
     from assess.portfolio.run_portfolio import PortfolioResult
@@ -61,25 +63,13 @@ def command(
     out: Annotated[Path | None, typer.Option(help="Folder of the results.", show_default="NAME-portfolio")] = None,
     shakemap: ShakeMapFile = None,
     ground_motions: GroundMotions = None,
-    verify: Annotated[
-        str,
-        typer.Option(
-            help="Pieces to simulate by integration: all, high (high risk, doubtful, on routes), none.",
-            autocompletion=one_of(VERIFY),
-        ),
-    ] = "all",
+    verify: Verify = "all",
     runs: Runs = None,
     seed: Seed = None,
     scenario: Scenario = None,
     class_by: ClassBy = None,
     scale: Scale = 1.0,
-    ideal: Annotated[
-        bool,
-        typer.Option(
-            "--ideal",
-            help="Adopt the chance if exactly this motion recurred, every piece exactly as given: without uncertainty.",
-        ),
-    ] = False,
+    ideal: Ideal = False,
     route_risk: Annotated[
         float, typer.Option(help="Limit on the chance that an evacuation route is blocked, above 0 and below 1.")
     ] = ROUTE_RISK,
@@ -128,10 +118,10 @@ def command(
     code = find_language(language)
     if scheduler is not None and jobs is not None:
         raise InputError("--jobs: the workers of --scheduler do the work; leave out one of them.")
-    if ideal and verify == "none":
-        raise InputError("--ideal is about the simulation: leave out --ideal or --verify none")
-    given = read_settings(verify=verify, runs=runs, seed=seed, scenario=scenario, scale=scale, ideal=ideal,
-                          route_risk=route_risk, class_by=class_by)  # fmt: skip
+    settings = read_run_settings(
+        verify=verify, runs=runs, seed=seed, scenario=scenario, scale=scale, ideal=ideal, route_risk=route_risk,
+        class_by=class_by,
+    )  # fmt: skip
     folder = out or Path(f"{source.resolve().stem}-portfolio")
     if example:
         from assess.portfolio.run_portfolio import check_extras
@@ -139,7 +129,8 @@ def command(
         check_extras(wanted, scheduler)
         source, shakemap, background = _prepare_example(source, folder, shakemap, ground_motions, background)
     ground = read_ground(shakemap, ground_motions)
-    settings = given if runs is not None else _fit_runs(given, ground)
+    if runs is None:
+        settings = fit_runs(settings, getattr(ground, "event_count", 0))
     with show_progress() as progress:
         try:
             from assess.portfolio.run_portfolio import run_portfolio
@@ -167,15 +158,6 @@ def _prepare_example(
         say(f"wrote {folder}", err=True)
     shaken = shakemap if shakemap or ground_motions else folder / EXAMPLE_MAP
     return folder / EXAMPLE_INDEX, shaken, background or folder / EXAMPLE_COAST
-
-
-def _fit_runs(settings: Settings, ground: "GroundField | None") -> Settings:
-    """Return the settings with as many draws as count every scenario of the ground alike."""
-    from assess.pipeline.city_draws import choose_runs
-    from assess.settings import change_settings
-
-    scenarios = getattr(ground, "event_count", 0)
-    return change_settings(settings, {"runs": choose_runs(scenarios)}) if scenarios else settings
 
 
 def _say_repeat(source: Path, settings: Settings, shakemap: Path | None, ground_motions: Path | None) -> str:

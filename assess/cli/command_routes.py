@@ -2,7 +2,7 @@
 
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -22,9 +22,6 @@ from assess.cli.options import (
 from assess.errors import InputError
 from assess.settings import AUTO
 from assess.units import GRAVITY
-
-if TYPE_CHECKING:
-    from assess.cli.route_output import Sweep
 
 ORDER = 4
 EXAMPLES = (
@@ -72,6 +69,7 @@ def command(
         raise InputError(f"--runs: {AUTO} is for assess run, as every value uses the same motions. Give a number.")
     check_file(csv, "table", (".csv",))
     check_file(plot, "figure")
+    from assess.cli.curve_figures import draw_routes
     from assess.cli.route_output import Sweep
     from assess.pipeline.route_sweep import MOST_INSERTED, find_fragility
     from assess.pipeline.run import compute
@@ -89,13 +87,4 @@ def command(
     say(sweep.to_json() if as_json else sweep.to_text())
     print_warnings(assessment.problems)
     files = {} if csv is None else {csv: sweep.to_csv().encode("utf-8-sig")}
-    save_with_figure(files, plot, partial(_draw, sweep), "route")
-
-
-def _draw(sweep: "Sweep", kind: str) -> tuple[bytes, int]:
-    """Return the figure, and how many routes it has no room for."""
-    from assess.cli.route_figure import choose_drawn, paint, size
-    from assess.report.figures.draw import draw
-
-    drawn, left = choose_drawn(sweep.fragility.routes)
-    return draw(*size(drawn), partial(paint, sweep.fragility, drawn, sweep.pfa_g), kind), len(left)
+    save_with_figure(files, plot, partial(draw_routes, sweep), "route")

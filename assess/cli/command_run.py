@@ -12,26 +12,29 @@ from assess.cli.opening import open_file
 from assess.cli.options import (
     ClassBy,
     GroundMotions,
+    Ideal,
     Jobs,
     Runs,
     Scale,
     Scenario,
     Seed,
     ShakeMapFile,
+    Verify,
     Workbook,
+    check_out,
+    fit_runs,
     read_formats,
     read_ground,
-    read_settings,
+    read_run_settings,
 )
 from assess.errors import InputError
 from assess.i18n import LANGUAGES
 from assess.progress import Progress
 from assess.report_formats import ALL, DEFAULT, FILES
-from assess.settings import ROUTE_RISK, VERIFY, Settings, change_settings
+from assess.settings import ROUTE_RISK, Settings
 
 if TYPE_CHECKING:
     from assess.delivery.deliver import Written
-    from assess.methods import Method
     from assess.model import Inventory
     from assess.report.report_options import ReportOptions
     from assess.results import Results
@@ -66,13 +69,7 @@ UNCONFIRMED = "nothing is known of the building, or the motions may be too weak 
 def command(
     path: Workbook,
     out: Annotated[Path | None, typer.Option(help="Folder of the reports.", show_default="NAME-report")] = None,
-    verify: Annotated[
-        str,
-        typer.Option(
-            help="Pieces to simulate by integration: all, high (high risk, doubtful, on routes), none.",
-            autocompletion=one_of(VERIFY),
-        ),
-    ] = "all",
+    verify: Verify = "all",
     runs: Runs = None,
     seed: Seed = None,
     motions: Annotated[
@@ -95,13 +92,7 @@ def command(
             show_default=False,
         ),
     ] = None,
-    ideal: Annotated[
-        bool,
-        typer.Option(
-            "--ideal",
-            help="Adopt the chance if exactly this motion recurred, every piece exactly as given: without uncertainty.",
-        ),
-    ] = False,
+    ideal: Ideal = False,
     city: Annotated[
         bool,
         typer.Option(
@@ -157,20 +148,19 @@ def command(
     folder = out or Path(f"{path.stem}-report")
     wanted = _read_formats(formats, verify, open_report)
     _check_motions(verify, runs, seed, motions, scale_motions)
-    if ideal and verify == "none":
-        raise InputError("--ideal is about the simulation: leave out --ideal or --verify none")
-    settings = read_settings(
+    settings = read_run_settings(
         verify=verify, runs=runs, seed=seed, scenario=scenario, scale=scale, ideal=ideal, scale_motions=scale_motions,
         route_risk=route_risk, anchor=anchor, city=city, class_by=class_by,
     )  # fmt: skip
-    _check_folder(folder, wanted)
+    check_out(folder, wanted)
     options = _read_options(language, templates, accessible)
     with show_progress() as progress:
         from assess.workbook.read import read_inventory
 
         ground = read_ground(shakemap, ground_motions)
         inventory = read_inventory(path, ground=ground, progress=progress)
-        settings = settings if runs or motions else _fit_runs(settings, inventory)
+        if not (runs or motions or inventory.site_ground is None):
+            settings = fit_runs(settings, len(inventory.site_ground.scenarios))
         results = _assess(inventory, settings, motions, methods or (), jobs, not set(wanted) <= PLAIN, progress)
         written = _write(results, folder, wanted, options, progress)
     for line in describe_result(results):
@@ -178,14 +168,6 @@ def command(
     say_written(written.values(), written.removed)
     if open_report and (message := open_file(next(written[name] for name in OPENED if name in written))):
         say(message, err=True)
-
-
-def _fit_runs(settings: Settings, inventory: "Inventory") -> Settings:
-    """Return the settings with as many draws as count every scenario of the ground alike."""
-    from assess.pipeline.city_draws import choose_runs
-
-    scenarios = 0 if inventory.site_ground is None else len(inventory.site_ground.scenarios)
-    return change_settings(settings, {"runs": choose_runs(scenarios)}) if scenarios else settings
 
 
 def _assess(
@@ -199,7 +181,13 @@ def _assess(
 ) -> "Results":
     from assess.pipeline.run import run
 
-    methods, suite = _read_methods(models), None
+    if len(models) > MOST_METHODS:
+        raise InputError(f"--method names {len(models)} files; a report has room for {MOST_METHODS}. Leave some out.")
+    methods, suite = [], None
+    if models:
+        from assess.methods.fitted import read_model
+
+        methods = [read_model(file) for file in models]
     if motions is not None:
         from assess.motion.suite import read_suite
 
@@ -235,14 +223,6 @@ def _read_formats(formats: str, verify: str, open_report: bool) -> list[str]:
     return wanted
 
 
-def _check_folder(folder: Path, formats: Sequence[str]) -> None:
-    from assess.report import check_folder
-
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f"--out: {folder} is a file; name a folder")
-    check_folder(folder, formats)
-
-
 def _check_motions(verify: str, runs: str | None, seed: int | None, motions: Path | None, scale: bool) -> None:
     """Raise InputError where options contradict the use of the user's own motions."""
     if motions is not None and (verify == "none" or runs is not None or seed is not None):
@@ -266,17 +246,6 @@ def _read_options(language: str | None, templates: Path | None, accessible: bool
 
         check_templates(options)
     return options
-
-
-def _read_methods(files: Sequence[Path]) -> "list[Method]":
-    """Return the fitted models of files as methods, as many as a report has room for."""
-    if len(files) > MOST_METHODS:
-        raise InputError(f"--method names {len(files)} files; a report has room for {MOST_METHODS}. Leave some out.")
-    if not files:
-        return []
-    from assess.methods.fitted import read_model
-
-    return [read_model(file) for file in files]
 
 
 # ---------------------------------------------------------------- what is printed at the end

@@ -114,7 +114,7 @@ def _explain(error: BaseException, command: Callable[..., None]) -> Never:
     if isinstance(error, AssessError):
         print_error(str(error))
         raise typer.Exit(1) from None
-    if isinstance(error, OSError) and error.filename is not None:  # else the output itself, see `assess.cli.ending`
+    if isinstance(error, OSError) and error.filename is not None:  # else the output itself, see `assess.cli.app`
         print_error(describe_fault(error))
         raise typer.Exit(2 if error.errno == errno.ENAMETOOLONG else 1) from None
     raise error

@@ -1,7 +1,5 @@
 """Results of `assess fragility`, the chance of overturning against PFA or PFV: as files, JSON and text."""
 
-import csv
-import io
 import json
 import math
 import textwrap
@@ -10,14 +8,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from assess.cli.console import count
-from assess.cli.route_output import WIDE, name_floors
+from assess.cli.route_output import WIDE, finite, name_floors, write_rows
 from assess.fragility import MOST_MISFIT, lognormal_chance
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.piece_fragility import UNITS, FloorMotions, PieceFragilities, PieceFragility
 from assess.pipeline.versions import versions
 from assess.plain_text import plain_line
 from assess.report import words
-from assess.report.data import disarm
 from assess.report.interchange.exchange_files import LABELS, Exchange
 from assess.report.interchange.nrml import write_nrml
 from assess.report.interchange.pelicun import write_pelicun
@@ -150,9 +147,9 @@ class Curves:
             "anchored_pieces": sum(item.quantity for item in one.items if item.anchored == "yes"),
             "kind": curve.kind,
             "why": str(curve.why),
-            f"median_{level}": _finite(curve.median / unit),
-            "beta": _finite(curve.dispersion),
-            "misfit": _finite(curve.misfit),
+            f"median_{level}": finite(curve.median / unit),
+            "beta": finite(curve.dispersion),
+            "misfit": finite(curve.misfit),
             "is_lognormal": curve.is_lognormal,
             **_range("breadth_{}_cm", [to_edge(item.breadth, LENGTH["cm"]) for item in one.items]),
             **_range("height_{}_cm", [to_edge(item.height, LENGTH["cm"]) for item in one.items]),
@@ -189,11 +186,11 @@ class Curves:
     def to_csv(self) -> str:
         """Return a line a curve, for other programs; the last column says what it is conditional on."""
         own = {"by": self.found.by, "draws": self.found.runs, "seed": self.found.seed, "conditions": self.conditions}
-        return _write_rows({**self._describe(curve), **own} for curve in self.found.curves)
+        return write_rows({**self._describe(curve), **own} for curve in self.found.curves)
 
     def to_table(self) -> str:
         """Return a line a curve and level."""
-        return _write_rows(
+        return write_rows(
             {"name": curve.name, "type": curve.type or None, "items": [item.item for item in curve.items], **row}
             for curve in self.found.curves
             for row in self._tabulate(curve)
@@ -282,7 +279,7 @@ def _describe_motions(one: FloorMotions) -> dict[str, Any]:
         "source": str(one.source),
         "spectrum": str(one.spectrum),
         "pfa_g": one.pfa / GRAVITY,
-        "pfv_cm_s": _finite(100 * one.pfv),
+        "pfv_cm_s": finite(100 * one.pfv),
         "mean_pfa_g": one.mean_pfa / GRAVITY,
         "mean_pfv_cm_s": 100 * one.mean_pfv,
         "pfv_per_pfa_s": one.pfv_per_pfa,
@@ -290,16 +287,6 @@ def _describe_motions(one: FloorMotions) -> dict[str, Any]:
         "unknown_building": one.is_unknown,
         "weak_motions": one.is_weak,
     }
-
-
-def _write_rows(rows: Iterable[Mapping[str, Any]]) -> str:
-    file = io.StringIO()
-    writer = csv.writer(file, lineterminator="\r\n")
-    for number, row in enumerate(rows):
-        if number == 0:
-            writer.writerow(row)
-        writer.writerow([disarm(value) for value in row.values()])
-    return file.getvalue()
 
 
 def _range(name: str, values: Sequence[float]) -> dict[str, float]:
@@ -318,7 +305,3 @@ def _align(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[str]
     for row in (heads, *rows):
         middle = (f"{text:>{width}}" for text, width in zip(row[1:-1], wide[1:-1], strict=True))
         yield "  ".join([f"{row[0]:<{wide[0]}}", *middle, row[-1]]).rstrip()
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None

@@ -12,7 +12,7 @@ import typer
 from assess.cli.completion import one_of
 from assess.cli.console import count, say
 from assess.errors import InputError, OutputError
-from assess.settings import AUTO, CLASS_BY, MOST_SCALE, RUNS, SCENARIOS, SEED, Settings, change_settings
+from assess.settings import AUTO, CLASS_BY, MOST_SCALE, RUNS, SCENARIOS, SEED, VERIFY, Settings, change_settings
 
 if TYPE_CHECKING:
     from assess.motion.site_ground import GroundField
@@ -90,6 +90,20 @@ ClassBy = Annotated[
         autocompletion=one_of(CLASS_BY),
     ),
 ]
+Verify = Annotated[
+    str,
+    typer.Option(
+        help="Pieces to simulate by integration: all, high (high risk, doubtful, on routes), none.",
+        autocompletion=one_of(VERIFY),
+    ),
+]
+Ideal = Annotated[
+    bool,
+    typer.Option(
+        "--ideal",
+        help="Adopt the chance if exactly this motion recurred, every piece exactly as given: without uncertainty.",
+    ),
+]
 Jobs = Annotated[
     int | None, typer.Option(min=1, help="Threads; they do not change a result.", show_default="one per CPU")
 ]
@@ -122,6 +136,20 @@ def read_settings(**given: Any) -> Settings:
     return change_settings(None, {name: value for name, value in given.items() if value is not None})
 
 
+def read_run_settings(**given: Any) -> Settings:
+    """Return the settings of `assess run` and `assess portfolio`, whose --ideal is about what is simulated."""
+    if given["ideal"] and given["verify"] == "none":
+        raise InputError("--ideal is about the simulation: leave out --ideal or --verify none")
+    return read_settings(**given)
+
+
+def fit_runs(settings: Settings, scenarios: int) -> Settings:
+    """Return the settings with as many draws as count every computed scenario of the ground alike, if there are any."""
+    from assess.pipeline.city_draws import choose_runs
+
+    return change_settings(settings, {"runs": choose_runs(scenarios)}) if scenarios else settings
+
+
 def read_ground(shakemap: Path | None, scenarios: Path | None) -> "GroundField | None":
     """Return the ground motion that --shakemap or --ground-motions names; None where neither does.
 
@@ -141,6 +169,15 @@ def read_ground(shakemap: Path | None, scenarios: Path | None) -> "GroundField |
 
         return read_scenarios(scenarios)
     return None
+
+
+def check_out(folder: Path, formats: Sequence[str] = ()) -> None:
+    """Raise unless reports can be written to a folder, as far as is known before the work (`report.check_folder`)."""
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"--out: {folder} is a file; name a folder")
+    from assess.report import check_folder
+
+    check_folder(folder, formats)
 
 
 def check_file(path: Path | None, what: str, endings: tuple[str, ...] = FIGURES) -> None:

@@ -122,7 +122,6 @@ def read_case(
         raise InputError(f"{channel.name} is a vertical channel: choose a horizontal one.")
     own = channel.motion
     factor = 1.0 if pfa_g is None else pfa_g / (own.pfa / GRAVITY)
-    scaled = (factor * values for values in (own.acceleration, own.velocity, own.displacement))
     return Case(
         breadth=breadth_cm * LENGTH["cm"],
         height=height_cm * LENGTH["cm"],
@@ -130,7 +129,7 @@ def read_case(
         restitution=math.nan if restitution is None else restitution,
         channel=channel,
         baseline=cast("Baseline", baseline),
-        motion=Motion(*scaled, own.time_step),
+        motion=Motion(factor * own.acceleration, factor * own.velocity, factor * own.displacement, own.time_step),
         factor=factor,
         pfa_g=own.pfa / GRAVITY if pfa_g is None else pfa_g,
     )

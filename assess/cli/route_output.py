@@ -5,12 +5,12 @@ import io
 import json
 import math
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, astuple, dataclass
+from functools import cached_property
 from typing import Any
 
 from assess.cli.console import count
-from assess.cli.route_verdict import Verdict, find_verdict
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.route_sweep import FINEST, JUMP, Fragility, RouteFragility, find_jumps, find_passing
 from assess.pipeline.versions import versions
@@ -29,6 +29,8 @@ A_LINE = 12
 """Values side by side in the text."""
 WIDE = 110
 """Characters of a line of its sentences."""
+VERDICT_ROUTES, VERDICT_PIECES, LONGEST = 3, 4, 40
+"""Routes, and pieces of a route, that the text of the verdict names, and characters of a name; the data has all."""
 HEADS = (
     "route", "floors", "pfa_g", "blocked", "low", "high", "independent", "correlated", "if_anchors_fail", "pieces",
     "unverified", "runs", "inserted",
@@ -55,6 +57,179 @@ NOTES = (
     "--pfa LOW:HIGH:STEP",
 )
 """What ends the text: always, where values are inserted, and where a wide step has a jump."""
+
+
+# ---------------------------------------------------------------- verdict
+
+
+@dataclass(frozen=True, eq=False)
+class Verdict:
+    """What a sweep comes to, at the values of PFA that were evaluated."""
+
+    fragility: Fragility
+    pfa_g: Sequence[float]
+
+    def _reach(self, chances: Sequence[Chance] | None) -> int | None:
+        """Return the number of the first value at which a chance is not below the limit."""
+        limit = self.fragility.limit
+        return next((at for at, one in enumerate(chances or ()) if one.probability >= limit), None)
+
+    @cached_property
+    def evaluated(self) -> list[RouteFragility]:
+        """The routes that can be judged: all their segments are evaluated, or those that are reach the limit."""
+        return [one for one in self.fragility.routes if self._is_judged(one)]
+
+    @cached_property
+    def not_evaluated(self) -> list[RouteFragility]:
+        """The other routes."""
+        return [one for one in self.fragility.routes if not self._is_judged(one)]
+
+    def _is_judged(self, route: RouteFragility) -> bool:
+        return route.is_evaluated and (not route.unevaluated or self._reach(route.blocked) is not None)
+
+    @cached_property
+    def _reached(self) -> int | None:
+        found = [at for one in self.evaluated if (at := self._reach(one.blocked)) is not None]
+        return min(found, default=None)
+
+    @property
+    def below_up_to_g(self) -> float | None:
+        """The last value up to which the chances of all routes are below the limit [g]; None where it is none."""
+        last = len(self.pfa_g) - 1 if self._reached is None else self._reached - 1
+        return self.pfa_g[last] if last >= 0 and self.evaluated else None
+
+    @property
+    def reached_at_g(self) -> float | None:
+        """The next one, the first at which a chance is not [g]; None where all stay below."""
+        return None if self._reached is None else self.pfa_g[self._reached]
+
+    @property
+    def first(self) -> list[RouteFragility]:
+        """The routes whose chance is not below the limit there, the largest chance first."""
+        at = self._reached
+        found = [one for one in self.evaluated if at is not None and self._reach(one.blocked) == at]
+        return sorted(found, key=lambda one: -one.blocked[at or 0].probability)
+
+    @cached_property
+    def _anchored(self) -> tuple[float | None, list[RouteFragility]]:
+        """The first value at which a chance is not below the limit if anchors fail [g], and the routes of it.
+
+        None and no routes where that is not smaller than `reached_at_g`.
+        """
+        ways = [(one, self._reach(one.if_anchors_fail)) for one in self.evaluated]
+        early = min((at for _, at in ways if at is not None), default=None)
+        if early is None or (self._reached is not None and early >= self._reached):
+            return None, []
+        return self.pfa_g[early], [one for one, at in ways if at == early]
+
+    @property
+    def lower_bounds(self) -> list[str]:
+        """The routes whose chances are lower bounds: motions may be too weak, or a segment is not evaluated."""
+        return [one.route for one in self.evaluated if one.doubtful or one.unevaluated]
+
+    @property
+    def reaching(self) -> int:
+        """Routes whose chance is not below the limit at any value."""
+        return sum(self._reach(one.blocked) is not None for one in self.evaluated)
+
+    def describe(self) -> dict[str, Any]:
+        """Return it as data, with its text."""
+        anchored_at_g, anchored = self._anchored
+        return {
+            "text": self.say(),
+            "limit": self.fragility.limit,
+            "evaluated_routes": len(self.evaluated),
+            "not_evaluated": [one.route for one in self.not_evaluated],
+            "not_evaluated_segments": [
+                {"route": one.route, "segments": list(one.unevaluated)}
+                for one in (*self.not_evaluated, *self.evaluated)
+                if one.unevaluated
+            ],
+            "below_up_to_g": self.below_up_to_g,
+            "reached_at_g": self.reached_at_g,
+            "first": [{"route": one.route, "pieces": _list_causes(one)} for one in self.first],
+            "routes_reaching": self.reaching,
+            "reached_at_g_if_anchors_fail": anchored_at_g or self.reached_at_g,
+            "first_if_anchors_fail": [one.route for one in anchored],
+            "lower_bounds": self.lower_bounds,
+            "pieces_left_out": self.fragility.unplaced,
+        }
+
+    def say(self) -> str:
+        """Return it in a sentence or two, with what decides how far it can be relied on."""
+        return " ".join(self._sentences())
+
+    def _sentences(self) -> Iterator[str]:
+        if self.evaluated:
+            yield from self._say_reached()
+        elif any(one.is_evaluated for one in self.not_evaluated):
+            yield "No route can be evaluated as a whole."
+        else:
+            yield "No route can be evaluated: the workbook places no furniture next to any."
+            return
+        at_g, anchored = self._anchored
+        if at_g is not None:
+            named = _name([one.route for one in anchored], VERDICT_ROUTES)
+            level = f"{100 * self.fragility.limit:g} %"
+            yield f"If the anchors fail, {named} {_reaches(anchored)} {level} from {at_g:.4g} g."
+        if self.lower_bounds:
+            yield f"The chances of {_name(self.lower_bounds, VERDICT_ROUTES)} are lower bounds."
+        for what, routes in (
+            ("Not evaluated", self.not_evaluated),
+            ("Counted without what is not evaluated", [one for one in self.evaluated if one.unevaluated]),
+        ):
+            if routes:
+                yield f"{what}: {words.name_first([_name_part(one) for one in routes], VERDICT_ROUTES)}."
+        if self.fragility.unplaced:
+            yield f"Left out: {count(self.fragility.unplaced, 'piece')} without a usable position or route."
+
+    def _say_reached(self) -> Iterator[str]:
+        level, number = f"{100 * self.fragility.limit:g} %", len(self.evaluated)
+        whole = count(number, "evaluated route" if self.not_evaluated else "route")
+        if self.below_up_to_g is not None:
+            every = f"All {whole} stay" if number > 1 else f"The only {whole.removeprefix('1 ')} stays"
+            every = every.replace("All 2", "Both") if number == 2 else every
+            last = "" if self.reached_at_g else ", the largest PFA evaluated"
+            yield f"{every} below {level} up to {self.below_up_to_g:.4g} g{last}."
+        if self.reached_at_g is None:
+            return
+        first = self.first
+        more = f"; up to {self.pfa_g[-1]:.4g} g, {self.reaching} of {whole} do" if self.reaching > len(first) else ""
+        where = f"From {self.reached_at_g:.4g} g"
+        if self.below_up_to_g is None:
+            where = f"Already at {self.pfa_g[0]:.4g} g, the smallest PFA evaluated,"
+        named = [f"{_quote(one.route)} ({_blame(one)})" for one in first]
+        yield f"{where} {words.name_first(named, VERDICT_ROUTES)} {_reaches(first)} {level}{more}."
+
+
+def _blame(route: RouteFragility) -> str:
+    """Return the pieces that cause it; fixing none would help a route that is blocked with nothing fallen."""
+    if not route.causes:
+        return "blocked with nothing fallen"
+    return f"because of {_name([one.item for one in route.causes], VERDICT_PIECES)}"
+
+
+def _quote(name: str) -> str:
+    return repr(words.cut(name, LONGEST))
+
+
+def _name(names: Sequence[str], most: int) -> str:
+    return words.name_first([_quote(name) for name in names], most)
+
+
+def _name_part(route: RouteFragility) -> str:
+    """Return a route with its segments that are not evaluated, unless none is."""
+    if not route.is_evaluated:
+        return _quote(route.route)
+    plural = "" if len(route.unevaluated) == 1 else "s"
+    return f"{_quote(route.route)} (segment{plural} {_name(route.unevaluated, VERDICT_PIECES)})"
+
+
+def _reaches(routes: Sequence[RouteFragility]) -> str:
+    return "reaches" if len(routes) == 1 else "reach"
+
+
+# ---------------------------------------------------------------- sweep
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -108,7 +283,7 @@ class Sweep:
     @property
     def verdict(self) -> Verdict:
         """Up to which PFA every route stays below the limit, and which one first does not."""
-        return find_verdict(self.fragility, self.pfa_g)
+        return Verdict(self.fragility, self.pfa_g)
 
     def describe(self) -> dict[str, Any]:
         """Return the document of `assess routes --json`."""
@@ -139,7 +314,7 @@ class Sweep:
             "evaluated": one.is_evaluated,
             "unevaluated_segments": list(one.unevaluated),
             "doubtful_pieces": one.doubtful,
-            "causes": [{"item": piece.item, "row": piece.row} for piece in one.causes],
+            "causes": _list_causes(one),
             "chances": [
                 {"pfa_g": pfa, "inserted": inserted, **_chance(chance, fails)}
                 for pfa, chance, fails, inserted in pairs
@@ -160,10 +335,10 @@ class Sweep:
         return {
             "chance": level,
             "where": sides.get(found.low, "between"),
-            "pfa_g": None if found.is_jump else _finite(found.low),
+            "pfa_g": None if found.is_jump else finite(found.low),
             "between_g": [found.low, found.high] if found.is_jump else None,
-            "earliest_g": _finite(found.earliest),
-            "latest_g": _finite(found.latest),
+            "earliest_g": finite(found.earliest),
+            "latest_g": finite(found.latest),
         }
 
     def _passing(self, chances: Sequence[Chance], level: float) -> "_Passing":
@@ -177,18 +352,14 @@ class Sweep:
 
     def to_csv(self) -> str:
         """Return a line a route and value, for other programs."""
-        file = io.StringIO()
-        writer = csv.writer(file, lineterminator="\r\n")
-        writer.writerow(HEADS)
+        rows: list[dict[str, Any]] = []
         for one in self.describe()["routes"]:
-            if not one["evaluated"]:
-                writer.writerow([disarm(one["route"]), disarm(one["floors"]), *[None] * (len(HEADS) - 2)])
-            for at in one["chances"]:
-                fails = at["if_anchors_fail"]
-                row = at | {"route": disarm(one["route"]), "floors": disarm(one["floors"])}
-                row["if_anchors_fail"] = fails and fails["blocked"]
-                writer.writerow([row[name] for name in HEADS])
-        return file.getvalue()
+            own = {"route": one["route"], "floors": one["floors"]}
+            rows += [at | own for at in one["chances"]] if one["evaluated"] else [own]
+        for row in rows:
+            fails = row.get("if_anchors_fail")
+            row["if_anchors_fail"] = fails and fails["blocked"]
+        return write_rows([{name: row.get(name) for name in HEADS} for row in rows])
 
     def to_text(self) -> str:
         """Return what a person reads."""
@@ -245,7 +416,7 @@ class Sweep:
         if first.pieces:
             yield f"  reaches {self._describe_levels(one.blocked)}"
         if one.causes:
-            named = words.name_first([repr(words.cut(piece.item, 40)) for piece in one.causes], MOST_CAUSES)
+            named = _name([piece.item for piece in one.causes], MOST_CAUSES)
             yield f"  {100 * self.fragility.limit:g} % first because of {named}"
         if one.if_anchors_fail:
             yield f"  if anchors fail, {self._describe_levels(one.if_anchors_fail)}"
@@ -275,12 +446,16 @@ class _Passing:
         return self.low < self.high
 
 
+def _list_causes(one: RouteFragility) -> list[dict[str, Any]]:
+    return [{"item": piece.item, "row": piece.row} for piece in one.causes]
+
+
 def _describe_pieces(one: RouteFragility) -> str:
     if not one.is_evaluated:
         return "not evaluated: the workbook places no furniture there"
     if not one.unevaluated:
         return _describe_known(one)
-    named = words.name_first([repr(words.cut(name, 40)) for name in one.unevaluated], MOST_CAUSES)
+    named = _name(one.unevaluated, MOST_CAUSES)
     return f"{_describe_known(one)}; without segments that are not evaluated: {named}"
 
 
@@ -296,6 +471,17 @@ def _describe_known(one: RouteFragility) -> str:
         if one.if_anchors_fail is None
         else "0 % if the anchors hold: no other piece can obstruct it"
     )
+
+
+def write_rows(rows: Iterable[Mapping[str, Any]]) -> str:
+    """Return rows as CSV, in which no text is taken for a formula; the first one names the columns."""
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\r\n")
+    for number, row in enumerate(rows):
+        if number == 0:
+            writer.writerow(row)
+        writer.writerow([disarm(value) for value in row.values()])
+    return file.getvalue()
 
 
 def name_floors(floors: Sequence[str]) -> str:
@@ -328,5 +514,6 @@ def _in_g(value: float) -> float:
     return round(value / GRAVITY, 12)
 
 
-def _finite(value: float) -> float | None:
+def finite(value: float) -> float | None:
+    """Return a number, None for what is not finite."""
     return value if math.isfinite(value) else None

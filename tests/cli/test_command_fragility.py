@@ -13,7 +13,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import assess
-from assess.cli.fragility_figure import A_PANEL, MOST_PANELS, choose_drawn, paint, size
+from assess.cli.curve_figures import CURVES_A_PANEL, MOST_CURVE_PANELS, choose_curves, paint_curves
 from assess.cli.fragility_output import FORMATS, MOST_LINES, Curves
 from assess.fragility import fit_fragility, lognormal_chance
 from assess.model import Item
@@ -125,18 +125,21 @@ def test_a_long_text_is_cut_and_the_document_is_not():
 def test_the_figure_draws_the_lowest_medians_first():
     flat, early, late = [0.0, 0.0, 0.0, 0.0], [0.1, 0.6, 0.9, 1.0], [0.0, 0.1, 0.6, 0.9]
     curves = curves_of(flat, late, early)
-    panels, left = choose_drawn(curves.found.curves)
+    panels, left = choose_curves(curves.found.curves)
     assert ([one.name for one in panels[0]], len(panels), left) == (["p2", "p1", "p0"], 1, 0)
-    panels, left = choose_drawn(curves_of(*[early] * 40).found.curves)
-    assert ([len(one) for one in panels], left) == ([A_PANEL] * MOST_PANELS, 40 - A_PANEL * MOST_PANELS)
-    assert [len(one) for one in choose_drawn(curves_of(*[early] * 8).found.curves)[0]] == [4, 4]
+    panels, left = choose_curves(curves_of(*[early] * 40).found.curves)
+    assert ([len(one) for one in panels], left) == (
+        [CURVES_A_PANEL] * MOST_CURVE_PANELS,
+        40 - CURVES_A_PANEL * MOST_CURVE_PANELS,
+    )
+    assert [len(one) for one in choose_curves(curves_of(*[early] * 8).found.curves)[0]] == [4, 4]
 
 
 def test_the_figure_holds_the_shares_and_the_fits():
     curves = curves_of([0.1, 0.6, 0.9, 1.0], [0.0, 0.0, 0.0, 0.0], weak=True)
-    panels, _ = choose_drawn(curves.found.curves)
-    figure = Figure(figsize=size(panels))
-    paint(curves, panels, figure)
+    panels, _ = choose_curves(curves.found.curves)
+    figure = Figure(figsize=(8, 4.6))
+    paint_curves(curves, panels, figure)
     (axes,) = figure.axes
     points, fitted, _, still, dots, _ = axes.lines
     assert list(points.get_xdata()) == pytest.approx([0.1, 0.2, 0.3, 0.4])

@@ -12,9 +12,8 @@ import pytest
 from matplotlib.figure import Figure
 
 import assess
-from assess.cli import command_routes
 from assess.cli.command_routes import PFA
-from assess.cli.route_figure import A_PANEL, MOST_PANELS, choose_drawn, paint
+from assess.cli.curve_figures import MOST_ROUTE_PANELS, ROUTES_A_PANEL, choose_routes, draw_routes, paint_routes
 from assess.cli.route_output import Sweep
 from assess.delivery.deliver import Written
 from assess.pipeline.route_sweep import Fragility, RouteFragility
@@ -174,7 +173,7 @@ def test_the_figure_has_no_line_over_a_jump(chances):
     sweep = swept_with(chances, 0.05)
     figure = Figure()
     panels = [list(sweep.fragility.routes)]
-    paint(sweep.fragility, panels, sweep.pfa_g, figure)
+    paint_routes(sweep, panels, figure)
     (axes,) = figure.axes
     steps = [
         abs(step) for line in axes.lines if line.get_linewidth() > 1 and line.get_transform() == axes.transData
@@ -208,7 +207,7 @@ def test_the_figure_is_the_same_twice_and_of_each_kind(swept):
     folder, _ = swept
     assert (folder / "f.png").read_bytes().startswith(b"\x89PNG")
     for kind, magic in (("svg", b"<?xml"), ("pdf", b"%PDF")):
-        (data, left), again = (command_routes._draw(swept_with([0.0, 0.1, 0.9], 0.05), kind) for _ in range(2))
+        (data, left), again = (draw_routes(swept_with([0.0, 0.1, 0.9], 0.05), kind) for _ in range(2))
         assert (data, left) == again
         assert left == 0
         assert data.startswith(magic)
@@ -219,12 +218,12 @@ def test_the_figure_draws_what_can_be_blocked_eight_a_panel():
     (route,) = swept_with([0.0], 0.1).fragility.routes
     live = [replace(route, route=str(at)) for at in range(70)]
     still = list(swept_with([0.0], 0).fragility.routes)
-    panels, left = choose_drawn([*still, *live[:20]])
-    assert ([len(one) for one in panels], left) == ([7, 7, 6], [])
-    panels, left = choose_drawn(live)
-    assert [len(one) for one in panels] == [A_PANEL] * MOST_PANELS
-    assert len(left) == 70 - A_PANEL * MOST_PANELS
-    assert choose_drawn(still) == ([still], [])
+    panels, left = choose_routes([*still, *live[:20]])
+    assert ([len(one) for one in panels], left) == ([7, 7, 6], 0)
+    panels, left = choose_routes(live)
+    assert [len(one) for one in panels] == [ROUTES_A_PANEL] * MOST_ROUTE_PANELS
+    assert left == 70 - ROUTES_A_PANEL * MOST_ROUTE_PANELS
+    assert choose_routes(still) == ([still], 0)
 
 
 # --- what is wrong ---

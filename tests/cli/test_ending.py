@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import assess
-from assess.cli.ending import find_blank
+from assess.cli.app import find_blank
 from assess.errors import InputError
 from assess.report.provenance import report_time
 from tests.cli.calling import run
