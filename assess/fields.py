@@ -4,122 +4,43 @@ results.json and its schema, items.csv, the tables of a notebook, the Excel repo
 derive from the lists below. A method's own columns follow from what it says of itself (`MethodInfo.columns`).
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import partial
-from operator import attrgetter
-from typing import Any, Literal
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import fields, is_dataclass, replace
+from functools import cache
+from html import escape
+from itertools import islice
+from types import NoneType
+from typing import Any, get_args, get_origin, get_type_hints
 
+from assess.details import DETAILS
+from assess.errors import Problem
 from assess.i18n import fill
-from assess.i18n import gettext as _
 from assess.methods import MethodInfo
 from assess.model import ANCHORED, AXES, IMPORTANCE, SIZES_FROM
-from assess.results import BASES, BRANCHES, CaseRow, ItemRow, MotionRow, Results, Simulation
+from assess.results import BASES, BRANCHES, ItemResult, ItemRow, Results
 from assess.risk import RiskClass
-
-Kind = Literal["text", "number", "count", "share", "flag", "class", "list", "signs", "factors", "records"]
-"""What a field holds: a share lies in [0, 1]; a class is one of `RiskClass`; signs are a list of 1 and -1; records are
-rows within the row."""
-Where = Literal["json", "csv", "excel", "pieces", "risky", "methods"]
-"""The last three are lists of the pages (HTML, PDF and its lines): all pieces, those at high risk, every method."""
-DATA: frozenset[Where] = frozenset(("json", "csv"))
-"""Of fields that the sheet Items of the Excel report leaves out, or shows in live columns of its own."""
-FILES: frozenset[Where] = DATA | {"excel"}
-EVERYWHERE: frozenset[Where] = FILES | {"pieces"}
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Field:
-    """One field of a row.
-
-    Parameters
-    ----------
-    key : str
-        Its column in items.csv and in the tables of a notebook, with the unit.
-    read : callable
-        From the row to its value: None for what is unknown.
-    path : tuple of str
-        Its place in a record of results.json; by default ``(key,)``.
-    label, short, unit, format : str
-        Heading in reports without the unit, a shorter one for the lists of pages, the unit, and how Excel shows it.
-    width : int
-        Width of its column in Excel, in characters.
-    kind, is_optional, choices
-        What it may hold, and whether it may be None; a field of a group, whether it may be where the group is there.
-    shows : set of str
-        Where it is shown.
-    help : str
-        What it means, for the schema and the documentation.
-    flat : callable, optional
-        From its value to the one of items.csv, where that differs.
-    """
-
-    key: str
-    read: Callable[[Any], Any]
-    path: tuple[str, ...] = ()
-    label: str = ""
-    short: str = ""
-    unit: str = ""
-    format: str = ""
-    width: int = 9
-    kind: Kind = "text"
-    is_optional: bool = False
-    choices: tuple[str, ...] = ()
-    shows: frozenset[Where] = FILES
-    help: str = ""
-    flat: Callable[[Any], Any] | None = None
-
-    @property
-    def place(self) -> tuple[str, ...]:
-        """Its place in a record of results.json."""
-        return self.path or (self.key,)
-
-    def heading(self) -> str:
-        """Return its label with the unit in brackets, in the language in use."""
-        return _head(self.label, self.unit)
-
-    def short_heading(self) -> str:
-        """Return its heading in the lists of pages, in the language in use."""
-        return _head(self.short or self.label, self.unit)
-
-    def flatten(self, row: Any) -> Any:
-        """Return its value in items.csv."""
-        value = self.read(row)
-        return value if self.flat is None else self.flat(value)
-
-
-def _head(label: str, unit: str) -> str:
-    return f"{_(label)} [{unit}]" if unit else _(label)
+from assess.route_results import Chance, PieceRef, RoomRow, RouteRow, SegmentRow
+from assess.schedule_results import ScheduleRow, State, WorkRow
+from assess.table import DATA, EVERYWHERE, FILES, Field, Kind, Table, Where
 
 
 def _of_item(key: str, label: str, **more: Any) -> Field:
     """A field of the row as it was assessed, or a column of the workbook that nothing is computed with."""
-    is_computed_with = key in ItemRow.__slots__
-    read = attrgetter(f"item.{key}") if is_computed_with else lambda one: one.item.field(key)  # many: the faster way
-    return Field(key=key, read=read, label=label, **more)
+    source = f"item.{key}" if key in ItemRow.__slots__ else f"item.more.{key}"
+    return Field(key=key, source=source, label=label, **more)
 
 
-def _word(risk: RiskClass | None) -> str | None:
-    return None if risk is None else risk.word
+def _in_group(group: str, name: str, label: str = "", *, source: str = "", **more: Any) -> Field:
+    """A field of a group of a record; `name` may lead into a group within it."""
+    key, path = f"{group}_{name.replace('.', '_')}", (group, *name.split("."))
+    return Field(key=key, source=source or f"{group}.{name}", path=path, label=label, **more)
 
 
-def _simulated(name: str, *, is_ideal: bool = False) -> Callable[[Any], Any]:
-    value = attrgetter(name)
-
-    def read(row: Any) -> Any:
-        found: Simulation | None = row.simulation if isinstance(row, CaseRow) else row.governing.simulation
-        return None if found is None or (is_ideal and found.ideal is None) else value(found)
-
-    return read
-
-
-def _simulation_field(name: str, kind: Kind, label: str, path: tuple[str, ...] = (), **more: Any) -> Field:
-    key = "_".join(("verification", *(path or (name,))))
-    return Field(
-        key=key, read=_simulated(name, is_ideal=path[:1] == ("ideal",)), path=("verification", *(path or (name,))),
-        label=label, kind=kind,
-        **{"shows": DATA, **more},
-    )  # fmt: skip
+def _simulation_field(name: str, kind: Kind, label: str, source: str = "", **more: Any) -> Field:
+    """A field of a case: what simulation found under its motion."""
+    return _in_group(
+        "verification", name, label, source=f"simulation.{source or name}", kind=kind, **{"shows": DATA, **more}
+    )
 
 
 SIMULATION_FIELDS = (
@@ -134,7 +55,7 @@ SIMULATION_FIELDS = (
     _simulation_field("probability", "share", fill("Chance"), help="`overturned` / `draws`."),
     _simulation_field("low", "share", fill("Low"), help="Lower end of the 95 % sampling interval (Wilson)."),
     _simulation_field("high", "share", fill("High"), help="Upper end of it."),
-    _simulation_field("runs", "count", fill("Motions"), ("ideal", "runs"), help="Motions, the same as of the draws."),
+    _simulation_field("ideal.runs", "count", fill("Motions"), help="Motions, the same as of the draws."),
     _simulation_field(
         "if_slower", "share", fill("Chance if slower"), is_optional=True,
         help="Chance in the third of the draws with the least PFV/PFA, where ground motion and building are drawn.",
@@ -143,26 +64,26 @@ SIMULATION_FIELDS = (
         "if_faster", "share", fill("Chance if faster"), is_optional=True, help="Chance in that with the most.",
     ),
     _simulation_field(
-        "ideal.overturned", "count", fill("Overturned"), ("ideal", "overturned"),
+        "ideal.overturned", "count", fill("Overturned"),
         help="Motions under which the piece overturned exactly as given, if exactly this motion recurred.",
     ),
     _simulation_field(
-        "ideal.probability", "share", fill("Chance if exactly this motion recurred"), ("ideal", "probability"),
+        "ideal.probability", "share", fill("Chance if exactly this motion recurred"),
         short=fill("If exactly this motion recurred"), shows=DATA | {"methods"}, help="`overturned` / `runs`.",
     ),
-    _simulation_field("ideal.low", "share", fill("Low"), ("ideal", "low"), help="Lower end of its sampling interval."),
-    _simulation_field("ideal.high", "share", fill("High"), ("ideal", "high"), help="Upper end of it."),
+    _simulation_field("ideal.low", "share", fill("Low"), help="Lower end of its sampling interval."),
+    _simulation_field("ideal.high", "share", fill("High"), help="Upper end of it."),
     _simulation_field(
-        "record_overturned", "flag", fill("Overturns under the record"), ("record", "overturned"),
+        "record.overturned", "flag", fill("Overturns under the record"), "record_overturned",
         short=fill("Under the record"), shows=DATA | {"pieces"},
         help="Whether it overturns under the recorded motion itself.",
     ),
     _simulation_field(
-        "record_max_rotation_ratio", "number", fill("Largest rotation under the record, over the critical angle"),
-        ("record", "max_rotation_ratio"), help="Largest |theta| over the critical angle under the recorded motion.",
+        "record.max_rotation_ratio", "number", fill("Largest rotation under the record, over the critical angle"),
+        "record_max_rotation_ratio", help="Largest |theta| over the critical angle under the recorded motion.",
     ),
 )  # fmt: skip
-"""What simulation found under the governing motion: together null in results.json where it did not run."""
+"""What simulation found under a motion: together null in results.json where it did not run."""
 
 
 _KINDS: Mapping[str, Kind] = {"number": "number", "count": "count", "truth": "flag"}
@@ -177,78 +98,63 @@ def _in_excel(spec: str) -> str:
 
 
 def method_fields(method: MethodInfo) -> Iterator[Field]:
-    """Yield the fields of one method: its value, what stands beside it, its flags."""
-
-    def result(row: Any) -> Any:
-        case: CaseRow = row if isinstance(row, CaseRow) else row.governing
-        return case.methods[method.key]
-
-    def detail(name: str, row: Any) -> Any:
-        return result(row).detail[name]
-
-    path = ("methods", method.key)
+    """Yield the fields of a case by one method: its value, what stands beside it, its flags."""
+    key, path = method.key, ("methods", method.key)
     listed: frozenset[Where] = frozenset(("methods", "pieces") if method.is_live else ("methods",))
     yield Field(
-        key=method.key, read=lambda row: result(row).value, path=(*path, "value"), label=method.title, kind="share",
+        key=key, source=f"methods.{key}.value", path=(*path, "value"), label=method.title, kind="share",
         short=method.short_title, is_optional=True, format="0.0%" if method.kind == "probability" else "0", width=10,
         shows=DATA | listed,
     )  # fmt: skip
     for column in method.columns if method.role != "simulation" else ():  # that has fields of its own
         yield Field(
-            key=f"{method.key}_{column.name}", read=partial(detail, column.name), path=(*path, column.name),
+            key=f"{key}_{column.name}", source=f"methods.{key}.detail.{column.name}", path=(*path, column.name),
             label=column.label, unit=column.unit, format=_in_excel(column.format), kind=_KINDS.get(column.kind, "text"),
             is_optional=True, shows=DATA,
         )  # fmt: skip
-    yield Field(
-        key=f"{method.key}_flags", read=lambda row: list(result(row).flags), path=(*path, "flags"), kind="list",
-        shows=DATA,
-    )  # fmt: skip
+    yield Field(key=f"{key}_flags", source=f"methods.{key}.flags", path=(*path, "flags"), kind="list", shows=DATA)
 
 
-def _adopted(name: str, read: Callable[[Any], Any], label: str, kind: Kind, **more: Any) -> Field:
-    return Field(
-        key=f"adopted_{name}", read=lambda row: read(row.adopted), path=("adopted", name), label=label, kind=kind,
-        **{"shows": DATA, **more},
-    )  # fmt: skip
+def _adopted(name: str, label: str, kind: Kind, source: str = "", **more: Any) -> Field:
+    return _in_group("adopted", name, label, source=f"adopted.{source or name}", kind=kind, **{"shows": DATA, **more})
 
 
 ADOPTED_FIELDS = (
     _adopted(
-        "method", lambda one: one.method, fill("Method"), "text",
+        "method", fill("Method"), "text",
         help='Key of the method whose value it is; "" where the piece cannot rock.',
     ),
     _adopted(
-        "basis", lambda one: one.basis, fill("Basis"), "text", choices=BASES,
+        "basis", fill("Basis"), "text", choices=BASES,
         help="`simulated`; `formula`: not simulated; `unconfirmed`: the formula's class, as the motions of a "
         "simulation that gave a lower one may be too weak; or `cannot rock`: too stocky, or not even the strongest "
         "motion that may be drawn can start it. Counts, lists and sums never mix the first three; the last is low, and "
         "counts with those of the run.",
     ),
     _adopted(
-        "probability", lambda one: one.probability, fill("Chance of overturning"), "share", format="0.0%",
+        "probability", fill("Chance of overturning"), "share", format="0.0%",
         short=fill("Chance"), shows=DATA | {"pieces", "risky"},
     ),
     _adopted(
-        "low", lambda one: one.low, fill("Low"), "share", is_optional=True, format="0.0%",
+        "low", fill("Low"), "share", is_optional=True, format="0.0%",
         help="Lower end of the sampling interval; null where the formula's value is adopted.",
     ),
-    _adopted("high", lambda one: one.high, fill("High"), "share", is_optional=True, format="0.0%"),
-    _adopted("class", lambda one: one.risk.word, fill("Class"), "class", shows=DATA | {"pieces", "risky"}),
-    _adopted("class_upper", lambda one: one.upper.word, fill("Class, upper estimate"), "class"),
+    _adopted("high", fill("High"), "share", is_optional=True, format="0.0%"),
+    _adopted("class", fill("Class"), "class", "risk", shows=DATA | {"pieces", "risky"}),
+    _adopted("class_upper", fill("Class, upper estimate"), "class", "upper"),
     _adopted(
-        "lowered_from", lambda one: _word(one.lowered_from), fill("Lowered from"), "class", is_optional=True,
+        "lowered_from", fill("Lowered from"), "class", is_optional=True,
         help="Class by formula where simulation lowered it.",
     ),
     _adopted(
-        "flags", lambda one: list(one.flags), fill("Flags"), "list", short=fill("Marks"), shows=DATA | {"pieces"},
+        "flags", fill("Flags"), "list", short=fill("Marks"), shows=DATA | {"pieces"},
     ),
 )  # fmt: skip
 
 FORMULA_CLASSES = (
     Field(
         key="class_formula",
-        read=lambda one: one.formula_class.word,
-        path=("class_formula",),
+        source="formula_class",
         label=fill("Class (formula)"),
         kind="class",
         shows=DATA | {"pieces", "risky"},
@@ -256,8 +162,7 @@ FORMULA_CLASSES = (
     ),
     Field(
         key="class_or",
-        read=lambda one: one.paper_class.word,
-        path=("class_or",),
+        source="paper_class",
         label=fill("Class (OR)"),
         kind="class",
         shows=DATA | {"pieces", "risky"},
@@ -268,11 +173,7 @@ FORMULA_CLASSES = (
 
 
 def _annual(name: str, label: str, kind: Kind, **more: Any) -> Field:
-    read = attrgetter(name)
-    return Field(
-        key=f"annual_{name}", read=lambda one: None if one.item.annual is None else read(one.item.annual),
-        path=("annual", name), label=label, kind=kind, **{"shows": DATA, **more},
-    )  # fmt: skip
+    return _in_group("annual", name, label, source=f"item.annual.{name}", kind=kind, **{"shows": DATA, **more})
 
 
 ANNUAL_FIELDS = (
@@ -297,14 +198,7 @@ ANNUAL_FIELDS = (
 
 
 def _sliding(name: str, label: str, **more: Any) -> Field:
-    def read(row: Any) -> Any:
-        found = row.governing.sliding
-        return None if found is None else getattr(found, name)
-
-    return Field(
-        key=f"sliding_{name}", read=read, path=("sliding", name), label=label, is_optional=True,
-        **more,
-    )  # fmt: skip
+    return _in_group("sliding", name, label, source=f"governing.sliding.{name}", is_optional=True, **more)
 
 
 SLIDING_FIELDS = (
@@ -349,7 +243,7 @@ PIECE_FIELDS = (
         help="Height of the centre of gravity, as a share of the piece's height.",
     ),
     Field(
-        key="axis", read=attrgetter("governing.motion.axis"), label=fill("Axis"), choices=AXES, width=6,
+        key="axis", source="governing.motion.axis", label=fill("Axis"), choices=AXES, width=6,
         shows=EVERYWHERE, help="The axis that governs.",
     ),
     _of_item(
@@ -373,43 +267,41 @@ PIECE_FIELDS = (
         help="Direction in which a piece against a wall falls, anticlockwise from X; null: it may fall either way.",
     ),
     Field(
-        key="one_sided_chance", read=attrgetter("governing.one_sided"), label=fill("Chance with a wall at its back"),
+        key="one_sided_chance", source="governing.one_sided", label=fill("Chance with a wall at its back"),
         kind="share", format="0.0%", is_optional=True, width=10,
         help="Simulated beside the adopted chance, which it does not change: turning away from the wall alone.",
     ),
     Field(
-        key="importance", read=lambda one: one.item.importance or None, label=fill("Importance"), is_optional=True,
+        key="importance", source="item.importance", is_blank_unknown=True, label=fill("Importance"), is_optional=True,
         choices=IMPORTANCE, width=13,
     ),
     Field(
-        key="pfa_g", read=attrgetter("governing.motion.pfa_g"), label=fill("PFA used"), short=fill("PFA"), unit="g",
+        key="pfa_g", source="governing.motion.pfa_g", label=fill("PFA used"), short=fill("PFA"), unit="g",
         kind="number", format="0.000", shows=EVERYWHERE | {"methods"}, help="Of the motion that governs.",
     ),
     Field(
-        key="pfv_cm_s", read=attrgetter("governing.motion.pfv_cm_s"), label=fill("PFV used"), short=fill("PFV"),
+        key="pfv_cm_s", source="governing.motion.pfv_cm_s", label=fill("PFV used"), short=fill("PFV"),
         unit="cm/s", kind="number", format="0.0", is_optional=True, shows=FILES | {"methods"},
     ),
     Field(
-        key="pfa_source", read=attrgetter("governing.motion.label"), shows=DATA,
+        key="pfa_source", source="governing.motion.label", shows=DATA,
         help="The record, `given`, the code of a profile (with an assumed intensity: `Shaking MMI VII, ASCE 7-22`), "
         "or the floors that it is interpolated between.",
     ),
 )  # fmt: skip
 
 
-def _of_anchor(key: str, label: str, **more: Any) -> Field:
-    return Field(
-        key=key, read=attrgetter(f"item.anchor.{key}"), path=("anchor", key), label=label, is_optional=True,
-        **{"unit": "kN", "kind": "number", **more},
-    )  # fmt: skip
+def _of_anchor(key: str, label: str = "", **more: Any) -> Field:
+    given = {"unit": "kN", "kind": "number", "is_optional": True, **more}
+    return Field(key=key, source=f"item.anchor.{key}", path=("anchor", key), label=label, **given)
 
 
 ANCHOR_FIELDS = (
     _of_item("weight_kg", fill("Weight"), unit="kg", kind="number", is_optional=True),
     _of_anchor("weight_kn", fill("Weight with contents")),
-    Field(
-        key="weight_source", read=attrgetter("item.anchor.weight_source"), path=("anchor", "weight_source"),
-        label=fill("Source of the weight (estimate: assumed)"), choices=("given", "type", "estimate"),
+    _of_anchor(
+        "weight_source", fill("Source of the weight (estimate: assumed)"), unit="", kind="text", is_optional=False,
+        choices=("given", "type", "estimate"),
     ),
     _of_anchor("bracket_height_cm", fill("Bracket height"), unit="cm"),
     _of_anchor("bracket_capacity_kn", fill("Bracket capacity"), help="Tension that its bracket holds."),
@@ -427,16 +319,15 @@ ANCHOR_FIELDS = (
         help="Coefficient below which the base of the held piece slides at PFA.",
     ),
     *(
-        Field(key=key, read=attrgetter(f"item.anchor.{key}"), path=("anchor", key), kind="flag", shows=DATA, help=text)
+        _of_anchor(key, unit="", kind="flag", is_optional=False, shows=DATA, help=text)
         for key, text in (
             ("is_height_assumed", "Whether the workbook leaves the height of its bracket blank: 0.9 of its own."),
             ("is_per_metre", "Whether weight and forces are those of one metre of it, as its width is not known."),
         )
     ),
     *(
-        Field(
-            key=key, read=attrgetter(f"item.anchor.{key}"), path=("anchor", key), label=label, kind="flag",
-            is_optional=True, shows=DATA,
+        _of_anchor(
+            key, label, unit="", kind="flag", shows=DATA,
             help="Null where the capacity is not known, and where it carries the force of one metre of a piece whose "
             "width is not known.",
         )
@@ -446,7 +337,7 @@ ANCHOR_FIELDS = (
         )
     ),
     Field(
-        key="counts_as_anchored", read=attrgetter("item.is_held"), path=("anchor", "counts_as_anchored"),
+        key="counts_as_anchored", source="item.is_held", path=("anchor", "counts_as_anchored"),
         label=fill("Counts as anchored"), kind="flag", shows=DATA,
         help="It says so and its bracket is not known to fail, or it is partly anchored by one that holds at 84 %.",
     ),
@@ -454,63 +345,52 @@ ANCHOR_FIELDS = (
 """The weight of a piece, and what its bracket has to carry; all of it is screening, not design."""
 
 
-def _axis_record(case: CaseRow, methods: Sequence[MethodInfo]) -> dict[str, Any]:
-    return {
-        "axis": case.motion.axis,
-        "source": case.motion.label,
-        "pfa_g": case.motion.pfa_g,
-        "pfv_cm_s": case.motion.pfv_cm_s,
-        "methods": {one.key: case.methods[one.key].value for one in methods},
-        "verification": _SIMULATION.nest(case)["verification"] if case.simulation else None,
-    }
+def _axis_fields(methods: Sequence[MethodInfo]) -> tuple[Field, ...]:
+    """Return the fields of a motion that an item was evaluated under."""
+    return (
+        Field(key="axis", source="motion.axis"),
+        Field(key="source", source="motion.label"),
+        Field(key="pfa_g", source="motion.pfa_g", kind="number"),
+        Field(key="pfv_cm_s", source="motion.pfv_cm_s", kind="number"),
+        *(
+            Field(key=one.key, source=f"methods.{one.key}.value", path=("methods", one.key), kind="share")
+            for one in methods
+        ),
+        *SIMULATION_FIELDS,
+    )
 
 
 def _say_axes(axes: Iterable[Mapping[str, Any]]) -> list[str]:
     return [f"{axis['axis']}: {axis['source']} {axis['pfa_g']} g" for axis in axes]
 
 
-def item_fields(results: Results) -> tuple[Field, ...]:
-    """Return the fields of a row of furniture, in the order of items.csv."""
-    return arrange_item_fields(results.methods, results.provenance.sheets.get("Items", "Items"))
-
-
-def arrange_item_fields(methods: Sequence[MethodInfo], sheet: str) -> tuple[Field, ...]:
-    """Return the fields of a row of furniture by the methods of the run, and the workbook's name of the sheet Items."""
-    axes = Field(
-        key="axes", read=lambda one: [_axis_record(case, methods) for case in one.cases], kind="records",
-        shows=DATA, flat=_say_axes, help="Every motion that the item was evaluated under.",
-    )  # fmt: skip
+def item_fields(methods: Sequence[MethodInfo]) -> tuple[Field, ...]:
+    """Return the fields of a row of furniture by the methods of the run, in the order of items.csv."""
+    of_case = (*(field for method in methods for field in method_fields(method)), *SIMULATION_FIELDS)
     return (
         *PIECE_FIELDS,
-        *(field for method in methods for field in method_fields(method)),
-        *SIMULATION_FIELDS,
+        *(replace(one, source=f"governing.{one.source}") for one in of_case),
         *ADOPTED_FIELDS,
         *FORMULA_CLASSES,
         *ANNUAL_FIELDS,
-        axes,
-        _of_item("anchored", fill("Anchored"), choices=ANCHORED, width=10),
-        Field(key="route", read=lambda one: one.item.route or None, label=fill("Route"), width=24, is_optional=True),
         Field(
-            key="segment", read=lambda one: one.item.segment or None, label=fill("Segment"), width=24, is_optional=True
+            key="axes", source="cases", kind="records", records=_axis_fields(methods), shows=DATA, flat=_say_axes,
+            help="Every motion that the item was evaluated under.",
+        ),
+        _of_item("anchored", fill("Anchored"), choices=ANCHORED, width=10),
+        *(
+            _of_item(key, label, width=24, is_optional=True, is_blank_unknown=True)
+            for key, label in (("route", fill("Route")), ("segment", fill("Segment")))
         ),
         *ANCHOR_FIELDS,
         _of_item("edge_distance_m", fill("Edge distance"), unit="m", kind="number", is_optional=True, shows=DATA),
         _of_item("notes", fill("Notes"), width=40),
-        Field(
-            key="assumed", read=lambda one: list(one.item.assumed), label=fill("Assumed"), kind="list", width=28,
+        _of_item(
+            "assumed", fill("Assumed"), kind="list", width=28,
             help="Fields that were blank in the workbook and were filled in.",
         ),
-        *_origin_fields(sheet),
-    )  # fmt: skip
-
-
-def _origin_fields(sheet: str) -> tuple[Field, ...]:
-    """Return where a row of furniture and its sizes come from; `sheet` is the workbook's name of the sheet Items."""
-    return (
-        Field(key="source_sheet", read=lambda one: sheet, path=("source", "sheet"), shows=DATA),
-        Field(
-            key="source_row", read=attrgetter("item.row"), path=("source", "row"), kind="count", shows=DATA,
-        ),
+        Field(key="source_sheet", source="sheet", path=("source", "sheet"), shows=DATA),
+        Field(key="source_row", source="item.row", path=("source", "row"), kind="count", shows=DATA),
         _of_item(
             "source_id", fill("Source ID"), is_optional=True, shows=DATA,
             help="Its identifier in the building model or handover file that it was imported from.",
@@ -522,20 +402,17 @@ def _origin_fields(sheet: str) -> tuple[Field, ...]:
     )  # fmt: skip
 
 
-def case_fields(results: Results) -> tuple[Field, ...]:
+def case_fields(methods: Sequence[MethodInfo]) -> tuple[Field, ...]:
     """Return the fields of a piece under one motion."""
-    item = results.cases_table.item.tolist()
-    names = [results.item_rows[index].item for index in item]
-    governing = {one.governing for one in results.item_rows}
     return (
-        Field(key="item", read=lambda case: names[case.index]),
-        Field(key="floor", read=lambda case: case.motion.floor),
-        Field(key="axis", read=lambda case: case.motion.axis, choices=AXES),
-        Field(key="source", read=lambda case: case.motion.label),
-        Field(key="pfa_g", read=lambda case: case.motion.pfa_g, kind="number"),
-        Field(key="pfv_cm_s", read=lambda case: case.motion.pfv_cm_s, kind="number", is_optional=True),
-        Field(key="governs", read=lambda case: case.index in governing, kind="flag"),
-        *(field for method in results.methods for field in method_fields(method)),
+        Field(key="item", source="item.item"),
+        Field(key="floor", source="motion.floor"),
+        Field(key="axis", source="motion.axis", choices=AXES),
+        Field(key="source", source="motion.label"),
+        Field(key="pfa_g", source="motion.pfa_g", kind="number"),
+        Field(key="pfv_cm_s", source="motion.pfv_cm_s", kind="number", is_optional=True),
+        Field(key="governs", kind="flag"),
+        *(field for method in methods for field in method_fields(method)),
         *SIMULATION_FIELDS,
         *ADOPTED_FIELDS,
     )
@@ -543,87 +420,55 @@ def case_fields(results: Results) -> tuple[Field, ...]:
 
 def _of_motion(key: str, kind: Kind = "text", **more: Any) -> Field:
     """A field of a floor's motion that belongs to one kind of source: None for the others."""
-
-    def read(row: MotionRow) -> Any:
-        value = getattr(row, key)
-        return None if value == "" else value
-
-    return Field(key=key, read=read, kind=kind, is_optional=True, **more)
+    return Field(key=key, kind=kind, is_optional=True, is_blank_unknown=True, **more)
 
 
 def _of_record(key: str, label: str = "") -> Field:
     """What the file of a record says: None where there is no record."""
-
-    def read(row: MotionRow) -> Any:
-        return getattr(row, key) if row.has_record else None
-
-    return Field(key=key, read=read, label=label, is_optional=True)
+    return Field(key=key, source=f"recorded.{key}", label=label, is_optional=True)
 
 
 def _fit(name: str, label: str, format: str, unit: str = "", **more: Any) -> Field:  # noqa: A002
     """How the generated motions meet their target: None where none were generated."""
-
-    def read(row: MotionRow) -> Any:
-        fit = row.ensemble.fit if row.ensemble else None
-        return None if fit is None else getattr(fit, name)
-
-    return Field(
-        key=f"ensemble_fit_{name}", read=read, path=("ensemble", "fit", name), kind="number", label=label, unit=unit,
-        format=format, **more,
-    )  # fmt: skip
+    return _in_group("ensemble", f"fit.{name}", label, kind="number", unit=unit, format=format, **more)
 
 
-def _ensemble(name: str, kind: Kind, **more: Any) -> Field:
-    return Field(
-        key=f"ensemble_{name}", read=lambda row: None if row.ensemble is None else getattr(row.ensemble, name),
-        path=("ensemble", name), kind=kind, **more,
-    )  # fmt: skip
-
-
-def _signs(row: MotionRow) -> list[int] | None:
-    return None if row.ensemble is None or row.ensemble.signs is None else list(row.ensemble.signs)
-
-
-def _bands(row: MotionRow) -> list[float] | None:
-    return None if row.ensemble is None or row.ensemble.bands is None else list(row.ensemble.bands)
-
-
-def _profile(name: str) -> Callable[[MotionRow], Any]:
-    return lambda row: None if row.profile is None else getattr(row.profile, name)
+def _none_is_empty(value: list[Any] | None) -> list[Any]:
+    return value or []
 
 
 MOTION_FIELDS = (
-    Field(key="axis", read=lambda row: row.axis, label=fill("Axis"), choices=AXES),
-    Field(key="source", read=lambda row: row.source, choices=("record", "given", "interpolated", "profile", "beam")),
+    Field(key="axis", label=fill("Axis"), choices=AXES),
+    Field(key="source", choices=("record", "given", "interpolated", "profile", "beam")),
     Field(
-        key="pfa_g", read=lambda row: row.pfa_g, kind="number", label=fill("PFA"), unit="g", format="0.000",
+        key="pfa_g", kind="number", label=fill("PFA"), unit="g", format="0.000",
         help="After treatment.",
     ),
     Field(
-        key="pfv_cm_s", read=lambda row: row.pfv_cm_s, kind="number", label=fill("PFV"), unit="cm/s", format="0.0",
+        key="pfv_cm_s", kind="number", label=fill("PFV"), unit="cm/s", format="0.0",
         is_optional=True,
     ),
-    Field(key="flags", read=lambda row: list(row.flags), kind="list"),
+    Field(key="flags", kind="list"),
     Field(
-        key="between", read=lambda row: list(row.between), kind="list",
+        key="between", kind="list",
         help="The floors below and above that it is interpolated between.",
     ),
     Field(
-        key="profile", read=_profile("key"), is_optional=True, help="The code whose design profile gave the PFA.",
+        key="profile", source="profile.key", is_optional=True, help="The code whose design profile gave the PFA.",
     ),
     Field(
-        key="profile_verified", read=_profile("verified"), kind="flag", is_optional=True,
+        key="profile_verified", source="profile.verified", kind="flag", is_optional=True,
         help="Whether the profile agrees with public implementations of the code.",
     ),
     _of_motion("clause"),
     _of_motion("height_ratio", "number", label=fill("z/h"), format="0.000", help="Its height over the roof's."),
     _of_motion("amplification", "number", label=fill("Amplification"), format="0.000", help="PFA over ground PGA."),
     Field(
-        key="dispersion", read=lambda row: row.dispersion, kind="number", label=fill("Motion uncertainty"),
+        key="dispersion", kind="number", label=fill("Motion uncertainty"),
         format="0.00", help="Standard deviation of ln amplitude that is drawn, from one earthquake to the next.",
     ),
     Field(
-        key="pfv_follows", read=lambda row: row.pfv_follows, kind="flag",
+        key="pfv_follows", kind="flag",
         help="Whether PFV is not known by itself and follows PFA.",
     ),
     _of_motion("record", help="The record as the workbook names it."),
@@ -640,27 +485,26 @@ MOTION_FIELDS = (
     _of_motion("corrected", "flag"),
     _of_motion("time_step_s", "number"),
     _of_motion("samples", "count"),
-    Field(key="notes", read=lambda row: list(row.notes), kind="list"),
-    _ensemble("motions", "count", label=fill("Motions"), format="#,##0"),
-    _ensemble(
-        "assumed_motion", "flag", help="Whether no record is known, so that ground motion and building are drawn.",
+    Field(key="notes", kind="list"),
+    _in_group("ensemble", "motions", kind="count", label=fill("Motions"), format="#,##0"),
+    _in_group(
+        "ensemble", "assumed_motion", kind="flag",
+        help="Whether no record is known, so that ground motion and building are drawn.",
     ),
-    _ensemble(
-        "unknown_building", "flag",
+    _in_group(
+        "ensemble", "unknown_building", kind="flag",
         help="Whether neither T1, Height, Storeys nor an Elevation is known, so that no class is confirmed.",
     ),
-    _ensemble(
-        "weak_motions", "flag",
+    _in_group(
+        "ensemble", "weak_motions", kind="flag",
         help="Whether the motions are weaker than the floor's, so that they may not lower a class.",
     ),
-    Field(
-        key="ensemble_bands", read=_bands, path=("ensemble", "bands"), kind="factors", is_optional=True,
-        flat=lambda value: value or [],
+    _in_group(
+        "ensemble", "bands", kind="factors", is_optional=True, flat=_none_is_empty,
         help="Factors above and below PFA/(2 pi PFV) by which drawn motions were brought to the floor's peaks.",
     ),
-    Field(
-        key="ensemble_signs", read=_signs, path=("ensemble", "signs"), kind="signs", is_optional=True,
-        flat=lambda value: value or [],
+    _in_group(
+        "ensemble", "signs", kind="signs", is_optional=True, flat=_none_is_empty,
         help="Whether the motions move as the phases that all floors share (1) or against them (-1), by octave from "
         "0.1 to 25.6 Hz: as the records of two floors or more of one earthquake on one clock do; null where no such "
         "records are known.",
@@ -678,72 +522,303 @@ MOTION_FIELDS = (
 """The fields of a floor's motion, as they stand in results.json under ``floors[].demands[]``."""
 
 
-def floor_fields(results: Results) -> tuple[Field, ...]:
-    """Return the fields of a row of the table of floors: the floor, and one of its motions."""
-    by_name = {one.floor: one for one in results.floor_rows}
-    return (
-        Field(key="floor", read=lambda row: row.floor),
-        Field(key="name", read=lambda row: by_name[row.floor].name),
-        Field(key="elevation_m", read=lambda row: by_name[row.floor].elevation_m, kind="number", is_optional=True),
-        *MOTION_FIELDS,
-    )
+FLOOR_FIELDS = (
+    Field(key="floor", source="floor.floor"),
+    Field(key="name", source="floor.name"),
+    Field(key="elevation_m", source="floor.elevation_m", kind="number", is_optional=True),
+    *(replace(one, source=f"motion.{one.source}") for one in MOTION_FIELDS),
+)
+"""The fields of a row of the table of floors: the floor, and one of its motions."""
 
 
-# ---------------------------------------------------------------- records and tables
+# ---------------------------------------------------------------- the schedule
 
 
-_GROUPS = ("verification", "ensemble", "sliding", "annual", "anchor")
-"""Groups of fields that are None together where nothing in them is known, such as where no simulation ran."""
+def _work(key: str, kind: Kind = "text", label: str = "", **more: Any) -> Field:
+    given = {"format": {"number": "0.00", "count": "#,##0"}.get(kind, ""), **more}
+    return Field(key=key, kind=kind, label=label, **given)
 
 
-class Shape:
-    """How rows become records of results.json and rows of a table: its fields, arranged once for many rows."""
-
-    def __init__(self, chosen: Iterable[Field]) -> None:
-        self.fields = tuple(chosen)
-        self._flat = [(one.key, one.read, one.flat) for one in self.fields]
-        self._tree: dict[str, Any] = {}
-        for one in self.fields:
-            inner = self._tree
-            for name in one.place[:-1]:
-                inner = inner.setdefault(name, {})
-            inner[one.place[-1]] = one.read
-
-    def nest(self, row: Any) -> dict[str, Any]:
-        """Return a row as a record of results.json."""
-        return _nest(row, self._tree)
-
-    def flatten(self, row: Any) -> dict[str, Any]:
-        """Return a row of items.csv or of a table."""
-        return {key: read(row) if flat is None else flat(read(row)) for key, read, flat in self._flat}
+def _force(name: str, label: str, short: str, **more: Any) -> Field:
+    return _work(name, "number", label, short=short, unit="kN", width=9, **more)
 
 
-def _nest(row: Any, tree: Mapping[str, Any]) -> dict[str, Any]:
-    record = {}
-    for name, read in tree.items():
-        if type(read) is dict:
-            inner = _nest(row, read)
-            record[name] = _none_if_blank(inner) if name in _GROUPS else inner
+WORK_FIELDS = (
+    _work("floor", label=fill("Floor"), width=8),
+    _work("room", label=fill("Room"), width=16),
+    _work("items", "list", fill("Items"), width=24, help="The most urgent first."),
+    _work("pieces", "count", fill("Pieces"), width=7, help="How many pieces they are, quantities counted."),
+    _work(
+        "detail", label=fill("Detail"), width=20, choices=tuple(DETAILS),
+        help="A generic way to fix them: screening, not design.",
+    ),
+    _force(
+        "tension_kn", fill("Tension at PFA"), fill("T at PFA"),
+        help="What the fixings of each piece carry together: at the bracket, or, where it is fixed at its base, at the "
+        "far edge of the base, on the lever of its breadth.",
+    ),
+    _force("tension_high_kn", fill("Tension at 84 % of PFA"), fill("T at 84 %")),
+    _force(
+        "tension_code_kn", fill("Tension by the code"), fill("T by code"), is_optional=True,
+        help="For F_p of ASCE 7-22; null where neither SDS nor Ground PGA is known.",
+    ),
+    _force("shear_kn", fill("Shear at the base"), fill("Shear"), help="Of each piece at PFA."),
+    _work(
+        "fixings", "count", fill("Fixings each"), width=8,
+        help="Of one piece, by the larger of the tensions at 84 % and by the code over the printed capacity of one.",
+    ),
+    _work(
+        "fixings_are_least", "flag", source="is_least",
+        help="Whether they are the least, not a result: no capacity is printed.",
+    ),
+    _work("weights_assumed", "count", help="Pieces whose weight is an estimate."),
+    _work("heights_assumed", "count", help="Pieces whose bracket height is assumed."),
+    _work("is_per_metre", "flag", help="Whether forces are those of one metre of a piece, as its width is not known."),
+    _work(
+        "unit_cost", "number", fill("Unit cost"), width=10, is_optional=True, help="Of one piece, of the sheet Costs.",
+    ),
+    _work("cost", "number", fill("Cost"), width=10, is_optional=True),
+    _work("cost_source", label=fill("Source of the cost"), width=24),
+)  # fmt: skip
+"""Alike pieces of one room that are fixed in the same way."""
+
+ENTRY_FIELDS = (
+    _work("place", "count", fill("No."), width=5, help="Its place in the order of urgency, from 1."),
+    _work("floor", help="Of its most urgent piece."),
+    _work("room"),
+    _work("pieces", "count"),
+    _work("only_together", "flag", source="is_together", help="Whether fixing some of them opens no route."),
+    _work("falls_avoided", "number", fill("Falls avoided"), format="0.000", help="Expected number, if anchors hold."),
+    _work(
+        "falls_left", "number", fill("Falls left"), format="0.000",
+        help="Expected number once it and those before it are fixed.",
+    ),
+    _work("cost", "number", is_optional=True, help="null where the sheet Costs leaves any part of it open."),
+    _work("works", "records", records=WORK_FIELDS, help="What is to be done."),
+)  # fmt: skip
+"""One entry of the schedule."""
+
+STATE_FIELDS = (
+    _work("falls", "number", fill("Expected falls"), help="Of free-standing pieces of the run's basis."),
+    _work("falls_low", "number", is_optional=True, help="Falls that 5 % of the draws do not exceed."),
+    _work("falls_high", "number", is_optional=True, help="Falls that 95 % of the draws do not exceed."),
+    *(
+        Field(
+            key=f"pieces_{risk.word.replace(' ', '_')}", path=("pieces", risk.word.replace(" ", "_")), kind="count",
+            source=f"classes.{int(risk)}",
+        )
+        for risk in RiskClass
+    ),
+    _work(
+        "pieces_apart", "count", fill("Unconfirmed, or by formula only"), path=("pieces", "apart"),
+        source="apart", help="Unconfirmed, or by formula only where others were simulated.",
+    ),
+    _work("pieces_anchored", "count", fill("Anchored"), path=("pieces", "anchored"), source="anchored"),
+    _work("routes", "counts", help="How many there are by their state."),
+    _work("blocked_routes_expected", "number", fill("Blocked routes, expected"), source="blocked_routes"),
+    _work("cut_off_rooms_expected", "number", fill("Rooms that lose every exit, expected"),
+        source="cut_off_rooms"),
+    _work("rooms_at_risk", "list", fill("Rooms that may lose every exit"),
+        help="Their chance of losing every exit is at least the chosen risk, or not known."),
+    _work("unknown_routes", "count", fill("Left out of these averages: routes not known"),
+        help="Routes that blocked_routes_expected leaves out."),
+    _work("unknown_rooms", "count", fill("Left out of these averages: rooms not known"),
+        help="Rooms that cut_off_rooms_expected leaves out."),
+)  # fmt: skip
+"""What is to be expected of the building."""
+
+
+def schedule_fields(row: type) -> Mapping[str, Field]:
+    """Return the fields of one of the rows of `assess.schedule_results` by their keys."""
+    return {one.key: one for one in {WorkRow: WORK_FIELDS, ScheduleRow: ENTRY_FIELDS, State: STATE_FIELDS}[row]}
+
+
+# ---------------------------------------------------------------- evacuation routes
+
+
+_LABELS: Mapping[str, tuple[str, str]] = {
+    "route": (fill("Route"), ""),
+    "segment": (fill("Segment"), ""),
+    "floor": (fill("Floor"), ""),
+    "floors": (fill("Floors"), fill("Floor")),
+    "from_place": (fill("From"), fill("From – to")),
+    "to_place": (fill("To"), ""),
+    "room": (fill("Room"), ""),
+    "occupants": (fill("Occupants"), ""),
+    "notes": (fill("Notes"), ""),
+    "flags": (fill("Remarks"), fill("Marks")),
+    "segment_indices": (fill("Segments"), ""),
+    "unevaluated_segments": (fill("Segments not evaluated"), ""),
+    "unevaluated_indices": (fill("Segments not evaluated, taken as open"), ""),
+    # widths
+    "clear_width_used_m": (fill("Clear width"), fill("Clear")),
+    "required_width_used_m": (fill("Required width"), fill("Required")),
+    "standing_width_m": (fill("Width now"), ""),
+    "least_width_m": (fill("Width if all fall"), fill("All fallen")),
+    "needed_width_m": (fill("Width that they need"), fill("Occupants need; marks")),
+    "insufficient_for_occupants": (fill("Insufficient for occupants"), ""),
+    "insufficient_after_falls_probability": (fill("Chance too narrow for occupants"), ""),
+    "other_rooms": (fill("Not counted, in another room"), ""),
+    # state and chances of a segment or route
+    "state": (fill("State"), ""),
+    "blocked_probability": (fill("Chance blocked"), fill("Blocked")),
+    "blocked_low": (fill("Interval low"), ""),
+    "blocked_high": (fill("Interval high"), ""),
+    "blocked_independent": (fill("Blocked, all independent"), fill("Bounds")),
+    "blocked_correlated": (fill("Blocked, fully correlated"), ""),
+    "blocked_pieces": (fill("Pieces"), ""),
+    "blocked_unverified": (fill("By the formula alone"), ""),
+    "blocked_unconfirmed": (fill("Unconfirmed pieces"), ""),
+    "blocked_if_unconfirmed_fall_probability": (fill("Blocked if unconfirmed pieces fall"), ""),
+    "missing": (fill("To fill in"), ""),
+    "missing_after": (fill("To fill in once these are done"), ""),
+    "decisive_segment": (fill("Decisive segment"), ""),
+    "from_places": (fill("From"), ""),
+    "to_places": (fill("To"), ""),
+    "fixes": (fill("Pieces to anchor or move"), ""),
+    "blocked_is_joint": (fill("Basis"), fill("Bounds; rests on")),
+    "blocked_or_reduced_probability": (fill("Chance narrowed or blocked"), fill("Narrowed or blocked")),
+    "blocked_if_anchors_fail_probability": (fill("Blocked if anchors fail"), ""),
+    "under_record": (fill("Under the record"), ""),
+    "most_likely_piece": (fill("Most likely piece"), fill("Likeliest piece")),
+    # rooms
+    "exits": (fill("Exits that can be reached"), fill("Exits")),
+    "loses_every_exit_probability": (fill("Chance of losing every exit"), fill("Loses all exits")),
+    "loses_every_exit_low": (fill("Interval low"), ""),
+    "loses_every_exit_high": (fill("Interval high"), ""),
+    "loses_every_exit_independent": (fill("All independent"), ""),
+    "loses_every_exit_correlated": (fill("Fully correlated"), ""),
+    "loses_every_exit_is_joint": (fill("Basis"), ""),
+    "loses_if_unconfirmed_fall_probability": (fill("If unconfirmed pieces fall"), ""),
+    "loses_if_anchors_fail_probability": (fill("If anchors fail"), ""),
+    "ways": (fill("Ways out"), fill("Ways out and the chance that each is blocked")),
+    # floors
+    "segments": (fill("Segments"), ""),
+    "blocked_segments_expected": (fill("Blocked segments expected"), fill("Expected blocked")),
+    "unknown_segments": (fill("Segments not known"), fill("Not known")),
+    "routes": (fill("Routes"), ""),
+    "blocked_routes_expected": (fill("Blocked routes expected"), fill("Expected blocked")),
+    "unknown_routes": (fill("Routes not known"), fill("Not known")),
+    "rooms": (fill("Rooms"), ""),
+    "cut_off_rooms_expected": (fill("Rooms expected to lose every exit"), fill("Expected cut off")),
+    "unknown_rooms": (fill("Rooms not known"), fill("Not known")),
+    "any_room_cut_off_probability": (fill("Chance that any room does"), fill("Any room loses all exits")),
+    "any_room_cut_off_low": (fill("Interval low"), ""),
+    "any_room_cut_off_high": (fill("Interval high"), ""),
+    "uncounted_pieces": (fill("Pieces not counted"), fill("Left out")),
+    # a piece beside a segment
+    "item": (fill("Item"), fill("Piece")),
+    "by_plan": (fill("Known by"), ""),
+    "distance_m": (fill("From the edge of the route"), fill("Distance")),
+    "reach_m": (fill("Reaches into it"), fill("Reach")),
+    "left_m": (fill("Width left beside it alone"), fill("Leaves")),
+    "blocks_alone": (fill("Blocks alone"), ""),
+    "falls_while_blocked": (fill("Falls and blocked"), ""),
+}  # fmt: skip
+"""Label, and a shorter one for the tables of pages, by the column of a notebook's table."""
+
+_KINDS_OF_TYPES: Mapping[Any, Kind] = {float: "number", int: "count", bool: "flag"}
+_FORMATS: Mapping[str, str] = {"share": "0.0%", "number": "0.00", "count": "#,##0"}
+_SHARES = frozenset(("falls_while_blocked", "gain", "left"))
+
+
+@cache
+def route_fields(row: type) -> Mapping[str, Field]:
+    """Return the fields of one of the rows of `assess.route_results` by their keys."""
+    return {one.key: one for one in row_fields(row)}
+
+
+def row_fields(row: Any, path: tuple[str, ...] = ()) -> Iterator[Field]:
+    """Yield the fields of the rows of a dataclass: chances as columns, pieces and ways by their names."""
+    hints = get_type_hints(row)
+    for one in fields(row):
+        hint, names = hints[one.name], (*path, one.name)
+        hint = next((part for part in get_args(hint) if NoneType in get_args(hint)), hint)
+        if hint is PieceRef:
+            yield _field(names, (*names, "item"))
+        elif is_dataclass(hint):
+            yield from row_fields(hint, names)
+        elif get_origin(hint) is tuple:
+            yield _field(names, names, "list")
         else:
-            record[name] = read(row)
-    return record
+            is_share = hint is float and (row is Chance or one.name in _SHARES)
+            yield _field(names, names, "share" if is_share else _KINDS_OF_TYPES.get(hint, "text"))
 
 
-def _none_if_blank(group: dict[str, Any]) -> dict[str, Any] | None:
-    """Return a group, or None where nothing in it is known, nor in the groups within it."""
-    inner = {name: _none_if_blank(one) if isinstance(one, dict) else one for name, one in group.items()}
-    return inner if any(value is not None for value in inner.values()) else None
+def _field(names: Sequence[str], source: Sequence[str], kind: Kind = "text") -> Field:
+    key = "_".join(names)
+    label, short = _LABELS.get(key, ("", ""))
+    return Field(
+        key=key, source=".".join(source), label=label, short=short, kind=kind,
+        unit="m" if key.endswith("_m") else "", format=_FORMATS.get(kind, ""),
+        flat=_name_each if kind == "list" else None,
+    )  # fmt: skip
 
 
-_SIMULATION = Shape(SIMULATION_FIELDS)
+def _name_each(values: Sequence[Any]) -> list[Any]:
+    return [getattr(one, "item", getattr(one, "end", getattr(one, "what", one))) for one in values]
 
 
-def unnest(record: Mapping[str, Any], chosen: Iterable[Field]) -> dict[str, Any]:
-    """Return a row of a table from a record of results.json: what `flatten` gives for the row that it was made from."""
-    row = {}
-    for field in chosen:
-        value: Any = record
-        for name in field.place:
-            value = value.get(name) if isinstance(value, Mapping) else None
-        row[field.key] = value if field.flat is None else field.flat(value)
-    return row
+# ---------------------------------------------------------------- tables
+
+
+def build_table(results: Results, name: str) -> Table:
+    """Return a table: items, cases, floors, segments, routes, rooms, schedule (its entries) or problems."""
+    routes, methods = results.route_tables, results.methods
+    if name in ("items", "cases"):
+        fields = item_fields(methods) if name == "items" else case_fields(methods)
+        return Table(fields, lambda: (part if name == "items" else part.cases for part in results.parts()))
+    floors = {one.floor: one for one in results.floor_rows}
+    tables: Mapping[str, tuple[Iterable[Field], Sequence[Any]]] = {
+        "floors": (FLOOR_FIELDS, [{"floor": floors[one.floor], "motion": one} for one in results.motions]),
+        "segments": (row_fields(SegmentRow), routes.segments),
+        "routes": (row_fields(RouteRow), routes.routes),
+        "rooms": (row_fields(RoomRow), routes.rooms),
+        "schedule": (ENTRY_FIELDS, results.schedule.rows),
+        "problems": (row_fields(Problem), results.problem_rows),
+    }
+    return Table.of(*tables[name])
+
+
+# ---------------------------------------------------------------- for a notebook
+
+
+def results_html(results: Results, most: int = 10) -> str:
+    """Return a short table: pieces by class, and the first rows."""
+    words = [risk.word for risk in reversed(RiskClass)]
+    counts = dict.fromkeys((*words, "unconfirmed", "by formula only"), 0)
+    for one in results:
+        if not one.is_anchored:
+            counts[one.apart.replace("formula", "by formula only") or one.adopted.risk.word] += one.item.quantity
+    classes = ", ".join(f"{word} {count:,}" for word, count in counts.items() if count or word in words)
+    head = f"<p>{escape(repr(results))}<br>Free-standing pieces by class: {classes}</p>"
+    shown = ("item", "floor", "description", "breadth_cm", "height_cm", "pfa_g", "adopted_probability", "adopted_class")
+    rows = Table.of([one for one in item_fields(results.methods) if one.key in shown], list(islice(results, most)))
+    return head + _html(list(rows.rows()))
+
+
+def item_html(one: ItemResult) -> str:
+    """Return one row of furniture as a table of two columns."""
+    chosen = (*PIECE_FIELDS, *ADOPTED_FIELDS)
+    rows = [
+        {"field": field.key, "value": value}
+        for field in chosen
+        if (value := field.flatten(field.read(one))) not in (None, "")
+    ]
+    return _html(rows)
+
+
+def _html(rows: Sequence[Mapping[str, Any]]) -> str:
+    if not rows:
+        return ""
+    head = "".join(f"<th>{escape(name)}</th>" for name in rows[0])
+    body = "".join(
+        "<tr>" + "".join(f"<td>{escape(_short(value))}</td>" for value in row.values()) + "</tr>" for row in rows
+    )
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def _short(value: Any) -> str:
+    if isinstance(value, list):
+        return ", ".join(map(str, value))
+    return f"{value:.4g}" if isinstance(value, float) else "" if value is None else str(value)

@@ -8,8 +8,9 @@ motion lie in one file, to which `Results.series` refers.
 import difflib
 import statistics
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields
 from functools import cached_property
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
@@ -21,11 +22,12 @@ from assess.errors import InputError, Problem
 from assess.i18n import Text, count, fill, join, nfill
 from assess.methods import ALIKE, MethodInfo, Outcome
 from assess.model import MEASURED, Building, CatalogueType, Place
-from assess.risk import RiskClass, classify
+from assess.risk import RiskClass, classify, classify_all
 from assess.rocking.draws import TRIED, Uncertainty
 from assess.route_results import RouteTables
 from assess.schedule_results import NOTHING, Schedule
 from assess.settings import CLASS_BY, Settings
+from assess.table import Columns, Table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -98,6 +100,8 @@ CARRIED = ("fell_in_record", "ideal_higher", "undecided")
 """Flags that count for a piece under whichever of its motions they were raised."""
 MOST_KEPT = 2000
 """Items up to which what was read of them is kept; that of a larger inventory would fill the memory."""
+PART = 1000
+"""Items that are read at a time."""
 
 
 # ---------------------------------------------------------------- rows
@@ -269,6 +273,11 @@ class MotionRow:
         return self.samples is not None
 
     @property
+    def recorded(self) -> "MotionRow | None":
+        """The row itself, if it is a recorded motion."""
+        return self if self.has_record else None
+
+    @property
     def is_level(self) -> bool:
         """Whether it is the motion of another floor at the same height."""
         return len(set(self.between)) == 1
@@ -406,6 +415,7 @@ class Ideal:
     `overturned` counts motions, `probability` is its ratio to their number, `low` and `high` its sampling interval [-].
     """
 
+    runs: int
     overturned: int
     probability: float
     low: float
@@ -526,30 +536,72 @@ class CaseRow:
     """
 
     index: int
+    item: ItemRow
     motion: MotionRow
     methods: Mapping[str, MethodResult]
     simulation: Simulation | None
     adopted: Adopted
-    sliding: Sliding | None = None
-    one_sided: float | None = None
+    sliding: Sliding | None
+    one_sided: float | None
+
+    @property
+    def governs(self) -> bool:
+        """Whether it is the case that governs."""
+        return self.index == self.item.governing
 
 
-@dataclass(frozen=True, slots=True)
 class ItemResult:
-    """One row of furniture with its governing case, the risk adopted from it, and all its cases.
+    """One row of furniture with the risk adopted for it, and its cases, which are made when they are asked for."""
 
-    `formula_key` and `paper_key` name the adopted formula and the paper's. `main_basis` is that of the run
-    (`Results.main_basis`). `fell` tells in which draws it falls, None where that is not known.
-    """
+    def __init__(self, part: "ItemColumns", at: int) -> None:
+        self._part, self._at = part, at
+        self.item: ItemRow = part.items[at]
 
-    item: ItemRow
-    governing: CaseRow
-    adopted: Adopted
-    cases: tuple[CaseRow, ...]
-    formula_key: str
-    paper_key: str
-    main_basis: str = "formula"
-    fell: NDArray[np.bool_] | None = field(default=None, compare=False, repr=False)
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, ItemResult):
+            return NotImplemented
+        return (self.item, self.adopted, self.cases) == (other.item, other.adopted, other.cases)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return f"<ItemResult of {self.item.item}: {self.adopted.risk.word}, {self.adopted.basis}>"
+
+    @cached_property
+    def adopted(self) -> Adopted:
+        """The risk that reports go by."""
+        return self._part.adopted(self._at)
+
+    @cached_property
+    def cases(self) -> tuple[CaseRow, ...]:
+        """The piece under every motion."""
+        first = self.item.first_case - self._part.first_case
+        return tuple(map(self._part.cases.row, range(first, first + self.item.last_case - self.item.first_case)))
+
+    @property
+    def governing(self) -> CaseRow:
+        """The case that governs."""
+        return self.cases[self.item.governing - self.item.first_case]
+
+    @property
+    def formula_key(self) -> str:
+        """Key of the adopted formula."""
+        return self._part.run.formula.key
+
+    @property
+    def paper_key(self) -> str:
+        """Key of the paper's formula."""
+        return self._part.run.paper_formula.key
+
+    @property
+    def main_basis(self) -> str:
+        """The basis of the run: `Results.main_basis`."""
+        return self._part.run.main_basis
+
+    @property
+    def fell(self) -> NDArray[np.bool_] | None:
+        """In which draws it falls; None where that is not known."""
+        return self._part.run.draws.read(self.item.index)
 
     @property
     def apart(self) -> str:
@@ -558,6 +610,11 @@ class ItemResult:
         One of "unconfirmed" and, in a run that simulated other pieces, "formula".
         """
         return "" if self.adopted.basis in (self.main_basis, CANNOT_ROCK) else self.adopted.basis
+
+    @property
+    def sheet(self) -> str:
+        """The workbook's name of the sheet Items."""
+        return self._part.sheet
 
     @property
     def routes(self) -> tuple[str, ...]:
@@ -581,12 +638,12 @@ class ItemResult:
     @property
     def formula_class(self) -> RiskClass:
         """The highest class that the formula gives under any of its motions; low where the piece cannot rock."""
-        return _formula_class(self.cases, self.formula_key)
+        return self._part.column("formula_class")[self._at]
 
     @property
     def paper_class(self) -> RiskClass:
         """The class by the paper's formula under the governing motion; low where the piece cannot rock."""
-        return _formula_class((self.governing,), self.paper_key)
+        return self._part.column("paper_class")[self._at]
 
     @property
     def is_simulated(self) -> bool:
@@ -619,16 +676,9 @@ class ItemResult:
         return max(values, default=None)
 
     def _repr_html_(self) -> str:
-        from assess.frames import item_html
+        from assess.fields import item_html
 
         return item_html(self)
-
-
-def _formula_class(cases: Sequence[CaseRow], key: str) -> RiskClass:
-    """Return the highest class by a formula under the motions that can start the piece; low where none can."""
-    rocked = (case.methods[key].value for case in cases if case.adopted.can_rock)
-    classes = [classify(value) for value in rocked if value is not None]
-    return max((one for one in classes if one is not None), default=RiskClass.LOW)
 
 
 def find_ideal_class(cases: Sequence[CaseRow]) -> RiskClass:
@@ -747,89 +797,275 @@ def _same(one: NDArray[Any], other: NDArray[Any]) -> bool:
     return one.dtype == other.dtype and bool(np.array_equal(one, other, equal_nan=is_number))
 
 
-class _CaseReader:
-    """Reads cases one by one from lists: indexing arrays one by one is slow."""
-
-    def __init__(
-        self, table: CaseTable, motions: Sequence[MotionRow], methods: Sequence[MethodInfo], formula: str, by: str
-    ) -> None:
-        self._motions, self._formula, self._simulation = motions, formula, by
-        self._motion = table.motion.tolist()
-        self._methods = {one.key: _OutcomeReader(table.outcomes[one.key], one.key == by) for one in methods}
-        outcome = table.outcomes[by]
-        self._found = {name: known(array) for name, array in outcome.detail.items()}
-        self._adopted = {name: known(array) for name, array in table.adopted.items()}
-
-    def __call__(self, case: int) -> CaseRow:
-        methods = {key: read(case) for key, read in self._methods.items()}
-        motion, value = self._motions[self._motion[case]], methods[self._simulation].value
-        simulation = None if value is None else self._simulated(case, value)
-        found = self._found
-        branch = found["sliding_branch"][case]
-        slip = found["slip_median_cm"][case], found["slip_84_cm"][case]
-        sliding, adopted = Sliding(branch, *slip) if branch else None, self._adopt(case, methods, motion)
-        return CaseRow(case, motion, methods, simulation, adopted, sliding, found["one_sided"][case])
-
-    def _simulated(self, case: int, probability: float) -> Simulation:
-        found = {name: values[case] for name, values in self._found.items()}
-        fell = found["record_overturned"]
-        ideal = None
-        if found["ideal"] is not None:
-            ideal = Ideal(int(found["ideal_overturned"]), found["ideal"], found["ideal_low"], found["ideal_high"])
-        return Simulation(
-            int(found["runs"]), int(found["draws"]), int(found["overturned"]), probability, found["low"],
-            found["high"], ideal,
-            {one: value for one in TRIED if (value := found[f"dispersion_{one:g}"]) is not None},
-            found["if_slower"], found["if_faster"],
-            None if fell is None else bool(fell), found["record_rotation"],
-        )  # fmt: skip
-
-    def _adopt(self, case: int, methods: Mapping[str, MethodResult], motion: MotionRow) -> Adopted:
-        adopted = self._adopted
-        if adopted["probability"][case] is None:
-            raise ValueError("the adopted formula gave no value")
-        raised = {flag for method in methods.values() for flag in method.flags}
-        basis = BASES[adopted["basis"][case]]
-        raised |= {"unconfirmed"} if basis == "unconfirmed" else set()
-        raised |= {name for name in ("ideal_higher", "either_axis") if adopted[name][case]}
-        piece = [flag for flag in PIECE_FLAGS if flag in raised] if raised else []
-        is_simulated = basis == "simulated" or (basis == "unconfirmed" and "unknown_building" in raised)
-        method = "" if basis == CANNOT_ROCK else self._simulation if is_simulated else self._formula
-        own = () if basis == CANNOT_ROCK else methods[self._formula].flags
-        return Adopted(
-            method=method,
-            basis=basis,
-            probability=adopted["probability"][case],
-            low=adopted["low"][case],
-            high=adopted["high"][case],
-            risk=RiskClass(adopted["risk"][case]),
-            upper=RiskClass(adopted["upper"][case]),
-            lowered_from=None,
-            is_doubtful=adopted["doubtful"][case],
-            rocks_from=adopted["rocks_from"][case],
-            flags=tuple(dict.fromkeys((*own, *motion.flags, *piece))),
-        )
-
-
-class _OutcomeReader:
-    """Reads one method's outcome; what a simulation found beside its value has a row of its own."""
-
-    def __init__(self, outcome: Outcome, is_simulation: bool) -> None:
-        self._values = known(outcome.value)
-        self._detail = {} if is_simulation else {name: known(array) for name, array in outcome.detail.items()}
-        self._flags = [(flag, array.tolist()) for flag, array in outcome.flags.items() if array.any()]
-
-    def __call__(self, case: int) -> MethodResult:
-        return MethodResult(
-            self._values[case],
-            {name: values[case] for name, values in self._detail.items()},
-            tuple([flag for flag, raised in self._flags if raised[case]]) if self._flags else (),
-        )
-
-
 def known(array: NDArray[Any]) -> list[Any]:
     """Return an array as a list, None in place of NaN; words pass through."""
     return [None if value != value else value for value in array.tolist()]
+
+
+_DETAILS: Mapping[str, str] = {
+    "simulation.runs": "runs", "simulation.draws": "draws", "simulation.overturned": "overturned",
+    "simulation.low": "low", "simulation.high": "high", "simulation.if_slower": "if_slower",
+    "simulation.if_faster": "if_faster", "simulation.record_overturned": "record_overturned",
+    "simulation.record_max_rotation_ratio": "record_rotation", "simulation.ideal.runs": "runs",
+    "simulation.ideal.overturned": "ideal_overturned", "simulation.ideal.probability": "ideal",
+    "simulation.ideal.low": "ideal_low", "simulation.ideal.high": "ideal_high", "sliding.branch": "sliding_branch",
+    "sliding.slip_median_cm": "slip_median_cm", "sliding.slip_84_cm": "slip_84_cm", "one_sided": "one_sided",
+}  # fmt: skip
+"""Names of what simulation found beside its chance, by the attributes of a case."""
+_TYPES: Mapping[str, type] = {"runs": int, "draws": int, "overturned": int, "ideal_overturned": int,
+                              "record_overturned": bool}  # fmt: skip
+_RISKS = tuple(RiskClass)
+
+
+class _Maker:
+    """Makes rows of a type out of the columns that its fields name; None where that of `key` is None."""
+
+    def __init__(self, columns: Columns, make: type, group: str, key: str) -> None:
+        self._make, self._key = make, columns.column(f"{group}.{key}")
+        self._columns = [columns.column(f"{group}.{one.name}") for one in fields(make)]
+
+    def __call__(self, at: int) -> Any:
+        return None if self._key[at] is None else self._make(*[column[at] for column in self._columns])
+
+
+class CaseColumns(Columns):
+    """Cases that follow each other, as columns by the attributes of `CaseRow`; `cut` is where they are in the table."""
+
+    def __init__(self, run: "Results", cut: slice) -> None:
+        super().__init__(range(cut.start, cut.stop))
+        self._run, self.cut, self._found = run, cut, run.cases_table.outcomes[run.simulation.key]
+        self.is_simulated = ~np.isnan(self._found.value[cut])
+        self.exact = self._found.detail["ideal"][cut].astype(np.float64)
+
+    def row(self, at: int) -> CaseRow:
+        """Return one of the cases."""
+        methods = {key: MethodResult(values[at], {name: column[at] for name, column in detail}, flags[at])
+                   for key, values, detail, flags in self._methods}  # fmt: skip
+        simulation, adopted, sliding = (make(at) for make in self._makers)
+        item, motion = self.column("item")[at], self.column("motion")[at]
+        return CaseRow(
+            self._rows[at], item, motion, methods, simulation, adopted, sliding, self.column("one_sided")[at]
+        )
+
+    @cached_property
+    def _methods(self) -> list[tuple[str, list[Any], list[tuple[str, list[Any]]], list[Any]]]:
+        outcomes = self._run.cases_table.outcomes
+        details = {one.key: () if one.role == "simulation" else outcomes[one.key].detail for one in self._run.methods}
+        return [
+            (
+                key,
+                self.column(f"methods.{key}.value"),
+                [(name, self.column(f"methods.{key}.detail.{name}")) for name in detail],
+                self.column(f"methods.{key}.flags"),
+            )
+            for key, detail in details.items()
+        ]
+
+    @cached_property
+    def _makers(self) -> tuple[_Maker, ...]:
+        simulation = _Maker(self, Simulation, "simulation", "probability")
+        return simulation, _Maker(self, Adopted, "adopted", "basis"), _Maker(self, Sliding, "sliding", "branch")
+
+    def _make(self, source: str) -> list[Any]:
+        table, (group, _dot, name) = self._run.cases_table, source.partition(".")
+        if source == "item":
+            return [self._run.item_rows[at] for at in table.item[self.cut].tolist()]
+        if source == "motion":
+            return [self._run.motions[at] for at in table.motion[self.cut].tolist()]
+        if source == "governs":
+            return [at == one.governing for at, one in zip(self._rows, self.column("item"), strict=True)]
+        if group == "methods":
+            return self._of_method(*name.split(".", 1))
+        if group in ("simulation", "sliding", "one_sided"):
+            return self._of_simulation(source)
+        return self._of_adoption(name) if group == "adopted" else super()._make(source)
+
+    def _of_method(self, key: str, name: str) -> list[Any]:
+        outcome = self._run.cases_table.outcomes[key]
+        if name == "value":
+            return known(outcome.value[self.cut])
+        if name == "flags":
+            raised = {flag: array[self.cut] for flag, array in outcome.flags.items()}
+            return _name_raised({flag: array for flag, array in raised.items() if array.any()}, len(self))
+        return known(outcome.detail[name.removeprefix("detail.")][self.cut])
+
+    def _of_simulation(self, source: str) -> list[Any]:
+        if source == "simulation.probability":
+            return known(self._found.value[self.cut])
+        if source == "simulation.ideal":
+            return list(map(_Maker(self, Ideal, source, "probability"), range(len(self))))
+        if source == "simulation.tried":
+            columns = [(one, known(self._found.detail[f"dispersion_{one:g}"][self.cut])) for one in TRIED]
+            return [{one: column[at] for one, column in columns if column[at] is not None} for at in range(len(self))]
+        name = _DETAILS[source]
+        values = known(self._found.detail[name][self.cut])
+        if source.startswith("simulation."):
+            is_known = self.is_simulated
+            if source.startswith("simulation.ideal."):
+                is_known = is_known & ~np.isnan(self.exact)
+            convert = _TYPES.get(name, float)
+            pairs = zip(values, is_known.tolist(), strict=True)
+            return [convert(value) if is_there and value is not None else None for value, is_there in pairs]
+        if source == "sliding.branch":
+            return [value or None for value in values]
+        return values
+
+    def _of_adoption(self, name: str) -> list[Any]:
+        run = self._run
+        adopted = {one: array[self.cut] for one, array in run.cases_table.adopted.items()}
+        if name == "basis":
+            return [BASES[at] for at in adopted["basis"].tolist()]
+        if name in ("risk", "upper"):
+            return [_RISKS[at] for at in adopted[name].tolist()]
+        if name == "is_doubtful":
+            return adopted["doubtful"].tolist()
+        if name == "lowered_from":
+            return [None] * len(self)
+        if name == "method":
+            is_unknown = self._raise("unknown_building").tolist()
+            bases = zip(self.column("adopted.basis"), is_unknown, strict=True)
+            keys = {"formula": run.formula.key, "simulated": run.simulation.key, CANNOT_ROCK: ""}
+            doubted = (keys["formula"], keys["simulated"])
+            return [keys[basis] if basis in keys else doubted[unknown] for basis, unknown in bases]
+        if name == "flags":
+            return self._list_flags()
+        if name == "probability" and np.isnan(adopted[name]).any():
+            raise ValueError("the adopted formula gave no value")
+        return known(adopted[name])
+
+    def _raise(self, flag: str) -> NDArray[np.bool_]:
+        """Return for which of the cases a flag of the piece is raised by any method, or by the adopted risk."""
+        table = self._run.cases_table
+        raised = [one.flags[flag][self.cut] for one in table.outcomes.values() if flag in one.flags]
+        if flag in ("ideal_higher", "either_axis"):
+            raised.append(table.adopted[flag][self.cut])
+        if flag == "unconfirmed":
+            raised.append(table.adopted["basis"][self.cut] == BASES.index(flag))
+        return np.logical_or.reduce(raised) if raised else np.zeros(len(self), dtype=np.bool_)
+
+    def _list_flags(self) -> list[tuple[str, ...]]:
+        """Return the flags of the adopted formula, of the motion and of the piece, each once."""
+        own, motions = self.column(f"methods.{self._run.formula.key}.flags"), self.column("motion.flags")
+        piece = _name_raised({flag: self._raise(flag) for flag in PIECE_FLAGS}, len(self))
+        kept: dict[tuple[tuple[str, ...], ...], tuple[str, ...]] = {}
+        found = []
+        for basis, *parts in zip(self.column("adopted.basis"), own, motions, piece, strict=True):
+            key = (() if basis == CANNOT_ROCK else parts[0], *parts[1:])
+            if key not in kept:
+                kept[key] = tuple(dict.fromkeys(flag for part in key for flag in part))
+            found.append(kept[key])
+        return found
+
+
+def _name_raised(raised: Mapping[str, NDArray[np.bool_]], count: int) -> list[tuple[str, ...]]:
+    """Return the names of the flags that are raised for each of some cases."""
+    numbers = np.zeros(count, dtype=np.int64)
+    for at, array in enumerate(raised.values()):
+        numbers |= array.astype(np.int64) << at
+    names = {
+        number: tuple(flag for at, flag in enumerate(raised) if number >> at & 1) for number in set(numbers.tolist())
+    }
+    return [names[number] for number in numbers.tolist()]
+
+
+class ItemColumns(Columns):
+    """Rows of furniture that follow each other, as columns by the attributes of `ItemResult`.
+
+    The adopted risk of a piece is the governing chance, with the highest classes under any motion of the piece. A class
+    that is lower than the highest that the formula gives under any of them is marked, if it is confirmed.
+    """
+
+    def __init__(self, run: "Results", start: int, stop: int) -> None:
+        items = run.item_rows[start:stop]
+        super().__init__(items)
+        self.run, self.items, self.first_case = run, items, items[0].first_case
+        self.sheet = run.provenance.sheets.get("Items", "Items")
+        self.cases = CaseColumns(run, slice(self.first_case, items[-1].last_case))
+        self._governing = [one.governing - self.first_case for one in items]
+
+    def results(self) -> Iterator[ItemResult]:
+        """Yield the rows."""
+        return (ItemResult(self, at) for at in range(len(self)))
+
+    def adopted(self, at: int) -> Adopted:
+        """Return the adopted risk of one of the rows."""
+        found: Adopted = self._make_adopted(at)
+        return found
+
+    def inner(self, source: str) -> tuple[Columns, Sequence[int]]:
+        """Return the cases, and how many each row has."""
+        return self.cases, [one.last_case - one.first_case for one in self.items]
+
+    @cached_property
+    def _make_adopted(self) -> _Maker:
+        return _Maker(self, Adopted, "adopted", "basis")
+
+    def _make(self, source: str) -> list[Any]:
+        group, _dot, name = source.partition(".")
+        if source == "item":
+            return list(self.items)
+        if source == "sheet":
+            return [self.sheet] * len(self)
+        if group == "item":
+            return super()._make(source)
+        if source in self._worst:
+            return self._worst[source]
+        if source == "adopted.flags":
+            return self._carry_flags()
+        if group not in ("governing", "adopted"):
+            return [getattr(one, source) for one in self.results()]
+        values = self.cases.column(name if group == "governing" else source)
+        return [values[at] for at in self._governing]
+
+    @cached_property
+    def _is_simulated(self) -> list[bool]:
+        found: list[bool] = self._join(np.logical_or, self.cases.is_simulated).tolist()
+        return found
+
+    def _join(self, how: np.ufunc, values: NDArray[Any]) -> NDArray[Any]:
+        """Return what becomes of the values of the cases of each row."""
+        return np.asarray(how.reduceat(values, [one.first_case - self.first_case for one in self.items]))
+
+    @cached_property
+    def _worst(self) -> Mapping[str, list[RiskClass | None]]:
+        """The classes of the rows, by their attributes."""
+        run, cut, governing = self.run, self.cases.cut, self._governing
+        table, is_simulated = run.cases_table, np.array(self._is_simulated)
+        can_rock = table.adopted["basis"][cut] != BASES.index(CANNOT_ROCK)
+
+        def adopted(name: str) -> NDArray[Any]:
+            own = table.adopted[name][cut]
+            return np.where(is_simulated, self._join(np.maximum, own), own[governing])
+
+        def by_formula(key: str) -> NDArray[Any]:
+            return np.where(can_rock, classify_all(table.outcomes[key].value[cut]), -1).clip(RiskClass.LOW)
+
+        risk, formula = adopted("risk"), self._join(np.maximum, by_formula(run.formula.key))
+        is_confirmed = table.adopted["basis"][cut][governing] != BASES.index("unconfirmed")
+        is_lowered = is_simulated & (risk < formula) & can_rock[governing] & is_confirmed
+        exact = np.where(self.cases.is_simulated, classify_all(self.cases.exact), -1).clip(RiskClass.LOW)
+        lists = {
+            "adopted.risk": risk, "adopted.upper": adopted("upper"), "formula_class": formula,
+            "paper_class": by_formula(run.paper_formula.key)[governing], "ideal_class": self._join(np.maximum, exact),
+        }  # fmt: skip
+        found: dict[str, list[RiskClass | None]] = {
+            name: [_RISKS[at] for at in array.tolist()] for name, array in lists.items()
+        }
+        pairs = zip(found["formula_class"], is_lowered.tolist(), strict=True)
+        return found | {"adopted.lowered_from": [one if is_lower else None for one, is_lower in pairs]}
+
+    def _carry_flags(self) -> list[tuple[str, ...]]:
+        """Return the flags of the governing case, with those that count under any motion of the piece."""
+        flags = self.cases.column("adopted.flags")
+        found = [flags[at] for at in self._governing]
+        for at in np.flatnonzero(self._is_simulated).tolist():
+            item, start = self.items[at], self.first_case
+            cases = flags[item.first_case - start : item.last_case - start]
+            carried = [flag for flag in CARRIED if any(flag in one for one in cases)]
+            is_higher = self.column("ideal_class")[at] > self.column("adopted.risk")[at]
+            dropped = () if is_higher else ("ideal_higher",)
+            found[at] = tuple(dict.fromkeys(flag for flag in (*found[at], *carried) if flag not in dropped))
+        return found
 
 
 # ---------------------------------------------------------------- series
@@ -1171,7 +1407,9 @@ class Results:
         return len(self.item_rows)
 
     def __iter__(self) -> Iterator[ItemResult]:
-        return iter(self._kept) if len(self) <= MOST_KEPT else map(self.result, range(len(self)))
+        return (
+            iter(self._kept) if len(self) <= MOST_KEPT else chain.from_iterable(one.results() for one in self.parts())
+        )
 
     def __getitem__(self, name: str) -> ItemResult:
         """Return the row of a name; raises InputError where there is none."""
@@ -1192,7 +1430,7 @@ class Results:
         return f"<Results of {name}: {items}, scenario {self.provenance.scenario!r}>"
 
     def _repr_html_(self) -> str:
-        from assess.frames import results_html
+        from assess.fields import results_html
 
         return results_html(self)
 
@@ -1201,12 +1439,13 @@ class Results:
 
     def result(self, index: int) -> ItemResult:
         """Return the result of the item at `index`; raises IndexError beyond it."""
-        item = self.item_rows[index]
-        cases = tuple(self._read(case) for case in range(item.first_case, item.last_case))
-        governing = cases[item.governing - item.first_case]
-        adopted = self._adopt_worst(governing, cases)
-        keys, fell = (self.formula.key, self.paper_formula.key), self.draws.read(index)
-        return ItemResult(item, governing, adopted, cases, *keys, self.main_basis, fell)
+        is_kept = len(self) <= MOST_KEPT
+        return self._kept[index] if is_kept else next(ItemColumns(self, index, index + 1).results())
+
+    def parts(self) -> Iterator[ItemColumns]:
+        """Yield the rows of furniture as columns, at most `PART` at a time."""
+        for start in range(0, len(self), PART):
+            yield ItemColumns(self, start, start + PART)
 
     @property
     def formula(self) -> MethodInfo:
@@ -1244,74 +1483,58 @@ class Results:
 
     @cached_property
     def _kept(self) -> list[ItemResult]:
-        return [self.result(index) for index in range(len(self))]
+        return [one for part in self.parts() for one in part.results()]
 
     @cached_property
     def _by_name(self) -> Mapping[str, int]:
         return {one.item: one.index for one in reversed(self.item_rows)}
 
-    @cached_property
-    def _read(self) -> _CaseReader:
-        return _CaseReader(self.cases_table, self.motions, self.methods, self.formula.key, self.simulation.key)
+    # ------------------------------------------------------------ tables
 
-    def _adopt_worst(self, governing: CaseRow, cases: Sequence[CaseRow]) -> Adopted:
-        """Return the risk of a piece: the governing chance, with the highest classes under any motion of the piece.
+    def table(self, name: str) -> Table:
+        """Return a table of the fields of `assess.fields`.
 
-        A class that is lower than the highest that the formula gives under any of them is marked, if it is confirmed.
+        Parameters
+        ----------
+        name : "items", "cases", "floors", "segments", "routes", "rooms", "schedule" or "problems"
+            A row an item; a piece and motion; a floor, axis and motion; a segment; a route; a room of the network; an
+            entry of what to fix; a warning or note about the input.
         """
-        if all(case.simulation is None for case in cases):
-            return governing.adopted  # the formula's, of which the largest governs
-        risk, upper = max(case.adopted.risk for case in cases), max(case.adopted.upper for case in cases)
-        formula = _formula_class(cases, self.formula.key)
-        is_lowered = risk < formula and governing.adopted.can_rock and not governing.adopted.is_unconfirmed
-        carried = [flag for flag in CARRIED if any(flag in case.adopted.flags for case in cases)]
-        dropped = set() if find_ideal_class(cases) > risk else {"ideal_higher"}
-        return replace(
-            governing.adopted,
-            risk=risk,
-            upper=upper,
-            lowered_from=formula if is_lowered else None,
-            flags=tuple(dict.fromkeys(flag for flag in (*governing.adopted.flags, *carried) if flag not in dropped)),
-        )
+        from assess.fields import build_table
 
-    # ------------------------------------------------------------ tables for notebooks
+        return build_table(self, name)
 
     @property
     def items(self) -> "pd.DataFrame":
         """One row an item, with the columns of items.csv."""
-        return self._frame("items")
+        return self.table("items").to_frame()
 
     @property
     def cases(self) -> "pd.DataFrame":
         """One row a piece and motion."""
-        return self._frame("cases")
+        return self.table("cases").to_frame()
 
     @property
     def floors(self) -> "pd.DataFrame":
         """One row a floor, axis and motion."""
-        return self._frame("floors")
+        return self.table("floors").to_frame()
 
     @property
     def segments(self) -> "pd.DataFrame":
         """One row a segment of a route."""
-        return self._frame("segments")
+        return self.table("segments").to_frame()
 
     @property
     def routes(self) -> "pd.DataFrame":
         """One row an evacuation route."""
-        return self._frame("routes")
+        return self.table("routes").to_frame()
 
     @property
     def rooms(self) -> "pd.DataFrame":
         """One row a room of the network."""
-        return self._frame("rooms")
+        return self.table("rooms").to_frame()
 
     @property
     def problems(self) -> "pd.DataFrame":
         """One row a warning or note about the input."""
-        return self._frame("problems")
-
-    def _frame(self, name: str) -> "pd.DataFrame":
-        from assess.frames import build_frame
-
-        return build_frame(self, name)
+        return self.table("problems").to_frame()

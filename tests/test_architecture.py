@@ -19,13 +19,13 @@ PACKAGE = ROOT / "assess"
 LAYERS = {
     "version": 0, "arrays": 0, "units": 0, "errors": 0, "risk": 0, "natural": 0, "resources": 0, "plain_text": 0,
     "cache_folder": 0, "compiled": 0, "input_file": 1, "settings": 1, "i18n": 1, "extras": 1, "progress": 1,
-    "pictures": 1, "plans": 1, "environment": 1, "report_formats": 1,
+    "pictures": 1, "plans": 1, "environment": 1, "report_formats": 1, "table": 1,
     "delivery": 2, "motion": 2, "fragility": 2, "hazard": 2, "intensity": 2,
     "rocking": 3, "rates": 3, "bracket": 3, "details": 3,
     "methods": 4,
     "model": 5,
     "results": 6, "route_results": 6, "annual_results": 6, "schedule_results": 6,
-    "fields": 7, "route_fields": 7, "schedule_fields": 7, "frames": 7,
+    "fields": 7,
     "workbook": 8,
     "routes": 9,
     "pipeline": 10,
@@ -39,8 +39,8 @@ MODULES = sorted(PACKAGE.rglob("*.py"))
 LONGEST_FILE, LONGEST_FUNCTION = 800, 60
 """Lines of code: docstrings, comments and blank lines of a file are not counted."""
 LONG_FILES = {"assess/results.py"}  # the rows of every table
-LATE_IMPORTS = {("assess.results", "assess.frames")}
-"""Allowed inside a function: the tables of a notebook are built from the fields, when they are asked for."""
+LATE_IMPORTS = {("assess.results", "assess.fields")}
+"""Allowed inside a function: tables are built from the fields, when they are asked for."""
 PHYSICS = ("assess.methods", "assess.motion", "assess.rocking")
 DESCRIPTIONS = {"MethodInfo", "Reason", "Reference"}
 """Types in which a method describes itself: results hold them, and reports may import them from `assess.methods`."""

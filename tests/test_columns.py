@@ -5,9 +5,10 @@ from dataclasses import replace
 import pytest
 
 from assess import fields
-from assess.fields import EVERYWHERE, Shape, _of_item, item_fields
+from assess.fields import _of_item
 from assess.pipeline.run import run
 from assess.report.pages import glyphs
+from assess.table import EVERYWHERE
 from assess.workbook import parse, read, resolve, schema
 from assess.workbook.schema import Column
 from tests.report.reading import render
@@ -32,9 +33,8 @@ def test_a_new_column_of_items_reaches_the_results_and_the_reports(monkeypatch):
     colour = _of_item("colour", "Colour", is_optional=True, shows=EVERYWHERE)
     monkeypatch.setattr(fields, "PIECE_FIELDS", (*fields.PIECE_FIELDS, colour))
     results = run(read.read_inventory(ROWS), UNVERIFIED)
-    shape = Shape(item_fields(results))
+    table = results.table("items")
     assert results["A"].item.more == {"colour": "red 紅"}
-    assert shape.nest(results["A"])["colour"] == shape.flatten(results["A"])["colour"] == "red 紅"
-    assert shape.nest(results["B"])["colour"] is None
+    assert [one["colour"] for one in table.records()] == table.columns["colour"] == ["red 紅", None]
     assert ">red 紅</td>" in render(results)
     assert [one.label for one in glyphs.list_missing(results)] == ["Colour"]

@@ -6,17 +6,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from assess.fields import Field, arrange_item_fields
+from assess.fields import item_fields
 from assess.results import CANNOT_ROCK
 from assess.risk import RiskClass
-from assess.workbook.schema import ITEMS
+from assess.table import Field
 
 CLASSES: Mapping[str, RiskClass] = {risk.word: risk for risk in reversed(RiskClass)}
 """The classes by their words, the highest first."""
 UNCONFIRMED, BY_FORMULA, ANCHORED = "unconfirmed", "by formula", "anchored"
 APART = (UNCONFIRMED, BY_FORMULA, ANCHORED)
 """What stands outside the classes of a run."""
-_EVERY = {one.key: one for one in arrange_item_fields((), ITEMS.name)}
+_EVERY = {one.key: one for one in item_fields(())}
 INPUTS: Mapping[str, Field] = {
     key: _EVERY[key]
     for key in (

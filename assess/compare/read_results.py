@@ -14,7 +14,6 @@ from typing import Any, Never, TypeVar
 from assess.compare import past_run as past
 from assess.delivery.deliver import explain_unfinished, is_unfinished
 from assess.errors import InputError
-from assess.fields import unnest
 from assess.i18n import Text, fill
 from assess.input_file import read_input
 from assess.model import MEASURED
@@ -22,6 +21,7 @@ from assess.plain_text import plain_line
 from assess.report.results_schema import VERSION
 from assess.results import BASES
 from assess.risk import RiskClass
+from assess.table import unnest
 from assess.workbook.names import key
 
 DATA = "results.json"

@@ -16,11 +16,11 @@ from typing import Any, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.fields import MOTION_FIELDS, Shape, item_fields
+from assess.fields import MOTION_FIELDS, STATE_FIELDS
 from assess.progress import SILENT, Progress
 from assess.report.results_schema import FILE, VERSION, building_key
 from assess.results import Results
-from assess.schedule_fields import to_record
+from assess.table import Table
 from assess.units import to_edge
 from assess.workbook.schema import BUILDING
 
@@ -28,7 +28,6 @@ from assess.workbook.schema import BUILDING
 
 SCHEMA = FILE
 """JSON Schema of results.json."""
-_MOTION = Shape(MOTION_FIELDS)
 _dump = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(", ", ": ")).encode
 
 
@@ -39,38 +38,38 @@ def write_json(
 
     `files` are the other files of the run, with their SHA-256 where it is known.
     """
-    shape = Shape(item_fields(results))
+    routes, schedule = results.route_tables.to_record(), results.schedule
+    state = Table.of(STATE_FIELDS, (schedule.before, schedule.after))
+    before, after = (text for part in state.json_parts() for text in part)
     with path.open("w", encoding="utf-8", newline="\n") as file:
         file.write("{\n")
         for name, value in describe_run(results, files).items():
             file.write(f" {json.dumps(name)}: {_dump(value)},\n")
-        _write_list(file, "items", map(shape.nest, progress.checked(results)))
-        file.write(",\n")
-        _write_record(file, "routes", results.route_tables.to_record())
-        file.write(",\n")
-        _write_record(file, "schedule", to_record(results.schedule), "entries")
-        file.write(f',\n "annual": {_dump(results.annual and asdict(results.annual))}')
-        file.write(",\n")
-        _write_list(file, "problems", (asdict(one) for one in results.problem_rows))
+        _write_list(file, "items", progress.checked(results.table("items").json_parts()))
+        file.write(',\n "routes": {')
+        for at, (name, value) in enumerate(routes.items()):
+            file.write(",\n" if at else "\n")
+            if isinstance(value, list):
+                _write_list(file, name, [map(_dump, value)], " ")
+            else:
+                file.write(f"  {json.dumps(name)}: {_dump(value)}")
+        file.write('\n },\n "schedule": {\n')
+        _write_list(file, "entries", results.table("schedule").json_parts(), " ")
+        file.write(f',\n  "before": {before},\n  "after": {after},\n  "cost": {_dump(schedule.cost)}')
+        file.write(f',\n  "entries_without_cost": {schedule.uncosted}\n }}')
+        file.write(f',\n "annual": {_dump(results.annual and asdict(results.annual))},\n')
+        _write_list(file, "problems", [(_dump(asdict(one)) for one in results.problem_rows)])
         file.write("\n}\n")
 
 
-def _write_record(file: TextIO, name: str, record: Mapping[str, Any], *lists: str) -> None:
-    """Write a record with lists of rows, those named among them: a line a row."""
-    file.write(f' "{name}": {{\n')
-    for at, (key, value) in enumerate(record.items()):
-        file.write(",\n" if at else "")
-        if isinstance(value, list) or key in lists:
-            _write_list(file, key, value, " ")
-        else:
-            file.write(f"  {json.dumps(key)}: {_dump(value)}")
-    file.write("\n }")
-
-
-def _write_list(file: TextIO, name: str, records: Iterable[Mapping[str, Any]], indent: str = "") -> None:
+def _write_list(file: TextIO, name: str, parts: Iterable[Iterable[str]], indent: str = "") -> None:
+    """Write a list of records that are texts: a line each."""
     file.write(f"{indent} {json.dumps(name)}: [")
-    for at, record in enumerate(records):
-        file.write(f"{',' if at else ''}\n{indent}  {_dump(record)}")
+    before = f"\n{indent}  "
+    for records in parts:
+        for record in records:
+            file.write(f"{before}{record}")
+            before = f",\n{indent}  "
     file.write(f"\n{indent} ]")
 
 
@@ -100,7 +99,7 @@ def describe_run(results: Results, files: Mapping[str, str | None] | None = None
             **({} if files is None else {"files": dict(files)}),
         },
         "building": building_record(results),
-        "floors": [_floor_record(results, floor.floor) for floor in results.floor_rows],
+        "floors": _floor_records(results),
     }
 
 
@@ -124,21 +123,20 @@ def building_record(results: Results) -> dict[str, Any]:
     return record
 
 
-def _floor_record(results: Results, name: str) -> dict[str, Any]:
-    """Return one floor with every motion that serves it."""
-    floor = next(one for one in results.floor_rows if one.floor == name)
-    motions = [one for axis in ("X", "Y") for one in results.motions_of(name, axis)]
-    return {
-        "floor": floor.floor,
-        "name": floor.name,
-        "elevation_m": floor.elevation_m,
-        "demands": [_MOTION.nest(one) for one in motions],
+def _floor_records(results: Results) -> list[dict[str, Any]]:
+    """Return every floor with the motions that serve it, along X and then along Y."""
+    floors = {
+        one.floor: {"floor": one.floor, "name": one.name, "elevation_m": one.elevation_m, "demands": []}
+        for one in results.floor_rows
     }
+    motions = sorted(results.motions, key=lambda one: one.axis)
+    for motion, record in zip(motions, Table.of(MOTION_FIELDS, motions).records(), strict=True):
+        floors[motion.floor]["demands"].append(record)
+    return list(floors.values())
 
 
 # ---------------------------------------------------------------- items.csv
 
-_PLAIN = frozenset({float, int, bool, type(None)})
 _SEPARATORS = frozenset(';,|\t\r\n"')
 _FIRST = re.compile(r"""(?<![;,|\s"'])([;,|\s"']*)([=+\-@＝＋－＠])""")
 
@@ -148,13 +146,12 @@ def write_csv(results: Results, path: Path, progress: Progress = SILENT) -> None
 
     Texts that a spreadsheet would take for a formula are disarmed, see `disarm`. `progress` is checked row by row.
     """
-    shape = Shape(item_fields(results))
+    table = results.table("items")
     with path.open("w", encoding="utf-8-sig", newline="") as file:
         writer = csv.writer(file)
-        writer.writerow([disarm(field.key) for field in shape.fields])
-        for one in progress.checked(results):
-            values = shape.flatten(one).values()
-            writer.writerow([value if type(value) in _PLAIN else disarm(value) for value in values])
+        writer.writerow([disarm(field.key) for field in table.fields])
+        for part in progress.checked(table.parts()):
+            writer.writerows(zip(*table.flat_columns(part, disarm), strict=True))
 
 
 def disarm(value: object) -> object:

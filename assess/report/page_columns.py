@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from assess.fields import MOTION_FIELDS, Field, Where, item_fields
+from assess.fields import MOTION_FIELDS, item_fields, route_fields
 from assess.i18n import gettext as _
 from assess.i18n import number
 from assess.report import words
@@ -15,8 +15,8 @@ from assess.report.blocks import Cell, Column, Runs, Span, Table, Words, join_wo
 from assess.report.findings.motions import describe_origin, describe_source
 from assess.report.summary import describe
 from assess.results import ItemResult, Results
-from assess.route_fields import route_fields
 from assess.route_results import BesideRow, FloorRoutesRow, RoomRow, RouteRow, SegmentRow
+from assess.table import Field, Where
 
 if TYPE_CHECKING:
     from assess.methods import MethodInfo
@@ -174,7 +174,7 @@ def list_columns(results: Results, where: Where) -> tuple[PageColumn, ...]:
     """Return the columns of a list of pieces: every field that it shows, in their order."""
     methods = {one.key: one for one in results.methods}
     left_out = frozenset() if results.has_simulated else SIMULATED
-    found = [field for field in item_fields(results) if where in field.shows and field.key not in left_out]
+    found = [field for field in item_fields(results.methods) if where in field.shows and field.key not in left_out]
     columns = [_of_piece(field, where, methods.get(field.key)) for field in found]
     if not results.has_simulated:
         columns = [replace(one, places=7) if one.key == "adopted_probability" else one for one in columns]

@@ -9,11 +9,10 @@ from typing import Any
 
 from assess.errors import InputError
 from assess.extras import say_install
-from assess.fields import Kind, item_fields
-from assess.frames import build_frame
 from assess.i18n import fill
 from assess.progress import SILENT, Progress
 from assess.results import Results
+from assess.table import Kind
 
 _SQL_TYPES: dict[Kind, str] = {"number": "DOUBLE", "share": "DOUBLE", "count": "BIGINT", "flag": "BOOLEAN"}
 """Of the columns by what a field holds; all others are VARCHAR, lists joined by "; " as in items.csv."""
@@ -57,8 +56,8 @@ def write_parquet(results: Results, path: Path, progress: Progress = SILENT) -> 
 def _write(results: Results, path: Path) -> None:
     import duckdb
 
-    types = {one.key: _SQL_TYPES.get(one.kind, "VARCHAR") for one in item_fields(results)}
-    frame = build_frame(results, "items")
+    table = results.table("items")
+    types, frame = {one.key: _SQL_TYPES.get(one.kind, "VARCHAR") for one in table.fields}, table.to_frame()
     for key in (key for key, sql in types.items() if sql == "VARCHAR"):
         frame[key] = frame[key].astype("object").map(_to_text)
     names = {key: '"' + key.replace('"', '""') + '"' for key in types}

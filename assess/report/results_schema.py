@@ -1,5 +1,5 @@
-"""The JSON Schema of results.json, made from the fields of `assess.fields` and `assess.schedule_fields` and from the
-rows of `assess.route_results`.
+"""The JSON Schema of results.json, made from the fields of `assess.fields` and from the rows of
+`assess.route_results`.
 
 ``python -m assess.report.results_schema`` writes it beside this file; descriptions are the fields' help and the rows'
 docstrings.
@@ -18,12 +18,12 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 from assess import route_results as rows
 from assess.annual_results import AnnualRow, AnnualTables
 from assess.errors import Problem
-from assess.fields import MOTION_FIELDS, SIMULATION_FIELDS, Field, arrange_item_fields
+from assess.fields import ENTRY_FIELDS, MOTION_FIELDS, SIMULATION_FIELDS, STATE_FIELDS, WORK_FIELDS, item_fields
 from assess.model import AXES
 from assess.results import AssumedShaking, EarthquakeDraws, Provenance, SiteGroundInfo
 from assess.risk import RiskClass
-from assess.schedule_fields import ENTRY_FIELDS, STATE_FIELDS, WORK_FIELDS
 from assess.settings import MOST_SCALE, SCENARIOS, Settings
+from assess.table import Field, Tree, build_tree
 from assess.workbook.schema import BUILDING, Column
 
 VERSION = "5.3"
@@ -116,18 +116,12 @@ _GROUPS_OR_NULL = {
 
 
 def _of_fields(chosen: Iterable[Field]) -> Schema:
-    """Return the schema of the records that `assess.fields.Shape` makes."""
-    tree: dict[str, Any] = {}
-    for one in chosen:
-        inner = tree
-        for name in one.place[:-1]:
-            inner = inner.setdefault(name, {})
-        inner[one.place[-1]] = one
-    return _of_tree(tree, ())
+    """Return the schema of the records of a table."""
+    return _of_tree(build_tree(chosen), ())
 
 
-def _of_tree(tree: Mapping[str, Any], place: tuple[str, ...]) -> Schema:
-    made = {name: _of_tree(one, (*place, name)) if isinstance(one, dict) else _leaf(one) for name, one in tree.items()}
+def _of_tree(tree: Tree, place: tuple[str, ...]) -> Schema:
+    made = {name: _leaf(one) if isinstance(one, Field) else _of_tree(one, (*place, name)) for name, one in tree.items()}
     return _or_null(_object(made)) if place in _GROUPS_OR_NULL else _object(made)
 
 
@@ -138,7 +132,7 @@ def _leaf(one: Field) -> Schema:
 
 
 def _item() -> Schema:
-    item = _of_fields(arrange_item_fields((), "Items"))
+    item = _of_fields(item_fields(()))
     own = item["properties"]
     own["axes"] = _list(_object({
         "axis": own["axis"], "source": own["pfa_source"], "pfa_g": {"type": "number"},
@@ -158,7 +152,7 @@ def _method() -> Schema:
 
 
 def _schedule() -> Schema:
-    """Return the schema of `assess.schedule_fields.to_record`."""
+    """Return the schema of the schedule."""
     entry, state = _of_fields(ENTRY_FIELDS), _of_fields(STATE_FIELDS)
     entry["properties"]["works"] |= _list(_of_fields(WORK_FIELDS))
     state["properties"]["routes"] |= _map(COUNT)

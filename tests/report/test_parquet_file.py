@@ -9,7 +9,6 @@ import pytest
 
 import assess
 from assess.errors import InputError
-from assess.fields import item_fields
 from assess.report.data import write_csv
 from assess.report.parquet_file import write_parquet
 from tests.cli.calling import run as call
@@ -38,7 +37,7 @@ def test_it_holds_what_the_table_holds(tmp_path):
     columns, rows = read(tmp_path / "it's.parquet")
     with (tmp_path / "items.csv").open(encoding="utf-8-sig", newline="") as file:
         expected = list(csv.DictReader(file))
-    assert list(columns) == list(expected[0]) == [one.key for one in item_fields(results)]
+    assert list(columns) == list(expected[0]) == [one.key for one in results.table("items").fields]
     assert [row[0] for row in rows] == ["=A1", 'b\'s "é" 書架'], "texts are as they are: nothing is a formula here"
     for row, line in zip(rows, expected, strict=True):
         for value, (key, text) in zip(row, line.items(), strict=True):

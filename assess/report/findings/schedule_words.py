@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from assess.details import DETAILS, LEAST_FIXINGS, Detail
+from assess.fields import schedule_fields
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
 from assess.natural import natural_key
@@ -12,7 +13,6 @@ from assess.report import words
 from assess.report.ranking import RouteStep, list_steps, say_effect
 from assess.results import ItemResult, Results
 from assess.risk import RiskClass
-from assess.schedule_fields import schedule_fields
 from assess.schedule_results import Schedule, ScheduleRow, State, WorkRow
 
 NAMED = 2

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from assess.details import Detail
+from assess.fields import schedule_fields
 from assess.i18n import fill, ngettext
 from assess.i18n import gettext as _
 from assess.report import words
@@ -35,7 +36,6 @@ from assess.report.findings import schedule_words
 from assess.report.findings.schedule_words import Change, Work
 from assess.report.page_columns import mark
 from assess.report.view import Part, View, in_whole
-from assess.schedule_fields import schedule_fields
 from assess.schedule_results import WorkRow
 
 MOST = 150

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from xlsxwriter.utility import xl_col_to_name
 
-from assess.fields import Field, item_fields
+from assess.fields import item_fields
 from assess.i18n import gettext as _
 from assess.report import words
 from assess.report.content import Content
@@ -36,6 +36,7 @@ from assess.report.xlsx.item_values import (
 from assess.report.xlsx.motion_lines import find_places, list_lines
 from assess.report.xlsx.pen import CHANCE, COUNT, LINE, LOOKS, Column, Pen, count_lines, of_field, widen, with_unit
 from assess.results import BASES, CANNOT_ROCK, ItemResult, Results
+from assess.table import Field
 from assess.workbook.schema import ITEMS
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ ORDERS = tuple(f"order_{basis}" for basis in LISTED)
 
 def item_columns(results: Results) -> list[Column]:
     """Return the columns of Items, in order: at the end those that the workbook had of its own, and hidden workings."""
-    known = {one.key: one for one in item_fields(results)}
+    known = {one.key: one for one in item_fields(results.methods)}
     item, *front = (column for key in FRONT for column in _front(key, known))
     is_hidden = not results.has_simulated
     shown = [

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from assess.fields import Field
 from assess.i18n import gettext as _
 from assess.progress import SILENT, Progress
 from assess.report import words
@@ -17,6 +16,7 @@ from assess.results import Results
 from assess.risk import RiskClass
 from assess.route_results import RouteState
 from assess.settings import Settings
+from assess.table import Field
 
 LONGEST = 32_000
 """Characters of a text that are kept; a cell holds 32,767."""

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from assess.fields import route_fields
 from assess.i18n import gettext as _
 from assess.report import words
 from assess.report.content import Content
@@ -15,7 +16,6 @@ from assess.report.ranking import list_steps
 from assess.report.xlsx.item_formulas import ANCHORED, build_terms
 from assess.report.xlsx.pen import CHANCE, COUNT, Column, Pen, of_field
 from assess.results import ItemResult
-from assess.route_fields import route_fields
 from assess.route_results import (
     FLAGS,
     BesideRow,

@@ -9,12 +9,12 @@ from typing import Any
 
 from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 
+from assess.fields import schedule_fields
 from assess.i18n import gettext as _
 from assess.report.content import Content
 from assess.report.findings import schedule_words
 from assess.report.findings.schedule_words import Work
 from assess.report.xlsx.pen import COUNT, LINE, Column, Pen, count_lines, of_field, row_height, widen
-from assess.schedule_fields import schedule_fields
 from assess.schedule_results import Schedule, ScheduleRow, WorkRow
 
 BOX = "☐"

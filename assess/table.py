@@ -1,0 +1,308 @@
+"""Tables: the fields of a row, each said once, and the rows as columns of their values.
+
+A `Field` says where a value stands in a row and what it is called. Records of results.json, lines of items.csv and
+pandas tables are made of columns, a thousand rows at a time; a row is made only where somebody asks for one.
+"""
+
+import json
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from operator import attrgetter, itemgetter
+from typing import TYPE_CHECKING, Any, Literal
+
+from assess.i18n import gettext as _
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Kind = Literal[
+    "text", "number", "count", "share", "flag", "class", "list", "signs", "factors", "counts", "records",
+]  # fmt: skip
+"""What a field holds: a share lies in [0, 1]; a class is one of `RiskClass`; signs are a list of 1 and -1; counts are
+numbers by name; records are rows within the row."""
+Where = Literal["json", "csv", "excel", "pieces", "risky", "methods"]
+"""The last three are lists of the pages (HTML, PDF and its lines): all pieces, those at high risk, every method."""
+DATA: frozenset[Where] = frozenset(("json", "csv"))
+"""Of fields that the sheet Items of the Excel report leaves out, or shows in live columns of its own."""
+FILES: frozenset[Where] = DATA | {"excel"}
+EVERYWHERE: frozenset[Where] = FILES | {"pieces"}
+
+_NUMBERS = frozenset(("number", "count", "share", "flag"))
+_PLAIN: Mapping[str, Callable[[Any], Any]] = {
+    "class": attrgetter("word"), "list": list, "signs": list, "factors": list, "counts": dict,
+}  # fmt: skip
+"""From what a row holds to what results.json does, by kind."""
+_GROUPS = frozenset(("verification", "ensemble", "sliding", "annual", "anchor"))
+"""Groups of fields that are null together, as are those within them, where nothing in them is known."""
+_DTYPES: Mapping[Kind, str] = {
+    "text": "string", "class": "string", "number": "float64", "share": "float64", "count": "Int64", "flag": "boolean",
+}  # fmt: skip
+"""Of the columns of a pandas table: the same whatever the rows are, also where there are none."""
+_dump = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(", ", ": ")).encode
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Field:
+    """One field of a row.
+
+    Parameters
+    ----------
+    key : str
+        Its column in items.csv and in the tables of a notebook, with the unit.
+    source : str
+        Attributes that lead from the row to its value, ``governing.motion.pfa_g``; by default the key. What is behind
+        a None is None; an entry of a mapping is named like an attribute, one of a tuple by its number.
+    path : tuple of str
+        Its place in a record of results.json; by default ``(key,)``.
+    label, short, unit, format : str
+        Heading in reports without the unit, a shorter one for the lists of pages, the unit, and how Excel shows it.
+    width : int
+        Width of its column in Excel, in characters.
+    kind, is_optional, choices
+        What it may hold, and whether it may be None; a field of a group, whether it may be where the group is there.
+    is_blank_unknown : bool
+        Whether "" stands for what is unknown.
+    shows : set of str
+        Where it is shown.
+    help : str
+        What it means, for the schema and the documentation.
+    records : tuple of Field
+        The fields of the rows within the row, of kind "records".
+    flat : callable, optional
+        From its value to the one of items.csv, where that differs.
+    """
+
+    key: str
+    source: str = ""
+    path: tuple[str, ...] = ()
+    label: str = ""
+    short: str = ""
+    unit: str = ""
+    format: str = ""
+    width: int = 9
+    kind: Kind = "text"
+    is_optional: bool = False
+    choices: tuple[str, ...] = ()
+    is_blank_unknown: bool = False
+    shows: frozenset[Where] = FILES
+    help: str = ""
+    records: "tuple[Field, ...]" = ()
+    flat: Callable[[Any], Any] | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "source", self.source or self.key)
+
+    @property
+    def place(self) -> tuple[str, ...]:
+        """Its place in a record of results.json."""
+        return self.path or (self.key,)
+
+    def heading(self) -> str:
+        """Return its label with the unit in brackets, in the language in use."""
+        return _head(self.label, self.unit)
+
+    def short_heading(self) -> str:
+        """Return its heading in the lists of pages, in the language in use."""
+        return _head(self.short or self.label, self.unit)
+
+    def read(self, row: Any) -> Any:
+        """Return the value of a row, as results.json has it: None for what is unknown."""
+        for name in self.source.split("."):
+            row = None if row is None else _step(row, name)(row)
+        return self.plain(row)
+
+    def plain(self, value: Any) -> Any:
+        """Return what a row holds as results.json does: the word of a class, a list of a tuple."""
+        if value is None or (self.is_blank_unknown and value == ""):
+            return None
+        if self.kind == "records":
+            return list(Table.of(self.records, value).records())
+        return _PLAIN[self.kind](value) if self.kind in _PLAIN else value
+
+    def flatten(self, value: Any) -> Any:
+        """Return a value of results.json as items.csv and a table have it."""
+        return value if self.flat is None else self.flat(value)
+
+
+def _head(label: str, unit: str) -> str:
+    return f"{_(label)} [{unit}]" if unit else _(label)
+
+
+def _step(row: Any, name: str) -> Callable[[Any], Any]:
+    if isinstance(row, dict):
+        return lambda one: one.get(name)
+    return itemgetter(int(name)) if name.isdecimal() else attrgetter(name)
+
+
+def unnest(record: Mapping[str, Any], chosen: Iterable[Field]) -> dict[str, Any]:
+    """Return a row of a table from a record of results.json: that of the row which the record was made from."""
+    row = {}
+    for field in chosen:
+        value: Any = record
+        for name in field.place:
+            value = value.get(name) if isinstance(value, Mapping) else None
+        row[field.key] = field.flatten(value)
+    return row
+
+
+class Columns:
+    """Rows that follow each other, as columns: each is made when it is asked for, and kept."""
+
+    def __init__(self, rows: Sequence[Any]) -> None:
+        self._rows = rows
+        self._made: dict[str, list[Any]] = {}
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def column(self, source: str) -> list[Any]:
+        """Return what stands at the end of attributes (`Field.source`), a value a row."""
+        found = self._made.get(source)
+        if found is None:
+            found = self._made[source] = self._make(source)
+        return found
+
+    def inner(self, source: str) -> "tuple[Columns, Sequence[int]]":
+        """Return the rows within the rows, and how many there are in each."""
+        lists = self.column(source)
+        return Columns([row for rows in lists for row in rows]), [len(rows) for rows in lists]
+
+    def _make(self, source: str) -> list[Any]:
+        parent, _dot, name = source.rpartition(".")
+        rows = self.column(parent) if parent else self._rows
+        step = next((_step(row, name) for row in rows if row is not None), None)
+        return [None] * len(rows) if step is None else [None if row is None else step(row) for row in rows]
+
+
+Tree = Mapping[str, "Field | Tree"]
+_Leaf = Callable[[Field, Columns], list[Any]]
+_Group = Callable[[Sequence[str], Sequence[Sequence[Any]], bool], list[Any]]
+
+
+class Table:
+    """Rows of the same fields; the values of a column are those of `Field.read`.
+
+    Parameters
+    ----------
+    fields : sequence of Field
+        The columns, in their order.
+    parts : callable
+        Returns the rows as `Columns`, some after the others, so that many rows take little memory.
+    """
+
+    def __init__(self, fields: Iterable[Field], parts: Callable[[], Iterable[Columns]]) -> None:
+        self.fields = tuple(fields)
+        self.parts = parts
+
+    @classmethod
+    def of(cls, fields: Iterable[Field], rows: Sequence[Any]) -> "Table":
+        """Return the table of rows that are there as objects."""
+        return cls(fields, lambda: (Columns(rows),))
+
+    def __len__(self) -> int:
+        return sum(map(len, self.parts()))
+
+    @property
+    def columns(self) -> dict[str, list[Any]]:
+        """The values of every column by key, as items.csv has them."""
+        parts = [self.flat_columns(part) for part in self.parts()]
+        return {one.key: [value for part in parts for value in part[at]] for at, one in enumerate(self.fields)}
+
+    def rows(self) -> Iterator[dict[str, Any]]:
+        """Yield each row by key, as items.csv has it."""
+        keys = [one.key for one in self.fields]
+        for part in self.parts():
+            yield from (dict(zip(keys, row, strict=True)) for row in zip(*self.flat_columns(part), strict=True))
+
+    def records(self) -> Iterator[dict[str, Any]]:
+        """Yield each row as a record of results.json."""
+        tree = build_tree(self.fields)
+        for part in self.parts():
+            yield from _fold(tree, part, _read_column, _group_records)
+
+    def json_parts(self) -> Iterator[list[str]]:
+        """Yield the rows of one part after the other, each row as the text of its record of results.json."""
+        tree = build_tree(self.fields)
+        for part in self.parts():
+            yield _fold(tree, part, _encode_column, _group_texts)
+
+    def flat_columns(self, part: Columns, change: Callable[[Any], Any] = lambda value: value) -> list[list[Any]]:
+        """Return the values of some rows, column by column, as items.csv has them; `change` is made to texts, lists."""
+        return [_flatten_column(one, part, change) for one in self.fields]
+
+    def to_frame(self) -> "pd.DataFrame":
+        """Return the table for a notebook: its types are those of the fields."""
+        import pandas as pd
+
+        types = {one.key: _DTYPES.get(one.kind, "object") for one in self.fields}
+        return pd.DataFrame({key: pd.Series(values, dtype=types[key]) for key, values in self.columns.items()})
+
+
+def build_tree(fields: Iterable[Field]) -> Tree:
+    """Return the fields by their places in a record, groups within groups."""
+    tree: dict[str, Any] = {}
+    for one in fields:
+        inner = tree
+        for name in one.place[:-1]:
+            inner = inner.setdefault(name, {})
+        inner[one.place[-1]] = one
+    return tree
+
+
+def _fold(tree: Tree, part: Columns, leaf: _Leaf, group: _Group, is_null: bool = False) -> list[Any]:
+    """Return a record a row, made from the columns of its fields by `leaf` and of its groups by `group`."""
+    columns = [
+        leaf(one, part) if isinstance(one, Field) else _fold(one, part, leaf, group, is_null or name in _GROUPS)
+        for name, one in tree.items()
+    ]
+    return group(tuple(tree), columns, is_null)
+
+
+def _fold_records(field: Field, part: Columns, leaf: _Leaf, group: _Group) -> Iterator[list[Any]]:
+    """Yield the rows within each row."""
+    inner, counts = part.inner(field.source)
+    found = iter(_fold(build_tree(field.records), inner, leaf, group))
+    return ([next(found) for _row in range(count)] for count in counts)
+
+
+def _read_column(field: Field, part: Columns) -> list[Any]:
+    if field.kind == "records":
+        return list(_fold_records(field, part, _read_column, _group_records))
+    values = part.column(field.source)
+    return values if field.kind in _NUMBERS else [field.plain(value) for value in values]
+
+
+def _group_records(names: Sequence[str], columns: Sequence[Sequence[Any]], is_null: bool) -> list[Any]:
+    rows = zip(*columns, strict=True)
+    if is_null:
+        return [None if all(value is None for value in row) else dict(zip(names, row, strict=True)) for row in rows]
+    return [dict(zip(names, row, strict=True)) for row in rows]
+
+
+def _encode_column(field: Field, part: Columns) -> list[str]:
+    """Return the values of a field as results.json spells them; the same text or list is spelt once."""
+    if field.kind == "records":
+        return [f"[{', '.join(texts)}]" for texts in _fold_records(field, part, _encode_column, _group_texts)]
+    values = part.column(field.source)
+    if field.kind in _NUMBERS:
+        return _dump(values)[1:-1].split(", ") if values else []
+    spelt = {value: _dump(field.plain(value)) for value in set(values)}
+    return [spelt[value] for value in values]
+
+
+def _group_texts(names: Sequence[str], columns: Sequence[Sequence[str]], is_null: bool) -> list[str]:
+    heads = [_dump(name).replace("%", "%%") for name in names]
+    pattern = "{" + ", ".join(f"{head}: %s" for head in heads) + "}"
+    texts = [pattern % row for row in zip(*columns, strict=True)]
+    blank = pattern % (("null",) * len(names)) if is_null else ""
+    return ["null" if text == blank else text for text in texts] if is_null else texts
+
+
+def _flatten_column(field: Field, part: Columns, change: Callable[[Any], Any]) -> list[Any]:
+    if field.kind == "records":
+        return [change(field.flatten(value)) for value in _read_column(field, part)]
+    values = part.column(field.source)
+    if field.kind in _NUMBERS and field.flat is None:
+        return values
+    flat = {value: change(field.flatten(field.plain(value))) for value in set(values)}
+    return [flat[value] for value in values]
