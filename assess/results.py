@@ -638,12 +638,14 @@ class ItemResult:
     @property
     def formula_class(self) -> RiskClass:
         """The highest class that the formula gives under any of its motions; low where the piece cannot rock."""
-        return self._part.column("formula_class")[self._at]
+        found: RiskClass = self._part.column("formula_class")[self._at]
+        return found
 
     @property
     def paper_class(self) -> RiskClass:
         """The class by the paper's formula under the governing motion; low where the piece cannot rock."""
-        return self._part.column("paper_class")[self._at]
+        found: RiskClass = self._part.column("paper_class")[self._at]
+        return found
 
     @property
     def is_simulated(self) -> bool:
@@ -918,7 +920,7 @@ class CaseColumns(Columns):
         if name in ("risk", "upper"):
             return [_RISKS[at] for at in adopted[name].tolist()]
         if name == "is_doubtful":
-            return adopted["doubtful"].tolist()
+            return list(adopted["doubtful"].tolist())
         if name == "lowered_from":
             return [None] * len(self)
         if name == "method":

@@ -125,14 +125,14 @@ def building_record(results: Results) -> dict[str, Any]:
 
 def _floor_records(results: Results) -> list[dict[str, Any]]:
     """Return every floor with the motions that serve it, along X and then along Y."""
-    floors = {
-        one.floor: {"floor": one.floor, "name": one.name, "elevation_m": one.elevation_m, "demands": []}
-        for one in results.floor_rows
-    }
+    demands: dict[str, list[dict[str, Any]]] = {one.floor: [] for one in results.floor_rows}
     motions = sorted(results.motions, key=lambda one: one.axis)
     for motion, record in zip(motions, Table.of(MOTION_FIELDS, motions).records(), strict=True):
-        floors[motion.floor]["demands"].append(record)
-    return list(floors.values())
+        demands[motion.floor].append(record)
+    return [
+        {"floor": one.floor, "name": one.name, "elevation_m": one.elevation_m, "demands": demands[one.floor]}
+        for one in results.floor_rows
+    ]
 
 
 # ---------------------------------------------------------------- items.csv
