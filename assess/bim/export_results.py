@@ -15,7 +15,7 @@ from assess.details import DETAILS
 from assess.errors import InputError
 from assess.i18n import fill
 from assess.methods import simulation
-from assess.report.ranking import RouteStep
+from assess.report.say.work import RouteStep
 from assess.risk import RiskClass
 from assess.route_results import RouteState
 from assess.schedule_results import ScheduleRow, WorkRow
@@ -234,7 +234,7 @@ def _read_ends(row: Mapping[str, Any]) -> tuple[Point, Point] | None:
 
 
 def _read_steps(reader: Reader, routes: Mapping[str, Any], pieces: Sequence[ExportPiece]) -> Sequence[RouteStep]:
-    """Return what to fix for every route, as `assess.report.ranking.list_steps` does of results."""
+    """Return what to fix for every route, as `assess.report.say.work.list_steps` does of results."""
     index = {key(one.past.item): at for at, one in enumerate(pieces)}
     found = []
     for at, row in enumerate(reader.rows(routes, "routes", "routes")):

@@ -9,15 +9,16 @@ from assess.i18n import fill, ngettext
 from assess.i18n import gettext as _
 from assess.intensity import SHAKINGS
 from assess.report import words
-from assess.report.findings.schedule_words import (
+from assess.report.say.work import (
     NAMED,
+    RouteStep,
     join_names,
     say_checks,
+    say_effect,
     say_force,
     say_held,
     shorten_names,
 )
-from assess.report.ranking import RouteStep, say_effect
 from assess.results import CANNOT_ROCK
 from assess.risk import RiskClass, classify
 from assess.schedule_results import ScheduleRow, WorkRow

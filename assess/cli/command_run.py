@@ -254,9 +254,8 @@ def _read_options(language: str | None, templates: Path | None, accessible: bool
 def describe_result(results: "Results") -> Iterator[str]:
     """Yield the pieces of each class and those apart, what settles these, the routes at risk, and what was assumed."""
     from assess.report.counts import count
-    from assess.report.findings.apart import list_apart, list_ways_to_settle
-    from assess.report.findings.uncertain import list_conditions, say_assumed, say_sensitivity
-    from assess.report.findings.verified import describe_verification
+    from assess.report.say.piece import list_apart, list_ways_to_settle
+    from assess.report.say.simulation import describe_verification, list_conditions, say_assumed, say_sensitivity
     from assess.risk import RiskClass
 
     rows = tuple(results)
@@ -286,15 +285,15 @@ def describe_result(results: "Results") -> Iterator[str]:
 
 
 def _describe_routes(routes: "RouteTables") -> str:
-    from assess.report.findings.route_rows import (
+    from assess.report.say.route import (
         count_rooms,
         count_routes,
+        is_held,
         say_expected,
         say_not_counted,
         say_reservations,
         say_to_fill_in,
     )
-    from assess.report.findings.route_words import is_held
 
     held = sum(is_held(one, routes.risk) for one in routes.routes)
     texts = [

@@ -16,7 +16,7 @@ from assess.pipeline.route_sweep import FINEST, JUMP, Fragility, RouteFragility,
 from assess.pipeline.versions import versions
 from assess.report import words
 from assess.report.data import disarm
-from assess.report.findings.route_words import say_basis
+from assess.report.say.route import say_basis
 from assess.route_results import Chance
 from assess.units import GRAVITY
 from assess.version import __version__

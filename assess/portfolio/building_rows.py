@@ -14,8 +14,8 @@ from assess.pipeline.known_ground import find_ground
 from assess.portfolio.sources import Source
 from assess.portfolio.table_schemas import CLASS_COLUMNS, STATE_COLUMNS, TABLES
 from assess.report.counts import count
-from assess.report.findings.assumed_intensity import uses_scatter
-from assess.report.findings.route_words import say_missing
+from assess.report.say.ground import uses_scatter
+from assess.report.say.route import say_missing
 from assess.results import Results
 from assess.risk import find_ends
 from assess.route_results import RouteRow, RouteState, RouteTables

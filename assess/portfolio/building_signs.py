@@ -10,7 +10,7 @@ from assess.i18n import gettext as _
 from assess.i18n import number
 from assess.portfolio.city import Row
 from assess.portfolio.table_schemas import CLASS_COLUMNS, STATE_COLUMNS
-from assess.report.findings.route_words import name_state
+from assess.report.say.route import name_state
 from assess.report.words import ANCHORED, ANCHORED_FILL, APART_FILL, BY_FORMULA, INK, UNCONFIRMED, class_name, risk_word
 from assess.risk import LIMITS, RiskClass, classify
 from assess.route_results import RouteState

@@ -9,7 +9,7 @@ from assess.motion.ground_scenarios import FAR_CAUTION
 from assess.portfolio.city import City, Group, Row
 from assess.portfolio.city_spread import Spread
 from assess.report import words
-from assess.report.findings.route_words import say_state
+from assess.report.say.route import say_state
 from assess.risk import RiskClass
 from assess.route_results import RouteState
 

@@ -12,17 +12,21 @@ from assess.i18n import gettext as _
 from assess.i18n import number
 from assess.report import statements, words
 from assess.report.counts import Counts, count, count_rooms
-from assess.report.findings import cautions, motions, trials
-from assess.report.findings.annual_chances import AnnualChances, build_annual
-from assess.report.findings.apart import list_apart, list_parts
-from assess.report.findings.disagreements import Disagreements, find_disagreements
-from assess.report.findings.earthquake_draws import list_references
-from assess.report.findings.ground import PEAKS, say_ground
-from assess.report.findings.ground_source import say_ground_source
-from assess.report.findings.trials import Trials
-from assess.report.findings.verified import WILSON, Verified, build_verified
 from assess.report.provenance import report_time, say_date, say_reference
 from assess.report.row_order import order_floors, order_rows
+from assess.report.say import ground, simulation
+from assess.report.say.ground import PEAKS, say_ground_source, say_peak
+from assess.report.say.methods import Disagreements, find_disagreements
+from assess.report.say.piece import list_apart, list_parts
+from assess.report.say.simulation import (
+    WILSON,
+    AnnualChances,
+    Trials,
+    Verified,
+    build_annual,
+    build_verified,
+    list_references,
+)
 from assess.report.summary import FLOORS, FLOORS_BESIDE, Summary, build_summary, list_risky
 from assess.results import FloorRow, ItemResult, MotionRow, Results, WorkedMethod
 from assess.risk import LIMITS, RiskClass, classify
@@ -209,7 +213,7 @@ def build_content(results: Results) -> Content:
     """Gather the content of a report, in the language in use: once for all its renderers."""
     rows = tuple(results)
     floors, verified, total = _list_floors(results, rows), build_verified(results, rows), count(_("All floors"), rows)
-    found = cautions.build_cautions(results)
+    found = ground.build_cautions(results)
     return Content(
         run=results,
         title=results.building.building or Path(results.provenance.workbook).stem,
@@ -219,14 +223,14 @@ def build_content(results: Results) -> Content:
         total=total,
         floors=floors,
         summary=build_summary(results, rows, total),
-        sources=motions.list_sources(results.motions),
+        sources=ground.list_sources(results.motions),
         cautions=[one.text for one in found],
         short_cautions=list(dict.fromkeys(one.short for one in found)),
         flags=statements.list_flags(results),
-        assumptions=[*statements.list_assumptions(results), *trials.list_assumptions(results, verified)],
+        assumptions=[*statements.list_assumptions(results), *simulation.list_assumed_draws(results, verified)],
         limits=statements.list_limits(results),
         verified=verified,
-        trials=trials.build_trials(results, verified),
+        trials=simulation.build_trials(results, verified),
         disagreements=find_disagreements(results, rows),
         annual=build_annual(results, rows),
         worked=tuple(_work(results, one) for one in results.worked),
@@ -254,7 +258,7 @@ def _describe_building(results: Results) -> dict[str, tuple[str, str]]:
             shown = number(value / column.factor, ".4g") if isinstance(value, float) else str(value)
             shown = (YES if value else NO) if column.kind == "flag" else shown
             shown += f" {column.unit}" if column.quantity else ""
-            shown = say_ground(results, column.name, shown) if column.name in PEAKS else shown
+            shown = say_peak(results, column.name, shown) if column.name in PEAKS else shown
             lines[column.name] = (_(column.label), words.clip(_(shown) if column.kind in ("choice", "flag") else shown))
     return lines
 

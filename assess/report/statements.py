@@ -8,8 +8,8 @@ from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
 from assess.pipeline.anchors import BRACKET
 from assess.report import words
-from assess.report.findings import assumed_intensity, ground_source, motions
-from assess.report.findings.route_words import say_risk
+from assess.report.say import ground
+from assess.report.say.route import say_risk
 from assess.results import MOTION_FLAGS, PIECE_FLAG_TEXTS, Results
 from assess.route_results import FLAGS as ROUTE_FLAGS
 from assess.route_results import RouteTables
@@ -47,8 +47,8 @@ def list_flags(results: Results) -> dict[str, str]:
 
 def list_assumptions(results: Results) -> Lines:
     """Return what was assumed, and for how many rows or where."""
-    lines = [*assumed_intensity.list_assumptions(results), *ground_source.list_assumptions(results)]
-    lines += [*motions.list_assumptions(results), *motions.list_drawn_assumptions(results)]
+    lines = [*ground.list_assumed_shaking(results), *ground.list_assumed_ground(results)]
+    lines += [*ground.list_assumed_motions(results), *ground.list_drawn_assumptions(results)]
     items = results.item_rows
     counted = Counter(name for item in items for name in item.assumed)
     for name, text in _assumed().items():
@@ -201,7 +201,7 @@ def _limits_of_simulation(results: Results) -> tuple[str, ...]:
             "How much stronger or weaker an earthquake like this one could be, and how much pieces differ from their "
             "nominal sizes, centre of gravity and restitution, is assumed, not measured on furniture."
         ),
-        *(() if results.provenance.suite else (motions.say_signs(results),)),
+        *(() if results.provenance.suite else (ground.say_signs(results),)),
         _(
             "Rocking depends on details of a motion that a response spectrum does not contain, such as long pulses. "
             "The behaviour under the recorded motion itself is therefore shown next to the chance."

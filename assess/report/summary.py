@@ -7,11 +7,11 @@ from assess.i18n import gettext as _
 from assess.i18n import ngettext
 from assess.report import words
 from assess.report.counts import Counts
-from assess.report.findings.apart import say_apart
-from assess.report.findings.at_risk import RouteAtRisk, list_routes_at_risk, say_routes
-from assess.report.findings.ground_source import say_ground
-from assess.report.findings.schedule_words import Entry, list_entries, say_doubtful_brackets
 from assess.report.row_order import by_chance
+from assess.report.say.ground import say_ground
+from assess.report.say.piece import say_apart
+from assess.report.say.route import RouteAtRisk, list_routes_at_risk, say_routes
+from assess.report.say.work import Entry, list_entries, say_doubtful_brackets
 from assess.results import ItemResult, Results
 from assess.risk import RiskClass
 

@@ -16,9 +16,9 @@ from assess.report.content import Content
 from assess.report.embedded import Photos
 from assess.report.figures.plan import Plan, build_plan
 from assess.report.figures.ways import build_stretches
-from assess.report.findings.route_rows import list_segments
 from assess.report.page_columns import PageColumn, list_columns, short_columns
 from assess.report.report_options import ReportOptions
+from assess.report.say.route import list_segments
 from assess.results import Results
 from assess.route_results import SegmentRow
 

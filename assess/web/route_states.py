@@ -9,9 +9,8 @@ from assess.model import Inventory
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.run import evaluate_route_tables
 from assess.progress import SILENT
-from assess.report.findings.route_rows import describe_routes as say_routes
-from assess.report.findings.route_rows import say_to_fill_in, say_uncounted
-from assess.report.findings.route_words import (
+from assess.report.say.route import describe_routes as say_routes
+from assess.report.say.route import (
     is_blocked_standing,
     name_few,
     say_blocked,
@@ -21,6 +20,8 @@ from assess.report.findings.route_words import (
     say_route_state,
     say_segment_state,
     say_state,
+    say_to_fill_in,
+    say_uncounted,
     say_way,
 )
 from assess.route_results import Chance, RoomRow, RouteRow, RouteState, RouteTables, SegmentRow

@@ -16,7 +16,7 @@ from assess.motion.target import Grid, octaves, put_on_grid
 from assess.pipeline.demand import build_demands, scale_demands
 from assess.pipeline.ensembles import build_ensembles, find_clock, find_phase_signs
 from assess.progress import SILENT
-from assess.report.findings.motions import say_signs
+from assess.report.say.ground import say_signs
 from assess.settings import Settings
 from tests.conftest import EXAMPLE
 from tests.motion.test_generate import measure

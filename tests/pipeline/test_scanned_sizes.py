@@ -6,7 +6,7 @@ import pytest
 import assess
 from assess.pipeline.piece_fragility import find_piece_fragilities
 from assess.pipeline.run import compute
-from assess.report.findings.uncertain import count_scanned
+from assess.report.say.simulation import count_scanned
 from assess.settings import Settings
 from assess.units import GRAVITY
 from tests.pipeline import rows

@@ -4,7 +4,7 @@ import pytest
 
 import assess
 from assess.details import DETAILS, SCREW, count_fixings
-from assess.report.findings.schedule_words import list_changes
+from assess.report.say.work import list_changes
 from tests.pipeline.rows import read_sheets
 from tests.workbooks import UNVERIFIED
 

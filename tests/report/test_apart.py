@@ -14,7 +14,7 @@ from assess.report.content import build_content
 from assess.report.counts import count
 from assess.report.figures.bars import draw_bars
 from assess.report.figures.plan import build_plan
-from assess.report.findings.apart import list_parts, list_ways_to_settle
+from assess.report.say.piece import list_parts, list_ways_to_settle
 from assess.results import BASES
 from assess.risk import RiskClass, classify
 from assess.settings import Settings

@@ -9,7 +9,7 @@ import pytest
 
 import assess
 from assess.methods.fitted import Polynomial, build_method
-from assess.report.findings.disagreements import MOST_REASONS, find_disagreements, span
+from assess.report.say.methods import MOST_REASONS, find_disagreements, span
 from assess.risk import RiskClass, classify
 from tests.methods.test_fitted import PROBIT, SURFACE
 from tests.workbooks import UNVERIFIED, assessed

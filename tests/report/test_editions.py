@@ -9,7 +9,7 @@ import pytest
 
 import assess
 from assess.report.content import build_content
-from assess.report.groups import PieceGroup, choose_groups, group_rows
+from assess.report.say.piece import PieceGroup, choose_groups, group_rows
 from assess.report.view import View, list_all_parts
 from tests.pictures import picture
 from tests.report.reading import read_text, render

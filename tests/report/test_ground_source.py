@@ -11,10 +11,8 @@ import assess
 from assess.intensity import MIDORIKAWA
 from assess.report.content import build_content
 from assess.report.data import describe_run
-from assess.report.findings.assumed_intensity import say_shaking, say_shaking_shortly
-from assess.report.findings.earthquake_draws import list_references, say_draws
-from assess.report.findings.ground_source import say_ground, say_ground_source
-from assess.report.findings.uncertain import say_source
+from assess.report.say.ground import say_ground, say_ground_source, say_shaking, say_shaking_shortly
+from assess.report.say.simulation import list_references, say_draws, say_source
 from assess.results import EarthquakeDraws
 from assess.settings import Settings
 from tests.cli.calling import run

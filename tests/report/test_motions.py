@@ -9,7 +9,7 @@ import assess
 from assess.motion.scenario import UNVERIFIED
 from assess.report.content import build_content
 from assess.report.data import SCHEMA
-from assess.report.findings.motions import ENVELOPES, describe_origin, describe_source
+from assess.report.say.ground import ENVELOPES, describe_origin, describe_source
 from tests.shaking import write_records
 from tests.workbooks import UNVERIFIED as BY_FORMULA
 from tests.workbooks import write

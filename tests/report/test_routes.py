@@ -13,9 +13,9 @@ from assess.i18n import gettext, load_catalogue, speaking
 from assess.pipeline.schedule import fix_first
 from assess.report import statements, words
 from assess.report.content import build_content
-from assess.report.findings import at_risk, route_page
-from assess.report.ranking import list_steps, say_effect, say_step
 from assess.report.report_options import ReportOptions
+from assess.report.say import route
+from assess.report.say.work import list_steps, say_effect, say_step
 from assess.report.sections import routes_detail
 from assess.report.summary import FIXES
 from assess.report.view import MOST_SEGMENTS
@@ -36,8 +36,8 @@ def test_states_are_counted_the_worst_first(routed):
     routes, states = routed.route_tables, (RouteState.DOUBTFUL, RouteState.BLOCKED, RouteState.DOUBTFUL)
     changed = tuple(replace(one, state=state) for one, state in zip(routes.routes, states, strict=True))
     results = replace(routed, route_tables=replace(routes, routes=changed))
-    assert at_risk.say_routes(results)[0] == "3 evacuation routes: 1 blocked, 2 doubtful."
-    assert [one.result.state for one in at_risk.list_routes_at_risk(results)] == sorted(
+    assert route.say_routes(results)[0] == "3 evacuation routes: 1 blocked, 2 doubtful."
+    assert [one.result.state for one in route.list_routes_at_risk(results)] == sorted(
         states, key=lambda state: -state.severity
     )
 
@@ -47,13 +47,13 @@ def test_a_route_of_which_nothing_is_known_is_not_said_to_be_safe(tmp_path):
     results = assess_routed(tmp_path / "w.xlsx", Items=ITEMS[3:])
     assert [one.evaluated for one in results.route_tables.routes] == [True, True, False]
     assert results.route_tables.routes[2].state == RouteState.NOT_KNOWN
-    assert [text for text in at_risk.say_routes(results) if "fill in From, To and Floor of Yard: lane" in text]
+    assert [text for text in route.say_routes(results) if "fill in From, To and Floor of Yard: lane" in text]
 
 
 def test_where_all_are_open_none_is_listed(tmp_path):
     results = assess_routed(tmp_path / "w.xlsx", Items=[ITEMS[0] | {"anchored": "yes"}, ITEMS[2]])
-    assert at_risk.list_routes_at_risk(results) == []
-    first, second, *_ = at_risk.say_routes(results)
+    assert route.list_routes_at_risk(results) == []
+    first, second, *_ = route.say_routes(results)
     assert first == "3 evacuation routes: 3 open."
     assert second == "Best way from each of 2 rooms to the street: 2 open."
 
@@ -135,11 +135,11 @@ def unconfirmed(tmp_path_factory):
 
 def test_what_is_not_known_is_counted_apart_with_what_settles_it(unconfirmed):
     """Neither T1 nor height is known: whether West and Back are blocked depends on the bookcase and the cabinets."""
-    back, west, *others = at_risk.list_routes_at_risk(unconfirmed)
+    back, west, *others = route.list_routes_at_risk(unconfirmed)
     assert (west.route, west.state, west.chance) == (
         "West", "? not known", "not known (0.0 to 100.0 %)".replace(" ", words.NO_BREAK),
     )  # fmt: skip
-    text = " ".join(at_risk.say_routes(unconfirmed))
+    text = " ".join(route.say_routes(unconfirmed))
     assert (back.route, others) == ("Back", [])
     assert "3 evacuation routes: 2 not known, 1 open." in text
     assert "Best way from each of 2 rooms to the street: 2 not known." in text
@@ -211,7 +211,7 @@ def test_the_data_quality_log_warns_of_rooms_without_furniture(drafted, routed):
 def test_a_long_draft_keeps_its_mark_in_every_list(drafted):
     (step, *_others) = [say_step(one) for one in list_steps(drafted.route_tables) if one.route == LONG]
     assert step.startswith("route To the stair of the n… (draft): ")
-    lines = [one.names for one in route_page.list_route_lines(drafted.route_tables, drafted.item_rows)]
+    lines = [one.names for one in route.list_route_lines(drafted.route_tables, drafted.item_rows)]
     assert "To the stair of the north wing,… (draft)" in lines
 
 
@@ -286,20 +286,20 @@ def test_long_lists_are_bounded_and_what_is_left_out_is_least_likely(tmp_path):
     assert "30 more segments, less likely to be blocked, are in the Excel report." in text
     assert "30 more rooms, less likely to be cut off, are in the Excel report." in text
     assert "160 routes are open as they are: Route 0, " in text, "all pieces of the floor name other routes"
-    assert len(_rows(html, "way-page")) == 2 * route_page.MOST_LINES, "rooms and routes"
+    assert len(_rows(html, "way-page")) == 2 * route.MOST_LINES, "rooms and routes"
     assert "9 more lines are in the Excel report, sheet Routes." in text
 
 
 def test_rooms_that_are_alike_stand_in_one_line(routed):
     routes = routed.route_tables
     twin = replace(routes.rooms[0], room="Twin")
-    lines = route_page.list_room_lines(replace(routes, rooms=(*routes.rooms, twin)), routed.item_rows)
+    lines = route.list_room_lines(replace(routes, rooms=(*routes.rooms, twin)), routed.item_rows)
     assert [one.names for one in lines if "Twin" in one.names] == ["Office, Twin"]
-    assert len(lines) == len(route_page.list_room_lines(routes, routed.item_rows))
+    assert len(lines) == len(route.list_room_lines(routes, routed.item_rows))
 
 
 def test_what_more_draws_would_settle_says_so(routed):
     (yard,) = (one for one in routed.route_tables.routes if one.route == "Yard")
     doubtful = replace(yard, missing=(), state=RouteState.DOUBTFUL, fixes=())
-    assert route_page.say_advice(doubtful) == "no draw blocks it: simulate more draws to settle it"
-    assert route_page.say_advice(yard) == ""
+    assert route.say_advice(doubtful) == "no draw blocks it: simulate more draws to settle it"
+    assert route.say_advice(yard) == ""

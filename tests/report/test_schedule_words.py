@@ -7,8 +7,8 @@ import pytest
 import assess
 from assess.details import DETAILS
 from assess.report.content import build_content
-from assess.report.findings import schedule_words as say
-from assess.report.ranking import RouteStep, say_effect
+from assess.report.say import work as say
+from assess.report.say.work import RouteStep, say_effect
 from assess.report.words import say_bracket
 from assess.schedule_results import NOTHING
 from assess.settings import Settings

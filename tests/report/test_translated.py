@@ -14,7 +14,7 @@ from assess.i18n import Catalogue, gettext, speaking
 from assess.motion.formats import read_records
 from assess.report import words
 from assess.report.content import build_content
-from assess.report.findings import motions
+from assess.report.say import ground
 from docs.texts import collect
 from tests.pictures import picture
 from tests.report.test_verified import _assess
@@ -104,10 +104,10 @@ def test_what_shakes_the_floors_is_said(odd, spoken):
     with speaking(spoken):
         for motion in odd.motions:
             names = re.findall(r"[^\W\d_]+", f"{motion.station} {motion.record}")
-            assert motions.describe_source(motion).startswith("⟦")
-            assert not _left(motions.describe_source(motion))
-            assert not _left(motions.describe_origin(motion), *names)
-            assert not _left(motions.describe_treatment(motion))
+            assert ground.describe_source(motion).startswith("⟦")
+            assert not _left(ground.describe_source(motion))
+            assert not _left(ground.describe_origin(motion), *names)
+            assert not _left(ground.describe_treatment(motion))
         content = build_content(odd)
         for text in (*content.sources, *content.cautions, *content.short_cautions):
             assert text.startswith("⟦")
@@ -116,7 +116,7 @@ def test_what_shakes_the_floors_is_said(odd, spoken):
             assert not _left(" ".join(line[1:]), "EXP", "sin"), line
         assert not _left(" ".join((*content.limits, *content.summary.plainly)))
         for profile in odd.provenance.profiles:
-            assert not _left(motions.profile_status(profile))
+            assert not _left(ground.profile_status(profile))
 
 
 def test_why_methods_disagree_and_the_worked_example_are_said(example, spoken):

@@ -15,7 +15,7 @@ from assess.motion.suite import Suite
 from assess.pipeline import ensembles
 from assess.report import words
 from assess.report.content import build_content
-from assess.report.findings.verified import describe_verification
+from assess.report.say.simulation import describe_verification
 from assess.risk import RiskClass, classify
 from assess.settings import Settings
 from assess.units import GRAVITY

@@ -10,7 +10,7 @@ from assess.report import words
 from assess.report.content import build_content
 from assess.report.counts import count
 from assess.report.figures.bars import draw_bars
-from assess.report.findings.route_words import name_few
+from assess.report.say.route import name_few
 from assess.report.statements import list_assumptions
 from assess.report.summary import say_plainly
 from assess.risk import LIMITS, RiskClass, classify

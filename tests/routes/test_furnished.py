@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from assess.report.findings.route_rows import say_reservations
+from assess.report.say.route import say_reservations
 from assess.route_results import RouteState
 from assess.routes.furnished import find_unfurnished, list_unfurnished
 from tests.routes.buildings import CORRIDOR, building, corridor, evaluated, make_falls, piece, place, stretch

@@ -3,7 +3,7 @@
 import pytest
 
 from assess.pipeline.schedule import list_rooms_at_risk
-from assess.report.findings.route_rows import count_rooms, say_uncounted
+from assess.report.say.route import count_rooms, say_uncounted
 from assess.route_results import RouteState
 from tests.routes.buildings import CORRIDOR, corridor, evaluated, make_falls, one_segment, piece, place, stretch
 

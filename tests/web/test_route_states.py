@@ -7,7 +7,7 @@ import pytest
 
 import assess
 from assess.i18n import load_catalogue, speaking
-from assess.report.findings.route_words import say_blocked, say_room_state, say_route_state, say_segment_state
+from assess.report.say.route import say_blocked, say_room_state, say_route_state, say_segment_state
 from assess.route_results import RouteState
 from assess.web.route_states import describe_routes
 from assess.workbook.template import Content, write_workbook

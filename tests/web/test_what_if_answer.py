@@ -8,7 +8,7 @@ import pytest
 import assess
 from assess.errors import InputError
 from assess.report.counts import count
-from assess.report.findings.route_words import say_room_state, say_route_state
+from assess.report.say.route import say_room_state, say_route_state
 from assess.risk import RiskClass
 from assess.web.what_if_answer import try_out
 from tests.web.opened import MARKET, edit, hold

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from assess.i18n import gettext as _
 from assess.report import words
 from assess.report.figures.labels import LINE, Bounds, Corners, Label, Point, overlap, place_labels
-from assess.report.findings.route_words import (
+from assess.report.say.route import (
     is_held,
     say_blocked,
     say_missing,

@@ -6,7 +6,7 @@ from assess.i18n import fill, ngettext
 from assess.i18n import gettext as _
 from assess.report import words
 from assess.report.blocks import Block, Heading, Paragraph, Section, head, list_columns, more, table
-from assess.report.findings.annual_chances import LISTED, AnnualLine
+from assess.report.say.simulation import LISTED, AnnualLine
 from assess.report.view import Part, View, shorten
 
 

@@ -21,8 +21,8 @@ from assess.report.blocks import (
 )
 from assess.report.embedded import data_uri
 from assess.report.figures.motion_figures import draw_motion, get_acceleration
-from assess.report.findings import motions
 from assess.report.page_columns import say_flag
+from assess.report.say import ground
 from assess.report.view import Part, View, shorten
 from assess.results import MotionRow
 
@@ -58,7 +58,7 @@ def _list_recorded(view: View) -> Iterator[Box]:
         name = words.cut(one.record, 60)
         lines = [
             _("{floor}, along {axis}: {name} ({event}). {treatment}", floor=title, axis=one.axis, name=name,
-              event=words.cut(one.event, 60), treatment=motions.describe_treatment(one)),
+              event=words.cut(one.event, 60), treatment=ground.describe_treatment(one)),
             _("PFA in the file: {pfa} g.", pfa=words.in_g(one.pfa_file_g)) if one.pfa_file_g else "",
         ]  # fmt: skip
         values = get_acceleration(view.run, one) if one in strongest else None

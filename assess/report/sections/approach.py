@@ -4,10 +4,9 @@ from assess.i18n import fill
 from assess.i18n import gettext as _
 from assess.report import words
 from assess.report.blocks import Block, Bullets, Heading, Paragraph, Section
-from assess.report.findings.route_words import say_risk
-from assess.report.findings.uncertain import say_assumed, say_sensitivity
-from assess.report.findings.verified import WILSON
 from assess.report.provenance import say_reference
+from assess.report.say.route import say_risk
+from assess.report.say.simulation import WILSON, say_assumed, say_sensitivity
 from assess.report.view import Part, View
 
 

@@ -11,8 +11,8 @@ from assess.report.counts import Counts
 from assess.report.figures.bars import draw_bars
 from assess.report.figures.plan import Plan
 from assess.report.figures.plan_drawing import draw_plan, list_legend
-from assess.report.findings.floor_lines import say_counts, say_motions
 from assess.report.page_columns import build_table
+from assess.report.say.ground import say_counts, say_motions
 from assess.report.view import Part, View
 from assess.results import ItemResult
 

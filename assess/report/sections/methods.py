@@ -20,8 +20,8 @@ from assess.report.blocks import (
     strong,
     table,
 )
-from assess.report.findings import motions
 from assess.report.provenance import say_reference
+from assess.report.say import ground
 from assess.report.summary import describe
 from assess.report.view import Part, View
 
@@ -91,12 +91,12 @@ def _describe_profiles(view: View) -> list[Block]:
     )
     heads = list_columns((_("Code"), "w9"), (_("Clause"), "w18"), (_("Equation"), ""), (_("Status"), "w36"))
     rows = [
-        (one.key, motions.list_clauses(one), Equation(_(one.equation)), motions.profile_status(one))
+        (one.key, ground.list_clauses(one), Equation(_(one.equation)), ground.profile_status(one))
         for one in view.run.provenance.profiles
     ]
     return [
         Heading(_("Floor motion without a sensor")),
-        Paragraph(f"{text} {_(motions.ENVELOPES)}"),
+        Paragraph(f"{text} {_(ground.ENVELOPES)}"),
         table(heads, rows),
     ]
 

@@ -4,8 +4,8 @@ from assess.i18n import fill, ngettext
 from assess.i18n import gettext as _
 from assess.report import words
 from assess.report.blocks import Paragraph, Row, Section, Span, Table, join_words, list_columns, part
-from assess.report.groups import choose_groups, group_rows
 from assess.report.page_columns import mark
+from assess.report.say.piece import choose_groups, group_rows
 from assess.report.summary import describe
 from assess.report.view import Part, View, in_whole
 

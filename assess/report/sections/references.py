@@ -4,7 +4,7 @@ from assess.i18n import fill
 from assess.i18n import gettext as _
 from assess.report import words
 from assess.report.blocks import Bullets, Section
-from assess.report.findings import motions
+from assess.report.say import ground
 from assess.report.view import Part, View
 
 
@@ -16,7 +16,7 @@ def build(view: View) -> Section:
         for one in view.run.catalogue
         if one.source and one.type in types
     ]
-    profiles = [one.reference for one in motions.used_profiles(view.run)]
+    profiles = [one.reference for one in ground.used_profiles(view.run)]
     return Section([Bullets([*view.content.references, *profiles, *sizes], "references")])
 
 

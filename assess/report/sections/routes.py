@@ -20,8 +20,8 @@ from assess.report.blocks import (
     strong,
     table,
 )
-from assess.report.findings import route_page, route_rows, route_words
-from assess.report.findings.route_page import Line
+from assess.report.say import route
+from assess.report.say.route import Line
 from assess.report.view import Part, View, shorten
 from assess.route_results import RouteState
 
@@ -36,34 +36,34 @@ def build(view: View) -> Section:
     if not view.run.has_routes:
         return Section([Paragraph(_("The workbook names no routes."))], "run-on")
     found, items = view.run.route_tables, view.run.item_rows
-    blocks: list[Block] = [Paragraph(" ".join(route_rows.describe_routes(found)), "lead")]
-    uncounted = route_rows.say_uncounted(found)
+    blocks: list[Block] = [Paragraph(" ".join(route.describe_routes(found)), "lead")]
+    uncounted = route.say_uncounted(found)
     blocks += [Paragraph(uncounted)] if uncounted else []
-    rules = route_words.list_rules(found.risk)
+    rules = route.list_rules(found.risk)
     states = [
-        Span([show_state(state, route_words.say_state(state)), f": {rule}{';' if at < len(rules) else '.'}"], "key")
+        Span([show_state(state, route.say_state(state)), f": {rule}{';' if at < len(rules) else '.'}"], "key")
         for at, (state, rule) in enumerate(rules, start=1)
     ]
     blocks.append(Paragraph(join_words([*states, _("The chances assume that all anchors hold.")]), "legend states"))
-    rooms = route_page.list_room_lines(found, items)
+    rooms = route.list_room_lines(found, items)
     if rooms:
         text = _(
             "By the best way out, stairs included. The chance is that of losing every exit. Anchor or move all pieces "
             "of a line."
         )
         blocks += [Heading(_("From each room to the street")),
-                   Paragraph(" ".join([text, *route_rows.say_drafts(found)]), "lead-in"),
+                   Paragraph(" ".join([text, *route.say_drafts(found)]), "lead-in"),
                    *_list_lines(view, rooms, _("Route rooms"), _("From → to"))]  # fmt: skip
     else:
         blocks.append(Paragraph(_("No room has a way out in the workbook, so none is evaluated.")))
-    routes = route_page.list_route_lines(found, items)
+    routes = route.list_route_lines(found, items)
     return Section([
         *blocks, Heading(_("Routes")), *_list_lines(view, routes, _("Routes"), _("Route: from → to"))
     ])  # fmt: skip
 
 
 def _list_lines(view: View, lines: Sequence[Line], sheet: str, first: str) -> list[Block]:
-    shown, left = shorten(lines, route_page.MOST_LINES)
+    shown, left = shorten(lines, route.MOST_LINES)
     heads = list_columns((first, ""), (_("State"), ""), (_("Chance blocked"), "", "num"), (_("Decisive segment"), ""),
                          (_("What to fix or fill in"), ""))  # fmt: skip
     rows = [

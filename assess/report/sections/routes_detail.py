@@ -28,8 +28,8 @@ from assess.report.blocks import (
     rich,
     table,
 )
-from assess.report.findings import route_rows, route_words
 from assess.report.page_columns import PageColumn, flags, route_columns, say_flag
+from assess.report.say import route
 from assess.report.sections.routes import show_state
 from assess.report.view import Part, View, shorten
 from assess.route_results import BesideRow, Chance, RoomRow, RouteRow, RouteState, SegmentRow
@@ -50,12 +50,12 @@ def build(view: View) -> Sequence[Section]:
         *_list_routes(view, columns["routes"]), *_list_fixes(view), *_list_rooms(view, columns["rooms"]),
         *_list_floors(view, columns["floors"]),
         Heading(_("Assumptions of the evaluation")),
-        Box([Bullets(route_words.list_cautions(found))], "caution"),
+        Box([Bullets(route.list_cautions(found))], "caution"),
         Heading(_("Widths required by codes and guidance")),
-        Paragraph(f"{route_words.say_default_width()} "
+        Paragraph(f"{route.say_default_width()} "
                   + _("Which of these widths applies is to be entered as Required width in the workbook."), "lead-in"),
         table(list_columns((_("Clear width"), "w36"), (_("Publication"), "")),
-              ((join_words(asked, BREAK), publication) for publication, asked in route_words.list_widths()),
+              ((join_words(asked, BREAK), publication) for publication, asked in route.list_widths()),
               "widths few"),
     ]  # fmt: skip
     wide = [*_list_segments(view, columns["segments"]), *_list_beside(view, columns["beside"])]
@@ -71,11 +71,11 @@ def _say_state(one: SegmentRow | RouteRow, text: str) -> Words:
     state = show_state(one.state, text)
     if not one.evaluated or one.under_record is None:
         return state
-    return [state, BREAK, note(_("record: {state}", state=route_words.say_recorded(one)))]
+    return [state, BREAK, note(_("record: {state}", state=route.say_recorded(one)))]
 
 
 def _say_perhaps(chance: Chance | None, *, is_known: bool = True) -> str:
-    return route_words.say_chance(chance) if chance is not None and is_known else words.DASH
+    return route.say_chance(chance) if chance is not None and is_known else words.DASH
 
 
 def _list_routes(view: View, columns: Sequence[PageColumn]) -> list[Block]:
@@ -87,31 +87,31 @@ def _list_routes(view: View, columns: Sequence[PageColumn]) -> list[Block]:
 
     def say_bounds(one: RouteRow) -> Words:
         if one.missing:
-            return route_words.say_missing(one.missing)
+            return route.say_missing(one.missing)
         if one.blocked is None or not one.evaluated:
             return words.DASH
-        left_out = route_words.say_left_out(one.unevaluated_segments)
-        basis = note("; ".join(filter(None, (route_words.say_basis(one.blocked), left_out))))
-        return [route_words.say_bounds(one.blocked), BREAK, basis] if one.blocked.pieces else basis
+        left_out = route.say_left_out(one.unevaluated_segments)
+        basis = note("; ".join(filter(None, (route.say_basis(one.blocked), left_out))))
+        return [route.say_bounds(one.blocked), BREAK, basis] if one.blocked.pieces else basis
 
     def name_piece(one: RouteRow) -> Words:
         likely = one.most_likely_piece
-        if likely is None or route_words.is_blocked_standing(one):
+        if likely is None or route.is_blocked_standing(one):
             return words.DASH
         return view.name_piece(likely.item_index)
 
     shown: Mapping[str, Show] = {
         "route": lambda one: head(words.cut(one.route, 40)),
-        "floors": lambda one: route_words.name_few(one.floors),
-        "state": lambda one: _say_state(one, route_words.say_route_state(one, found.risk)),
-        "blocked_probability": route_words.say_blocked,
-        "blocked_or_reduced_probability": route_words.say_taken,
+        "floors": lambda one: route.name_few(one.floors),
+        "state": lambda one: _say_state(one, route.say_route_state(one, found.risk)),
+        "blocked_probability": route.say_blocked,
+        "blocked_or_reduced_probability": route.say_taken,
         "blocked_is_joint": say_bounds,
         "blocked_if_anchors_fail_probability":
             lambda one: _say_perhaps(one.blocked_if_anchors_fail, is_known=one.evaluated),
         "most_likely_piece": name_piece,
     }  # fmt: skip
-    chosen = route_rows.choose_rows(found.routes, MOST_ROUTES, route_words.find_chance)
+    chosen = route.choose_rows(found.routes, MOST_ROUTES, route.find_chance)
     rows = [_build_row(columns, one, shown) for one in chosen]
     return [
         Heading(_("Routes")),
@@ -126,13 +126,13 @@ def _list_fixes(view: View) -> list[Block]:
     """Return what to fix for each route step by step, the routes that no fix opens, and those that are open."""
     found = view.run.route_tables
     blocks: list[Block] = [Heading(_("What to fix for each route"))]
-    steps, left = shorten(route_rows.list_steps(found), MOST_STEPS)
+    steps, left = shorten(route.list_steps(found), MOST_STEPS)
     if steps:
         lead = rich(_(
             "The smallest set of rows found that opens each route: its whole range is below {risk} <em>if the anchors "
             "hold</em>. Anchor all pieces of a row, or move them away. Fix all listed rows; fixing only some may have "
             "no effect, as pieces that fall together must all be fixed."
-        ), risk=route_words.say_risk(found.risk))  # fmt: skip
+        ), risk=route.say_risk(found.risk))  # fmt: skip
         then = (_("A route that is not known then says what to fill in.")
                 if any(one.missing_after for one in found.routes) else "")  # fmt: skip
         heads = list_columns(
@@ -142,15 +142,15 @@ def _list_fixes(view: View) -> list[Block]:
         rows = [
             Row((words.cut(one.route, 40), str(at), view.name_row(step.item_index, 40), words.deviation(step.gain),
                  words.percent(step.left),
-                 (route_words.say_missing_after(one) or _("open")) if at == len(one.fixes) else ""),
+                 (route.say_missing_after(one) or _("open")) if at == len(one.fixes) else ""),
                 "first" if at == 1 else "")
             for one, at, step in steps
         ]  # fmt: skip
-        blocks += [Paragraph(join_words((lead, route_rows.say_fixes_bound(found), then)), "lead-in"),
+        blocks += [Paragraph(join_words((lead, route.say_fixes_bound(found), then)), "lead-in"),
                    table(heads, rows, "steps")]  # fmt: skip
         blocks += more(left, lambda n: ngettext("{n:,} more step is in the Excel report.",
                                                 "{n:,} more steps are in the Excel report.", n))  # fmt: skip
-    unfixable, left = shorten(route_words.list_unfixable(found), MOST_ROUTES)
+    unfixable, left = shorten(route.list_unfixable(found), MOST_ROUTES)
     if unfixable:
         lead = [_("Blocked with nothing fallen, so that no anchor helps: widen them, or move what stands inside; check "
                   "the Clear width.")]  # fmt: skip
@@ -158,7 +158,7 @@ def _list_fixes(view: View) -> list[Block]:
         blocks += [Paragraph(lead, "lead-in"), Bullets(lines)]
         blocks += more(left, lambda n: ngettext("{n:,} more route is in the Excel report.",
                                                 "{n:,} more routes are in the Excel report.", n))  # fmt: skip
-    count, names = route_rows.name_untouched(found)
+    count, names = route.name_untouched(found)
     if count:
         text = ngettext("{n:,} route is open as it is: {names}.", "{n:,} routes are open as they are: {names}.", count,
                         names=names)  # fmt: skip
@@ -168,7 +168,7 @@ def _list_fixes(view: View) -> list[Block]:
 
 def _list_rooms(view: View, columns: Sequence[PageColumn]) -> list[Block]:
     found = view.run.route_tables
-    chosen = route_rows.choose_rows(found.rooms, MOST_ROOMS, lambda one: one.loses_every_exit.probability)
+    chosen = route.choose_rows(found.rooms, MOST_ROOMS, lambda one: one.loses_every_exit.probability)
     if not chosen:
         none = _("No room has a way out in the workbook, so none is evaluated.")
         return [Heading(_("Rooms")), Paragraph(none)]
@@ -178,19 +178,19 @@ def _list_rooms(view: View, columns: Sequence[PageColumn]) -> list[Block]:
     )
 
     def list_ways(one: RoomRow) -> Words:
-        lines: list[Inline] = [f"{at}. {route_words.say_way(way, found)}" for at, way in enumerate(one.ways, start=1)]
+        lines: list[Inline] = [f"{at}. {route.say_way(way, found)}" for at, way in enumerate(one.ways, start=1)]
         lines += [_("no other way")] if len(one.ways) == 1 else []
-        return join_words([*lines, route_words.say_left_out(one.unevaluated_segments)], BREAK)
+        return join_words([*lines, route.say_left_out(one.unevaluated_segments)], BREAK)
 
     def name_exits(one: RoomRow) -> str:
-        names = route_words.name_few(one.exits)
+        names = route.name_few(one.exits)
         return _("stairs: {names}", names=names) if one.by_stairs else names
 
     shown: Mapping[str, Show] = {
         "room": lambda one: head(words.cut(one.room, 40)),
         "exits": name_exits,
-        "state": lambda one: show_state(one.state, route_words.say_room_state(one)),
-        "loses_every_exit_probability": route_words.say_lost,
+        "state": lambda one: show_state(one.state, route.say_room_state(one)),
+        "loses_every_exit_probability": route.say_lost,
         "loses_if_anchors_fail_probability": lambda one: _say_perhaps(one.loses_if_anchors_fail),
         "most_likely_piece": lambda one: view.name_piece(one.most_likely_piece.item_index)
         if one.most_likely_piece is not None else words.DASH,
@@ -234,33 +234,33 @@ def _list_segments(view: View, columns: Sequence[PageColumn]) -> list[Block]:
 
     def say_bounds(one: SegmentRow) -> str:
         is_known = one.evaluated and one.state != RouteState.NOT_KNOWN
-        return route_words.say_bounds(one.blocked) if one.blocked and is_known else words.DASH
+        return route.say_bounds(one.blocked) if one.blocked and is_known else words.DASH
 
     def list_remarks(one: SegmentRow) -> Words:
         fail = one.blocked_if_anchors_fail
         parts: list[Words] = [
-            route_words.say_missing(one.missing),
-            route_words.say_occupants(one) if one.needed_width_m is not None else "",
-            _("if anchors fail: blocked in {chance}", chance=route_words.say_chance(fail)) if fail else "",
-            _("room: {rooms}", rooms=words.cut(route_words.name_rooms(one), 40)) if one.room else "",
-            route_words.say_other_rooms(one, view.content.results),
+            route.say_missing(one.missing),
+            route.say_occupants(one) if one.needed_width_m is not None else "",
+            _("if anchors fail: blocked in {chance}", chance=route.say_chance(fail)) if fail else "",
+            _("room: {rooms}", rooms=words.cut(route.name_rooms(one), 40)) if one.room else "",
+            route.say_other_rooms(one, view.content.results),
             flags(flag for flag in one.flags if flag != "own_rooms"),
             words.clip(one.notes, 80),
         ]
         return join_words(parts, "; ") or words.DASH
 
     shown: Mapping[str, Show] = {
-        "segment": lambda one: head(route_words.say_segment(one)),
+        "segment": lambda one: head(route.say_segment(one)),
         "floor": lambda one: words.cut(one.floor or "", 20) or words.DASH,
         "from_place": lambda one: f"{words.cut(one.from_place or '', 40)} – {words.cut(one.to_place or '', 40)}",
-        "state": lambda one: _say_state(one, route_words.say_segment_state(one, found.risk)),
-        "blocked_probability": route_words.say_blocked,
+        "state": lambda one: _say_state(one, route.say_segment_state(one, found.risk)),
+        "blocked_probability": route.say_blocked,
         "blocked_independent": say_bounds,
-        "blocked_or_reduced_probability": route_words.say_taken,
+        "blocked_or_reduced_probability": route.say_taken,
         "needed_width_m": list_remarks,
     }
     rows = [_build_row(columns, one, shown, f"segment-{number}") for number, one in view.shown_segments]
-    left_out = sum(map(route_rows.is_untouched, found.segments)) if view.for_print else 0
+    left_out = sum(map(route.is_untouched, found.segments)) if view.for_print else 0
     return [
         Heading(_("Segments")),
         table([one.column for one in columns], rows, "segments", caption, is_named=True),
@@ -275,7 +275,7 @@ def _list_segments(view: View, columns: Sequence[PageColumn]) -> list[Block]:
 
 def _list_beside(view: View, columns: Sequence[PageColumn]) -> list[Block]:
     """Return the pieces that reach segments, and what the marks of routes mean."""
-    beside = route_rows.list_beside(view.run.route_tables)
+    beside = route.list_beside(view.run.route_tables)
     blocks: list[Block] = [Heading(_("The pieces that matter"))]
     if beside:
         shown, left = shorten(beside, MOST_BESIDE)
@@ -296,14 +296,14 @@ def _list_beside(view: View, columns: Sequence[PageColumn]) -> list[Block]:
                                                 "{n:,} more rows are in the Excel report.", n))  # fmt: skip
     else:
         blocks.append(Paragraph(_("No piece reaches any segment.")))
-    meanings = route_rows.list_flags(view.run.route_tables)
+    meanings = route.list_flags(view.run.route_tables)
     return [*blocks, Terms([(say_flag(flag), text) for flag, text in meanings.items()])] if meanings else blocks
 
 
 def _list_near(
     view: View, columns: Sequence[PageColumn], one: SegmentRow, near: BesideRow | None
 ) -> list[Cell | Words]:
-    first: list[Cell | Words] = [route_words.say_segment(one), words.cut(one.floor or "", 20) or words.DASH]
+    first: list[Cell | Words] = [route.say_segment(one), words.cut(one.floor or "", 20) or words.DASH]
     if near is None:
         return [*first, Cell(_("no piece reaches it"), columns=len(columns) + 1), flags(one.flags)]
     piece = view.content.results[near.item_index]

@@ -32,9 +32,9 @@ from assess.report.blocks import (
     strong,
     table,
 )
-from assess.report.findings import schedule_words
-from assess.report.findings.schedule_words import Change, Work
 from assess.report.page_columns import mark
+from assess.report.say import work as say_work
+from assess.report.say.work import Change, Work
 from assess.report.view import Part, View, in_whole
 from assess.schedule_results import WorkRow
 
@@ -45,24 +45,24 @@ MOST = 150
 def build(view: View) -> Section:
     """Return what the schedule changes, the work by room, and the details."""
     schedule = view.run.schedule
-    lead = schedule_words.say_effect_of_all(schedule)
+    lead = say_work.say_effect_of_all(schedule)
     if not lead:
         none = (_("No simulated free-standing piece reaches medium, and no route needs one fixed.") if view.has_apart
                 else _("No free-standing piece reaches medium, and no route needs one fixed."))  # fmt: skip
         return Section([Paragraph(none)])
-    at_risk = schedule_words.say_rooms_at_risk(schedule)
+    at_risk = say_work.say_rooms_at_risk(schedule)
     before = _(
         "Before and after: the draws of this run, with every piece of the list anchored and all anchors holding."
     )
     return Section([
         Paragraph(" ".join(lead), "lead"),
         Paragraph(before, "lead-in"),
-        Box(_list_changes(*schedule_words.list_changes(schedule)), "before-after"),
+        Box(_list_changes(*say_work.list_changes(schedule)), "before-after"),
         *([Paragraph(at_risk, "small")] if at_risk else []),
         Heading(_("Work by room")),
         *_list_work(view),
         Heading(_("How to fix it")),
-        Paragraph(schedule_words.say_disagreement(), "lead-in"),
+        Paragraph(say_work.say_disagreement(), "lead-in"),
         _list_details(view),
     ])  # fmt: skip
 
@@ -82,28 +82,28 @@ def _list_changes(pieces: Sequence[Change], routes: Sequence[Change]) -> list[Bl
 
 def _list_work(view: View) -> Iterator[Block]:
     schedule, shown = view.run.schedule, view.content.summary.fixes[:MOST]
-    works = schedule_words.list_work(shown, list(view.floor_titles))
+    works = say_work.list_work(shown, list(view.floor_titles))
     has_code, has_cost = any(one.row.tension_code_kn is not None for one in works), schedule.cost is not None
     forces = _(
         "Forces are those of each piece: the tension that its fixings carry together, at the bracket or, for a base "
         "angle, at the base, and the shear at its base at PFA."
     )
     code = lower_indices(_("By code: F_p of ASCE 7-22.")) if has_code else ""
-    yield Paragraph(join_words((f"{schedule_words.say_order()} {forces}", code)), "lead-in")
+    yield Paragraph(join_words((f"{say_work.say_order()} {forces}", code)), "lead-in")
     columns = list(_list_columns(has_code=has_code, has_cost=has_cost))
     groups = [
         [part(room.heading, len(columns)),
          *(Row(list(_list_cells(view, one, has_code=has_code, has_cost=has_cost))) for one in room.works)]
-        for room in schedule_words.list_rooms(works, view.floor_titles)
+        for room in say_work.list_rooms(works, view.floor_titles)
     ]  # fmt: skip
-    caption = rich(_("Force on each piece [kN]: <em>{caveat}</em>"), caveat=schedule_words.say_screening())
+    caption = rich(_("Force on each piece [kN]: <em>{caveat}</em>"), caveat=say_work.say_screening())
     yield Table(columns, groups, "named schedule", [*caption, "."], is_named=True)
     if left := len(schedule.rows) - len(shown):
         yield Paragraph(ngettext("{n:,} more entry is in the Excel report.",
                                  "{n:,} more entries are in the Excel report.", left))  # fmt: skip
-    held = f"{schedule_words.HELD}: {schedule_words.say_held()}." if any(one.is_held_by_weight for one in works) else ""
+    held = f"{say_work.HELD}: {say_work.say_held()}." if any(one.is_held_by_weight for one in works) else ""
     left_over = _("Falls left: once this entry and all of smaller number are fixed.")
-    texts = (schedule_words.say_checks(), left_over, held, *schedule_words.list_marks(schedule), view.marks)
+    texts = (say_work.say_checks(), left_over, held, *say_work.list_marks(schedule), view.marks)
     yield Paragraph(join_words(texts), "small")
 
 
@@ -122,18 +122,18 @@ def _list_columns(*, has_code: bool, has_cost: bool) -> Iterator[Column]:
 
 
 def _list_cells(view: View, work: Work, *, has_code: bool, has_cost: bool) -> Iterator[Words]:
-    row, entry, force = work.row, work.entry, schedule_words.say_force
+    row, entry, force = work.row, work.entry, say_work.say_force
     yield str(entry.place)
     yield _describe(view, work)
     yield join_words((_(work.detail.title), note(f"({work.marks})") if work.marks else ""))
     yield force(row.tension_kn)
-    yield f"{force(row.tension_high_kn)}{f' {schedule_words.HELD}' if work.is_held_by_weight else ''}"
+    yield f"{force(row.tension_high_kn)}{f' {say_work.HELD}' if work.is_held_by_weight else ''}"
     if has_code:
         yield force(row.tension_code_kn)
     yield force(row.shear_kn)
-    yield f"{schedule_words.say_fixings(row)} × {in_whole(row.pieces)}"
+    yield f"{say_work.say_fixings(row)} × {in_whole(row.pieces)}"
     if has_cost:
-        yield from (schedule_words.say_cost(cost) for cost in (row.unit_cost, row.cost))
+        yield from (say_work.say_cost(cost) for cost in (row.unit_cost, row.cost))
     yield words.fixed(entry.saved, 2) if work.is_first else words.DASH
     yield words.fixed(entry.row.falls_left, 2) if work.is_first else words.DASH
 
@@ -150,7 +150,7 @@ def _describe(view: View, work: Work) -> list[Inline]:
 
 
 def _list_details(view: View) -> Table:
-    used, others = schedule_words.list_details(view.run.schedule)
+    used, others = say_work.list_details(view.run.schedule)
     notes = [(one, words.plural(pieces, "piece")) for one, pieces in used]
     notes += [(one, _("alternative")) for one in others]
     heads = list_columns((_("Detail"), "w12"), (_("What is done"), "w24"), (_("Known weakness"), ""),

@@ -23,8 +23,8 @@ from assess.report.blocks import (
     table,
 )
 from assess.report.figures.bars import draw_bars
-from assess.report.findings.uncertain import say_condition
 from assess.report.page_columns import build_table, mark
+from assess.report.say.simulation import say_condition
 from assess.report.sections.floors import say_changes
 from assess.report.summary import CAUTIONS, FIXES, ROUTES, describe
 from assess.report.view import Part, View, in_whole

@@ -19,8 +19,8 @@ from assess.report.blocks import (
 )
 from assess.report.embedded import data_uri
 from assess.report.figures.motion_figures import choose_traced, draw_traced
-from assess.report.findings.trials import LISTED
 from assess.report.page_columns import build_table
+from assess.report.say.simulation import LISTED
 from assess.report.view import Part, View, in_whole, shorten
 
 MOST, MISFITS = 60, 6

@@ -5,7 +5,7 @@ from typing import Any
 
 from assess.i18n import gettext as _
 from assess.report.content import Content
-from assess.report.findings.annual_chances import AnnualLine
+from assess.report.say.simulation import AnnualLine
 from assess.report.xlsx.pen import COUNT, Column, Pen
 
 RATE, RARE = "0.00E+00", "0.000%"

@@ -10,7 +10,7 @@ from assess.i18n import gettext as _
 from assess.model import AXES
 from assess.report import words
 from assess.report.content import Content
-from assess.report.findings.motions import describe_origin, describe_source, describe_treatment, factors
+from assess.report.say.ground import describe_origin, describe_source, describe_treatment, factors
 from assess.report.xlsx import charts
 from assess.report.xlsx.item_formulas import FLOOR_AT, FLOOR_KEYS, edited_motion, top_motion
 from assess.report.xlsx.items_sheet import HEAD, has_brackets

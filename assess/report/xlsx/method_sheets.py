@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 from assess.i18n import gettext as _
 from assess.report.content import Content
-from assess.report.findings.motions import ENVELOPES, list_clauses, profile_status
-from assess.report.findings.route_words import list_cautions, list_widths, say_default_width
 from assess.report.provenance import say_reference
+from assess.report.say.ground import ENVELOPES, list_clauses, profile_status
+from assess.report.say.route import list_cautions, list_widths, say_default_width
 from assess.report.words import name_ranges
 from assess.report.xlsx.item_formulas import LIMITS as LIMIT_NAMES
 from assess.report.xlsx.pen import Column, Pen, row_height

@@ -9,8 +9,8 @@ from typing import Any
 from assess.i18n import gettext as _
 from assess.progress import SILENT, Progress
 from assess.report import words
-from assess.report.findings.ground_source import name_source
-from assess.report.findings.verified import say_scenario
+from assess.report.say.ground import name_source
+from assess.report.say.simulation import say_scenario
 from assess.report.xlsx.item_formulas import Terms, build_terms
 from assess.results import Results
 from assess.risk import RiskClass

@@ -11,8 +11,8 @@ from assess.fields import route_fields
 from assess.i18n import gettext as _
 from assess.report import words
 from assess.report.content import Content
-from assess.report.findings import route_words as say
-from assess.report.ranking import list_steps
+from assess.report.say import route as say
+from assess.report.say.work import list_steps
 from assess.report.xlsx.item_formulas import ANCHORED, build_terms
 from assess.report.xlsx.pen import CHANCE, COUNT, Column, Pen, of_field
 from assess.results import ItemResult

@@ -14,9 +14,9 @@ from assess.i18n import gettext as _
 from assess.i18n import ngettext
 from assess.report import words
 from assess.report.content import Content
-from assess.report.findings.at_risk import describe_at_risk
-from assess.report.findings.ground_source import say_ground
-from assess.report.findings.verified import INTERVAL, say_scenario
+from assess.report.say.ground import say_ground
+from assess.report.say.route import describe_at_risk
+from assess.report.say.simulation import INTERVAL, say_scenario
 from assess.report.summary import ROUTES
 from assess.report.xlsx import charts
 from assess.report.xlsx.item_formulas import literal, sentence

@@ -12,8 +12,8 @@ from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 from assess.fields import schedule_fields
 from assess.i18n import gettext as _
 from assess.report.content import Content
-from assess.report.findings import schedule_words
-from assess.report.findings.schedule_words import Work
+from assess.report.say import work as say_work
+from assess.report.say.work import Work
 from assess.report.xlsx.pen import COUNT, LINE, Column, Pen, count_lines, of_field, row_height, widen
 from assess.schedule_results import Schedule, ScheduleRow, WorkRow
 
@@ -29,7 +29,7 @@ CHANGE = 7
 def write_work(pen: Pen, page: Any, content: Content) -> None:
     """Write the work of every room, and below it the building before and after."""
     schedule = content.run.schedule
-    works = schedule_words.list_work(content.summary.fixes, [one.floor.floor for one in content.floors])
+    works = say_work.list_work(content.summary.fixes, [one.floor.floor for one in content.floors])
     columns = widen(_list_columns(schedule), works)
     at = {one.key: place for place, one in enumerate(columns) if one.key}
     page.fit_to_pages(1, 0)  # on A4 across, as every sheet is printed
@@ -64,7 +64,7 @@ def _write_row(pen: Pen, page: Any, row: int, columns: Sequence[Column], work: W
 
 def _list_columns(schedule: Schedule) -> list[Column]:
     own = {name: _of_work(name) for name in schedule_fields(WorkRow)}
-    screening = schedule_words.say_screening()
+    screening = say_work.say_screening()
     has_code = any(work.tension_code_kn is not None for row in schedule.rows for work in row.works)
     forces = [own[name] for name in FORCES if name != "tension_code_kn" or has_code]
     return [
@@ -78,7 +78,7 @@ def _list_columns(schedule: Schedule) -> list[Column]:
         Column(_("Why, as run"), 34, lambda one: f"{one.risk}; {one.chance}; {one.reason}", key="why"),
         Column(own["detail"].label, 13, lambda one: _(one.detail.title)),
         *(replace(one, label=f"{one.label}: {screening}", format=FORCE) for one in forces),
-        replace(own["fixings"], align="center", read=lambda one: schedule_words.say_fixings(one.row)),
+        replace(own["fixings"], align="center", read=lambda one: say_work.say_fixings(one.row)),
         own["unit_cost"],
         own["cost"],
         _of_entry("falls_avoided", 8, only_first=True),
@@ -127,11 +127,11 @@ def _write_lines(pen: Pen, page: Any, row: int, schedule: Schedule, widths: Sequ
     """Write the sentences below the list, and return the row below them."""
     texts = [
         _("This list is as run: it does not follow what is edited in Items and Floors."),
-        *schedule_words.say_effect_of_all(schedule),
-        schedule_words.say_order(),
-        schedule_words.say_checks(),
-        schedule_words.say_disagreement(),
-        *schedule_words.list_marks(schedule),
+        *say_work.say_effect_of_all(schedule),
+        say_work.say_order(),
+        say_work.say_checks(),
+        say_work.say_disagreement(),
+        *say_work.list_marks(schedule),
     ]
     for at, text in enumerate(texts, row):
         page.merge_range(at, 0, at, len(widths) - 1, "", pen.style("text"))
@@ -144,7 +144,7 @@ def _write_changes(pen: Pen, page: Any, row: int, schedule: Schedule) -> None:
     page.write_string(row, 0, _("Before and after"), pen.style("heading"))
     for at, text in enumerate(("", _("Before"), _("After"))):
         _put_wide(pen, page, row + 1, at, text, pen.style("head"))
-    for at, one in enumerate((change for part in schedule_words.list_changes(schedule) for change in part), row + 2):
+    for at, one in enumerate((change for part in say_work.list_changes(schedule) for change in part), row + 2):
         _put_wide(pen, page, at, 0, one.label, pen.style("text"))
         page.set_row(at, row_height([one.label], [40]))
         for place, value in enumerate((one.before, one.after), 1):

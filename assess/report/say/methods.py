@@ -1,9 +1,4 @@
-"""Where the methods disagree on a piece by more than one class, and why.
-
-Compared are the probabilities under the motion that governs the piece. The reasons are those that the methods give for
-themselves. Rows with the same two methods, classes and reasons form one group, so that a large inventory has few. The
-published methods are compared with each other; each fitted model is compared with them separately.
-"""
+"""Where the methods disagree, and why."""
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -20,6 +15,7 @@ from assess.risk import RiskClass, classify
 
 if TYPE_CHECKING:
     from assess.methods import MethodInfo, Reason
+
 
 MOST_REASONS = 4
 """Reasons that are given at most, the most important first."""
