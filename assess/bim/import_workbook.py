@@ -15,7 +15,7 @@ from assess.delivery.private_folder import private_folder
 from assess.errors import Problem
 from assess.i18n import Text, count, fill
 from assess.input_file import open_input
-from assess.pipeline.new_content import store_live
+from assess.pipeline.live_values import store_live
 from assess.plain_text import plain_text
 from assess.version import __version__
 from assess.workbook.catalogue import read_catalogue

@@ -118,7 +118,7 @@ def write_new_workbook(
         raise OutputError(f"{path} already exists: add --force to replace it, or choose another name.")
     from assess.delivery.deliver import saving
     from assess.i18n import ENGLISH, load_catalogue, speaking
-    from assess.pipeline.new_content import fill_content
+    from assess.pipeline.live_values import fill_content
     from assess.workbook.template import write_workbook
 
     catalogue = ENGLISH if language == ENGLISH.code else load_catalogue(language)

@@ -7,7 +7,7 @@ known of the building, the class is that of the faster third of the draws where 
 that overturns under the record itself is at least high.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -172,6 +172,18 @@ def choose_items(
     return chosen
 
 
+def list_verdicts(
+    simulated: Outcome, adoption: Adoption, settings: Settings, bases: Collection[int] = (SIMULATED,)
+) -> dict[int, BoolArray]:
+    """Return in which of its draws each case falls that was simulated and has one of `bases`."""
+    return {
+        case: (joint.ideal if settings.ideal else joint.fell)[row, : joint.runs[row]]
+        for joint in simulated.joints
+        for row, case in enumerate(joint.cases.tolist())
+        if adoption.basis[case] in bases
+    }
+
+
 def build_falls(
     inventory: Inventory,
     adoption: Adoption,
@@ -191,17 +203,11 @@ def build_falls(
     `settings.ideal` the verdicts are those of the pieces as given under the motions as they are.
     """
     found = outcomes[simulation().key]
-    rows = {int(case): (joint, row) for joint in found.joints for row, case in enumerate(joint.cases)}
-    fell = {}
-    for at, case in enumerate(int(one) for one in governing):
-        if case in rows and adoption.basis[case] in (SIMULATED, CANNOT_ROCK):
-            joint, row = rows[case]
-            fell[at] = (joint.ideal if settings.ideal else joint.fell)[row, : joint.runs[row]]
-    fell |= either_axis
+    fell = list_verdicts(found, adoption, settings, (SIMULATED, CANNOT_ROCK))
     return Falls(
         probability=adoption.probability[governing],
         high=np.fmax(adoption.probability, adoption.high)[governing],
-        fell=fell,
+        fell={at: fell[case] for at, case in enumerate(governing.tolist()) if case in fell} | dict(either_axis),
         unconfirmed={
             at: tuple(name for flag, name in DOUBTS.items() if found.flags[flag][case])
             for at, case in enumerate(governing.tolist())

@@ -32,7 +32,7 @@ def find_earthquakes(inventory: Inventory, settings: Settings) -> Earthquakes:
     given_share = spread**2 / (own**2 + spread**2) if spread else 0.0
     shared = SCATTERS[measure].shared if ground is None or ground.shared is None else ground.shared
     return Earthquakes(
-        place=_find_place(inventory) if settings.city else None,
+        place=_find_place(inventory, settings),
         shared=shared,
         measure=measure,
         given=() if ground is None or not given_share else ground.scenarios,
@@ -40,21 +40,22 @@ def find_earthquakes(inventory: Inventory, settings: Settings) -> Earthquakes:
     )
 
 
-def _find_place(inventory: Inventory) -> tuple[float, float] | None:
+def _find_place(inventory: Inventory, settings: Settings) -> tuple[float, float] | None:
+    """Return latitude and longitude of a building in a city; None elsewhere, and where they are not known."""
     latitude, longitude = inventory.building.latitude, inventory.building.longitude
-    return None if latitude is None or longitude is None else (latitude, longitude)
+    return None if latitude is None or longitude is None or not settings.city else (latitude, longitude)
 
 
 def number_pieces(inventory: Inventory, settings: Settings) -> Mapping[str, int]:
     """Return by item the number by which it draws: in a city pieces of different places draw independently."""
-    place = _find_place(inventory) if settings.city else None
+    place = _find_place(inventory, settings)
     before = "" if place is None else f"{place[0]:.6f} {place[1]:.6f} "
     return {item.item: name_number(f"{before}{item.item}") for item in inventory.items}
 
 
 def number_building(inventory: Inventory, settings: Settings) -> int:
     """Return the number by which a building draws its T1 and PGV/PGA: in a city by its name and place."""
-    place = _find_place(inventory) if settings.city else None
+    place = _find_place(inventory, settings)
     name = inventory.building.building
     return 0 if place is None else name_number(f"{place[0]:.6f} {place[1]:.6f} {name}")
 

@@ -6,25 +6,30 @@ below where both have records, flagged ``interpolated``; else it is that of a be
 ``drawn_building``: on the record of the ground where a floor at grade has one, else on drawn motions of Ground PGA and
 Ground PGV, else of 0.4 SDS, else of the median of a ShakeMap or of computed scenarios at the building, flagged
 ``shakemap`` or ``scenarios``, else of the published median of an assumed intensity (Shaking), flagged
-``assumed_shaking``. What is known of other floors goes on in height, see `assess.motion.beam_motions`. A PFV that is
-not given follows from PFA as the beam has it.
+``assumed_shaking``. A PFV that is not given follows from PFA as the beam has it.
+
+Medians of a drawn ground are those of `assess.motion.floor_medians`. A record of the ground is passed through beams
+itself. Where peaks of floors above the ground are known, the factors by which they differ from the beam's go on in
+height, their logarithms straight from floor to floor, and down to 1 on a ground that is known.
 """
 
 import math
-from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
 
 from assess.errors import Gap, Problem, WorkbookError
 from assess.i18n import fill
 from assess.intensity import Shaking
 from assess.model import AXES, Axis, Floor, FloorRecord, Inventory
-from assess.motion.assumed import Ground as DrawnGround
-from assess.motion.floor_medians import is_within
+from assess.motion import assumed
+from assess.motion.assumed import FloorTarget, Meets
+from assess.motion.floor_medians import find_medians, is_within
 from assess.motion.record import treat
 from assess.motion.scenario import PROFILES, Profile
 from assess.motion.site_ground import SiteGround
-from assess.pipeline.beam_floors import Basis
-from assess.pipeline.floor_demand import Demand, Demands
+from assess.pipeline.floor_demand import Demand, Demands, Drawn
 from assess.pipeline.known_ground import Ground, find_dispersion, find_ground
 from assess.progress import SILENT, Progress
 from assess.results import MOTION_FLAGS
@@ -174,6 +179,110 @@ def _worst(demands: tuple[Demand, ...]) -> tuple[float, float]:
 # ---------------------------------------------------------------- floors on a beam
 
 
+_UNIT = assumed.Ground(pga=1.0)
+"""The ground motion of a building of which the ground is not known: of any PGA."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Basis:
+    """What shakes the floors of a building along one axis.
+
+    * `axis`: which.
+    * `building`: as far as it is known.
+    * `motion`: of the ground; None where it is not known.
+    * `record`: the record of the ground.
+    * `known`: z/h of the floors above the ground of which peaks are known [-], and those.
+    * `is_recorded`: whether any floor has a record.
+    * `at_grade`: the floor at grade whose motion that of the ground is; "" where it is what Building tells.
+    """
+
+    axis: Axis
+    building: assumed.Building
+    motion: assumed.Ground | None = None
+    record: Demand | None = None
+    known: Sequence[tuple[float, Demand]] = ()
+    is_recorded: bool = False
+    at_grade: str = ""
+    _found: dict[float | None, tuple[float, float]] = field(default_factory=dict)
+
+    @property
+    def is_known(self) -> bool:
+        """Whether the ground motion is known."""
+        return self.motion is not None or self.record is not None
+
+    @property
+    def ground(self) -> assumed.Ground:
+        """Medians of the ground motion: those of the record, the known ones, or those of 1 m/s2."""
+        if self.record is not None:
+            return assumed.Ground(pga=self.record.pfa, pgv=self.record.pfv)
+        return self.motion or _UNIT
+
+    def can_serve(self, place: float | None) -> bool:
+        """Return whether a floor at z/h `place` follows: from the ground, or from floors of which peaks are known."""
+        return self.is_known or (place is not None and bool(self.known))
+
+    def lies_between(self, place: float | None) -> bool:
+        """Return whether a floor at z/h `place` has floors of which peaks are known at or below and at or above it."""
+        places = [one for one, _ in self.known]
+        return place is not None and bool(places) and (self.is_known or min(places) <= place) and place <= max(places)
+
+    def find_beam(self, place: float | None) -> tuple[float, float]:
+        """Return the median PFA [m/s2] and PFV [m/s] that the beam has at z/h `place`."""
+        if place not in self._found:
+            self._found[place] = self._pass(place)
+        return self._found[place]
+
+    def _pass(self, place: float | None) -> tuple[float, float]:
+        (pga, pgv), building = self.ground.peaks, self.building
+        motion = None if self.record is None else self.record.motion
+        if motion is not None and not (place is not None and place <= 0):
+            from assess.motion.beam import shake_record
+
+            return shake_record(motion.acceleration, motion.time_step, building, place)
+        by_pga, by_pgv = find_medians(building.period, place, building.structure, self.ground.ratio)
+        return pga * by_pga, pgv * by_pgv
+
+    def find_velocity(self, place: float | None) -> float:
+        """Return PFV over PFA [s] of a floor of which PFA alone is known."""
+        pfa, pfv = self.find_beam(place)
+        return pfv / pfa
+
+    def find_peaks(self, place: float | None) -> tuple[float, float]:
+        """Return the median PFA [m/s2] and PFV [m/s] of a floor at z/h `place`, by the beam and by known floors."""
+        found = self.find_beam(place)
+        if place is None or not self.known or (place <= 0 and self.is_known):
+            return found
+        places, logs = [], []
+        for at, demand in sorted(self.known, key=lambda one: one[0]):
+            beam = self.find_beam(at)
+            places.append(at)
+            logs.append((math.log(demand.pfa / beam[0]), math.log(demand.pfv / beam[1])))
+        if self.is_known:
+            places, logs = [0.0, *places], [(0.0, 0.0), *logs]
+        by_pfa, by_pfv = (math.exp(float(np.interp(place, places, one))) for one in zip(*logs, strict=True))
+        return found[0] * by_pfa, found[1] * by_pfv
+
+    def draw(self, place: float | None, pfa: float, pfv: float, meets: Meets) -> Drawn:
+        """Return how the draws of a floor with these peaks are made; on a known ground with its peaks as it is."""
+        ground, factor = self.ground, self.ground.pga or self.ground.pgv or 1.0
+        unit = assumed.Ground(pga=_round(1.0 if ground.pga else None), pgv=_round(ground.pgv and ground.pgv / factor))
+        is_ground = place is not None and place <= 0 and self.is_known
+        if is_ground and meets != "peaks" and abs(pfa / ground.peaks[0] - 1) < 1e-9:
+            meets = "nothing"
+        target = FloorTarget(
+            place=place, pfa=pfa, pfv=pfv, meets=meets, is_ground_known=self.is_known,
+            factor=1.0 if self.record is not None else factor,
+            anchors=tuple((at, demand.pfa) for at, demand in self.known) if meets == "medians" else (),
+        )  # fmt: skip
+        building = replace(self.building, period=_round(self.building.period))
+        return Drawn(building=building, ground=unit, record=self.record, target=target, at_grade=self.at_grade)
+
+
+def _round(value: float | None) -> float | None:
+    """Return a number to six digits, so that rounding errors of products make no motions of their own."""
+    return None if value is None else float(f"{value:.6g}")
+
+
 @dataclass(frozen=True, slots=True)
 class _Building:
     """Serves the floors of a building, of which some have motions of their own."""
@@ -220,19 +329,14 @@ class _Building:
         if self.scenario in PROFILES or not is_served:
             return None
         (pfa, pfv), (pga, _) = basis.find_peaks(place), basis.ground.peaks
-        assumed = self._name_ground() if basis.record is None else ()
-        flags = ("drawn_building", *assumed, *self.ground.place(floor)[1])
+        named = _name_ground(self.ground) if basis.record is None else ()
+        flags = ("drawn_building", *named, *self.ground.place(floor)[1])
         one = Demand(
             floor=floor, axis=axis, source="beam", pfa=pfa, pfv=pfv, flags=flags, height_ratio=place,
             drawn=basis.draw(place, pfa, pfv, "medians"), amplification=pfa / pga if basis.is_known else None,
-            shaking=self.ground.shaking if assumed else None, site=self.ground.site if assumed else None,
+            shaking=self.ground.shaking if named else None, site=self.ground.site if named else None,
         )  # fmt: skip
         return self._finish(one, basis)
-
-    def _name_ground(self) -> tuple[str, ...]:
-        if self.ground.shaking:
-            return ("assumed_shaking",)
-        return (self.ground.site.kind,) if self.ground.site else ()
 
     def _finish(self, one: Demand, basis: Basis) -> Demand:
         """Return a demand with the flags of what is drawn, and with its dispersions."""
@@ -248,6 +352,13 @@ class _Building:
         return replace(one, flags=tuple(flags), own_dispersion=own, dispersion=dispersion)
 
 
+def _name_ground(ground: Ground) -> tuple[str, ...]:
+    """Return the flag of what gives the ground motion, none where the workbook does."""
+    if ground.shaking:
+        return ("assumed_shaking",)
+    return (ground.site.kind,) if ground.site else ()
+
+
 def _find_basis(ground: Ground, own: Collection[_ByAxis], axis: Axis) -> Basis:
     """Return what shakes the floors along one axis: a motion that is known at grade comes before the ground's."""
     placed = [(ground.find_ratio(served[axis][0].floor), served[axis]) for served in own if served]
@@ -257,7 +368,7 @@ def _find_basis(ground: Ground, own: Collection[_ByAxis], axis: Axis) -> Basis:
     if at_grade is not None and at_grade.source == "record":
         motion, record = None, at_grade
     elif at_grade is not None:
-        motion = DrawnGround(pga=at_grade.pfa, pgv=at_grade.pfv if at_grade.pfv > 0 else None)
+        motion = assumed.Ground(pga=at_grade.pfa, pgv=at_grade.pfv if at_grade.pfv > 0 else None)
     is_recorded = any(one.source == "record" for served in own for parallel in served.values() for one in parallel)
     basis = Basis(
         axis=axis, building=ground.building, motion=motion, record=record, is_recorded=is_recorded,
@@ -281,11 +392,10 @@ def serve_by_profile(floor: Floor, profile: Profile, ground: Ground, ductility_r
         return {}
     period = ground.building.period if ground.is_period_given else None
     amplification = profile.amplification(ratio, period, ductility_reduction=ductility_reduction)
-    assumed = ("assumed_shaking",) if ground.shaking else (ground.site.kind,) if ground.site else ()
     one = Demand(
         floor=floor, axis="X", source="profile", pfa=ground.pga * amplification, pfv=math.nan,
-        flags=("code_profile", *assumed, *placed), profile=profile, clause=profile.cite(period), height_ratio=ratio,
-        amplification=amplification, shaking=ground.shaking, site=ground.site,
+        flags=("code_profile", *_name_ground(ground), *placed), profile=profile, clause=profile.cite(period),
+        height_ratio=ratio, amplification=amplification, shaking=ground.shaking, site=ground.site,
     )  # fmt: skip
     return {"X": (one,), "Y": (replace(one, axis="Y"),)}
 

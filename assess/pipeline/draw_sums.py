@@ -67,13 +67,20 @@ def sum_draws(assessment: Assessment, results: Results, *, progress: Progress = 
         if one.state != RouteState.NOT_KNOWN and one.blocked is not None
     }
     people = {one.route: count_people(tables, one) or 0 for one in tables.routes}
-    falls = find_falls(assessment) if (results.main_basis == SIMULATED and assessment.settings.runs != AUTO) else None
-    blocked = {} if falls is None else _find_blocked(assessment, falls, chances, progress)
+    blocked: Mapping[str, BoolArray] = {}
+    fallen = people_blocked = routes_blocked = None
+    if results.main_basis == SIMULATED and runs != AUTO:
+        blocked = _find_blocked(assessment, find_falls(assessment), chances, progress)
+        none = np.zeros(int(runs), dtype=np.int64)
+        fallen = sum_falls(one for one in results if not one.is_anchored and not one.apart)
+        fallen = none if fallen is None else fallen
+        people_blocked = sum((people[route] * draws for route, draws in blocked.items()), none)
+        routes_blocked = sum((draws.astype(np.int64) for draws in blocked.values()), none)
     apart = {route: chance for route, chance in chances.items() if route not in blocked}
     return DrawSums(
-        falls=None if falls is None else _sum_falls(results, int(runs)),
-        people_blocked=None if falls is None else _add_up(blocked, people, int(runs)),
-        routes_blocked=None if falls is None else _add_up(blocked, dict.fromkeys(blocked, 1), int(runs)),
+        falls=fallen,
+        people_blocked=people_blocked,
+        routes_blocked=routes_blocked,
         joint_routes=tuple(blocked),
         people_expected=_expect(chances, people),
         routes_expected=sum(chances.values()),
@@ -89,12 +96,6 @@ def count_people(tables: RouteTables, route: RouteRow) -> int | None:
     return max((one for one in given if one is not None), default=None)
 
 
-def _sum_falls(results: Results, runs: int) -> Numbers:
-    """Return how many pieces fall in each draw, (runs,): quantities are counted."""
-    found = sum_falls(one for one in results if not one.is_anchored and not one.apart)
-    return np.zeros(runs, dtype=np.int64) if found is None else found
-
-
 def _find_blocked(
     assessment: Assessment, falls: Falls, known: Iterable[str], progress: Progress
 ) -> Mapping[str, BoolArray]:
@@ -108,14 +109,6 @@ def _find_blocked(
         int(assessment.settings.runs), progress=progress,
     )  # fmt: skip
     return {route: found[route] for route in known if route in found}
-
-
-def _add_up(blocked: Mapping[str, BoolArray], weight: Mapping[str, int], runs: int) -> Numbers:
-    """Return the weight of what is blocked in each draw, (runs,)."""
-    found = np.zeros(runs, dtype=np.int64)
-    for route, draws in blocked.items():
-        found += weight[route] * draws
-    return found
 
 
 def _expect(chances: Mapping[str, float], people: Mapping[str, int]) -> float:

@@ -5,7 +5,7 @@ slender along one as along the other, so that the larger of its two chances is t
 earthquake and one body, with phases of their own.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -15,14 +15,13 @@ from assess.arrays import BoolArray
 from assess.methods import Alike, Cases, Outcome, simulation
 from assess.methods.simulate import interval_width
 from assess.model import AXES, Inventory, Item
-from assess.pipeline.adopt import SIMULATED, Adoption
+from assess.pipeline.adopt import Adoption, list_verdicts
 from assess.pipeline.floor_demand import Demand
 from assess.risk import classify_all, wilson_interval
 from assess.settings import Settings
 
 SQUARE = 1.3
 """Width over breadth [-] below which a piece counts as square on plan."""
-
 
 _CHANGED = ("probability", "low", "high", "risk", "upper", "either_axis")
 
@@ -46,7 +45,7 @@ def unite_axes(
     Of parallel motions of an axis that with the larger chance counts. Only where both axes are simulated and adopted.
     """
     adoption = replace(adoption, **{name: getattr(adoption, name).copy() for name in _CHANGED})
-    verdicts = dict(_verdicts(outcomes[simulation().key], adoption, settings))
+    verdicts = list_verdicts(outcomes[simulation().key], adoption, settings)
     firsts = np.searchsorted(case_item, np.arange(len(inventory.items) + 1)).tolist()
     united: dict[int, BoolArray] = {}
     pairs: dict[int, list[int]] = {}
@@ -83,15 +82,6 @@ def _adopt_union(adoption: Adoption, pair: list[int], share: float, runs: int, z
     }
     for name, value in changed.items():
         getattr(adoption, name)[pair] = value
-
-
-def _verdicts(outcome: Outcome, adoption: Adoption, settings: Settings) -> Iterator[tuple[int, BoolArray]]:
-    """Yield each case whose simulation is adopted, and in which of its draws it falls."""
-    for joint in outcome.joints:
-        every = joint.ideal if settings.ideal else joint.fell
-        for row, case in enumerate(joint.cases.tolist()):
-            if adoption.basis[case] == SIMULATED:
-                yield case, every[row, : joint.runs[row]]
 
 
 def _worst_of_each_axis(cases: Sequence[int], case_demand: Sequence[Demand], adoption: Adoption) -> list[int]:

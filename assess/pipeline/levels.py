@@ -5,18 +5,22 @@ every piece as it is in that draw. The shape of the spectrum stays, and PFV scal
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from assess.arrays import BoolArray, FloatArray
-from assess.methods import Cases, Motions
+from assess.methods import Alike, Cases, Joint, Motions, Outcome, adopted_formula, simulation
 from assess.methods.simulate import make_batches, rock_cases, rock_draws, run_side_by_side
 from assess.motion.target_fit import measure_peaks
-from assess.pipeline.floor_demand import Demand
+from assess.pipeline.adopt import adopt, build_falls, find_governing, find_ruling
+from assess.pipeline.anchors import find_held
+from assess.pipeline.assessment import Assessment
+from assess.pipeline.either_axis import unite_axes
 from assess.pipeline.verify import check_pairs, describe_work
 from assess.progress import SILENT, Progress, Stage
+from assess.routes.chances import Falls
 from assess.settings import Settings, count_processors
 from assess.units import ROUNDING
 
@@ -44,10 +48,10 @@ class RockedLevels:
 
 
 def rock_levels(
+    assessment: Assessment,
     cases: Cases,
-    case_item: NDArray[np.intp],
-    case_demand: Sequence[Demand],
-    factors: FloatArray,
+    levels: FloatArray,
+    peaks: FloatArray,
     settings: Settings,
     *,
     dispersion: FloatArray | None,
@@ -60,12 +64,12 @@ def rock_levels(
 
     Parameters
     ----------
+    assessment : Assessment
+        Gives the piece and the motion of each of n cases.
     cases : Cases
-        n cases; those with an ensemble are rocked.
-    case_item, case_demand
-        The piece and the motion of each.
-    factors : (e, l) array
-        Of each of e ensembles the factors by which its motions are multiplied, at each of l levels [-].
+        Those with an ensemble are rocked.
+    levels, peaks : (l,) and (n,) arrays
+        Levels, and where among them the motions of each case are as they are: they are multiplied by the ratio.
     settings : Settings
         Give the number of draws, which has to be a number, and their seed.
     dispersion : (n,) array, optional
@@ -88,29 +92,30 @@ def rock_levels(
     """
     threads, parts = jobs or count_processors(), len(cases.ensembles)
     owns = [np.flatnonzero(cases.ensemble == number) for number in range(parts)]
-    check_pairs(sum(map(len, owns)), settings, factors.shape[1])
+    check_pairs(sum(map(len, owns)), settings, levels.size)
     tasks = [(number, own) for number, own in enumerate(owns) if own.size]
-    pieces = {int(case_item[case]) for own in owns for case in own}
-    floors = {case_demand[own[0]].floor.floor for _, own in tasks}
+    pieces = {int(assessment.case_item[case]) for own in owns for case in own}
+    floors = {assessment.case_demand[own[0]].floor.floor for _, own in tasks}
     side_by_side = max(1, min(threads, len(tasks)))
     each = max(1, threads // side_by_side)
     with progress.stage("rocking", describe_work(len(pieces), len(floors)), parts) as stage:
 
         def work(number: int, own: NDArray[np.intp]) -> RockedLevels:
-            every = np.ones((len(own), factors.shape[1]), dtype=np.bool_) if wanted is None else wanted[own]
+            every = np.ones((len(own), levels.size), dtype=np.bool_) if wanted is None else wanted[own]
             run = _Run(cases, own, settings, dispersion, each, stage)
             motions = opened.get(number) if opened else None
             motions = motions or cases.ensembles[number].open(each, progress)
             if opened is not None and len(opened) < MOST_OPENED:
                 opened[number] = motions
-            return run.rock(number, motions, factors[number], every)
+            factors = np.array([_find_factor(level, peaks[own[0]]) for level in levels.tolist()])
+            return run.rock(number, motions, factors, every)
 
         done = dict(zip((number for number, _ in tasks), run_side_by_side(work, tasks, side_by_side), strict=True))
-    none = np.zeros((factors.shape[1], 0, int(settings.runs)), dtype=np.bool_)
+    none = np.zeros((levels.size, 0, int(settings.runs)), dtype=np.bool_)
     return [done.get(at) or RockedLevels(own, none, False, np.nan, np.nan) for at, own in enumerate(owns)]
 
 
-def find_factor(value: float, of: float) -> float:
+def _find_factor(value: float, of: float) -> float:
     """Return the factor that brings motions of one peak to another: exactly 1 where they are the same."""
     return 1.0 if abs(value / of - 1) <= ROUNDING else value / of
 
@@ -151,3 +156,59 @@ class _Run:
             seed=self.settings.seed, threads=self.threads, progress=progress,
         )  # fmt: skip
         return np.asarray(fell[0])
+
+
+# ---------------------------------------------------------------- how pieces fall at a level
+
+
+def find_falls(
+    assessment: Assessment,
+    cases: Cases,
+    pfa: FloatArray,
+    rocked: Sequence[RockedLevels],
+    at: int,
+    settings: Settings,
+) -> Falls:
+    """Return how the pieces fall at level `at` of those rocked, where case i has the PFA `pfa[i]` [m/s2].
+
+    PFV is in proportion. What was rocked is taken as it is: nothing is unconfirmed here. A piece that was not falls by
+    the formula's chance at that PFA, or not where it cannot rock. Of several motions of a piece that of the larger
+    chance governs.
+    """
+    scaled = replace(cases, pfa=pfa, pfv=cases.pfv * pfa / cases.pfa)
+    formula = adopted_formula(settings.class_by)
+    outcomes = {
+        formula.key: formula.evaluate(scaled, settings),
+        simulation().key: _outcome(cases, [(one.own, one.fell[at]) for one in rocked]),
+    }
+    inventory, case_item = assessment.inventory, assessment.case_item
+    adoption = adopt(outcomes, scaled, settings)
+    adoption, united = unite_axes(adoption, outcomes, cases, inventory, case_item, assessment.case_demand, settings)
+    governing = find_governing(adoption, case_item, find_ruling(scaled, settings))
+    held = find_held(inventory, pfa[governing], cases.dispersion[governing])
+    falls = build_falls(inventory, adoption, outcomes, governing, settings, united, held)
+    return replace(falls, stands=np.zeros_like(held))  # the same pieces at every level
+
+
+def _outcome(cases: Cases, rocked: Sequence[tuple[NDArray[np.intp], BoolArray]]) -> Outcome:
+    """Return what was rocked, (m,) and (m, draws), as the outcome of a simulation, without the recorded motion."""
+    count = cases.breadth.size
+    value: FloatArray = np.full(count, np.nan)
+    joints = []
+    for number, (own, one) in enumerate(rocked):
+        value[own] = Alike.of(cases.alike[own], cases.quantity[own]).average(one.sum(axis=1)) / one.shape[1]
+        runs, rotation = np.full(own.size, one.shape[1]), np.zeros((0, 0), dtype=np.float32)
+        joint = Joint(
+            ensemble=number, cases=own, runs=runs, fell=one, ideal=one, rotation=rotation, examples=(), fit=None
+        )
+        joints.append(joint)
+    unknown, no = np.full(count, np.nan), np.zeros(count, dtype=np.bool_)
+    return Outcome(
+        value,
+        {
+            "ideal": value,
+            **dict.fromkeys(("low", "high", "ideal_low", "ideal_high", "record_overturned", "if_faster"), unknown),
+        },
+        dict.fromkeys(("unknown_building", "weak_motions", "fell_in_record"), no),
+        tuple(joints),
+    )

@@ -1,4 +1,4 @@
-"""What the live columns of a workbook show, computed by the methods themselves.
+"""What the live columns of a workbook show, computed by the methods themselves; what a new workbook starts with.
 
 The values are stored in a workbook next to the formulas, so that a viewer that does not calculate shows them too.
 """
@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from assess.errors import WorkbookError
 from assess.i18n import gettext
 from assess.methods import ALIKE, Cases, adopted_formula, paper_formula
 from assess.model import AXES, Inventory, Item
@@ -23,6 +24,7 @@ from assess.risk import RiskClass, classify
 from assess.settings import SCENARIOS, Settings
 from assess.units import GRAVITY, VELOCITY
 from assess.workbook.catalogue import read_catalogue
+from assess.workbook.example import example_content, room_content
 from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, say_class
 from assess.workbook.lists import NO_SHAKING, RUN_ASSESS
 from assess.workbook.live_row import IS_ANCHORED
@@ -166,6 +168,37 @@ def _write_unshaken(item: Item) -> list[float | str]:
     hint = gettext(NO_SHAKING)
     label = _say_class(item, None, 0.0) if item.anchored == YES else hint
     return _write_unknown(item.breadth / item.height, label, hint)
+
+
+def fill_content(units: Units, use: str, *, is_example: bool) -> Content:
+    """Return what a new workbook holds: nothing, the types and a room of a use, or an example that can be run.
+
+    Parameters
+    ----------
+    units : "si" or "imperial"
+        Of the headers.
+    use : str
+        One of `assess.workbook.schema.USES`; blank: every type.
+    is_example : bool
+        Whether it can be run at once: a small office, or the room of `use` with a made-up shaking.
+    """
+    if use and not is_example:
+        return without_shaking(room_content(use, units), units)
+    if use or is_example:
+        return with_live(room_content(use, units, is_shaken=True) if use else example_content(units), units)
+    return Content()
+
+
+def store_live(content: Content, units: Units) -> Content:
+    """Return a content with its live columns as far as they are known; without them where it is not complete."""
+    if not content.rows.get("Items"):
+        return replace(content, live=())
+    for work_out in (with_live, without_shaking):
+        try:
+            return work_out(content, units)
+        except WorkbookError:
+            continue
+    return replace(content, live=())
 
 
 def _read(rows: Mapping[str, Rows], units: Units, folder: Path | None = None) -> Inventory:

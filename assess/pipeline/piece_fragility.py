@@ -29,10 +29,10 @@ from assess.model import AXES, Axis, Inventory, Item
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.either_axis import is_square
 from assess.pipeline.floor_demand import Demand
-from assess.pipeline.levels import RockedLevels, find_factor, rock_levels
+from assess.pipeline.levels import RockedLevels, rock_levels
 from assess.pipeline.verify import choose_motions
 from assess.progress import SILENT, Progress
-from assess.rocking.block import stocky_limit, threshold
+from assess.rocking.block import threshold
 from assess.rocking.draws import STILL
 from assess.settings import AUTO
 from assess.units import GRAVITY
@@ -200,7 +200,7 @@ def find_piece_fragilities(
         raise InputError(fill('runs: a fragility needs a fixed number of generated motions, not "auto" or a suite'))
     by, im = _choose("by", by, BY), _choose("im", im, MEASURES)
     given = None if levels is None else _check_levels(levels)
-    rocked = np.flatnonzero([not _is_stocky(item) for item in assessment.inventory.items])
+    rocked = np.unique(assessment.case_item[~assessment.cases.is_stocky])
     if not rocked.size:
         raise InputError(fill("no piece can rock: all are too stocky, or there are none."))
     return progress.wait_for(lambda: _find(assessment, rocked, by, im, given, jobs, progress))
@@ -237,7 +237,7 @@ def _find(
         seed=settings.seed,
         has_drawn_pieces=study.cases.uncertainty.piece and not settings.ideal,
         curves=tuple(_build_curve(study, group, levels, fallen[group], by) for group in groups),
-        stocky=tuple(item for item in inventory.items if _is_stocky(item)),
+        stocky=tuple(inventory.items[at] for at in np.unique(assessment.case_item[assessment.cases.is_stocky])),
     )
 
 
@@ -260,10 +260,6 @@ def _check_levels(levels: Sequence[float]) -> tuple[float, ...]:
 
 
 # ---------------------------------------------------------------- which pieces have one curve
-
-
-def _is_stocky(item: Item) -> bool:
-    return bool(item.breadth / item.height >= stocky_limit(item.centre_of_gravity))
 
 
 def _group(inventory: Inventory, rocked: Iterable[int], by: By) -> list[list[int]]:
@@ -343,17 +339,15 @@ class _Study:
         """Put into `fallen` (items, l) how often items fall at the levels that are `wanted`, (items, l)."""
         used = wanted.any(axis=0)
         own = self._keep(np.asarray(wanted.any(axis=1)))
-        firsts = [int(np.argmax(own.ensemble == number)) for number in range(len(own.ensembles))]
-        factors = np.array([[find_factor(level, self.peaks[at]) for level in levels[used].tolist()] for at in firsts])
         settings = self.assessment.settings
         rocked = rock_levels(
-            own, self.assessment.case_item, self.assessment.case_demand, factors, settings,
+            self.assessment, own, levels[used], self.peaks, settings,
             dispersion=None if settings.ideal else np.zeros(self.cases.breadth.size),
             wanted=wanted[self.assessment.case_item][:, used],
             jobs=self.jobs, progress=self.progress,
         )  # fmt: skip
-        for at, one in zip(firsts, rocked, strict=True):
-            self.motions.setdefault(int(self.cases.ensemble[at]), self._describe(at, one))
+        for one in rocked:
+            self.motions.setdefault(int(self.cases.ensemble[one.own[0]]), self._describe(int(one.own[0]), one))
         counts = self._count(rocked, int(used.sum()))
         part = fallen[:, used]
         part[wanted[:, used]] = counts[wanted[:, used]]

@@ -35,9 +35,6 @@ FAR_ABOVE = 1.5
 TIMES_USUAL = (0.3, 4.0)
 """Limits of T1 as multiples of a code's formula."""
 
-MOST = 5
-"""Floors, or warnings, that are named before the rest is only counted or left out."""
-
 LEAST_RATIO, LARGEST_RATIO = 10.0, 600.0
 """Usual limits of PGV over PGA [cm/s per g]."""
 
@@ -143,6 +140,10 @@ def _set_aside(floor: Floor, axis: Axis, demands: Demands, scenario: str) -> Ite
         yield Problem(_severity(floor.pfv[axis], fastest), "Floors", cell, _describe_unused(what, floor, serves), fix)
 
 
+def _unused(what: Text, why: Text) -> Text:
+    return fill("{what} is not used: {why}.", what=what, why=why)
+
+
 def _describe_unused(what: Text, floor: Floor, why: Text) -> Text:
     return fill("{what} of floor '{floor}' is not used: {why}.", what=what, floor=floor.floor, why=why)
 
@@ -211,14 +212,8 @@ def _implausible(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
             highest=highest,
         )
         yield Problem("note", "Building", building.cell("height"), message)
-    if building.period and ground.roof:
-        yield from _odd_period(inventory, ground.roof)
-
-
-def _odd_period(inventory: Inventory, roof: float) -> Iterator[Problem]:
-    building = inventory.building
-    low, high = (times * CODE_FACTOR * roof**CODE_POWER for times in TIMES_USUAL)
-    if building.period and not low <= building.period <= high:
+    low, high = (times * CODE_FACTOR * (ground.roof or 0.0) ** CODE_POWER for times in TIMES_USUAL)
+    if building.period and ground.roof and not low <= building.period <= high:
         message = fill(
             "Period T1 {period:g} s is outside {low:.3g} to {high:.3g} s, {least:g} to {most:g} times 0.0488 h^0.75 "
             "(ASCE 7-22 Eq. 12.8-7) for a height h of {roof:g} m.",
@@ -227,7 +222,7 @@ def _odd_period(inventory: Inventory, roof: float) -> Iterator[Problem]:
             high=high,
             least=TIMES_USUAL[0],
             most=TIMES_USUAL[1],
-            roof=roof,
+            roof=ground.roof,
         )
         fix = fill("Check Period T1 and Height.")
         yield Problem("warning", "Building", building.cell("period"), message, fix)
@@ -243,16 +238,15 @@ def _ground_values(inventory: Inventory, demands: Demands, scenario: str) -> Ite
     given = {"ground_pga": None if inventory.hazard else building.ground_pga, "sds": building.sds}
     if not _list_drawn(demands):
         for name, label in (("ground_pga", "Ground PGA"), ("sds", "SDS")):
-            if given[name] is not None:
-                why = _say_unused(demands)
-                if scenario != "as filled":
-                    why = fill("scenario '{scenario}'", scenario=fill(scenario))
-                message = fill("{what} is not used: {why}.", what=fill(label), why=why)
-                if name == for_anchors:
-                    message = fill(
-                        "{what} is used for the code's force on anchors only: {why}.", what=fill(label), why=why
-                    )
-                yield Problem("note", "Building", building.cell(name), message)
+            if given[name] is None:
+                continue
+            why = _say_unused(demands)
+            if scenario != "as filled":
+                why = fill("scenario '{scenario}'", scenario=fill(scenario))
+            message = _unused(fill(label), why)
+            if name == for_anchors:
+                message = fill("{what} is used for the code's force on anchors only: {why}.", what=fill(label), why=why)
+            yield Problem("note", "Building", building.cell(name), message)
     elif building.ground_pga is not None and building.sds is not None:
         by_sds = PGA_OF_SDS * building.sds
         if abs(by_sds - building.ground_pga) > ALIKE * max(building.ground_pga, by_sds):
@@ -285,8 +279,7 @@ def _ground_velocity(inventory: Inventory, demands: Demands) -> Iterator[Problem
     pga, pgv, cell = find_ground(inventory).pga, building.ground_pgv, building.cell("ground_pgv")
     if not _list_drawn(demands):
         if pgv is not None:
-            why, what = _say_unused(demands), fill("Ground PGV")
-            yield Problem("note", "Building", cell, fill("{what} is not used: {why}.", what=what, why=why))
+            yield Problem("note", "Building", cell, _unused(fill("Ground PGV"), _say_unused(demands)))
     elif pgv is None:
         if building.ground_pga is not None or building.sds is not None:
             message = fill(
@@ -370,14 +363,12 @@ def remark_on_site(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
     cell = building.cell("shakemap")
     if site is None:
         if building.shakemap:
-            why = fill("Ground PGA or SDS is filled in")
-            message = fill("{what} is not used: {why}.", what=fill("ShakeMap file"), why=why)
+            message = _unused(fill("ShakeMap file"), fill("Ground PGA or SDS is filled in"))
             yield Problem("note", "Building", cell, message)
         return
     used = find_site(demands)
     if used is None:
-        message = fill("{what} is not used: {why}.", what=_name(site), why=fill("every floor has a motion of its own"))
-        yield Problem("note", "Building", cell, message)
+        yield Problem("note", "Building", cell, _unused(_name(site), fill("every floor has a motion of its own")))
         return
     yield Problem("note", "Building", cell, _say_used(building, used, demands))
     yield from _list_own(demands)
@@ -431,7 +422,7 @@ def remark_on_shaking(inventory: Inventory, demands: Demands) -> Iterator[Proble
         ground, why = find_ground(inventory), fill("every floor has a motion of its own")
         if ground.shaking is None:
             why = fill("a ShakeMap gives the ground motion") if ground.site else fill("Ground PGA or SDS is filled in")
-        yield Problem("note", "Building", cell, fill("{what} is not used: {why}.", what=fill("Shaking"), why=why))
+        yield Problem("note", "Building", cell, _unused(fill("Shaking"), why))
         return
     message = fill(
         "the shaking is assumed: '{choice}' stands for a ground PGA of {pga:.3f} g and a PGV of {pgv:.1f} cm/s, the "
@@ -446,6 +437,5 @@ def remark_on_shaking(inventory: Inventory, demands: Demands) -> Iterator[Proble
     given = building.motion_uncertainty
     if given is not None and given < used.scatter:
         why = fill("{scatter:.2f}, the scatter of ln PGV given the assumed intensity, is larger", scatter=used.scatter)
-        what = fill("Motion uncertainty {given:g}", given=given)
-        message = fill("{what} is not used: {why}.", what=what, why=why)
+        message = _unused(fill("Motion uncertainty {given:g}", given=given), why)
         yield Problem("note", "Building", building.cell("motion_uncertainty"), message)

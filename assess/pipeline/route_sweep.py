@@ -30,11 +30,9 @@ from assess.methods.simulate import interval_width
 from assess.model import AXES, Segment
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.ensembles import DrawnEnsemble, GeneratedEnsemble
-from assess.pipeline.level_falls import find_falls
-from assess.pipeline.levels import RockedLevels, find_factor, rock_levels
+from assess.pipeline.levels import RockedLevels, find_falls, rock_levels
 from assess.pipeline.verify import choose_motions
 from assess.progress import SILENT, Progress
-from assess.rocking.block import stocky_limit
 from assess.rocking.draws import Uncertainty
 from assess.route_results import Chance, PieceRef
 from assess.routes.fixes import find_fixes
@@ -177,15 +175,17 @@ def _describe(sweep: "_Sweep", values: Sequence[float], beside: NDArray[np.intp]
     assessment, inventory = sweep.assessment, sweep.assessment.inventory
     scene = sweep.levels[sweep.values[0]].scene
     ensembles = list(zip(sweep.cases.ensembles, sweep.rocked, strict=True))
-    doubtful = {int(case) for made, one in ensembles if made.is_unknown or one.is_weak for case in one.own}
-    items = frozenset(int(assessment.case_item[case]) for case in doubtful)
+    doubtful = [assessment.case_item[one.own] for made, one in ensembles if made.is_unknown or one.is_weak]
+    items = frozenset(np.concatenate(doubtful).tolist() if doubtful else ())
 
     def name_floors(chosen: Iterable[Ensemble]) -> tuple[str, ...]:
         names = {one.demand.floor.floor for one in chosen if isinstance(one, GeneratedEnsemble | DrawnEnsemble)}
         return tuple(floor.floor for floor in inventory.floors if floor.floor in names)
 
-    beside_them = [inventory.items[at] for at in beside]
-    too_stocky = [one for one in beside_them if one.breadth / one.height >= stocky_limit(one.centre_of_gravity)]
+    def on_floor(floor: str) -> list[int]:
+        return [at for at, one in enumerate(scene.obstructions) if one.segment.floor == floor]
+
+    too_stocky = np.intersect1d(beside, assessment.case_item[assessment.cases.is_stocky])
     return Fragility(
         values=tuple(sweep.values),
         inserted=frozenset(sweep.values) - set(values),
@@ -199,14 +199,9 @@ def _describe(sweep: "_Sweep", values: Sequence[float], beside: NDArray[np.intp]
         generic=name_floors(made for made, _ in ensembles if made.is_assumed),
         unshaped=name_floors(made for made, _ in ensembles if made.is_unknown),
         weak=name_floors(made for made, one in ensembles if one.is_weak),
-        stocky=sum(one.quantity for one in too_stocky),
-        unplaced=sum(count_unplaced(scene, floor.floor, _list_on(scene, floor.floor)) for floor in inventory.floors),
+        stocky=sum(inventory.items[at].quantity for at in too_stocky),
+        unplaced=sum(count_unplaced(scene, floor.floor, on_floor(floor.floor)) for floor in inventory.floors),
     )
-
-
-def _list_on(scene: Scene, floor: str) -> list[int]:
-    """Return the segments of a floor by their number."""
-    return [at for at, one in enumerate(scene.obstructions) if one.segment.floor == floor]
 
 
 def find_jumps(chances: Sequence[float]) -> list[int]:
@@ -272,9 +267,20 @@ class _Sweep:
 
     def add(self, values: Sequence[float], names: Sequence[str]) -> None:
         """Evaluate further values; what was evaluated before stays as it is."""
-        self.rocked[:] = self._rock(values)
+        cases, settings = self.cases, self.assessment.settings
+        peaks = np.array([one.pfa for one in self.assessment.case_demand], dtype=np.float64)
+        self.rocked[:] = rock_levels(
+            self.assessment, cases, np.array(values, dtype=np.float64), peaks, settings,
+            dispersion=None if settings.ideal else cases.dispersion, jobs=self.jobs, opened=self.opened,
+            progress=self.progress,
+        )  # fmt: skip
         for at, value in enumerate(values):
-            scene = self._scene(at, value)
+            pfa = np.full(cases.pfa.size, value)
+            falls = find_falls(self.assessment, cases, pfa, self.rocked, at, settings)
+            scene = Scene(
+                self.assessment.inventory, self.obstructions, falls, settings.route_risk, settings.seed,
+                interval_width(settings), self.progress,
+            )  # fmt: skip
             self.levels[value] = _Level(scene, {name: self._judge(scene, name) for name in names})
 
     def ways(self) -> Iterator[list[float]]:
@@ -295,28 +301,6 @@ class _Sweep:
         segments = scene.segments_of(name)
         course = self.course(segments)
         return scene.judge(segments, lambda draws: [course.is_blocked(scene.blocked(draws, segments), draws.every)])
-
-    def _rock(self, values: Sequence[float]) -> list[RockedLevels]:
-        """Return what the cases of each ensemble do at each value."""
-        cases, settings = self.cases, self.assessment.settings
-        peaks = [self.assessment.case_demand[np.argmax(cases.ensemble == at)].pfa for at in range(len(cases.ensembles))]
-        factors = np.array([[find_factor(value, pfa) for value in values] for pfa in peaks])
-        return rock_levels(
-            cases, self.assessment.case_item, self.assessment.case_demand, factors.reshape(-1, len(values)), settings,
-            dispersion=None if settings.ideal else cases.dispersion, jobs=self.jobs, opened=self.opened,
-            progress=self.progress,
-        )  # fmt: skip
-
-    def _scene(self, at: int, value: float) -> Scene:
-        """Return the segments with how the pieces fall at value `at` of those that were rocked last."""
-        settings = self.assessment.settings
-        every = np.full(self.cases.pfa.size, value)
-        fell = [(one.own, one.fell[at]) for one in self.rocked]
-        falls = find_falls(self.assessment, self.cases, every, fell, settings)
-        z = interval_width(settings)
-        return Scene(
-            self.assessment.inventory, self.obstructions, falls, settings.route_risk, settings.seed, z, self.progress
-        )
 
 
 # ---------------------------------------------------------------- the routes

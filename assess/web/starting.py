@@ -165,7 +165,7 @@ def _types() -> Mapping[str, str]:
 
 
 def _fill(wanted: Wanted) -> Any:
-    from assess.pipeline.new_content import store_live
+    from assess.pipeline.live_values import store_live
     from assess.workbook.catalogue import read_catalogue
     from assess.workbook.template import Content
 

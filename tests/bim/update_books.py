@@ -13,7 +13,7 @@ from assess.bim.import_workbook import ImportedBuilding, list_rows
 from assess.bim.update_workbook import Updated, describe, update_workbook
 from assess.i18n import load_catalogue, speaking
 from assess.model import Inventory
-from assess.pipeline.new_content import store_live
+from assess.pipeline.live_values import store_live
 from assess.units import QUANTITIES
 from assess.workbook.parse import Row, Table
 from assess.workbook.patch import Value, patch_workbook

@@ -91,8 +91,8 @@ def test_a_piece_falls_as_often_as_its_lognormal_says(tmp_path):
 def test_at_the_scenarios_own_ground_pga_it_is_what_the_run_finds(several):
     """The motions of a factor of 1 are those of the run, draw by draw."""
     cases, (joint,) = several.cases, several.joints.values()
-    given = several.case_item, several.case_demand, np.array([[0.5, 1.0]]), SETTINGS
-    (found,) = rock_levels(cases, *given, dispersion=cases.dispersion)
+    given = several, cases, np.array([0.5, 1.0]), np.ones(cases.breadth.size), SETTINGS
+    (found,) = rock_levels(*given, dispersion=cases.dispersion)
     np.testing.assert_array_equal(found.own, joint.cases)
     np.testing.assert_array_equal(found.fell[1], joint.fell)
     assert found.fell[0].sum() < joint.fell.sum()

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from assess.errors import WorkbookError
-from assess.pipeline.new_content import fill_content
+from assess.pipeline.live_values import fill_content
 from assess.workbook.open import UNSAVED, Book, read_file
 from assess.workbook.plain_rows import RowCutter
 from assess.workbook.read import hold_sheets
