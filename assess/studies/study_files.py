@@ -19,7 +19,7 @@ Arrays = Mapping[str, NDArray[np.generic]]
 PARTS = "parts"
 """Folder of kept results, within that of a study's files."""
 SOURCES = (
-    "motion", "rocking", "compiled.py", "units.py", "methods/_simulate.py", "studies/buildings.py",
+    "motion", "rocking", "compiled.py", "units.py", "methods/simulate.py", "studies/buildings.py",
     "studies/calibration/floor_motions.py",
 )  # fmt: skip
 """The code that kept results depend on: if it changes, they are computed again."""
