@@ -459,6 +459,10 @@ class Inventory:
         """The name of the workbook's file as it is shown: what is no text in it is replaced."""
         return plain_line(self.source.name)
 
+    def locate(self, sheet: str, row: int, field: str) -> str:
+        """Return the cell of a field in a row of a sheet, as ``H14``; in column A where it has no column."""
+        return f"{self.letters.get(sheet, {}).get(field, 'A')}{row}"
+
     def friction_of(self, item: Item) -> float | None:
         """Return the coefficient of friction of an item: its own, else the building's; None where it cannot slide."""
         return self.building.friction if item.friction is None else item.friction

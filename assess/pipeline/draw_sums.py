@@ -102,7 +102,7 @@ def _find_blocked(
     """Return in which draws each of the routes `known` is blocked that has joint outcomes."""
     if not assessment.obstructions:
         return {}
-    from assess.routes.joint_draws import find_joint_draws
+    from assess.routes.evaluate import find_joint_draws
 
     found = find_joint_draws(
         assessment.inventory, assessment.obstructions, falls, assessment.settings,

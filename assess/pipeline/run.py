@@ -422,8 +422,8 @@ def _route_problems(inventory: Inventory, obstructions: "Sequence[Obstructions]"
     """Yield what is to be said of walls and, where there are routes, of the pieces beside them."""
     yield from remark_on_walls(inventory)
     if inventory.routes:
-        from assess.routes.furnished import find_unfurnished
         from assess.routes.obstructions import find_route_problems
+        from assess.routes.rooms import find_unfurnished
 
         yield from find_route_problems(inventory, obstructions)
         yield from find_unfurnished(inventory)

@@ -6,22 +6,20 @@ from typing import Any
 
 import numpy as np
 
+from assess.arrays import BoolArray
 from assess.i18n import count
 from assess.methods.simulate import interval_width
-from assess.model import Inventory, Segment
+from assess.model import Inventory
 from assess.progress import SILENT, Progress
 from assess.route_results import (
     BesideRow,
     Chance,
-    FloorRoutesRow,
-    RoomRow,
     RouteRow,
     RouteState,
     RouteTables,
     SegmentRow,
 )
-from assess.routes.chances import DRAWS, Falls
-from assess.routes.furnished import list_rooms_to_furnish, list_unfurnished
+from assess.routes.chances import DRAWS, Falls, to_array
 from assess.routes.network import build_course, find_ends
 from assess.routes.obstructions import Obstructions
 from assess.routes.rooms import (
@@ -30,6 +28,8 @@ from assess.routes.rooms import (
     find_missing_after,
     list_fixes,
     list_rooms,
+    list_rooms_to_furnish,
+    list_unfurnished,
     list_unjoined,
     name_unevaluated,
 )
@@ -91,35 +91,24 @@ def evaluate_routes(
         routes = tuple(step(_route(scene, name, segments)) for name in names)
         rooms = tuple(step(evaluate_room(scene, place, part, segments)) for place, part in parts)
         by_floor = [step(evaluate_floor(scene, floor, parts, segments, rooms)) for floor in floors]
-    found = _join(settings.route_risk, segments, routes, rooms, by_floor, list_unjoined(scene, parts))
+    by_floor = [one for one in by_floor if one.segments or one.rooms]  # the others have nothing to tell
+    known, unjoined = [one for one in routes if one.state != RouteState.NOT_KNOWN], list_unjoined(scene, parts)
     counted = len(list_rooms_to_furnish(inventory))
-    return replace(found, furnished_rooms=counted - len(list_unfurnished(inventory)), counted_rooms=counted)
-
-
-def _join(
-    risk: float,
-    segments: tuple[SegmentRow, ...],
-    routes: tuple[RouteRow, ...],
-    rooms: tuple[RoomRow, ...],
-    by_floor: Sequence[FloorRoutesRow],
-    unjoined: tuple[str, ...],
-) -> RouteTables:
-    """Return the tables with their sums; floors without segments and rooms are left out."""
-    floors = tuple(one for one in by_floor if one.segments or one.rooms)
-    known = [one for one in routes if one.state != RouteState.NOT_KNOWN]
     return RouteTables(
-        risk=risk,
+        risk=settings.route_risk,
         blocked_routes_expected=sum(one.blocked.probability for one in known if one.blocked),
         cut_off_rooms_expected=sum(one.loses_every_exit.probability for one in rooms if one.is_known),
         unknown_routes=len(routes) - len(known),
         unknown_rooms=sum(not one.is_known for one in rooms) + len(unjoined),
         draws=DRAWS,
-        uncounted_pieces=sum(one.uncounted_pieces for one in floors),
+        uncounted_pieces=sum(one.uncounted_pieces for one in by_floor),
         unjoined_rooms=unjoined,
         segments=segments,
         routes=routes,
         rooms=rooms,
-        floors=floors,
+        floors=tuple(by_floor),
+        furnished_rooms=counted - len(list_unfurnished(inventory)),
+        counted_rooms=counted,
     )
 
 
@@ -128,12 +117,28 @@ def _join(
 
 def _segment(scene: Scene, at: int) -> SegmentRow:
     one = scene.obstructions[at]
-    is_evaluated, standing = scene.is_evaluated(at), one.standing
-    needed = needed_width(one.segment, kinds_of(scene.inventory.places))
+    segment, band, is_evaluated, standing = one.segment, one.band, scene.is_evaluated(at), one.standing
+    needed = needed_width(segment, kinds_of(scene.inventory.places))
     is_short = needed is not None and standing < needed - NARROWER
     return SegmentRow(
-        **_given(one.segment),
-        **_drawn(one),
+        route=segment.route,
+        segment=segment.segment,
+        floor=segment.floor or None,
+        from_place=segment.start or None,
+        to_place=segment.end or None,
+        room=segment.room or None,
+        clear_width_m=segment.clear_width,
+        required_width_m=segment.required_width,
+        occupants=segment.occupants,
+        notes=segment.notes,
+        workbook_row=segment.row,
+        length_m=band.length if band else None,
+        start_x_m=band.start[0] if band else None,
+        start_y_m=band.start[1] if band else None,
+        end_x_m=band.end[0] if band else None,
+        end_y_m=band.end[1] if band else None,
+        extends_start_m=band.extends_start if band else 0.0,
+        extends_end_m=band.extends_end if band else 0.0,
         **scene.outlook([at], lambda blocked, _every: blocked[at], is_evaluated=is_evaluated),
         evaluated=is_evaluated,
         clear_width_used_m=one.clear,
@@ -150,38 +155,6 @@ def _segment(scene: Scene, at: int) -> SegmentRow:
         other_rooms=tuple(scene.piece(item) for item in one.other_rooms),
         flags=one.flags,
     )
-
-
-def _given(segment: Segment) -> dict[str, Any]:
-    """Return what the workbook says of a segment."""
-    return {
-        "route": segment.route,
-        "segment": segment.segment,
-        "floor": segment.floor or None,
-        "from_place": segment.start or None,
-        "to_place": segment.end or None,
-        "room": segment.room or None,
-        "clear_width_m": segment.clear_width,
-        "required_width_m": segment.required_width,
-        "occupants": segment.occupants,
-        "notes": segment.notes,
-        "workbook_row": segment.row,
-    }
-
-
-def _drawn(one: Obstructions) -> dict[str, Any]:
-    """Return where a segment lies on the plan."""
-    band = one.band
-    start, end = (band.start, band.end) if band else ((None, None), (None, None))
-    return {
-        "length_m": band.length if band else None,
-        "start_x_m": start[0],
-        "start_y_m": start[1],
-        "end_x_m": end[0],
-        "end_y_m": end[1],
-        "extends_start_m": band.extends_start if band else 0.0,
-        "extends_end_m": band.extends_end if band else 0.0,
-    }
 
 
 def _least_width(scene: Scene, at: int) -> float:
@@ -249,3 +222,44 @@ def _route(scene: Scene, name: str, rows: Sequence[SegmentRow]) -> RouteRow:
         is_fixed=is_fixed,
         missing_after=find_missing_after(scene, segments, fixes, course.is_blocked),
     )
+
+
+# ---------------------------------------------------------------- draw by draw
+
+
+def find_joint_draws(
+    inventory: Inventory,
+    obstructions: Sequence[Obstructions],
+    falls: Falls,
+    settings: Settings,
+    runs: int,
+    *,
+    progress: Progress = SILENT,
+) -> dict[str, BoolArray]:
+    """Return of each route that has joint outcomes in which of `runs` draws it is blocked, (runs,).
+
+    If all anchors hold. A route has none where one of the pieces that reach it was not simulated, is not confirmed, or
+    was simulated in another number of draws.
+
+    Raises
+    ------
+    CancelledError
+        If `progress` is cancelled.
+    """
+    z = interval_width(settings)
+    scene = Scene(inventory, tuple(obstructions), falls, settings.route_risk, settings.seed, z, progress)
+    names = list(dict.fromkeys(one.segment.route for one in obstructions))
+    found = {name: _find_blocked(scene, name, runs) for name in names}
+    return {name: blocked for name, blocked in found.items() if blocked is not None}
+
+
+def _find_blocked(scene: Scene, name: str, runs: int) -> BoolArray | None:
+    segments = scene.segments_of(name)
+    couplings = scene.couplings(segments)
+    if not couplings.is_joint or couplings.unconfirmed:
+        return None
+    draws, course = couplings.joint, build_course(segments, kinds_of(scene.inventory.places))
+    blocked = course.is_blocked(scene.blocked(draws, segments), draws.every)
+    if not couplings.runs:  # no piece reaches it: it is open in every draw, or in none
+        return np.full(runs, bool(blocked))
+    return to_array(blocked, runs).astype(np.bool_) if couplings.runs == runs else None

@@ -157,4 +157,4 @@ def _name(segment: Segment) -> str:
 
 
 def _cell(inventory: Inventory, sheet: str, row: int, field: str) -> str:
-    return f"{sheet}!{inventory.letters.get(sheet, {}).get(field, 'A')}{row}"
+    return f"{sheet}!{inventory.locate(sheet, row, field)}"

@@ -288,10 +288,9 @@ def find_route_problems(inventory: Inventory, obstructions: Sequence[Obstruction
     seen: set[tuple[str, int]] = set()
     for segment in obstructions:
         for one in segment.pieces:
-            for flag, describe in (("nearer_than_plan", _contradiction), ("standing_inside", _inside)):
-                if flag in one.flags and (flag, one.item_index) not in seen:
-                    seen.add((flag, one.item_index))
-                    yield describe(inventory, segment.segment, one)
+            fresh = [flag for flag in _CONTRADICTIONS if flag in one.flags and (flag, one.item_index) not in seen]
+            seen |= {(flag, one.item_index) for flag in fresh}
+            yield from (_contradict(inventory, segment.segment, one, flag) for flag in fresh)
     reaching = {(segment.segment.route, one.item_index) for segment in obstructions for one in segment.pieces}
     lost = [item for at, item in enumerate(inventory.items) if item.route and (item.route, at) not in reaching]
     if lost:
@@ -302,33 +301,34 @@ def find_route_problems(inventory: Inventory, obstructions: Sequence[Obstruction
             len(lost),
             names=names,
         )
-        yield Problem("note", "Items", _cell(inventory, lost[0].row, "route"), message)
+        yield Problem("note", "Items", inventory.locate("Items", lost[0].row, "route"), message)
 
 
-def _contradiction(inventory: Inventory, _segment: Segment, one: BesideRow) -> Problem:
-    message = fill(
-        "Edge distance {distance:g} m of '{item}' is smaller than its position on the plan gives; the Edge distance is "
-        "used.",
-        distance=one.distance_m,
-        item=one.item,
+_CONTRADICTIONS = ("nearer_than_plan", "standing_inside")
+
+
+def _contradict(inventory: Inventory, segment: Segment, one: BesideRow, flag: str) -> Problem:
+    field = "x" if flag == "standing_inside" and one.by_plan else "edge_distance"
+    message, fix = (
+        (
+            fill(
+                "Edge distance {distance:g} m of '{item}' is smaller than its position on the plan gives; the Edge "
+                "distance is used.",
+                distance=one.distance_m,
+                item=one.item,
+            ),
+            fill("Correct one of the two."),
+        )
+        if flag == "nearer_than_plan"
+        else (
+            fill(
+                "'{item}' stands {depth:.2f} m inside route '{route}', segment '{segment}', with nothing fallen.",
+                item=one.item,
+                depth=-one.distance_m,
+                route=segment.route,
+                segment=segment.segment,
+            ),
+            fill("Move it, or correct its position or the Clear width."),
+        )
     )
-    return Problem("warning", "Items", _cell(inventory, one.row, "edge_distance"), message, _CORRECT)
-
-
-_CORRECT = fill("Correct one of the two.")
-
-
-def _inside(inventory: Inventory, segment: Segment, one: BesideRow) -> Problem:
-    message = fill(
-        "'{item}' stands {depth:.2f} m inside route '{route}', segment '{segment}', with nothing fallen.",
-        item=one.item,
-        depth=-one.distance_m,
-        route=segment.route,
-        segment=segment.segment,
-    )
-    fix = fill("Move it, or correct its position or the Clear width.")
-    return Problem("warning", "Items", _cell(inventory, one.row, "x" if one.by_plan else "edge_distance"), message, fix)
-
-
-def _cell(inventory: Inventory, row: int, field: str) -> str:
-    return f"{inventory.letters.get('Items', {}).get(field, 'A')}{row}"
+    return Problem("warning", "Items", inventory.locate("Items", one.row, field), message, fix)

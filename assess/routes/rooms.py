@@ -1,10 +1,16 @@
-"""Rooms and floors: which rooms lose every exit, the ways that are left, and what is expected floor by floor."""
+"""Rooms and floors: which rooms lose every exit, the ways that are left, and what is expected floor by floor.
 
-from collections.abc import Collection, Iterable, Sequence
+Ways through rooms in which no furniture is listed count as free of it: `find_unfurnished` warns of them.
+"""
+
+from collections import Counter, defaultdict
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
-from assess.model import Place
+from assess.errors import Problem
+from assess.i18n import fill, nfill
+from assess.model import Inventory, Item, Place
 from assess.natural import natural_key
 from assess.route_results import (
     BLOCKED_FROM,
@@ -17,14 +23,16 @@ from assess.route_results import (
     SegmentRow,
     WayRow,
 )
-from assess.routes.chances import Draws, Happens, union
+from assess.routes.chances import Draws, union
 from assess.routes.fixes import IsBlocked, find_fixes
 from assess.routes.missing import combine
 from assess.routes.network import Blocked, Part, build_course, build_graph, find_parts, find_rooms, find_ways
-from assess.routes.scene import Scene
-from assess.routes.states import Verdict
+from assess.routes.scene import Scene, Verdict
 from assess.routes.widths import kinds_of
+from assess.workbook.names import key
 
+ROOMS = ("room", "corridor")
+"""Kinds of places in which furniture may stand."""
 UNKNOWN = 0.5
 """Chance of a segment that is not evaluated or not known, for the choice of the safest way only [-]."""
 
@@ -54,18 +62,13 @@ def find_missing_after(
     if not _may_lack(scene, segments, fixes):
         return ()
     held = scene.with_held(fix.item_index for fix in fixes)
-    verdict = _settle(held, segments, lambda draws: held.at_best_and_worst(draws, segments, is_blocked))
-    return held.list_missing(verdict, segments)
+    found = held.settle(segments, lambda draws: held.at_best_and_worst(draws, segments, is_blocked))
+    return held.list_missing(found.verdict, segments)
 
 
 def _may_lack(scene: Scene, segments: Collection[int], fixes: Sequence[RouteFixRow]) -> bool:
     """Tell whether there is anything to fix and anything missing; fixes count unconfirmed pieces already."""
     return bool(fixes) and any(scene.missing(at) for at in segments)
-
-
-def _settle(scene: Scene, segments: Collection[int], happens: Happens) -> Verdict:
-    standing, fallen = scene.bounds(segments, happens)
-    return scene.settle(segments, standing, fallen, scene.under_record(segments, happens))
 
 
 # ---------------------------------------------------------------- rooms
@@ -95,8 +98,8 @@ def evaluate_room(scene: Scene, place: Place, part: Part, rows: Sequence[Segment
     """Return one room; `rows` are all segments."""
     is_cut_off, happens = partial(_is_cut_off, part, place.place), partial(_lose, scene, part, place.place)
     found = scene.judge(part.segments, happens)
-    lost, fallen = found.chances[0], found.at_most[0]
-    verdict = scene.settle(part.segments, found.chances, found.at_most, scene.under_record(part.segments, happens))
+    settled = scene.settle(part.segments, happens, found)
+    verdict = settled.verdict
     ways = _ways(scene, place, part, rows)
     seeks_fixes = verdict.state in (RouteState.DOUBTFUL, RouteState.BLOCKED)
     fixes, is_fixed = list_fixes(scene, part.segments, is_cut_off) if seeks_fixes else ((), True)
@@ -105,8 +108,8 @@ def evaluate_room(scene: Scene, place: Place, part: Part, rows: Sequence[Segment
         floor=place.floor,
         exits=_list_exits(part),
         by_stairs=part.by_stairs,
-        loses_every_exit=lost,
-        loses_if_unconfirmed_fall=fallen if lost.unconfirmed else None,
+        loses_every_exit=found.chances[0],
+        loses_if_unconfirmed_fall=settled.if_unconfirmed_fall,
         loses_if_anchors_fail=found.if_anchors_fail,
         state=verdict.state,
         missing=_list_missing(scene, verdict, part, ways),
@@ -138,8 +141,8 @@ def _list_missing_after(
     if not (fixes and part.by_stairs) and not _may_lack(scene, part.segments, fixes):
         return ()
     held = scene.with_held(fix.item_index for fix in fixes)
-    verdict = _settle(held, part.segments, partial(_lose, held, part, place.place))
-    return _list_missing(held, verdict, part, ways)
+    found = held.settle(part.segments, partial(_lose, held, part, place.place))
+    return _list_missing(held, found.verdict, part, ways)
 
 
 def _list_exits(part: Part) -> tuple[str, ...]:
@@ -179,14 +182,13 @@ def _way(scene: Scene, segments: tuple[int, ...], end: str) -> WayRow:
     def happens(draws: Draws) -> tuple[int, int, int]:
         return scene.at_best_and_worst(draws, segments, lambda blocked, _: union(blocked.values()))
 
-    standing, if_fallen = scene.bounds(segments, happens)
-    lost, fallen = standing[0], if_fallen[0]
+    found = scene.settle(segments, happens)
     return WayRow(
         segment_indices=segments,
         end=end,
-        state=scene.settle(segments, standing, if_fallen, scene.under_record(segments, happens)).state,
-        blocked=lost,
-        blocked_if_unconfirmed_fall=fallen if lost.unconfirmed else None,
+        state=found.verdict.state,
+        blocked=found.standing[0],
+        blocked_if_unconfirmed_fall=found.if_unconfirmed_fall,
     )
 
 
@@ -235,12 +237,8 @@ def _blocked_here(scene: Scene, route: str, segments: Sequence[int]) -> float | 
     own = {at: one for at, one in scene.segments_of(route).items() if at in segments}
     course = build_course(own, kinds_of(scene.inventory.places))
 
-    def happens(draws: Draws) -> tuple[int, int, int]:
-        return scene.at_best_and_worst(draws, own, course.is_blocked)
-
-    standing, fallen = scene.bounds(own, happens)
-    verdict = scene.settle(own, standing, fallen, scene.under_record(own, happens))
-    return None if verdict.state == RouteState.NOT_KNOWN else standing[0].probability
+    found = scene.settle(own, lambda draws: scene.at_best_and_worst(draws, own, course.is_blocked))
+    return None if found.verdict.state == RouteState.NOT_KNOWN else found.standing[0].probability
 
 
 def _find_any_cut_off(scene: Scene, rooms: Sequence[tuple[Place, Part]]) -> Chance | None:
@@ -252,3 +250,79 @@ def _find_any_cut_off(scene: Scene, rooms: Sequence[tuple[Place, Part]]) -> Chan
     standing, fallen = scene.bounds(segments, lambda draws: scene.at_best_and_worst(draws, segments, is_any_lost))
     worst = combine(fallen[1], fallen[2], scene.any_left_out_falls(segments))
     return standing[0] if scene.is_known(standing[0], worst) else None
+
+
+# ---------------------------------------------------------------- rooms without furniture
+
+
+def list_rooms_to_furnish(inventory: Inventory) -> tuple[Place, ...]:
+    """Return the rooms and corridors of Places."""
+    return tuple(one for one in inventory.places if one.kind in ROOMS)
+
+
+def list_unfurnished(inventory: Inventory) -> tuple[Place, ...]:
+    """Return the rooms and corridors of Places in which no furniture is listed.
+
+    A room has the pieces of its name, else those of the Room of the segments that begin or end there, and those that
+    stand inside its outline. A row of furniture of which nothing tells the room counts as the only one of a room.
+    """
+    taken = {(item.floor, key(item.room)) for item in inventory.items if item.room}
+    names = _list_names(inventory)
+    left = [
+        one
+        for one in list_rooms_to_furnish(inventory)
+        if not any((one.floor, name) in taken for name in names[one.place])
+    ]
+    inside = _find_inside(left, inventory.items)
+    loose = Counter(item.floor for item in inventory.items if not item.room and (item.x is None or item.y is None))
+    return tuple(_leave_out(loose, [one for at, one in enumerate(left) if at not in inside]))
+
+
+def find_unfurnished(inventory: Inventory) -> Iterator[Problem]:
+    """Warn, once a workbook, of rooms in which no furniture is listed; without any, all routes are not known."""
+    found, count = list_unfurnished(inventory), len(list_rooms_to_furnish(inventory))
+    if found and inventory.items:
+        message = nfill(
+            "No furniture is listed in {room}, the only room or corridor of Places: ways through it count as free of "
+            "furniture.",
+            "Furniture is listed in {listed:,} of {n:,} rooms and corridors of Places, not in {room}: ways through the "
+            "others count as free of furniture.",
+            count,
+            listed=count - len(found),
+            room=found[0].place,
+        )
+        cell = inventory.locate("Places", found[0].row, "place")
+        yield Problem("warning", "Places", cell, message, fill("List the furniture of every room on the way."))
+
+
+def _leave_out(loose: Counter[str], rooms: Sequence[Place]) -> Iterator[Place]:
+    """Yield rooms but for the first of each floor, as many as there are rows of unknown room."""
+    left = loose.copy()
+    for one in rooms:
+        if left[one.floor] > 0:
+            left[one.floor] -= 1
+        else:
+            yield one
+
+
+def _list_names(inventory: Inventory) -> dict[str, Collection[str]]:
+    """Return by place the names that pieces may give as its room."""
+    named: dict[str, set[str]] = defaultdict(set)
+    for segment in inventory.routes:
+        for place in (segment.start, segment.end):
+            named[place].update(key(room) for room in segment.rooms)
+    own = {one.place: key(one.place) for one in inventory.places}
+    return {place: {name} if name in named[place] else {name, *named[place]} for place, name in own.items()}
+
+
+def _find_inside(rooms: Sequence[Place], items: Sequence[Item]) -> set[int]:
+    """Return the rooms (indices) in whose outline a piece stands."""
+    outlined = [at for at, one in enumerate(rooms) if one.outline]
+    placed = [(one.floor, (one.x, one.y)) for one in items if one.x is not None and one.y is not None]
+    if not outlined or not placed:
+        return set()
+    from shapely import Point, Polygon, STRtree
+
+    tree = STRtree([Point(at) for _floor, at in placed])
+    pairs = tree.query([Polygon(rooms[at].outline) for at in outlined], predicate="covers").T.tolist()
+    return {outlined[at] for at, piece in pairs if rooms[outlined[at]].floor == placed[piece][0]}

@@ -8,12 +8,30 @@ import numpy as np
 
 from assess.model import Inventory, Segment
 from assess.progress import SILENT, Progress
-from assess.route_results import DOUBTS, Chance, MissingRow, PieceRef, RouteState, join_missing
+from assess.route_results import BLOCKED_FROM, DOUBTS, Chance, MissingRow, PieceRef, RouteState, join_missing
 from assess.routes.chances import Couplings, Draws, Falls, Happens, Key, build_couplings, find_chances, union
 from assess.routes.missing import combine, find_any_falls, find_missing, is_unknown, list_left_out
 from assess.routes.network import Blocked
 from assess.routes.obstructions import Obstructions
-from assess.routes.states import Bounds, Verdict, settle
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """A state; where it is not known, whether unconfirmed pieces and what is missing could change it."""
+
+    state: RouteState
+    by_unconfirmed: bool = False
+    by_missing: bool = False
+
+
+def find_state(chance: Chance, risk: float, record: RouteState | None = None) -> RouteState:
+    """Return the state by a chance alone: blocked, else open below the risk [-] at its upper end, else doubtful.
+
+    What was blocked under the recorded motion itself is blocked.
+    """
+    if record == RouteState.BLOCKED or chance.probability >= BLOCKED_FROM:
+        return RouteState.BLOCKED
+    return RouteState.OPEN if chance.high < risk else RouteState.DOUBTFUL
 
 
 class Outlook(TypedDict):
@@ -27,6 +45,21 @@ class Outlook(TypedDict):
     blocked_if_anchors_fail: Chance | None
     under_record: RouteState | None
     most_likely_piece: PieceRef | None
+
+
+@dataclass(frozen=True, slots=True)
+class Settled:
+    """A state, and the chances that it follows from: with unconfirmed pieces standing, and with them fallen."""
+
+    verdict: Verdict
+    standing: Sequence[Chance]
+    fallen: Sequence[Chance]
+    under_record: RouteState | None
+
+    @property
+    def if_unconfirmed_fall(self) -> Chance | None:
+        """The chance with unconfirmed pieces fallen; None where there are none."""
+        return self.fallen[0] if self.standing[0].unconfirmed else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,16 +237,16 @@ class Scene:
         together = self.together(segments, happens)
         likeliest = max(together, key=lambda item: (together[item], -item), default=None)
         chances, at_most = self.bounds(segments, happens)
+        if_anchors_fail = None
+        if has_anchored:
+            failed = self.couplings(segments, anchors_fail=True, unconfirmed_fall=True)
+            if_anchors_fail = find_chances(failed, happens, self.z)[0]
         return Judgement(
             chances=chances,
             at_most=at_most,
-            if_anchors_fail=self._if_anchors_fail(segments, happens) if has_anchored else None,
+            if_anchors_fail=if_anchors_fail,
             most_likely_piece=None if likeliest is None else self.piece(likeliest),
         )
-
-    def _if_anchors_fail(self, segments: Collection[int], happens: Happens) -> Chance:
-        couplings = self.couplings(segments, anchors_fail=True, unconfirmed_fall=True)
-        return find_chances(couplings, happens, self.z)[0]
 
     def outlook(
         self, segments: Collection[int], is_blocked: Callable[[Blocked, int], int], *, is_evaluated: bool
@@ -229,18 +262,15 @@ class Scene:
             return *found, found[0] | self.narrowed(draws, segments)
 
         found = self.judge(segments, happens)
-        record = self.under_record(segments, happens)
-        blocked, *_, either = found.chances
-        fallen = found.at_most[0]
-        verdict = self.settle(segments, found.chances, found.at_most, record)
+        settled = self.settle(segments, happens, found)
         return Outlook(
-            state=verdict.state,
-            missing=self.list_missing(verdict, segments),
-            blocked=blocked if is_evaluated else None,
-            blocked_or_reduced=either if is_evaluated else None,
-            blocked_if_unconfirmed_fall=fallen if is_evaluated and blocked.unconfirmed else None,
+            state=settled.verdict.state,
+            missing=self.list_missing(settled.verdict, segments),
+            blocked=found.chances[0] if is_evaluated else None,
+            blocked_or_reduced=found.chances[-1] if is_evaluated else None,
+            blocked_if_unconfirmed_fall=settled.if_unconfirmed_fall if is_evaluated else None,
             blocked_if_anchors_fail=found.if_anchors_fail,
-            under_record=record,
+            under_record=settled.under_record,
             most_likely_piece=found.most_likely_piece,
         )
 
@@ -260,25 +290,26 @@ class Scene:
         blocked = dict.fromkeys([*unknown, *reached], draws.every)
         return best, known, is_blocked({**own, **blocked}, draws.every) if reached else known
 
-    def settle(
-        self,
-        segments: Collection[int],
-        standing: Sequence[Chance],
-        fallen: Sequence[Chance],
-        record: RouteState | None = None,
-    ) -> Verdict:
-        """Return the state of some segments by the chances of what `at_best_and_worst` returns, in this order.
+    def settle(self, segments: Collection[int], happens: Happens, judged: Judgement | None = None) -> Settled:
+        """Return the state of some segments; `happens` returns what `at_best_and_worst` does.
 
-        `standing` are those with unconfirmed pieces standing, `fallen` those with them fallen.
+        It is not known where it could be another, unless it is blocked at best. `judged` are its chances, where known.
         """
-        any_falls = self.any_left_out_falls(segments)
-        bounds = Bounds(
-            best=standing[0],
-            if_missing=combine(standing[1], standing[2], any_falls),
-            if_fallen=fallen[0],
-            worst=combine(fallen[1], fallen[2], any_falls),
+        standing, fallen = (judged.chances, judged.at_most) if judged else self.bounds(segments, happens)
+        any_falls, record = self.any_left_out_falls(segments), self.under_record(segments, happens)
+        at_most = [combine(one[1], one[2], any_falls) for one in (standing, fallen)]
+        best, if_missing, if_fallen, worst = (
+            find_state(one, self.risk, record) for one in (standing[0], at_most[0], fallen[0], at_most[1])
         )
-        return settle(bounds, self.risk, record)
+        verdict = Verdict(best)
+        if best not in (worst, RouteState.BLOCKED):
+            by_unconfirmed, by_missing = if_fallen != best, if_missing != best
+            verdict = Verdict(
+                RouteState.NOT_KNOWN,
+                by_unconfirmed=by_unconfirmed or not by_missing,
+                by_missing=by_missing or not by_unconfirmed,
+            )
+        return Settled(verdict, standing, fallen, record)
 
     def list_missing(self, verdict: Verdict, segments: Collection[int]) -> tuple[MissingRow, ...]:
         """Return what is to be filled in so that the state of some segments is known; nothing where it is."""

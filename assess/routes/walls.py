@@ -189,7 +189,6 @@ def remark_on_walls(inventory: Inventory) -> Iterator[Problem]:
     for at, wall in find_walls(inventory).items():
         if wall.reason is not None:
             lost.setdefault(wall.reason, []).append(inventory.items[at])
-    letter = inventory.letters.get("Items", {}).get("against_wall", "A")
     for reason, items in sorted(lost.items()):
         names = ", ".join(item.item for item in items[:MOST_NAMED]) + (", ..." if len(items) > MOST_NAMED else "")
         message = nfill(
@@ -199,4 +198,4 @@ def remark_on_walls(inventory: Inventory) -> Iterator[Problem]:
             len(items), names=names, reason=REASONS[reason],
         )  # fmt: skip
         fix = fill("Fill in X, Y and Angle, and the Outline of the room in Places.")
-        yield Problem("note", "Items", f"{letter}{items[0].row}", message, fix)
+        yield Problem("note", "Items", inventory.locate("Items", items[0].row, "against_wall"), message, fix)

@@ -26,7 +26,7 @@ from assess.route_results import (
     WayRow,
     join_missing,
 )
-from assess.routes.states import find_state
+from assess.routes.scene import find_state
 from assess.routes.widths import LEVEL, RULES, STAIR
 from assess.units import LENGTH
 from assess.workbook.draft_names import is_draft
