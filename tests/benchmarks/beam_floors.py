@@ -1,8 +1,8 @@
 """Benchmark of floors without records: their draws through beams, as a ratio to the same filters by scipy."""
 
-import statistics
 from collections.abc import Iterator
 from functools import cache, partial
+from pathlib import Path
 
 import numpy as np
 from scipy.fft import irfft
@@ -16,7 +16,7 @@ from assess.motion.drawn_ground import build_beam_grid, draw_ground, fit_noise
 from assess.motion.floor_medians import find_medians
 from assess.motion.sweep import Single
 from assess.progress import SILENT
-from tests.benchmarks.measuring import spent
+from tests.benchmarks.measuring import compare, spent
 
 AXES, DRAWS, ROUNDS = ("X", "Y"), 200, 5
 FLOORS = {10: "at most 5", 60: "at most 20"}
@@ -24,17 +24,14 @@ GROUND, BUILDING = Ground(pga=3.0), Building(period=1.5, structure="frame")
 GRID = build_beam_grid(BUILDING.longest)
 
 
-def rows() -> Iterator[str]:
+def rows(_folder: Path) -> Iterator[str]:
     """Yield a table in Markdown: one thread, compiled before, earthquakes drawn afresh."""
     yield (
         f"| {DRAWS} draws of {GRID.count:,} samples, {len(AXES)} axes | processor seconds | "
         f"over scipy: FFT filtering and {MODES} recursions a draw | aim |\n|---|---|---|---|"
     )
-    _shake(2)
-    _filter()
     for floors, aim in FLOORS.items():
-        pairs = [(spent(partial(_shake, floors)), spent(_filter)) for _ in range(ROUNDS)]
-        seconds, ratio = statistics.median(own for own, _ in pairs), statistics.median(a / b for a, b in pairs)
+        seconds, _, ratio = compare(partial(_shake, floors), _filter, spent, ROUNDS)
         yield f"| {floors} floors without records | {seconds:.2f} | {ratio:.1f} | {aim} |"
 
 
@@ -80,8 +77,3 @@ def _filter() -> None:
         ground = irfft(transforms, 2 * GRID.count, axis=1, overwrite_x=True)[:, : GRID.count]
         for numerator, denominator in modes:
             lfilter(numerator.astype(np.float32), denominator.astype(np.float32), ground, axis=1)
-
-
-if __name__ == "__main__":
-    for row in rows():
-        print(row)

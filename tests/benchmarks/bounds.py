@@ -1,18 +1,16 @@
-"""What stands at the bounds takes: ``python tests/benchmarks/bounds.py [WORD ...]`` prints the table of docs/limits.md.
+"""What stands at the bounds takes: ``python tests/benchmarks/run.py bounds`` prints the table of docs/limits.md.
 
-Each row is a command in a process of its own: time of the processor, and memory at its peak. With words, only rows that
-hold one of them.
+Each row is a command in a process of its own: time of the processor, and memory at its peak.
 """
 
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from PIL import Image
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from assess.pictures import MOST_PIXELS
 from assess.workbook.open import MAX_ROWS
@@ -42,7 +40,7 @@ def floors(count: int) -> list[dict[str, Any]]:
     return [{"floor": str(at), "pfa_x": 0.3, "pfa_y": 0.2, "elevation": 0.05 * (at - 1)} for at in range(1, count + 1)]
 
 
-def with_routes(path: Path, segments: int) -> Path:
+def with_routes(folder: Path, segments: int) -> Path:
     """Write a building of 50 segments to a floor, each with a piece beside it, a route a floor."""
     count = -(-segments // 50)
     places, routes, pieces = [], [], []
@@ -56,7 +54,7 @@ def with_routes(path: Path, segments: int) -> Path:
         widths = {"clear_width": 1.5, "required_width": 0.9}
         routes.append({"route": f"Way {floor}", "segment": f"{floor}.{number}", "floor": floor, **ends, **widths})
         pieces.append({"item": f"i{at}", "floor": floor, "x": 2 * number + 1, "y": 1, "angle_deg": 90, **ITEM})
-    return write(path, Floors=floors(count), Items=pieces, Places=places, Routes=routes)
+    return write(folder / "w.xlsx", Floors=floors(count), Items=pieces, Places=places, Routes=routes)
 
 
 def with_records(folder: Path, count: int, samples: int, kind: str) -> Path:
@@ -87,75 +85,55 @@ def with_picture(folder: Path) -> Path:
     return write(folder / "logo.xlsx", Building=[{"logo": "logo.png"}], Floors=floors(2), Items=items(20))
 
 
-def plain(path: Path, count: int) -> Path:
+def plain(path: Path, count: int, floor_count: int = 2) -> Path:
     """Write a workbook without live formulas, as other programs write it."""
-    rows = [["Item", "Floor", "Breadth [cm]", "Height [cm]", "Axis"]]
-    rows += [[f"i{at}", str(1 + at % 2), 40, 180, "XY"[at % 2]] for at in range(count)]  # type: ignore[list-item]
-    return write_shared(path, {"Floors": [["Floor", "PFA X [g]", "PFA Y [g]"], ["1", 0.3, 0.2], ["2", 0.4, 0.3]],
-                               "Items": rows})  # fmt: skip
-
-
-def _of_items(count: int) -> Callable[[Path], Path]:
-    return lambda folder: write(folder / "w.xlsx", Floors=floors(2), Items=items(count))
-
-
-def _of_plain_items(count: int) -> Callable[[Path], Path]:
-    return lambda folder: plain(folder / "w.xlsx", count)
-
-
-def _of_floors(count: int) -> Callable[[Path], Path]:
-    return lambda folder: write(folder / "w.xlsx", Floors=floors(count), Items=items(count, count))
-
-
-def _of_segments(count: int) -> Callable[[Path], Path]:
-    return lambda folder: with_routes(folder / "w.xlsx", count)
-
-
-def _of_records(count: int, samples: int, kind: str) -> Callable[[Path], Path]:
-    return lambda folder: with_records(folder, count, samples, kind)
-
-
-def _of_csv(channels: int) -> Callable[[Path], Path]:
-    return lambda folder: with_csv(folder, channels)
+    levels: list[list[Any]] = [["Floor", "PFA X [g]", "PFA Y [g]"]]
+    levels += [[str(at + 1), 0.3 + 0.005 * at, 0.2] for at in range(floor_count)]
+    rows: list[list[Any]] = [["Item", "Floor", "Breadth [cm]", "Height [cm]", "Axis"]]
+    rows += [[f"i{at}", str(1 + at % floor_count), 40, 180, "XY"[at % 2]] for at in range(count)]
+    return write_shared(path, {"Floors": levels, "Items": rows})
 
 
 def cases() -> Iterator[tuple[str, Callable[[Path], Path], list[str]]]:
     """Yield what stands in the workbook, what writes it, and what is run on it."""
     check, run, reports = ["check"], ["run", *FORMULA], ["run", *REPORTS]
+
+    def of_items(count: int) -> Callable[[Path], Path]:
+        return lambda folder: write(folder / "w.xlsx", Floors=floors(2), Items=items(count))
+
+    def of_floors(count: int) -> Callable[[Path], Path]:
+        return lambda folder: write(folder / "w.xlsx", Floors=floors(count), Items=items(count, count))
+
     for count in (1_000, 10_000):
-        yield f"{count:,} items: check", _of_items(count), check
-        yield f"{count:,} items: run, json and csv", _of_items(count), run
-        yield f"{count:,} items: run, PDF, HTML and Excel", _of_items(count), reports
+        yield f"{count:,} items: check", of_items(count), check
+        yield f"{count:,} items: run, json and csv", of_items(count), run
+        yield f"{count:,} items: run, PDF, HTML and Excel", of_items(count), reports
     most = MAX_ROWS - 1
-    yield f"{most:,} items, no live formulas: check", _of_plain_items(most), check
-    yield f"{most:,} items, no live formulas: run, json and csv", _of_plain_items(most), run
+    yield f"{most:,} items, no live formulas: check", lambda folder: plain(folder / "w.xlsx", most), check
+    yield f"{most:,} items, no live formulas: run, json and csv", lambda folder: plain(folder / "w.xlsx", most), run
     for count in (100, 1_000, 5_000):
-        yield f"{count:,} floors: run, json and csv", _of_floors(count), run
+        yield f"{count:,} floors: run, json and csv", of_floors(count), run
     for count in (500, 5_000):
-        yield f"{count:,} segments: run, json and csv", _of_segments(count), run
-    yield "a record of 4,000,000 samples (SAC): check", _of_records(1, 4_000_000, "sac"), check
-    yield "a record of 4,000,000 samples (SAC): run, json and csv", _of_records(1, 4_000_000, "sac"), run
-    yield "5 records of 4,000,000 samples (SAC): run, json and csv", _of_records(5, 4_000_000, "sac"), run
-    yield "50 records of 100,000 samples (AT2): run, json and csv", _of_records(50, 100_000, "at2"), run
-    yield "64 MB of plain CSV, 1 channel: check", _of_csv(1), check
-    yield "64 MB of plain CSV, 500 channels: check", _of_csv(500), check
+        yield f"{count:,} segments: run, json and csv", partial(with_routes, segments=count), run
+    one, five = (partial(with_records, count=count, samples=4_000_000, kind="sac") for count in (1, 5))
+    yield "a record of 4,000,000 samples (SAC): check", one, check
+    yield "a record of 4,000,000 samples (SAC): run, json and csv", one, run
+    yield "5 records of 4,000,000 samples (SAC): run, json and csv", five, run
+    fifty = partial(with_records, count=50, samples=100_000, kind="at2")
+    yield "50 records of 100,000 samples (AT2): run, json and csv", fifty, run
+    yield "64 MB of plain CSV, 1 channel: check", partial(with_csv, channels=1), check
+    yield "64 MB of plain CSV, 500 channels: check", partial(with_csv, channels=500), check
     yield "a logo of 50 million pixels (PNG): check", with_picture, check
     yield "a logo of 50 million pixels (PNG): run, PDF, HTML and Excel", with_picture, reports
 
 
-def main() -> None:
-    """Print the table."""
-    print("| what | processor [s] | memory at the peak [MB] |\n|---|---|---|")
+def rows(_folder: Path) -> Iterator[str]:
+    """Yield the table in Markdown."""
+    yield "| what | processor [s] | memory at the peak [MB] |\n|---|---|---|"
     for name, build, command in cases():
-        if sys.argv[1:] and not any(word in name for word in sys.argv[1:]):
-            continue
         with tempfile.TemporaryDirectory() as box:
             folder = Path(box)
             book = build(folder)
             out = ["--out", str(folder / "out")] if command[0] == "run" else []
             _, seconds, peak = measure([sys.executable, "-m", "assess", command[0], str(book), *command[1:], *out])
-        print(f"| {name} | {seconds:.1f} | {peak:.0f} |", flush=True)
-
-
-if __name__ == "__main__":
-    main()
+        yield f"| {name} | {seconds:.1f} | {peak:.0f} |"

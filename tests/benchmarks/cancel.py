@@ -1,25 +1,19 @@
 """Benchmark of cancelling: the longest time between two looks at whether to stop, in each stage of large jobs."""
 
-import sys
-import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-sys.path.insert(0, str(Path(__file__).parents[2]))
-
 import assess
 from assess.motion.formats import LARGEST_FILE
 from assess.progress import Progress
 from assess.report_formats import DEFAULT
-from tests.benchmarks.measuring import list_items
-from tests.benchmarks.report import write_thousand
+from tests.benchmarks.measuring import ROOT, list_items, write_thousand
 from tests.benchmarks.routes import FLOORS, write_tower
 from tests.workbooks import UNVERIFIED, write
 
-ROOT = Path(__file__).parents[2]
 AIM, ITEMS, RUNS = 0.5, 20_000, 20
 
 
@@ -91,9 +85,3 @@ def _write_record(path: Path) -> str:
         file.write("time [s],north [cm/s2],east [cm/s2]\n")
         file.writelines(block.format(*[at] * 20) for at in range(count))
     return f"{path.name}#north"
-
-
-if __name__ == "__main__":
-    with tempfile.TemporaryDirectory() as box:
-        for row in rows(Path(box)):
-            print(row, flush=True)

@@ -1,18 +1,14 @@
 """Benchmark of the page's live answers: after an edit, against reading the workbook's bytes and assessing them anew.
 
-Run it alone: ``python tests/benchmarks/live_answers.py``. An answer is the edit, what is read of the changed cells, the
+An answer is the edit, what is read of the changed cells, the
 classes of all rows, the problems, and the rows that changed as JSON.
 """
 
 import json
 import statistics
-import sys
-import tempfile
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from assess.pipeline.run import compute
 from assess.web.book import Book
@@ -97,8 +93,3 @@ def _route_states(book: Book, height: int) -> None:
 
 def _median(work: Callable[[], object]) -> float:
     return statistics.median([1e3 * timed(work) for _ in range(ROUNDS)][1:])
-
-
-if __name__ == "__main__":
-    with tempfile.TemporaryDirectory() as box:
-        print(*rows(Path(box)), sep="\n")

@@ -1,6 +1,6 @@
 """Benchmark of building models: ``assess import`` as a whole against a plain script that takes the shapes one by one.
 
-Run it alone: ``python tests/benchmarks/models.py``. The rival does what most tutorials do: it opens the model and asks
+The rival does what most tutorials do: it opens the model and asks
 for the shape of each furnishing element, space, door and wall with the settings as they are. It writes nothing; ours
 writes the workbook and the plans. Processor time is that of a process and its child, memory the sum of their peaks.
 """
@@ -8,11 +8,8 @@ writes the workbook and the plans. Processor time is that of a process and its c
 import statistics
 import subprocess
 import sys
-import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from tests.bim.ifc_files import ModelWriter
 
@@ -96,9 +93,3 @@ def write_rooms(path: Path, rooms: int = ROOMS, pieces: int = PIECES) -> Path:
             size = (0.3 + 0.01 * (at % 7), 0.8, 0.7 + 0.05 * at)
             model.piece(f"Cabinet {at}", (0, 0, 0, *size), within=room, at=(x + 0.6 + at % 5, y + 0.5 + at // 5, 0))
     return model.write(path)
-
-
-if __name__ == "__main__":
-    with tempfile.TemporaryDirectory() as box:
-        for line in rows(Path(box)):
-            print(line, flush=True)

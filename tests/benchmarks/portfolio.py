@@ -1,6 +1,6 @@
 """Benchmark of buildings of a city in one process: reading, formulas only and simulated, in processor time.
 
-Run it alone: ``python tests/benchmarks/portfolio.py``. The workbooks are as `assess new` writes them, with all prepared
+The workbooks are as `assess new` writes them, with all prepared
 rows, 12 to 40 pieces on two or three floors and an evacuation route. Each building has a height of its own, so that
 none shares a motion with another; "shared" are buildings of one height. The rival is openpyxl, which hands over the
 cells of the same workbook.
@@ -9,20 +9,18 @@ cells of the same workbook.
 import statistics
 import subprocess
 import sys
-import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-sys.path.insert(0, str(Path(__file__).parents[2]))
+import openpyxl
 
 from assess.pipeline.live_values import with_live
 from assess.pipeline.run import run
 from assess.workbook.example import example_content
 from assess.workbook.read import read_inventory
-from assess.workbook.template import Content, write_workbook
-from tests.benchmarks.measuring import spent
-from tests.benchmarks.workbooks_read import read_cells
+from assess.workbook.template import ROWS, Content, write_workbook
+from tests.benchmarks.measuring import compare, spent
 
 READ, SIMULATED, MANY, RUNS = 24, 6, 300, 200
 """Workbooks that are read, that are simulated, formulas only whose memory is measured, and motions."""
@@ -42,7 +40,9 @@ print(int(re.search(r"VmHWM:\\s+(\\d+)", pathlib.Path("/proc/self/status").read_
 
 
 def rows(folder: Path) -> Iterator[str]:
-    """Yield a table in Markdown; the workbooks are written into `folder`."""
+    """Yield tables in Markdown; the workbooks are written into `folder`."""
+    yield from _read_example(folder)
+    yield ""
     own = [write_building(folder, number, 7.2 + 0.1 * number) for number in range(READ)]
     same = [write_building(folder, READ + number, 9.9) for number in range(SIMULATED + 1)]
     inventories = [read_inventory(path) for path in own]
@@ -59,6 +59,25 @@ def rows(folder: Path) -> Iterator[str]:
                SIMULATED_AIM)  # fmt: skip
     yield f"\n| one process | peak memory [MB] | aim |\n|---|---|---|\n{_memory('none', own, MANY)}"
     yield _memory("all", own, READ)
+
+
+def _read_example(folder: Path) -> Iterator[str]:
+    """Yield how reading and checking the example, prepared rows and all, compares with openpyxl, mode for reading."""
+    path, content = folder / "example.xlsx", example_content()
+    write_workbook(path, with_live(content))
+    ours, theirs, ratio = compare(lambda: read_inventory(path), lambda: read_cells(path), spent, 20)
+    name = f"{len(content.rows['Items'])} pieces, {ROWS['Items']} rows prepared"
+    yield "| read | processor [ms] | rival | processor [ms] | ratio (median) | aim |\n|---|---|---|---|---|---|"
+    yield f"| {name} | {1e3 * ours:.0f} | openpyxl, read-only | {1e3 * theirs:.0f} | {ratio:.2f} | at most 40 ms |"
+
+
+def read_cells(path: Path) -> int:
+    """Return how many cells of a workbook hold a value."""
+    book = openpyxl.load_workbook(path, read_only=True, data_only=True)
+    rows = (row for page in book.worksheets for row in page.iter_rows(values_only=True))
+    count = sum(value is not None for row in rows for value in row)
+    book.close()
+    return count
 
 
 def write_building(folder: Path, number: int, height: float) -> Path:
@@ -102,9 +121,3 @@ def _memory(verify: str, paths: Sequence[Path], count: int) -> str:
     done = subprocess.run([sys.executable, "-c", MEMORY, verify, *every], check=True, capture_output=True, text=True)
     name = {"none": "formulas only", "all": "simulated"}[verify]
     return f"| {count} workbooks, {name} | {float(done.stdout):.0f} | at most {MEMORY_AIM} |"
-
-
-if __name__ == "__main__":
-    with tempfile.TemporaryDirectory() as box:
-        for line in rows(Path(box)):
-            print(line, flush=True)

@@ -1,8 +1,8 @@
 """How a portfolio grows: with its buildings, and with the processes that work on it; and how fast its tables answer.
 
-Run: ``python tests/benchmarks/portfolio_growth.py`` (some ten minutes on two processors that do nothing else), or with
-``small`` for a trial in a minute. Workbooks are those of the worked city, 12 to 40 pieces each, copied under other
-names; whole commands are timed, with their start and all reports but the first table, which has the tables alone.
+It takes some ten minutes on two processors that do nothing else. Workbooks are those of the worked city, 12 to 40
+pieces each, copied under other names; whole commands are timed, with their start and all reports but the first table,
+which has the tables alone.
 """
 
 import resource
@@ -10,12 +10,9 @@ import shutil
 import statistics
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Iterator
 from pathlib import Path
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
 
 import duckdb
 
@@ -26,16 +23,20 @@ TABLES = "parquet"
 QUERY = "SELECT type, count(*), sum(quantity * probability) FROM read_parquet('{}') GROUP BY type ORDER BY 3 DESC"
 
 
-def main() -> None:
-    """Print the tables."""
-    is_small = sys.argv[1:] == ["small"]
-    with tempfile.TemporaryDirectory() as box:
-        folder = Path(box)
-        write_example_city(folder / "bay")
-        for row in compare_processes(folder, 40 if is_small else 1000, 1 if is_small else 3):
-            print(row)
-        for row in grow(folder, (20, 40) if is_small else (100, 500, 1000, 2000, 5000)):
-            print(row)
+def rows(folder: Path) -> Iterator[str]:
+    """Yield tables in Markdown; cities are written into `folder`."""
+    yield from _measure(folder, 1000, 3, (100, 500, 1000, 2000, 5000))
+
+
+def small(folder: Path) -> Iterator[str]:
+    """Yield the same of small cities, for a trial in a minute."""
+    yield from _measure(folder, 40, 1, (20, 40))
+
+
+def _measure(folder: Path, count: int, rounds: int, counts: tuple[int, ...]) -> Iterator[str]:
+    write_example_city(folder / "bay")
+    yield from compare_processes(folder, count, rounds)
+    yield from grow(folder, counts)
 
 
 def fill(folder: Path, count: int) -> Path:
@@ -88,7 +89,3 @@ def grow(folder: Path, counts: tuple[int, ...]) -> Iterator[str]:
         query = time.perf_counter() - start
         ((rows,),) = duckdb.sql(f"SELECT count(*) FROM read_parquet('{files}')").fetchall()
         yield (f"| {count:,} | {rows:,} | {seconds:.1f} | {1000 * seconds / count:.0f} | {memory:.0f} | {query:.3f} |")
-
-
-if __name__ == "__main__":
-    main()

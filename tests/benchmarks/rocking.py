@@ -4,6 +4,7 @@ import math
 import statistics
 import time
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import numpy as np
 from numba import njit
@@ -24,7 +25,7 @@ STEP, SAMPLES, PEAK = 0.01, 4000, 0.6
 BLOCKS, MOTIONS, ROUNDS = 200, 100, 5
 
 
-def rows() -> Iterator[str]:
+def rows(_folder: Path) -> Iterator[str]:
     """Yield tables in Markdown."""
     motions, (breadth, height) = _motions(), _blocks()
     yield "| rocking | block-steps a second, all samples | block-steps a second, those integrated |"

@@ -123,11 +123,3 @@ def _piece(rng: np.random.Generator, number: int, floor: str, on_floor: int) -> 
         segment, edge = ("door", "west", "east")[on_floor % 3], round(rng.uniform(0, 1), 2)
         return found | {"axis": "Y", "route": f"Floor {floor}", "segment": segment, "edge_distance": edge}
     return found | {"x": round(rng.uniform(-12, 12), 2), "y": round(rng.uniform(6, 12), 2), "angle_deg": 0}
-
-
-if __name__ == "__main__":
-    import tempfile
-
-    with tempfile.TemporaryDirectory() as box:
-        for row in rows(Path(box)):
-            print(row)

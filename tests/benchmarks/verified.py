@@ -43,8 +43,6 @@ def rows(folder: Path) -> Iterator[str]:
     names = _write_records(folder)
     yield "| simulated run | seconds | processor | rocking [thread-seconds] | pairs | peak memory [MB] | aim |"
     yield "|---|---|---|---|---|---|---|"
-    example = ["run", str(ROOT / "inventories" / "market-street.xlsx"), "--formats", "json"]
-    yield _row("the worked example, json", _run([*example, "--out", str(folder / "example")]), "8 s of processor time")
     first = 0.0
     for count, aim in ((1000, "20 s on two processors, 1,500 MB"), (10_000, "5 times the line above")):
         book = _write_book(folder, count, names)

@@ -7,7 +7,7 @@ import pypdfium2
 import pytest
 
 import assess
-from tests.benchmarks.report import write_thousand
+from tests.benchmarks.measuring import write_thousand
 from tests.workbooks import ITEMS, UNVERIFIED, assessed
 
 LONG = "N" * 299 + "Z"
