@@ -18,7 +18,6 @@ import numpy as np
 from assess.bim.building_model import LONGEST_NAME, Area, BuildingModel, Door, Piece, Skipped, Space, Stair, Storey
 from assess.bim.door_sides import REACH, find_kinds, find_sides
 from assess.bim.draft_floor import find_room_points
-from assess.bim.draft_routes import DraftRoutes, draft_routes
 from assess.bim.floor_drawing import Drawn, draw_storey, name_plans
 from assess.bim.import_workbook import LOWEST_ROOF, ImportedBuilding, name_apart, note_datum
 from assess.bim.plan_shapes import SpaceSearch, find_rectangle, find_width, to_polygon
@@ -100,20 +99,29 @@ class _Building:
             "building": model.name, "address": model.address, "latitude": model.latitude, "longitude": model.longitude,
             "azimuth_deg": model.azimuth_deg, "height": _find_height(model, self.storeys),
         }  # fmt: skip
-        draft = DraftRoutes() if routes == "none" else draft_routes(model, {**self.places, **self.floors})
+        draft = None
+        if routes != "none":
+            from assess.bim.draft_routes import draft_routes
+
+            draft = draft_routes(model, {**self.places, **self.floors})
         return ImportedBuilding(
             source=model.source,
             building={name: value for name, value in values.items() if value not in (None, "")},
             floors=[self._list_floor(one, drawn.get(one.key), files) for one in self.storeys],
             items=list(self._list_items(types)),
-            places=[*self._list_spaces(), *self._list_points(), *draft.places],
-            routes=draft.routes,
+            places=[*self._list_spaces(), *self._list_points(), *(draft.places if draft else ())],
+            routes=draft.routes if draft else (),
             types=[
                 {"type": name, "breadth": breadth, "width": width, "height": height, "source": source}
                 for (_, breadth, width, height), name in types.items()
             ],
             skipped=(*model.skipped, *self.outside),
-            warnings=(*model.warnings, *self._note_elevations(), *_warn_of_supports(self.pieces), *draft.remarks),
+            warnings=(
+                *model.warnings,
+                *self._note_elevations(),
+                *_warn_of_supports(self.pieces),
+                *(draft.remarks if draft else ()),
+            ),
             remarks=(*model.remarks, *_note(self)),
             files={files[key]: plan.svg for key, plan in drawn.items()},
         )
