@@ -59,29 +59,6 @@ def test_what_is_known_of_the_ground_comes_first(known, pga):
     assert "assumed_shaking" not in demands["1", "X"][0].flags
 
 
-def test_a_ground_pgv_comes_before_its_own():
-    ground = find_ground(_read(ground_pgv=10)).motion
-    assert (ground.pga, ground.pgv) == (SEVEN.pga, pytest.approx(0.1))
-
-
-def test_floors_with_a_pfa_of_their_own_keep_it_and_do_not_scatter():
-    floors = [{"floor": "1", "elevation": 3, "pfa_x": 1.5}, {"floor": "2", "elevation": 12}]
-    demands = build_demands(_read(floors), "as filled")
-    own, other = demands["1", "X"][0], demands["2", "X"][0]
-    assert (own.pfa, own.flags, own.dispersion) == (1.5 * GRAVITY, (), 0)
-    assert (other.flags, other.dispersion) == (("drawn_building", "assumed_shaking"), 0.88)
-
-
-@pytest.mark.parametrize(
-    ("given", "used"),
-    [({}, 0.88), ({"motion_uncertainty": 0.3}, 0.88), ({"motion_uncertainty": 0}, 0.88),
-     ({"motion_uncertainty": 1.2}, 1.2)],
-)  # fmt: skip
-def test_the_motion_is_at_least_as_uncertain_as_pgv_given_the_intensity(given, used):
-    """The published scatter stands in for a smaller value: sqrt(0.3^2 + 0.88^2) would be 0.93."""
-    assert set(compute(_read(**given), UNVERIFIED).cases.dispersion.tolist()) == {used}
-
-
 @pytest.mark.parametrize(
     ("unused", "why"),
     [({"ground_pga": 0.3}, "Ground PGA or SDS is filled in"),

@@ -11,7 +11,6 @@ from assess.motion.formats import read_records
 from assess.motion.record import treat
 from assess.pipeline.demand import _interpolate, build_demands
 from assess.pipeline.floor_demand import Demand
-from assess.pipeline.known_ground import find_ground
 from tests.workbooks import RECORDS
 
 G = 9.80665
@@ -210,18 +209,6 @@ def test_a_profile_serves_every_floor():
     demands = build_demands(_inventory(floor, ROOF, ground_pga=2.0), "ASCE 7-16")
     assert {one.source for ones in demands.values() for one in ones} == {"profile"}
     assert (_one(demands, "1", "X").pfa, _one(demands, "R", "Y").pfa) == pytest.approx((2.0, 6.0))
-
-
-@pytest.mark.parametrize(
-    ("building", "pga", "by_sds"),
-    [({"ground_pga": 3.0}, 3.0, False), ({"sds": 10.0}, 4.0, True), ({"ground_pga": 3.0, "sds": 10.0}, 3.0, False)],
-)
-def test_ground_motion_from_pga_else_from_sds(building, pga, by_sds):
-    inventory = _inventory(Floor(row=2, floor="1", elevation=0.0), **building)
-    assert _one(build_demands(inventory, "as filled"), "1", "X").pfa == pytest.approx(pga)
-    ground = find_ground(inventory)
-    assert ground.pga == pytest.approx(pga)
-    assert ground.is_from_sds == by_sds
 
 
 @pytest.mark.parametrize(

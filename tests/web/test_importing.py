@@ -239,16 +239,6 @@ def test_what_is_too_large_is_refused_however_it_is_sent(served_here, tmp_path):
 
 
 @pytest.mark.slow
-def test_models_come_from_the_page_alone(served):
-    client = served().client
-    for headers in ({"Origin": "https://example.org"}, {"X-Assess": None}, {"Sec-Fetch-Site": "cross-site"}):
-        for path in ("/api/import?name=a.ifc", "/api/import/cancel", "/api/import/open"):
-            assert client.request("POST", path, b"", headers).status == 403
-    assert client.request("POST", "/api/import?name=a.ifc", b"", {"Cookie": None}).status == 401
-    assert client.post("/api/import/open", {"shaking": "strong"}).status == 422
-
-
-@pytest.mark.slow
 def test_on_a_server_for_several_it_is_held_with_its_plans_for_its_user_alone(served, house):
     server = served(None, *OPTIONS)
     ann, _ = _come(server, "ann")
