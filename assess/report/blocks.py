@@ -186,7 +186,8 @@ def part(words: Words, columns: int) -> Row:
 class Table:
     """A table; `groups` are its rows, those of one part together. `kind` holds its classes.
 
-    `is_named` tells that it shows names of the workbook, whose long words have places to break at.
+    `is_named` tells that it shows names of the workbook, whose long words have places to break at; `is_cards` that
+    each row becomes a card on a phone, as suits rows that are read one by one.
     """
 
     columns: Sequence[Column]
@@ -195,6 +196,7 @@ class Table:
     caption: Words = ""
     id: str = ""
     is_named: bool = False
+    is_cards: bool = True
 
 
 def table(
@@ -204,10 +206,11 @@ def table(
     caption: Words = "",
     *,
     is_named: bool = False,
+    is_cards: bool = True,
 ) -> Table:
     """Return a table of one part."""
     group = [one if isinstance(one, Row) else Row(one) for one in rows]
-    return Table(columns, [group], kind, caption, is_named=is_named)
+    return Table(columns, [group], kind, caption, is_named=is_named, is_cards=is_cards)
 
 
 def list_columns(*columns: tuple[Words, str] | tuple[Words, str, str]) -> list[Column]:

@@ -131,7 +131,7 @@ class HtmlWriter:
     def _row(self, row: Row, table: Table, labels: Sequence[str]) -> str:
         data = "".join(f' data-{name}="{escape(value)}"' for name, value in row.data.items())
         write, columns = self._cell_words if table.is_named else self.words, table.columns
-        cells, at = [], 0
+        cells, at, has_labels = [], 0, table.is_cards and not self.for_print
         for one in row.cells:
             cell = one if isinstance(one, Cell) else Cell(one)
             span = f' colspan="{cell.columns}"' if cell.columns > 1 else ""
@@ -141,7 +141,7 @@ class HtmlWriter:
             else:
                 kind = _kind(columns[at], cell.kind) if cell.columns == 1 else cell.kind
                 sort = f' data-value="{escape(cell.sort)}"' if cell.sort is not None else ""
-                label = f' data-label="{labels[at]}"' if labels[at] and not self.for_print else ""
+                label = f' data-label="{labels[at]}"' if labels[at] and has_labels else ""
                 cells.append(f"<td{_attributes(kind=kind)}{span}{sort}{label}>{write(cell.words)}</td>")
             at += cell.columns
         return f"<tr{_attributes(id=row.id, kind=row.kind)}{data}>{''.join(cells)}</tr>\n"
