@@ -21,8 +21,10 @@ from assess.report.blocks import (
     Column,
     Document,
     Heading,
+    Inline,
     Paragraph,
     Row,
+    Runs,
     Section,
     Span,
     Tile,
@@ -144,7 +146,7 @@ def _tabulate_counts(label: str, lines: Sequence[CountLine]) -> Block:
     return table(columns, rows, "compared counts", is_cards=False)
 
 
-def _mark_standing(standing: str) -> Words:
+def _mark_standing(standing: str) -> Inline:
     return Span(say.label_standing(standing), f"badge {say.style_standing(standing)}") if standing else DASH
 
 
@@ -212,7 +214,7 @@ def _show_piece(one: PieceChange) -> Row:
     if piece.description:
         name = [name, BREAK, note(words.cut(piece.description, 40))]
     place = ", ".join(filter(None, (words.cut(piece.floor, 20), words.cut(piece.room, 30))))
-    sides = [
+    sides: list[Words] = [
         [_mark_standing(state), BREAK, note(_say_adopted(side))] if side else _mark_standing(state)
         for side, state in zip(one.sides, one.states, strict=True)
     ]
@@ -255,7 +257,7 @@ def _show_state(side: PastState | None) -> Words:
 def _list_runs(view: View) -> Iterator[Block]:
     rows = []
     for fact in view.list_facts():
-        mark = [" ", Span(_("differs"), "change unclear")] if fact.differs else []
+        mark: Runs = [" ", Span(_("differs"), "change unclear")] if fact.differs else []
         cells = (head([fact.label, *mark]), Cell(fact.before, "hash"), Cell(fact.after, "hash"))
         rows.append(Row(cells, "differs" if fact.differs else ""))
     columns = list_columns((_("What"), "w30"), (_("BEFORE"), ""), (_("AFTER"), ""))
