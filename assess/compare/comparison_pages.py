@@ -210,9 +210,9 @@ def _list_pieces(view: View, most: int) -> Iterator[Block]:
 
 def _show_piece(one: PieceChange) -> Row:
     piece = one.row
-    name: Words = words.cut(piece.item, 40)
+    name: Runs = [words.cut(piece.item, 40)]
     if piece.description:
-        name = [name, BREAK, note(words.cut(piece.description, 40))]
+        name += [BREAK, note(words.cut(piece.description, 40))]
     place = ", ".join(filter(None, (words.cut(piece.floor, 20), words.cut(piece.room, 30))))
     sides: list[Words] = [
         [_mark_standing(state), BREAK, note(_say_adopted(side))] if side else _mark_standing(state)
