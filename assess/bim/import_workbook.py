@@ -11,7 +11,7 @@ from pathlib import Path, PurePath
 from typing import Any
 
 from assess.bim.building_model import LONGEST_NAME, Skipped
-from assess.delivery.private_folder import private_folder
+from assess.delivery.folders import private_folder
 from assess.errors import Problem
 from assess.i18n import Text, count, fill
 from assess.input_file import open_input

@@ -20,7 +20,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import ParamSpec, TypeVar, cast
 
-from assess.delivery.private_folder import private_folder
+from assess.delivery.folders import private_folder
 from assess.errors import AssessError, ModelError
 from assess.i18n import fill
 from assess.progress import Progress

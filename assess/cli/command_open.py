@@ -75,7 +75,7 @@ def command(
     """
     code = find_language(language) if language else ""
     _check_packages()
-    from assess.delivery.private_folder import private_folder
+    from assess.delivery.folders import private_folder
     from assess.web.server import Place, Server, bind
     from assess.web.sessions import PREFIX
 

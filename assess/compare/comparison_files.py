@@ -17,7 +17,7 @@ from assess.compare.past_run import PastChance, PastPiece, PastRun
 from assess.compare.read_results import COMPARISON
 from assess.delivery.deliver import Written, deliver, explain_fault, stage_for
 from assess.delivery.disk import find_digest, flush_file
-from assess.delivery.stages import NEW
+from assess.delivery.folders import NEW
 from assess.errors import InputError, PdfUnavailableError
 from assess.i18n import fill
 from assess.progress import SILENT, Progress

@@ -7,8 +7,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from assess.delivery.disk import flush_file, flush_folder, write_through
-from assess.delivery.folder_lock import locked
-from assess.delivery.stages import NEW, OLD, staging
+from assess.delivery.folders import NEW, OLD, locked, staging
 from assess.delivery.traces import moving
 from assess.errors import OutputError
 from assess.i18n import fill
@@ -101,7 +100,7 @@ def _put(new: Path, target: Path) -> bool:
         with moving():
             new.rename(target)
             flush_folder(target.parent)
-    except OSError:  # another file system, or another run was faster
+    except OSError:  # another run was faster
         target.mkdir(exist_ok=True)
         return False
     return True
@@ -116,7 +115,7 @@ def _replace_set(stage: Path, target: Path, old: Collection[str], data: str) -> 
         if is_unfinished(target, data):  # its files may be of two runs: after a second kill they would be of three
             for name in old:
                 (target / name).unlink(missing_ok=True)
-        _bring(stage / NEW / data, coming)
+        (stage / NEW / data).replace(coming)
         if (target / data).exists():
             (target / data).replace(aside)
         flush_folder(target)
@@ -139,7 +138,11 @@ def _taken_back(stage: Path, target: Path, names: Sequence[str]) -> Iterator[Non
     there = [name for name in names if (target / name).is_file()]
     for name in there:
         os.replace(target / name, target / name)  # noqa: PTH105 - on Windows fails if it is open
-        _keep(target / name, kept / name)
+        try:
+            os.link(target / name, kept / name)
+        except OSError:  # a file system without links
+            shutil.copy2(target / name, kept / name)
+            flush_file(kept / name)
     try:
         yield
     except BaseException:
@@ -152,27 +155,11 @@ def _taken_back(stage: Path, target: Path, names: Sequence[str]) -> Iterator[Non
         raise
 
 
-def _keep(path: Path, kept: Path) -> None:
-    try:
-        os.link(path, kept)
-    except OSError:
-        shutil.copy2(path, kept)
-        flush_file(kept)
-
-
 def _bring(path: Path, to: Path) -> None:
-    """Move a file of a stage to its place; from another file system as a copy that is whole before it is seen."""
+    """Move a file of a stage to its place."""
     if to.is_dir():
         raise IsADirectoryError(0, fill("it is a folder"), str(to))
-    try:
-        path.replace(to)
-    except OSError:
-        if path.stat().st_dev == to.parent.stat().st_dev:
-            raise
-        with staging(to.parent) as stage:
-            shutil.copyfile(path, stage / NEW / to.name)
-            flush_file(stage / NEW / to.name)
-            (stage / NEW / to.name).replace(to)
+    path.replace(to)
 
 
 def explain_fault(folder: Path, error: OSError, files: Collection[str]) -> OutputError:

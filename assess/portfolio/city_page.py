@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
-from assess.delivery.private_folder import private_folder
+from assess.delivery.folders import private_folder
 from assess.environment import find_source_date
 from assess.i18n import LANGUAGES
 from assess.i18n import gettext as _

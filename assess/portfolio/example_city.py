@@ -15,7 +15,7 @@ from typing import Any
 
 from assess import resources
 from assess.delivery.disk import find_digest
-from assess.delivery.stages import NEW, staging
+from assess.delivery.folders import NEW, staging
 from assess.delivery.traces import moving
 from assess.errors import InputError
 from assess.i18n import fill

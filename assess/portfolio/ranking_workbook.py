@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from operator import attrgetter, itemgetter
 from typing import Any
 
-from assess.delivery.private_folder import private_folder
+from assess.delivery.folders import private_folder
 from assess.environment import find_source_date
 from assess.i18n import fill
 from assess.i18n import gettext as _

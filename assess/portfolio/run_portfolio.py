@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from assess.delivery.deliver import deliver, explain_fault, stage_for
 from assess.delivery.disk import find_digest, write_through
-from assess.delivery.folder_lock import FolderLock
-from assess.delivery.stages import NEW
+from assess.delivery.folders import NEW, FolderLock
 from assess.errors import InputError, OutputError, PdfUnavailableError, Problem
 from assess.i18n import fill
 from assess.motion.site_ground import GroundField

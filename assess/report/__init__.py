@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Literal
 
 from assess.delivery.deliver import Written, deliver, explain_fault, stage_for
 from assess.delivery.disk import find_digest, flush_file
-from assess.delivery.stages import NEW
+from assess.delivery.folders import NEW
 from assess.errors import InputError, OutputError, PdfUnavailableError
 from assess.i18n import fill
 from assess.progress import SILENT, Progress

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from assess.delivery.disk import flush_folder, write_through
-from assess.delivery.stages import NEW, staging
+from assess.delivery.folders import NEW, staging
 from assess.errors import OutputError
 from assess.i18n import fill
 from assess.web.request_errors import CONFLICT, RequestError

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from starlette.requests import HTTPConnection
 
-from assess.delivery.private_folder import is_left, is_ours
+from assess.delivery.folders import is_left, is_ours
 from assess.errors import AssessError
 from assess.i18n import fill
 from assess.web.jobs import Job, Slots

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Literal, cast
 
 from assess import resources
-from assess.delivery.private_folder import private_folder
+from assess.delivery.folders import private_folder
 from assess.errors import OutputError
 from assess.i18n import LANGUAGES, Text, fill, gettext, list_languages, load_catalogue, speaking
 from assess.intensity import SHAKINGS

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from assess.delivery import traces
 from assess.delivery.deliver import deliver, is_unfinished, save, stage_for
-from assess.delivery.stages import NEW, sweep
+from assess.delivery.folders import NEW, sweep
 
 DATA = "list.json"
 OLD = {"report.html": "old", "items.csv": "old", "gone.pdf": "old", DATA: "old"}

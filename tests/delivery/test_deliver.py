@@ -9,10 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from assess.delivery import folder_lock
+from assess.delivery import folders
 from assess.delivery.deliver import deliver, is_unfinished, name_aside, save, saving, stage_for
-from assess.delivery.folder_lock import FolderLock
-from assess.delivery.stages import NEW, PREFIX, staging, sweep
+from assess.delivery.folders import NEW, PREFIX, FolderLock, staging, sweep
 from assess.errors import CancelledError, InputError, OutputError
 from assess.progress import Progress
 from tests.delivery.killer import DATA, FRESH, OLD, fill, find_old, look
@@ -68,29 +67,6 @@ def test_a_folder_that_was_left_unfinished_is_known_and_completed(out):
     assert is_unfinished(out, DATA)
     _deliver(out)
     assert (look(out), is_unfinished(out, DATA)) == (FRESH, False)
-    assert _hidden(out) == []
-
-
-def test_a_stage_on_another_file_system_is_copied(out, monkeypatch, tmp_path):
-    whole, other = Path.replace, tmp_path / "other"
-
-    def replace(self, target):
-        if other in self.parents:
-            raise OSError(18, "Invalid cross-device link")
-        return whole(self, target)
-
-    def stat(self, **words):
-        found = whole_stat(self, **words)
-        return os.stat_result((*found[:2], found.st_dev + 1, *found[3:])) if other in self.parents else found
-
-    whole_stat = Path.stat
-    other.mkdir()
-    with staging(other) as stage:
-        fill(stage / NEW, FRESH)
-        monkeypatch.setattr(Path, "replace", replace)
-        monkeypatch.setattr(Path, "stat", stat)
-        deliver(stage, out, find_old, DATA)
-    assert look(out) == FRESH
     assert _hidden(out) == []
 
 
@@ -205,7 +181,7 @@ def test_a_lock_is_held_by_one(tmp_path, lock_of):
 
 
 def test_a_folder_in_use_is_named(out, lock_of, monkeypatch):
-    monkeypatch.setattr(folder_lock, "PATIENCE", 0.0)
+    monkeypatch.setattr(folders, "PATIENCE", 0.0)
     lock = lock_of(out)
     assert lock.take()
     try:
@@ -247,7 +223,7 @@ def test_the_lock_of_a_killed_process_does_not_hold(out, lock_of, request):
         finally:
             process.kill()
             process.communicate()
-    assert (out / folder_lock.FILE).exists() == (kind == "file")
+    assert (out / folders.FILE).exists() == (kind == "file")
     _deliver(out)
     assert look(out) == FRESH
     assert _hidden(out) == []

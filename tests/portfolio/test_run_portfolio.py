@@ -13,7 +13,7 @@ from types import SimpleNamespace
 import openpyxl
 import pytest
 
-from assess.delivery.folder_lock import FolderLock
+from assess.delivery.folders import FolderLock
 from assess.errors import CancelledError, InputError, OutputError
 from assess.portfolio import local_pool
 from assess.portfolio.building_task import FOLDER, Task, run_task

@@ -13,7 +13,7 @@ from pathlib import Path
 from threading import Event, Thread, Timer
 from urllib.parse import quote, urlsplit
 
-from assess.delivery.private_folder import private_folder
+from assess.delivery.folders import private_folder
 from assess.web.book import Book
 from assess.web.server import Place, Server, bind
 from assess.web.sessions import PREFIX

@@ -12,7 +12,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import IO, Any
 
-from assess.delivery.private_folder import private_folder
+from assess.delivery.folders import private_folder
 from assess.errors import AssessError, PdfUnavailableError, Problem
 from assess.i18n import fill
 from assess.i18n import gettext as _

@@ -8,7 +8,7 @@ from html import escape
 from pathlib import Path
 from xml.etree import ElementTree
 
-from assess.delivery.private_folder import private_folder
+from assess.delivery.folders import private_folder
 from assess.progress import Progress
 from assess.report.blocks import Image
 
