@@ -7,19 +7,15 @@ motion, the others are the program's task, as is a ShakeMap.
 """
 
 from collections.abc import Iterator, Mapping
-from typing import Any
 
-from xlsxwriter.utility import xl_col_to_name
-
-from assess.i18n import gettext
-from assess.intensity import RATIO, SHAKINGS
+from assess.intensity import RATIO
 from assess.motion.assumed import CODE_FACTOR, CODE_POWER, LONGER, RATIO_SCATTER, STIFFNESS, STOREY
 from assess.motion.floor_medians import ALIKE, PERIODS, PLACES, RATIOS, SCATTER, STRUCTURES, read_table
 from assess.motion.scenario import PGA_OF_SDS
 from assess.rocking.draws import MOTION
 from assess.units import GRAVITY
 from assess.workbook.formulas import between, find_row, trim
-from assess.workbook.schema import BUILDING, FLOORS, LISTS
+from assess.workbook.schema import BUILDING, FLOORS
 
 HELPERS = ("z", "at_grade", "place", "place_at", "place_part")
 """Columns of Lists by floor: Elevation [m], whether it has a motion of its own at grade, z/h, and where that lies in
@@ -29,6 +25,8 @@ SERVED = ("pfv_own_x", "pfv_own_y", "beam_pfa", "beam_pfv", "spread")
 _SPEED = 100 * GRAVITY
 """From s to cm/s per g."""
 _COLUMNS = len(PLACES) + 1
+BLANK_ROWS = len(RATIOS) + 1
+"""Blank rows that belong to the table of floor medians."""
 _BLOCK = len(RATIOS) * (len(PERIODS) + 1)
 _NUMBERS = ("ground_pga", "ground_pgv", "sds", "height", "storeys", "period", "motion_uncertainty")
 """Numbers of Building that are read."""
@@ -37,38 +35,19 @@ _OWNING = '(floor_key<>0)*(1-(floor_own_pfa_x="")*(floor_own_pfa_y=""))'
 """Which floors have a motion of their own."""
 
 
-def write_shakings(book: Any, page: Any, at: int) -> int:
-    """Write PGA [g], PGV [cm/s], scatter, and whether PGA is derived, of every choice; return the next column."""
-    values = [(one.pga / GRAVITY, 100 * one.pgv, one.scatter, int(one.is_derived)) for one in SHAKINGS.values()]
-    for place, name in enumerate(("pga", "pgv", "scatter", "derived")):
-        page.write_column(2, at + place, (f"shaking {name}", *(row[place] for row in values)))
-        _name(book, f"shakings_{name}", at + place, len(values))
-    return at + 4
-
-
-def write_table(book: Any, page: Any, at: int) -> int:
-    """Write the table of floor medians with what it is by; return the next column."""
-    blocks = [STRUCTURES.index(ALIKE.get(one, one)) * _BLOCK for one in STIFFNESS]
+def list_scales() -> Iterator[tuple[str, str, tuple[float, ...]]]:
+    """Yield the columns that the table of floor medians is read by, each with its name: also its header."""
     ratios = tuple(one * _SPEED for one in RATIOS)
-    for place, (name, values) in enumerate((
-        ("structure_rows", tuple(blocks)), ("table_periods", PERIODS), ("table_ratios", ratios),
-        ("table_places", (0.0, *PLACES)),
-    )):  # fmt: skip
-        page.write_column(2, at + place, (name, *values))
-        _name(book, name, at + place, len(values))
-    rows = [row for one in STRUCTURES for by_ratio in read_table()[one] for row in by_ratio]
-    for number, row in enumerate(rows, 3):
-        for place, value in enumerate(row.T.ravel().tolist(), at + 4):
-            page.write_number(number, place, value)
-    first, last = xl_col_to_name(at + 4), xl_col_to_name(at + 3 + 2 * _COLUMNS)
-    # some blank rows belong to it, of which the weight is 0
-    book.define_name("floor_table", f"={gettext(LISTS)}!${first}$4:${last}${4 + len(rows) + len(RATIOS) + 1}")
-    return at + 4 + 2 * _COLUMNS
+    blocks = tuple(STRUCTURES.index(ALIKE.get(one, one)) * _BLOCK for one in STIFFNESS)
+    yield "structure_rows", "structure_rows", blocks
+    yield "table_periods", "table_periods", PERIODS
+    yield "table_ratios", "table_ratios", ratios
+    yield "table_places", "table_places", (0.0, *PLACES)
 
 
-def _name(book: Any, name: str, column: int, count: int) -> None:
-    letter = xl_col_to_name(column)
-    book.define_name(name, f"={gettext(LISTS)}!${letter}$4:${letter}${3 + count}")
+def list_medians() -> list[list[float]]:
+    """Return the rows of the table of floor medians: by structure, period and PGV/PGA of the ground."""
+    return [row.T.ravel().tolist() for one in STRUCTURES for by_ratio in read_table()[one] for row in by_ratio]
 
 
 def list_names(building: Mapping[str, str], run_assess: str, wrong: str) -> Iterator[tuple[str, str]]:

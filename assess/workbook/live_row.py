@@ -1,7 +1,6 @@
 """The formulas of the rows of Items, which show their classes as one types."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from assess.i18n import gettext
 from assess.methods import Method, adopted_formula, paper_formula
@@ -13,11 +12,8 @@ from assess.settings import Settings
 from assess.units import ROUNDING
 from assess.workbook import formulas as live
 from assess.workbook.formulas import find_row, is_among, trim
-from assess.workbook.lists import LETTERS, NO_SHAKING, NO_UNIT, RUN_ASSESS, WRONG
+from assess.workbook.lists import LETTERS, NO_SHAKING, NO_UNIT, ROW, RUN_ASSESS, WRONG
 from assess.workbook.schema import CLASS_OR, ITEMS, LIVE, NO, WORKINGS, YES
-
-ROW = "\x00"
-"""Stands for the number of the row in the formulas of `LiveRow`, which are the same for every row."""
 
 NO_FLOOR, NO_AXIS, NO_TYPE = "floor?", "axis?", "type?"
 """What the live columns show without a known floor, with an unknown axis, and where no known type gives the sizes."""
@@ -26,110 +22,117 @@ IS_ANCHORED = "anchored"
 """What they show in place of the class of a piece that is anchored."""
 
 
-@dataclass(frozen=True, slots=True)
-class LiveRow:
-    """A row of Items; every formula refers to its own row, to the headers and to names, so that it can be copied."""
+def list_live() -> dict[str, str]:
+    """Return a formula for each of `schema.LIVE` and `schema.WORKINGS`, with `ROW` for the number of the row."""
+    cells = {label: f"${LETTERS[ITEMS.name, label]}{ROW}" for label in (*LIVE, *WORKINGS)}
+    ratio, pfa, *_ = (cells[label] for label in LIVE)
+    floor, kind, axis, pfv, breadth, height = (cells[label] for label in WORKINGS)
+    references = {"breadth_to_height": ratio, "height_cm": height, "pfa_g": pfa, "pfv_cm_s": pfv}
+    return dict(zip((*LIVE, *WORKINGS), (
+        _divide(breadth, height, _width(kind)),
+        _unless_blank(_served(floor, axis, "pfa", f'IF({axis}={_say(WRONG)},{axis},{_say(NO_AXIS)})')),
+        *(_ready(ratio, pfa, _write(method, references)) for method in live.LIVE_METHODS),
+        _chosen_class(cells),
+        _paper_class(cells),
+        _ready(ratio, pfa, _can_rock(ratio, pfa, kind, floor)),
+        _unless_blank(f"IFERROR({find_row(trim(_own('floor')), 'floor_key')},{_say(NO_FLOOR)})"),
+        _unless_blank(_kind()),
+        _unless_blank(f"IF(ISNUMBER({floor}),{_axis(floor)},{floor})"),
+        _unless_blank(_served(floor, axis, "pfv", '""')),
+        *(_unless_blank(_size(name, kind)) for name in ("breadth", "height")),
+    ), strict=True))  # fmt: skip
 
-    def formulas(self) -> dict[str, str]:
-        """Return a formula for each of `schema.LIVE` and `schema.WORKINGS`, with `ROW` for the number of the row."""
-        cells = {label: f"${LETTERS[ITEMS.name, label]}{ROW}" for label in (*LIVE, *WORKINGS)}
-        ratio, pfa, *_ = (cells[label] for label in LIVE)
-        floor, kind, axis, pfv, breadth, height = (cells[label] for label in WORKINGS)
-        references = {"breadth_to_height": ratio, "height_cm": height, "pfa_g": pfa, "pfv_cm_s": pfv}
-        return dict(zip((*LIVE, *WORKINGS), (
-            _divide(breadth, height, self._width(kind)),
-            self._unless_blank(_served(floor, axis, "pfa", f'IF({axis}={_say(WRONG)},{axis},{_say(NO_AXIS)})')),
-            *(_ready(ratio, pfa, _write(method, references)) for method in live.LIVE_METHODS),
-            self._class(cells),
-            self._paper_class(cells),
-            _ready(ratio, pfa, self._can_rock(ratio, pfa, kind, floor)),
-            self._unless_blank(f"IFERROR({find_row(trim(self._own('floor')), 'floor_key')},{_say(NO_FLOOR)})"),
-            self._unless_blank(self._kind()),
-            self._unless_blank(f"IF(ISNUMBER({floor}),{self._axis(floor)},{floor})"),
-            self._unless_blank(_served(floor, axis, "pfv", '""')),
-            *(self._unless_blank(self._size(name, kind)) for name in ("breadth", "height")),
-        ), strict=True))  # fmt: skip
 
-    def _own(self, name: str) -> str:
-        return f"${LETTERS['Items', name]}{ROW}"
+def _own(name: str) -> str:
+    return f"${LETTERS['Items', name]}{ROW}"
 
-    def _unless_blank(self, formula: str) -> str:
-        return f'=IF({self._own("item")}="","",{formula})'
 
-    def _class(self, cells: Mapping[str, str]) -> str:
-        """Return the formula for the class by the formula that Building chooses; words in its place are those of OR."""
-        by_paper, risk = cells[CLASS_OR], cells[adopted_formula().short_title]
-        is_held = ",".join(f"{by_paper}={_say(word)}" for word in (IS_ANCHORED, RUN_ASSESS))
-        is_none = f'AND(ISNUMBER({cells[LIVE[0]]}),{live.is_stocky(cells[LIVE[0]])},{risk}="")'
-        is_known = f"OR(ISNUMBER({risk}),{is_none})"
-        found = f"IF(OR({is_held},NOT({is_known})),{by_paper},{_find_class(adopted_formula(), cells)})"
-        return f"=IF(class_by=2,{by_paper},{found})"
+def _unless_blank(formula: str) -> str:
+    return f'=IF({_own("item")}="","",{formula})'
 
-    def _paper_class(self, cells: Mapping[str, str]) -> str:
-        """Return the formula for the class by OR; a piece that is anchored has none, whatever its motion."""
-        risk = cells[paper_formula().short_title]
-        is_anchored, is_known = is_among(self._own("anchored"), "anchored_words"), self._own("bracket_capacity")
-        # whether a bracket of known capacity holds is for the program to say
-        held = f'IF(TRIM({is_known})="",{_say(IS_ANCHORED)},{_say(RUN_ASSESS)})'
-        either = f"IF({is_anchored},{held},IF(ISNUMBER({risk}),{_find_class(paper_formula(), cells)},{risk}))"
-        is_ready = f"OR(ISNUMBER({risk}),{risk}={_say(RUN_ASSESS)},{risk}={_say(NO_SHAKING)})"
-        return f"=IF({is_ready},{either},{risk})"
 
-    def _kind(self) -> str:
-        """Expression for the row of its type in the Catalogue; nothing where it names none."""
-        own = self._own("type")
-        return f'IF(TRIM({own})="","",IFERROR({find_row(trim(own), "type_key")},{_say(NO_TYPE)}))'
+def _chosen_class(cells: Mapping[str, str]) -> str:
+    """Return the formula for the class by the formula that Building chooses; words in its place are those of OR."""
+    by_paper, risk = cells[CLASS_OR], cells[adopted_formula().short_title]
+    is_held = ",".join(f"{by_paper}={_say(word)}" for word in (IS_ANCHORED, RUN_ASSESS))
+    is_none = f'AND(ISNUMBER({cells[LIVE[0]]}),{live.is_stocky(cells[LIVE[0]])},{risk}="")'
+    is_known = f"OR(ISNUMBER({risk}),{is_none})"
+    found = f"IF(OR({is_held},NOT({is_known})),{by_paper},{_find_class(adopted_formula(), cells)})"
+    return f"=IF(class_by=2,{by_paper},{found})"
 
-    def _size(self, name: str, kind: str) -> str:
-        """Expression for a size [cm]: the row's own, else its type's, else nothing."""
-        own, listed = self._own(name), f"IF(ISNUMBER({kind}),INDEX(type_{name},{kind}),{kind})"
-        number = f"IF(ISNUMBER({own}),{own}*unit_items_{name}*100,{_say(WRONG)})"
-        return f'IF(sizes_unit<>"",sizes_unit,IF(TRIM({own})="",{listed},{number}))'
 
-    def _width(self, kind: str) -> str:
-        """Expression for the width [cm] that Breadth must not exceed: the row's own, else its type's, else nothing."""
-        own = self._own("width")
-        return f'IFERROR(IF(TRIM({own})="",INDEX(type_width,{kind}),{own}*unit_items_width*100),"")'
+def _paper_class(cells: Mapping[str, str]) -> str:
+    """Return the formula for the class by OR; a piece that is anchored has none, whatever its motion."""
+    risk = cells[paper_formula().short_title]
+    is_anchored, is_known = is_among(_own("anchored"), "anchored_words"), _own("bracket_capacity")
+    # whether a bracket of known capacity holds is for the program to say
+    held = f'IF(TRIM({is_known})="",{_say(IS_ANCHORED)},{_say(RUN_ASSESS)})'
+    either = f"IF({is_anchored},{held},IF(ISNUMBER({risk}),{_find_class(paper_formula(), cells)},{risk}))"
+    is_ready = f"OR(ISNUMBER({risk}),{risk}={_say(RUN_ASSESS)},{risk}={_say(NO_SHAKING)})"
+    return f"=IF({is_ready},{either},{risk})"
 
-    def _can_rock(self, ratio: str, pfa: str, kind: str, floor: str) -> str:
-        """Expression for whether the strongest motion that may be drawn can start it: PFA e^(3 s) >= 0.65 g b/z.
 
-        s is as in `assess.pipeline.adopt.find_can_rock`. One that is too stocky never rocks. Where either axis serves
-        the larger PFA counts, though the motion of the larger PFV governs: a row is then never lower than in a run.
-        """
-        sizes = (SCANNED_BASE[1], SCANNED_HEIGHT), (BASE[1], HEIGHT)
-        by_scan, usual = (f"{base**2 + height**2:.6g}" for base, height in sizes)
-        fixed = f"IF({is_among(self._own('sizes_from'), 'scanned_words')},{by_scan},{usual})"
-        units = [f"unit_{sheet}_centre_of_gravity" for sheet in ("items", "catalogue")]
-        centre = self._centre(units[0], kind)
-        spread = f"SQRT(INDEX(floor_spread,{floor})+{fixed}+({CENTRE!r}/({centre}))^2)"
-        strongest = f"MAX(INDEX(floor_pfa_x,{floor}),INDEX(floor_pfa_y,{floor}))"
-        pfa = f"IF({self._is_free()},{strongest},{pfa})"
-        starts = f"AND({pfa}*EXP({CUT:g}*{spread})>={MARGIN / 2!r}*{ratio}/({centre}),{live.is_slender(ratio, centre)})"
-        unread = f"OR({','.join(f'ISTEXT({unit})' for unit in units)})"
-        fault = f"IF({unread},{_say(NO_UNIT)},{_say(WRONG)})"
-        return f"IFERROR(IF({starts},{_say(YES)},{_say(NO)}),{fault})"
+def _kind() -> str:
+    """Expression for the row of its type in the Catalogue; nothing where it names none."""
+    own = _own("type")
+    return f'IF(TRIM({own})="","",IFERROR({find_row(trim(own), "type_key")},{_say(NO_TYPE)}))'
 
-    def _centre(self, unit: str, kind: str) -> str:
-        """Expression for the height of the centre of gravity [-]: the row's own, else its type's, else the middle."""
-        own = self._own("centre_of_gravity")
-        inside = live.between(f"{own}*{unit}", ITEMS.column("centre_of_gravity"))
-        number = f"IF(ISNUMBER({own}),IF({inside},{own}*{unit},{_say(WRONG)}),{_say(WRONG)})"
-        return f'IF(TRIM({own})="",IF(ISNUMBER({kind}),INDEX(type_centre_of_gravity,{kind}),{MIDDLE!r}),{number})'
 
-    def _is_free(self) -> str:
-        """Expression for whether a piece may topple along either axis."""
-        angle = self._own("angle_deg")
-        turned = f"IF(ISNUMBER({angle}),ABS(MOD({angle},90)-45)<{45 - NEAR_AXIS:g},TRUE)"
-        return f'IF(TRIM({self._own("axis")})="",{turned},FALSE)'
+def _size(name: str, kind: str) -> str:
+    """Expression for a size [cm]: the row's own, else its type's, else nothing."""
+    own, listed = _own(name), f"IF(ISNUMBER({kind}),INDEX(type_{name},{kind}),{kind})"
+    number = f"IF(ISNUMBER({own}),{own}*unit_items_{name}*100,{_say(WRONG)})"
+    return f'IF(sizes_unit<>"",sizes_unit,IF(TRIM({own})="",{listed},{number}))'
 
-    def _axis(self, floor: str) -> str:
-        """Expression for the axis that governs: the row's own, else its angle's, else the worse of the floor's."""
-        axis, angle, near = trim(self._own("axis")), self._own("angle_deg"), f"<={NEAR_AXIS:g}"
-        worse = f"INDEX(floor_best,{floor})"
-        turned = f'IF(ABS(MOD({angle}+90,180)-90){near},"X",IF(ABS(MOD({angle},180)-90){near},"Y",{worse}))'
-        by_angle = f'IF(TRIM({angle})="",{worse},IF(ISNUMBER({angle}),{turned},{_say(WRONG)}))'
-        return f'IF(TRIM({self._own("axis")})="",{by_angle},{axis})'
+
+def _width(kind: str) -> str:
+    """Expression for the width [cm] that Breadth must not exceed: the row's own, else its type's, else nothing."""
+    own = _own("width")
+    return f'IFERROR(IF(TRIM({own})="",INDEX(type_width,{kind}),{own}*unit_items_width*100),"")'
+
+
+def _can_rock(ratio: str, pfa: str, kind: str, floor: str) -> str:
+    """Expression for whether the strongest motion that may be drawn can start it: PFA e^(3 s) >= 0.65 g b/z.
+
+    s is as in `assess.pipeline.adopt.find_can_rock`. One that is too stocky never rocks. Where either axis serves
+    the larger PFA counts, though the motion of the larger PFV governs: a row is then never lower than in a run.
+    """
+    sizes = (SCANNED_BASE[1], SCANNED_HEIGHT), (BASE[1], HEIGHT)
+    by_scan, usual = (f"{base**2 + height**2:.6g}" for base, height in sizes)
+    fixed = f"IF({is_among(_own('sizes_from'), 'scanned_words')},{by_scan},{usual})"
+    units = [f"unit_{sheet}_centre_of_gravity" for sheet in ("items", "catalogue")]
+    centre = _centre(units[0], kind)
+    spread = f"SQRT(INDEX(floor_spread,{floor})+{fixed}+({CENTRE!r}/({centre}))^2)"
+    strongest = f"MAX(INDEX(floor_pfa_x,{floor}),INDEX(floor_pfa_y,{floor}))"
+    pfa = f"IF({_is_free()},{strongest},{pfa})"
+    starts = f"AND({pfa}*EXP({CUT:g}*{spread})>={MARGIN / 2!r}*{ratio}/({centre}),{live.is_slender(ratio, centre)})"
+    unread = f"OR({','.join(f'ISTEXT({unit})' for unit in units)})"
+    fault = f"IF({unread},{_say(NO_UNIT)},{_say(WRONG)})"
+    return f"IFERROR(IF({starts},{_say(YES)},{_say(NO)}),{fault})"
+
+
+def _centre(unit: str, kind: str) -> str:
+    """Expression for the height of the centre of gravity [-]: the row's own, else its type's, else the middle."""
+    own = _own("centre_of_gravity")
+    inside = live.between(f"{own}*{unit}", ITEMS.column("centre_of_gravity"))
+    number = f"IF(ISNUMBER({own}),IF({inside},{own}*{unit},{_say(WRONG)}),{_say(WRONG)})"
+    return f'IF(TRIM({own})="",IF(ISNUMBER({kind}),INDEX(type_centre_of_gravity,{kind}),{MIDDLE!r}),{number})'
+
+
+def _is_free() -> str:
+    """Expression for whether a piece may topple along either axis."""
+    angle = _own("angle_deg")
+    turned = f"IF(ISNUMBER({angle}),ABS(MOD({angle},90)-45)<{45 - NEAR_AXIS:g},TRUE)"
+    return f'IF(TRIM({_own("axis")})="",{turned},FALSE)'
+
+
+def _axis(floor: str) -> str:
+    """Expression for the axis that governs: the row's own, else its angle's, else the worse of the floor's."""
+    axis, angle, near = trim(_own("axis")), _own("angle_deg"), f"<={NEAR_AXIS:g}"
+    worse = f"INDEX(floor_best,{floor})"
+    turned = f'IF(ABS(MOD({angle}+90,180)-90){near},"X",IF(ABS(MOD({angle},180)-90){near},"Y",{worse}))'
+    by_angle = f'IF(TRIM({angle})="",{worse},IF(ISNUMBER({angle}),{turned},{_say(WRONG)}))'
+    return f'IF(TRIM({_own("axis")})="",{by_angle},{axis})'
 
 
 def _find_class(method: Method, cells: Mapping[str, str]) -> str:

@@ -20,8 +20,8 @@ from assess.i18n import gettext
 from assess.risk import RiskClass
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, write_plainly
-from assess.workbook.lists import FROZEN, LETTERS, PLACES, ROWS, ListsWriter, Units
-from assess.workbook.live_row import ROW, LiveRow
+from assess.workbook.lists import FROZEN, LETTERS, PLACES, ROW, ROWS, ListsWriter, Units
+from assess.workbook.live_row import list_live
 from assess.workbook.names import say_live
 from assess.workbook.schema import CATALOGUE, CLASS, CLASS_OR, HELP, ITEMS, LISTS, LIVE, SHEETS, WORKINGS, Column, Sheet
 from assess.workbook.writer import write_book
@@ -275,7 +275,7 @@ class _Writer:
             0, PLACES[ITEMS.name, CLASS], gettext(CLASS_NOTE, mark=OUTSIDE), {"x_scale": 3, "y_scale": 1.6}
         )
         page.write_comment(0, PLACES[ITEMS.name, "Can rock"], gettext(ROCK_NOTE), {"x_scale": 2})
-        formulas = LiveRow().formulas()
+        formulas = list_live()
         for row in range(2, self.last[ITEMS.name] + 1):
             stored = self.content.live[row - 2] if row - 2 < len(self.content.live) else ()
             values = dict(zip(LIVE, stored, strict=bool(stored)))
