@@ -9,7 +9,7 @@ from assess.i18n import fill
 from assess.pictures import PictureError
 
 FloatArray = NDArray[np.float64]
-Line = Sequence[tuple[float, float]]
+Line = Sequence[tuple[float, float]] | FloatArray
 Box = tuple[float, float, float, float]
 """Left, low, right and high end."""
 

@@ -1,22 +1,38 @@
-"""The lines of a user's SVG: known shapes alone, with their transforms; nothing else of the file is kept.
+"""The lines of a user's SVG: known shapes alone, with their transforms, curves as chords; nothing else is kept.
 
 What a browser would run or fetch (scripts, pictures, references, styles by address) never leaves this module: of an
 element only the numbers of its shape are read. Entities are refused, and sizes bounded.
 
-Source: W3C (2011), Scalable Vector Graphics 1.1, second edition, 7.6 (transforms), 7.7 (viewBox), 9 (shapes).
+Source: W3C (2011), Scalable Vector Graphics 1.1, second edition, 7.6 (transforms), 7.7 (viewBox), 8.3 (path data),
+9 (shapes), F.6 (arcs from their ends).
 """
 
 import math
 import re
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from xml.parsers import expat
+
+import numpy as np
 
 from assess.i18n import fill
 from assess.pictures import MOST_BYTES, PictureError, damaged
-from assess.plans.linework import MOST_ELEMENTS, MOST_RAW, Box, describe_left_out, find_box, pack, too_many
-from assess.plans.svg_path import NUMBER, PathReader, Point, bend, read_number, unreadable
+from assess.plans.linework import (
+    FARTHEST,
+    MOST_ELEMENTS,
+    MOST_RAW,
+    Box,
+    FloatArray,
+    describe_left_out,
+    find_box,
+    pack,
+    too_many,
+)
 
+Point = tuple[float, float]
+
+CHORDS = 8
+"""Chords of a curve."""
 DEEPEST = 100
 """Elements inside each other."""
 SILENT = frozenset({"title", "desc", "metadata", "defs", "style", "namedview", "symbol", "clipPath", "mask", "marker"})
@@ -25,6 +41,8 @@ UNITS: Mapping[str, float] = {
     "": 1.0, "px": 1.0, "mm": 96 / 25.4, "cm": 96 / 2.54, "in": 96.0, "pt": 96 / 72, "pc": 16.0,
 }  # fmt: skip
 """Pixels of each unit of a length."""
+NUMBER = r"[-+]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][-+]?\d{1,3})?"
+"""A number; its parts give nothing back, so that no text takes more than one pass."""
 _LENGTH = re.compile(rf"({NUMBER})\s*+([a-z]*+)")
 _ENTRY = re.compile(rf"[\s,]*+({NUMBER})[\s,]*+")
 _STEP = re.compile(r"[\s,]*+(matrix|translate|scale|rotate|skewX|skewY)\s*+\(([^()]*+)\)[\s,]*+")
@@ -32,8 +50,10 @@ _STYLE = re.compile(r"(?:^|;)\s*+(display|visibility|fill|stroke)\s*+:\s*+([^;!]
 _ROUND = 0.5522847498
 """Distance of the control points of a quarter circle, over its radius."""
 
-Matrix = tuple[float, float, float, float, float, float]
-SAME: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
+
+def unreadable() -> PictureError:
+    """Build the error for a drawing with something that SVG does not know."""
+    return PictureError(fill("a path, a number or a transform in it cannot be read. Save it as plain SVG, or as PNG"))
 
 
 def read_svg(data: bytes) -> tuple[bytes, float, tuple[str, ...]]:
@@ -48,7 +68,8 @@ def read_svg(data: bytes) -> tuple[bytes, float, tuple[str, ...]]:
         raise PictureError(fill("it is larger than {most} MB. Save it smaller", most=MOST_BYTES >> 20))
     reader = SvgReader()
     try:
-        reader.parser.Parse(data, True)
+        with np.errstate(all="ignore"):  # what lies beyond all bounds is refused
+            reader.parser.Parse(data, True)
     except (expat.ExpatError, ValueError, LookupError):  # an encoding that is not known
         raise damaged() from None
     box = reader.frame or find_box(reader.lines)
@@ -62,10 +83,10 @@ class SvgReader:
         self.parser = expat.ParserCreate()
         self.parser.StartElementHandler, self.parser.EndElementHandler = self.enter, self.leave
         self.parser.EntityDeclHandler = self._refuse
-        self.lines: list[list[Point]] = []
+        self.lines: list[FloatArray] = []
         self.frame: Box | None = None
         self.left_out: Counter[str] = Counter()
-        self._open: list[tuple[Matrix, dict[str, str]]] = []
+        self._open: list[tuple[FloatArray, dict[str, str]]] = []
         self._skipped = self._elements = self._points = 0
 
     def enter(self, tag: str, attributes: dict[str, str]) -> None:
@@ -109,11 +130,12 @@ class SvgReader:
             if len(box) != 4 or box[2] <= 0 or box[3] <= 0:
                 raise unreadable()
             self.frame = (box[0], box[1], box[0] + box[2], box[1] + box[3])
-        self._open.append((SAME, read_style(attributes, {})))
+        self._open.append((np.eye(3), read_style(attributes, {})))
 
     def _inside(self, name: str, attributes: dict[str, str]) -> None:
-        above, style = self._open[-1]
-        matrix = multiply(above, read_transform(attributes["transform"])) if "transform" in attributes else above
+        matrix, style = self._open[-1]
+        if "transform" in attributes:
+            matrix = matrix @ read_transform(attributes["transform"])
         style = read_style(attributes, style)
         self._open.append((matrix, style))
         if name == "g" or not is_shown(style):
@@ -123,7 +145,10 @@ class SvgReader:
             if self._points > MOST_RAW:
                 raise too_many()
             if len(line) > 1:
-                self.lines.append([apply(matrix, point) for point in line])
+                moved = np.array(line) @ matrix[:2, :2].T + matrix[:2, 2]
+                if not np.abs(moved).max() <= 1e12:
+                    raise unreadable()
+                self.lines.append(moved)
 
 
 # ---------------------------------------------------------------- attributes
@@ -145,6 +170,14 @@ def is_shown(style: Mapping[str, str]) -> bool:
     """Tell whether a shape of this style is seen."""
     is_drawn = style.get("fill", "black") != "none" or style.get("stroke", "none") != "none"
     return is_drawn and style.get("display") != "none" and style.get("visibility") not in ("hidden", "collapse")
+
+
+def read_number(text: str) -> float:
+    """Return a finite number of the drawing's coordinates, or raise PictureError."""
+    value = float(text)
+    if not abs(value) <= FARTHEST:
+        raise unreadable()
+    return value
 
 
 def read_list(text: str) -> list[float]:
@@ -172,25 +205,25 @@ def read_length(attributes: Mapping[str, str], name: str) -> float | None:
     return read_number(found[1]) * UNITS[found[2]]
 
 
-def read_transform(text: str) -> Matrix:
-    """Return the matrix of a list of transforms, or raise PictureError."""
-    at, matrix = 0, SAME
+def read_transform(text: str) -> FloatArray:
+    """Return the matrix (3, 3) of a list of transforms, or raise PictureError."""
+    at, matrix = 0, np.eye(3)
     while at < len(text):
         found = _STEP.match(text, at)
         if not found:
             raise unreadable()
-        matrix, at = multiply(matrix, _step(found[1], read_list(found[2]))), found.end()
+        a, b, c, d, e, f = _step(found[1], read_list(found[2]))
+        matrix, at = matrix @ np.array([[a, c, e], [b, d, f], [0.0, 0.0, 1.0]]), found.end()
     return matrix
 
 
-def _step(name: str, given: list[float]) -> Matrix:
+def _step(name: str, given: list[float]) -> Sequence[float]:
     counts = {"matrix": (6,), "translate": (1, 2), "scale": (1, 2), "rotate": (1, 3), "skewX": (1,), "skewY": (1,)}
     if len(given) not in counts[name]:
         raise unreadable()
     first, last = given[0], given[-1]
     if name == "matrix":
-        a, b, c, d, e, f = given
-        return a, b, c, d, e, f
+        return given
     if name == "translate":
         return 1.0, 0.0, 0.0, 1.0, first, last if len(given) == 2 else 0.0
     if name == "scale":
@@ -200,22 +233,6 @@ def _step(name: str, given: list[float]) -> Matrix:
         return (1.0, 0.0, tan, 1.0, 0.0, 0.0) if name == "skewX" else (1.0, tan, 0.0, 1.0, 0.0, 0.0)
     x, y = (given[1], given[2]) if len(given) == 3 else (0.0, 0.0)
     return cos, sin, -sin, cos, x - cos * x + sin * y, y - sin * x - cos * y
-
-
-def multiply(one: Matrix, other: Matrix) -> Matrix:
-    """Return the matrix that does `other` first."""
-    a, b, c, d, e, f = one
-    p, q, r, s, t, u = other
-    return a * p + c * q, b * p + d * q, a * r + c * s, b * r + d * s, a * t + c * u + e, b * t + d * u + f
-
-
-def apply(matrix: Matrix, point: Point) -> Point:
-    """Return where a point comes to lie; raises PictureError where that is beyond all bounds."""
-    a, b, c, d, e, f = matrix
-    x, y = a * point[0] + c * point[1] + e, b * point[0] + d * point[1] + f
-    if not max(abs(x), abs(y)) <= 1e12:
-        raise unreadable()
-    return x, y
 
 
 # ---------------------------------------------------------------- shapes
@@ -241,10 +258,6 @@ def _polyline(attributes: Attributes) -> Lines:
     return [points] if len(points) > 1 else []
 
 
-def _polygon(attributes: Attributes) -> Lines:
-    return [[*points, points[0]] for points in _polyline(attributes)]
-
-
 def _rect(attributes: Attributes) -> Lines:
     given = _lengths(attributes, "x", "y", "width", "height")
     if not given or given[2] <= 0 or given[3] <= 0:
@@ -253,9 +266,11 @@ def _rect(attributes: Attributes) -> Lines:
     return [[(x, y), (x + wide, y), (x + wide, y + tall), (x, y + tall), (x, y)]]
 
 
-def _round(x: float, y: float, rx: float, ry: float) -> Lines:
-    if rx <= 0 or ry <= 0:
+def _ellipse(attributes: Attributes, *radii: str) -> Lines:
+    given = _lengths(attributes, "cx", "cy", *radii)
+    if not given or min(given[2:]) <= 0:
         return []
+    x, y, rx, ry = *given[:3], given[-1]
     u, v = _ROUND * rx, _ROUND * ry
     quarters = (
         ((x + rx, y), (x + rx, y + v), (x + u, y + ry), (x, y + ry)),
@@ -266,18 +281,157 @@ def _round(x: float, y: float, rx: float, ry: float) -> Lines:
     return [[(x + rx, y), *(point for quarter in quarters for point in bend(*quarter))]]
 
 
-def _circle(attributes: Attributes) -> Lines:
-    given = _lengths(attributes, "cx", "cy", "r")
-    return _round(given[0], given[1], given[2], given[2]) if given else []
-
-
-def _ellipse(attributes: Attributes) -> Lines:
-    given = _lengths(attributes, "cx", "cy", "rx", "ry")
-    return _round(given[0], given[1], given[2], given[3]) if given else []
-
-
 _SHAPES: Mapping[str, Callable[[Attributes], Lines]] = {
-    "path": lambda attributes: PathReader(attributes.get("d", "")).read(), "line": _line, "polyline": _polyline,
-    "polygon": _polygon, "rect": _rect, "circle": _circle, "ellipse": _ellipse,
-}  # fmt: skip
+    "path": lambda attributes: PathReader().read(attributes.get("d", "")),
+    "line": _line,
+    "polyline": _polyline,
+    "polygon": lambda attributes: [[*points, points[0]] for points in _polyline(attributes)],
+    "rect": _rect,
+    "circle": lambda attributes: _ellipse(attributes, "r"),
+    "ellipse": lambda attributes: _ellipse(attributes, "rx", "ry"),
+}
 """The elements whose lines are drawn."""
+
+
+# ---------------------------------------------------------------- paths
+
+_COMMAND = re.compile(r"[MmZzLlHhVvCcSsQqTtAa]")
+_BLANK = re.compile(r"[\s,]*+")
+_ARGUMENT = re.compile(rf"[\s,]*+({NUMBER})")
+_FLAG = re.compile(r"[\s,]*+([01])")
+_ARGUMENTS = {"M": 2, "Z": 0, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7}
+"""How many numbers each command takes."""
+
+
+class PathReader:
+    """Reads the data of one path; `lines` are its points, a list for every part."""
+
+    def __init__(self) -> None:
+        self.lines: Lines = []
+        self.here = self.begun = (0.0, 0.0)
+        self.control: Point | None = None
+        self.kind = ""
+        self.count = 0
+
+    def read(self, text: str) -> Lines:
+        """Return the points of every part, or raise PictureError.
+
+        Each command has left a point or a part, though a part may have one point or none: their number tells the work.
+        """
+        command, at = "", 0
+        while (blank := _BLANK.match(text, at)) and (at := blank.end()) < len(text):
+            if found := _COMMAND.match(text, at):
+                command, at = found[0], found.end()
+            elif command in "Zz":  # nothing was begun, or numbers follow a closed part
+                raise unreadable()
+            kind, given = command.upper(), list[float]()
+            if not self.lines and kind != "M":
+                raise unreadable()
+            for place in range(_ARGUMENTS[kind]):
+                argument = (_FLAG if kind == "A" and place in (3, 4) else _ARGUMENT).match(text, at)
+                if not argument:
+                    raise unreadable()
+                given.append(read_number(argument[1]))
+                at = argument.end()
+            self._do(kind, given, self.here if command.islower() else (0.0, 0.0))
+            command = {"M": "L", "m": "l"}.get(command, command)
+        return self.lines
+
+    def _do(self, kind: str, given: list[float], origin: Point) -> None:
+        """Draw one command, its coordinates counted from `origin`."""
+        before, self.kind = self.kind, kind
+        control = self.control if (kind, before) in _CONTINUED else None
+        self.control = None
+        if kind == "Z":
+            self._close()
+        elif kind == "H":
+            self._go((origin[0] + given[0], self.here[1]))
+        elif kind == "V":
+            self._go((self.here[0], origin[1] + given[0]))
+        else:
+            arguments, given = (given[:5], given[5:]) if kind == "A" else ([], given)
+            *controls, end = [(origin[0] + x, origin[1] + y) for x, y in zip(given[::2], given[1::2], strict=True)]
+            if kind == "M":
+                self.begun = end
+                self.lines.append([])
+            if kind in "ST":  # the first control point is the reflection of the last of the curve before
+                here, last = self.here, control or self.here
+                controls.insert(0, (2 * here[0] - last[0], 2 * here[1] - last[1]))
+            if controls:
+                self.control = controls[-1]
+                self._go(*self._bend(controls, end))
+            else:
+                self._go(*(self._arc(arguments, end) if arguments else [end]))
+
+    def _go(self, *points: Point) -> None:
+        if not all(abs(value) <= FARTHEST for point in points for value in point):
+            raise unreadable()
+        self._count(len(points))
+        if self.kind not in "MZ" and not self.lines[-1]:
+            self.lines[-1].append(self.begun)
+        self.lines[-1] += points
+        self.here = points[-1]
+
+    def _count(self, done: int) -> None:
+        self.count += done
+        if self.count > MOST_RAW:
+            raise too_many()
+
+    def _close(self) -> None:
+        if self.lines[-1]:
+            self._go(self.begun)
+        self._count(1)
+        self.lines.append([])
+        self.here = self.begun
+
+    def _bend(self, controls: list[Point], end: Point) -> list[Point]:
+        """Return points of a Bézier curve from here, by its two control points, or its one (quadratic)."""
+        if len(controls) == 1:
+            (one,) = controls
+            controls = [(at[0] + 2 / 3 * (one[0] - at[0]), at[1] + 2 / 3 * (one[1] - at[1])) for at in (self.here, end)]
+        return bend(self.here, controls[0], controls[1], end)
+
+    def _arc(self, given: list[float], end: Point) -> list[Point]:
+        rx, ry = abs(given[0]), abs(given[1])
+        if rx == 0 or ry == 0 or end == self.here:
+            return [end]
+        radii = (rx, ry, math.radians(given[2] % 360))
+        return arc(self.here, end, radii, is_large=bool(given[3]), is_swept=bool(given[4]))
+
+
+_CONTINUED = frozenset({("S", "C"), ("S", "S"), ("T", "Q"), ("T", "T")})
+"""Commands that go on from the control point of the one before."""
+
+
+def bend(start: Point, first: Point, second: Point, end: Point) -> list[Point]:
+    """Return points of a cubic Bézier curve, the last at its end."""
+    found = []
+    for at in range(1, CHORDS):
+        t = at / CHORDS
+        a, b, c, d = (1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t * t * (1 - t), t**3
+        x, y = (a * start[i] + b * first[i] + c * second[i] + d * end[i] for i in (0, 1))
+        found.append((x, y))
+    return [*found, end]
+
+
+def arc(start: Point, end: Point, radii: tuple[float, float, float], *, is_large: bool, is_swept: bool) -> list[Point]:
+    """Return points of an elliptical arc, the last at its end (F.6.5 and F.6.6); `radii` ends with its turn [rad]."""
+    rx, ry, turn = radii
+    cos, sin = math.cos(turn), math.sin(turn)
+    half_x, half_y = (start[0] - end[0]) / 2, (start[1] - end[1]) / 2
+    x, y = cos * half_x + sin * half_y, cos * half_y - sin * half_x
+    grown = math.sqrt(max((x / rx) ** 2 + (y / ry) ** 2, 1.0))
+    rx, ry = rx * grown, ry * grown
+    ratio = (x / rx) ** 2 + (y / ry) ** 2
+    root = math.sqrt(max(1 / ratio - 1, 0.0)) * (-1 if is_large == is_swept else 1) if ratio else 0.0
+    u, v = root * rx * y / ry, -root * ry * x / rx
+    centre = cos * u - sin * v + (start[0] + end[0]) / 2, sin * u + cos * v + (start[1] + end[1]) / 2
+    begin = math.atan2((y - v) / ry, (x - u) / rx)
+    sweep = (math.atan2((-y - v) / ry, (-x - u) / rx) - begin) % (2 * math.pi)
+    sweep -= 0 if is_swept else 2 * math.pi
+    found = []
+    for at in range(1, 2 * CHORDS):
+        angle = begin + sweep * at / (2 * CHORDS)
+        along, across = rx * math.cos(angle), ry * math.sin(angle)
+        found.append((centre[0] + cos * along - sin * across, centre[1] + sin * along + cos * across))
+    return [*found, end]

@@ -8,7 +8,7 @@ import re
 from bisect import bisect_left
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import chain, islice
+from itertools import chain, groupby, islice
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from assess.errors import Correction, FurnitureGap, Gap, Problem, Severity
@@ -337,7 +337,12 @@ class _Parser:
             if (at := find_lone_text(cells, known, first)) is not None:
                 lone[number] = at, cells
             elif needed and cells.get(needed[0]) == headers[needed[0]] and _repeats(cells, headers, needed):
-                self.report(self.source.address(number, needed[0]), describe_repeated(), "", "note", "headers")
+                message = nfill(
+                    "the row repeats the headers; it is skipped.",
+                    "{n:,} rows repeat the headers; they are skipped ({cells}).",
+                    1, cells="",
+                )  # fmt: skip
+                self.report(self.source.address(number, needed[0]), message, "", "note", "headers")
             else:
                 found[number] = self._keep_row(number, cells)
         found |= self._read_lone(lone)
@@ -346,11 +351,17 @@ class _Parser:
     def _read_lone(self, lone: Mapping[int, tuple[int, Cells]]) -> dict[int, Row | None]:
         """Return the entries among the rows that hold a text alone: where a table asks for no more than that."""
         found: dict[int, Row | None] = {}
-        spanned = list_spanned(self.source.merged)
+        ranges = (match for one in self.source.merged if (match := _RANGE.fullmatch(one)))
+        spanned = {int(one[2]) for one in ranges if one[1] != one[3] and one[2] == one[4]}
         needs_more = sum(column.required for column in self.own.columns) > 1
         for number, (at, cells) in lone.items():
             if self.source.top and (needs_more or number in spanned):
-                self.report(self.source.address(number, at), describe_heading(cells[at]), "", "note", "heading")
+                message = nfill(
+                    "{text} stands alone in its row; it is taken for a heading and skipped.",
+                    "{n:,} rows hold a text alone, such as {text}; they are taken for headings and skipped ({cells}).",
+                    1, text=shorten(cells[at]), cells="",
+                )  # fmt: skip
+                self.report(self.source.address(number, at), message, "", "note", "heading")
             else:
                 found[number] = self._row(number, cells)
         return found
@@ -379,13 +390,24 @@ class _Parser:
         hidden = set(self.source.hidden_rows)
         rows = [row.number for row in found if row.number in hidden] if hidden else []
         if rows:
-            message = describe_hidden_rows(rows, is_furniture=self.own.columns[0].name == "item")
+            named = {"rows": list_ranges(rows)}
+            message = nfill(
+                "hidden row {rows} is read as well.", "{n:,} hidden rows are read as well: {rows}.", len(rows), **named
+            )
+            if self.own.columns[0].name == "item":
+                message = nfill(
+                    "hidden row {rows} is assessed as well.", "{n:,} hidden rows are assessed as well: {rows}.",
+                    len(rows), **named,
+                )  # fmt: skip
             self.report(self.source.address(rows[0]), message, severity="note")
         columns = [at for at in sorted(self.columns) if at in self.source.hidden_columns]
         names = {at: self.columns[at].name for at in columns}
         filled = [at for at in columns if any(row.get(names[at]) is not None for row in found)]
         if filled:
-            message = describe_hidden_columns([self.columns[at].label for at in filled])
+            message = nfill(
+                "the hidden column {labels} is read as well.", "{n:,} hidden columns are read as well: {labels}.",
+                len(filled), labels=join(", ", [fill(self.columns[at].label) for at in filled]),
+            )  # fmt: skip
             self.report(f"{column_letters(filled[0])}1", message, severity="note")
 
     def _best_row(self, top: Sequence[tuple[int, Cells]]) -> tuple[int, Cells] | None:
@@ -561,70 +583,11 @@ def find_lone_text(cells: Cells, known: Collection[int], first: Collection[int])
     return filled if is_text else None
 
 
-def list_spanned(merged: Sequence[str]) -> set[int]:
-    """Return the rows in which cells of several columns are merged, and of that row alone."""
-    found = (match for one in merged if (match := _RANGE.fullmatch(one)))
-    return {int(match[2]) for match in found if match[1] != match[3] and match[2] == match[4]}
-
-
-def describe_heading(value: object) -> Text:
-    """Say that a row is taken for a heading."""
-    return nfill(
-        "{text} stands alone in its row; it is taken for a heading and skipped.",
-        "{n:,} rows hold a text alone, such as {text}; they are taken for headings and skipped ({cells}).",
-        1, text=shorten(value), cells="",
-    )  # fmt: skip
-
-
-def describe_repeated() -> Text:
-    """Say that a row repeats the headers."""
-    return nfill(
-        "the row repeats the headers; it is skipped.", "{n:,} rows repeat the headers; they are skipped ({cells}).",
-        1, cells="",
-    )  # fmt: skip
-
-
-def describe_hidden_rows(numbers: Sequence[int], *, is_furniture: bool) -> Text:
-    """Say which hidden rows are read.
-
-    `numbers`: of the rows, in their order.
-    `is_furniture`: whether they are rows of furniture, which are assessed.
-    """
-    rows = list_ranges(numbers)
-    if is_furniture:
-        return nfill(
-            "hidden row {rows} is assessed as well.", "{n:,} hidden rows are assessed as well: {rows}.",
-            len(numbers), rows=rows,
-        )  # fmt: skip
-    return nfill(
-        "hidden row {rows} is read as well.", "{n:,} hidden rows are read as well: {rows}.", len(numbers), rows=rows
-    )
-
-
-def describe_hidden_columns(labels: Sequence[str]) -> Text:
-    """Say which hidden columns are read."""
-    listed = join(", ", map(fill, labels))
-    return nfill(
-        "the hidden column {labels} is read as well.", "{n:,} hidden columns are read as well: {labels}.",
-        len(labels), labels=listed,
-    )  # fmt: skip
-
-
 def list_ranges(numbers: Sequence[int]) -> Text:
     """Return numbers in words, those that follow one another as a range: "12, 15 to 16"."""
+    runs = [[number for _, number in run] for _, run in groupby(enumerate(numbers), lambda one: one[1] - one[0])]
     parts = [
-        str(first) if first == last else fill("{first} to {last}", first=str(first), last=str(last))
-        for first, last in _find_runs(numbers)
+        str(run[0]) if len(run) == 1 else fill("{first} to {last}", first=str(run[0]), last=str(run[-1]))
+        for run in runs
     ]
     return join(", ", [*parts[:_MOST_RANGES], *["..."] * (len(parts) > _MOST_RANGES)])
-
-
-def _find_runs(numbers: Sequence[int]) -> Iterator[tuple[int, int]]:
-    first = last = None
-    for number in numbers:
-        if last is not None and first is not None and number != last + 1:
-            yield first, last
-            first = None
-        first, last = number if first is None else first, number
-    if first is not None and last is not None:
-        yield first, last

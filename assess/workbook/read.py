@@ -121,13 +121,28 @@ def _make(
     path: Path, digest: str, data: bytes | None, tables: Tables, problems: Sequence[Problem], files: FileReader,
     pictures: PictureReader,
 ) -> Inventory:  # fmt: skip
+    catalogue = build_catalogue(tables["Catalogue"])
     return Inventory(
         source=path,
         sha256=digest,
         data=data,
         problems=tuple(problems),
         corrections=tuple(one for table in tables.values() for one in table.corrections),
-        **_build(tables, files, pictures),
+        building=build_building(tables["Building"], pictures.logo),
+        floors=build_floors(tables["Floors"], files.records, pictures.plans),
+        items=build_items(tables["Items"], {key(one.type): one for one in catalogue}),
+        places=build_rows(Place, tables["Places"], "place", "floor"),
+        routes=build_rows(Segment, tables["Routes"], "route", "segment"),
+        catalogue=catalogue,
+        costs=build_rows(Cost, tables["Costs"], "detail", "unit_cost"),
+        hazard=files.hazard,
+        site_ground=files.site_ground,
+        photos=pictures.photos,
+        extra_columns=tables["Items"].extra,
+        files=files.hashes,
+        language=_language(tables),
+        sheets={name: table.sheet.name for name, table in tables.items()},
+        letters={name: table.letters for name, table in tables.items()},
     )
 
 
@@ -334,24 +349,3 @@ def _check(
 
 def _language(tables: Tables) -> str:
     return find_language([table.language for table in tables.values() if table.found])
-
-
-def _build(tables: Tables, files: FileReader, pictures: PictureReader) -> dict[str, Any]:
-    catalogue = build_catalogue(tables["Catalogue"])
-    return {
-        "building": build_building(tables["Building"], pictures.logo),
-        "floors": build_floors(tables["Floors"], files.records, pictures.plans),
-        "items": build_items(tables["Items"], {key(one.type): one for one in catalogue}),
-        "places": build_rows(Place, tables["Places"], "place", "floor"),
-        "routes": build_rows(Segment, tables["Routes"], "route", "segment"),
-        "catalogue": catalogue,
-        "costs": build_rows(Cost, tables["Costs"], "detail", "unit_cost"),
-        "hazard": files.hazard,
-        "site_ground": files.site_ground,
-        "photos": pictures.photos,
-        "extra_columns": tables["Items"].extra,
-        "files": files.hashes,
-        "language": _language(tables),
-        "sheets": {name: table.sheet.name for name, table in tables.items()},
-        "letters": {name: table.letters for name, table in tables.items()},
-    }

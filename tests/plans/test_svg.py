@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from assess.pictures import PictureError
-from assess.plans import read_plan, svg_path
+from assess.plans import read_plan
 from assess.plans import svg as svg_file
 from assess.plans.linework import unpack
 from tests.plans.drawings import PLAN_SVG, read_apart, svg
@@ -165,8 +165,7 @@ def test_what_cannot_be_used(data, message):
 )
 def test_more_points_than_are_read(monkeypatch, content):
     """With a twentieth of the limit, whose memory is measured below."""
-    for module in (svg_path, svg_file):
-        monkeypatch.setattr(module, "MOST_RAW", 20_000)
+    monkeypatch.setattr(svg_file, "MOST_RAW", 20_000)
     with pytest.raises(PictureError, match="60,000 points"):
         read_plan(svg(content), 16.0)
 

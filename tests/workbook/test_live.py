@@ -259,22 +259,24 @@ def test_live_columns_of_an_italian_workbook_equal_the_program(tmp_path: Path, u
         check(italian_grid(tmp_path / "book.xlsx", units))
 
 
-ITALIAN_WORDS = [
-    ({"floor": "9"}, {}, ["piano?"] * 7), ({"axis": "Z"}, {}, ["asse?"] * 7),
-    ({}, {"scenario_kind": " REGISTRATO"}, ["scuotimento?"] * 7), ({}, {"scenario_kind": "Assegnato"}, None),
-    ({}, {"scenario_kind": "given"}, None), ({}, {"scenario_kind": "come-compilato"}, None), ({}, {}, None),
-    ({}, {"scenario_kind": "as filled"}, None), ({}, {"scenario_kind": "NTC 2018"}, ["scuotimento?"] * 7),
-    ({"floor": "2"}, {"ground_pga": 0.2}, ["eseguire assess"] * 7), ({"floor": "2"}, {}, ["scuotimento?"] * 7),
+ITALIAN_WORDS: list[tuple[dict[str, Any], list[tuple[dict[str, Any], Any]]]] = [
+    ({}, [({"floor": "9"}, "piano?"), ({"axis": "Z"}, "asse?"), ({}, 0.5), ({"floor": "2"}, "scuotimento?")]),
+    ({"ground_pga": 0.2}, [({"floor": "2"}, "eseguire assess")]),
+    *(({"scenario_kind": kind}, [({}, shown)]) for kind, shown in (
+        (" REGISTRATO", "scuotimento?"), ("Assegnato", 0.5), ("given", 0.5), ("come-compilato", 0.5),
+        ("as filled", 0.5), ("NTC 2018", "scuotimento?"),
+    )),
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("item", "building", "words"), ITALIAN_WORDS)
-def test_words_of_an_italian_workbook(
-    tmp_path: Path, item: dict[str, Any], building: dict[str, Any], words: list[str] | None
-) -> None:
-    with speaking(load_catalogue("it")):
-        shown = shown_of(tmp_path, item, [{"floor": "1", "pfa_x": 0.5}, {"floor": "2", "elevation": 4}], **building)
-    assert shown[1:] == words if words else shown[1] == 0.5
+def test_words_of_an_italian_workbook(tmp_path: Path) -> None:
+    floors = [{"floor": "1", "pfa_x": 0.5}, {"floor": "2", "elevation": 4}]
+    for building, rows in ITALIAN_WORDS:
+        with speaking(load_catalogue("it")):
+            found = shown_rows(tmp_path, [item for item, _ in rows], floors, **building)
+        for shown, (item, wanted) in zip(found, rows, strict=True):
+            assert shown[1] == wanted, (building, item)
+            assert isinstance(wanted, float) or set(shown[1:]) == {wanted}
 
 
 def test_an_unreadable_unit_of_an_italian_workbook(tmp_path: Path) -> None:
@@ -312,17 +314,13 @@ def test_blank_rows_show_nothing(tmp_path: Path) -> None:
     assert all(shown[row] == [""] * 8 for row in range(3, ROWS["Items"] + 2))
 
 
-def test_no_such_floor(tmp_path: Path) -> None:
-    assert shown_of(tmp_path, {"floor": "9"})[1:] == ["floor?"] * 7
-
-
-def test_no_floor_yet(tmp_path: Path) -> None:
-    assert shown_of(tmp_path, {"floor": None})[1:] == ["floor?"] * 7
-
-
-def test_no_sizes_yet(tmp_path: Path) -> None:
-    ratio, pfa, *rest = shown_of(tmp_path, {"breadth": None})
+def test_what_is_not_known_yet_is_named_in_place_of_a_class(tmp_path: Path) -> None:
+    """Own sizes need no type."""
+    items: Rows = [{"floor": "9"}, {"floor": None}, {"breadth": None}, {"type": "none such"}]
+    unknown, blank, (ratio, pfa, *rest), sized = shown_rows(tmp_path, items)
+    assert unknown[1:] == blank[1:] == ["floor?"] * 7
     assert (ratio, pfa, rest) == ("", 0.5, [""] * 6)
+    assert sized[0] == pytest.approx(40 / 180)
 
 
 def unknown_types(path: Path) -> Path:
@@ -337,10 +335,6 @@ def test_no_such_type(tmp_path: Path) -> None:
     assert [shown[row] for row in (2, 3, 4)] == [unknown, ["", 0.5, *[""] * 6], unknown]
 
 
-def test_own_sizes_need_no_type(tmp_path: Path) -> None:
-    assert shown_of(tmp_path, {"type": "none such"})[0] == pytest.approx(40 / 180)
-
-
 def test_axis_as_typed(tmp_path: Path) -> None:
     """Pasting goes round the drop-down; a wrong axis never shows the class of another."""
     items: Rows = [{"axis": axis} for axis in ("x", " Y ", "Z")]
@@ -348,26 +342,19 @@ def test_axis_as_typed(tmp_path: Path) -> None:
     assert (x[1], y[1], wrong[1:]) == (0.3, 0.5, ["axis?"] * 7)
 
 
-FLOORS_WITH_RECORDS = [
-    ({"record_x": "roof.csv"}, {}, ["run assess"] * 7),
-    ({"record_x": "roof.csv", "pfa_x": 0.5}, {}, ["run assess"] * 7),
-    ({"record_x": "roof.csv", "pfa_y": 0.5}, {}, ["run assess"] * 7),
-    ({"record_y": "roof.csv", "pfa_x": 0.5}, {}, ["run assess"] * 7),
-    ({"record_y": "roof.csv", "pfa_x": 0.5}, {"axis": "X"}, None),
-    ({"record_y": "  ", "pfa_x": 0.5}, {}, None),
-]
+FLOORS_WITH_RECORDS: list[tuple[dict[str, Any], dict[str, Any], bool]] = [
+    ({"record_x": "roof.csv"}, {}, True), ({"record_x": "roof.csv", "pfa_x": 0.5}, {}, True),
+    ({"record_x": "roof.csv", "pfa_y": 0.5}, {}, True), ({"record_y": "roof.csv", "pfa_x": 0.5}, {}, True),
+    ({"record_y": "roof.csv", "pfa_x": 0.5}, {"axis": "X"}, False), ({"record_y": "  ", "pfa_x": 0.5}, {}, False),
+]  # fmt: skip
 
 
-@pytest.mark.parametrize(("floor", "item", "words"), FLOORS_WITH_RECORDS)
-def test_floors_with_records(
-    tmp_path: Path, floor: dict[str, Any], item: dict[str, Any], words: list[str] | None
-) -> None:
+def test_floors_with_records(tmp_path: Path) -> None:
     """Where any motion that counts is a record, no formula can know the class: none is shown."""
-    shown = shown_of(tmp_path, item, [{"floor": "1", **floor}])
-    if words:
-        assert shown[1:] == words
-    else:
-        assert shown[1] == 0.5
+    floors = [{"floor": str(at), **floor} for at, (floor, *_) in enumerate(FLOORS_WITH_RECORDS)]
+    items = [{"floor": str(at), **item} for at, (_, item, _) in enumerate(FLOORS_WITH_RECORDS)]
+    for shown, (floor, item, is_left) in zip(shown_rows(tmp_path, items, floors), FLOORS_WITH_RECORDS, strict=True):
+        assert shown[1:] == ["run assess"] * 7 if is_left else shown[1] == 0.5, (floor, item)
 
 
 KINDS = [("given", 0.5), ("recorded", "run assess"), ("as filled", "run assess"), ("ASCE 7-22", "shaking?"),
@@ -470,9 +457,10 @@ def shows_a_run(folder: Path, elevations: Sequence[Any], z: float | None, kind: 
 
 
 def test_a_row_without_a_name_serves_no_floor(tmp_path: Path) -> None:
-    """Rows without a name are no floors, whatever else they hold."""
+    """Rows without a name are no floors, whatever else they hold; nor is a blank name theirs."""
     floors = [{"floor": "1", "elevation": 4}, {"pfa_x": 0.3, "elevation": 0}, {"pfa_x": 0.3, "elevation": 8}]
-    assert shown_of(tmp_path, {}, floors)[1:] == ["shaking?"] * 7
+    named, blank = shown_rows(tmp_path, [{}, {"floor": None}], floors)
+    assert (named[1:], blank[1:]) == (["shaking?"] * 7, ["floor?"] * 7)
 
 
 @pytest.mark.parametrize("kind", ["ASCE 7-22", "ASCE 7-16", "EN 1998-1", "NTC 2018"])
@@ -599,11 +587,6 @@ def test_signs_of_a_name_stand_for_themselves(tmp_path: Path) -> None:
     others = [f"{name}{end}" for name in SIGNS[:5] for end in ("*", "?")]
     shown = by_formualizer(floors_of_signs(tmp_path / "other.xlsx", others))
     assert [shown[row][1] for row in range(2, len(others) + 2)] == ["floor?"] * len(others)
-
-
-def test_a_blank_name_is_no_floor_that_has_none(tmp_path: Path) -> None:
-    floors = [{"floor": "1", "pfa_x": 0.5}, {"name": "no short name yet", "pfa_x": 0.1}]
-    assert shown_of(tmp_path, {"floor": None}, floors)[1:] == ["floor?"] * 7
 
 
 ANCHORED = [
