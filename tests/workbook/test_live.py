@@ -262,10 +262,9 @@ def test_live_columns_of_an_italian_workbook_equal_the_program(tmp_path: Path, u
 ITALIAN_WORDS: list[tuple[dict[str, Any], list[tuple[dict[str, Any], Any]]]] = [
     ({}, [({"floor": "9"}, "piano?"), ({"axis": "Z"}, "asse?"), ({}, 0.5), ({"floor": "2"}, "scuotimento?")]),
     ({"ground_pga": 0.2}, [({"floor": "2"}, "eseguire assess")]),
-    *(({"scenario_kind": kind}, [({}, shown)]) for kind, shown in (
-        (" REGISTRATO", "scuotimento?"), ("Assegnato", 0.5), ("given", 0.5), ("come-compilato", 0.5),
-        ("as filled", 0.5), ("NTC 2018", "scuotimento?"),
-    )),
+    ({"scenario_kind": " REGISTRATO"}, [({}, "scuotimento?")]), ({"scenario_kind": "Assegnato"}, [({}, 0.5)]),
+    ({"scenario_kind": "given"}, [({}, 0.5)]), ({"scenario_kind": "come-compilato"}, [({}, 0.5)]),
+    ({"scenario_kind": "as filled"}, [({}, 0.5)]), ({"scenario_kind": "NTC 2018"}, [({}, "scuotimento?")]),
 ]  # fmt: skip
 
 
