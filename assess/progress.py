@@ -151,9 +151,10 @@ class Stage:
         self.progress, self._name, self._detail = progress, name, detail
         self._shares, self._start = [0.0] * max(1, parts), time.monotonic()
 
-    def at(self, share: float, part: int = 0) -> None:
-        """Note that `share` [-] of a part is done; raises `CancelledError` if the work is to stop."""
+    def at(self, share: float, part: int = 0, detail: str = "") -> None:
+        """Note that `share` [-] of a part is done, and what is worked on; raises `CancelledError` if it is to stop."""
         self.progress.check()
+        self._detail = detail or self._detail
         self._shares[part] = share
         done = sum(self._shares) / len(self._shares)
         spent = time.monotonic() - self._start

@@ -6,7 +6,8 @@ were. A run replaces and removes only what results.json lists (`assess.report.ow
 """
 
 import os
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -25,6 +26,7 @@ from assess.results import Results
 
 if TYPE_CHECKING:
     from assess.report.content import Content
+    from assess.report.pages.pdf import Layout
 
 
 @dataclass(frozen=True)
@@ -59,8 +61,8 @@ class Job:
         return path
 
 
-_PDFS = ("pdf", "annex")
-_LAST = ("json", *_PDFS)
+_EDITIONS: Mapping[str, Literal["client", "annex"]] = {"pdf": "client", "annex": "annex"}
+_LAST = ("json", *_EDITIONS)
 """What is written last: results.json, which lists the files before it, and the PDFs, which carry it."""
 
 
@@ -179,16 +181,29 @@ def check_folder(folder: Path, formats: Sequence[str] = ()) -> None:
 
 
 def _write_all(job: Job, folder: Path, formats: Sequence[str]) -> PdfUnavailableError | None:
-    """Write the formats into the stage; return why there is no PDF, where it was to be written."""
+    """Write the formats into the stage; return why there is no PDF, where it was to be written.
+
+    The PDFs are begun first, each in a process of its own, and written last.
+    """
     missing: PdfUnavailableError | None = None
-    with job.progress.stage("rendering", ", ".join(name for name in FILES if name in formats)) as reports:
+    with ExitStack() as open_, job.progress.stage("rendering") as reports:
+        layouts = {}
+        for name in set(formats) & _EDITIONS.keys():
+            from assess.report.pages.pdf import start_pdf
+
+            reports.at(0.0, detail=FILES[name])
+            begun = start_pdf(job.content, job.options, job.progress, edition=_EDITIONS[name])
+            layouts[name] = open_.enter_context(begun)
         for at, name in enumerate(formats):
-            reports.at(at / len(formats))
             file = FILES[name]
+            reports.at(at / len(formats), detail=file)
             if name == "json":
                 job.listed.update((FILES[each], None) for each in formats[at + 1 :])
             try:
-                _write_one(job, name)
+                _write(job, name, job.stage / file, layouts.get(name))
+                flush_file(job.stage / file)
+                if name not in _LAST:
+                    job.listed[file] = find_digest(job.stage / file)
             except PdfUnavailableError as error:
                 missing = error
                 job.listed.pop(file, None)
@@ -200,7 +215,7 @@ def _write_all(job: Job, folder: Path, formats: Sequence[str]) -> PdfUnavailable
                     "{file} could not be written: {why}. {folder} is left as it was.", file=file, why=why, folder=folder
                 )
                 raise OutputError(text) from None
-        _seal([job.stage / FILES[name] for name in _PDFS if FILES[name] in job.listed], job)
+        _seal([job.stage / FILES[name] for name in _EDITIONS if FILES[name] in job.listed], job)
         reports.check()
     return missing
 
@@ -220,23 +235,12 @@ def _seal(paths: Sequence[Path], job: Job) -> None:
         flush_file(path)
 
 
-def _write_one(job: Job, name: str) -> None:
-    """Write a format into the stage, down to the disk, and list it."""
-    path = job.stage / FILES[name]
-    _write(job, name, path)
-    flush_file(path)
-    if name not in _LAST:
-        job.listed[path.name] = find_digest(path)
-
-
-def _write(job: Job, name: str, path: Path) -> None:
+def _write(job: Job, name: str, path: Path, layout: "Layout | None") -> None:
     """Write a format; what does is imported only when it is wanted."""
-    if name in _PDFS:
-        from assess.report.pages.pdf import write_pdf
+    if layout is not None:
+        from assess.report.pages.pdf import finish_pdf
 
-        data = job.stage / FILES["json"]
-        edition: Literal["client", "annex"] = "client" if name == "pdf" else "annex"
-        write_pdf(job.content, path, job.options, job.progress, edition=edition, data=data)
+        finish_pdf(layout, job.results, path, job.options, job.progress, data=job.stage / FILES["json"])
     elif name == "xlsx":
         from assess.report.xlsx import write_xlsx
 

@@ -1,6 +1,5 @@
 """Characters that the report's fonts lack: told by cell, never a crash, and the PDF stays valid."""
 
-import json
 import os
 import subprocess
 import sys
@@ -9,11 +8,10 @@ import pypdfium2
 import pytest
 
 from assess.i18n import load_catalogue, speaking
-from assess.report.content import build_content
-from assess.report.fonts import find_missing
+from assess.report.fonts import find_missing, print_fonts, replace_signs
 from assess.report.pages import glyphs, pdf
-from assess.report.pages.pdf_layout import lay_out
-from assess.report.report_options import ReportOptions
+from assess.report.pages.pdf_layout import open_page
+from tests.report.reading import render
 from tests.workbooks import assessed, write
 
 FIX = "Install a font that does, such as Noto (Debian: apt install fonts-noto-core fonts-noto-cjk)."
@@ -98,7 +96,7 @@ from pathlib import Path
 import assess
 from assess.report.content import build_content
 from assess.report.pages import pdf
-from assess.report.pages.pdf_layout import lay_out
+from assess.report.pages.pdf_layout import open_page
 from assess.report.report_options import ReportOptions
 from matplotlib import font_manager
 font_manager.X11FontDirectories.clear()  # searched as well, whatever fontconfig says
@@ -141,8 +139,9 @@ def test_no_box_is_in_a_pdf(tmp_path, caplog, monkeypatch):
     """PDF/A forbids them; WeasyPrint would log each."""
     monkeypatch.setattr(pdf, "find_nowhere", frozenset)
     results = assessed(tmp_path / "表.xlsx", _items("本棚 \u20d0", room="🪑"), building="ビル")
-    monkeypatch.setattr(pdf, "_lay_out", lambda job, _progress: lay_out(json.loads(job)))  # here, for its log
-    pdf.write_pdf(build_content(results), tmp_path / "a.pdf", ReportOptions())
+    page = render(results, for_print=True, edition="client")
+    shown = open_page(replace_signs(page, find_missing(page)), print_fonts())  # in this process, for its log
+    shown.write_pdf(tmp_path / "a.pdf", pdf_variant="pdf/a-3u")
     assert ".notdef" not in caplog.text
     assert "��" in _read(tmp_path / "a.pdf")
 

@@ -6,11 +6,11 @@ import json
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from datetime import datetime
 from pathlib import Path
-from typing import IO, Any
+from typing import IO
 
 from assess.delivery.folders import private_folder
 from assess.errors import AssessError, PdfUnavailableError, Problem
@@ -79,9 +79,33 @@ def write_pdf(
     CancelledError
         If the work was cancelled; what is written of the file is of no use.
     """
+    with start_pdf(content, options, progress, edition=edition) as layout:
+        finish_pdf(layout, content.run, path, options, progress, data=data)
+
+
+@contextlib.contextmanager
+def start_pdf(
+    content: Content, options: ReportOptions, progress: Progress = SILENT, *, edition: Edition = "client"
+) -> Iterator["Layout"]:
+    """Begin to lay a PDF out in a process of its own, for `finish_pdf`; raises CancelledError if cancelled."""
     problems = progress.wait_for(lambda: [*list_problems(content.run), *list_missing_figures(content)])
     html = render(with_problems(content, problems), options, for_print=True, edition=edition, progress=progress)
-    _lay_out(progress.wait_for(lambda: _pack_job(html, list_attached(content.run, data), path, options)), progress)
+    with start_layout(html) as layout:
+        yield layout
+
+
+def finish_pdf(
+    layout: "Layout",
+    results: Results,
+    path: Path,
+    options: ReportOptions,
+    progress: Progress = SILENT,
+    *,
+    data: Path | None = None,
+) -> None:
+    """Write a PDF that was begun, with what is attached; raises what `write_pdf` does."""
+    files = progress.wait_for(lambda: list_attached(results, data))
+    layout.finish(path, files, ACCESSIBLE if options.accessible else ARCHIVAL, progress)
 
 
 def print_page(
@@ -97,21 +121,8 @@ def print_page(
 
     `moment` is its date, in place of that of the report: for files that are the same whenever they are made.
     """
-    _lay_out(progress.wait_for(lambda: _pack_job(html, files, path, options, moment)), progress)
-
-
-def _pack_job(
-    html: str, files: Sequence[Attached], path: Path, options: ReportOptions, moment: datetime | None = None
-) -> bytes:
-    job = {
-        "html": replace_signs(html, find_nowhere(find_missing(html))),
-        "fonts": print_fonts(),
-        "path": str(path),
-        "variant": ACCESSIBLE if options.accessible else ARCHIVAL,
-        "time": (moment or report_time()).isoformat(),
-        "attachments": [asdict(file) for file in files],
-    }
-    return json.dumps(job).encode()
+    with start_layout(html) as layout:
+        layout.finish(path, files, ACCESSIBLE if options.accessible else ARCHIVAL, progress, moment)
 
 
 def list_problems(results: Results) -> list[Problem]:
@@ -123,7 +134,8 @@ def list_problems(results: Results) -> list[Problem]:
 
 def find_weasyprint() -> str:
     """Return the version of WeasyPrint; raises PdfUnavailableError with how to fix it where it cannot be loaded."""
-    return _lay_out(b"", SILENT).strip()
+    with start_layout("") as layout:
+        return layout.finish(None, (), None, SILENT).strip()
 
 
 def fix() -> str:
@@ -178,55 +190,77 @@ def _list_unattached(results: Results) -> list[Problem]:
 
 
 def lay_out_page(html: str, path: Path, progress: Progress = SILENT) -> None:
-    """Lay out a page of HTML as a plain PDF, of no archival kind and with nothing attached.
-
-    Raises
-    ------
-    PdfUnavailableError
-        If WeasyPrint's native libraries are missing.
-    OSError
-        If the file cannot be written.
-    CancelledError
-        If the work was cancelled.
-    """
-    job: dict[str, Any] = {
-        "html": html,
-        "fonts": print_fonts(),
-        "path": str(path),
-        "variant": None,
-        "time": report_time().isoformat(),
-        "attachments": [],
-    }
-    _lay_out(json.dumps(job).encode(), progress)
+    """Lay out a page of HTML as a plain PDF, of no archival kind and with nothing attached; raises as `write_pdf`."""
+    with start_layout(html) as layout:
+        layout.finish(path, (), None, progress)
 
 
-def _lay_out(job: bytes, progress: Progress) -> str:
-    """Pass a job to `pdf_layout` in a process, which is killed where the work is cancelled; return what it printed."""
-    with tempfile.TemporaryFile() as given, tempfile.TemporaryFile() as printed, tempfile.TemporaryFile() as errors:
-        given.write(job)
-        given.seek(0)
-        process = subprocess.Popen(  # noqa: S603 - this Python, with code of this program
-            _command(), stdin=given, stdout=printed, stderr=errors,
-            creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
-        )  # fmt: skip
-        try:
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """A page that `pdf_layout` lays out in its process while other work goes on."""
+
+    process: "subprocess.Popen[bytes]"
+    printed: IO[bytes]
+    errors: IO[bytes]
+
+    def finish(
+        self,
+        path: Path | None,
+        files: Sequence[Attached],
+        variant: str | None,
+        progress: Progress,
+        moment: datetime | None = None,
+    ) -> str:
+        """Have the PDF written, and return what the process printed; raises what `write_pdf` does."""
+        job = {
+            "path": str(path),
+            "variant": variant,
+            "time": (moment or report_time()).isoformat(),
+            "attachments": [asdict(file) for file in files],
+        }
+        with private_folder("assess-page-") as folder:
+            rest = folder / "job.json"
+            rest.write_text(json.dumps(job), encoding="utf-8")
+            self.send(f"{rest}\n")
             while True:
                 progress.check()
                 with contextlib.suppress(subprocess.TimeoutExpired):
-                    process.wait(_CHECKED_EVERY)
+                    self.process.wait(_CHECKED_EVERY)
                     break
+        answer, reason = (_read_text(file) for file in (self.printed, self.errors))
+        lines = reason.strip().splitlines() or ["no reason is given"]
+        if self.process.returncode == MISSING:
+            raise PdfUnavailableError(f"the PDF was not written: a native library is missing ({lines[-1]}). {fix()}")
+        if self.process.returncode == UNWRITTEN:
+            raise OSError(*json.loads(lines[-1]))
+        if self.process.returncode:
+            raise AssessError(f"the PDF could not be laid out: {lines[-1]}")
+        return answer
+
+    def send(self, text: str) -> None:
+        """Send a line to the process; where that has ended already, `finish` says why."""
+        with contextlib.suppress(OSError):
+            if self.process.stdin:
+                self.process.stdin.write(text.encode())
+                self.process.stdin.flush()
+
+
+@contextlib.contextmanager
+def start_layout(html: str) -> Iterator[Layout]:
+    """Begin to lay out a page in a process, which is killed at the end; of an empty one the version is asked for."""
+    with tempfile.TemporaryFile() as printed, tempfile.TemporaryFile() as errors:
+        process = subprocess.Popen(  # noqa: S603 - this Python, with code of this program
+            _command(), stdin=subprocess.PIPE, stdout=printed, stderr=errors,
+            creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+        )  # fmt: skip
+        layout = Layout(process, printed, errors)
+        try:
+            page = {"html": replace_signs(html, find_nowhere(find_missing(html))), "fonts": print_fonts()}
+            layout.send(json.dumps(page if html else None) + "\n")
+            yield layout
         finally:
             process.kill()
-            process.wait()
-        answer, reason = (_read_text(file) for file in (printed, errors))
-    lines = reason.strip().splitlines() or ["no reason is given"]
-    if process.returncode == MISSING:
-        raise PdfUnavailableError(f"the PDF was not written: a native library is missing ({lines[-1]}). {fix()}")
-    if process.returncode == UNWRITTEN:
-        raise OSError(*json.loads(lines[-1]))
-    if process.returncode:
-        raise AssessError(f"the PDF could not be laid out: {lines[-1]}")
-    return answer
+            process.communicate()
 
 
 def _command() -> list[str]:

@@ -1,7 +1,9 @@
-"""Lay the page out as a PDF, in a process of its own: ``python -c "from ... import main; main()" < job > answer``.
+"""Lay a page out as a PDF, in a process of its own.
 
-WeasyPrint cannot be interrupted, and it prints and warns as it is loaded; a process can be ended, and its output
-belongs to nobody else. This module imports nothing of `assess`, so that it starts at once.
+It reads two lines from standard input: the page as JSON, which it lays out at once, and the file with what is known
+only later: where to write to, and what to attach. WeasyPrint cannot be interrupted, and it prints and warns as it is
+loaded; a process can be ended, and its output belongs to nobody else. This module imports nothing of `assess`, so that
+it starts at once.
 """
 
 import datetime
@@ -19,33 +21,35 @@ UNWRITTEN = 4
 
 
 def main() -> None:
-    """Read a job from standard input and lay it out; of an empty one, print the version of WeasyPrint."""
-    text = sys.stdin.buffer.read()
+    """Lay out the page that is sent; of none, print the version of WeasyPrint."""
+    page = json.loads(sys.stdin.buffer.readline() or b"null")
     try:
         import weasyprint
     except (ImportError, OSError) as error:
         sys.stderr.write(f"\n{str(error).splitlines()[0]}")
         sys.exit(MISSING)
-    if text:
-        gc.disable()  # the process ends with the file: looking for memory to give back takes a tenth of its time
-        try:
-            lay_out(json.loads(text))
-        except OSError as error:
-            sys.stderr.write(f"\n{json.dumps([error.errno, error.strerror or str(error)])}")
-            sys.exit(UNWRITTEN)
-    else:
+    if page is None:
         print(weasyprint.__version__)  # noqa: T201 - the answer of this process
+        return
+    gc.disable()  # the process ends with the file: looking for memory to give back takes a tenth of its time
+    document = open_page(page["html"], page["fonts"]).render()
+    rest = sys.stdin.buffer.readline().decode().strip()
+    if not rest:
+        return  # nobody waits for it any more
+    try:
+        write(document, json.loads(Path(rest).read_text(encoding="utf-8")))
+    except OSError as error:
+        sys.stderr.write(f"\n{json.dumps([error.errno, error.strerror or str(error)])}")
+        sys.exit(UNWRITTEN)
 
 
-def lay_out(job: dict[str, Any]) -> None:
-    """Write a PDF.
+def write(document: Any, job: Mapping[str, Any]) -> None:
+    """Write a page that is laid out.
 
-    `job` holds the page as ``html``, the files of its ``fonts`` by address, where to write to as ``path``, WeasyPrint's
-    ``variant``, the ``time`` of the document in ISO 8601, and ``attachments``: name, kind, relationship, description
-    and data (base64) of each.
+    `job` holds where to as ``path``, WeasyPrint's ``variant``, the ``time`` of the document in ISO 8601, and
+    ``attachments``: name, kind, relationship, description and data (base64) of each.
     """
     moment = datetime.datetime.fromisoformat(job["time"])
-    document = open_page(job["html"], job["fonts"]).render()
     document.metadata.created = document.metadata.modified = f"{moment:%Y-%m-%dT%H:%M:%SZ}"
     document.write_pdf(
         job["path"],
