@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from assess.motion.noise import Transforms, find_rates
@@ -235,13 +236,14 @@ def _bend(
 class Corrections:
     """Rounds of wavelets on the first motions of an ensemble.
 
-    `errors` (m,) are the logarithms by which the mean spectrum was off when it was last watched; those of periods that
-    are not judged stay 0.
+    `sweep` has the periods (m,) of the target. `errors` (m,) are the logarithms by which the mean spectrum was off when
+    it was last watched; those of periods that are not judged stay 0.
     """
 
     target: Target
     grid: Grid
     bench: Bench
+    sweep: Sweep
     errors: FloatArray
 
     def places(self, kind: str) -> NDArray[np.int64]:
@@ -254,12 +256,9 @@ class Corrections:
             return np.flatnonzero(near & (_widest(np.abs(self.errors), 2 * AROUND + 1) > LEFT))
         return np.flatnonzero(near & ((periods < DIVIDED) == (kind == SHORT)))
 
-    def _sweep(self, places: NDArray[np.int64]) -> Sweep:
-        return Sweep.of(self.target.periods[places], self.grid.time_step, self.grid.count)
-
     def correct(self, motions: Single, places: NDArray[np.int64]) -> list[Correction]:
         """Correct the ordinates of motions (k, n) that are most off among their neighbours, in place; none may be."""
-        sweep = self._sweep(places)
+        sweep = self.sweep.take(places)
         peaks, when = self.bench.watch(sweep, motions)
         mean = np.abs(peaks).mean(axis=0, dtype=np.float64)
         self.errors[places] = np.log(self.target.pseudo[places] / mean)
@@ -274,7 +273,7 @@ class Corrections:
             wavelets=build_wavelets(tuple(self.target.periods), self.grid.time_step),
             places=chosen,
             shares=np.expm1(np.clip(applied * self.errors[chosen], -most, most)).astype(np.float32),
-            sweep=self._sweep(chosen),
+            sweep=self.sweep.take(chosen),
         )
         self.bench.run(lambda rows: correction.add(motions[rows], peaks[rows, own], when[rows, own]), len(motions))
         return [correction]
@@ -282,14 +281,13 @@ class Corrections:
 
 def _widest(off: FloatArray, width: int) -> FloatArray:
     """Return the largest value among `width` neighbours of each."""
-    from scipy.ndimage import maximum_filter1d
-
-    return np.asarray(maximum_filter1d(off, width))
+    return np.asarray(sliding_window_view(np.pad(off, width // 2, mode="edge"), width).max(axis=1))
 
 
 def find_corrections(target: Target, recipe: Recipe, motions: Single, bench: Bench) -> Recipe:
     """Correct the mean spectrum and PFA of `motions` (k, n), in place; return the recipe with what was done."""
-    work = Corrections(target, recipe.grid, bench, np.zeros(target.periods.size))
+    sweep = Sweep.of(target.periods, recipe.grid.time_step, recipe.grid.count)
+    work = Corrections(target, recipe.grid, bench, sweep, np.zeros(target.periods.size))
     found: list[Bending | Correction] = []
     for kind in STEPS:
         if kind == BEND:

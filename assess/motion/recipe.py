@@ -73,13 +73,13 @@ def shape_rows(
         mean, pfa, fastest = np.float32(total / length), np.float32(0), np.float32(0)
         for i in range(count):
             v = velocity[i] - mean
-            fastest = max(fastest, abs(taper[i] * v))
             x = (v * inverse) * (v * inverse)
             y = one / (one + x * x)
             z = bend * (one - y)
-            a = taper[i] * (one + z * (one + four * y)) * row[i] + slope[i] * v * (one + z)
-            out[i] = a
-            pfa = max(pfa, abs(a))
+            out[i] = taper[i] * (one + z * (one + four * y)) * row[i] + slope[i] * v * (one + z)
+        for i in range(count):  # a loop of their own: with peaks in it, the one above has no vector lanes
+            fastest = max(fastest, abs(taper[i] * (velocity[i] - mean)))
+            pfa = max(pfa, abs(out[i]))
         peaks[k, 0], peaks[k, 1] = fastest, pfa
 
 

@@ -25,8 +25,9 @@ DEEPEST, SHORTEST = 3, 1000
 the ends count."""
 BLOCK = 32
 """Samples between the states that are kept on the way."""
-LANES = 16
-"""Oscillators are filled up to multiples of it: vector loops take as many at once, and what is left one by one."""
+LANES = 8
+"""Oscillators are filled up to multiples of it: vector loops take as many at once, and what is left one by one. Half of
+the rounds of wavelets watch fewer than eight in an octave."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,6 +50,16 @@ class Sweep:
         depths = np.minimum(np.floor(fewest + 1e-9), deepest).astype(np.int64)
         steps = tuple((int(one), recurrence(periods[depths == one], time_step, int(one))) for one in np.unique(depths))
         return cls(periods, time_step, depths, steps)
+
+    def take(self, places: NDArray[np.int64]) -> "Sweep":
+        """Return the sweep of the periods at ascending `places`."""
+        steps = []
+        for depth, step in self.steps:
+            of_depth = np.flatnonzero(self.depths == depth)
+            own = np.isin(of_depth, places)
+            if own.any():
+                steps.append((depth, _fill_lanes(step[:, : of_depth.size].compress(own, axis=1))))
+        return Sweep(self.periods[places], self.time_step, self.depths[places], tuple(steps))
 
     def peaks(self, motions: Single) -> tuple[Single, NDArray[np.int32]]:
         """Return the peak pseudo-accelerations to motions (k, n), with sign, and the samples of the peaks, (k, m).
@@ -79,8 +90,11 @@ def recurrence(periods: FloatArray, time_step: float, depth: int) -> Single:
     """
     r0, r1, r2, r3, r4, r5, r6, r7, _, squared = oscillator_step(periods, time_step * 2**depth)
     forced = squared * np.array([r5, r4 + r1 * r7 - r3 * r5, r1 * r6 - r3 * r4])
-    made = np.concatenate([[r0 + r3, r1 * r2 - r0 * r3], forced])
-    return np.pad(made, ((0, 0), (0, -periods.size % LANES))).astype(np.float32)
+    return _fill_lanes(np.concatenate([[r0 + r3, r1 * r2 - r0 * r3], forced]).astype(np.float32))
+
+
+def _fill_lanes(step: Single) -> Single:
+    return np.pad(step, ((0, 0), (0, -step.shape[1] % LANES)))
 
 
 @compiled

@@ -41,7 +41,7 @@ _WORD = re.compile(r"\S+")
 class Section:
     """Some lines of a file that belong together; `first` is the place [-] of the first in the file, from 0 on."""
 
-    lines: Sequence[str]
+    lines: "Lines"
     first: int = 0
 
     def text(self, place: int) -> str:
@@ -95,6 +95,34 @@ class Lines(Sequence[str]):
 
     def _start(self, at: int) -> int:
         return int(self._ends[at - 1]) + 1 if at else self._first
+
+    @property
+    def lengths(self) -> NDArray[np.int32]:
+        """Characters of each line, (n,)."""
+        return np.diff(self._ends, prepend=np.int32(self._first - 1)) - np.int32(1)
+
+    def cut(self, columns: Columns, *, is_whole: bool = False) -> "Iterator[Cells]":
+        """Yield the cells of all lines, a block at a time; those beyond the end of a line only if `is_whole`."""
+        within = np.arange(columns.per_line * columns.width)
+        whole = BLOCK // within.size + 1
+        text = np.frombuffer(self._data, np.uint8)
+        for at in range(0, len(self), whole):
+            part = self[at : at + whole]
+            lengths = part.lengths[:, None]
+            places = (part._ends[:, None] - lengths) + within
+            characters = np.where(within < lengths, text[np.minimum(places, text.size - 1)], np.uint8(ord(" ")))
+            cells = characters.reshape(len(part), columns.per_line, columns.width)
+            yield cells.reshape(-1, columns.width) if is_whole else cells[within[:: columns.width] < lengths]
+
+
+Cells = NDArray[np.uint8]
+"""The characters of cells (n, width), blanks beyond the end of a line."""
+_IS_BLANK = np.array([chr(code).isspace() for code in range(256)])
+
+
+def has_text(cells: Cells) -> NDArray[np.bool_]:
+    """Return which cells hold more than blanks, (n,)."""
+    return np.asarray(~_IS_BLANK[cells].all(axis=1))
 
 
 def split_lines(data: bytes) -> Lines:
@@ -202,16 +230,11 @@ def read_columns(section: Section, start: int, count: int, columns: Columns, fac
     """
     _check_count(count)
     rows = section.lines[start : start + math.ceil(count / columns.per_line)]
-    there = max((place for place, text in enumerate(_cut(rows, columns, count), start=1) if text.strip()), default=0)
+    filled = [has_text(cells) for cells in rows.cut(columns)]
+    there = int(np.flatnonzero(np.concatenate([*filled, [False]])[:count]).max(initial=-1)) + 1
     if there < count:
         raise cut_short(count, there)
-    return convert(_cut(rows, columns, count), count, section, start, columns.per_line, factor)
-
-
-def _cut(rows: Iterable[str], columns: Columns, count: int) -> Iterator[str]:
-    """Yield the first `count` cells of some lines."""
-    whole, width = columns.per_line * columns.width, columns.width
-    return islice((row[at : at + width] for row in rows for at in range(0, min(whole, len(row)), width)), count)
+    return convert(rows.cut(columns), count, section, start, columns.per_line, factor)
 
 
 def read_words(section: Section, start: int, count: float, factor: float) -> tuple[FloatArray, tuple[str, ...]]:
@@ -225,7 +248,9 @@ def read_words(section: Section, start: int, count: float, factor: float) -> tup
         raise cut_short(count, there)
     if there > most:
         raise too_long(count)
-    values = convert(islice(_find_words(section, start), count), count, section, start, None, factor)
+    words = iter(_find_words(section, start))
+    blocks = iter(lambda: list(islice(words, AT_ONCE)), [])
+    values = convert(blocks, count, section, start, None, factor)
     return values, note_beyond(there - count, count)
 
 
@@ -278,9 +303,14 @@ def too_long(announced: int) -> RecordError:
 
 
 def convert(
-    cells: Iterable[str], count: int, section: Section, start: int, per_line: int | None, factor: float = 1.0
+    blocks: Iterable[Cells | list[str]],
+    count: int,
+    section: Section,
+    start: int,
+    per_line: int | None,
+    factor: float = 1.0,
 ) -> FloatArray:
-    """Return `count` cells of the section's lines from `start` on as numbers times `factor`, (count,).
+    """Return the first `count` cells or words of the section's lines from `start` on as numbers times `factor`.
 
     `per_line` is None where lines do not count.
 
@@ -289,22 +319,35 @@ def convert(
     RecordError
         If one is no number; the message names its line or its place.
     """
-    values, cells = np.empty(count), iter(cells)
-    for at in range(0, count, AT_ONCE):
-        block = list(islice(cells, min(AT_ONCE, count - at)))
+    values, done = np.empty(count), 0
+    for block in blocks:
+        here = block[: count - done]
         try:
-            values[at : at + len(block)] = _convert(block)
+            values[done : done + len(here)] = _convert(here)
         except ValueError:
-            place = next((place for place, text in enumerate(block) if read_real(text) is None), 0)
-            raise _no_number(block[place].strip(), at + place, section, start, per_line) from None
+            texts = here if isinstance(here, list) else decode(here)
+            place = next((place for place, text in enumerate(texts) if read_real(text) is None), 0)
+            raise _no_number(texts[place].strip(), done + place, section, start, per_line) from None
+        done += len(here)
+        if done == count:
+            break
     with np.errstate(over="ignore"):  # what becomes infinite is refused where samples are checked
         values *= factor
     return values
 
 
-def _convert(cells: Sequence[str]) -> FloatArray:
+def _convert(block: Cells | list[str]) -> FloatArray:
     check_waits()  # numpy holds the interpreter's lock while it converts
-    return np.array(cells, dtype=np.float64)
+    if not isinstance(block, list):
+        if block.all() and block.max(initial=0) < 128:  # numpy cuts zeros off bytes, and knows no blanks beyond ASCII
+            return np.ascontiguousarray(block).view(f"S{block.shape[1]}").ravel().astype(np.float64)
+        block = decode(block)
+    return np.array(block, dtype=np.float64)
+
+
+def decode(cells: Cells) -> list[str]:
+    """Return the texts of cells."""
+    return [cell.tobytes().decode("latin-1") for cell in cells]
 
 
 def _no_number(text: str, place: int, section: Section, start: int, per_line: int | None) -> RecordError:

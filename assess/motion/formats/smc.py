@@ -9,8 +9,10 @@ Source: U.S. Geological Survey, National Strong-Motion Project, the SMC format; 
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+
+import numpy as np
 
 from assess.errors import RecordError
 from assess.i18n import fill
@@ -22,7 +24,9 @@ from assess.motion.formats._text import (
     Section,
     convert,
     cut_short,
+    decode,
     fields,
+    has_text,
     note_beyond,
     read_fields,
     text_format,
@@ -121,15 +125,10 @@ def _read_numbers(section: Section, kind: str, title: str) -> _Numbers:
     return _Numbers(integers, _read_sampling_rate(section), comments)
 
 
-def _cells(lines: Iterable[str], columns: Columns) -> Iterator[str]:
-    """Yield the cells of whole lines, blank ones included."""
-    whole = columns.per_line * columns.width
-    return (line.ljust(whole)[at : at + columns.width] for line in lines for at in range(0, whole, columns.width))
-
-
 def _read_integers(section: Section) -> list[int | None]:
     numbers = []
-    for place, text in enumerate(_cells(section.lines[INTEGERS:REALS], INTEGER)):
+    block = next(section.lines[INTEGERS:REALS].cut(INTEGER, is_whole=True))
+    for place, text in enumerate(decode(block)):
         try:
             numbers.append(int(text))
         except ValueError:
@@ -159,7 +158,7 @@ def _read_comments(lines: Sequence[str], count: int | None) -> Sequence[str]:
 
 def _read_sampling_rate(section: Section) -> float | None:
     """Samples per second; None where the data are pairs of time and acceleration."""
-    cells = _cells(section.lines[REALS : REALS + 1], REAL)
+    cells = section.lines[REALS : REALS + 1].cut(REAL, is_whole=True)
     unknown, rate = map(float, convert(cells, SAMPLING_RATE + 1, section, REALS, REAL.per_line))
     if rate == unknown:
         return None
@@ -201,7 +200,7 @@ def _read_data(section: Section, header: _Numbers) -> tuple[FloatArray, tuple[st
             fill("the number of data values is {announced} in the header. Get the file again", announced=announced)
         )
     lines = section.lines[first:]
-    wide = next((place for place, line in enumerate(lines) if line[LINE:].strip()), None)
+    wide = next((place for place in np.flatnonzero(lines.lengths > LINE).tolist() if lines[place][LINE:].strip()), None)
     if wide is not None:
         raise RecordError(
             fill(
@@ -210,10 +209,10 @@ def _read_data(section: Section, header: _Numbers) -> tuple[FloatArray, tuple[st
                 most=LINE,
             )
         )
-    there = sum(1 for text in _cells(lines, DATA) if text.strip())
+    there = sum(int(has_text(cells).sum()) for cells in lines.cut(DATA, is_whole=True))
     if not 0 <= there - announced <= MOST_BEYOND * announced:
         raise cut_short(announced, there) if there < announced else too_long(announced)
-    values = convert(_cells(lines, DATA), announced, section, first, DATA.per_line)
+    values = convert(lines.cut(DATA, is_whole=True), announced, section, first, DATA.per_line)
     return values, note_beyond(there - announced, announced)
 
 
