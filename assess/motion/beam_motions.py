@@ -14,6 +14,7 @@ The modes of a building are kept, in so many bytes; a floor's motions are made w
 import math
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -22,7 +23,7 @@ from assess.motion.bands import find_common, meet_peaks, split_bands
 from assess.motion.beam import find_shares, swing_modes
 from assess.motion.kept import Kept
 from assess.motion.record import FloatArray
-from assess.motion.rows import GROUP, run_rows
+from assess.motion.rows import GROUP, make_groups
 from assess.motion.sweep import Single
 from assess.motion.target import Grid
 from assess.progress import Progress
@@ -86,14 +87,7 @@ class FloorMotions:
 
     def realise(self, first: int, count: int, threads: int, progress: Progress) -> Single:
         """Return draws `first` to `first + count - 1`: accelerations [m/s2], (count, n), each whatever the others."""
-        start, end = first // GROUP, -(-(first + count) // GROUP)
-        motions = np.empty(((end - start) * GROUP, self.beams.grid.count), np.float32)
-
-        def make(at: int) -> None:
-            motions[at * GROUP : (at + 1) * GROUP] = self._make(start + at)
-
-        run_rows(make, end - start, threads, progress)
-        return motions[first - start * GROUP :][:count]
+        return make_groups(self._make, first, count, self.beams.grid.count, threads, progress)
 
     def _make(self, group: int) -> Single:
         motions, target = _shake(self.beams, self.target, group), self.target
@@ -114,12 +108,8 @@ def open_floor(beams: Beams, target: FloorTarget, threads: int, progress: Progre
     """Find the factors that bring the medians of the first draws to the floor's."""
     if target.meets in ("nothing", "peaks"):
         return FloorMotions(beams, target, 1.0, 1.0)
-    motions = np.empty((CALIBRATED, beams.grid.count), np.float32)
-
-    def make(at: int) -> None:
-        motions[at * GROUP : (at + 1) * GROUP] = _shake(beams, target, at)
-
-    run_rows(make, CALIBRATED // GROUP, threads, progress)
+    make = partial(_shake, beams, target)
+    motions = make_groups(make, 0, CALIBRATED, beams.grid.count, threads, progress)
     low = _split(motions, target, beams.grid)
     each = target.meets == "pfa"
     found = find_common(motions, low, beams.grid.time_step, target.pfa, target.pfv, each=each)

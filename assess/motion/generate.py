@@ -26,7 +26,7 @@ import numpy as np
 from assess.motion.calibrate import Bench, find_corrections, find_filter
 from assess.motion.noise import Signs, Transforms, draw_noise
 from assess.motion.recipe import Recipe
-from assess.motion.rows import GROUP, run_rows
+from assess.motion.rows import GROUP, make_groups, run_rows
 from assess.motion.sweep import Single
 from assess.motion.target import Grid, Target
 from assess.motion.target_fit import Fit, Spectra, measure_match
@@ -71,24 +71,19 @@ class Generator:
         CancelledError
             If the caller stops the work.
         """
-        start, end = first // GROUP, -(-(first + count) // GROUP)
-        motions = np.empty(((end - start) * GROUP, self.grid.count), np.float32)
 
-        def make(at: int) -> None:
-            rows, number = motions[at * GROUP : (at + 1) * GROUP], (start + at) * GROUP
-            if number < len(self.made):
-                rows[:] = self.made[number : number + GROUP]
-            else:
-                self.recipe.make(self._draw(start + at), rows, self.progress)
+        def make(group: int) -> Single:
+            if group * GROUP < len(self.made):
+                return self.made[group * GROUP : (group + 1) * GROUP]
+            noise = draw_noise(
+                self.target.envelopes, self.grid, seed=self.seed, axis=self.axis, group=group, progress=self.progress,
+                signs=self.signs,
+            )  # fmt: skip
+            motions = np.empty((GROUP, self.grid.count), np.float32)
+            self.recipe.make(noise, motions, self.progress)
+            return motions
 
-        run_rows(make, end - start, self.threads, self.progress)
-        return motions[first - start * GROUP :][:count]
-
-    def _draw(self, group: int) -> Transforms:
-        return draw_noise(
-            self.target.envelopes, self.grid, seed=self.seed, axis=self.axis, group=group, progress=self.progress,
-            signs=self.signs,
-        )  # fmt: skip
+        return make_groups(make, first, count, self.grid.count, self.threads, self.progress)
 
 
 def build_generator(

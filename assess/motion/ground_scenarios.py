@@ -18,9 +18,7 @@ import hashlib
 import io
 import re
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -29,9 +27,8 @@ from numpy.typing import NDArray
 
 from assess.errors import InputError
 from assess.hazard import FAR, find_distance
-from assess.i18n import Text, fill, join, nfill
-from assess.input_file import read_input
-from assess.motion.site_ground import SiteGround
+from assess.i18n import Text, fill, nfill
+from assess.motion.site_ground import SiteGround, naming, read_again, read_ground_file
 from assess.units import GRAVITY
 
 FloatArray = NDArray[np.float64]
@@ -143,7 +140,12 @@ class GroundScenarios:
             pgv=medians["gmv_PGV"] / 100 if "gmv_PGV" in medians else None,
             psa=tuple((period, medians[name] * GRAVITY) for name, period in _list_psa(self.measures)),
             dispersion=dispersion,
-            dispersion_source=_name_dispersion(len(logs), self.file),
+            dispersion_source=nfill(
+                "{file} holds {n:,} scenario alone",
+                "standard deviation of {n:,} scenarios of {file}",
+                len(logs),
+                file=self.file,
+            ),
             distance=distance,
             scenarios=tuple(float(one) for one in numbers),
             facts=(
@@ -155,13 +157,7 @@ class GroundScenarios:
         )
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _read_again, (self.path, self.sha256)
-
-
-def _name_dispersion(count: int, file: str) -> Text:
-    return nfill(
-        "{file} holds {n:,} scenario alone", "standard deviation of {n:,} scenarios of {file}", count, file=file
-    )
+        return read_again, (read_scenarios, self.path, self.sha256)
 
 
 def _list_cautions(distance: float, dispersion: float) -> Iterator[Text]:
@@ -172,14 +168,6 @@ def _list_cautions(distance: float, dispersion: float) -> Iterator[Text]:
             "the scenarios do not differ at the building: the motion of the ground is taken as known, so that ranges "
             "leave out how much it varies from one earthquake like this one to the next"
         )
-
-
-@lru_cache(maxsize=2)
-def _read_again(path: Path, sha256: str) -> GroundScenarios:
-    found = read_scenarios(path)
-    if found.sha256 != sha256:
-        raise InputError(fill("{file} has changed since the run began: start it again.", file=path.name))
-    return found
 
 
 def _list_psa(measures: Sequence[str]) -> list[tuple[str, float]]:
@@ -201,18 +189,25 @@ def read_scenarios(folder: Path) -> GroundScenarios:
         line where there is one.
     """
     folder = folder.resolve()
-    sites_file = _find_sites_file(folder)
+    sites_file = next((name for name in SITES if (folder / name).is_file()), None)
+    if sites_file is None or not (folder / VALUES).is_file():
+        missing = " or ".join(SITES) if (folder / VALUES).is_file() else VALUES
+        raise InputError(fill("{folder}: the folder has no {file}", folder=folder.name, file=missing))
     texts: dict[str, int] = {}
     sites, data = _read_table(folder / sites_file, texts), _read_table(folder / VALUES, texts)
-    with _naming(VALUES):
-        key, measures = _find_key(data, sites, sites_file), _list_measures(data)
+    with naming(VALUES):
+        key = _find_key(data, sites, sites_file)
+        pgv = ("gmv_PGV",) if "gmv_PGV" in data.headings else ()
+        measures = ("gmv_PGA", *pgv, *(name for name, _ in _list_psa(data.headings)))
         _check_values(data, measures)
-    with _naming(sites_file):
+    with naming(sites_file):
         names, latitude, longitude = _read_sites(sites, key)
-    with _naming(VALUES):
+    with naming(VALUES):
         rows, order = _sort_rows(data, key, names, sites_file)
         events = data.numbers[order, data.column("event_id")].astype(np.int64)
-        _check_events(rows, events)
+        again = (np.diff(rows) == 0) & (np.diff(events) == 0)
+        if again.any():
+            raise InputError(fill("event {event} is there twice at a site", event=int(events[int(again.argmax())])))
     hashes = data.sha256, sites.sha256
     return GroundScenarios(
         file=VALUES,
@@ -228,24 +223,6 @@ def read_scenarios(folder: Path) -> GroundScenarios:
         measures=measures,
         event_count=int(np.unique(events).size),
     )
-
-
-@contextmanager
-def _naming(file: str) -> Iterator[None]:
-    """Have errors name a file."""
-    try:
-        yield
-    except InputError as error:
-        raise InputError(join(": ", (file, error.message))) from None
-
-
-def _find_sites_file(folder: Path) -> str:
-    """Return the name of the file of the sites; InputError where that or the values are missing."""
-    sites_file = next((name for name in SITES if (folder / name).is_file()), None)
-    if sites_file is None or not (folder / VALUES).is_file():
-        missing = " or ".join(SITES) if (folder / VALUES).is_file() else VALUES
-        raise InputError(fill("{folder}: the folder has no {file}", folder=folder.name, file=missing))
-    return sites_file
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -272,13 +249,9 @@ class _Table:
 
 def _read_table(path: Path, texts: dict[str, int]) -> _Table:
     """Return the table of a file; custom_site_id, which is a text, by the number that `texts` gives it."""
-    try:
-        data = read_input(path, LARGEST_FILE)
-        with _naming(path.name):
-            return _parse_table(data, texts)
-    except OSError as error:
-        why = error.strerror or str(error)
-        raise InputError(fill("{file}: the file cannot be read ({why})", file=path.name, why=why)) from None
+    data = read_ground_file(path, LARGEST_FILE)
+    with naming(path.name):
+        return _parse_table(data, texts)
 
 
 def _parse_table(data: bytes, texts: dict[str, int]) -> _Table:
@@ -399,12 +372,6 @@ def _read_sites(sites: _Table, key: str) -> tuple[FloatArray, FloatArray, FloatA
     return names[order], latitude[order], longitude[order]
 
 
-def _list_measures(data: _Table) -> tuple[str, ...]:
-    """Return the columns of measures that are used, PGA first."""
-    psa = [name for name, _ in _list_psa(data.headings)]
-    return ("gmv_PGA", *(("gmv_PGV",) if "gmv_PGV" in data.headings else ()), *psa)
-
-
 def _check_values(data: _Table, measures: Sequence[str]) -> None:
     for name in measures:
         values = data.numbers[:, data.column(name)]
@@ -437,10 +404,3 @@ def _sort_rows(data: _Table, key: str, names: FloatArray, sites_file: str) -> tu
         raise InputError(fill("line {line}: its {key} is not in {file}", line=line, key=key, file=sites_file))
     order = np.lexsort((events, at))
     return at[order], order
-
-
-def _check_events(rows: NDArray[np.intp], events: NDArray[np.int64]) -> None:
-    again = (np.diff(rows) == 0) & (np.diff(events) == 0)
-    if again.any():
-        event = int(events[int(again.argmax())])
-        raise InputError(fill("event {event} is there twice at a site", event=event))

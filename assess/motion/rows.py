@@ -3,6 +3,9 @@
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
+import numpy as np
+from numpy.typing import NDArray
+
 from assess.progress import Progress
 
 GROUP = 20
@@ -30,3 +33,17 @@ def run_groups(work: Callable[[slice], object], count: int, threads: int, progre
     """Call `work` with the rows of each group of `count` motions, in `threads` threads."""
     groups = -(-count // GROUP)
     run_rows(lambda at: work(slice(at * GROUP, min((at + 1) * GROUP, count))), groups, threads, progress)
+
+
+def make_groups(
+    make: Callable[[int], NDArray[np.float32]], first: int, count: int, samples: int, threads: int, progress: Progress
+) -> NDArray[np.float32]:
+    """Return motions `first` to `first + count - 1`, (count, samples); `make` returns a whole group by its number."""
+    start, end = first // GROUP, -(-(first + count) // GROUP)
+    motions = np.empty(((end - start) * GROUP, samples), np.float32)
+
+    def fill(at: int) -> None:
+        motions[at * GROUP : (at + 1) * GROUP] = make(start + at)
+
+    run_rows(fill, end - start, threads, progress)
+    return motions[first - start * GROUP :][:count]

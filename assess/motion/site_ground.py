@@ -1,9 +1,15 @@
 """How strongly the ground shakes at a place: what a ShakeMap and computed scenarios have in common."""
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from functools import lru_cache
+from pathlib import Path
+from typing import Literal, Protocol, TypeVar
 
-from assess.i18n import Text
+from assess.errors import InputError
+from assess.i18n import Text, fill, join
+from assess.input_file import read_input
 from assess.motion.spatial_field import Measure
 
 
@@ -65,3 +71,33 @@ class GroundField(Protocol):
     def at(self, latitude: float, longitude: float) -> SiteGround:
         """Return the shaking at a place [deg]; InputError where it does not cover the place."""
         ...
+
+
+Field = TypeVar("Field", bound=GroundField)
+
+
+@lru_cache(maxsize=2)
+def read_again(read: Callable[[Path], Field], path: Path, sha256: str) -> Field:
+    """Return what `read` makes of a path, once a process; InputError where its hash is another one by now."""
+    found = read(path)
+    if found.sha256 != sha256:
+        raise InputError(fill("{file} has changed since the run began: start it again.", file=path.name))
+    return found
+
+
+@contextmanager
+def naming(file: str) -> Iterator[None]:
+    """Have errors name a file."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(join(": ", (file, error.message))) from None
+
+
+def read_ground_file(path: Path, most: int) -> bytes:
+    """Return the bytes of a file, but no more than show that it has over `most`; InputError if it cannot be read."""
+    try:
+        return read_input(path, most)
+    except (OSError, ValueError) as error:  # ValueError: a zero character in the name
+        why = getattr(error, "strerror", None) or str(error)
+        raise InputError(fill("{file}: the file cannot be read ({why})", file=path.name, why=why)) from None

@@ -51,31 +51,23 @@ class Suite:
         """
         chosen = [motion for _, motion in self.motions[first : first + count]]
         return [
-            (_stack([_scaled(motion, pfa) for motion in alike]), step)
+            (_stack([motion.acceleration * (1.0 if pfa is None else pfa / motion.pfa) for motion in alike]), step)
             for step, alike in groupby(chosen, key=lambda motion: motion.time_step)
         ]
 
     def scaled_spectra(self, pfa: float | None = None, *, progress: Progress = SILENT) -> Spectra:
         """Return the spectra of the first 100 motions, each scaled to a `pfa` [m/s2] where one is given."""
+        from assess.motion.spectrum import build_periods, pseudo_acceleration
+
         if not self._found:
-            self._found.append(self._find_spectra(progress))
+            periods = build_periods(SPECTRUM_FROM, SPECTRUM_TO, SPECTRUM_COUNT)
+            batches = self.realise(0, MOST_SPECTRA)
+            found = [pseudo_acceleration(batch, step, periods, progress=progress) for batch, step in batches]
+            self._found.append((periods, np.concatenate(found)))
         periods, ordinates = self._found[0]
         if pfa is not None:
             ordinates = ordinates * np.array([[pfa / motion.pfa] for _, motion in self.motions[:MOST_SPECTRA]])
         return Spectra(periods=periods, ordinates=ordinates.astype(np.float32))
-
-    def _find_spectra(self, progress: Progress) -> tuple[FloatArray, FloatArray]:
-        """Return periods [s] and spectra [m/s2] of the motions as they are."""
-        from assess.motion.spectrum import build_periods, pseudo_acceleration
-
-        periods = build_periods(SPECTRUM_FROM, SPECTRUM_TO, SPECTRUM_COUNT)
-        batches = self.realise(0, MOST_SPECTRA)
-        found = [pseudo_acceleration(batch, step, periods, progress=progress) for batch, step in batches]
-        return periods, np.concatenate(found)
-
-
-def _scaled(motion: Motion, pfa: float | None) -> FloatArray:
-    return motion.acceleration if pfa is None else motion.acceleration * (pfa / motion.pfa)
 
 
 def _stack(rows: list[FloatArray]) -> FloatArray:

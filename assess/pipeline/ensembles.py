@@ -195,14 +195,13 @@ class SuiteEnsemble:
         """Take them as they are."""
         pfa = self.demand.pfa if self.is_scaled else None
         spectra = self.suite.scaled_spectra(pfa, progress=progress)
-        is_weak = self.is_weak
-        if self.is_scaled or self.factor == 1.0:
-            return OpenMotions(lambda first, count: self.suite.realise(first, count, pfa), None, spectra, is_weak)
-        spectra = replace(spectra, ordinates=spectra.ordinates * np.float32(self.factor))
-        return OpenMotions(self._realise_scaled, None, spectra, is_weak)
+        factor = 1.0 if self.is_scaled else self.factor
 
-    def _realise_scaled(self, first: int, count: int) -> list[tuple[FloatArray, float]]:
-        return [(self.factor * batch, step) for batch, step in self.suite.realise(first, count)]
+        def make(first: int, count: int) -> list[tuple[FloatArray, float]]:
+            return [(factor * batch, step) for batch, step in self.suite.realise(first, count, pfa)]
+
+        spectra = replace(spectra, ordinates=spectra.ordinates * np.float32(factor))
+        return OpenMotions(make, None, spectra, self.is_weak)
 
 
 FloorEnsemble = GeneratedEnsemble | DrawnEnsemble | SuiteEnsemble

@@ -31,13 +31,6 @@ def nothing_kept(monkeypatch: pytest.MonkeyPatch) -> None:
 # --- rates ---
 
 
-def test_the_transforms_have_room_for_what_rings_on() -> None:
-    rates = find_rates(GRID)
-    assert rates.length >= 2000 + 20 / STEP
-    assert rates.frequencies[-1] == pytest.approx(100.0, rel=1e-3)
-    assert all(rates.length % depth == 0 for depth in rates.depths)
-
-
 @pytest.mark.parametrize("time_step", [0.0025, 0.005, 0.01, 0.02])
 def test_an_octaves_own_rate_holds_its_frequencies(time_step: float) -> None:
     """What is left of its weight beyond the Nyquist frequency of its rate is nothing."""
