@@ -21,6 +21,7 @@ from assess.errors import InputError
 from assess.i18n import fill
 from assess.plain_text import plain_line
 from assess.portfolio.background import read_background
+from assess.portfolio.index_file import COLUMNS
 from assess.portfolio.table_schemas import MADE_UP
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.schema import CATALOGUE
@@ -31,7 +32,6 @@ BUILDINGS, UNSURVEYED = 220, 8
 """Buildings of the city, and those of them that stand in the index alone, without a survey."""
 SEED = 19891017
 SCENARIO = "Loma Prieta, 17 October 1989, by the ShakeMap of the U.S. Geological Survey. The building is made up."
-HEADS = ("path", "building", "latitude", "longitude", "use", "storeys", "height_m", "floor_area_m2", "ground_pga_g")
 _TEXT = """# A made-up city under a real earthquake
 
 {buildings} buildings around San Francisco Bay. **The ground motion is real**: `grid.xml` is the ShakeMap of the U.S.
@@ -222,7 +222,7 @@ def _write_index(path: Path, city: list[Building]) -> None:
     """Write the index: of a building with a workbook its floor area alone, which the workbook does not hold."""
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(HEADS)
+        writer.writerow(COLUMNS)
         for one in city:
             known: tuple[Any, ...] = ("", "", "", "", "", "")
             if not one.path:

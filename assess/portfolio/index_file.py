@@ -5,7 +5,7 @@ import difflib
 import io
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -31,10 +31,10 @@ MOST_LINES = 10
 
 _NUMBER = re.compile(r"([+-]?)(\d[\d.,' ]*|[.,]\d+)(e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
 _FIELDS: Mapping[str, str] = {
-    "latitude": "latitude", "longitude": "longitude", "storeys": "storeys", "height_m": "height",
-    "ground_pga_g": "ground_pga",
+    "building": "building", "latitude": "latitude", "longitude": "longitude", "use": "use", "storeys": "storeys",
+    "height_m": "height", "ground_pga_g": "ground_pga",
 }  # fmt: skip
-"""Numbers of the index, and the line of the sheet Building that each fills in, whose limits hold."""
+"""Columns of the index, and the line of the sheet Building that each fills in, whose limits hold for numbers."""
 _LARGEST_AREA = 10_000_000.0
 """Gross floor area [m2] above which a number is a slip."""
 
@@ -72,21 +72,11 @@ class IndexRow:
 
     def as_building(self) -> dict[str, Any]:
         """Return what it fills in of the sheet Building, in the units of an empty workbook, blanks left out."""
-        values = {
-            "building": self.building,
-            "latitude": self.latitude,
-            "longitude": self.longitude,
-            "use": self.use,
-            "storeys": self.storeys,
-            "height": self.height_m,
-            "ground_pga": self.ground_pga_g,
-        }
-        return {name: value for name, value in values.items() if value not in (None, "")}
+        values = {field: getattr(self, name) for name, field in _FIELDS.items()}
+        return {field: value for field, value in values.items() if value not in (None, "")}
 
 
-COLUMNS = (
-    "path", "building", "latitude", "longitude", "use", "storeys", "height_m", "floor_area_m2", "ground_pga_g",
-)  # fmt: skip
+COLUMNS = tuple(one.name for one in fields(IndexRow) if one.name != "line")
 _TEXTS = ("path", "building", "use")
 
 
@@ -126,26 +116,20 @@ def _read_text(file: Path) -> str:
 
 
 def _split(text: str) -> Iterator[tuple[int, list[str]]]:
-    """Yield the cells of each line that is neither blank nor a comment, with its number."""
+    """Yield the cells of each line that is neither blank nor a comment, without spaces around them, with its number."""
     numbered = enumerate(io.StringIO(text, newline=None), 1)
     lines = [(number, line.rstrip("\n")) for number, line in numbered if line.strip() and not is_comment(line)]
     heading = lines[0][1] if lines else ""
     mark = next((one for one in "\t;" if one in heading), ",")
     for number, line in lines:
-        cells = _cut(number, line, mark)
-        if any(cells):
-            yield number, cells
-
-
-def _cut(number: int, line: str, mark: str) -> list[str]:
-    """Return the cells of a line, without spaces around them."""
-    try:
-        (cells,) = csv.reader([line], delimiter=mark, strict=True)
-    except csv.Error as error:
-        raise InputError(_describe_cut(number, str(error))) from None
-    if any(len(cell) > LONGEST for cell in cells):
-        raise InputError(fill("line {line}: a cell is longer than {most:,} characters.", line=number, most=LONGEST))
-    return [cell.strip() for cell in cells]
+        try:
+            (cells,) = csv.reader([line], delimiter=mark, strict=True)
+        except csv.Error as error:
+            raise InputError(_describe_cut(number, str(error))) from None
+        if any(len(cell) > LONGEST for cell in cells):
+            raise InputError(fill("line {line}: a cell is longer than {most:,} characters.", line=number, most=LONGEST))
+        if any(cell.strip() for cell in cells):
+            yield number, [cell.strip() for cell in cells]
 
 
 def _describe_cut(line: int, why: str) -> Text:
@@ -193,7 +177,10 @@ def _read_heading(line: int, heading: Sequence[str]) -> list[str]:
         names.pop()
     for name, cell in zip(names, heading, strict=False):
         if name not in COLUMNS:
-            raise InputError(_describe_unknown(line, name, cell))
+            fault = fill("line {line}: {name!r} is an unknown column", line=line, name=cell[:40])
+            if near := difflib.get_close_matches(name, COLUMNS, 1, 0.6):
+                raise InputError(join(". ", (fault, fill("Did you mean {name}?", name=near[0]))))
+            raise InputError(join(", ", (fault, fill("expected some of: {names}", names=", ".join(COLUMNS)))))
         if names.count(name) > 1:
             raise InputError(fill("line {line}: the column {name} is there twice.", line=line, name=name))
     if not {"path", "building"} & set(names):
@@ -203,30 +190,19 @@ def _read_heading(line: int, heading: Sequence[str]) -> list[str]:
     return names
 
 
-def _describe_unknown(line: int, name: str, cell: str) -> Text:
-    fault = fill("line {line}: {name!r} is an unknown column", line=line, name=cell[:40])
-    near = difflib.get_close_matches(name, COLUMNS, 1, 0.6)
-    if near:
-        return join(". ", (fault, fill("Did you mean {name}?", name=near[0])))
-    return join(", ", (fault, fill("expected some of: {names}", names=", ".join(COLUMNS))))
-
-
 def _read_row(line: int, names: Sequence[str], cells: Sequence[str], faults: list[Text]) -> IndexRow:
     """Return a row; what is wrong with it is added to `faults`."""
     if any(cells[len(names) :]):
         faults.append(fill("line {line}: there are more cells than headings.", line=line))
+    given = {name: text for name, text in zip(names, cells, strict=False) if text}
     values: dict[str, Any] = {}
-    for name, text in zip(names, cells, strict=False):
-        if text and name in _TEXTS:
-            values[name] = text
-        elif text:
-            try:
-                values[name] = _read_number(name, text)
-            except InputError as error:
-                faults.append(join(": ", (fill("line {line}", line=line), error.message)))
-    if not values.get("path") and not values.get("building"):
+    for name, text in given.items():
+        try:
+            values[name] = text if name in _TEXTS else _read_number(name, text)
+        except InputError as error:
+            faults.append(join(": ", (fill("line {line}", line=line), error.message)))
+    if not {"path", "building"} & set(given):
         faults.append(fill("line {line}: give a path, or the name of a building without a survey.", line=line))
-    given = {name for name, text in zip(names, cells, strict=False) if text}
     if ("latitude" in given) != ("longitude" in given):
         faults.append(fill("line {line}: give both latitude and longitude, or neither.", line=line))
     return IndexRow(line=line, **values)
@@ -238,67 +214,57 @@ def _read_number(name: str, text: str) -> float | int:
     digits = read_digits(match[2].rstrip()) if match else []
     if match is None or not digits:
         raise InputError(fill("{name} is {text!r}, not a number.", name=name, text=text[:40]))
-    low, high = _find_limits(name)
+    low, high = 1.0, _LARGEST_AREA
+    if name in _FIELDS:
+        column = BUILDING.column(_FIELDS[name])
+        low, high = column.low or 0.0, float("inf") if column.high is None else column.high
     readings = [float(f"{match[1]}1{match[3] or ''}") * one for one in digits]
     within = [one for one in readings if low <= one <= high]
-    if len(within) > 1:
-        raise InputError(_describe_two(name, text, within))
+    if len(within) > 1:  # both are given as they can be written: three decimals with a zero after them
+        one, other = (f"{number:.10g}" for number in within)
+        raise InputError(
+            fill(
+                "{name}: {text} can be {one:,.10g} or {other:,.10g}: write {plain_one} or {plain_other}.",
+                name=name, text=text[:40], one=within[0], other=within[1],
+                plain_one=f"{one}0" if len(read_digits(one)) > 1 else one, plain_other=other,
+            )
+        )  # fmt: skip
     value = (within or readings)[0]
     if not within:
         raise InputError(
             fill("{name} is {value:g}, expected {low:g} to {high:g}.", name=name, value=value, low=low, high=high)
         )
-    if name != "storeys":
-        return value
-    if value != int(value):
+    if name == "storeys" and value != int(value):
         raise InputError(fill("{name} is {value:g}, expected a whole number.", name=name, value=value))
-    return int(value)
-
-
-def _describe_two(name: str, text: str, readings: Sequence[float]) -> Text:
-    """Say of a number in which way it can be read, and how to write either: three decimals with a zero after them."""
-    one, other = (f"{number:.10g}" for number in readings)
-    return fill(
-        "{name}: {text} can be {one:,.10g} or {other:,.10g}: write {plain_one} or {plain_other}.",
-        name=name, text=text[:40], one=readings[0], other=readings[1],
-        plain_one=f"{one}0" if len(read_digits(one)) > 1 else one, plain_other=other,
-    )  # fmt: skip
-
-
-def _find_limits(name: str) -> tuple[float, float]:
-    if name == "floor_area_m2":
-        return 1.0, _LARGEST_AREA
-    column = BUILDING.column(_FIELDS[name])
-    return column.low or 0.0, float("inf") if column.high is None else column.high
+    return int(value) if name == "storeys" else value
 
 
 def _list_repeated(rows: Sequence[IndexRow]) -> Iterator[Text]:
     """Yield a fault for each path, and each name of a building without one, that stands there more than once."""
     paths: dict[str, list[int]] = {}
     names: dict[str, list[int]] = {}
-    for row in (one for one in rows if one.path or one.building):
-        found = paths if row.path else names
-        found.setdefault(tidy_path(row.path) if row.path else row.building, []).append(row.line)
+    for row in rows:
+        if row.path:
+            paths.setdefault(tidy_path(row.path), []).append(row.line)
+        elif row.building:
+            names.setdefault(row.building, []).append(row.line)
     for found in (paths, names):
         for name, lines in found.items():
-            if len(lines) > 1:
-                yield _describe_repeated(name, lines, is_path=found is paths)
+            if len(lines) < 2:
+                continue
+            first, last = lines[:-1], str(lines[-1])
+            if len(lines) > MOST_LINES:
+                first, last = lines[:MOST_LINES], fill("{n:,} more", n=len(lines) - MOST_LINES)
+            values = {"lines": ", ".join(map(str, first)), "last": last, "name": plain_line(name[:80])}
+            if found is paths:
+                yield fill("lines {lines} and {last} list the same workbook, {name}: keep one of them.", **values)
+            else:
+                yield fill(
+                    "lines {lines} and {last} list the same building without a workbook, {name}: keep one of them.",
+                    **values,
+                )
     for name in (one for one in names if one in paths):
         yield fill("line {line}: {name!r} is also the path of a workbook.", line=names[name][0], name=name[:80])
-
-
-def _describe_repeated(name: str, lines: Sequence[int], *, is_path: bool) -> Text:
-    last: Text | str = str(lines[-1])
-    first = lines[:-1]
-    if len(lines) > MOST_LINES:
-        first = lines[:MOST_LINES]
-        last = fill("{n:,} more", n=len(lines) - MOST_LINES)
-    values = {"lines": ", ".join(map(str, first)), "last": last, "name": plain_line(name[:80])}
-    if is_path:
-        return fill("lines {lines} and {last} list the same workbook, {name}: keep one of them.", **values)
-    return fill(
-        "lines {lines} and {last} list the same building without a workbook, {name}: keep one of them.", **values
-    )
 
 
 def tidy_path(text: str) -> str:

@@ -6,8 +6,10 @@ a building as well, `refused` with the reason, so that it is reported and does n
 
 import errno
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Literal
 
@@ -22,9 +24,6 @@ OTHER_ENDINGS = (".xls", ".xlsb", ".ods", ".numbers")
 MOST_BUILDINGS = 200_000
 OURS = {"report.xlsx": "results.json", "ranking.xlsx": "portfolio.json", "compare.xlsx": "compare.json"}
 """Workbooks that are results of `assess`, where the file that lists them lies next to them."""
-
-_Fault = tuple[Text | str, Text | str]
-"""What is wrong, and what to do about it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,8 +56,8 @@ def find_sources(source: Path, out: Path | None = None) -> tuple[Source, ...]:
     """Return the buildings of a folder, searched with the folders in it, or of an index, in the order of their paths.
 
     Left out of a folder are hidden files and folders, lock files (~$), the folder `out` and results of `assess`;
-    workbooks in other formats, such as .xls, are refused. Links
-    to workbooks inside the folder count; links that lead out of it, and links to folders, are refused.
+    workbooks in other formats, such as .xls, are refused. Links to workbooks inside the folder count; links that lead
+    out of it, and links to folders, are refused.
 
     Parameters
     ----------
@@ -86,7 +85,9 @@ def find_sources(source: Path, out: Path | None = None) -> tuple[Source, ...]:
         found = (_take_row(row, root.parent) for row in read_index(root))
     else:
         raise InputError(fill("{path} is neither a folder nor an index (.csv).", path=plain_line(str(source))))
-    listed = list(_take_first(found))
+    listed = list(islice(found, MOST_BUILDINGS + 1))
+    if len(listed) > MOST_BUILDINGS:
+        raise InputError(fill("there are more than {most:,} buildings. Split the folder.", most=MOST_BUILDINGS))
     if not listed:
         raise InputError(
             fill("{path}: there is no workbook (.xlsx or .xlsm) in this folder.", path=plain_line(str(source)))
@@ -100,16 +101,6 @@ def _resolve(path: Path) -> Path:
     except (OSError, RuntimeError, ValueError) as error:  # links in a circle; a zero character
         why = getattr(error, "strerror", None) or str(error)
         raise InputError(fill("{path} cannot be used: {why}.", path=plain_line(str(path)), why=why)) from None
-
-
-def _take_first(found: Iterable[Source]) -> Iterator[Source]:
-    for number, one in enumerate(found):
-        if number == MOST_BUILDINGS:
-            raise InputError(fill("there are more than {most:,} buildings. Split the folder.", most=MOST_BUILDINGS))
-        yield one
-
-
-# ---------------------------------------------------------------- a folder
 
 
 def _search(root: Path, out: Path | None) -> Iterator[Source]:
@@ -135,54 +126,17 @@ def _search(root: Path, out: Path | None) -> Iterator[Source]:
 
 def _take_entry(entry: "os.DirEntry[str]", path: Path, root: Path, names: set[str]) -> Source | None:
     """Return the building of an entry that is no folder; None where it is no workbook."""
-    name = _name(path, root)
-    if entry.name.lower().endswith(OTHER_ENDINGS):
-        what = _refuse_format(entry.name)
-        return Source(path=name, refused=what, fix=fill("Save it as .xlsx (Excel Workbook) and remove this file."))
+    name, lower = _name(path, root), entry.name.lower()
+    if lower.endswith(OTHER_ENDINGS):
+        fix = fill("Save it as .xlsx (Excel Workbook) and remove this file.")
+        return Source(path=name, refused=_refuse_format(lower), fix=fix)
     if entry.is_symlink() and path.is_dir():
         what = fill("it is a link to a folder, which is not searched.")
         return Source(path=name, refused=what, fix=fill("Copy the folder here."))
-    if not entry.name.lower().endswith(ENDINGS) or OURS.get(entry.name) in names:
+    if not lower.endswith(ENDINGS) or OURS.get(entry.name) in names:
         return None
-    fault, fix = _judge(path, root)
-    return Source(path=name, file=path, refused=fault, fix=fix)
-
-
-def _refuse_format(name: str) -> Text:
-    return fill("workbooks ending in {ending} are not read.", ending=Path(name.lower()).suffix)
-
-
-def _name(path: Path, root: Path) -> str:
-    """Return a path below the folder as a text; bytes that are not UTF-8 stand as escapes of their number."""
-    text = path.relative_to(root).as_posix()
-    return text.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
-
-
-def _is_link(path: Path) -> bool:
-    try:
-        return path.is_symlink()
-    except OSError:  # a name that is too long
-        return False
-
-
-def _judge(path: Path, root: Path) -> _Fault:
-    """Return why a workbook below the folder cannot be used, and what to do; "" if it can."""
-    try:
-        real = path.resolve(strict=True)
-    except (OSError, RuntimeError) as error:
-        if _is_link(path):
-            fault = fill("it is a link that leads to no file, or in a circle.")
-            return fault, fill("Copy the workbook here in place of the link.")
-        if getattr(error, "errno", None) == errno.ENOENT:
-            return fill("there is no such file."), fill("Check the name and the folder.")
-        fault = fill("the file cannot be found: {why}.", why=getattr(error, "strerror", None) or str(error))
-        return fault, fill("Check its name and its access rights.")
-    if not real.is_relative_to(root):
-        return fill("it is a link that leads out of the folder."), fill("Copy the workbook here.")
-    return ("", "") if real.is_file() else (fill("it is not a file."), fill("Check the name and the folder."))
-
-
-# ---------------------------------------------------------------- an index
+    fault, what_to_do = _judge(path, root)
+    return Source(path=name, file=path, refused=fault, fix=what_to_do)
 
 
 def _take_row(row: IndexRow, root: Path) -> Source:
@@ -191,21 +145,49 @@ def _take_row(row: IndexRow, root: Path) -> Source:
         return Source(path=row.building, kind="assumed", index=row)
     name = tidy_path(row.path)
     fault, fix = _judge_text(name)
-    file = None if fault else root / name
-    if not fault:
-        fault, fix = _judge(root / name, root)
-    return Source(path=name, file=file, index=row, refused=fault, fix=fix)
+    if fault:
+        return Source(path=name, index=row, refused=fault, fix=fix)
+    fault, fix = _judge(root / name, root)
+    return Source(path=name, file=root / name, index=row, refused=fault, fix=fix)
 
 
-def _judge_text(name: str) -> _Fault:
+def _name(path: Path, root: Path) -> str:
+    """Return a path below the folder as a text; bytes that are not UTF-8 stand as escapes of their number."""
+    text = path.relative_to(root).as_posix()
+    return text.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
+
+
+def _refuse_format(name: str) -> Text:
+    return fill("workbooks ending in {ending} are not read.", ending=Path(name).suffix)
+
+
+def _judge_text(name: str) -> tuple[Text | str, Text | str]:
     """Return why a path of an index is refused before the file system sees it, and what to do; "" if it is not."""
-    is_absolute = name.startswith("/") or name[1:2] == ":"
-    if is_absolute or ".." in name.split("/") or "\0" in name:
+    lower = name.lower()
+    if name.startswith("/") or name[1:2] == ":" or ".." in name.split("/") or "\0" in name:
         fault = fill("the path leads out of the folder of the index.")
         return fault, fill("Write it relative to that folder.")
-    if name.lower().endswith(OTHER_ENDINGS):
-        return _refuse_format(name), fill("Save it as .xlsx (Excel Workbook) and name that file.")
-    if not name.lower().endswith(ENDINGS):
+    if lower.endswith(OTHER_ENDINGS):
+        return _refuse_format(lower), fill("Save it as .xlsx (Excel Workbook) and name that file.")
+    if not lower.endswith(ENDINGS):
         fault = fill("it is not a workbook: its name has to end in .xlsx or .xlsm.")
         return fault, fill("Correct the path in the index.")
     return "", ""
+
+
+def _judge(path: Path, root: Path) -> tuple[Text | str, Text | str]:
+    """Return why a workbook below the folder cannot be used, and what to do; "" if it can."""
+    try:
+        real = path.resolve(strict=True)
+    except (OSError, RuntimeError) as error:
+        with suppress(OSError):  # a name that is too long
+            if path.is_symlink():
+                fault = fill("it is a link that leads to no file, or in a circle.")
+                return fault, fill("Copy the workbook here in place of the link.")
+        if getattr(error, "errno", None) == errno.ENOENT:
+            return fill("there is no such file."), fill("Check the name and the folder.")
+        fault = fill("the file cannot be found: {why}.", why=getattr(error, "strerror", None) or str(error))
+        return fault, fill("Check its name and its access rights.")
+    if not real.is_relative_to(root):
+        return fill("it is a link that leads out of the folder."), fill("Copy the workbook here.")
+    return ("", "") if real.is_file() else (fill("it is not a file."), fill("Check the name and the folder."))

@@ -16,12 +16,12 @@ from assess.portfolio.example_city import (
     BUILDINGS,
     COAST,
     GRID,
-    HEADS,
     INDEX,
     README,
     list_buildings,
     write_example_city,
 )
+from assess.portfolio.index_file import COLUMNS
 from tests.workbooks import UNVERIFIED
 
 
@@ -66,7 +66,7 @@ def test_every_building_stands_on_land_and_inside_the_shakemap(city):
 def test_the_folder_holds_a_workbook_a_building_the_index_and_real_ground_motion(folder):
     with (folder / INDEX).open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
-    assert tuple(rows[0]) == HEADS
+    assert tuple(rows[0]) == COLUMNS
     assert len(rows) == 28
     assert {row["path"] for row in rows} - {""} == {
         path.relative_to(folder).as_posix() for path in folder.rglob("*.xlsx")
