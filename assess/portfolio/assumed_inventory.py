@@ -14,7 +14,7 @@ least one; spread evenly over the storeys, what is left over on the upper ones, 
 height. A blank height counts as `STOREY_HEIGHT` a storey, which is assumed.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from csv import DictReader
 from dataclasses import dataclass
 from functools import cache
@@ -76,21 +76,17 @@ class AssumedInventory:
 
 @dataclass(frozen=True, slots=True)
 class _Kind:
-    """A kind of piece with its quantities a square foot and its sizes [cm]."""
+    """A kind of piece: its quantities a square foot (10 %, 50 %, 90 %), its Type, and sizes [cm] with their source."""
 
     piece: str
     type: str
     rates: tuple[float, float, float]
-    breadth: float
-    height: float
-
-    @property
-    def width(self) -> float | None:
-        return BOOKCASE_WIDTH if self.piece == "bookcase" else None
+    sizes: Mapping[str, float | None]
+    source: str
 
     def count(self, area: float) -> Quantity:
-        """Return how many an area [m2] has."""
-        low, median, high = (round_half_up(rate * area / SQUARE_FOOT) for rate in self.rates)
+        """Return how many an area [m2] has: whole pieces, of two equally near the larger."""
+        low, median, high = (int(rate * area / SQUARE_FOOT + 0.5) for rate in self.rates)
         return Quantity(low, max(median, min(high, 1)), high)
 
 
@@ -113,11 +109,27 @@ def build_assumed(row: IndexRow) -> AssumedInventory:
         text = "no inventory can be assumed without {columns}. Give it in the index, or survey the building."
         raise InputError(fill(text, columns=", ".join(missing)))
     area, storeys = row.floor_area_m2, row.storeys
-    counts = {kind: kind.count(area) for kind in _read_kinds()[use]}
-    _check(area, storeys, counts)
+    counts = [(kind, kind.count(area)) for kind in _read_kinds()[use]]
+    if not any(one.median for _kind, one in counts):
+        text = "no inventory can be assumed for a floor area of {area:g} m2: FEMA P-58 gives less than one piece."
+        raise InputError(fill(text, area=area))
+    most = int(ITEMS.column("quantity").high or 0)  # that a row of an inventory takes
+    if max(one.high for _kind, one in counts) > most * storeys:
+        text = "{area:,.0f} m2 on {storeys} storeys is more than {most:,} pieces of a kind a storey: check both."
+        raise InputError(fill(text, area=area, storeys=storeys, most=most))
     height = row.height_m or min(STOREY_HEIGHT * storeys, BUILDING.column("height").high or 0.0)
-    spread = [(kind, spread_pieces(counts[kind], storeys)) for kind in counts]
-    found = [(kind, level, one) for kind, levels in spread for level, one in enumerate(levels, 1) if one.median]
+    items: list[dict[str, Any]] = []
+    low, high = {}, {}
+    for kind, total in counts:
+        for level, one in enumerate(spread_pieces(total, storeys), 1):
+            if one.median:
+                name = f"{kind.piece} {level}"
+                low[name], high[name] = one.low, one.high
+                items.append({
+                    "item": name, "floor": str(level), "description": f"{kind.piece} (inventory assumed)",
+                    "type": kind.type, "quantity": one.median, **kind.sizes,
+                    "notes": f"inventory assumed: {_SOURCE}; {one.low} to {one.high}",
+                })  # fmt: skip
     return AssumedInventory(
         rows={
             "Building": [{"building": row.building or row.path, **row.as_building(), "height": height}],
@@ -125,11 +137,11 @@ def build_assumed(row: IndexRow) -> AssumedInventory:
                 {"floor": str(level), "elevation": round((level - 1) * height / storeys, 4)}
                 for level in range(1, storeys + 1)
             ],
-            "Items": [_list_item(*one) for one in found],
-            "Catalogue": [_list_type(kind) for kind in counts],
+            "Items": items,
+            "Catalogue": [{"type": kind.type, **kind.sizes, "source": kind.source} for kind, _total in counts],
         },
-        low={_name(kind, level): one.low for kind, level, one in found},
-        high={_name(kind, level): one.high for kind, level, one in found},
+        low=low,
+        high=high,
         problems=tuple(_describe(row, use, counts, height)),
     )
 
@@ -166,79 +178,40 @@ def _names() -> dict[str, str]:
     }
 
 
-def round_half_up(value: float) -> int:
-    """Return the nearest whole number, of two the larger."""
-    return int(value + 0.5)
-
-
 def spread_pieces(total: Quantity, storeys: int) -> list[Quantity]:
     """Return the quantities of each storey, from the lowest: even, what is left over on the upper ones.
 
     Where there are fewer pieces than storeys, those of 10 % and 90 % stand on the storeys of the median.
     """
     levels = min(storeys, total.median)
-    shares = zip(*(_share(number, levels) for number in total), strict=True)
-    return [Quantity(0, 0, 0)] * (storeys - levels) + [Quantity(*one) for one in shares]
-
-
-def _share(number: int, levels: int) -> list[int]:
-    each, rest = divmod(number, levels) if levels else (0, 0)
-    return [each + (level >= levels - rest) for level in range(levels)]
+    shares = [
+        Quantity(*(number // levels + (level >= levels - number % levels) for number in total))
+        for level in range(levels)
+    ]
+    return [Quantity(0, 0, 0)] * (storeys - levels) + shares
 
 
 @cache
 def _read_kinds() -> dict[str, tuple[_Kind, ...]]:
+    """Return the kinds of pieces by occupancy."""
     text = (files("assess.portfolio") / "p58_quantities.csv").read_text(encoding="utf-8")
-    sizes = {line["type"]: line for line in catalogue_rows()}
-    found: dict[str, list[_Kind]] = {}
+    catalogue = {line["type"]: line for line in catalogue_rows()}
+    found: dict[str, tuple[_Kind, ...]] = {}
     for line in DictReader(StringIO(text)):
-        size, rates = sizes[line["type"]], (float(line["p10"]), float(line["p50"]), float(line["p90"]))
-        kind = _Kind(line["piece"], line["type"], rates, float(size["breadth_cm"]), float(size["height_cm"]))
-        found.setdefault(line["use"], []).append(kind)
-    return {use: tuple(kinds) for use, kinds in found.items()}
+        known, rates = catalogue[line["type"]], (float(line["p10"]), float(line["p50"]), float(line["p90"]))
+        sizes = {
+            "breadth": float(known["breadth_cm"]),
+            "width": BOOKCASE_WIDTH if line["piece"] == "bookcase" else None,
+            "height": float(known["height_cm"]),
+        }
+        kind = _Kind(line["piece"], line["type"], rates, sizes, known["source"])
+        found[line["use"]] = (*found.get(line["use"], ()), kind)
+    return found
 
 
-def _check(area: float, storeys: int, counts: Mapping[_Kind, Quantity]) -> None:
-    """Raise InputError where there would be no piece, or more on a storey than a row of an inventory takes."""
-    if not any(one.median for one in counts.values()):
-        text = "no inventory can be assumed for a floor area of {area:g} m2: FEMA P-58 gives less than one piece."
-        raise InputError(fill(text, area=area))
-    most = int(ITEMS.column("quantity").high or 0)
-    if max(one.high for one in counts.values()) > most * storeys:
-        text = "{area:,.0f} m2 on {storeys} storeys is more than {most:,} pieces of a kind a storey: check both."
-        raise InputError(fill(text, area=area, storeys=storeys, most=most))
-
-
-# ---------------------------------------------------------------- rows
-
-
-def _name(kind: _Kind, level: int) -> str:
-    return f"{kind.piece} {level}"
-
-
-def _list_item(kind: _Kind, level: int, quantity: Quantity) -> dict[str, Any]:
-    return {
-        "item": _name(kind, level),
-        "floor": str(level),
-        "description": f"{kind.piece} (inventory assumed)",
-        "type": kind.type,
-        "quantity": quantity.median,
-        "breadth": kind.breadth,
-        "width": kind.width,
-        "height": kind.height,
-        "notes": f"inventory assumed: {_SOURCE}; {quantity.low} to {quantity.high}",
-    }
-
-
-def _list_type(kind: _Kind) -> dict[str, Any]:
-    source = next(line["source"] for line in catalogue_rows() if line["type"] == kind.type)
-    sizes = {"breadth": kind.breadth, "width": kind.width, "height": kind.height}
-    return {"type": kind.type, **sizes, "source": source}
-
-
-def _describe(row: IndexRow, use: str, counts: Mapping[_Kind, Quantity], height: float) -> Iterator[Problem]:
+def _describe(row: IndexRow, use: str, counts: Sequence[tuple[_Kind, Quantity]], height: float) -> Iterator[Problem]:
     """Yield that the inventory is assumed, and what else is."""
-    pieces = ", ".join(f"{count(one.median, kind.piece)} ({one.low:,} to {one.high:,})" for kind, one in counts.items())
+    pieces = ", ".join(f"{count(one.median, kind.piece)} ({one.low:,} to {one.high:,})" for kind, one in counts)
     text = fill(
         "inventory assumed: no piece of this building has been seen. {pieces}, by its use ({use}) and its gross floor "
         "area ({area:,.0f} m2) after the normative quantities of FEMA P-58 (50 %; in brackets 10 % to 90 %). Other "

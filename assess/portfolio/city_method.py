@@ -31,25 +31,22 @@ P58 = (
 
 def list_basis(city: City) -> list[tuple[str, str]]:
     """Return what the numbers rest on, as label and value: the ground motion, then the settings of the run."""
-    return [*list_facts(city), *_list_settings(city)]
-
-
-def _list_settings(city: City) -> Iterator[tuple[str, str]]:
-    settings, ground = city.settings, city.ground
-    if ground is not None:
-        yield _("SHA-256 of {file}", file=ground.file), ground.sha256
+    settings, found = city.settings, list_facts(city)
+    if city.ground is not None:
+        found.append((_("SHA-256 of {file}", file=city.ground.file), city.ground.sha256))
     simulated = {"all": _("all pieces"), "high": _("pieces of high risk, doubtful, or on routes"), "none": _("none")}
-    yield _("Simulated"), simulated[settings.verify]
+    found.append((_("Simulated"), simulated[settings.verify]))
     if settings.verify != "none":
-        yield _("Draws, seed"), f"{say_whole(int(settings.runs))}, {settings.seed}"
+        found.append((_("Draws, seed"), f"{say_whole(int(settings.runs))}, {settings.seed}"))
     if settings.scenario:
-        yield _("Motion of the floors"), settings.scenario
+        found.append((_("Motion of the floors"), settings.scenario))
     if settings.class_by:
-        yield _("Class by"), _(settings.class_by)
+        found.append((_("Class by"), _(settings.class_by)))
     if settings.scale != 1:
-        yield _("Factor on all motions"), number(settings.scale, "g")
-    yield _("Limit on the chance that a route is blocked"), words.percent(settings.route_risk)
-    yield _("Program"), f"assess {__version__}"
+        found.append((_("Factor on all motions"), number(settings.scale, "g")))
+    found.append((_("Limit on the chance that a route is blocked"), words.percent(settings.route_risk)))
+    found.append((_("Program"), f"assess {__version__}"))
+    return found
 
 
 def list_method(city: City) -> list[str]:

@@ -101,25 +101,24 @@ def list_facts(city: City) -> list[tuple[str, str]]:
 def list_group_lines(group: Group) -> list[str]:
     """Return the answer of one group, a paragraph each: falls, people, what fixing helps with its cost, assumptions."""
     parts = (_say_falls(group), _say_cannot_rock(group), _say_people(group), _say_works(group), _say_assumed(group))
-    return [text for text in (" ".join(part) for part in parts) if text]
+    return [text for text in map(" ".join, parts) if text]
 
 
 def _say_falls(group: Group) -> Iterator[str]:
     spread = group.falls
-    texts = {
-        "expected": say_number(spread.expected), "counted": say_whole(group.counted),
-        "buildings": ngettext("{n:,} building", "{n:,} buildings", group.buildings),
-    }  # fmt: skip
-    yield _("Expected to overturn: {expected} of {counted} free-standing pieces in {buildings}.", **texts)
+    yield _("Expected to overturn: {expected} of {counted} free-standing pieces in {buildings}.",
+            expected=say_number(spread.expected), counted=say_whole(group.counted),
+            buildings=ngettext("{n:,} building", "{n:,} buildings", group.buildings))  # fmt: skip
     if spread.draws:
-        yield _say_share_of_draws(group, spread)
+        yield _say_range_of_draws(group, spread)
     else:
         yield _("No range is known, as nothing was simulated: the formula takes the median of the ground motion and "
                 "leaves its uncertainty out.")  # fmt: skip
-    apart = [
-        *(ngettext("{n:,} unconfirmed", "{n:,} unconfirmed", n) for n in (group.unconfirmed,) if n),
-        *(ngettext("{n:,} by formula only", "{n:,} by formula only", n) for n in (group.by_formula,) if n),
-    ]
+    apart = []
+    if group.unconfirmed:
+        apart.append(ngettext("{n:,} unconfirmed", "{n:,} unconfirmed", group.unconfirmed))
+    if group.by_formula:
+        apart.append(ngettext("{n:,} by formula only", "{n:,} by formula only", group.by_formula))
     if apart:
         yield _("Pieces that could fall as well and are in none of these numbers: {apart}.", apart=", ".join(apart))
     if group.left_out:
@@ -129,15 +128,7 @@ def _say_falls(group: Group) -> Iterator[str]:
                        "and are in no number.", group.left_out)  # fmt: skip
 
 
-def _say_cannot_rock(group: Group) -> Iterator[str]:
-    if group.cannot_rock:
-        yield ngettext("{n:,} of the pieces is low as it cannot rock: it is too stocky, or no motion that may be drawn "
-                       "can start it.",
-                       "{n:,} of the pieces are low as they cannot rock: they are too stocky, or no motion that may be "
-                       "drawn can start them.", group.cannot_rock)  # fmt: skip
-
-
-def _say_share_of_draws(group: Group, spread: Spread) -> str:
+def _say_range_of_draws(group: Group, spread: Spread) -> str:
     """Return the range of a sum, and what it is over."""
     ends = {"low": say_whole(spread.low), "high": say_whole(spread.high)}
     if group.range_over == "known ground":
@@ -152,30 +143,30 @@ def _say_share_of_draws(group: Group, spread: Spread) -> str:
     return _("In nine of ten earthquakes like this one between {low} and {high}.", **ends)
 
 
+def _say_cannot_rock(group: Group) -> Iterator[str]:
+    if group.cannot_rock:
+        yield ngettext("{n:,} of the pieces is low as it cannot rock: it is too stocky, or no motion that may be drawn "
+                       "can start it.",
+                       "{n:,} of the pieces are low as they cannot rock: they are too stocky, or no motion that may be "
+                       "drawn can start them.", group.cannot_rock)  # fmt: skip
+
+
 def _say_people(group: Group) -> Iterator[str]:
-    if not group.occupants:
-        if sum(group.routes.values()):
-            yield _("How many people use the routes is not filled in.")
-        return
-    yield from _say_blocked_people(group)
+    people = group.people
+    if not group.occupants and any(group.routes.values()):
+        yield _("How many people use the routes is not filled in.")
+    if group.people_known:
+        yield _("Expected on blocked evacuation routes: {expected} of {occupants} people.",
+                expected=say_number(people.expected), occupants=say_whole(group.people_known))  # fmt: skip
+    if group.people_known and people.draws:
+        yield _say_range_of_draws(group, people)
+        if people.apart > 0:
+            yield _("Of the people expected on blocked routes, {apart} are in no range: their routes have no joint "
+                    "draws.", apart=say_number(people.apart))  # fmt: skip
     if group.people_not_known:
         yield ngettext("{n:,} person is on a route whose state is not known, and is in no number.",
                        "{n:,} people are on routes whose state is not known, and are in no number.",
                        group.people_not_known)  # fmt: skip
-
-
-def _say_blocked_people(group: Group) -> Iterator[str]:
-    """Yield the expected number of people on blocked routes, out of those on routes whose state is known."""
-    people = group.people
-    if not group.people_known:
-        return
-    yield _("Expected on blocked evacuation routes: {expected} of {occupants} people.",
-            expected=say_number(people.expected), occupants=say_whole(group.people_known))  # fmt: skip
-    if people.draws:
-        yield _say_share_of_draws(group, people)
-    if people.draws and people.apart > 0:
-        yield _("Of the people expected on blocked routes, {apart} are in no range: their routes have no joint draws.",
-                apart=say_number(people.apart))  # fmt: skip
 
 
 def _say_works(group: Group) -> Iterator[str]:
@@ -209,8 +200,7 @@ def say_nothing(group: Group) -> str:
         if spread.sampling_high:
             parts.append(_("An expected number of up to {high} falls would agree with that (sampling interval).",
                            high=say_number(spread.sampling_high)))  # fmt: skip
-    n = group.routes[RouteState.NOT_KNOWN]
-    if n:
+    if n := group.routes[RouteState.NOT_KNOWN]:
         parts.append(ngettext("The state of {n:,} route is not known.", "The state of {n:,} routes is not known.", n))
     return " ".join(parts)
 
@@ -220,10 +210,10 @@ def say_nothing(group: Group) -> str:
 
 def list_cautions(city: City) -> list[str]:
     """Return what a reader has to know before the numbers: what is left out, and what is in none of them."""
-    return [text for text in (*_of_buildings(city), *_of_groups(city)) if text]
+    return list(_list_cautions(city))
 
 
-def _of_buildings(city: City) -> Iterator[str]:
+def _list_cautions(city: City) -> Iterator[str]:
     if city.is_made_up:
         yield _("All buildings are made up: their places, furniture, routes, people and costs are random numbers.")
     yield from list_ground_cautions(city)
@@ -236,6 +226,15 @@ def _of_buildings(city: City) -> Iterator[str]:
                 "their uncertainties differ.")  # fmt: skip
     yield from list_setting_cautions(city)
     yield from list_copies(city)
+    if own := sum(group.own_motions for group in city.groups):
+        yield ngettext("{n:,} building has floors with a record or a PFA of their own, which may not be of this "
+                       "earthquake; its falls are in the sums.",
+                       "{n:,} buildings have floors with a record or a PFA of their own, which may not be of this "
+                       "earthquake; their falls are in the sums.", own)  # fmt: skip
+    if unplaced := sum(group.unplaced for group in city.groups):
+        yield ngettext("{n:,} building has no Latitude and Longitude: it is not on the map.",
+                       "{n:,} buildings have no Latitude and Longitude: they are not on the map, and their draws are "
+                       "fully correlated with each other, which widens the ranges.", unplaced)  # fmt: skip
 
 
 def list_ground_cautions(city: City) -> Iterator[str]:
@@ -272,20 +271,6 @@ def list_copies(city: City) -> Iterator[str]:
         yield ngettext("{n:,} workbook has the same content as another; it is counted as a building of its own.",
                        "{n:,} workbooks have the same content as others; each is counted as a building of its own.",
                        copies)  # fmt: skip
-
-
-def _of_groups(city: City) -> Iterator[str]:
-    own = sum(group.own_motions for group in city.groups)
-    if own:
-        yield ngettext("{n:,} building has floors with a record or a PFA of their own, which may not be of this "
-                       "earthquake; its falls are in the sums.",
-                       "{n:,} buildings have floors with a record or a PFA of their own, which may not be of this "
-                       "earthquake; their falls are in the sums.", own)  # fmt: skip
-    unplaced = sum(group.unplaced for group in city.groups)
-    if unplaced:
-        yield ngettext("{n:,} building has no Latitude and Longitude: it is not on the map.",
-                       "{n:,} buildings have no Latitude and Longitude: they are not on the map, and their draws are "
-                       "fully correlated with each other, which widens the ranges.", unplaced)  # fmt: skip
 
 
 # ---------------------------------------------------------------- tables

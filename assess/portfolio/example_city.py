@@ -123,25 +123,22 @@ def write_example_city(folder: Path, buildings: int = BUILDINGS) -> bool:
     folder.parent.mkdir(parents=True, exist_ok=True)
     city = list_buildings(buildings)
     is_filled = folder.exists() and (not folder.is_dir() or any(folder.iterdir()))
-    if is_filled and set(_list_files(folder)) != {*(one.path for one in city if one.path), INDEX, GRID, COAST, README}:
-        raise _refuse(folder)
-    with staging(folder.parent) as stage:
-        _write_city(stage / NEW, city)
-        if not is_filled:
+    names = {*(one.path for one in city if one.path), INDEX, GRID, COAST, README}
+    if not is_filled or set(_find_digests(folder)) == names:
+        with staging(folder.parent) as stage:
             made = stage / NEW
-            with moving():
-                if not folder.exists():
-                    made.replace(folder)
-                else:  # it is empty and stays, as somebody may stand in it
-                    for path in sorted(made.iterdir()):
-                        path.replace(folder / path.name)
-        elif _find_digests(folder) != _find_digests(stage / NEW):
-            raise _refuse(folder)
-    return not is_filled
-
-
-def _refuse(folder: Path) -> InputError:
-    return InputError(
+            _write_city(made, city)
+            if not is_filled:
+                with moving():
+                    if not folder.exists():
+                        made.replace(folder)
+                    else:  # it is empty and stays, as it may be the current folder of a terminal
+                        for path in sorted(made.iterdir()):
+                            path.replace(folder / path.name)
+                return True
+            if _find_digests(folder) == _find_digests(made):
+                return False
+    raise InputError(
         fill(
             "{folder} is not empty, and not the worked city as it was written; name a folder that does not exist yet.",
             folder=plain_line(str(folder)),
@@ -149,14 +146,10 @@ def _refuse(folder: Path) -> InputError:
     )
 
 
-def _list_files(folder: Path) -> list[str]:
-    """Return the names of all files in a folder, without those that the system hides."""
-    found = folder.rglob("*") if folder.is_dir() else ()
-    return [one.relative_to(folder).as_posix() for one in found if not (one.is_dir() or one.name.startswith("."))]
-
-
 def _find_digests(folder: Path) -> dict[str, str | None]:
-    return {name: find_digest(folder / name) for name in _list_files(folder)}
+    """Return the digests of all files in a folder by their names, without those that the system hides."""
+    found = [one for one in folder.rglob("*") if not (one.is_dir() or one.name.startswith("."))]
+    return {one.relative_to(folder).as_posix(): find_digest(one) for one in found}
 
 
 def _write_city(folder: Path, city: list[Building]) -> None:
@@ -167,8 +160,7 @@ def _write_city(folder: Path, city: list[Building]) -> None:
     _write_index(folder / INDEX, city)
     for name in (GRID, COAST):
         shutil.copyfile(resources.city_file(name), folder / name)
-    unsurveyed = sum(not one.path for one in city)
-    text = _TEXT.format(buildings=len(city), unsurveyed=unsurveyed)
+    text = _TEXT.format(buildings=len(city), unsurveyed=sum(not one.path for one in city))
     (folder / README).write_text(text, encoding="utf-8", newline="\n")
 
 
@@ -224,10 +216,8 @@ def _write_index(path: Path, city: list[Building]) -> None:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(COLUMNS)
         for one in city:
-            known: tuple[Any, ...] = ("", "", "", "", "", "")
-            if not one.path:
-                known = (one.name, one.latitude, one.longitude, one.use, one.storeys, one.height)
-            writer.writerow((one.path, *known, one.area, ""))
+            known = (one.name, one.latitude, one.longitude, one.use, one.storeys, one.height)
+            writer.writerow((one.path, *(("",) * len(known) if one.path else known), one.area, ""))
 
 
 # ---------------------------------------------------------------- a workbook
@@ -331,17 +321,12 @@ def _list_corridor(one: Building, floors: tuple[int, ...], draw: Random) -> Iter
 def _make_segment(one: Building, floor: int, draw: Random, *, is_drawn: bool) -> dict[str, Any]:
     wide = 1.4 if one.use == "Home" else 2.0
     people = {"Home": 4, "School": 60, "Hospital": 30}.get(one.use, 25)
+    ends = {"start": f"Corridor end {floor}", "end": f"{'Exit' if floor == 1 else 'Stair'} {floor}", "room": "Corridor"}
     return {
         "route": f"Way out, storey {floor}", "segment": "corridor", "floor": str(floor),
         "clear_width": round(wide + 0.8 * draw.random(), 2), "occupants": 1 + int(people * (0.5 + draw.random())),
-        **_name_ends(floor, is_drawn=is_drawn),
+        **(ends if is_drawn else {}),
     }  # fmt: skip
-
-
-def _name_ends(floor: int, *, is_drawn: bool) -> dict[str, str]:
-    if not is_drawn:
-        return {}
-    return {"start": f"Corridor end {floor}", "end": f"{'Exit' if floor == 1 else 'Stair'} {floor}", "room": "Corridor"}
 
 
 Room = tuple[str, tuple[str, ...]]
