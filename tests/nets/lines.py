@@ -116,13 +116,14 @@ def read_json(path: Path) -> list[str]:
     """Return a line a value, with its place, but for the hashes of other files."""
     record = json.loads(path.read_text(encoding="utf-8"))
     record["assess"].pop("files", None)
-    return list(_flatten(record, ""))
+    return list(flatten(record, ""))
 
 
-def _flatten(value: Any, place: str) -> Iterator[str]:
+def flatten(value: Any, place: str) -> Iterator[str]:
+    """Yield a line a value, with its place."""
     if isinstance(value, (dict, list)) and value:
         for name, part in value.items() if isinstance(value, dict) else enumerate(value):
-            yield from _flatten(part, f"{place}/{name}")
+            yield from flatten(part, f"{place}/{name}")
     else:
         yield f"{place} {value:.{_SIGNIFICANT}g}" if isinstance(value, float) else f"{place} {value}"
 

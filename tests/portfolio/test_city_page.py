@@ -48,18 +48,6 @@ def data(html):
     return _read_data(html)
 
 
-def test_the_answer_stands_first_and_keeps_assumed_buildings_apart(html):
-    answer = html[html.index('<section id="answer">') : html.index('<section id="map">')]
-    surveyed, assumed = "Surveyed buildings, simulated", "Buildings with an assumed inventory, simulated"
-    assert answer.index(surveyed) < answer.index(assumed)
-    assert re.search(r"In nine of ten earthquakes like this one between [\d,]+ and [\d,]+\.", answer)
-    assert "13 buildings could not be assessed and are in no number" in answer
-    assert "are not added up" in answer
-    assert "Bookcases and lateral files are assumed from the use and the floor area; other furniture" in answer
-    for doi in ("10.1002/eqe.922", "10.1193/070113EQS184M"):  # what the draws rest on
-        assert f"doi:{doi}" in html
-
-
 def test_no_name_becomes_markup_and_one_script_alone_may_run(html):
     assert html.count("<script") == 2
     assert "<script>alert" not in html
@@ -85,47 +73,6 @@ def test_the_data_hold_every_building_in_the_order_of_the_ranking(data, view):
     assert sorted(row[0] for row in rows) == sorted(own["item"])
     places = [int(row[8]) for row in rows if row[8]]
     assert places == sorted(places)
-
-
-def test_the_list_holds_the_share_beside_the_expected_falls(html, data, view):
-    heads = re.findall(r"<th[^>]*>([^<]*)</th>", html.split('id="ranked"')[1].split("</thead>")[0])
-    at = heads.index("Share expected to fall") - 1  # the cells begin after the name
-    assert heads[at + 2] == "Expected falls"
-    known = view.buildings.set_index("path")
-    for one in data["buildings"]:
-        if one["kind"] == "skipped":
-            assert len(one["cells"]) == len(heads) - 1
-            continue
-        own = known.loc[one["path"]]
-        share = own["expected_falls"] / (own["low"] + own["medium"] + own["high"] + own["very_high"])
-        assert float(one["cells"][at].removesuffix(" %")) == pytest.approx(100 * share, abs=0.06)
-        assert f"{one['cells'][at]}" in one["facts"]
-
-
-@pytest.mark.slow
-def test_what_is_not_known_of_a_building_stands_beside_its_numbers(view):
-    rows = view.buildings.copy()
-    first = view.ranked[0]["path"]
-    changed = {"unconfirmed": 25, "own_motions": 2, "occupants": 100, "people_not_known": 58, "routes": 3,
-               "routes_blocked": 1, "routes_not_known": 1}  # fmt: skip
-    rows.loc[rows["path"] == first, list(changed)] = list(changed.values())
-    skipped = rows["status"] == "skipped"
-    rows.loc[skipped, "building"] = "Old town hall"
-    problems = view.problems.copy()
-    problems["message"] = "long " * 100
-    routes = view.routes.assign(state="not known", probability=0.0)
-    html = render_page(replace(view, buildings=rows, problems=problems, routes=routes)).decode()
-    data = _read_data(html)
-    assert data["tables"]["routes"]["texts"][1:3] == [["? not known"], ["–"]]
-    assert any(text.startswith("free-standing: ") for text in data["tables"]["pieces"]["texts"][7]), "it is anchored"
-    cells = data["buildings"][0]["cells"]
-    people = rows.loc[rows["path"] == first, "people_blocked"].iloc[0]
-    for words in ("and up to 25 unconfirmed", f"{people:.1f} of 42; 58 on routes not known", "1; 1 not known"):
-        assert any(words in cell for cell in cells), words
-    assert any("floors with motions of their own" in cell for cell in cells)
-    part = html[html.index('<section id="skipped">') :]
-    assert f"Old town hall ({rows.loc[skipped, 'path'].min()})" in part
-    assert "long " * 100 + "Did you type metres?" in part
 
 
 def test_the_map_shows_the_share_first_and_every_view_has_its_legend(html, data):
@@ -169,7 +116,7 @@ def test_letter_case_makes_no_other_use(view):
 
 
 @pytest.mark.slow
-def test_the_summary_has_two_to_four_pages_with_the_answer_first_then_all_parts():
+def test_the_summary_of_a_large_city_has_two_to_four_pages_with_the_answer_first():
     data = render_summary(make_view(220, draws=40), read_background(city_file("coast.geojson")))
     document = pypdfium2.PdfDocument(data)
     pages = [" ".join(page.get_textpage().get_text_range().split()) for page in document]
@@ -177,15 +124,7 @@ def test_the_summary_has_two_to_four_pages_with_the_answer_first_then_all_parts(
     assert "Surveyed buildings, simulated" in pages[0]
     assert "In nine of ten earthquakes like this one between" in pages[0]
     assert "20 buildings could not be assessed" in pages[0]
-    text = " ".join(pages)
-    for words in (
-        "20 km", "by the share of its free-standing pieces that is expected to fall", "Share expected to fall",
-        "30 to 70 % of its pieces expected to fall: ", "Where to start: Surveyed buildings, simulated",
-        "Storage cabinet steel", "Skipped buildings", "Did you type metres?", "8 more are in ranking.xlsx",
-        "10.1002/eqe.922", "not per year",
-    ):  # fmt: skip
-        assert words in text, words
-    assert "highest class that any" not in text, "its map shows the share"
+    assert "8 more are in ranking.xlsx" in " ".join(pages)
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""What a city says of its ground motion, its sums, its rows and its method: no number without what it leaves out."""
+"""What a city says of its ground motion, its sums and its method, where it is not that of test_shown.py."""
 
 from dataclasses import replace
 
@@ -7,10 +7,10 @@ import pytest
 from assess.motion.ground_scenarios import read_scenarios
 from assess.portfolio import city_words as say
 from assess.portfolio.city import RunGround
-from assess.portfolio.city_method import list_basis, list_method, list_references
+from assess.portfolio.city_method import list_method, list_references
 from assess.portfolio.run_portfolio import run_portfolio
 from assess.settings import Settings
-from tests.portfolio.staged import StagedGround, write_city
+from tests.portfolio.staged import write_city
 from tests.portfolio.test_city import DRAWS, view
 
 GROUND = RunGround(kind="shakemap", file="grid.xml", sha256="12ab")
@@ -28,22 +28,6 @@ def _method(city):
 # ---------------------------------------------------------------- sums
 
 
-def test_people_are_out_of_those_on_routes_that_are_known():
-    routes = [
-        {"path": "a", "route": "A", "state": "blocked", "probability": 0.5, "occupants": 12},
-        {"path": "a", "route": "B", "state": "not known", "probability": None, "occupants": 38},
-    ]
-    city = view([{"path": "a"}], routes=routes, draws={"a": DRAWS})
-    people = next(text for text in _answer(city) if "evacuation routes" in text)
-    assert "6.0 of 12 people" in people
-    assert "38 people are on routes whose state is not known, and are in no number." in people
-    assert say.list_total_rows(city)[0][-4:] == ["6.0", "12", "0 to 10", "38"]
-    routes = [{"path": "a", "route": "B", "state": "not known", "probability": None, "occupants": 50}]
-    city = view([{"path": "a", "people_blocked": None}], routes=routes, draws={"a": [(1, 0), (2, 0)]})
-    assert "50 people are on routes whose state is not known, and are in no number." in _answer(city)
-    assert say.list_total_rows(city)[0][-4:] == ["–", "–", "–", "50"]
-
-
 def test_a_city_says_in_its_title_and_before_its_numbers_what_it_is():
     city = view([{"path": "a", "building": "Home (made up)"}], draws={"a": DRAWS})
     assert say.say_title(city) == "Furniture in an earthquake: 1 made-up building"
@@ -51,10 +35,6 @@ def test_a_city_says_in_its_title_and_before_its_numbers_what_it_is():
     real = view([{"path": "a", "building": "Home"}], draws={"a": DRAWS})
     assert say.say_title(real) == "Furniture in an earthquake: 1 building"
     assert not any("made up" in text for text in say.list_cautions(real))
-    rows = [{"path": "a"}, {"path": "b", "same_as": "a"}, {"path": "c", "status": "skipped"}]
-    copied = view(rows, draws={"a": DRAWS, "b": DRAWS})
-    assert say.say_title(copied) == "Furniture in an earthquake: 2 of 3 buildings"
-    assert "1 workbook has the same content as another" in " ".join(say.list_cautions(copied))
 
 
 def test_ranges_say_what_they_are_over():
@@ -82,69 +62,7 @@ def test_no_fall_seen_is_not_said_to_be_none_expected():
     assert "is expected" not in said
 
 
-def test_components_that_cobie_files_left_out_stand_next_to_the_sum():
-    rows = [{"path": "a", "inventory": "handover", "left_out": 9}, {"path": "b", "inventory": "handover"}]
-    (group,) = view(rows, draws={"a": DRAWS, "b": DRAWS}).groups
-    assert "9 components of the handover files were left out" in say.list_group_lines(group)[0]
-    assert say.say_falls(group.first_buildings[0]).endswith("9 left out of the COBie file")
-
-
-# ---------------------------------------------------------------- rows
-
-
-def test_what_is_not_known_stands_next_to_the_number_of_a_building():
-    for expected, unconfirmed, by_formula, said in (
-        (1.6, 0, 0, "1.6"), (1.6, 25, 0, "1.6 and up to 25 unconfirmed"),
-        (0.0, 25, 3, "0.0 and up to 25 unconfirmed, 3 by formula only"),
-    ):  # fmt: skip
-        row = {"expected_falls": expected, "unconfirmed": unconfirmed, "by_formula": by_formula, "left_out": None}
-        assert say.say_falls(row) == said
-    for blocked, occupants, not_known, said in (
-        (42.0, 100, 58, "42.0 of 42; 58 on routes not known"), (3.0, 20, 0, "3.0 of 20"),
-        (0.0, 30, 30, "not known: 30 on routes not known"), (None, 30, 30, "not known: 30 on routes not known"),
-        (None, None, None, "–"),
-    ):  # fmt: skip
-        row = {"people_blocked": blocked, "occupants": occupants, "people_not_known": not_known}
-        assert say.say_people(row) == said
-    for routes, blocked, not_known, said in ((0, 0, 0, "–"), (2, 0, 2, "not known"), (3, 1, 1, "1; 1 not known"),
-                                             (3, 0, 0, "0")):  # fmt: skip
-        row = {"routes": routes, "routes_blocked": blocked, "routes_not_known": not_known}
-        assert say.say_blocked(row) == said
-    assert say.mark_own_motions("School", {"own_motions": 2}) == "School (floors with motions of their own)"
-    assert say.name_skipped("School", "s.xlsx") == "School (s.xlsx)"
-    assert say.name_skipped(None, "s.xlsx") == say.name_skipped("s.xlsx", "s.xlsx") == "s.xlsx"
-    piece = {"risk_class": "high", "risk_class_upper": "very high", "is_held": False, "basis": "unconfirmed"}
-    assert say.label_piece(piece, "simulated") == "◌ unconfirmed (high)", "not said to be that of the formula"
-
-
 # ---------------------------------------------------------------- method
-
-
-def test_every_setting_that_changes_a_number_is_listed():
-    settings = Settings(city=True, scale=1.2, scenario="ASCE 7-22", route_risk=0.25, runs=400, seed=3)
-    city = replace(view([{"path": "a"}], draws={"a": DRAWS}), settings=settings, ground=GROUND)
-    assert {
-        ("SHA-256 of grid.xml", "12ab"), ("Simulated", "all pieces"), ("Draws, seed", "400, 3"),
-        ("Motion of the floors", "ASCE 7-22"), ("Factor on all motions", "1.2"),
-        ("Limit on the chance that a route is blocked", "25.0 %"),
-    } <= set(list_basis(city))  # fmt: skip
-    assert {
-        "The motion of every floor is multiplied by 1.2.",
-        "The motion of every floor follows ASCE 7-22, as the settings ask.",
-    } <= set(say.list_cautions(city))
-    assert "A route is open where the upper end of its chance of being blocked is below 25.0 %" in _method(city)
-    assert "doubtful below 30 %, blocked from 30 % on" in _method(city)
-    none = view([{"path": "a", "routes_open": 0, "routes_not_known": 0}], draws={"a": DRAWS})
-    assert "A route is open" not in _method(none)
-
-
-def test_the_dispersion_is_given_where_it_was_drawn_alone():
-    rows = [{"path": "a", "motion_uncertainty": 0.41}, {"path": "b", "motion_uncertainty": 0.725}]
-    city = replace(view(rows, draws={"a": DRAWS, "b": DRAWS}), ground=GROUND)
-    assert "√(β² + σ²): β the Motion uncertainty of the workbook, 0 where that is blank" in _method(city)
-    assert "It is 0.41 to 0.72." in _method(city)
-    formula = [{"path": "a", "basis": "formula", "draws": 0}]
-    assert "√(β² + σ²)" not in _method(replace(view(formula), ground=GROUND))
 
 
 def test_the_formula_is_named_and_cited_with_the_pieces_that_cannot_rock():
@@ -186,14 +104,6 @@ def test_buildings_far_from_the_sites_of_scenarios_are_counted():
         found = list(say.list_ground_cautions(city))
         assert [text[: len(start)] for text, start in zip(found, said, strict=True)] == said
         assert found == [text for text in say.list_cautions(city) if "km from" in text]
-
-
-@pytest.mark.slow
-def test_a_released_map_has_nothing_to_warn_of(tmp_path):
-    city = _run(tmp_path, (37.8,), StagedGround(tmp_path))
-    assert [one["status"] for one in city.ranked] == ["assessed"]
-    assert city.buildings["ground_distance_km"].isna().all()
-    assert (city.ground.is_known, list(say.list_ground_cautions(city))) == (False, [])
 
 
 @pytest.mark.slow
