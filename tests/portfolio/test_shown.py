@@ -144,13 +144,13 @@ def find_differences(kind: str, language: str, lines: list[str]) -> list[str]:
     return list(difflib.unified_diff(kept, "\n".join(lines).split("\n"), n=0, lineterm=""))[2:]
 
 
-CASES = [
-    pytest.param(kind, language, marks=[pytest.mark.slow] if kind == "pdf" else [])
-    for kind in (*RENDERERS, "txt") for language in LANGUAGES if (kind, language) != ("txt", "it")
-]  # fmt: skip
+CASES = [(kind, language) for kind in RENDERERS for language in LANGUAGES] + [("txt", "en")]
 
 
-@pytest.mark.parametrize(("kind", "language"), CASES)
+@pytest.mark.parametrize(
+    ("kind", "language"),
+    [pytest.param(*one, marks=[pytest.mark.slow] if one[0] == "pdf" else []) for one in CASES],
+)
 def test_outputs_say_what_they_said(kind, language, tmp_path, monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", DATE)
     found = find_differences(kind, language, show(kind, language, tmp_path))
@@ -161,8 +161,8 @@ if __name__ == "__main__":
     import tempfile
 
     os.environ["SOURCE_DATE_EPOCH"] = DATE
-    for case in CASES:
+    for kind, language in CASES:
         with tempfile.TemporaryDirectory() as box:
-            lines = show(*case.values, Path(box))
-        print(*case.values, *find_differences(*case.values, lines), sep="\n")
-        (SHOWN / f"city.{case.values[1]}.{case.values[0]}.txt").write_text("\n".join(lines), encoding="utf-8")
+            lines = show(kind, language, Path(box))
+        print(kind, language, *find_differences(kind, language, lines), sep="\n")
+        (SHOWN / f"city.{language}.{kind}.txt").write_text("\n".join(lines), encoding="utf-8")
