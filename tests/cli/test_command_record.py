@@ -4,11 +4,9 @@ import json
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from assess.motion.formats import read_channels, read_records
-from assess.motion.record import treat
+from assess.motion.formats import read_channels
 from tests.cli.calling import run
 from tests.motion.writers import THREE, csmip_v2, zipped
 
@@ -106,13 +104,6 @@ def test_a_name_with_a_hash_is_a_file_first(tmp_path):
     path = tmp_path / "set#1.csv"
     path.write_bytes(SWEEP.read_bytes())
     assert len(read_channels(str(path))) == 3
-
-
-def test_channels_come_as_they_are_and_as_treated():
-    ((name, record, motion),) = read_channels(str(ROOF))
-    assert name == ROOF.name
-    np.testing.assert_array_equal(motion.acceleration, treat(record).acceleration)
-    np.testing.assert_array_equal(record.acceleration, read_records(ROOF)[0].acceleration)
 
 
 def test_the_names_are_what_finds_the_channels_again(tmp_path):

@@ -13,6 +13,10 @@ from matplotlib.figure import Figure
 
 from assess.cli import rock_output
 from assess.cli.rock_output import describe_outcome, draw_figure, read_case
+from assess.motion.formats import read_channel
+from assess.rocking.planar import Body, follow_body
+from assess.rocking.sliding import critical_friction, peak_slip
+from assess.units import GRAVITY as G
 from tests.cli.calling import error, run
 from tests.motion.writers import THREE, csmip_v2, zipped
 
@@ -32,8 +36,8 @@ def rock(*flags: object, **options: object):
     return run("rock", *arguments, *map(str, flags))
 
 
-def document(**options):
-    done = rock("--json", **options)
+def document(*flags: object, **options: object):
+    done = rock("--json", *flags, **options)
     assert (done.exit_code, done.stderr) == (0, "")
     return json.loads(done.stdout)
 
@@ -153,18 +157,6 @@ def test_the_figure_is_written_and_the_same_twice(tmp_path, kind, magic, pfa):
     assert sorted(tmp_path.iterdir()) == paths
 
 
-def test_a_figure_that_cannot_be_put_in_its_place(tmp_path, monkeypatch):
-    def forbid(*_):
-        raise PermissionError(13, "Permission denied")
-
-    monkeypatch.setattr(Path, "replace", forbid)
-    done = rock("--json", plot=tmp_path / "x.png")
-    assert done.exit_code == 1
-    assert "x.png could not be written: Permission denied. Name another file." in done.stderr
-    assert set(json.loads(done.stdout)) == KEYS
-    assert not list(tmp_path.iterdir())
-
-
 def test_the_example_of_the_documentation_is_what_is_printed(monkeypatch):
     monkeypatch.chdir(ROOT)
     text = (ROOT / "docs" / "commands.md").read_text("utf-8")
@@ -214,16 +206,6 @@ def case(pfa=0.5, record=FLOOR, restitution=None, cg=None):
 )
 def test_outcomes_in_words(pfa, found, words):
     assert describe_outcome(case(pfa), found).startswith(words)
-
-
-def test_a_motion_is_scaled_as_a_whole():
-    own, scaled = case(None), case(0.5)
-    assert (own.factor, own.motion.pfa) == (1, own.channel.motion.pfa)
-    assert scaled.factor == pytest.approx(0.5 * 9.80665 / own.motion.pfa)
-    for name in ("acceleration", "velocity", "displacement"):
-        np.testing.assert_allclose(getattr(scaled.motion, name), scaled.factor * getattr(own.motion, name), rtol=1e-15)
-    assert scaled.motion.pfa == pytest.approx(0.5 * 9.80665, rel=1e-15)
-    np.testing.assert_array_equal(scaled.channel.motion.acceleration, own.motion.acceleration)
 
 
 def paint(one, found):
@@ -286,3 +268,133 @@ def test_names_that_look_like_mathematics_are_drawn_as_they_are(tmp_path):
     text = draw_figure(case(record=f"{path}#north"), fallen(), "svg").decode()
     assert ET.fromstring(text).tag.endswith("svg")
     assert re.search(r"\$x\$_\{", text)
+
+
+# ---------------------------------------------------------------- vertical motion, a wall and friction
+
+BASEMENT = SAMPLES / "1103.HNZ.NP.BE_a.smc"
+VERDICT = {"overturned", "max_rotation_ratio", "impacts", "overturn_time_s"}
+
+
+def rock_north(*flags: object):
+    return rock(*flags, record=f"{SWEEP}#north")
+
+
+def north(*flags: object):
+    return document(*flags, record=f"{SWEEP}#north")
+
+
+def test_without_options_nothing_is_added():
+    plain = north()
+    assert not {"wall", "vertical", "friction"} & set(plain)
+    for flags, key in ((("--wall",), "wall"), (("--friction", 0.3), "friction")):
+        found = north(*flags)
+        assert {name: found[name] for name in plain} == plain, "the verdict is that of the free block without sliding"
+        assert set(found) == {*plain, key}
+
+
+def test_friction():
+    found = north("--friction", 0.25, "--pfa", 0.5)["friction"]
+    motion = read_channel(f"{SWEEP}#north").motion
+    scaled = motion.acceleration * 0.5 * G / motion.pfa
+    assert found == {
+        "coefficient": 0.25,
+        "branch": "slide and rock",
+        "critical_friction": pytest.approx(float(critical_friction(0.4, 1.8, 0.5 * G)), rel=1e-12),
+        "outside_shenton": False,
+        "peak_slip_cm": pytest.approx(100 * peak_slip(0.25, scaled[None], motion.time_step)[0, 0], rel=1e-9),
+    }
+    assert found["peak_slip_cm"] > 1
+    branches = [north("--friction", mu, "--pfa", 0.5)["friction"]["branch"] for mu in (0.2, 0.6)]
+    assert branches == ["slide", "rock"]
+    rests = north("--friction", 0.6, "--pfa", 0.1)["friction"]
+    assert (rests["branch"], rests["critical_friction"], rests["peak_slip_cm"]) == ("rest", None, 0)
+
+
+def test_a_wall_on_either_side():
+    found = north("--wall")["wall"]
+    body, motion = Body.rectangular(0.4, 1.8), read_channel(f"{SWEEP}#north").motion
+    assert found["rebound"] == pytest.approx(float(body.rebound), rel=1e-12)
+    for where, away in (("negative_side", 1), ("positive_side", -1)):
+        one = follow_body(body, motion.acceleration, motion.time_step, away=away)
+        assert set(found[where]) == VERDICT
+        assert found[where]["overturned"] == one.overturned
+        assert found[where]["max_rotation_ratio"] == pytest.approx(one.rotation, rel=1e-6)
+    assert found["negative_side"]["max_rotation_ratio"] != found["positive_side"]["max_rotation_ratio"]
+
+
+def test_vertical_motion():
+    found, plain = north("--vertical", f"{SWEEP}#up", "--pfa", 0.29), north("--pfa", 0.29)
+    across, up = (read_channel(f"{SWEEP}#{name}").motion for name in ("north", "up"))
+    factor = 0.29 * G / across.pfa
+    one = follow_body(
+        Body.rectangular(0.4, 1.8), across.acceleration * factor, across.time_step, vertical=up.acceleration * factor
+    )
+    assert found["max_rotation_ratio"] == pytest.approx(one.rotation, rel=1e-6)
+    assert found["max_rotation_ratio"] != pytest.approx(plain["max_rotation_ratio"], rel=1e-3)
+    assert found["vertical"]["pfa_g"] == pytest.approx(factor * up.pfa / G, rel=1e-12)
+    assert found["vertical"]["without"] == {name: plain[name] for name in VERDICT}
+    assert north("--vertical", SWEEP, "--pfa", 0.29) == found, "the only vertical channel of a file needs no name"
+
+
+def test_a_vertical_channel_with_another_time_step(tmp_path):
+    """The same straight lines with three times as many points."""
+    across, up = (read_channel(f"{SWEEP}#{name}").motion for name in ("north", "up"))
+    size = 3 * (up.acceleration.size - 1) + 1
+    fine = np.interp(np.arange(size) / 3, np.arange(up.acceleration.size), up.acceleration)
+    lines = ["# corrected: yes", "time [s], up [m/s2]"]
+    lines += [f"{at * up.time_step / 3:.9f}, {value:.17g}" for at, value in enumerate(fine)]
+    (tmp_path / "fine.csv").write_text("\n".join(lines), encoding="utf-8")
+    usual, found = north("--vertical", SWEEP), north("--vertical", tmp_path / "fine.csv")
+    assert found["max_rotation_ratio"] == pytest.approx(usual["max_rotation_ratio"], rel=1e-6)
+    assert across.time_step == up.time_step
+
+
+def test_the_walls_verdicts_hold_the_vertical_motion():
+    both, alone = north("--vertical", SWEEP, "--wall", "--pfa", 0.29), north("--wall", "--pfa", 0.29)
+    assert both["wall"]["negative_side"] != alone["wall"]["negative_side"]
+
+
+@pytest.mark.slow
+def test_the_figure_is_of_the_outcome(tmp_path):
+    drawn = {}
+    for name, flags in (("plain", ()), ("vertical", ("--vertical", SWEEP)), ("wall", ("--wall",))):
+        assert rock_north("--pfa", 0.29, "--plot", tmp_path / f"{name}.svg", *flags).exit_code == 0
+        drawn[name] = (tmp_path / f"{name}.svg").read_bytes()
+    assert drawn["wall"] == drawn["plain"] != drawn["vertical"]
+
+
+@pytest.mark.parametrize(
+    ("flags", "message"),
+    [
+        (("--friction", 0), "--friction is 0, expected 0.01 to 2"),
+        (("--friction", -0.3), "--friction is -0.3, expected 0.01 to 2"),
+        (("--friction", 2.01), "--friction is 2.01, expected 0.01 to 2"),
+        (("--friction", "nan"), "--friction is nan, expected 0.01 to 2"),
+        (("--friction", "much"), "Invalid value for '--friction'"),
+        (("--vertical", f"{SWEEP}#east"), "--vertical: made-up-sweep.csv#east is a horizontal channel: choose the"),
+        (("--vertical", FLOOR), "--vertical: 0165a_u.smc is a horizontal channel: choose the vertical one"),
+        (("--vertical", f"{SWEEP}#west"), "made-up-sweep.csv has no channel 'west'"),
+        (("--vertical", "none.csv"), "none.csv: there is no such file"),
+        (("--vertical", BASEMENT), "horizontal one 12.00 s: give the vertical channel of the same recording"),
+        (("--vertical", SWEEP, "--pfa", 4), "--vertical: the vertical acceleration is -1.33 g, expected above -1 g"),
+    ],
+)
+def test_bad_vertical_channels_and_frictions_are_named(flags, message):
+    assert message in error(rock_north(*flags))
+
+
+@pytest.mark.parametrize(
+    ("columns", "message"),
+    [
+        (
+            "north [g], east [g]",
+            "--vertical: made.csv holds no vertical channel: it holds made.csv#north, made.csv#east",
+        ),
+        ("up [g], down [g]", "--vertical: made.csv holds 2 vertical channels: name one of made.csv#up, made.csv#down"),
+    ],
+)
+def test_files_without_one_vertical_channel(tmp_path, columns, message):
+    rows = [f"{at / 100}, {math.sin(at / 10):.4f}, {math.cos(at / 10):.4f}" for at in range(1201)]
+    (tmp_path / "made.csv").write_text("\n".join([f"time [s], {columns}", *rows]), encoding="utf-8")
+    assert message in error(rock_north("--vertical", tmp_path / "made.csv"))

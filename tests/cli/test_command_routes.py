@@ -292,19 +292,6 @@ def test_a_workbook_without_routes(tmp_path):
     assert "w.xlsx has no routes: fill in the sheet Routes." in error(run("routes", path))
 
 
-def test_a_file_that_cannot_be_put_in_its_place(tmp_path, monkeypatch):
-    def forbid(*_):
-        raise PermissionError(13, "Permission denied")
-
-    path = write(tmp_path, Items=[{"item": "a", "floor": "1", "breadth": 40, "height": 180}])
-    monkeypatch.setattr(Path, "replace", forbid)
-    done = run("routes", path, "--json", "--csv", tmp_path / "t.csv")
-    assert done.exit_code == 1
-    assert "t.csv could not be written: Permission denied. Name another file." in done.stderr
-    assert len(json.loads(done.stdout)["routes"]) == 3
-    assert sorted(one.name for one in tmp_path.iterdir()) == ["slow.csv", "w.xlsx"]
-
-
 # --- the option of assess run, and the help ---
 
 

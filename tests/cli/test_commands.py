@@ -11,48 +11,17 @@ import pytest
 from typer.testing import CliRunner
 
 import assess
-import assess.cli
 from assess.cli import command_doctor
 from assess.cli.app import app, find_commands
 from assess.cli.command_doctor import Requirement
 from assess.cli.console import _list_options
 from assess.extras import say_install
-from assess.methods import all_methods
 from tests.waiting import PATIENCE
 from tests.workbooks import write
 
 run = CliRunner().invoke
 RUN = ("run", "--verify", "none")
 ROOT = Path(__file__).parents[2]
-
-
-COMMANDS = [
-    "new",
-    "check",
-    "import",
-    "open",
-    "run",
-    "portfolio",
-    "compare",
-    "export",
-    "fragility",
-    "routes",
-    "rock",
-    "record",
-    "study",
-    "methods",
-    "doctor",
-]
-
-
-def test_every_file_of_a_command_is_one_and_is_in_the_help_in_order():
-    files = Path(assess.cli.__file__).parent.glob("command_*.py")
-    assert sorted(f"command_{name}" for name in COMMANDS) == sorted(file.stem for file in files)
-    text = run(app, ["--help"]).output
-    assert (
-        re.findall(r"^  (\w+)\s", text.partition("Commands:")[2].partition("Start here:")[0], re.MULTILINE) == COMMANDS
-    )
-    assert "--install-completion" in text
 
 
 def test_the_help_of_each_command_has_examples_that_show_its_options():
@@ -182,13 +151,6 @@ def test_a_scenario_is_accepted_in_any_spelling(tmp_path):
     assert done.exit_code == 0, done.stderr
     found = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
     assert found["assess"]["settings"]["scenario"] == "ASCE 7-22"
-
-
-def test_methods_lists_every_method():
-    text = run(app, ["methods"]).output
-    for method in all_methods():
-        assert f"{method.key}: {method.title}" in text
-        assert str(method.reference) in text
 
 
 @pytest.mark.slow

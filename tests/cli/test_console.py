@@ -11,7 +11,7 @@ import pytest
 import typer
 
 from assess.cli import console
-from assess.cli.console import MOST_PRINTED, QUIET, REPEAT, count, guard, print_problems
+from assess.cli.console import MOST_PRINTED, QUIET, REPEAT, guard, print_problems
 from assess.errors import AssessError, InputError, OutputError, Problem, RecordError, WorkbookError
 from assess.progress import Progress, Report
 
@@ -162,10 +162,6 @@ def test_many_problems_are_counted_not_all_printed(capsys):
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == MOST_PRINTED + 1
     assert lines[-1] == "... and 1,000 more."
-
-
-def test_counts_have_their_noun():
-    assert [count(number, "row") for number in (0, 1, 2000)] == ["0 rows", "1 row", "2,000 rows"]
 
 
 # ---------------------------------------------------------------- while nothing is reported
