@@ -11,11 +11,8 @@ Seismological Society of America 53(2):403-417.
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from assess.units import GRAVITY
-
-FloatArray = NDArray[np.float64]
 
 STOCKY = 1.41
 """From this B/H on [-] a uniform block does not rock: Housner's restitution 1 - 1.5 sin2(alpha) is zero at sqrt 2."""

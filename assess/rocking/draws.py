@@ -18,14 +18,15 @@ import hashlib
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.arrays import FloatArray
 from assess.motion.spatial_field import SCATTERS, Measure, draw_field
 from assess.motion.stratified import draw_normal, to_normal
 from assess.rocking import block
-from assess.rocking.block import FloatArray
 
 MOTION = 0.4
 """Assumed standard deviation of the natural logarithm of the motion's amplitude [-]."""
@@ -71,40 +72,14 @@ class Uncertainty:
     motion: float = MOTION
     piece: bool = True
 
-    @property
-    def base(self) -> tuple[float, float]:
-        """Mean and standard deviation of a drawn base over the nominal one [-]."""
-        return BASE
-
-    @property
-    def height(self) -> float:
-        """Standard deviation of a drawn height over the nominal one [-]."""
-        return HEIGHT
-
-    @property
-    def scanned_base(self) -> tuple[float, float]:
-        """Mean and standard deviation of the base of a piece measured by a scan [-]."""
-        return SCANNED_BASE
-
-    @property
-    def scanned_height(self) -> float:
-        """Standard deviation of the height of a piece measured by a scan [-]."""
-        return SCANNED_HEIGHT
-
-    @property
-    def centre(self) -> float:
-        """Standard deviation of a drawn centre of gravity as a share of the height [-]."""
-        return CENTRE
-
-    @property
-    def restitution(self) -> float:
-        """Standard deviation of a drawn restitution [-]."""
-        return RESTITUTION
-
-    @property
-    def cut(self) -> float:
-        """Standard deviations beyond which nothing is drawn."""
-        return CUT
+    base: ClassVar[tuple[float, float]] = BASE
+    height: ClassVar[float] = HEIGHT
+    scanned_base: ClassVar[tuple[float, float]] = SCANNED_BASE
+    scanned_height: ClassVar[float] = SCANNED_HEIGHT
+    centre: ClassVar[float] = CENTRE
+    restitution: ClassVar[float] = RESTITUTION
+    cut: ClassVar[float] = CUT
+    """What is the same in every run, as reports state it."""
 
     def largest_start(
         self, centre: FloatArray, scanned: NDArray[np.bool_], dispersion: FloatArray, peak: FloatArray

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from assess.motion.record import FloatArray
+from assess.arrays import FloatArray
 from assess.motion.rows import run_rows
 from assess.progress import SILENT, Progress
 from assess.rocking import block, kernel

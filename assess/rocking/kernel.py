@@ -24,12 +24,9 @@ Seismological Society of America 53(2):403-417.
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from assess.arrays import FloatArray, IntArray
 from assess.compiled import compiled, compiled_into
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 LANES = 32
 OVERTURNED = math.pi / 2

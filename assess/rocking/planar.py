@@ -21,12 +21,12 @@ from typing import Literal, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from assess.motion.record import FloatArray
+from assess.arrays import FloatArray
 from assess.motion.rows import run_rows
 from assess.progress import SILENT, Progress
 from assess.rocking import block
 from assess.rocking import planar_kernel as kernel
-from assess.rocking.ensemble import Rocking
+from assess.rocking.ensemble import Rocking, check_motions
 from assess.rocking.response import Response
 from assess.units import GRAVITY
 
@@ -232,14 +232,10 @@ def _check_motions(
     motions: FloatArray, vertical: FloatArray | None, time_step: float, scale: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
     """Return both motions, scaled [g] and padded as the kernel takes them, (k, n + 2); ValueError as `rock_bodies`."""
-    across = np.asarray(motions, dtype=np.float64)
+    across = check_motions(np.asarray(motions, dtype=np.float64), time_step)
     up = np.zeros_like(across) if vertical is None else np.asarray(vertical, dtype=np.float64)
-    if across.ndim != 2 or not len(across) or across.shape[1] < 2 or not np.isfinite(across).all():
-        raise ValueError(f"motions have shape {across.shape}, expected (k, n) finite samples with n of 2 or more")
     if up.shape != across.shape or not np.isfinite(up).all():
         raise ValueError(f"vertical motions have shape {up.shape}, expected {across.shape} finite samples")
-    if not 0 < time_step < math.inf:
-        raise ValueError(f"time_step is {time_step} s, expected above 0")
     factors = np.array(np.broadcast_to(scale, len(across)), dtype=np.float64)[:, np.newaxis] / GRAVITY
     if not np.isfinite(factors).all():
         raise ValueError("scale must be finite numbers")

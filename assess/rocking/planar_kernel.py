@@ -26,12 +26,10 @@ doi:10.1007/s10518-011-9291-1 (the one-sided motion)
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from assess.arrays import FloatArray
 from assess.compiled import compiled, compiled_into
 from assess.rocking.kernel import MOST_AFTER, OVERTURNED, REST, SHORTEST
-
-FloatArray = NDArray[np.float64]
 
 ORDER = 9
 """Highest power of a step's polynomial."""

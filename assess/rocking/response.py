@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from assess.motion.record import FloatArray
+from assess.arrays import FloatArray
 from assess.rocking import block, kernel
 from assess.rocking.ensemble import Bodies, check_motions, divide
 

@@ -18,16 +18,14 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from assess.arrays import FloatArray
 from assess.motion.rows import run_rows
 from assess.progress import SILENT, Progress
+from assess.rocking.block import MIDDLE
 from assess.units import GRAVITY, ROUNDING
-
-FloatArray = NDArray[np.float64]
 
 UNKNOWN = -1
 """In place of a `Branch`: friction, a size or the acceleration is not known."""
-MIDDLE = 0.5
-"""Height of the centre of gravity over the body's height [-] for which Shenton derived his limits."""
 
 
 class Branch(IntEnum):

@@ -10,12 +10,8 @@ doi:10.1680/geot.1965.15.2.139
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
+from assess.arrays import FloatArray
 from assess.compiled import compiled, compiled_into
-
-FloatArray = NDArray[np.float64]
 
 MOST_PARTS = 8
 """Slides within a sample after which the rest of it is left out: a straight line brings three."""

@@ -208,7 +208,6 @@ def _paint(blocks: Sequence[Block], judged: Mapping[str, Judgement], figure: Any
         axes.set_xlim(0, 1.15)
         axes.set_ylim(0, 0.7)
         axes.tick_params(labelsize=6)
-        axes.spines[["top", "right"]].set_visible(False)
     panels[0].text(0.62, 0.64, "1:1", fontsize=6, ha="right")
     panels[0].set_ylabel("median: PFA of chance one half [g]", fontsize=7)
     figure.supxlabel("measured overturning PGA: mean, least and largest of ten tests [g]", fontsize=7)

@@ -57,10 +57,6 @@ class TestBranches:
         assert detail["floor_frequency_hz"][0] == pytest.approx(3.0 / (2 * math.pi * 0.5))
         assert detail["boundary_frequency_hz"][0] == pytest.approx(BOUNDARY)
 
-    @pytest.mark.parametrize("pfv", [0.0, 0.3, math.nan])
-    def test_no_shaking_no_risk(self, pfv):
-        assert evaluate(pfa=0.0, pfv=pfv).value[0] == 0
-
     @pytest.mark.parametrize("unknown", ["breadth", "height", "pfa"])
     def test_unknown_input_raises_no_flag(self, unknown):
         outcome = evaluate(**{"pfa": 3.0, "friction": 0.1, unknown: math.nan})

@@ -5,11 +5,12 @@ import math
 import numpy as np
 import pytest
 
+from assess.arrays import FloatArray
 from assess.rocking import block
 from assess.units import GRAVITY
 
 
-def of_radius_and_angle(radius: float, angle: float) -> tuple[block.FloatArray, block.FloatArray]:
+def of_radius_and_angle(radius: float, angle: float) -> tuple[FloatArray, FloatArray]:
     return np.array([2 * radius * math.sin(angle)]), np.array([2 * radius * math.cos(angle)])
 
 

@@ -9,8 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from assess.studies.solver import STUDY, pulses
-from assess.studies.solver.histories import follow_near, sample, tabulate_histories
+from assess.studies.solver import STUDY, follow_near, pulses, sample, tabulate_histories
 from assess.studies.solver.pulses import (
     ALPHA,
     ETA,

@@ -16,7 +16,7 @@ from assess.methods import Cases
 from assess.motion.formats import read_records
 from assess.motion.record import treat
 from assess.rocking.response import follow_block
-from assess.studies.run_studies import run_study
+from assess.studies import run_study
 from assess.studies.studied_methods import SHORT_TITLES, evaluate_formulas
 from assess.studies.study import Options
 from assess.studies.table1 import STUDY, climb_buildings, count_classes

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from assess.methods import Cases, all_methods
 from assess.methods.kaneko_hayashi import METHOD as KANEKO_HAYASHI
 from assess.methods.proposed_or import COEFFICIENTS
-from assess.studies.run_studies import run_study
+from assess.studies import run_study
 from assess.studies.study import Options
 from assess.studies.table3 import (
     BOUND,

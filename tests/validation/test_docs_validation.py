@@ -5,9 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from assess.studies import Options, all_studies
+from assess.studies import Options, all_studies, build_page, describe, run_all
 from assess.studies.buildings import all_buildings
-from assess.studies.run_studies import build_page, describe, run_all
 from assess.studies.studied_methods import FORMULAS
 from assess.studies.study import render_block
 from assess.studies.table2 import collect_published

@@ -267,7 +267,6 @@ def _paint(found: Mapping[str, Calibrated], figure: Any) -> None:
     axes.set_xlabel("mean chance by generated motions [-]", fontsize=7)
     axes.set_ylabel("share that the floor motion itself overturned [-]", fontsize=7)
     axes.tick_params(labelsize=6)
-    axes.spines[["top", "right"]].set_visible(False)
     axes.legend(fontsize=6, frameon=False, loc="lower right")
 
 

@@ -143,7 +143,6 @@ def paint_climbed(climbed: Climbed, names: Mapping[str, str], figure: Any) -> No
         axes.set_yticks([0, *LIMITS, 1], [f"{tick:g}" for tick in (0, *LIMITS, 1)])
         axes.set_title(name, loc="left", fontsize=8)
         axes.tick_params(labelsize=6)
-        axes.spines[["top", "right"]].set_visible(False)
         edges = np.sqrt([0, *LIMITS, 1])
         for risk, middle in zip(RiskClass, (edges[1:] + edges[:-1]) / 2, strict=True):
             axes.text(1.01, middle, risk.label, transform=axes.transAxes, fontsize=6, va="center")

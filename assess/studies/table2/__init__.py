@@ -287,7 +287,6 @@ def _paint(found: Comparison, figure: Any) -> None:
     axes.set_xlabel("PFV/PFA of the record [s]", fontsize=7)
     axes.set_ylabel("bias [percentage points]", fontsize=7)
     axes.tick_params(labelsize=6)
-    axes.spines[["top", "right"]].set_visible(False)
     axes.legend(fontsize=6, frameon=False)
 
 
