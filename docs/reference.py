@@ -5,8 +5,10 @@ the workbook, the methods, the help of the commands. A test compares the pages w
 """
 
 import ast
+import inspect
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import fields as fields_of
 from pathlib import Path
 
 import typer
@@ -14,6 +16,9 @@ import typer
 from assess.cli.app import app, find_commands
 from assess.methods import MethodInfo, all_methods
 from assess.portfolio.table_schemas import TABLES
+from assess.report.blocks import Document
+from assess.report.pages.html import Page, PageSection
+from assess.report.view import list_all_parts
 from assess.units import QUANTITIES
 from assess.workbook.names import translate
 from assess.workbook.schema import CLASS, LIVE, SHEETS, WORKINGS, Column
@@ -176,6 +181,21 @@ def _describe_commands() -> Iterator[str]:
         rows = [(f"`{record[0]}`", record[1]) for record in records if record]
         yield from _build_table(("argument or option", "meaning"), rows) if rows else ()
         yield from ("```", *module.EXAMPLES, "```", "")
+    yield from _describe_templates()
+
+
+def _describe_templates() -> Iterator[str]:
+    yield "## What a template can show"
+    yield ""
+    yield "`page.html.j2` and `cover.html.j2` have one name, `page`:"
+    yield ""
+    for name, kind in (("page", Page), ("page.sections[]", PageSection), ("page.document", Document)):
+        fields = [f"`{name}.{one.name}`" for one in fields_of(kind)]
+        yield f"* {', '.join(fields)}: {' '.join(inspect.getdoc(kind).split('Parameters')[0].split())}"  # type: ignore[union-attr]
+    yield ""
+    named = [part for part in list_all_parts() if "all" in part.places or "client" in part.places]
+    rows = [(f"`{one.key}`", one.heading, ", ".join(one.places)) for one in named]
+    yield from _build_table(("section", "heading", "editions"), rows)
 
 
 if __name__ == "__main__":
