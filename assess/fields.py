@@ -360,10 +360,6 @@ def _axis_fields(methods: Sequence[MethodInfo]) -> tuple[Field, ...]:
     )
 
 
-def _say_axes(axes: Iterable[Mapping[str, Any]]) -> list[str]:
-    return [f"{axis['axis']}: {axis['source']} {axis['pfa_g']} g" for axis in axes]
-
-
 def item_fields(methods: Sequence[MethodInfo]) -> tuple[Field, ...]:
     """Return the fields of a row of furniture by the methods of the run, in the order of items.csv."""
     of_case = (*(field for method in methods for field in method_fields(method)), *SIMULATION_FIELDS)
@@ -374,8 +370,8 @@ def item_fields(methods: Sequence[MethodInfo]) -> tuple[Field, ...]:
         *FORMULA_CLASSES,
         *ANNUAL_FIELDS,
         Field(
-            key="axes", source="cases", kind="records", records=_axis_fields(methods), shows=DATA, flat=_say_axes,
-            help="Every motion that the item was evaluated under.",
+            key="axes", source="cases", kind="records", records=_axis_fields(methods), shows=DATA,
+            line="{axis}: {source} {pfa_g} g", help="Every motion that the item was evaluated under.",
         ),
         _of_item("anchored", fill("Anchored"), choices=ANCHORED, width=10),
         *(

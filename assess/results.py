@@ -596,7 +596,7 @@ class ItemResult:
     @property
     def main_basis(self) -> str:
         """The basis of the run: `Results.main_basis`."""
-        return self._part.run.main_basis
+        return self._part.main_basis
 
     @property
     def fell(self) -> NDArray[np.bool_] | None:
@@ -648,9 +648,14 @@ class ItemResult:
         return found
 
     @property
+    def simulation(self) -> Simulation | None:
+        """What direct integration found under the governing motion; None where it was not simulated."""
+        return self.governing.simulation if self.is_simulated else None
+
+    @property
     def is_simulated(self) -> bool:
         """Whether its rocking was integrated under the governing motion."""
-        return self.governing.simulation is not None
+        return bool(self._part.cases.is_simulated[self.item.governing - self._part.first_case])
 
     @property
     def is_anchored(self) -> bool:
@@ -981,7 +986,7 @@ class ItemColumns(Columns):
         items = run.item_rows[start:stop]
         super().__init__(items)
         self.run, self.items, self.first_case = run, items, items[0].first_case
-        self.sheet = run.provenance.sheets.get("Items", "Items")
+        self.sheet, self.main_basis = run.provenance.sheets.get("Items", "Items"), run.main_basis
         self.cases = CaseColumns(run, slice(self.first_case, items[-1].last_case))
         self._governing = [one.governing - self.first_case for one in items]
 

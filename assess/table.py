@@ -68,6 +68,8 @@ class Field:
         What it means, for the schema and the documentation.
     records : tuple of Field
         The fields of the rows within the row, of kind "records".
+    line : str
+        What items.csv says of each of these: a text with their keys in braces.
     flat : callable, optional
         From its value to the one of items.csv, where that differs.
     """
@@ -87,6 +89,7 @@ class Field:
     shows: frozenset[Where] = FILES
     help: str = ""
     records: "tuple[Field, ...]" = ()
+    line: str = ""
     flat: Callable[[Any], Any] | None = None
 
     def __post_init__(self) -> None:
@@ -121,6 +124,8 @@ class Field:
 
     def flatten(self, value: Any) -> Any:
         """Return a value of results.json as items.csv and a table have it."""
+        if self.line:
+            return [self.line.format_map(one) for one in value]
         return value if self.flat is None else self.flat(value)
 
 
@@ -258,16 +263,18 @@ def _fold(tree: Tree, part: Columns, leaf: _Leaf, group: _Group, is_null: bool =
     return group(tuple(tree), columns, is_null)
 
 
-def _fold_records(field: Field, part: Columns, leaf: _Leaf, group: _Group) -> Iterator[list[Any]]:
+def _fold_records(
+    fields: Iterable[Field], source: str, part: Columns, leaf: _Leaf, group: _Group
+) -> Iterator[list[Any]]:
     """Yield the rows within each row."""
-    inner, counts = part.inner(field.source)
-    found = iter(_fold(build_tree(field.records), inner, leaf, group))
+    inner, counts = part.inner(source)
+    found = iter(_fold(build_tree(fields), inner, leaf, group))
     return ([next(found) for _row in range(count)] for count in counts)
 
 
 def _read_column(field: Field, part: Columns) -> list[Any]:
     if field.kind == "records":
-        return list(_fold_records(field, part, _read_column, _group_records))
+        return list(_fold_records(field.records, field.source, part, _read_column, _group_records))
     values = part.column(field.source)
     return values if field.kind in _NUMBERS else [field.plain(value) for value in values]
 
@@ -282,10 +289,13 @@ def _group_records(names: Sequence[str], columns: Sequence[Sequence[Any]], is_nu
 def _encode_column(field: Field, part: Columns) -> list[str]:
     """Return the values of a field as results.json spells them; the same text or list is spelt once."""
     if field.kind == "records":
-        return [f"[{', '.join(texts)}]" for texts in _fold_records(field, part, _encode_column, _group_texts)]
+        lists = _fold_records(field.records, field.source, part, _encode_column, _group_texts)
+        return [f"[{', '.join(texts)}]" for texts in lists]
     values = part.column(field.source)
     if field.kind in _NUMBERS:
-        return _dump(values)[1:-1].split(", ") if values else []
+        if values.count(None) == len(values):  # often: nothing was simulated, or is placed
+            return ["null"] * len(values)
+        return _dump(values)[1:-1].split(", ")
     spelt = {value: _dump(field.plain(value)) for value in set(values)}
     return [spelt[value] for value in values]
 
@@ -300,7 +310,9 @@ def _group_texts(names: Sequence[str], columns: Sequence[Sequence[str]], is_null
 
 def _flatten_column(field: Field, part: Columns, change: Callable[[Any], Any]) -> list[Any]:
     if field.kind == "records":
-        return [change(field.flatten(value)) for value in _read_column(field, part)]
+        chosen = [one for one in field.records if not field.line or f"{{{one.key}}}" in field.line]
+        lists = _fold_records(chosen, field.source, part, _read_column, _group_records)
+        return [change(field.flatten(records)) for records in lists]
     values = part.column(field.source)
     if field.kind in _NUMBERS and field.flat is None:
         return values

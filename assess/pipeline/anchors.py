@@ -153,42 +153,40 @@ class Anchors:
     shear_code: FloatArray
     held: BoolArray
 
-    def describe(self, at: int) -> AnchorRow:
-        """Return the row of a piece by its index."""
-        weight = self.weights[at]
+    def describe(self) -> list[AnchorRow]:
+        """Return the rows of all pieces."""
+        is_per_metre = np.array([one.is_per_metre for one in self.weights], dtype=np.bool_)
 
-        def known(forces: FloatArray) -> float | None:
-            return None if np.isnan(forces[at]) else _in_kn(forces[at])
+        def holds(tension: FloatArray) -> list[bool | None]:
+            can = tension <= self.capacity
+            is_open = np.isnan(tension) | np.isnan(self.capacity) | (is_per_metre & (tension > 0) & can)
+            return [None if unknown else found for unknown, found in zip(is_open.tolist(), can.tolist(), strict=True)]
 
-        def holds(tension: FloatArray) -> bool | None:
-            demand, capacity = tension[at], self.capacity[at]
-            is_open = np.isnan(demand) or np.isnan(capacity) or (weight.is_per_metre and 0 < demand <= capacity)
-            return None if is_open else bool(demand <= capacity)
-
-        return AnchorRow(
-            weight_kn=_in_kn(weight.value),
-            weight_source=weight.source,
-            weight_words=weight.words,
-            is_per_metre=weight.is_per_metre,
-            bracket_height_cm=to_edge(float(self.height[at]), LENGTH["cm"]),
-            is_height_assumed=bool(self.is_height_assumed[at]),
-            bracket_capacity_kn=known(self.capacity),
-            tension_kn=_in_kn(self.tension[at]),
-            tension_low_kn=_in_kn(self.tension_low[at]),
-            tension_high_kn=_in_kn(self.tension_high[at]),
-            tension_without_weight_kn=_in_kn(self.tension_without_weight[at]),
-            shear_kn=_in_kn(self.shear[at]),
-            needed_friction=float(self.needed_friction[at]),
-            tension_code_kn=known(self.tension_code),
-            shear_code_kn=known(self.shear_code),
-            holds=holds(self.tension),
-            holds_high=holds(self.tension_high),
-            holds_code=holds(self.tension_code),
-        )
+        columns: dict[str, list[Any]] = {
+            "weight_kn": [to_edge(one.value, FORCE["kN"]) for one in self.weights],
+            "weight_source": [one.source for one in self.weights],
+            "weight_words": [one.words for one in self.weights],
+            "is_per_metre": is_per_metre.tolist(),
+            "bracket_height_cm": [to_edge(one, LENGTH["cm"]) for one in self.height.tolist()],
+            "is_height_assumed": self.is_height_assumed.tolist(),
+            "bracket_capacity_kn": _in_kn(self.capacity),
+            "tension_kn": _in_kn(self.tension),
+            "tension_low_kn": _in_kn(self.tension_low),
+            "tension_high_kn": _in_kn(self.tension_high),
+            "tension_without_weight_kn": _in_kn(self.tension_without_weight),
+            "shear_kn": _in_kn(self.shear),
+            "needed_friction": self.needed_friction.tolist(),
+            "tension_code_kn": _in_kn(self.tension_code),
+            "shear_code_kn": _in_kn(self.shear_code),
+            "holds": holds(self.tension),
+            "holds_high": holds(self.tension_high),
+            "holds_code": holds(self.tension_code),
+        }
+        return [AnchorRow(**dict(zip(columns, row, strict=True))) for row in zip(*columns.values(), strict=True)]
 
 
-def _in_kn(force: float) -> float:
-    return to_edge(float(force), FORCE["kN"])
+def _in_kn(forces: FloatArray) -> list[float | None]:
+    return [None if force != force else to_edge(force, FORCE["kN"]) for force in forces.tolist()]
 
 
 def find_anchors(inventory: Inventory, cases: "Cases", governing: NDArray[np.intp], settings: Settings) -> Anchors:

@@ -1,19 +1,20 @@
 """From the arrays of an assessment to the rows of `assess.results`: the edge, where units are put into names."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, replace
-from typing import TYPE_CHECKING
+from dataclasses import asdict, fields, replace
+from functools import cache
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from assess.annual_results import AnnualWays
 from assess.methods import Joint, simulation
 from assess.methods.simulate import LOOKS, interval_width
-from assess.model import AXES, Floor, FloorPlan, Inventory, Item
-from assess.motion.record import Record, treatment
+from assess.model import AXES, Floor, Inventory, Item
+from assess.motion.record import treatment
 from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED, Profile
 from assess.pipeline.adopt import build_falls
-from assess.pipeline.anchors import Anchors
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.city_draws import describe_draws
 from assess.pipeline.demand import find_shaking
@@ -41,7 +42,6 @@ from assess.version import __version__, find_code
 
 if TYPE_CHECKING:
     from assess.motion.suite import Suite
-    from assess.motion.target_fit import Fit
     from assess.route_results import RouteTables
 
 _FACTORS: Mapping[str, float] = {**LENGTH, **ACCELERATION, **VELOCITY, **FORCE}
@@ -56,27 +56,33 @@ def _sure(value: float, unit: str) -> float:
     return to_edge(value, _FACTORS[unit])
 
 
+_Row = TypeVar("_Row")
+
+
+def _copy(row: type[_Row], source: Any, **own: Any) -> _Row:
+    """Return a row of what `source` has under the names of its fields, and of its own."""
+    return row(**{name: getattr(source, name) for name in _shared(row, type(source)) if name not in own}, **own)
+
+
+@cache
+def _shared(row: type, source: type) -> tuple[str, ...]:
+    names = [one.name for one in fields(row)]  # type: ignore[arg-type]
+    return tuple(name for name in names if hasattr(source, name) or name in source.__annotations__)
+
+
 # ---------------------------------------------------------------- floors and their motions
 
 
 def build_floor(floor: Floor) -> FloorRow:
     """Return the row of a floor."""
-    return FloorRow(
-        row=floor.row, floor=floor.floor, name=floor.name, elevation_m=floor.elevation, cells=dict(floor.cells),
-        plan=None if floor.plan is None else _plan(floor.plan),
+    plan = floor.plan
+    return _copy(
+        FloorRow, floor, elevation_m=floor.elevation, cells=dict(floor.cells),
+        plan=None if plan is None else _copy(
+            PlanRow, plan, file=plan.path.name, left_m=plan.left, bottom_m=plan.bottom, width_m=plan.width,
+            height_m=plan.height,
+        ),
     )  # fmt: skip
-
-
-def _plan(plan: FloorPlan) -> PlanRow:
-    return PlanRow(
-        file=plan.path.name,
-        is_lines=plan.is_lines,
-        left_m=plan.left,
-        bottom_m=plan.bottom,
-        width_m=plan.width,
-        height_m=plan.height,
-        turn_deg=plan.turn_deg,
-    )
 
 
 def list_demands(assessment: Assessment) -> list[Demand]:
@@ -101,38 +107,25 @@ def build_motions(assessment: Assessment, demands: Sequence[Demand]) -> tuple[Mo
 
 def build_motion(index: int, demand: Demand) -> MotionRow:
     """Return the row of one motion."""
-    row = MotionRow(
+    row = _copy(
+        MotionRow,
+        demand,
         index=index,
         floor=demand.floor.floor,
-        axis=demand.axis,
-        source=demand.source,
-        label=demand.label,
         pfa_g=_sure(demand.pfa, "g"),
         pfv_cm_s=edge(demand.pfv, "cm/s"),
-        flags=demand.flags,
-        between=demand.between,
         profile=describe_profile(demand.profile) if demand.profile else None,
-        clause=demand.clause,
-        height_ratio=demand.height_ratio,
-        amplification=demand.amplification,
         record=demand.name,
         pfv_follows=demand.drawn is not None and demand.drawn.target.meets != "peaks",
-        dispersion=demand.dispersion,
     )
-    return row if demand.record is None else _add_record(row, demand.record)
-
-
-def _add_record(row: MotionRow, record: Record) -> MotionRow:
+    record = demand.record
+    if record is None:
+        return row
+    names = ("format", "station", "location", "channel", "event", "azimuth_deg", "corrected")
     return replace(
         row,
+        **{name: getattr(record, name) for name in names},
         pfa_file_g=edge(record.file_pfa, "g"),
-        format=record.format,
-        station=record.station,
-        location=record.location,
-        channel=record.channel,
-        event=record.event,
-        azimuth_deg=record.azimuth_deg,
-        corrected=record.corrected,
         time_step_s=record.time_step,
         samples=len(record.acceleration),
         treatment=treatment(record),
@@ -142,22 +135,11 @@ def _add_record(row: MotionRow, record: Record) -> MotionRow:
 
 def describe_profile(profile: Profile) -> ProfileInfo:
     """Return the description of a code's profile."""
-    return ProfileInfo(
-        key=profile.key,
-        title=profile.title,
-        clause=profile.clause,
-        clause_without_period=profile.clause_without_period,
-        equation=profile.equation,
-        reference=profile.reference,
-        verified=profile.verified,
-        status=VERIFIED if profile.verified else UNVERIFIED,
-        remark=profile.remark,
-        reduced=profile.reduced,
-    )
+    return _copy(ProfileInfo, profile, status=VERIFIED if profile.verified else UNVERIFIED)
 
 
 def _ensemble(assessment: Assessment, joint: Joint) -> EnsembleRow:
-    ensemble = assessment.cases.ensembles[joint.ensemble]
+    ensemble, fit = assessment.cases.ensembles[joint.ensemble], joint.fit
     fell = assessment.outcomes[simulation().key].detail["record_overturned"][joint.cases].astype(np.float64)
     known = fell[~np.isnan(fell)]
     return EnsembleRow(
@@ -169,23 +151,9 @@ def _ensemble(assessment: Assessment, joint: Joint) -> EnsembleRow:
         is_generated=assessment.suite is None,
         cases=int(joint.cases.size),
         fell_in_record=int(known.sum()) if known.size else None,
-        fit=None if joint.fit is None else _fit(joint.fit),
+        fit=fit and _copy(FitRow, fit, matched_to_s=fit.matched_to, worst_period_s=fit.worst_period),
         signs=ensemble.signs,
         bands=joint.bands,
-    )
-
-
-def _fit(fit: "Fit") -> FitRow:
-    return FitRow(
-        matched_to_s=fit.matched_to,
-        mean_deviation=fit.mean_deviation,
-        worst_deviation=fit.worst_deviation,
-        worst_period_s=fit.worst_period,
-        pfa_ratio=fit.pfa_ratio,
-        pfa_scatter=fit.pfa_scatter,
-        pfv_ratio=fit.pfv_ratio,
-        pfv_scatter=fit.pfv_scatter,
-        spectrum_scatter=fit.spectrum_scatter,
     )
 
 
@@ -198,64 +166,38 @@ def build_items(assessment: Assessment, routes: "RouteTables") -> tuple[ItemRow,
     firsts = np.searchsorted(assessment.case_item, np.arange(len(inventory.items) + 1)).tolist()
     annual = {} if assessment.annual is None else assessment.annual.items
     governing, named = assessment.governing.tolist(), _list_routes(inventory, routes)
-    toward = {at: wall.falls_toward for at, wall in find_walls(inventory).items()}
-    anchors = assessment.anchors
-    rows = (
-        _item(
-            inventory.complete(item),
-            index,
-            anchors,
-            governing[index],
-            (firsts[index], firsts[index + 1]),
-            named.get(index),
+    walls, held = find_walls(inventory), assessment.anchors.held.tolist()
+    shared = [name for name in _shared(ItemRow, Item) if name not in ("assumed", "extra")]
+    read = attrgetter(*shared)
+    rows = []
+    for index, (item, anchor) in enumerate(
+        zip(map(inventory.complete, inventory.items), assessment.anchors.describe(), strict=True)
+    ):
+        row = ItemRow(
+            **dict(zip(shared, read(item), strict=True)),
+            index=index,
+            breadth_cm=_sure(item.breadth, "cm"),
+            width_cm=edge(item.width, "cm"),
+            height_cm=_sure(item.height, "cm"),
+            weight_kg=item.weight,
+            breadth_to_height=item.breadth / item.height,
+            axis_given=item.axis,
+            x_m=item.x,
+            y_m=item.y,
+            edge_distance_m=item.edge_distance,
+            assumed=tuple(item.assumed),
+            extra=tuple(item.extra),
+            routes=named.get(index, (item.route,) if item.route else ()),
+            governing=governing[index],
+            first_case=firsts[index],
+            last_case=firsts[index + 1],
+            anchor=anchor,
+            is_held=held[index],
+            falls_toward_deg=walls[index].falls_toward if index in walls else None,
+            annual=annual.get(index),
         )
-        for index, item in enumerate(inventory.items)
-    )
-    return tuple(replace(row, falls_toward_deg=toward.get(row.index), annual=annual.get(row.index)) for row in rows)
-
-
-def _item(
-    item: Item, index: int, anchors: Anchors, governing: int, cases: tuple[int, int],
-    routes: tuple[str, ...] | None,
-) -> ItemRow:  # fmt: skip
-    return ItemRow(
-        index=index,
-        row=item.row,
-        item=item.item,
-        floor=item.floor,
-        room=item.room,
-        description=item.description,
-        type=item.type,
-        quantity=item.quantity,
-        breadth_cm=_sure(item.breadth, "cm"),
-        width_cm=edge(item.width, "cm"),
-        height_cm=_sure(item.height, "cm"),
-        centre_of_gravity=item.centre_of_gravity,
-        weight_kg=item.weight,
-        breadth_to_height=item.breadth / item.height,
-        axis_given=item.axis,
-        angle_deg=item.angle_deg,
-        against_wall=item.against_wall,
-        sizes_from=item.sizes_from,
-        x_m=item.x,
-        y_m=item.y,
-        friction=item.friction,
-        importance=item.importance,
-        anchored=item.anchored,
-        route=item.route,
-        segment=item.segment,
-        edge_distance_m=item.edge_distance,
-        notes=item.notes,
-        assumed=tuple(item.assumed),
-        extra=tuple(item.extra),
-        more=item.more,
-        routes=routes if routes is not None else (item.route,) if item.route else (),
-        governing=governing,
-        first_case=cases[0],
-        last_case=cases[1],
-        anchor=anchors.describe(index),
-        is_held=bool(anchors.held[index]),
-    )
+        rows.append(row)
+    return tuple(rows)
 
 
 def add_annual(tables: "RouteTables", ways: AnnualWays) -> "RouteTables":
@@ -348,18 +290,7 @@ def _describe_shaking(demands: Demands) -> AssumedShaking | None:
     shaking = find_shaking(demands)
     if shaking is None:
         return None
-    return AssumedShaking(
-        choice=shaking.choice,
-        name=shaking.name,
-        intensity=shaking.intensity,
-        pga_g=_sure(shaking.pga, "g"),
-        pgv_cm_s=_sure(shaking.pgv, "cm/s"),
-        scatter=shaking.scatter,
-        is_derived=shaking.is_derived,
-        is_open=shaking.is_open,
-        sources=shaking.sources,
-        references=shaking.references,
-    )
+    return _copy(AssumedShaking, shaking, pga_g=_sure(shaking.pga, "g"), pgv_cm_s=_sure(shaking.pgv, "cm/s"))
 
 
 def _suite(suite: "Suite | None", is_scaled: bool) -> SuiteInfo | None:

@@ -227,7 +227,7 @@ def find_thirds(one: ItemResult) -> tuple[float, float] | None:
 
     They reach to the chance of all draws, which the middle third may take beyond them by the error of drawing.
     """
-    found = one.governing.simulation
+    found = one.simulation
     if found is None or found.if_slower is None or found.if_faster is None:
         return None
     ends = found.if_slower, found.if_faster, one.adopted.probability
