@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields, replace
-from functools import cache
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -64,10 +63,9 @@ def _copy(row: type[_Row], source: Any, **own: Any) -> _Row:
     return row(**{name: getattr(source, name) for name in _shared(row, type(source)) if name not in own}, **own)
 
 
-@cache
-def _shared(row: type, source: type) -> tuple[str, ...]:
-    names = [one.name for one in fields(row)]  # type: ignore[arg-type]
-    return tuple(name for name in names if hasattr(source, name) or name in source.__annotations__)
+def _shared(row: Any, source: type) -> list[str]:
+    names = [one.name for one in fields(row)]
+    return [name for name in names if hasattr(source, name) or name in source.__annotations__]
 
 
 # ---------------------------------------------------------------- floors and their motions
@@ -151,7 +149,7 @@ def _ensemble(assessment: Assessment, joint: Joint) -> EnsembleRow:
         is_generated=assessment.suite is None,
         cases=int(joint.cases.size),
         fell_in_record=int(known.sum()) if known.size else None,
-        fit=fit and _copy(FitRow, fit, matched_to_s=fit.matched_to, worst_period_s=fit.worst_period),
+        fit=None if fit is None else _copy(FitRow, fit, matched_to_s=fit.matched_to, worst_period_s=fit.worst_period),
         signs=ensemble.signs,
         bands=joint.bands,
     )
