@@ -19,6 +19,7 @@ from assess.report.say.route import say_missing
 from assess.results import Results
 from assess.risk import find_ends
 from assess.route_results import RouteRow, RouteState, RouteTables
+from assess.table import Kind
 from assess.units import to_edge
 from assess.workbook.schema import BUILDING, USES
 
@@ -55,31 +56,36 @@ def build_tables(
     source: Source, origin: Origin, inventory: Inventory, results: Results, sums: DrawSums
 ) -> dict[str, list[list[Any]]]:
     """Return the rows of the tables buildings, pieces, routes and problems."""
-    records: dict[str, Iterable[Record]] = {
-        "buildings": [_build_building(source, origin, inventory, results, sums)],
-        "pieces": _list_pieces(source.path, origin, results),
-        "routes": _list_routes(source.path, results),
-        "problems": list_problems(source.path, results.problem_rows),
-    }
-    return {name: [to_row(name, record) for record in rows] for name, rows in records.items()}
+    return _to_rows(
+        [_describe_building(source, origin, inventory, results, sums)],
+        list_problems(source.path, results.problem_rows),
+        _list_pieces(source.path, origin, results),
+        _list_routes(source.path, results),
+    )
 
 
 def build_skipped(source: Source, problems: Sequence[Problem]) -> dict[str, list[list[Any]]]:
     """Return the rows of a building that could not be assessed, with the reasons."""
-    index = source.index
     record: Record = {
         "path": source.path,
         "status": "skipped",
         "inventory": "assumed" if source.kind == "assumed" else None,
         "warnings": sum(one.severity == "warning" for one in problems),
     }
-    if index is not None:
-        record |= {name: getattr(index, name) for name in _OF_INDEX} | {"use": spell_use(index.use)}
-    rows = [to_row("problems", one) for one in list_problems(source.path, problems)]
-    return {"buildings": [to_row("buildings", record)], "pieces": [], "routes": [], "problems": rows}
+    if source.index is not None:
+        use = spell_use(source.index.use)
+        record |= {"index": source.index, "site": source.index.as_building(), "use": use}
+    return _to_rows([record], list_problems(source.path, problems))
 
 
-_OF_INDEX = ("building", "latitude", "longitude", "storeys", "height_m", "floor_area_m2")
+def _to_rows(
+    buildings: Iterable[Record],
+    problems: Iterable[Record],
+    pieces: Iterable[Record] = (),
+    routes: Iterable[Record] = (),
+) -> dict[str, list[list[Any]]]:
+    records = {"buildings": buildings, "pieces": pieces, "routes": routes, "problems": problems}
+    return {name: [to_row(name, record) for record in rows] for name, rows in records.items()}
 
 
 def spell_use(text: str) -> str:
@@ -90,19 +96,19 @@ def spell_use(text: str) -> str:
 _USES = {use.casefold(): use for use in USES}
 
 
-def to_row(name: str, record: Mapping[str, Any]) -> list[Any]:
+def to_row(name: str, record: Record) -> list[Any]:
     """Return a record as a row of a table: plain values in the order of its columns, None for what is not known."""
-    unknown = set(record) - {column.name for column in TABLES[name]}
+    unknown = set(record) - {field.source.partition(".")[0] for field in TABLES[name]}
     if unknown:
         raise ValueError(f"the table {name} has no column {', '.join(sorted(unknown))}")
-    return [_to_plain(record.get(column.name), column.type) for column in TABLES[name]]
+    return [_to_plain(field.read(record), field.kind) for field in TABLES[name]]
 
 
-def _to_plain(value: Any, kind: str) -> Any:
-    if value is None or value == "":
+def _to_plain(value: Any, kind: Kind) -> Any:
+    if value is None or value in ("", ()):
         return None
     if kind == "text":
-        return str(value)
+        return "; ".join(value) if isinstance(value, tuple | list) else str(value)
     if kind == "flag":
         return bool(value)
     if kind == "count":
@@ -114,36 +120,49 @@ def _to_plain(value: Any, kind: str) -> Any:
 # ---------------------------------------------------------------- the building
 
 
-def _build_building(source: Source, origin: Origin, inventory: Inventory, results: Results, sums: DrawSums) -> Record:
-    building, routes = inventory.building, results.route_tables
+def _describe_building(
+    source: Source, origin: Origin, inventory: Inventory, results: Results, sums: DrawSums
+) -> Record:
+    site, rows, routes = inventory.building, tuple(results), results.route_tables
+    counts, works = count("", rows), [work for entry in results.schedule.rows for work in entry.works]
     is_any_known = any(one.state is not RouteState.NOT_KNOWN and one.blocked is not None for one in routes.routes)
     people = [one for one in (count_people(routes, route) for route in routes.routes) if one is not None]
-    falls = () if sums.falls is None else find_ends(sums.falls)
+    low, high = (None, None) if sums.falls is None else find_ends(sums.falls)
+
+    def expect(quantities: Mapping[str, int] | None) -> float | None:
+        if quantities is None:
+            return None
+        main = [one for one in rows if not one.is_anchored and not one.apart]
+        return math.fsum(one.adopted.probability * quantities[one.item.item] for one in main)
+
     return {
         "path": source.path,
         "status": "assessed",
         "inventory": origin.inventory,
-        "building": building.building,
-        "latitude": building.latitude,
-        "longitude": building.longitude,
-        "use": spell_use(building.use),
-        "storeys": building.storeys,
-        "height_m": building.height,
-        "floor_area_m2": None if source.index is None else source.index.floor_area_m2,
+        "origin": origin,
+        "index": source.index,
+        "site": site,
+        "counts": counts,
+        "results": results,
+        "sums": sums,
+        "use": spell_use(site.use),
         **_describe_shaking(inventory),
         "own_motions": len({one.floor for one in results.motions if one.source in OWN_MOTIONS}),
         "largest_pfa_g": max((one.pfa_g for one in results.motions), default=None),
         "motion_uncertainty": results.provenance.uncertainty.motion if uses_scatter(results) else None,
-        "is_placed": building.latitude is not None and building.longitude is not None,
-        **_count_pieces(origin, results),
-        "left_out": origin.left_out,
+        "is_placed": site.latitude is not None and site.longitude is not None,
+        **{name: counts.by_class[risk] for risk, name in CLASS_COLUMNS.items()},
+        "falls_low_inventory": expect(origin.low),
+        "falls_high_inventory": expect(origin.high),
         "draws": 0 if sums.falls is None else len(sums.falls),
-        **dict(zip(("falls_p05", "falls_p95"), falls, strict=False)),
-        **_count_works(results),
+        "falls_p05": low,
+        "falls_p95": high,
+        "falls_avoided": math.fsum(entry.falls_avoided for entry in results.schedule.rows),
+        "works": sum(one.pieces for one in works),
+        "works_without_cost": sum(one.pieces for one in works if one.cost is None),
         "routes": len(routes.routes),
         **{name: sum(one.state is state for one in routes.routes) for state, name in STATE_COLUMNS.items()},
         "occupants": sum(people) if people else None,
-        "people_not_known": sums.people_not_known,
         "people_blocked": sums.people_expected if is_any_known else None,
         "warnings": sum(one.severity == "warning" for one in results.problem_rows),
     }
@@ -168,40 +187,6 @@ def _describe_shaking(inventory: Inventory) -> Record:
     }
 
 
-def _count_pieces(origin: Origin, results: Results) -> Record:
-    rows = tuple(results)
-    counts = count("", rows)
-    main = [one for one in rows if not one.is_anchored and not one.apart]
-
-    def expect(quantities: Mapping[str, int] | None) -> float | None:
-        if quantities is None:
-            return None
-        return math.fsum(one.adopted.probability * quantities[one.item.item] for one in main)
-
-    return {
-        "basis": results.main_basis,
-        "pieces": counts.total,
-        **{name: counts.by_class[risk] for risk, name in CLASS_COLUMNS.items()},
-        "unconfirmed": counts.unconfirmed,
-        "by_formula": counts.by_formula,
-        "cannot_rock": counts.cannot_rock,
-        "anchored": counts.anchored,
-        "expected_falls": counts.expected,
-        "falls_low_inventory": expect(origin.low),
-        "falls_high_inventory": expect(origin.high),
-    }
-
-
-def _count_works(results: Results) -> Record:
-    works = [work for entry in results.schedule.rows for work in entry.works]
-    return {
-        "falls_avoided": math.fsum(entry.falls_avoided for entry in results.schedule.rows),
-        "works": sum(one.pieces for one in works),
-        "cost": results.schedule.cost,
-        "works_without_cost": sum(one.pieces for one in works if one.cost is None),
-    }
-
-
 # ---------------------------------------------------------------- its pieces, routes and problems
 
 
@@ -213,35 +198,14 @@ def _list_pieces(path: str, origin: Origin, results: Results) -> Iterator[Record
         for index in work.item_indices
     }
     for one in results:
-        motion, adopted = one.governing.motion, one.adopted
         yield {
             "path": path,
             "inventory": origin.inventory,
-            **{name: getattr(one.item, name) for name in _OF_ITEM},
-            "assumed": _join(one.item.assumed),
-            "route": _join(one.routes),
-            "axis": motion.axis,
-            "pfa_g": motion.pfa_g,
-            "pfv_cm_s": motion.pfv_cm_s,
-            "pfa_source": motion.source,
-            "basis": adopted.basis,
-            "probability": adopted.probability,
-            "probability_low": adopted.low,
-            "probability_high": adopted.high,
-            "risk_class": adopted.risk.word,
-            "risk_class_upper": adopted.upper.word,
-            "flags": _join(adopted.flags),
+            "one": one,
             **works.get(one.item.index, {}),
             "quantity_low": None if origin.low is None else origin.low[one.item.item],
             "quantity_high": None if origin.high is None else origin.high[one.item.item],
         }
-
-
-_OF_ITEM = (
-    "item", "floor", "room", "description", "type", "quantity", "breadth_cm", "width_cm", "height_cm", "anchored",
-    "is_held", "importance", "row",
-)  # fmt: skip
-_join = "; ".join
 
 
 def _list_routes(path: str, results: Results) -> Iterator[Record]:
@@ -252,13 +216,11 @@ def _list_routes(path: str, results: Results) -> Iterator[Record]:
         ranged = blocked if results.main_basis == SIMULATED and blocked and blocked.low < blocked.high else None
         yield {
             "path": path,
-            "route": one.route,
-            "state": one.state.value,
-            "probability": None if blocked is None else blocked.probability,
-            "probability_low": None if ranged is None else ranged.low,
-            "probability_high": None if ranged is None else ranged.high,
+            "one": one,
+            "chance": blocked,
+            "range": ranged,
             "occupants": count_people(tables, one),
-            "blockers": _join(_list_blockers(tables, one)),
+            "blockers": _list_blockers(tables, one),
             "to_fill_in": say_missing(one.missing),
         }
 
@@ -280,8 +242,8 @@ def list_problems(path: str, problems: Sequence[Problem]) -> Iterator[Record]:
 
     order = {"error": 0, "warning": 1, "note": 2}
     shown = sorted(group_problems(problems), key=lambda one: order[one.severity])
-    for one in shown[:MOST_PROBLEMS]:
-        yield {"path": path, **{name: getattr(one, name) for name in ("severity", "sheet", "cell", "message", "fix")}}
+    more = []
     if (left := len(shown) - MOST_PROBLEMS) > 0:
-        more = fill("and {left:,} more problems; `assess check` lists them all.", left=left)
-        yield {"path": path, "severity": "note", "message": more}
+        text = fill("and {left:,} more problems; `assess check` lists them all.", left=left)
+        more.append(Problem("note", "", "", text))
+    yield from ({"path": path, "one": one} for one in (*shown[:MOST_PROBLEMS], *more))

@@ -70,7 +70,7 @@ class Part:
         """Return the rows of a table, draws included."""
         if name != "draws":
             return self.tables.get(name, [])
-        columns = [self.draws[column.name] for column in TABLES["draws"][2:]] if self.draws else []
+        columns = [self.draws[field.key] for field in TABLES["draws"][2:]] if self.draws else []
         return [[self.path, number, *row] for number, row in enumerate(zip(*columns, strict=True))]
 
 

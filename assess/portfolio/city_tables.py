@@ -12,7 +12,8 @@ from assess.errors import InputError, OutputError
 from assess.extras import say_install
 from assess.i18n import fill
 from assess.portfolio.building_task import Part
-from assess.portfolio.table_schemas import TABLES, Type
+from assess.portfolio.table_schemas import TABLES
+from assess.table import Kind
 
 if TYPE_CHECKING:
     import duckdb
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
 
 ROWS = 100_000
 """Rows of one file at most."""
-SQL_TYPES: dict[Type, str] = {"text": "VARCHAR", "number": "DOUBLE", "count": "BIGINT", "flag": "BOOLEAN"}
-FRAME_TYPES: dict[Type, str] = {"text": "object", "number": "float64", "count": "Int64", "flag": "boolean"}
+SQL_TYPES: dict[Kind, str] = {"text": "VARCHAR", "number": "DOUBLE", "count": "BIGINT", "flag": "BOOLEAN"}
+FRAME_TYPES: dict[Kind, str] = {"text": "object", "number": "float64", "count": "Int64", "flag": "boolean"}
 """Types of pandas: what is not known is None, NaN, NA and NA."""
 
 
@@ -43,11 +44,11 @@ def build_frame(name: str, rows: Sequence[Sequence[Any]]) -> "pd.DataFrame":
     columns = TABLES[name]
     values = [list(own) for own in zip(*rows, strict=True)] if rows else [[] for _ in columns]
     for at, column in enumerate(columns):
-        if column.type == "text":
+        if column.kind == "text":
             known: dict[Any, Any] = {}
             values[at] = [known.setdefault(value, value) for value in values[at]]  # one text for many rows
     return pd.DataFrame(
-        {one.name: pd.Series(own, dtype=FRAME_TYPES[one.type]) for one, own in zip(columns, values, strict=True)}
+        {one.key: pd.Series(own, dtype=FRAME_TYPES[one.kind]) for one, own in zip(columns, values, strict=True)}
     )
 
 
@@ -109,7 +110,7 @@ class _TableWriter:
 
 def _write_file(name: str, frame: "pd.DataFrame", path: Path) -> None:
     duckdb = check_tables()
-    columns = ", ".join(f'"{one.name}"::{SQL_TYPES[one.type]} AS "{one.name}"' for one in TABLES[name])
+    columns = ", ".join(f'"{one.key}"::{SQL_TYPES[one.kind]} AS "{one.key}"' for one in TABLES[name])
     try:
         with _connect(duckdb) as connection:
             connection.register("found", frame)
@@ -164,15 +165,15 @@ def read_table(folder: str | Path, name: str) -> "pd.DataFrame":
     listed = ", ".join(map(_quote, files))
     try:
         with _connect(duckdb) as connection:
-            names = ", ".join(f'"{one.name}"' for one in TABLES[name])
+            names = ", ".join(f'"{one.key}"' for one in TABLES[name])
             frame = connection.execute(f"SELECT {names} FROM read_parquet([{listed}])").df()  # noqa: S608
     except duckdb.Error as error:
         why = str(error).splitlines()[0]
         raise InputError(
             fill("{folder}: {name}.parquet cannot be read: {why}", folder=folder, name=name, why=why)
         ) from None
-    frame = frame.astype({one.name: FRAME_TYPES[one.type] for one in TABLES[name]})
+    frame = frame.astype({one.key: FRAME_TYPES[one.kind] for one in TABLES[name]})
     for one in TABLES[name]:
-        if one.type == "text":
-            frame[one.name] = frame[one.name].where(frame[one.name].notna(), None)
+        if one.kind == "text":
+            frame[one.key] = frame[one.key].where(frame[one.key].notna(), None)
     return frame

@@ -353,7 +353,7 @@ def _note_alike(part: Part, first: str | None) -> Part:
                  path=plain_line(first))  # fmt: skip
     fix = fill("Remove one of them if they are the same building.")
     notes = [to_row("problems", one) for one in list_problems(part.path, [Problem("note", "", "", fault, fix)])]
-    at = [column.name for column in TABLES["buildings"]].index("same_as")
+    at = [field.key for field in TABLES["buildings"]].index("same_as")
     rows = [[*row[:at], first, *row[at + 1 :]] for row in part.rows("buildings")]
     return replace(part, tables={**part.tables, "buildings": rows, "problems": [*part.rows("problems"), *notes]})
 
@@ -454,6 +454,6 @@ def _describe_run(job: _Job, city: "City", folder: Path, names: Sequence[str]) -
             "files": {name: find_digest(folder / name) for name in names},
         },
         "buildings": {status: int((city.buildings["status"] == status).sum()) for status in STATUSES},
-        "tables": {name: [[one.name, one.type, str(one.help)] for one in columns] for name, columns in TABLES.items()},
+        "tables": {name: [[one.key, one.kind, str(one.help)] for one in columns] for name, columns in TABLES.items()},
     }
     return (json.dumps(record, indent=1, ensure_ascii=False) + "\n").encode("utf-8", "replace")

@@ -22,8 +22,8 @@ TYPES = ("Bookcase tall", "Steel shelving", "Storage cabinet steel", "Wardrobe",
 def frame(name, rows):
     """Return rows as a table typed as the schema says."""
     columns = TABLES[name]
-    data = pd.DataFrame(rows, columns=[one.name for one in columns])
-    return data.astype({one.name: DTYPES[one.type] for one in columns})
+    data = pd.DataFrame(rows, columns=[one.key for one in columns])
+    return data.astype({one.key: DTYPES[one.kind] for one in columns})
 
 
 def make_view(count=40, *, draws=200, pieces=12, verify="all", seed=1):

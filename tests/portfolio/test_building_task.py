@@ -41,7 +41,7 @@ def task(tmp_path):
 
 def _rows(task, name, summary=None):
     part = (summary or run_task(task)).part or read_part(task.out, run_task(task).key)
-    return [dict(zip([one.name for one in TABLES[name]], row, strict=True)) for row in part.rows(name)]
+    return [dict(zip([one.key for one in TABLES[name]], row, strict=True)) for row in part.rows(name)]
 
 
 def test_rows_are_those_of_the_results(task):

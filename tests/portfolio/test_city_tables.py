@@ -15,10 +15,11 @@ from assess.portfolio.table_schemas import TABLES
 
 def _rows(count):
     texts = ("=1+1", "<script>", 'a"b', "a\nb", "é'", None)
-    return [
-        to_row("pieces", {"path": texts[at % 6], "quantity": at % 7 or None, "pfa_g": at / 3, "is_held": bool(at % 2)})
+    rows = (
+        {"path": texts[at % 6], "quantity": at % 7 or None, "pfa_g": at / 3, "is_held": bool(at % 2)}
         for at in range(count)
-    ]
+    )
+    return [[row.get(field.key) for field in TABLES["pieces"]] for row in rows]
 
 
 def _write(name, rows, folder):
@@ -40,8 +41,8 @@ def test_columns_that_are_empty_keep_their_types(tmp_path):
     for name, columns in TABLES.items():
         _write(name, [], tmp_path)
         found = duckdb.sql(f"DESCRIBE SELECT * FROM '{tmp_path / name}.parquet'").fetchall()
-        assert [(one[0], one[1]) for one in found] == [(one.name, city_tables.SQL_TYPES[one.type]) for one in columns]
-        assert list(read_table(tmp_path, name).columns) == [one.name for one in columns]
+        assert [(one[0], one[1]) for one in found] == [(one.key, city_tables.SQL_TYPES[one.kind]) for one in columns]
+        assert list(read_table(tmp_path, name).columns) == [one.key for one in columns]
 
 
 def test_many_rows_take_several_files_and_come_back_in_order(tmp_path, monkeypatch):

@@ -27,7 +27,7 @@ ITEMS = [
     {"item": "B", "floor": "1", "axis": "X", "breadth": 50, "width": 90, "height": 180},
 ]
 FLOORS = [{"floor": "1", "pfa_x": 0.45}]
-NAMES = [one.name for one in TABLES["pieces"]]
+NAMES = [one.key for one in TABLES["pieces"]]
 
 
 @pytest.mark.slow
