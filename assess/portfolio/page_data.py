@@ -58,33 +58,33 @@ def write_data(city: City, repeat: str, indexed: Collection[str] = ()) -> str:
     `repeat` is the command that assesses one building alone, with ``{path}`` in it; "" where there is none. `indexed`
     are the paths of the buildings of which an index fills in something.
     """
+    facts = _list_facts()
     data = {
-        "heads": [label for label, _read in _FACTS()],
-        "buildings": [_pack_building(row, city, repeat) | {"indexed": row["path"] in indexed} for row in city.ranked],
+        "heads": [label for label, _read in facts],
+        "buildings": [
+            {
+                "name": words.cut(city.name_building(row), LONGEST),
+                "path": words.cut(row["path"], LONGEST),
+                "share": sign_of_share(row).key,
+                "kind": sign_of_class(row).key,
+                "state": sign_of_routes(row).key,
+                "use": words.cut(city.spell_use(row), 60),
+                "inventory": row["inventory"] or "",
+                "basis": row["basis"] or "",
+                "storeys": row["storeys"],
+                "cells": _list_cells(row),
+                "facts": [words.cut(read(row), LONGEST) for _label, read in facts if row["status"] == "assessed"],
+                "command": _write_command(row, repeat),
+                "indexed": row["path"] in indexed,
+            }
+            for row in city.ranked
+        ],
         "tables": _pack_tables(city),
         "styles": _list_styles(),
         "texts": _list_texts(),
     }
     text = json.dumps(data, ensure_ascii=True, separators=(",", ":"), allow_nan=False)
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
-
-
-def _pack_building(row: Row, city: City, repeat: str) -> dict[str, Any]:
-    is_assessed = row["status"] == "assessed"
-    return {
-        "name": words.cut(city.name_building(row), LONGEST),
-        "path": words.cut(row["path"], LONGEST),
-        "share": sign_of_share(row).key,
-        "kind": sign_of_class(row).key,
-        "state": sign_of_routes(row).key,
-        "use": words.cut(city.spell_use(row), 60),
-        "inventory": row["inventory"] or "",
-        "basis": row["basis"] or "",
-        "storeys": row["storeys"],
-        "cells": _list_cells(row),
-        "facts": [words.cut(read(row), LONGEST) for _label, read in _FACTS()] if is_assessed else [],
-        "command": _write_command(row, repeat),
-    }
 
 
 def _write_command(row: Row, repeat: str) -> str:
@@ -110,14 +110,12 @@ def _list_cells(row: Row) -> list[str]:
     basis = "" if row["basis"] == "simulated" else f", {say.name_basis(row['basis'])}"
     return [
         words.cut(str(row["use"] or ""), 60), say.mark_own_motions(f"{inventory}{basis}", row), "",
-        say.say_whole(row["pieces"]),
-        words.percent(find_share(row)), say.say_falls(row),
-        say.say_range(row["falls_p05"], row["falls_p95"]), say.say_people(row),
-        say.say_blocked(row),
+        say.say_whole(row["pieces"]), words.percent(find_share(row)), say.say_falls(row),
+        say.say_range(row["falls_p05"], row["falls_p95"]), say.say_people(row), say.say_blocked(row),
     ]  # fmt: skip
 
 
-def _FACTS() -> list[tuple[str, Callable[[Row], str]]]:  # noqa: N802 - a table, in the language in use
+def _list_facts() -> list[tuple[str, Callable[[Row], str]]]:
     """Return what the page of a building says of it: label, and how it is read from its row."""
     return [
         (_("File"), lambda row: str(row["path"])),
