@@ -105,7 +105,7 @@ def to_row(name: str, record: Record) -> list[Any]:
 
 
 def _to_plain(value: Any, kind: Kind) -> Any:
-    if value is None or value in ("", ()):
+    if value is None or (isinstance(value, str | tuple | list) and not value):
         return None
     if kind == "text":
         return "; ".join(value) if isinstance(value, tuple | list) else str(value)

@@ -294,14 +294,7 @@ def _remove_unused(out: Path, keys: set[str]) -> None:
 def _write_output(job: _Job, summaries: Mapping[str, Summary]) -> "tuple[tuple[Path, ...], tuple[Path, ...], City]":
     """Write tables and reports; return the files, those that were removed, and the city.
 
-    Raises
-    ------
-    OutputError
-        If something cannot be written; all is as it was.
-    PdfUnavailableError
-        If the native libraries of the PDF are missing; all else has been written.
-    CancelledError
-        If the work was cancelled; all is as it was.
+    Whatever it raises leaves all as it was; but PdfUnavailableError is raised once all else has been written.
     """
     names = _list_names(job.formats)
     try:

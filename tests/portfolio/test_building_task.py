@@ -223,6 +223,7 @@ def test_a_route_that_is_not_known_has_no_chance_and_its_people_no_number(tmp_pa
     assert by_name["East"]["probability"] > 0
     assert by_name["East"]["blockers"] == "A1"
     assert by_name["East"]["probability_low"] is by_name["East"]["probability_high"] is None, "nothing was simulated"
+    assert by_name["West"]["blockers"] is None
     assert building["people_blocked"] == pytest.approx(12 * by_name["East"]["probability"])
     assert (building["occupants"], building["people_not_known"]) == (42, 30)
     building, _ = found["unknown.xlsx"]
