@@ -74,7 +74,7 @@ def _describe_tables() -> Iterator[str]:
     for name, columns in TABLES.items():
         yield f"### {name}"
         yield ""
-        yield from _build_table(("column", "type", "what"), ((f"`{one.name}`", one.type, one.help) for one in columns))
+        yield from _build_table(("column", "type", "what"), ((f"`{one.key}`", one.kind, one.help) for one in columns))
 
 
 # ---------------------------------------------------------------- the workbook
