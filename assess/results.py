@@ -6,7 +6,6 @@ motion lie in one file, to which `Results.series` refers.
 """
 
 import difflib
-import statistics
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
@@ -1139,7 +1138,7 @@ class SuiteInfo:
     @property
     def median_pfa_g(self) -> float:
         """The median of their PFA, before scaling."""
-        return statistics.median(self.pfa_g)
+        return float(np.median(self.pfa_g))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -168,6 +168,16 @@ class Chance:
         return RiskClass(classify(self.high) or 0)
 
 
+def find_state(chance: Chance, risk: float, record: RouteState | None = None) -> RouteState:
+    """Return the state by a chance alone: blocked, else open below the risk [-] at its upper end, else doubtful.
+
+    What was blocked under the recorded motion itself is blocked.
+    """
+    if record == RouteState.BLOCKED or chance.probability >= BLOCKED_FROM:
+        return RouteState.BLOCKED
+    return RouteState.OPEN if chance.high < risk else RouteState.DOUBTFUL
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PieceRef:
     """A row of furniture: its name, its row in the workbook, and its index in the items."""

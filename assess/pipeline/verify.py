@@ -128,7 +128,7 @@ def verify(
     """
     check_pairs(int((cases.ensemble >= 0).sum()), settings)
     chosen = (cases.ensemble >= 0) | (cases.slides_under >= 0)
-    rows = len(np.unique(case_item[chosen]))
+    rows = len(set(case_item[chosen].tolist()))
     floors = len({case_demand[one].floor.floor for one in np.flatnonzero(chosen)})
     evaluate, threads, parts = simulation().evaluate, jobs or count_processors(), len(cases.ensembles)
     if not rows:

@@ -3,7 +3,6 @@
 import platform
 from collections.abc import Mapping
 from functools import cache
-from importlib.metadata import version
 
 
 @cache
@@ -17,6 +16,10 @@ def versions(*, has_rocked: bool = False, has_routes: bool = False) -> Mapping[s
         "system": platform.system(),
         "machine": platform.machine(),
     }
+    if not (has_rocked or has_routes):
+        return found
+    from importlib.metadata import version  # here: it takes a tenth of the time of a small run by formulas
+
     if has_rocked:
         from llvmlite.binding import get_host_cpu_name
         from numba import config

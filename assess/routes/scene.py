@@ -8,7 +8,7 @@ import numpy as np
 
 from assess.model import Inventory, Segment
 from assess.progress import SILENT, Progress
-from assess.route_results import BLOCKED_FROM, DOUBTS, Chance, MissingRow, PieceRef, RouteState, join_missing
+from assess.route_results import DOUBTS, Chance, MissingRow, PieceRef, RouteState, find_state, join_missing
 from assess.routes.chances import Couplings, Draws, Falls, Happens, Key, build_couplings, find_chances, union
 from assess.routes.missing import combine, find_any_falls, find_missing, is_unknown, list_left_out
 from assess.routes.network import Blocked
@@ -22,16 +22,6 @@ class Verdict:
     state: RouteState
     by_unconfirmed: bool = False
     by_missing: bool = False
-
-
-def find_state(chance: Chance, risk: float, record: RouteState | None = None) -> RouteState:
-    """Return the state by a chance alone: blocked, else open below the risk [-] at its upper end, else doubtful.
-
-    What was blocked under the recorded motion itself is blocked.
-    """
-    if record == RouteState.BLOCKED or chance.probability >= BLOCKED_FROM:
-        return RouteState.BLOCKED
-    return RouteState.OPEN if chance.high < risk else RouteState.DOUBTFUL
 
 
 class Outlook(TypedDict):

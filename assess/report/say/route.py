@@ -24,9 +24,9 @@ from assess.route_results import (
     RouteTables,
     SegmentRow,
     WayRow,
+    find_state,
     join_missing,
 )
-from assess.routes.scene import find_state
 from assess.routes.widths import LEVEL, RULES, STAIR
 from assess.units import LENGTH
 from assess.workbook.draft_names import is_draft
