@@ -602,7 +602,7 @@ class ItemResult:
         """In which draws it falls; None where that is not known."""
         return self._part.run.draws.read(self.item.index)
 
-    @property
+    @cached_property
     def apart(self) -> str:
         """Its basis where that is not the one of the run's counts, by which it stands apart in lists and sums: else "".
 
