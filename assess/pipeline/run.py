@@ -3,7 +3,7 @@
 import math
 import tempfile
 import weakref
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
@@ -15,11 +15,10 @@ from numpy.typing import NDArray
 from assess.delivery.traces import make_folder, remove_folder
 from assess.errors import InputError, OutputError, Problem
 from assess.i18n import fill
-from assess.methods import NO_WALL, SIDE_UNKNOWN, Cases, Method, Outcome, all_methods, simulation
+from assess.methods import NO_WALL, SIDE_UNKNOWN, Cases, Method, all_methods, simulation
 from assess.model import AXES, Inventory
 from assess.pipeline.adopt import (
     UNCONFIRMED,
-    Adoption,
     adopt,
     build_falls,
     choose_items,
@@ -55,11 +54,12 @@ from assess.routes.walls import find_walls, remark_on_walls
 from assess.settings import CLASS_BY, SCENARIOS, Settings, change_settings
 
 if TYPE_CHECKING:
-    from assess.annual_results import Annual
     from assess.motion.suite import Suite
     from assess.routes.obstructions import Obstructions
 
 SERIES = "series.npz"
+NO_SERIES = Path("no-series")
+"""The name of a folder that does not exist, where no series are wanted."""
 
 
 def run(
@@ -155,7 +155,12 @@ def compute(
     if isinstance(settings.anchor, int):
         schedule = build_results(assessment, figures=False, progress=progress).schedule
         assessment = anchor_first(assessment, schedule.rows)
-    return replace(assessment, annual=_evaluate_annual(assessment, jobs, progress))
+    if inventory.hazard is None:
+        return assessment
+    from assess.pipeline.annual import evaluate_annual
+
+    found = progress.wait_for(lambda: evaluate_annual(assessment, jobs=jobs, progress=progress))
+    return replace(assessment, annual=found)
 
 
 def _compute(
@@ -169,14 +174,28 @@ def _compute(
     scenario = settings.scenario or inventory.building.scenario_kind or SCENARIOS[0]
     filled = build_demands(inventory, scenario, ductility_reduction=settings.ductility_reduction, progress=progress)
     demands = scale_demands(filled, settings.scale)
-    (case_item, case_demand), obstructions = _pair(inventory, demands), _find_obstructions(inventory, progress)
+    obstructions: Sequence[Obstructions] = ()
+    if inventory.routes:  # imported only where there are any
+        from assess.routes.obstructions import find_obstructions
+
+        obstructions = find_obstructions(inventory, progress)
+    reaching = {one.item_index for segment in obstructions for one in segment.pieces}
+    on_route = np.array([bool(one.route) or at in reaching for at, one in enumerate(inventory.items)], dtype=np.bool_)
+    case_item, case_demand = _pair(inventory, demands)
     cases = _cases(inventory, case_item, case_demand, settings)
     outcomes = {one.key: one.evaluate(cases, settings) for one in every if one.tier == "screening"}
-    chosen = choose_items(settings.verify, every, outcomes, case_item, _on_route(inventory, obstructions))
+    chosen = choose_items(settings.verify, every, outcomes, case_item, on_route)
     cases = choose_motions(cases, chosen[case_item], case_demand, demands, inventory, settings, suite)
-    outcomes[simulation().key] = verify(cases, case_item, case_demand, settings, jobs=jobs, progress=progress)
+    simulated = verify(cases, case_item, case_demand, settings, jobs=jobs, progress=progress)
+    outcomes[simulation().key] = simulated
     adoption = adopt(outcomes, cases, settings)
     adoption, both = unite_axes(adoption, outcomes, cases, inventory, case_item, case_demand, settings)
+    is_unconfirmed = (adoption.basis == UNCONFIRMED) & simulated.flags["unknown_building"]
+    remarks = [
+        *remark(inventory, filled, scenario, {inventory.items[int(at)].floor for at in case_item[is_unconfirmed]}),
+        *remark_suite(suite, cases),
+        *_remark_routes(inventory, obstructions),
+    ]
     return Assessment(
         inventory=inventory,
         settings=settings,
@@ -194,30 +213,8 @@ def _compute(
         governing=(governing := find_governing(adoption, case_item, find_ruling(cases, settings))),
         anchors=find_anchors(inventory, cases, governing, settings),
         obstructions=obstructions,
-        problems=_list_problems(inventory, filled, scenario, suite, cases, obstructions, adoption, outcomes, case_item),
+        problems=(*inventory.problems, *map(inventory.place, remarks)),
     )
-
-
-def _list_problems(
-    inventory: Inventory,
-    filled: Demands,
-    scenario: str,
-    suite: "Suite | None",
-    cases: Cases,
-    obstructions: "Sequence[Obstructions]",
-    adoption: Adoption,
-    outcomes: Mapping[str, Outcome],
-    case_item: NDArray[np.intp],
-) -> tuple[Problem, ...]:
-    """Return the problems of the workbook, and what is to be said of its motions, the user's own, and its routes."""
-    is_unconfirmed = (adoption.basis == UNCONFIRMED) & outcomes[simulation().key].flags["unknown_building"]
-    unconfirmed = {inventory.items[int(at)].floor for at in case_item[is_unconfirmed]}
-    remarks = [
-        *remark(inventory, filled, scenario, unconfirmed),
-        *remark_suite(suite, cases),
-        *_route_problems(inventory, obstructions),
-    ]
-    return (*inventory.problems, *map(inventory.place, remarks))
 
 
 def build_results(
@@ -228,10 +225,21 @@ def build_results(
     progress: Progress = SILENT,
 ) -> Results:
     """Return the tables of a run; parameters and errors are those of `run`."""
-    demands = list_demands(assessment)
-    folder, is_temporary = _find_folder(series_folder, figures), figures and series_folder is None
+    demands, is_temporary = list_demands(assessment), figures and series_folder is None
+    if series_folder is not None:
+        folder = Path(series_folder)
+    else:
+        folder = make_folder(Path(tempfile.gettempdir()), "assess-") if figures else NO_SERIES
+
+    def build() -> Results:
+        results = _build_rows(assessment, demands, folder, evaluate_route_tables(assessment, progress))
+        schedule = build_schedule(
+            results, assessment.inventory, lambda held: evaluate_route_tables(assessment, progress, held)
+        )
+        return replace(results, schedule=schedule)
+
     try:
-        results = progress.wait_for(lambda: _build_tables(assessment, demands, folder, progress))
+        results = progress.wait_for(build)
         if figures:
             arrays = progress.wait_for(lambda: build_series(assessment, demands, results, progress))
             _write_series(results.series.path, arrays, progress)
@@ -244,24 +252,9 @@ def build_results(
     return results
 
 
-def _find_folder(series_folder: "str | Path | None", figures: bool) -> Path:
-    """Return where series are written; the name of a folder that does not exist where none are wanted."""
-    if series_folder is not None:
-        return Path(series_folder)
-    return make_folder(Path(tempfile.gettempdir()), "assess-") if figures else Path("no-series")
-
-
-def _build_tables(assessment: Assessment, demands: Sequence[Demand], folder: Path, progress: Progress) -> Results:
-    results = _build_rows(assessment, demands, folder, evaluate_route_tables(assessment, progress))
-    schedule = build_schedule(
-        results, assessment.inventory, lambda held: evaluate_route_tables(assessment, progress, held)
-    )
-    return replace(results, schedule=schedule)
-
-
 def list_first_fixes(assessment: Assessment, routes: RouteTables) -> list[list[int]]:
     """Return the pieces (indices) of each entry of the schedule, in its order, without what comes of them."""
-    results = _build_rows(assessment, list_demands(assessment), Path("no-series"), routes)
+    results = _build_rows(assessment, list_demands(assessment), NO_SERIES, routes)
     return [[one.item.index for one in entry] for entry in list_entries(tuple(results), routes.routes)]
 
 
@@ -362,14 +355,6 @@ def _cases(
     )
 
 
-def _evaluate_annual(assessment: Assessment, jobs: int | None, progress: Progress) -> "Annual | None":
-    if assessment.inventory.hazard is None:
-        return None
-    from assess.pipeline.annual import evaluate_annual
-
-    return progress.wait_for(lambda: evaluate_annual(assessment, jobs=jobs, progress=progress))
-
-
 def _number_alike(
     inventory: Inventory, case_item: NDArray[np.intp], case_demand: tuple[Demand, ...], walls: NDArray[np.int8]
 ) -> NDArray[np.intp]:
@@ -395,14 +380,6 @@ def _list_walls(inventory: Inventory, case_item: NDArray[np.intp], case_demand: 
 # ---------------------------------------------------------------- routes, imported only where there are any
 
 
-def _find_obstructions(inventory: Inventory, progress: Progress) -> "Sequence[Obstructions]":
-    if not inventory.routes:
-        return ()
-    from assess.routes.obstructions import find_obstructions
-
-    return find_obstructions(inventory, progress)
-
-
 def evaluate_route_tables(assessment: Assessment, progress: Progress, held: Collection[int] = ()) -> RouteTables:
     """Return the routes, with further pieces (indices) held."""
     inventory, settings = assessment.inventory, assessment.settings
@@ -418,7 +395,7 @@ def evaluate_route_tables(assessment: Assessment, progress: Progress, held: Coll
     return found if assessment.annual is None or held else add_annual(found, assessment.annual.ways)
 
 
-def _route_problems(inventory: Inventory, obstructions: "Sequence[Obstructions]") -> Iterator[Problem]:
+def _remark_routes(inventory: Inventory, obstructions: "Sequence[Obstructions]") -> Iterator[Problem]:
     """Yield what is to be said of walls and, where there are routes, of the pieces beside them."""
     yield from remark_on_walls(inventory)
     if inventory.routes:
@@ -427,9 +404,3 @@ def _route_problems(inventory: Inventory, obstructions: "Sequence[Obstructions]"
 
         yield from find_route_problems(inventory, obstructions)
         yield from find_unfurnished(inventory)
-
-
-def _on_route(inventory: Inventory, obstructions: "Sequence[Obstructions]") -> NDArray[np.bool_]:
-    """Return which items name a route, or can reach one by the plan."""
-    reaching = {one.item_index for segment in obstructions for one in segment.pieces}
-    return np.array([bool(item.route) or at in reaching for at, item in enumerate(inventory.items)], dtype=np.bool_)

@@ -31,9 +31,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.arrays import FloatArray
 from assess.errors import CancelledError
-from assess.methods import Cases, Joint, Method
+from assess.methods import Cases, Joint
 from assess.natural import natural_key
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.floor_demand import Demand
@@ -140,21 +139,16 @@ def _of_motion(demand: Demand, joint: Joint | None) -> Iterator[tuple[str, NDArr
     for at, (values, _) in enumerate(joint.examples):
         yield f"example/{at}", (values / GRAVITY).astype(np.float32)
     yield "example_steps_s", np.array([step for _, step in joint.examples])
-    yield from _spectra(demand, joint)
-
-
-def _spectra(demand: Demand, joint: Joint) -> Iterator[tuple[str, NDArray[Any]]]:
-    spectra = joint.spectra
+    spectra, motion = joint.spectra, demand.motion
     if spectra is None:
         return
     yield "periods_s", spectra.periods
     yield "spectra_g", (spectra.ordinates / GRAVITY).astype(np.float32)
     if spectra.target is not None:
         yield "target_g", spectra.target / GRAVITY
-    elif demand.motion is not None:
+    elif motion is not None:
         from assess.motion.spectrum import pseudo_acceleration
 
-        motion = demand.motion
         own = pseudo_acceleration(motion.acceleration, motion.time_step, spectra.periods)
         yield "record_spectrum_g", own / GRAVITY
 
@@ -174,15 +168,25 @@ def _contours(assessment: Assessment, results: Iterable[ItemResult]) -> Iterator
     near = [one for one in free if abs(one.item.height_cm - height) <= ALIKE * height * (1 + ROUNDING)]
     pieces = sorted(near, key=lambda one: (-one.adopted.upper, -one.adopted.probability, natural_key(one.item.item)))
     ratio = _velocity_ratio(pieces[0])
-    breadth, pfa = _grid(height, pieces)
+    breadths = [one.item.breadth_cm for one in pieces]
+    pfas = [one.governing.motion.pfa_g for one in pieces]
+    thinnest, widest = min(SLENDER * height, 0.85 * min(breadths)), max(STOUT * height, 1.1 * max(breadths))
+    weakest, strongest = min(WEAKEST, 0.85 * min(pfas)), max(STRONGEST, BEYOND * max(pfas))
+    breadth, pfa = np.linspace(thinnest, widest, STEPS), np.linspace(weakest, strongest, STEPS)
     yield "items", np.array([one.item.index for one in pieces], dtype=np.int32)
     yield "height_cm", np.array(height)
     yield "pfv_per_pfa_s", np.array(ratio)
     yield "breadth_cm", breadth
     yield "pfa_g", pfa
+    wide, strong = (values.ravel() for values in np.meshgrid(breadth, pfa))
+    acceleration = strong * ACCELERATION["g"]
+    cases = Cases.of(
+        breadth=wide * LENGTH["cm"], height=height * LENGTH["cm"], pfa=acceleration, pfv=ratio * acceleration
+    )
     for method in assessment.methods:
         if method.is_live and not (method.ruled_by == "pfv" and math.isnan(ratio)):
-            yield method.key, _evaluate_grid(method, assessment, height, breadth, pfa, ratio)
+            value = np.nan_to_num(method.evaluate(cases, assessment.settings).value)  # 0 where no piece rocks by it
+            yield method.key, value.reshape(pfa.size, breadth.size).astype(np.float32)
 
 
 def _velocity_ratio(worst: ItemResult) -> float:
@@ -197,28 +201,6 @@ def _round(height: float) -> float:
     """Return a height [cm] rounded to 10 cm, or to 1 cm where it is small; halves go up."""
     step = 10.0 if height >= FINE_BELOW else 1.0
     return math.floor(height / step * (1 + ROUNDING) + 0.5) * step
-
-
-def _grid(height: float, pieces: Sequence[ItemResult]) -> tuple[FloatArray, FloatArray]:
-    """Return breadths [cm] and PFA [g]: from slender to stout and from weak to strong, around all pieces drawn."""
-    breadth = [one.item.breadth_cm for one in pieces]
-    pfa = [one.governing.motion.pfa_g for one in pieces]
-    thinnest, widest = min(SLENDER * height, 0.85 * min(breadth)), max(STOUT * height, 1.1 * max(breadth))
-    weakest, strongest = min(WEAKEST, 0.85 * min(pfa)), max(STRONGEST, BEYOND * max(pfa))
-    return np.linspace(thinnest, widest, STEPS), np.linspace(weakest, strongest, STEPS)
-
-
-def _evaluate_grid(
-    method: Method, assessment: Assessment, height: float, breadth: FloatArray, pfa: FloatArray, ratio: float
-) -> NDArray[np.float32]:
-    """Return the chance by a method [-] at every PFA (rows) and breadth (columns); 0 where no piece rocks by it."""
-    wide, strong = (values.ravel() for values in np.meshgrid(breadth, pfa))
-    acceleration = strong * ACCELERATION["g"]
-    cases = Cases.of(
-        breadth=wide * LENGTH["cm"], height=height * LENGTH["cm"], pfa=acceleration, pfv=ratio * acceleration
-    )
-    value = np.nan_to_num(method.evaluate(cases, assessment.settings).value)
-    return value.reshape(pfa.size, breadth.size).astype(np.float32)
 
 
 def unpack(series: Mapping[str, NDArray[Any]], motion: int) -> NDArray[np.bool_]:
