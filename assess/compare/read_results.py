@@ -18,13 +18,13 @@ from assess.i18n import Text, fill
 from assess.input_file import read_input
 from assess.model import MEASURED
 from assess.plain_text import plain_line
+from assess.report.ownership import DATA
 from assess.report.results_schema import VERSION
 from assess.results import BASES
 from assess.risk import RiskClass
 from assess.table import unnest
 from assess.workbook.names import key
 
-DATA = "results.json"
 COMPARISON = "comparison"
 """Entry that tells compare.json, which is no run, from results.json."""
 MOST_BYTES = 1 << 30

@@ -6,12 +6,10 @@ were. A run replaces and removes only what results.json lists (`assess.report.ow
 """
 
 import os
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
 
 from assess.delivery.deliver import Written, deliver, explain_fault, stage_for
 from assess.delivery.disk import find_digest, flush_file
@@ -19,50 +17,13 @@ from assess.delivery.folders import NEW
 from assess.errors import InputError, OutputError, PdfUnavailableError
 from assess.i18n import fill
 from assess.progress import SILENT, Progress
-from assess.report.ownership import find_reports
+from assess.report.formats import ALL, DEFAULT, FILES, FORMATS
+from assess.report.job import Job
+from assess.report.ownership import DATA, find_reports
 from assess.report.report_options import ReportOptions
-from assess.report_formats import ALL, DEFAULT, FILES
 from assess.results import Results
 
-if TYPE_CHECKING:
-    from assess.report.content import Content
-    from assess.report.pages.pdf import Layout
-
-
-@dataclass(frozen=True)
-class Job:
-    """One set of reports that is written; the content is built once for all of them."""
-
-    results: Results
-    options: ReportOptions
-    progress: Progress
-    stage: Path
-    listed: dict[str, str | None] = field(default_factory=dict)
-    """The files of the run but for results.json, with their SHA-256; None of one that carries results.json."""
-
-    @property
-    def written(self) -> list[str]:
-        """The names of the files of the run."""
-        return [*self.listed, FILES["json"]]
-
-    @cached_property
-    def content(self) -> "Content":
-        """What HTML, PDF and Excel show, in the language of the reports."""
-        from assess.report.content import build_content
-
-        return self.progress.wait_for(lambda: build_content(self.results))
-
-    def write_data(self) -> Path:
-        """Write results.json, with the list of the other files, and return it."""
-        from assess.report.data import write_json
-
-        path = self.stage / FILES["json"]
-        write_json(self.results, path, self.progress, files=dict(sorted(self.listed.items())))
-        return path
-
-
-_EDITIONS: Mapping[str, Literal["client", "annex"]] = {"pdf": "client", "annex": "annex"}
-_LAST = ("json", *_EDITIONS)
+_LAST = ("json", *(one.key for one in FORMATS.values() if one.edition))
 """What is written last: results.json, which lists the files before it, and the PDFs, which carry it."""
 
 
@@ -122,7 +83,7 @@ def write_reports(
         with stage_for(folder) as stage, options.spoken():
             job = Job(results, options, progress, stage / NEW)
             missing = _write_all(job, folder, ordered)
-            gone = deliver(stage, folder, lambda target: _find_old(target, job.written), FILES["json"], progress)
+            gone = deliver(stage, folder, lambda target: _find_old(target, job.written), DATA, progress)
     except OSError as error:
         raise explain_fault(folder, error, FILES.values()) from None
     if missing:
@@ -133,13 +94,7 @@ def write_reports(
 
 def list_formats(formats: Sequence[str]) -> Sequence[str]:
     """Return the formats that are named, of "all" every one whose packages are installed."""
-    if ALL not in formats:
-        return formats
-    from assess.report.parquet_file import has_parquet
-    from assess.report.word import has_word
-
-    is_there = {"docx": has_word(), "parquet": has_parquet()}
-    return [name for name in FILES if is_there.get(name, True)]
+    return [one.key for one in FORMATS.values() if not one.missing] if ALL in formats else formats
 
 
 def _find_old(folder: Path, wanted: Collection[str]) -> frozenset[str]:
@@ -164,14 +119,8 @@ def check_folder(folder: Path, formats: Sequence[str] = ()) -> None:
         If a folder or a file of the user's stands at the name of a report (see `assess.report.ownership`), or a format
         needs a package that is not installed.
     """
-    if "docx" in formats:
-        from assess.report.word import check_word
-
-        check_word()
-    if "parquet" in formats:
-        from assess.report.parquet_file import check_parquet
-
-        check_parquet()
+    for name in formats:
+        FORMATS[name].check()
     there = next((one for one in (folder, *folder.absolute().parents) if one.exists()), folder)
     if not (there.is_dir() and os.access(there, os.W_OK)):
         why = fill("you have no right to write there") if there.is_dir() else fill("{path} is a file", path=there)
@@ -187,20 +136,20 @@ def _write_all(job: Job, folder: Path, formats: Sequence[str]) -> PdfUnavailable
     """
     missing: PdfUnavailableError | None = None
     with ExitStack() as open_, job.progress.stage("rendering") as reports:
-        layouts = {}
-        for name in set(formats) & _EDITIONS.keys():
-            from assess.report.pages.pdf import start_pdf
+        for one in (FORMATS[name] for name in formats):
+            if one.edition:
+                from assess.report.pages.pdf import start_pdf
 
-            reports.at(0.0, detail=FILES[name])
-            begun = start_pdf(job.content, job.options, job.progress, edition=_EDITIONS[name])
-            layouts[name] = open_.enter_context(begun)
+                reports.at(0.0, detail=one.file)
+                begun = start_pdf(job.content, job.options, job.progress, edition=one.edition)
+                job.layouts[one.file] = open_.enter_context(begun)
         for at, name in enumerate(formats):
             file = FILES[name]
             reports.at(at / len(formats), detail=file)
             if name == "json":
                 job.listed.update((FILES[each], None) for each in formats[at + 1 :])
             try:
-                _write(job, name, job.stage / file, layouts.get(name))
+                FORMATS[name].write(job, job.stage / file)
                 flush_file(job.stage / file)
                 if name not in _LAST:
                     job.listed[file] = find_digest(job.stage / file)
@@ -215,7 +164,7 @@ def _write_all(job: Job, folder: Path, formats: Sequence[str]) -> PdfUnavailable
                     "{file} could not be written: {why}. {folder} is left as it was.", file=file, why=why, folder=folder
                 )
                 raise OutputError(text) from None
-        _seal([job.stage / FILES[name] for name in _EDITIONS if FILES[name] in job.listed], job)
+        _seal([job.stage / file for file in job.layouts if file in job.listed], job)
         reports.check()
     return missing
 
@@ -224,7 +173,7 @@ def _seal(paths: Sequence[Path], job: Job) -> None:
     """Write the identifiers into the PDFs; list those that have no place for them, as results.json can, by a hash."""
     from assess.report.pages.pdf_seal import seal
 
-    data = job.stage / FILES["json"]
+    data = job.data
     sealed = [path for path in paths if seal(path, data)]
     if len(sealed) < len(paths):
         job.listed.update((path.name, find_digest(path)) for path in paths if path not in sealed)
@@ -233,33 +182,3 @@ def _seal(paths: Sequence[Path], job: Job) -> None:
             seal(path, data)
     for path in (data, *paths):
         flush_file(path)
-
-
-def _write(job: Job, name: str, path: Path, layout: "Layout | None") -> None:
-    """Write a format; what does is imported only when it is wanted."""
-    if layout is not None:
-        from assess.report.pages.pdf import finish_pdf
-
-        finish_pdf(layout, job.results, path, job.options, job.progress, data=job.stage / FILES["json"])
-    elif name == "xlsx":
-        from assess.report.xlsx import write_xlsx
-
-        write_xlsx(job.content, path, job.progress)
-    elif name == "html":
-        from assess.report.pages.html import write_html
-
-        write_html(job.content, path, job.options, job.progress)
-    elif name == "json":
-        job.write_data()
-    elif name in ("csv", "npz"):
-        from assess.report.data import write_csv, write_npz
-
-        (write_csv if name == "csv" else write_npz)(job.results, path, job.progress)
-    elif name == "docx":
-        from assess.report.word import write_word
-
-        write_word(job.content, path, job.options, job.progress)
-    else:
-        from assess.report.parquet_file import write_parquet
-
-        write_parquet(job.results, path, job.progress)

@@ -3,38 +3,16 @@
 The types come from the fields, never from the values, so that the files of many buildings can be read as one table.
 """
 
-import importlib.util
 from pathlib import Path
 from typing import Any
 
-from assess.errors import InputError
-from assess.extras import say_install
-from assess.i18n import fill
 from assess.progress import SILENT, Progress
+from assess.report.formats import FORMATS
 from assess.results import Results
 from assess.table import Kind
 
 _SQL_TYPES: dict[Kind, str] = {"number": "DOUBLE", "share": "DOUBLE", "count": "BIGINT", "flag": "BOOLEAN"}
 """Of the columns by what a field holds; all others are VARCHAR, lists joined by "; " as in items.csv."""
-
-
-def has_parquet() -> bool:
-    """Tell whether the package that writes it is there."""
-    return importlib.util.find_spec("duckdb") is not None
-
-
-def check_parquet() -> None:
-    """Check that the package that writes it is there.
-
-    Raises
-    ------
-    InputError
-        If it is missing: it says what to install.
-    """
-    if not has_parquet():
-        raise InputError(
-            fill("the format parquet needs duckdb, which is not installed. {how}", how=say_install("parquet"))
-        )
 
 
 def write_parquet(results: Results, path: Path, progress: Progress = SILENT) -> None:
@@ -49,7 +27,7 @@ def write_parquet(results: Results, path: Path, progress: Progress = SILENT) -> 
     CancelledError
         If the work was cancelled.
     """
-    check_parquet()
+    FORMATS["parquet"].check()
     progress.wait_for(lambda: _write(results, path))
 
 

@@ -19,6 +19,7 @@ from assess.i18n import gettext as _
 from assess.progress import SILENT, Progress
 from assess.report.content import Content
 from assess.report.fonts import find_missing, find_nowhere, print_fonts, replace_signs
+from assess.report.ownership import DATA
 from assess.report.pages import glyphs
 from assess.report.pages.html import list_missing_figures, render, with_problems
 from assess.report.pages.pdf_layout import MISSING, UNWRITTEN
@@ -29,7 +30,6 @@ from assess.results import Results
 
 DEBIAN = "apt install libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"
 ARCHIVAL, ACCESSIBLE = "pdf/a-3u", "pdf/ua-1"
-DATA = "results.json"
 _KINDS = {
     ".xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
     ".xlsm": "application/vnd.ms-excel.sheet.macroenabled.12",

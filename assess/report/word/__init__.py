@@ -4,44 +4,12 @@
 headers and footers.
 """
 
-import importlib.util
 from pathlib import Path
 
-from assess.errors import InputError
-from assess.extras import say_install
-from assess.i18n import fill
 from assess.progress import SILENT, Progress
 from assess.report.content import Content
+from assess.report.formats import FORMATS
 from assess.report.report_options import ReportOptions
-
-NEEDED = {"docx": "python-docx", "pypdfium2": "pypdfium2"}
-"""Packages that a Word edition needs besides those of every report, by the modules that they bring."""
-
-
-def has_word() -> bool:
-    """Tell whether the packages for a Word edition are there."""
-    return not _list_missing()
-
-
-def _list_missing() -> list[str]:
-    return [package for module, package in NEEDED.items() if importlib.util.find_spec(module) is None]
-
-
-def check_word() -> None:
-    """Check that the packages for a Word edition are there.
-
-    Raises
-    ------
-    InputError
-        If one is missing: it says what to install.
-    """
-    if missing := _list_missing():
-        text = fill(
-            "the format docx needs {packages}, which is not installed. {how}",
-            packages=", ".join(missing),
-            how=say_install("word"),
-        )
-        raise InputError(text)
 
 
 def write_word(content: Content, path: Path, options: ReportOptions, progress: Progress = SILENT) -> None:
@@ -58,7 +26,7 @@ def write_word(content: Content, path: Path, options: ReportOptions, progress: P
     CancelledError
         If the work was cancelled; nothing is written.
     """
-    check_word()
+    FORMATS["docx"].check()
     from assess.i18n import LANGUAGES
     from assess.report.cover import build_document
     from assess.report.pages.html import build_style
