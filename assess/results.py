@@ -1449,9 +1449,15 @@ class Results:
         return self._kept[index] if is_kept else next(ItemColumns(self, index, index + 1).results())
 
     def parts(self) -> Iterator[ItemColumns]:
-        """Yield the rows of furniture as columns, at most `PART` at a time."""
-        for start in range(0, len(self), PART):
-            yield ItemColumns(self, start, start + PART)
+        """Return the rows of furniture as columns, at most `PART` at a time."""
+        return iter(self._kept_parts) if len(self) <= MOST_KEPT else self._make_parts()
+
+    def _make_parts(self) -> Iterator[ItemColumns]:
+        return (ItemColumns(self, start, start + PART) for start in range(0, len(self), PART))
+
+    @cached_property
+    def _kept_parts(self) -> list[ItemColumns]:
+        return list(self._make_parts())
 
     @property
     def formula(self) -> MethodInfo:
