@@ -55,7 +55,8 @@ def rows(folder: Path, before: Path | None = None, *, is_quick: bool = False) ->
     )
     yield "|---|---|---|---|---|---|---|---|---|---|"
     for job in jobs(folder, is_quick=is_quick):
-        command = [sys.executable, "-m", "assess", "run", str(job.book), *job.options, "--out", str(folder / "out")]
+        assess = [sys.executable, "-P", "-m", "assess"]  # not that of the folder in which this is called
+        command = [*assess, "run", str(job.book), *job.options, "--out", str(folder / "out")]
         ways: dict[str, tuple[list[str], Path]] = {
             "own": (command, ROOT), "rival": ([sys.executable, "-c", RIVAL], ROOT)
         }  # fmt: skip
