@@ -7,6 +7,7 @@ pandas tables are made of columns, a thousand rows at a time; a row is made only
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from operator import attrgetter, itemgetter
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -180,8 +181,6 @@ class Columns:
 
 
 Tree = Mapping[str, "Field | Tree"]
-_Leaf = Callable[[Field, Columns], list[Any]]
-_Group = Callable[[Sequence[str], Sequence[Sequence[Any]], bool], list[Any]]
 
 
 class Table:
@@ -219,17 +218,14 @@ class Table:
         for part in self.parts():
             yield from (dict(zip(keys, row, strict=True)) for row in zip(*self.flat_columns(part), strict=True))
 
-    def records(self) -> Iterator[dict[str, Any]]:
-        """Yield each row as a record of results.json."""
-        tree = build_tree(self.fields)
-        for part in self.parts():
-            yield from _fold(tree, part, _read_column, _group_records)
-
     def json_parts(self) -> Iterator[list[str]]:
         """Yield the rows of one part after the other, each row as the text of its record of results.json."""
         tree = build_tree(self.fields)
-        for part in self.parts():
-            yield _fold(tree, part, _encode_column, _group_texts)
+        return (_spell(tree, part) for part in self.parts())
+
+    def records(self) -> Iterator[dict[str, Any]]:
+        """Yield each row as a record of results.json."""
+        return (json.loads(text) for part in self.json_parts() for text in part)
 
     def flat_columns(self, part: Columns, change: Callable[[Any], Any] = lambda value: value) -> list[list[Any]]:
         """Return the values of some rows, column by column, as items.csv has them; `change` is made to texts, lists."""
@@ -254,43 +250,38 @@ def build_tree(fields: Iterable[Field]) -> Tree:
     return tree
 
 
-def _fold(tree: Tree, part: Columns, leaf: _Leaf, group: _Group, is_null: bool = False) -> list[Any]:
-    """Return a record a row, made from the columns of its fields by `leaf` and of its groups by `group`."""
-    columns = [
-        leaf(one, part) if isinstance(one, Field) else _fold(one, part, leaf, group, is_null or name in _GROUPS)
-        for name, one in tree.items()
-    ]
-    return group(tuple(tree), columns, is_null)
+def _spell(tree: Tree, part: Columns, *, is_null: bool = False) -> list[str]:
+    """Return each row as the text of its record; null where it is that of a group of which nothing is known."""
+    pattern, columns = _find_pattern(tree, part, is_null=is_null)
+    texts = [pattern % row for row in zip(*columns, strict=True)]
+    if not is_null:
+        return texts
+    blank = pattern % (("null",) * len(columns))
+    return ["null" if text == blank else text for text in texts]
 
 
-def _fold_records(
-    fields: Iterable[Field], source: str, part: Columns, leaf: _Leaf, group: _Group
-) -> Iterator[list[Any]]:
-    """Yield the rows within each row."""
-    inner, counts = part.inner(source)
-    found = iter(_fold(build_tree(fields), inner, leaf, group))
-    return ([next(found) for _row in range(count)] for count in counts)
+def _find_pattern(tree: Tree, part: Columns, *, is_null: bool) -> tuple[str, list[list[str]]]:
+    """Return a record with gaps, and the columns of texts that fill them."""
+    entries, columns = [], []
+    for name, one in tree.items():
+        gap = "%s"
+        if isinstance(one, Field):
+            columns.append(_spell_column(one, part))
+        elif is_null or name in _GROUPS:
+            columns.append(_spell(one, part, is_null=True))
+        else:
+            gap, inner = _find_pattern(one, part, is_null=False)
+            columns += inner
+        entries.append(f"{_dump(name).replace('%', '%%')}: {gap}")
+    return f"{{{', '.join(entries)}}}", columns
 
 
-def _read_column(field: Field, part: Columns) -> list[Any]:
-    if field.kind == "records":
-        return list(_fold_records(field.records, field.source, part, _read_column, _group_records))
-    values = part.column(field.source)
-    return values if field.kind in _NUMBERS else [field.plain(value) for value in values]
-
-
-def _group_records(names: Sequence[str], columns: Sequence[Sequence[Any]], is_null: bool) -> list[Any]:
-    rows = zip(*columns, strict=True)
-    if is_null:
-        return [None if all(value is None for value in row) else dict(zip(names, row, strict=True)) for row in rows]
-    return [dict(zip(names, row, strict=True)) for row in rows]
-
-
-def _encode_column(field: Field, part: Columns) -> list[str]:
+def _spell_column(field: Field, part: Columns) -> list[str]:
     """Return the values of a field as results.json spells them; the same text or list is spelt once."""
     if field.kind == "records":
-        lists = _fold_records(field.records, field.source, part, _encode_column, _group_texts)
-        return [f"[{', '.join(texts)}]" for texts in lists]
+        inner, counts = part.inner(field.source)
+        texts = iter(_spell(build_tree(field.records), inner))
+        return [f"[{', '.join(islice(texts, count))}]" for count in counts]
     values = part.column(field.source)
     if field.kind in _NUMBERS:
         if values.count(None) == len(values):  # often: nothing was simulated, or is placed
@@ -300,19 +291,16 @@ def _encode_column(field: Field, part: Columns) -> list[str]:
     return [spelt[value] for value in values]
 
 
-def _group_texts(names: Sequence[str], columns: Sequence[Sequence[str]], is_null: bool) -> list[str]:
-    heads = [_dump(name).replace("%", "%%") for name in names]
-    pattern = "{" + ", ".join(f"{head}: %s" for head in heads) + "}"
-    texts = [pattern % row for row in zip(*columns, strict=True)]
-    blank = pattern % (("null",) * len(names)) if is_null else ""
-    return ["null" if text == blank else text for text in texts] if is_null else texts
-
-
 def _flatten_column(field: Field, part: Columns, change: Callable[[Any], Any]) -> list[Any]:
+    if field.kind == "records" and not field.line:
+        return [change(json.loads(text)) for text in _spell_column(field, part)]
     if field.kind == "records":
-        chosen = [one for one in field.records if not field.line or f"{{{one.key}}}" in field.line]
-        lists = _fold_records(chosen, field.source, part, _read_column, _group_records)
-        return [change(field.flatten(records)) for records in lists]
+        inner, counts = part.inner(field.source)
+        chosen = [one for one in field.records if f"{{{one.key}}}" in field.line]
+        rows = zip(*(_flatten_column(one, inner, lambda value: value) for one in chosen), strict=True)
+        keys = [one.key for one in chosen]
+        lines = (field.line.format_map(dict(zip(keys, row, strict=True))) for row in rows)
+        return [change(list(islice(lines, count))) for count in counts]
     values = part.column(field.source)
     if field.kind in _NUMBERS and field.flat is None:
         return values

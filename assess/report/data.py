@@ -65,11 +65,11 @@ def write_json(
 def _write_list(file: TextIO, name: str, parts: Iterable[Iterable[str]], indent: str = "") -> None:
     """Write a list of records that are texts: a line each."""
     file.write(f"{indent} {json.dumps(name)}: [")
-    before = f"\n{indent}  "
+    gap = between = f"\n{indent}  "
     for records in parts:
-        for record in records:
-            file.write(f"{before}{record}")
-            before = f",\n{indent}  "
+        if text := f",{between}".join(records):
+            file.write(gap + text)
+            gap = f",{between}"
     file.write(f"\n{indent} ]")
 
 
