@@ -68,11 +68,14 @@ def _check_templates(folder: Path) -> None:
     unknown = sorted(name for name in own - standard if not Path(name).name.startswith("."))
     former = [name for name in unknown if name.startswith("sections/") or name == "report.html.j2"]
     if former:
-        text = (
-            "templates: {folder}: {name} replaces no standard template: sections are no templates any more. Order and "
-            "choose them in page.html.j2, word them in texts/en.po, put the cover in cover.html.j2."
+        raise InputError(
+            fill(
+                "templates: {folder}: {name} replaces no standard template: sections are no templates any more. Order "
+                "and choose them in page.html.j2, word them in texts/en.po, put the cover in cover.html.j2.",
+                folder=folder,
+                name=former[0],
+            )
         )
-        raise InputError(fill(text, folder=folder, name=former[0]))
     if unknown:
         near = difflib.get_close_matches(unknown[0], standard, 1, 0.5)
         fault = fill("templates: {folder}: {name} replaces no standard template.", folder=folder, name=unknown[0])
