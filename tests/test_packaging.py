@@ -37,7 +37,7 @@ def test_the_wheel_carries_templates_catalogue_schema_and_types(wheel):
     names = set(listed)
     assert len(names) == len(listed), "no file hides another"
     assert {
-        "assess/templates/report.html.j2",
+        "assess/templates/page.html.j2",
         "assess/templates/style/print.css",
         "assess/workbook/catalogue.csv",
         "assess/report/results.schema.json",
@@ -119,7 +119,7 @@ def test_every_extra_that_a_text_names_exists_and_none_is_installed_by_the_name_
     extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
     texts = {path: path.read_text(encoding="utf-8") for path in (ROOT / "assess").rglob("*.py")}
     assert [path for path, text in texts.items() if re.search(r"pip install [\"']?assess\[", text)] == []
-    named = {one for text in texts.values() for one in re.findall(r"say_install\([\"'](\w+)[\"']\)", text)}
+    named = {one for text in texts.values() for one in re.findall(r"(?:say_install\(|extra=)[\"'](\w+)[\"']", text)}
     assert {"parquet", "cluster", "web", "word", "plans"} <= named <= set(extras)
     said = say_install("parquet")
     assert "\n" not in said

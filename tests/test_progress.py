@@ -15,7 +15,7 @@ from assess.motion.formats import _text, plain_csv, read_records
 from assess.pipeline.series import write_series
 from assess.progress import SILENT, Progress, Report, check_waits
 from assess.report.figures.draw import draw
-from assess.report.formats import DEFAULT
+from assess.report_formats import DEFAULT
 from assess.workbook.writer import write_book
 from tests.waiting import PATIENCE
 from tests.workbooks import UNVERIFIED, write

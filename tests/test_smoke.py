@@ -18,7 +18,7 @@ import pypdfium2
 import pytest
 
 from assess.cli.app import find_commands
-from assess.report.formats import FILES
+from assess.report_formats import FILES
 from tests.shaking import write_records
 from tests.workbooks import ITEMS, write
 

@@ -30,7 +30,7 @@ from assess.cli.options import (
 from assess.errors import InputError
 from assess.i18n import LANGUAGES
 from assess.progress import Progress
-from assess.report.formats import ALL, DEFAULT, FILES
+from assess.report_formats import ALL, DEFAULT, FILES
 from assess.settings import ROUTE_RISK, Settings
 
 if TYPE_CHECKING:

@@ -17,10 +17,10 @@ from assess.delivery.folders import NEW
 from assess.errors import InputError, OutputError, PdfUnavailableError
 from assess.i18n import fill
 from assess.progress import SILENT, Progress
-from assess.report.formats import ALL, DEFAULT, FILES, FORMATS
 from assess.report.job import Job
 from assess.report.ownership import DATA, find_reports
 from assess.report.report_options import ReportOptions
+from assess.report_formats import ALL, DEFAULT, FILES, FORMATS
 from assess.results import Results
 
 _LAST = ("json", *(one.key for one in FORMATS.values() if one.edition))

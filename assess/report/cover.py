@@ -61,7 +61,7 @@ def _build_cover(view: View) -> list[Block]:
     if logo:
         named = (_("Logo of {organisation}", organisation=building.organisation) if building.organisation
                  else _("Logo of the organisation"))  # fmt: skip
-        blocks.append(Paragraph(Image(logo, named, "logo"), "logo"))
+        blocks.append(Paragraph(Image(logo, named, "logo"), "mark"))
     blocks += [
         Paragraph(_("Overturning of furniture in an earthquake: assessment"), "kind"),
         _title(view, words.cut(content.title, 120), words.cut(content.title, 60)),

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from assess.progress import SILENT, Progress
-from assess.report.formats import FORMATS
 from assess.results import Results
 from assess.table import Kind
 
@@ -27,7 +26,6 @@ def write_parquet(results: Results, path: Path, progress: Progress = SILENT) -> 
     CancelledError
         If the work was cancelled.
     """
-    FORMATS["parquet"].check()
     progress.wait_for(lambda: _write(results, path))
 
 

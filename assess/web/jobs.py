@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 from assess.errors import WorkbookError
 from assess.i18n import Text, fill, gettext, spoken
 from assess.model import Inventory
-from assess.report.formats import FILES
+from assess.report_formats import FILES
 from assess.settings import change_settings
 from assess.web.job_process import INPUT, ORDER, OUT, SUMMARY
 from assess.web.named_files import list_present

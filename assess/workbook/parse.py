@@ -404,10 +404,9 @@ class _Parser:
         names = {at: self.columns[at].name for at in columns}
         filled = [at for at in columns if any(row.get(names[at]) is not None for row in found)]
         if filled:
-            message = nfill(
-                "the hidden column {labels} is read as well.", "{n:,} hidden columns are read as well: {labels}.",
-                len(filled), labels=join(", ", [fill(self.columns[at].label) for at in filled]),
-            )  # fmt: skip
+            labels = join(", ", [fill(self.columns[at].label) for at in filled])
+            message = nfill("the hidden column {labels} is read as well.",
+                            "{n:,} hidden columns are read as well: {labels}.", len(filled), labels=labels)  # fmt: skip
             self.report(f"{column_letters(filled[0])}1", message, severity="note")
 
     def _best_row(self, top: Sequence[tuple[int, Cells]]) -> tuple[int, Cells] | None:

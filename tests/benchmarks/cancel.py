@@ -9,7 +9,7 @@ from typing import Any
 import assess
 from assess.motion.formats import LARGEST_FILE
 from assess.progress import Progress
-from assess.report.formats import DEFAULT
+from assess.report_formats import DEFAULT
 from tests.benchmarks.measuring import ROOT, list_items, write_thousand
 from tests.benchmarks.routes import FLOORS, write_tower
 from tests.workbooks import UNVERIFIED, write

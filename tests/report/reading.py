@@ -4,6 +4,7 @@ import html
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
+from copy import copy
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,7 @@ from assess.report.pages import html as pages
 from assess.report.pages.pdf_layout import open_page
 from assess.report.report_options import ReportOptions
 from assess.report.view import Edition
-from assess.results import Results
+from assess.results import ItemResult, Results
 
 
 @contextmanager
@@ -34,6 +35,13 @@ def no_figures() -> Iterator[None]:
 def leave_room(tex: str) -> MathFigure:
     """Return an equation without its letters, whose drawing takes half the time of a PDF."""
     return replace(math_figures.draw_math(tex), letters={}, placed="")
+
+
+def changed(one: ItemResult, **values: Any) -> ItemResult:
+    """Return a piece with other values of what is worked out of it."""
+    other = copy(one)
+    vars(other).update(values)
+    return other
 
 
 def write_html(results: Results, folder: Path, *, figures: bool = False) -> str:

@@ -12,6 +12,7 @@ from assess.methods.fitted import Polynomial, build_method
 from assess.report.say.methods import MOST_REASONS, find_disagreements, span
 from assess.risk import RiskClass, classify
 from tests.methods.test_fitted import PROBIT, SURFACE
+from tests.report.reading import changed
 from tests.workbooks import UNVERIFIED, assessed
 
 NEVER = dataclasses.replace(
@@ -124,7 +125,7 @@ class TestExampleBuilding:
         rows = [row for row in example if row.item.item != "42-25"]
         row, key = example["42-25"], example.formula.key
         methods = row.governing.methods | {key: row.governing.methods[key]._replace(value=0.0)}
-        other = dataclasses.replace(row, governing=dataclasses.replace(row.governing, methods=methods))
+        other = changed(row, cases=[dataclasses.replace(one, methods=methods) for one in row.cases])
         said = find_disagreements(example, [*rows, other]).summary
         assert said.startswith("On 10 of 121 rows")
         assert said.endswith("; most often Proposed OR formula lies above Kaneko-Hayashi formula (on 9).")

@@ -12,7 +12,7 @@ from assess.report.content import build_content
 from assess.report.say.piece import PieceGroup, choose_groups, group_rows
 from assess.report.view import View, list_all_parts
 from tests.pictures import picture
-from tests.report.reading import read_text, render
+from tests.report.reading import changed, read_text, render
 from tests.shaking import write_records
 from tests.workbooks import ITEMS, assessed
 
@@ -164,8 +164,8 @@ def test_alike_pieces_are_one_row(results):
 
 def test_a_group_shows_the_chances_of_all_its_rows(results):
     one = next(iter(results))
-    other = replace(one, adopted=replace(one.adopted, probability=0.5, low=0.4, high=0.6))
-    simulated = replace(one, adopted=replace(one.adopted, probability=0.2, low=0.1, high=0.3))
+    other = changed(one, adopted=replace(one.adopted, probability=0.5, low=0.4, high=0.6))
+    simulated = changed(one, adopted=replace(one.adopted, probability=0.2, low=0.1, high=0.3))
     group = PieceGroup((simulated, other))
     assert group.chance.replace("\xa0", " ") == "20.0 to 50.0 % (10.0 to 60.0 %)"
     assert PieceGroup((one, other)).chance.count("(") == 0, "one of them has no interval"

@@ -106,7 +106,7 @@ def test_a_fault_in_a_template_writes_nothing(assessment, tmp_path):
     [
         ("covers.html.j2", r"replaces no standard template. Did you mean cover.html"),
         ("sections/limits.html.j2", "sections are no templates any more. Order and choose them in page.html.j2, word"),
-        (".hidden", "holds no template: expected some of city.html.j2, city_summary.html.j2, compare.html.j2, cover"),
+        (".hidden", "holds no template: expected some of city.html.j2, city_summary.html.j2, cover"),
     ],
 )
 def test_a_folder_without_templates_is_told(tmp_path, name, told):

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from assess.report.formats import DEFAULT, FILES
+from assess.report_formats import DEFAULT, FILES
 from tests.workbooks import write
 
 EVERY = [name for name in FILES if name != "npz"]

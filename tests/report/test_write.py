@@ -14,8 +14,8 @@ import pytest
 import assess
 from assess.report import check_folder, list_formats
 from assess.report.data import write_json
-from assess.report.formats import DEFAULT, FILES
 from assess.report.ownership import read_list
+from assess.report_formats import DEFAULT, FILES
 from tests.cli.calling import error, run
 from tests.report.reading import no_figures
 from tests.waiting import PATIENCE

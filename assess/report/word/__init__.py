@@ -8,7 +8,6 @@ from pathlib import Path
 
 from assess.progress import SILENT, Progress
 from assess.report.content import Content
-from assess.report.formats import FORMATS
 from assess.report.report_options import ReportOptions
 
 
@@ -26,7 +25,6 @@ def write_word(content: Content, path: Path, options: ReportOptions, progress: P
     CancelledError
         If the work was cancelled; nothing is written.
     """
-    FORMATS["docx"].check()
     from assess.i18n import LANGUAGES
     from assess.report.cover import build_document
     from assess.report.pages.html import build_style

@@ -1,4 +1,7 @@
-"""The formats of a run's reports: what the command, the page and `assess` write; each is found in this folder."""
+"""The formats of a run's reports: what the command, the page and `assess` write; each is found in this folder.
+
+They are known without loading what writes them.
+"""
 
 import importlib
 import importlib.util
@@ -6,12 +9,14 @@ import pkgutil
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from assess.errors import InputError
 from assess.extras import say_install
 from assess.i18n import fill
-from assess.report.job import Job
+
+if TYPE_CHECKING:
+    from assess.report.job import Job
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,7 +42,7 @@ class Format:
     key: str
     file: str
     place: int
-    write: Callable[[Job, Path], None]
+    write: Callable[["Job", Path], None]
     is_default: bool = True
     edition: Literal["client", "annex"] | None = None
     needs: Mapping[str, str] = field(default_factory=dict)

@@ -1,12 +1,15 @@
 """report.pdf and annex.pdf: the client's edition, and what it rests on; few read the latter, and it takes longest."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from assess.report.formats import Format
-from assess.report.job import Job
+from assess.report_formats import Format
+
+if TYPE_CHECKING:
+    from assess.report.job import Job
 
 
-def _write(job: Job, path: Path) -> None:
+def _write(job: "Job", path: Path) -> None:
     from assess.report.pages.pdf import finish_pdf
 
     finish_pdf(job.layouts[path.name], job.results, path, job.options, job.progress, data=job.data)

@@ -1,12 +1,15 @@
 """report.docx: the client's edition for Word."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from assess.report.formats import Format
-from assess.report.job import Job
+from assess.report_formats import Format
+
+if TYPE_CHECKING:
+    from assess.report.job import Job
 
 
-def _write(job: Job, path: Path) -> None:
+def _write(job: "Job", path: Path) -> None:
     from assess.report.word import write_word
 
     write_word(job.content, path, job.options, job.progress)

@@ -1,12 +1,15 @@
 """items.parquet: a row a piece, for other programs."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from assess.report.formats import Format
-from assess.report.job import Job
+from assess.report_formats import Format
+
+if TYPE_CHECKING:
+    from assess.report.job import Job
 
 
-def _write(job: Job, path: Path) -> None:
+def _write(job: "Job", path: Path) -> None:
     from assess.report.parquet_file import write_parquet
 
     write_parquet(job.results, path, job.progress)

@@ -1,12 +1,15 @@
 """report.html: the report for a screen."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from assess.report.formats import Format
-from assess.report.job import Job
+from assess.report_formats import Format
+
+if TYPE_CHECKING:
+    from assess.report.job import Job
 
 
-def _write(job: Job, path: Path) -> None:
+def _write(job: "Job", path: Path) -> None:
     from assess.report.pages.html import write_html
 
     write_html(job.content, path, job.options, job.progress)
