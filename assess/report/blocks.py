@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
-from assess.i18n import markup, nmarkup
+from assess.i18n import markup
 
 # ---------------------------------------------------------------- on a line
 
@@ -73,11 +73,6 @@ def note(words: Words) -> Span:
 def rich(text: str, /, **values: Any) -> list[Inline]:
     """Return a translated text whose tags <em> and <strong> count; those inside `values` do not."""
     return parse_markup(markup(text, **values))
-
-
-def nrich(one: str, many: str, n: int, /, **values: Any) -> list[Inline]:
-    """Return `rich` of the text for one or for many."""
-    return parse_markup(nmarkup(one, many, n, **values))
 
 
 _TAG = re.compile(r"<(em|strong)>(.*?)</\1>", re.DOTALL)

@@ -36,7 +36,8 @@ from assess.report.blocks import (
 )
 from assess.report.equations import split_line
 from assess.report.figures.math_figures import draw_math, write_letters
-from assess.report.words import LONGEST_WORD, list_breaks
+from assess.report.templates import break_words
+from assess.report.words import LONGEST_WORD
 
 _TAGS = frozenset(("strong", "em", "sub", "sup"))
 
@@ -151,7 +152,7 @@ class HtmlWriter:
     def _cell_words(self, words: Words) -> str:
         """Return the words of a cell, the long ones with places to break at."""
         if isinstance(words, str):
-            return _break_words(words) if len(words) > LONGEST_WORD else str(escape(words))
+            return str(break_words(words)) if len(words) > LONGEST_WORD else str(escape(words))
         return "".join(
             self._cell_words(one) if isinstance(one, str) else self._inline(one) for one in list_words(words)
         )
@@ -225,7 +226,3 @@ def _tile(tile: Tile) -> str:
         f'<span class="tile-number">{escape(tile.number)}</span><span class="tile-note">{escape(tile.note)}</span>'
         "</div>\n"
     )
-
-
-def _break_words(text: str) -> str:
-    return "<wbr>".join(str(escape(one)) for one in list_breaks(text))

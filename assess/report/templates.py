@@ -21,15 +21,8 @@ def open_template(name: str, options: ReportOptions) -> Any:
     return _environment(options.templates, options.folders).get_template(name)
 
 
-def render_template(
-    name: str,
-    options: ReportOptions,
-    values: Mapping[str, Any],
-    progress: Progress = SILENT,
-    *,
-    filters: Mapping[str, Any] | None = None,
-) -> str:
-    """Return a template with its names filled in, with `filters` besides the few of all.
+def render_template(name: str, options: ReportOptions, values: Mapping[str, Any], progress: Progress = SILENT) -> str:
+    """Return a template with its names filled in.
 
     Raises
     ------
@@ -41,9 +34,7 @@ def render_template(
     TemplateError, SecurityError = progress.wait_for(_import_errors)
     parts = []
     try:
-        environment = progress.wait_for(lambda: _environment(options.templates, options.folders))
-        environment.filters |= filters or {}
-        for part in progress.wait_for(lambda: environment.get_template(name)).generate(**values):
+        for part in progress.wait_for(lambda: open_template(name, options)).generate(**values):
             progress.check()
             parts.append(part)
     except (TemplateError, SecurityError, TypeError, ValueError, ArithmeticError, LookupError, AttributeError) as error:

@@ -11,7 +11,7 @@ from assess.i18n import gettext as _
 from assess.i18n import number
 from assess.progress import SILENT, Progress
 from assess.report import words
-from assess.report.blocks import Inline, Section, Span, Words
+from assess.report.blocks import Inline, Section, Span
 from assess.report.content import Content
 from assess.report.embedded import Photos
 from assess.report.figures.plan import Plan, build_plan
@@ -199,6 +199,3 @@ def in_whole(value: float) -> str:
 def shorten(rows: Sequence[Any], most: int) -> tuple[Sequence[Any], int]:
     """Return the first rows, and how many are left out."""
     return rows[:most], max(len(rows) - most, 0)
-
-
-__all__ = ["Built", "Edition", "Part", "View", "Words"]

@@ -1,22 +1,6 @@
-// Labels the cells of small tables for cards, and filters and sorts the table of all pieces. Without it every row is
-// shown, and the links between plan and table work.
+// Filters and sorts the table of all pieces. Without it every row is shown, and the links between plan and table work.
 (() => {
   "use strict";
-  // On a phone rows are cards: a cell shows the head of its column. Tables of the results have these labels already.
-  for (const table of document.querySelectorAll("table")) {
-    const labels = Array.from(table.tHead?.rows[0]?.cells ?? []).flatMap((head) =>
-      Array(head.colSpan).fill(head.innerText.replace(/\s+/g, " ").trim()),
-    );
-    if (labels.length < 2 || table.id === "pieces") continue;
-    for (const row of Array.from(table.tBodies).flatMap((body) => Array.from(body.rows))) {
-      let at = 0;
-      for (const cell of row.cells) {
-        if (cell.tagName === "TD" && cell.dataset.label === undefined) cell.dataset.label = labels[at] ?? "";
-        at += cell.colSpan;
-      }
-    }
-  }
-
   const FIELDS = ["floor", "room", "class", "route"];
   const table = document.getElementById("pieces");
   const template = document.getElementById("filters");

@@ -12,7 +12,6 @@ def draw_plan(plan: Plan, view: View) -> Image:
     """Return the plan; on a screen its pieces and segments lead to their rows."""
     values = {
         "plan": plan, "for_print": view.for_print, "segment_rows": view.segment_rows, "most_rows": MOST_ROWS,
-        "in_m": words.in_m,
     }  # fmt: skip
     text = open_template("plan.svg.j2", view.options).render(values)
     return Image(text[text.index("<svg") :].rstrip())

@@ -99,8 +99,8 @@ class WordWriter:
             self._head(one.heading, 1, one.id, is_new="run-on" not in one.kind.split())
         self.blocks(one.blocks)
 
-    def blocks(self, blocks: Iterable[Block], *, is_first: bool = False) -> None:
-        """Write blocks; those of an article begin a page unless it is brief or the first of its section."""
+    def blocks(self, blocks: Iterable[Block]) -> None:
+        """Write blocks; an article behind another begins a page unless it is brief."""
         before: Block | None = None
         for one in blocks:
             self.word.progress.check()
@@ -145,8 +145,6 @@ class WordWriter:
                 is_next = is_after_article and "brief" not in kind.split()
                 self._head(blocks[0].words, blocks[0].level - 1, id_, is_new=is_next)
                 self.blocks(blocks[1:])
-            case Box(blocks, "caution", _, _):
-                self.blocks(blocks)
             case Box(blocks):
                 self.blocks(blocks)
 
