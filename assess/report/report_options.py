@@ -70,8 +70,8 @@ def _check_templates(folder: Path) -> None:
     if former:
         raise InputError(
             fill(
-                "templates: {folder}: {name} replaces no standard template: sections are no templates any more. Order "
-                "and choose them in page.html.j2, word them in texts/en.po, put the cover in cover.html.j2.",
+                "templates: {folder}: {name} is no longer a template. Choose and order the sections in page.html.j2, "
+                "reword them in texts/en.po, and put your cover in cover.html.j2.",
                 folder=folder,
                 name=former[0],
             )

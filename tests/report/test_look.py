@@ -105,7 +105,7 @@ def test_a_fault_in_a_template_writes_nothing(assessment, tmp_path):
     ("name", "told"),
     [
         ("covers.html.j2", r"replaces no standard template. Did you mean cover.html"),
-        ("sections/limits.html.j2", "sections are no templates any more. Order and choose them in page.html.j2, word"),
+        ("sections/limits.html.j2", "is no longer a template. Choose and order the sections in page.html.j2"),
         (".hidden", "holds no template: expected some of city.html.j2, city_summary.html.j2, cover"),
     ],
 )
