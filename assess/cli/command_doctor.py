@@ -63,8 +63,8 @@ def examine() -> Iterator[Finding]:
     """Yield versions, templates, fonts, the libraries of the PDF and the folder of compiled code."""
     yield Finding("assess", True, f"{__version__}, Python {platform.python_version()}, {platform.platform()}")
     yield from map(examine_package, list_requirements())
-    templates = resources.templates() / "report.html.j2"
-    yield Finding("templates", templates.is_file(), str(templates.parent))
+    templates = resources.templates()
+    yield Finding("templates", (templates / "page.html.j2").is_file(), str(templates))
     fonts = [path.name for path in resources.fonts().values()]
     fix = "pip install --force-reinstall assess matplotlib"
     yield Finding("fonts", len(fonts) == FONTS, ", ".join(fonts) if len(fonts) == FONTS else fix)
