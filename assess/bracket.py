@@ -32,20 +32,12 @@ def find_tension(
 
     Raises ValueError if a bracket is not above the floor.
 
-    Parameters
-    ----------
-    weight : array
-        W, any force.
-    acceleration : array
-        k, horizontal, over g [-]: PFA/g, or F_p/W.
-    breadth : array
-        B, the side parallel to the motion [m].
-    centre : array
-        z, height of the centre of gravity above the floor [m].
-    height : array
-        h, of the bracket above the floor, above 0 [m].
-    vertical : array
-        k_v, upward, over g [-].
+    * `weight`: W, any force.
+    * `acceleration`: k, horizontal, over g [-]: PFA/g, or F_p/W.
+    * `breadth`: B, the side parallel to the motion [m].
+    * `centre`: z, height of the centre of gravity above the floor [m].
+    * `height`: h, of the bracket above the floor, above 0 [m].
+    * `vertical`: k_v, upward, over g [-].
     """
     w, k, b, z, h, up = (np.asarray(one, float) for one in (weight, acceleration, breadth, centre, height, vertical))
     _check_height(h)
@@ -85,20 +77,12 @@ def find_code_demand(
 ) -> float:
     """Return F_p/W by ASCE 7-22, 13.3.1 [-]; raises ValueError if the height ratio is not between 0 and 1.
 
-    Parameters
-    ----------
-    sds : float
-        S_DS, over g [-].
-    height_ratio : float
-        z/h of the floor, 0 to 1; 0 is at or below grade.
-    resonance, strength : float
-        C_AR and R_po of the piece [-].
-    importance : float
-        I_p [-].
-    ductility : float
-        R_mu of the building [-]: taken as at least 1.3 above grade, and as 1 at or below it.
-    period : float, optional
-        T_a of the building [s]; None where it is not known.
+    * `sds`: S_DS, over g [-].
+    * `height_ratio`: z/h of the floor, 0 to 1; 0 is at or below grade.
+    * `resonance`, `strength`: C_AR and R_po of the piece [-].
+    * `importance`: I_p [-].
+    * `ductility`: R_mu of the building [-]: taken as at least 1.3 above grade, and as 1 at or below it.
+    * `period`: T_a of the building [s]; None where it is not known.
     """
     if not 0 <= height_ratio <= 1:
         raise ValueError(f"height_ratio is {height_ratio}, expected 0 to 1")

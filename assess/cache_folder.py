@@ -31,12 +31,8 @@ def choose_folder(chosen: str | None = None) -> tuple[Path | None, str]:
 
     `chosen`: the folder that numba has been given, "" for none; by default what NUMBA_CACHE_DIR names.
 
-    Returns
-    -------
-    folder : Path or None
-        The one that was chosen, else the user's own, which is made for the user alone; None if neither is safe.
-    fault : str
-        "" where the first of them is used.
+    * `folder`: The one that was chosen, else the user's own, which is made for the user alone; None if neither is safe.
+    * `fault`: "" where the first of them is used.
     """
     named = os.environ.get(CHOSEN, "") if chosen is None else chosen
     faults: list[str] = []
@@ -59,7 +55,6 @@ def examine_folder(folder: Path) -> str:
 
 
 def _find_writable(folder: Path) -> str:
-    """Return what others than the user could change in a folder, or on the way to it."""
     if not hasattr(os, "getuid"):
         return ""  # access rights of Windows: a profile is the user's own
     way = dict.fromkeys([folder.absolute(), *folder.absolute().parents, folder.resolve(), *folder.resolve().parents])

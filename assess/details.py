@@ -34,20 +34,12 @@ LEAST_FIXINGS = 2
 class Detail:
     """A generic way to fix a piece.
 
-    Parameters
-    ----------
-    key : str
-        By which results name it.
-    title, what, weakness : Text
-        In words: its name, how it is done, and what is known against it.
-    source : Text
-        Where that is printed.
-    fixing : Text
-        One of its fixings, with its capacity where one is printed.
-    capacity : float, optional
-        Of one fixing [N]; None where no source prints one.
-    is_at_base : bool
-        Whether it holds the piece at its base, where the lever of its fixings is the piece's breadth.
+    * `key`: By which results name it.
+    * `title`, `what`, `weakness`: In words: its name, how it is done, and what is known against it.
+    * `source`: Where that is printed.
+    * `fixing`: One of its fixings, with its capacity where one is printed.
+    * `capacity`: Of one fixing [N]; None where no source prints one.
+    * `is_at_base`: Whether it holds the piece at its base, where the lever of its fixings is the piece's breadth.
     """
 
     key: str

@@ -66,17 +66,11 @@ class FurnitureGap(Gap):
 class Correction:
     """A cell that was understood although it is not typed as its column asks.
 
-    Attributes
-    ----------
-    sheet, cell : str
-        Where: the sheet as the workbook calls it, and the address, ``H14``.
-    was : str
-        What the cell shows.
-    value : float, str or None
-        What belongs there: a number in the unit of its header, a text or a choice in the language of the workbook;
-        None for a cell that is to be blank.
-    why : str
-        What was done, such as "the unit cm is in the header".
+    * `sheet`, `cell`: Where: the sheet as the workbook calls it, and the address, ``H14``.
+    * `was`: What the cell shows.
+    * `value`: What belongs there: a number in the unit of its header, a text or a choice in the language of the
+      workbook; None for a cell that is to be blank.
+    * `why`: What was done, such as "the unit cm is in the header".
     """
 
     sheet: str

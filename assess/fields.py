@@ -25,7 +25,6 @@ from assess.table import DATA, EVERYWHERE, FILES, Field, Kind, Table, Where
 
 
 def _of_item(key: str, label: str, **more: Any) -> Field:
-    """A field of the row as it was assessed, or a column of the workbook that nothing is computed with."""
     source = f"item.{key}" if key in ItemRow.__slots__ else f"item.more.{key}"
     return Field(key=key, source=source, label=label, **more)
 
@@ -37,7 +36,6 @@ def _in_group(group: str, name: str, label: str = "", *, source: str = "", **mor
 
 
 def _simulation_field(name: str, kind: Kind, label: str, source: str = "", **more: Any) -> Field:
-    """A field of a case: what simulation found under its motion."""
     return _in_group(
         "verification", name, label, source=f"simulation.{source or name}", kind=kind, **{"shows": DATA, **more}
     )
@@ -91,7 +89,6 @@ _KINDS: Mapping[str, Kind] = {"number": "number", "count": "count", "truth": "fl
 
 
 def _in_excel(spec: str) -> str:
-    """Return the format of a number with a fixed number of decimals, ``,.1f``, as Excel writes it."""
     whole, _point, decimals = spec.rstrip("f").partition(".")
     zeros = "0" * int(decimals or 0)
     return (f"{'#,##0' if whole else '0'}{'.' if zeros else ''}{zeros}") if spec else ""
@@ -346,7 +343,6 @@ ANCHOR_FIELDS = (
 
 
 def _axis_fields(methods: Sequence[MethodInfo]) -> tuple[Field, ...]:
-    """Return the fields of a motion that an item was evaluated under."""
     return (
         Field(key="axis", source="motion.axis"),
         Field(key="source", source="motion.label"),
@@ -415,17 +411,14 @@ def case_fields(methods: Sequence[MethodInfo]) -> tuple[Field, ...]:
 
 
 def _of_motion(key: str, kind: Kind = "text", **more: Any) -> Field:
-    """A field of a floor's motion that belongs to one kind of source: None for the others."""
     return Field(key=key, kind=kind, is_optional=True, is_blank_unknown=True, **more)
 
 
 def _of_record(key: str, label: str = "") -> Field:
-    """What the file of a record says: None where there is no record."""
     return Field(key=key, source=f"recorded.{key}", label=label, is_optional=True)
 
 
 def _fit(name: str, label: str, format: str, unit: str = "", **more: Any) -> Field:  # noqa: A002
-    """How the generated motions meet their target: None where none were generated."""
     return _in_group("ensemble", f"fit.{name}", label, kind="number", unit=unit, format=format, **more)
 
 

@@ -109,14 +109,9 @@ def parse_hazard(
     points remain, or there are several sites and the building's place is not known; the message names the file and the
     line.
 
-    Parameters
-    ----------
-    data : bytes
-        ``pga_g,annual_rate`` and rows of numbers, or a table of OpenQuake; cells separated by commas, semicolons or
-        tabs, with the last two also with decimal commas.
-    name : str
-    latitude, longitude : float, optional
-        Of the building [deg].
+    * `data`: ``pga_g,annual_rate`` and rows of numbers, or a table of OpenQuake; cells separated by commas, semicolons
+      or tabs, with the last two also with decimal commas.
+    * `latitude`, `longitude`: Of the building [deg].
     """
     try:
         lines = split_text(_decode(data))
@@ -155,7 +150,6 @@ def _decode(data: bytes) -> str:
 
 
 def _split(lines: Sequence[str]) -> Iterator[Line]:
-    """Yield the cells of each line that is neither blank nor a comment; the first one's separator is that of all."""
     separator = ""
     for number, line in enumerate(lines, 1):
         if is_comment(line) or not line.strip(' \t,;"'):

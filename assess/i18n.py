@@ -148,8 +148,6 @@ def _say(formatter: "_Formatter", one: str, many: str, n: int, values: Mapping[s
 
 
 class _Formatter(string.Formatter):
-    """Puts values into a text: numbers in the language's own way, a `Text` translated."""
-
     def prepare(self, text: str) -> str:
         return text
 

@@ -88,24 +88,14 @@ def invert_jma(intensity: float) -> float:
 class Shaking:
     """A class of intensity as the motion of the ground.
 
-    Parameters
-    ----------
-    choice, name : str
-        The class as the workbook offers it, and in short.
-    intensity : float
-        What it is taken for: MMI, or JMA instrumental intensity.
-    pga, pgv : float
-        Medians [m/s2], [m/s].
-    scatter : float
-        Standard deviation of ln PGV given the class, rounded up to 0.01 [-].
-    sources : tuple of str
-        The relations in short.
-    references : tuple of str
-        The relations in full.
-    is_derived : bool
-        Whether PGA follows from PGV, by the ratio that is drawn.
-    is_open : bool
-        Whether the class has no upper limit.
+    * `choice`, `name`: The class as the workbook offers it, and in short.
+    * `intensity`: What it is taken for: MMI, or JMA instrumental intensity.
+    * `pga`, `pgv`: Medians [m/s2], [m/s].
+    * `scatter`: Standard deviation of ln PGV given the class, rounded up to 0.01 [-].
+    * `sources`: The relations in short.
+    * `references`: The relations in full.
+    * `is_derived`: Whether PGA follows from PGV, by the ratio that is drawn.
+    * `is_open`: Whether the class has no upper limit.
     """
 
     choice: str

@@ -128,18 +128,11 @@ class FloorRecord:
 
     It pickles without its waveform, unless it comes from no file; two are equal where their hashes and channels are.
 
-    Parameters
-    ----------
-    name : str
-        The text of the floor's cell (one of those split by ;).
-    record : Record, optional
-        The waveform, once it has been read.
-    file, channel : str
-        The file as the cell names it, and its channel; "" for the only one.
-    sha256 : str
-        Hash of the file's bytes; "" where the waveform comes from no file.
-    path : Path, optional
-        Where the file is, if it is in a folder.
+    * `name`: The text of the floor's cell (one of those split by ;).
+    * `record`: The waveform, once it has been read.
+    * `file`, `channel`: The file as the cell names it, and its channel; "" for the only one.
+    * `sha256`: Hash of the file's bytes; "" where the waveform comes from no file.
+    * `path`: Where the file is, if it is in a folder.
     """
 
     __slots__ = ("_record", "channel", "file", "name", "path", "sha256")
@@ -161,10 +154,7 @@ class FloorRecord:
     def record(self) -> Record:
         """The waveform; after unpickling it is read again from its file on first use.
 
-        Raises
-        ------
-        RecordError
-            If the file is gone or has changed since the workbook was read.
+        Raises RecordError if the file is gone or has changed since the workbook was read.
         """
         if self._record is None:
             self._record = select(_read_again(self.path, self.file, self.sha256), self.channel or None)
@@ -221,18 +211,11 @@ def _parse_checked(data: bytes, file: str, sha256: str) -> tuple[Record, ...]:
 class FloorPlan:
     """A plan as it lies under the pieces of a floor.
 
-    Parameters
-    ----------
-    path : Path
-        The user's file.
-    content : bytes
-        What is drawn of it: a grey JPEG; or, if `is_lines`, what `assess.plans.linework.unpack` reads.
-    left, bottom : float
-        Where its lower left corner lies [m].
-    width, height : float
-        Its sides [m].
-    turn_deg : float
-        By how much it is turned about that corner, anticlockwise.
+    * `path`: The user's file.
+    * `content`: What is drawn of it: a grey JPEG; or, if `is_lines`, what `assess.plans.linework.unpack` reads.
+    * `left`, `bottom`: Where its lower left corner lies [m].
+    * `width`, `height`: Its sides [m].
+    * `turn_deg`: By how much it is turned about that corner, anticlockwise.
     """
 
     path: Path
@@ -390,36 +373,21 @@ class Cost:
 class Inventory:
     """A building's furniture, its floors and how they shake.
 
-    Parameters
-    ----------
-    source : Path
-        The workbook.
-    sha256 : str
-        Hash of the workbook's bytes.
-    building, floors, items, places, routes, catalogue, costs
-        The sheets.
-    problems : tuple of Problem
-        Warnings and notes; errors as well where it was read with ``strict=False``.
-    extra_columns : tuple of str
-        Headers of the columns of Items that `assess` does not know.
-    hazard : HazardCurve, optional
-        How often a year the ground shakes; compared by the hash of its file.
-    site_ground : SiteGround, optional
-        How the ground shakes at its place by a ShakeMap or in computed scenarios.
-    photos : mapping of str to bytes
-        Photos of pieces as small JPEGs, by what the field `photo` in `Item.more` names.
-    files : mapping of str to str
-        Hashes (SHA-256) of the recorded motions, of the hazard curve and of the ShakeMap, by name.
-    language : str
-        Code of the workbook's language: that of more than half of the sheets it has, by their names; else English.
-    sheets : mapping of str to str
-        The workbook's own names of its sheets, by the English ones.
-    letters : mapping of str to mapping of str to str
-        In which column of a sheet a field stands: letters by field, by the English name of the sheet.
-    corrections : tuple of Correction
-        Cells that were understood although they are not typed as their column asks.
-    data : bytes, optional
-        The workbook's bytes; neither compared nor pickled.
+    * `source`: The workbook.
+    * `sha256`: Hash of the workbook's bytes.
+    * `building`, `floors`, `items`, `places`, `routes`, `catalogue`, `costs`: The sheets.
+    * `problems`: Warnings and notes; errors as well where it was read with ``strict=False``.
+    * `extra_columns`: Headers of the columns of Items that `assess` does not know.
+    * `hazard`: How often a year the ground shakes; compared by the hash of its file.
+    * `site_ground`: How the ground shakes at its place by a ShakeMap or in computed scenarios.
+    * `photos`: Photos of pieces as small JPEGs, by what the field `photo` in `Item.more` names.
+    * `files`: Hashes (SHA-256) of the recorded motions, of the hazard curve and of the ShakeMap, by name.
+    * `language`: Code of the workbook's language: that of more than half of the sheets it has, by their names; else
+      English.
+    * `sheets`: The workbook's own names of its sheets, by the English ones.
+    * `letters`: In which column of a sheet a field stands: letters by field, by the English name of the sheet.
+    * `corrections`: Cells that were understood although they are not typed as their column asks.
+    * `data`: The workbook's bytes; neither compared nor pickled.
     """
 
     source: Path
@@ -483,10 +451,7 @@ class Inventory:
     def with_records(self, files: Mapping[str, bytes]) -> "Inventory":
         """Return the inventory with the waveforms of its floors read from bytes, by the names in `files`.
 
-        Raises
-        ------
-        RecordError
-            If the bytes of a file are not those that were there when the workbook was read.
+        Raises RecordError if the bytes of a file are not those that were there when the workbook was read.
         """
         given = {_file_key(name): data for name, data in files.items()}
 
@@ -533,7 +498,6 @@ class Inventory:
         return f"<Inventory {self.file_name}: {count(len(self.items), 'item')} on {count(len(self.floors), 'floor')}>"
 
     def _repr_html_(self) -> str:
-        """Return what a notebook shows."""
         name, problems = escape(self.building.building or self.file_name), len(self.problems)
         return (
             f"<p><b>{name}</b>: {count(len(self.items), 'item')} on {count(len(self.floors), 'floor')}, "

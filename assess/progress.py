@@ -23,16 +23,10 @@ _Found = TypeVar("_Found")
 class Report:
     """How far a stage is.
 
-    Parameters
-    ----------
-    stage : str
-        Its key: "reading", "motions", "routes", "rendering" and the like.
-    share : float
-        Share that is done [-]; 1.0 once at its end.
-    detail : str
-        What is worked on, in plain English: "121 rows on 4 floors".
-    seconds_left : float, optional
-        Estimate of the time left in this stage [s]; None while too little is done.
+    * `stage`: Its key: "reading", "motions", "routes", "rendering" and the like.
+    * `share`: Share that is done [-]; 1.0 once at its end.
+    * `detail`: What is worked on, in plain English: "121 rows on 4 floors".
+    * `seconds_left`: Estimate of the time left in this stage [s]; None while too little is done.
     """
 
     stage: str
@@ -49,12 +43,8 @@ class Progress:
 
     It may be used from several threads at once. Work calls `check` at least every 0.2 s, or goes through `wait_for`.
 
-    Parameters
-    ----------
-    listener : callable, optional
-        Called with each `Report`, from whichever thread does the work, never from two at once.
-    cancel : threading.Event, optional
-        Set by the caller, from any thread, to stop the work.
+    * `listener`: Called with each `Report`, from whichever thread does the work, never from two at once.
+    * `cancel`: Set by the caller, from any thread, to stop the work.
     """
 
     def __init__(self, listener: Listener | None = None, cancel: Event | None = None) -> None:

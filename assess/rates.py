@@ -86,13 +86,8 @@ def integrate_lognormal(curve: HazardCurve, *, median: float, dispersion: float)
 
     Raises ValueError if the median is not above 0, or the dispersion is below 0, or one is not finite.
 
-    Parameters
-    ----------
-    curve : HazardCurve
-    median : float
-        θ, above 0 [m/s2].
-    dispersion : float
-        β [-]; with 0 all fall above the median and none below.
+    * `median`: θ, above 0 [m/s2].
+    * `dispersion`: β [-]; with 0 all fall above the median and none below.
     """
     if not (0 < median < math.inf and 0 <= dispersion < math.inf):
         raise ValueError(f"median is {median} and dispersion {dispersion}, expected above 0 and 0 or above")
@@ -117,13 +112,8 @@ def integrate_table(curve: HazardCurve, levels: ArrayLike, shares: ArrayLike) ->
 
     Raises ValueError if levels do not rise from above 0, or shares lie outside 0 to 1.
 
-    Parameters
-    ----------
-    curve : HazardCurve
-    levels : (n,) array
-        Rising peak ground accelerations, above 0 [m/s2].
-    shares : (n,) array
-        Share that falls at each [-], 0 to 1.
+    * `levels` (n,): Rising peak ground accelerations, above 0 [m/s2].
+    * `shares` (n,): Share that falls at each [-], 0 to 1.
     """
     at = np.concatenate([[0.0], np.asarray(levels, dtype=np.float64)])
     chance = np.concatenate([[0.0], np.asarray(shares, dtype=np.float64)])

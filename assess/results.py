@@ -202,38 +202,22 @@ class EnsembleRow:
 class MotionRow:
     """One motion of one floor along one axis; parallel records give several.
 
-    Parameters
-    ----------
-    index : int
-        Its place in `Results.motions`.
-    floor, axis : str
-        Where it serves.
-    source : "record", "given", "interpolated", "profile" or "beam"
-        Where it comes from.
-    label : str
-        The source in short: the record's name, "given", the profile's code, the two floors, or what shakes the beam.
-    pfa_g, pfv_cm_s : float
-        Peaks; `pfv_cm_s` is None where it is unknown.
-    flags : tuple of str
-        Keys of `MOTION_FLAGS`.
-    between : tuple of str
-        The floors below and above that it is interpolated between.
-    profile, clause
-        The code's profile.
-    height_ratio, amplification : float, optional
-        z/h [-], and PFA over the ground's PGA where it follows from that [-].
-    record : str
-        The record as the workbook names it, "" where there is none; what its file says stands behind it.
-    pfa_file_g : float
-        The record's peak before treatment.
-    treatment : str
-        What was done to the record.
-    pfv_follows : bool
-        Whether its PFV follows its PFA where that is edited, as it is not known by itself.
-    dispersion : float
-        Standard deviation of ln of its amplitude from one earthquake to the next that is drawn [-].
-    ensemble : EnsembleRow, optional
-        What pieces were simulated under; None where none was.
+    * `index`: Its place in `Results.motions`.
+    * `floor`, `axis`: Where it serves.
+    * `source` ("record", "given", "interpolated", "profile" or "beam"): Where it comes from.
+    * `label`: The source in short: the record's name, "given", the profile's code, the two floors, or what shakes the
+      beam.
+    * `pfa_g`, `pfv_cm_s`: Peaks; `pfv_cm_s` is None where it is unknown.
+    * `flags`: Keys of `MOTION_FLAGS`.
+    * `between`: The floors below and above that it is interpolated between.
+    * `profile`, `clause`: The code's profile.
+    * `height_ratio`, `amplification`: z/h [-], and PFA over the ground's PGA where it follows from that [-].
+    * `record`: The record as the workbook names it, "" where there is none; what its file says stands behind it.
+    * `pfa_file_g`: The record's peak before treatment.
+    * `treatment`: What was done to the record.
+    * `pfv_follows`: Whether its PFV follows its PFA where that is edited, as it is not known by itself.
+    * `dispersion`: Standard deviation of ln of its amplitude from one earthquake to the next that is drawn [-].
+    * `ensemble`: What pieces were simulated under; None where none was.
     """
 
     index: int
@@ -291,32 +275,21 @@ class MotionRow:
 class AnchorRow:
     """What a bracket at the wall has to carry to hold a piece: screening, not design.
 
-    Parameters
-    ----------
-    weight_kn : float
-        With contents.
-    weight_source : "given", "type" or "estimate"
-        Where the weight comes from; `weight_words` say it.
-    is_per_metre : bool
-        Whether the weight, and so every force, is that of one metre of the piece, as its width is not known.
-    bracket_height_cm, is_height_assumed : float, bool
-        Above the floor, and whether the workbook leaves it blank.
-    bracket_capacity_kn : float, optional
-        Tension that the bracket carries; None where the workbook leaves it blank.
-    tension_kn, tension_low_kn, tension_high_kn : float
-        At the bracket for PFA, and for its 16 % and 84 %, helped by the weight.
-    tension_without_weight_kn : float
-        The same for PFA without the help of the weight.
-    shear_kn : float
-        At the base for PFA, in whichever direction.
-    needed_friction : float
-        Coefficient of friction below which the base slides [-].
-    tension_code_kn, shear_code_kn : float, optional
-        For F_p of ASCE 7-22, 13.3.1; None where neither SDS nor Ground PGA is known.
-    holds, holds_high, holds_code : bool, optional
-        Whether the bracket carries the tension for PFA, for its 84 %, and for the code; None where that is not known.
-        Where `is_per_metre` it is False where it does not carry the tension of one metre, and None where it carries one
-        above 0.
+    * `weight_kn`: With contents.
+    * `weight_source` ("given", "type" or "estimate"): Where the weight comes from; `weight_words` say it.
+    * `is_per_metre`: Whether the weight, and so every force, is that of one metre of the piece, as its width is not
+      known.
+    * `bracket_height_cm`, `is_height_assumed`: Above the floor, and whether the workbook leaves it blank.
+    * `bracket_capacity_kn`: Tension that the bracket carries; None where the workbook leaves it blank.
+    * `tension_kn`, `tension_low_kn`, `tension_high_kn`: At the bracket for PFA, and for its 16 % and 84 %, helped by
+      the weight.
+    * `tension_without_weight_kn`: The same for PFA without the help of the weight.
+    * `shear_kn`: At the base for PFA, in whichever direction.
+    * `needed_friction`: Coefficient of friction below which the base slides [-].
+    * `tension_code_kn`, `shear_code_kn`: For F_p of ASCE 7-22, 13.3.1; None where neither SDS nor Ground PGA is known.
+    * `holds`, `holds_high`, `holds_code`: Whether the bracket carries the tension for PFA, for its 84 %, and for the
+      code; None where that is not known. Where `is_per_metre` it is False where it does not carry the tension of one
+      metre, and None where it carries one above 0.
     """
 
     weight_kn: float
@@ -425,23 +398,17 @@ class Ideal:
 class Simulation:
     """What direct integration found of one case.
 
-    Parameters
-    ----------
-    runs, draws, overturned : int
-        Draws of an earthquake and of the piece; those of all pieces exactly alike on the floor; and those of the latter
-        in which the piece overturned.
-    probability, low, high : float
-        The ratio of the last two, and its sampling interval [-].
-    ideal : Ideal, optional
-        The same without uncertainty of the motion and of the piece; None where ground motion and building are drawn,
-        which cannot recur, unless the run leaves uncertainty out.
-    tried : mapping of float to float
-        The ratio at other dispersions of the motion, by the dispersion [-]; empty where ground and building are drawn.
-    if_slower, if_faster : float, optional
-        There: the ratio in the third of the draws with the least PFV/PFA, and in that with the most [-].
-    record_overturned, record_max_rotation_ratio : bool, float, optional
-        Whether it overturns under the recorded motion itself, and the largest |theta| over the critical angle there
-        [-]; None where no record is known.
+    * `runs`, `draws`, `overturned`: Draws of an earthquake and of the piece; those of all pieces exactly alike on the
+      floor; and those of the latter in which the piece overturned.
+    * `probability`, `low`, `high`: The ratio of the last two, and its sampling interval [-].
+    * `ideal`: The same without uncertainty of the motion and of the piece; None where ground motion and building are
+      drawn, which cannot recur, unless the run leaves uncertainty out.
+    * `tried`: The ratio at other dispersions of the motion, by the dispersion [-]; empty where ground and building are
+      drawn.
+    * `if_slower`, `if_faster`: There: the ratio in the third of the draws with the least PFV/PFA, and in that with the
+      most [-].
+    * `record_overturned`, `record_max_rotation_ratio`: Whether it overturns under the recorded motion itself, and the
+      largest |theta| over the critical angle there [-]; None where no record is known.
     """
 
     runs: int
@@ -462,13 +429,9 @@ class Simulation:
 class Sliding:
     """How a piece of known friction starts to move, and how far it slides.
 
-    Parameters
-    ----------
-    branch : str
-        What it does first at the floor's PFA by Shenton's limits: rest, slide, rock, slide and rock.
-    slip_median_cm, slip_84_cm : float, optional
-        Peak slip that half, and 84 %, of the draws do not exceed [cm]; None where it cannot slide, or no motions were
-        there.
+    * `branch`: What it does first at the floor's PFA by Shenton's limits: rest, slide, rock, slide and rock.
+    * `slip_median_cm`, `slip_84_cm`: Peak slip that half, and 84 %, of the draws do not exceed [cm]; None where it
+      cannot slide, or no motions were there.
     """
 
     branch: str
@@ -710,14 +673,9 @@ class WorkedMethod:
 class DrawTable:
     """In which draws of an earthquake each of m items falls.
 
-    Parameters
-    ----------
-    draws : int
-        Draws that all simulated items have in common, the first ones; 0 where nothing was simulated.
-    packed : (m, ceil(draws/8)) integer array
-        One bit a draw, the first in the highest bit.
-    is_known : (m,) boolean array
-        Which items have draws: those that were simulated, and those that cannot rock.
+    * `draws`: Draws that all simulated items have in common, the first ones; 0 where nothing was simulated.
+    * `packed` (m, ceil(draws/8): One bit a draw, the first in the highest bit.
+    * `is_known` (m,): Which items have draws: those that were simulated, and those that cannot rock.
     """
 
     draws: int
@@ -760,15 +718,10 @@ def sum_falls(counted: Iterable[ItemResult]) -> NDArray[np.int64] | None:
 class CaseTable:
     """n pairs of piece and motion as columns; the cases of an item stand together.
 
-    Parameters
-    ----------
-    item, motion : (n,) integer arrays
-        Places in `Results.item_rows` and `Results.motions`.
-    outcomes : mapping of str to Outcome
-        Every method's values, details and flags, (n,) each, by its key.
-    adopted : mapping of str to (n,) array
-        probability, low, high, rocks_from [-]; risk, upper (classes); basis (place in `BASES`); doubtful, ideal_higher,
-        either_axis (boolean).
+    * `item`, `motion` (n,): Places in `Results.item_rows` and `Results.motions`.
+    * `outcomes`: Every method's values, details and flags, (n,) each, by its key.
+    * `adopted` (mapping of str to (n,) array): probability, low, high, rocks_from [-]; risk, upper (classes); basis
+      (place in `BASES`); doubtful, ideal_higher, either_axis (boolean).
     """
 
     item: NDArray[np.int32]
@@ -940,7 +893,6 @@ class CaseColumns(Columns):
         return known(adopted[name])
 
     def _raise(self, flag: str) -> NDArray[np.bool_]:
-        """Return for which of the cases a flag of the piece is raised by any method, or by the adopted risk."""
         table = self._run.cases_table
         raised = [one.flags[flag][self.cut] for one in table.outcomes.values() if flag in one.flags]
         if flag in ("ideal_higher", "either_axis"):
@@ -950,7 +902,6 @@ class CaseColumns(Columns):
         return np.logical_or.reduce(raised) if raised else np.zeros(len(self), dtype=np.bool_)
 
     def _list_flags(self) -> list[tuple[str, ...]]:
-        """Return the flags of the adopted formula, of the motion and of the piece, each once."""
         own, motions = self.column(f"methods.{self._run.formula.key}.flags"), self.column("motion.flags")
         piece = _name_raised({flag: self._raise(flag) for flag in PIECE_FLAGS}, len(self))
         kept: dict[tuple[tuple[str, ...], ...], tuple[str, ...]] = {}
@@ -964,7 +915,6 @@ class CaseColumns(Columns):
 
 
 def _name_raised(raised: Mapping[str, NDArray[np.bool_]], count: int) -> list[tuple[str, ...]]:
-    """Return the names of the flags that are raised for each of some cases."""
     numbers = np.zeros(count, dtype=np.int64)
     for at, array in enumerate(raised.values()):
         numbers |= array.astype(np.int64) << at
@@ -1034,7 +984,6 @@ class ItemColumns(Columns):
 
     @cached_property
     def _worst(self) -> Mapping[str, list[RiskClass | None]]:
-        """The classes of the rows, by their attributes."""
         run, cut, governing = self.run, self.cases.cut, self._governing
         table, is_simulated = run.cases_table, np.array(self._is_simulated)
         can_rock = table.adopted["basis"][cut] != BASES.index(CANNOT_ROCK)
@@ -1061,7 +1010,6 @@ class ItemColumns(Columns):
         return found | {"adopted.lowered_from": [one if is_lower else None for one, is_lower in pairs]}
 
     def _carry_flags(self) -> list[tuple[str, ...]]:
-        """Return the flags of the governing case, with those that count under any motion of the piece."""
         flags = self.cases.column("adopted.flags")
         found = [flags[at] for at in self._governing]
         for at in np.flatnonzero(self._is_simulated).tolist():
@@ -1145,24 +1093,14 @@ class SuiteInfo:
 class EarthquakeDraws:
     """How the number by which a draw of an earthquake scales the motions depends on the place and on scenarios.
 
-    Parameters
-    ----------
-    is_city : bool
-        Whether it depends on the place where that is known, as buildings of a portfolio need it.
-    is_placed : bool
-        Whether the place is known, and it does.
-    shared : float
-        Share of its variance that is common to all places [-]; what scenarios carry is left out.
-    is_shared_given : bool
-        Whether the ShakeMap gives that share; else it is that of Boore et al. (2014).
-    measure : "PGA" or "PGV"
-        The peak of the ground whose share and correlation they are.
-    range_km : float
-        Distance at which the correlation of the rest has fallen to exp(-3).
-    scenarios : int
-        Scenarios of the ground that were computed elsewhere; 0 for none.
-    scenario_share : float
-        Share of the variance that they carry [-].
+    * `is_city`: Whether it depends on the place where that is known, as buildings of a portfolio need it.
+    * `is_placed`: Whether the place is known, and it does.
+    * `shared`: Share of its variance that is common to all places [-]; what scenarios carry is left out.
+    * `is_shared_given`: Whether the ShakeMap gives that share; else it is that of Boore et al. (2014).
+    * `measure` ("PGA" or "PGV"): The peak of the ground whose share and correlation they are.
+    * `range_km`: Distance at which the correlation of the rest has fallen to exp(-3).
+    * `scenarios`: Scenarios of the ground that were computed elsewhere; 0 for none.
+    * `scenario_share`: Share of the variance that they carry [-].
     """
 
     is_city: bool
@@ -1179,24 +1117,14 @@ class EarthquakeDraws:
 class AssumedShaking:
     """The intensity that stands in for a known motion of the ground.
 
-    Parameters
-    ----------
-    choice : str
-        The class of intensity, as the workbook offers it.
-    name : str
-        The class in short.
-    intensity : float
-        What it is taken for: MMI, or JMA instrumental intensity.
-    pga_g, pgv_cm_s : float
-        Published medians of the ground's peaks, before the settings' factor.
-    scatter : float
-        Standard deviation of ln PGV given the intensity [-].
-    is_derived : bool
-        Whether PGA follows from PGV, by the ratio that is drawn.
-    is_open : bool
-        Whether the class has no upper limit.
-    sources, references : tuple of str
-        The relations in short and in full.
+    * `choice`: The class of intensity, as the workbook offers it.
+    * `name`: The class in short.
+    * `intensity`: What it is taken for: MMI, or JMA instrumental intensity.
+    * `pga_g`, `pgv_cm_s`: Published medians of the ground's peaks, before the settings' factor.
+    * `scatter`: Standard deviation of ln PGV given the intensity [-].
+    * `is_derived`: Whether PGA follows from PGV, by the ratio that is drawn.
+    * `is_open`: Whether the class has no upper limit.
+    * `sources`, `references`: The relations in short and in full.
     """
 
     choice: str
@@ -1215,12 +1143,8 @@ class AssumedShaking:
 class GroundPsa:
     """Spectral acceleration of the ground.
 
-    Parameters
-    ----------
-    period_s : float
-        Period.
-    psa_g : float
-        Median, 5 % damping.
+    * `period_s`: Period.
+    * `psa_g`: Median, 5 % damping.
     """
 
     period_s: float
@@ -1231,10 +1155,7 @@ class GroundPsa:
 class GroundFact:
     """What is known of the origin of a ground motion.
 
-    Parameters
-    ----------
-    label, value : str
-        What is told, and what it is.
+    * `label`, `value`: What is told, and what it is.
     """
 
     label: str
@@ -1245,32 +1166,19 @@ class GroundFact:
 class SiteGroundInfo:
     """The ground motion at the building by a ShakeMap, or by computed scenarios of an earthquake.
 
-    Parameters
-    ----------
-    kind : "shakemap" or "scenarios"
-        Which of the two.
-    file, sha256 : str
-        Name and hash of its file.
-    pga_g, pgv_cm_s : float
-        Medians at the building, before the settings' factor; `pgv_cm_s` is null where it is not known.
-    psa : tuple of GroundPsa
-        Spectral accelerations, as far as they are known; for information.
-    dispersion : float
-        Standard deviation of ln PGV at the building [-], or of ln PGA where PGV is not known.
-    dispersion_source : str
-        Where that comes from.
-    own_dispersion : float
-        Motion uncertainty without it [-]; both together are the root of the sum of squares.
-    shared : float, optional
-        Share of its variance that is common to all places in one earthquake [-]; null where that is not known.
-    distance_km : float, optional
-        From the building to the site of the scenarios.
-    scenarios : int
-        Number of scenarios; 0 for a map.
-    facts : tuple of GroundFact
-        The earthquake, version and status of the map, and the like.
-    cautions : tuple of str
-        What makes it less certain than its dispersion tells.
+    * `kind` ("shakemap" or "scenarios"): Which of the two.
+    * `file`, `sha256`: Name and hash of its file.
+    * `pga_g`, `pgv_cm_s`: Medians at the building, before the settings' factor; `pgv_cm_s` is null where it is not
+      known.
+    * `psa`: Spectral accelerations, as far as they are known; for information.
+    * `dispersion`: Standard deviation of ln PGV at the building [-], or of ln PGA where PGV is not known.
+    * `dispersion_source`: Where that comes from.
+    * `own_dispersion`: Motion uncertainty without it [-]; both together are the root of the sum of squares.
+    * `shared`: Share of its variance that is common to all places in one earthquake [-]; null where that is not known.
+    * `distance_km`: From the building to the site of the scenarios.
+    * `scenarios`: Number of scenarios; 0 for a map.
+    * `facts`: The earthquake, version and status of the map, and the like.
+    * `cautions`: What makes it less certain than its dispersion tells.
     """
 
     kind: Literal["shakemap", "scenarios"]
@@ -1293,40 +1201,23 @@ class SiteGroundInfo:
 class Provenance:
     """What a run is made again from.
 
-    Parameters
-    ----------
-    version, code, platform : str, str, mapping of str to str
-        Of `assess`, the SHA-256 of its code, and versions of what the numbers were computed with.
-    workbook, sha256 : str
-        Name and hash of the workbook.
-    files : mapping of str to str
-        Hashes (SHA-256) of the recorded motions, of the hazard curve and of the ShakeMap, by name.
-    scenario : str
-        Where the floor motion came from, one of `assess.settings.SCENARIOS`.
-    uncertainty : Uncertainty
-        What was drawn of the earthquake and of the pieces.
-    earthquakes : EarthquakeDraws, optional
-        How draws of the earthquake depend on the place and on scenarios; None where they do not.
-    shaking : AssumedShaking, optional
-        The intensity that was assumed; None where no floor rests on one.
-    site_ground : SiteGroundInfo, optional
-        The ShakeMap or the scenarios at the building; None where no floor rests on them.
-    suite : SuiteInfo, optional
-        The user's own motions.
-    language : str
-        Code of the language that reports are written in where none is asked for.
-    sheets : mapping of str to str
-        The workbook's own names of its sheets, by the English ones.
-    letters : mapping of str to mapping of str to str
-        In which column of a sheet a field stands.
-    extra_columns : tuple of str
-        Headers of the columns of Items that `assess` does not know.
-    interval_z : float
-        Half width of the sampling intervals, in standard deviations [-].
-    looks : tuple of int
-        Numbers of motions at which "auto" looks whether a class is resolved.
-    profiles : tuple of ProfileInfo
-        Every code's design profile, used or not.
+    * `version`, `code`, `platform`: Of `assess`, the SHA-256 of its code, and versions of what the numbers were
+      computed with.
+    * `workbook`, `sha256`: Name and hash of the workbook.
+    * `files`: Hashes (SHA-256) of the recorded motions, of the hazard curve and of the ShakeMap, by name.
+    * `scenario`: Where the floor motion came from, one of `assess.settings.SCENARIOS`.
+    * `uncertainty`: What was drawn of the earthquake and of the pieces.
+    * `earthquakes`: How draws of the earthquake depend on the place and on scenarios; None where they do not.
+    * `shaking`: The intensity that was assumed; None where no floor rests on one.
+    * `site_ground`: The ShakeMap or the scenarios at the building; None where no floor rests on them.
+    * `suite`: The user's own motions.
+    * `language`: Code of the language that reports are written in where none is asked for.
+    * `sheets`: The workbook's own names of its sheets, by the English ones.
+    * `letters`: In which column of a sheet a field stands.
+    * `extra_columns`: Headers of the columns of Items that `assess` does not know.
+    * `interval_z`: Half width of the sampling intervals, in standard deviations [-].
+    * `looks`: Numbers of motions at which "auto" looks whether a class is resolved.
+    * `profiles`: Every code's design profile, used or not.
     """
 
     version: str
@@ -1358,35 +1249,20 @@ class Results:
     `floors`, `segments`, `routes`, `rooms` and `problems` are pandas tables with the columns of items.csv, for
     notebooks.
 
-    Parameters
-    ----------
-    settings, provenance
-        How it was assessed, and from what.
-    building : Building
-        The building (SI units).
-    floor_rows, motions, item_rows, cases_table
-        Floors, their motions, the furniture, and every piece under every motion of its axis, or of both where its axis
-        is blank.
-    route_tables : RouteTables
-        Evacuation routes; its tables are empty where the workbook names none.
-    annual : AnnualTables, optional
-        What annual chances rest on, and those of the building; None where the workbook names no hazard file.
-    places, catalogue
-        As the workbook has them.
-    problem_rows : tuple of Problem
-        Warnings and notes about the input.
-    underestimates : tuple of str
-        Warnings that more shaking is known than is used.
-    methods : tuple of MethodInfo
-        The methods, in the order of reports.
-    worked : tuple of WorkedMethod
-        The worked example: what each method computes for the piece `worked_item` (its index), step by step.
-    series : Series
-        Where series for figures lie.
-    schedule : Schedule
-        What to fix, with what, and what is to be expected before and after.
-    draws : DrawTable
-        In which draws each row falls.
+    * `settings`, `provenance`: How it was assessed, and from what.
+    * `building`: The building (SI units).
+    * `floor_rows`, `motions`, `item_rows`, `cases_table`: Floors, their motions, the furniture, and every piece under
+      every motion of its axis, or of both where its axis is blank.
+    * `route_tables`: Evacuation routes; its tables are empty where the workbook names none.
+    * `annual`: What annual chances rest on, and those of the building; None where the workbook names no hazard file.
+    * `places`, `catalogue`: As the workbook has them.
+    * `problem_rows`: Warnings and notes about the input.
+    * `underestimates`: Warnings that more shaking is known than is used.
+    * `methods`: The methods, in the order of reports.
+    * `worked`: The worked example: what each method computes for the piece `worked_item` (its index), step by step.
+    * `series`: Where series for figures lie.
+    * `schedule`: What to fix, with what, and what is to be expected before and after.
+    * `draws`: In which draws each row falls.
     """
 
     settings: Settings
@@ -1506,11 +1382,9 @@ class Results:
     def table(self, name: str) -> Table:
         """Return a table of the fields of `assess.fields`.
 
-        Parameters
-        ----------
-        name : "items", "cases", "floors", "segments", "routes", "rooms", "schedule" or "problems"
-            A row an item; a piece and motion; a floor, axis and motion; a segment; a route; a room of the network; an
-            entry of what to fix; a warning or note about the input.
+        * `name` ("items", "cases", "floors", "segments", "routes", "rooms", "schedule" or "problems"): A row an item; a
+          piece and motion; a floor, axis and motion; a segment; a route; a room of the network; an entry of what to
+          fix; a warning or note about the input.
         """
         from assess.fields import build_table
 

@@ -92,14 +92,9 @@ MISSING: Mapping[str, str] = {
 class MissingRow:
     """What is missing and could change a state.
 
-    Parameters
-    ----------
-    what : str
-        Key of `MISSING`.
-    names : tuple of str
-        Of what: segments, places or pieces; empty for what concerns the building.
-    cells : tuple of str
-        Where it is to be filled in, as Sheet!Cell; empty where that is no cell.
+    * `what`: Key of `MISSING`.
+    * `names`: Of what: segments, places or pieces; empty for what concerns the building.
+    * `cells`: Where it is to be filled in, as Sheet!Cell; empty where that is no cell.
     """
 
     what: str
@@ -121,28 +116,19 @@ def join_missing(rows: Iterable[MissingRow]) -> tuple[MissingRow, ...]:
 class Chance:
     """The chance of something that fallen pieces cause.
 
-    Parameters
-    ----------
-    probability : float
-        From the joint outcomes where all the pieces were simulated in the same draws; else the largest of `joint`,
-        `independent` and `correlated` [-].
-    low, high : float
-        Joint: the sampling interval of the number of draws. Else: the range of the three values, widened by that [-].
-    joint : float
-        Simulated pieces fall as they did draw by draw, one earthquake for the whole building; all others independently
-        [-].
-    independent : float
-        Every piece falls independently of the others [-].
-    correlated : float
-        Full correlation: the less likely piece falls only where the more likely one does [-].
-    runs : int
-        Draws of the joint outcomes; 0 where no piece was simulated.
-    is_joint : bool
-        Whether every piece that takes part was simulated, and all of them in the same number of draws.
-    pieces, unverified : int
-        Pieces that take part, and those of them that enter by their adopted chance alone.
-    unconfirmed : int
-        Further pieces whose chance is not confirmed: all of them stand, or all of them fall, as the field says.
+    * `probability`: From the joint outcomes where all the pieces were simulated in the same draws; else the largest of
+      `joint`, `independent` and `correlated` [-].
+    * `low`, `high`: Joint: the sampling interval of the number of draws. Else: the range of the three values, widened
+      by that [-].
+    * `joint`: Simulated pieces fall as they did draw by draw, one earthquake for the whole building; all others
+      independently [-].
+    * `independent`: Every piece falls independently of the others [-].
+    * `correlated`: Full correlation: the less likely piece falls only where the more likely one does [-].
+    * `runs`: Draws of the joint outcomes; 0 where no piece was simulated.
+    * `is_joint`: Whether every piece that takes part was simulated, and all of them in the same number of draws.
+    * `pieces`, `unverified`: Pieces that take part, and those of them that enter by their adopted chance alone.
+    * `unconfirmed`: Further pieces whose chance is not confirmed: all of them stand, or all of them fall, as the field
+      says.
     """
 
     probability: float
@@ -191,22 +177,14 @@ class PieceRef:
 class BesideRow:
     """A piece beside a segment.
 
-    Parameters
-    ----------
-    item, row, item_index
-        As in `PieceRef`.
-    by_plan : bool
-        Whether what it covers follows from its position on the plan; else from its Edge distance.
-    distance_m, reach_m, left_m : float
-        From its nearest face to the edge of the route, 0 or below if inside; how far it lies in the route once fallen,
-        measured across the route; the width left with this piece alone fallen [m].
-    blocks_alone : bool
-        Whether `left_m` is under the required width.
-    falls_while_blocked : float, optional
-        Chance that it falls while the segment is blocked [-]; for an anchored piece, if anchors fail. None where its
-        chance is not confirmed.
-    flags : tuple of str
-        Keys of `FLAGS`.
+    * `item`, `row`, `item_index`: As in `PieceRef`.
+    * `by_plan`: Whether what it covers follows from its position on the plan; else from its Edge distance.
+    * `distance_m`, `reach_m`, `left_m`: From its nearest face to the edge of the route, 0 or below if inside; how far
+      it lies in the route once fallen, measured across the route; the width left with this piece alone fallen [m].
+    * `blocks_alone`: Whether `left_m` is under the required width.
+    * `falls_while_blocked`: Chance that it falls while the segment is blocked [-]; for an anchored piece, if anchors
+      fail. None where its chance is not confirmed.
+    * `flags`: Keys of `FLAGS`.
     """
 
     item: str
@@ -225,54 +203,34 @@ class BesideRow:
 class SegmentRow:
     """One segment.
 
-    Parameters
-    ----------
-    route, segment, floor, from_place, to_place, room, clear_width_m, required_width_m, occupants, notes
-        As the workbook has them; None where it says nothing.
-    workbook_row : int
-        Its row in the sheet Routes.
-    evaluated : bool
-        Whether it is known which pieces can reach it: by the plan, because a piece names it, because it is a stair of
-        known width, or because the pieces of its floor that are left out hardly fall, all of them together.
-    clear_width_used_m, required_width_used_m : float
-        With what was assumed where the workbook says nothing [m].
-    standing_width_m, least_width_m : float
-        Width left with nothing fallen, and with every free-standing piece fallen, None if not evaluated [m].
-    needed_width_m : float, optional
-        Width that its occupants need [m].
-    length_m : float, optional
-        Between its places [m].
-    start_x_m, start_y_m, end_x_m, end_y_m : float, optional
-        The ends of its centre line on the plan of its floor [m].
-    extends_start_m, extends_end_m : float
-        How far it goes on beyond them, round a bend [m].
-    state : RouteState
-        Open, doubtful, blocked or not known.
-    missing : tuple of MissingRow
-        What is to be filled in where it is not known; empty where it is.
-    blocked, blocked_or_reduced : Chance, optional
-        If all anchors hold, and with unconfirmed pieces standing; None if not evaluated.
-    blocked_if_unconfirmed_fall : Chance, optional
-        The first with unconfirmed pieces fallen; None where there are none.
-    blocked_if_anchors_fail : Chance, optional
-        With anchored pieces taken as free-standing and unconfirmed ones fallen; None where none is anchored.
-    under_record : RouteState, optional
-        Whether it is open or blocked under the recorded motion itself; None where no piece has one.
-    most_likely_piece : PieceRef, optional
-        The free-standing piece most likely to fall while it is blocked.
-    is_blocked_standing : bool
-        Whether it is under the required width with nothing fallen.
-    insufficient_for_occupants : bool
-        Whether it is too narrow for its occupants with nothing fallen.
-    insufficient_after_falls : Chance, optional
-        Of being too narrow for its occupants, with unconfirmed pieces standing; None where their number is unknown, if
-        not evaluated, or where it depends on unconfirmed pieces whether the chance is at least the chosen risk.
-    pieces : tuple of BesideRow
-        The pieces that reach it, the one most likely to block it first.
-    other_rooms : tuple of PieceRef
-        Pieces that would reach it if they were not in another room than its own.
-    flags : tuple of str
-        Keys of `FLAGS`.
+    * `route`, `segment`, `floor`, `from_place`, `to_place`, `room`, `clear_width_m`, `required_width_m`, `occupants`,
+      `notes`: As the workbook has them; None where it says nothing.
+    * `workbook_row`: Its row in the sheet Routes.
+    * `evaluated`: Whether it is known which pieces can reach it: by the plan, because a piece names it, because it is a
+      stair of known width, or because the pieces of its floor that are left out hardly fall, all of them together.
+    * `clear_width_used_m`, `required_width_used_m`: With what was assumed where the workbook says nothing [m].
+    * `standing_width_m`, `least_width_m`: Width left with nothing fallen, and with every free-standing piece fallen,
+      None if not evaluated [m].
+    * `needed_width_m`: Width that its occupants need [m].
+    * `length_m`: Between its places [m].
+    * `start_x_m`, `start_y_m`, `end_x_m`, `end_y_m`: The ends of its centre line on the plan of its floor [m].
+    * `extends_start_m`, `extends_end_m`: How far it goes on beyond them, round a bend [m].
+    * `state`: Open, doubtful, blocked or not known.
+    * `missing`: What is to be filled in where it is not known; empty where it is.
+    * `blocked`, `blocked_or_reduced`: If all anchors hold, and with unconfirmed pieces standing; None if not evaluated.
+    * `blocked_if_unconfirmed_fall`: The first with unconfirmed pieces fallen; None where there are none.
+    * `blocked_if_anchors_fail`: With anchored pieces taken as free-standing and unconfirmed ones fallen; None where
+      none is anchored.
+    * `under_record`: Whether it is open or blocked under the recorded motion itself; None where no piece has one.
+    * `most_likely_piece`: The free-standing piece most likely to fall while it is blocked.
+    * `is_blocked_standing`: Whether it is under the required width with nothing fallen.
+    * `insufficient_for_occupants`: Whether it is too narrow for its occupants with nothing fallen.
+    * `insufficient_after_falls`: Of being too narrow for its occupants, with unconfirmed pieces standing; None where
+      their number is unknown, if not evaluated, or where it depends on unconfirmed pieces whether the chance is at
+      least the chosen risk.
+    * `pieces`: The pieces that reach it, the one most likely to block it first.
+    * `other_rooms`: Pieces that would reach it if they were not in another room than its own.
+    * `flags`: Keys of `FLAGS`.
     """
 
     route: str
@@ -333,37 +291,24 @@ class RouteFixRow:
 class RouteRow:
     """One route.
 
-    Parameters
-    ----------
-    route : str
-        Its name.
-    floors : tuple of str
-        Floors of its segments.
-    from_places, to_places : tuple of str
-        The places that it serves, and those that it leads to; empty where its segments join no places.
-    segment_indices : tuple of int
-        Its segments.
-    evaluated : bool
-        Whether any of them is evaluated.
-    unevaluated_segments : tuple of str
-        Names of those that are not.
-    state, missing, blocked, blocked_or_reduced, blocked_if_unconfirmed_fall, blocked_if_anchors_fail, under_record
-        As in `SegmentRow`.
-    most_likely_piece : PieceRef, optional
-        As in `SegmentRow`.
-    decisive_segment : int, optional
-        Index of the segment that decides its state: of a route that is not known one that is not, else the one that is
-        most likely blocked; None where none is.
-    fixes : tuple of RouteFixRow
-        The smallest set found that opens the route, with unconfirmed pieces fallen.
-    is_fixed : bool
-        Whether one exists: not where it is blocked with nothing fallen.
-    missing_after : tuple of MissingRow
-        What is to be filled in once all of `fixes` are done, as the route would be not known then; empty where it would
-        be known, or where there is nothing to fix.
-    annual, annual_if_anchors_fail : AnnualRow, optional
-        How often a year it is blocked if all anchors hold, and with anchored pieces taken as free-standing; the second
-        is None where there are none, both where no hazard file is given.
+    * `route`: Its name.
+    * `floors`: Floors of its segments.
+    * `from_places`, `to_places`: The places that it serves, and those that it leads to; empty where its segments join
+      no places.
+    * `segment_indices`: Its segments.
+    * `evaluated`: Whether any of them is evaluated.
+    * `unevaluated_segments`: Names of those that are not.
+    * `state`, `missing`, `blocked`, `blocked_or_reduced`, `blocked_if_unconfirmed_fall`, `blocked_if_anchors_fail`,
+      `under_record`: As in `SegmentRow`.
+    * `most_likely_piece`: As in `SegmentRow`.
+    * `decisive_segment`: Index of the segment that decides its state: of a route that is not known one that is not,
+      else the one that is most likely blocked; None where none is.
+    * `fixes`: The smallest set found that opens the route, with unconfirmed pieces fallen.
+    * `is_fixed`: Whether one exists: not where it is blocked with nothing fallen.
+    * `missing_after`: What is to be filled in once all of `fixes` are done, as the route would be not known then; empty
+      where it would be known, or where there is nothing to fix.
+    * `annual`, `annual_if_anchors_fail`: How often a year it is blocked if all anchors hold, and with anchored pieces
+      taken as free-standing; the second is None where there are none, both where no hazard file is given.
     """
 
     route: str
@@ -413,38 +358,23 @@ class WayRow:
 class RoomRow:
     """One room of the network.
 
-    Parameters
-    ----------
-    room, floor : str
-        Its name and its floor.
-    exits : tuple of str
-        The exits that can be reached; where there are none, `by_stairs`, the stairs, beyond which nothing is known.
-    loses_every_exit : Chance
-        Of losing all of them, if all anchors hold and with unconfirmed pieces standing.
-    loses_if_unconfirmed_fall : Chance, optional
-        The same with unconfirmed pieces fallen; None where there are none.
-    loses_if_anchors_fail : Chance, optional
-        With anchored pieces taken as free-standing and unconfirmed ones fallen; None where none is anchored.
-    state : RouteState
-        That of the best way from the room to the street: by the chance of losing every exit.
-    missing : tuple of MissingRow
-        What is to be filled in where it is not known; empty where it is.
-    most_likely_piece : PieceRef, optional
-        The free-standing piece most likely to fall while the room loses every exit.
-    decisive_segment : int, optional
-        Index of the segment on its safest way that decides the state, as in `RouteRow`.
-    fixes, is_fixed
-        As in `RouteRow`: what opens the best way; fixes are sought where it is doubtful or blocked.
-    missing_after : tuple of MissingRow
-        As in `RouteRow`.
-    unevaluated_segments : tuple of str
-        Segments on any of its ways out that are not evaluated.
-    unevaluated_indices : tuple of int
-        The same by their index.
-    ways : tuple of WayRow
-        Ways out, the safest first; further ones share as few segments as possible with those before them.
-    annual : AnnualRow, optional
-        How often a year it loses every exit, if all anchors hold; None where no hazard file is given.
+    * `room`, `floor`: Its name and its floor.
+    * `exits`: The exits that can be reached; where there are none, `by_stairs`, the stairs, beyond which nothing is
+      known.
+    * `loses_every_exit`: Of losing all of them, if all anchors hold and with unconfirmed pieces standing.
+    * `loses_if_unconfirmed_fall`: The same with unconfirmed pieces fallen; None where there are none.
+    * `loses_if_anchors_fail`: With anchored pieces taken as free-standing and unconfirmed ones fallen; None where none
+      is anchored.
+    * `state`: That of the best way from the room to the street: by the chance of losing every exit.
+    * `missing`: What is to be filled in where it is not known; empty where it is.
+    * `most_likely_piece`: The free-standing piece most likely to fall while the room loses every exit.
+    * `decisive_segment`: Index of the segment on its safest way that decides the state, as in `RouteRow`.
+    * `fixes`, `is_fixed`: As in `RouteRow`: what opens the best way; fixes are sought where it is doubtful or blocked.
+    * `missing_after`: As in `RouteRow`.
+    * `unevaluated_segments`: Segments on any of its ways out that are not evaluated.
+    * `unevaluated_indices`: The same by their index.
+    * `ways`: Ways out, the safest first; further ones share as few segments as possible with those before them.
+    * `annual`: How often a year it loses every exit, if all anchors hold; None where no hazard file is given.
     """
 
     room: str
@@ -501,23 +431,16 @@ class FloorRoutesRow:
 class RouteTables:
     """The evacuation routes of a building; without further arguments those of one that has none.
 
-    Parameters
-    ----------
-    risk : float
-        The chosen risk [-]: open is what is below it, and fixes are sought down to it.
-    blocked_routes_expected, cut_off_rooms_expected : float
-        Expected number of routes that are blocked, and of rooms that lose every exit, among those that are known.
-    unknown_routes, unknown_rooms : int
-        The others: something is missing that could change their state; unjoined rooms count.
-    draws : int
-        Draws that are made where all combinations of falling pieces are too many.
-    uncounted_pieces : int
-        Sum over the floors.
-    unjoined_rooms : tuple of str
-        Rooms that no segment joins to an exit or a stair: nothing is known of their way to the street.
-    furnished_rooms, counted_rooms : int
-        Rooms and corridors of the workbook in which furniture is listed, and all of them: ways through the others count
-        as free of furniture.
+    * `risk`: The chosen risk [-]: open is what is below it, and fixes are sought down to it.
+    * `blocked_routes_expected`, `cut_off_rooms_expected`: Expected number of routes that are blocked, and of rooms that
+      lose every exit, among those that are known.
+    * `unknown_routes`, `unknown_rooms`: The others: something is missing that could change their state; unjoined rooms
+      count.
+    * `draws`: Draws that are made where all combinations of falling pieces are too many.
+    * `uncounted_pieces`: Sum over the floors.
+    * `unjoined_rooms`: Rooms that no segment joins to an exit or a stair: nothing is known of their way to the street.
+    * `furnished_rooms`, `counted_rooms`: Rooms and corridors of the workbook in which furniture is listed, and all of
+      them: ways through the others count as free of furniture.
     """
 
     risk: float

@@ -57,7 +57,6 @@ def _read_choice(value: Any, choices: tuple[str, ...]) -> str | None:
 
 
 def _read_whole(value: Any, low: int, high: float) -> int | None:
-    """Return a whole number within limits, also of numpy or as its digits; None for anything else."""
     if isinstance(value, str) and value.isascii() and value.isdigit() and len(value) < 20:
         value = int(value)
     if isinstance(value, bool) or not hasattr(value, "__index__"):
@@ -133,53 +132,38 @@ class Settings:
 
     Words are accepted in any spelling ("asce 7-22", "ASCE_7-22") and stored in the one listed here.
 
-    Parameters
-    ----------
-    scenario : str, optional
-        One of `SCENARIOS`; None takes the workbook's own, which is "as filled" where it is blank.
-    class_by : str, optional
-        Which formula gives the class where nothing was simulated, one of `CLASS_BY`; None takes the workbook's own,
-        which is "best formula" where it is blank.
-    verify : str
-        Which pieces are simulated by direct integration, one of `VERIFY`.
-    runs : int or "auto"
-        Motions of each floor and axis, 1 to 100,000; "auto" adds motions until every piece's interval lies
-        within one class, at most 5,000. 0 of 100 cannot show "low": the interval's upper end is 0.037.
-    seed : int
-        Random seed of the generated motions, 0 or above.
-    scale : float
-        Factor on the motion of every floor, of records and of peaks alike [-], above 0 and at most 10: what a weaker
-        or stronger earthquake of the same kind would do.
-    ideal : bool
-        Whether the adopted chance is that of exactly this motion and of every piece exactly as given, without the
-        uncertainty of either.
-    scale_motions : bool
-        Whether motions of the user's own are scaled to each floor's PFA.
-    city : bool
-        Whether a draw of an earthquake differs from place to place, as buildings of a portfolio need it; else it is one
-        factor for the building alone.
-    zeta_acceleration, zeta_velocity : float
-        Logarithmic standard deviations of Kaneko and Hayashi's two branches [-]. The paper prints neither:
-        0.20 fits 23 of the 27 rows of its Table 2; 0.5 is assumed, after FEMA P-58's dispersion on PFV.
-    slide_coefficient : float
-        Kaneko and Hayashi's slide coefficient, alpha of eq. 5 [-]; 1 is no sliding, the paper's assumption.
-    ductility_reduction : float
-        R_mu of ASCE 7-22 [-], at least 1: the factor by which the building's ductility lowers the PFA that this code's
-        profile gives above the ground. 1 is no reduction.
-    anchor : tuple of str or int
-        What if: names of pieces that are taken as anchored and holding, or how many of the first entries of the
-        schedule are; also as one text, ``"25-07, 25-08"`` or ``"first:3"``.
-    anchor_resonance, anchor_strength, anchor_importance : float
-        C_AR, R_po and I_p of ASCE 7-22, 13.3.1, for the force that the code asks of anchors [-]. 1.0 and 1.5 are those
-        of its table 13.5-1 for storage cabinets, shelving and laboratory equipment, as public implementations have it.
-    route_risk : float
-        Limit on the chance that an evacuation route is blocked [-], above 0 and below 1: a route is open where the
-        upper end of its interval is below it, and fixes are sought until that holds. 0.03 is where the class low ends.
+    * `scenario`: One of `SCENARIOS`; None takes the workbook's own, which is "as filled" where it is blank.
+    * `class_by`: Which formula gives the class where nothing was simulated, one of `CLASS_BY`; None takes the
+      workbook's own, which is "best formula" where it is blank.
+    * `verify`: Which pieces are simulated by direct integration, one of `VERIFY`.
+    * `runs` (int or "auto"): Motions of each floor and axis, 1 to 100,000; "auto" adds motions until every piece's
+      interval lies within one class, at most 5,000. 0 of 100 cannot show "low": the interval's upper end is 0.037.
+    * `seed`: Random seed of the generated motions, 0 or above.
+    * `scale`: Factor on the motion of every floor, of records and of peaks alike [-], above 0 and at most 10: what a
+      weaker or stronger earthquake of the same kind would do.
+    * `ideal`: Whether the adopted chance is that of exactly this motion and of every piece exactly as given, without
+      the uncertainty of either.
+    * `scale_motions`: Whether motions of the user's own are scaled to each floor's PFA.
+    * `city`: Whether a draw of an earthquake differs from place to place, as buildings of a portfolio need it; else it
+      is one factor for the building alone.
+    * `zeta_acceleration`, `zeta_velocity`: Logarithmic standard deviations of Kaneko and Hayashi's two branches [-].
+      The paper prints neither: 0.20 fits 23 of the 27 rows of its Table 2; 0.5 is assumed, after FEMA P-58's dispersion
+      on PFV.
+    * `slide_coefficient`: Kaneko and Hayashi's slide coefficient, alpha of eq. 5 [-]; 1 is no sliding, the paper's
+      assumption.
+    * `ductility_reduction`: R_mu of ASCE 7-22 [-], at least 1: the factor by which the building's ductility lowers the
+      PFA that this code's profile gives above the ground. 1 is no reduction.
+    * `anchor`: What if: names of pieces that are taken as anchored and holding, or how many of the first entries of the
+      schedule are; also as one text, ``"25-07, 25-08"`` or ``"first:3"``.
+    * `anchor_resonance`, `anchor_strength`, `anchor_importance`: C_AR, R_po and I_p of ASCE 7-22, 13.3.1, for the force
+      that the code asks of anchors [-]. 1.0 and 1.5 are those of its table 13.5-1 for storage cabinets, shelving and
+      laboratory equipment, as public implementations have it.
+    * `route_risk`: Limit on the chance that an evacuation route is blocked [-], above 0 and below 1: a route is open
+      where the upper end of its interval is below it, and fixes are sought until that holds. 0.03 is where the class
+      low ends.
 
-    Raises
-    ------
-    SettingsError
-        If a value cannot be used: an `InputError` and a `ValueError`, whose message begins with the setting's name.
+    Raises SettingsError if a value cannot be used: an `InputError` and a `ValueError`, whose message begins with the
+    setting's name.
     """
 
     scenario: Scenario | None = None
@@ -225,10 +209,7 @@ def _show(value: object) -> str:
 def change_settings(settings: Settings | None, changes: Mapping[str, Any]) -> Settings:
     """Return settings, the defaults where there are none, with `changes` by keyword.
 
-    Raises
-    ------
-    SettingsError
-        If there is no such setting, or a value cannot be used.
+    Raises SettingsError if there is no such setting, or a value cannot be used.
     """
     names = [field.name for field in fields(Settings)]
     for name in changes:

@@ -46,33 +46,21 @@ _dump = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(", ", 
 class Field:
     """One field of a row.
 
-    Parameters
-    ----------
-    key : str
-        Its column in items.csv and in the tables of a notebook, with the unit.
-    source : str
-        Attributes that lead from the row to its value, ``governing.motion.pfa_g``; by default the key. What is behind
-        a None is None; an entry of a mapping is named like an attribute, one of a tuple by its number.
-    path : tuple of str
-        Its place in a record of results.json; by default ``(key,)``.
-    label, short, unit, format : str
-        Heading in reports without the unit, a shorter one for the lists of pages, the unit, and how Excel shows it.
-    width : int
-        Width of its column in Excel, in characters.
-    kind, is_optional, choices
-        What it may hold, and whether it may be None; a field of a group, whether it may be where the group is there.
-    is_blank_unknown : bool
-        Whether "" stands for what is unknown.
-    shows : set of str
-        Where it is shown.
-    help : str
-        What it means, for the schema and the documentation.
-    records : tuple of Field
-        The fields of the rows within the row, of kind "records".
-    line : str
-        What items.csv says of each of these: a text with their keys in braces.
-    flat : callable, optional
-        From its value to the one of items.csv, where that differs.
+    * `key`: Its column in items.csv and in the tables of a notebook, with the unit.
+    * `source`: Attributes that lead from the row to its value, ``governing.motion.pfa_g``; by default the key. What is
+      behind a None is None; an entry of a mapping is named like an attribute, one of a tuple by its number.
+    * `path`: Its place in a record of results.json; by default ``(key,)``.
+    * `label`, `short`, `unit`, `format`: Heading in reports without the unit, a shorter one for the lists of pages, the
+      unit, and how Excel shows it.
+    * `width`: Width of its column in Excel, in characters.
+    * `kind`, `is_optional`, `choices`: What it may hold, and whether it may be None; a field of a group, whether it may
+      be where the group is there.
+    * `is_blank_unknown`: Whether "" stands for what is unknown.
+    * `shows`: Where it is shown.
+    * `help`: What it means, for the schema and the documentation.
+    * `records`: The fields of the rows within the row, of kind "records".
+    * `line`: What items.csv says of each of these: a text with their keys in braces.
+    * `flat`: From its value to the one of items.csv, where that differs.
     """
 
     key: str
@@ -186,12 +174,8 @@ Tree = Mapping[str, "Field | Tree"]
 class Table:
     """Rows of the same fields; the values of a column are those of `Field.read`.
 
-    Parameters
-    ----------
-    fields : sequence of Field
-        The columns, in their order.
-    parts : callable
-        Returns the rows as `Columns`, some after the others, so that many rows take little memory.
+    * `fields`: The columns, in their order.
+    * `parts`: Returns the rows as `Columns`, some after the others, so that many rows take little memory.
     """
 
     def __init__(self, fields: Iterable[Field], parts: Callable[[], Iterable[Columns]]) -> None:
@@ -251,7 +235,6 @@ def build_tree(fields: Iterable[Field]) -> Tree:
 
 
 def _spell(tree: Tree, part: Columns, *, is_null: bool = False) -> list[str]:
-    """Return each row as the text of its record; null where it is that of a group of which nothing is known."""
     pattern, columns = _find_pattern(tree, part, is_null=is_null)
     texts = [pattern % row for row in zip(*columns, strict=True)]
     if not is_null:
@@ -261,7 +244,6 @@ def _spell(tree: Tree, part: Columns, *, is_null: bool = False) -> list[str]:
 
 
 def _find_pattern(tree: Tree, part: Columns, *, is_null: bool) -> tuple[str, list[list[str]]]:
-    """Return a record with gaps, and the columns of texts that fill them."""
     entries, columns = [], []
     for name, one in tree.items():
         gap = "%s"

@@ -282,11 +282,15 @@ def _conditions(row: type) -> Schema:
 
 def _describe(row: type) -> dict[str, str]:
     """Return the descriptions of a row's fields in its docstring, but for those that are as in another row."""
-    *_, listed = (inspect.getdoc(row) or "").partition("Parameters\n----------\n")
     found: dict[str, str] = {}
-    for names, text in re.findall(r"^(\w[\w, ]*)(?: : .*)?\n((?:    .*\n?)+)", listed, re.MULTILINE):
+    listed = re.findall(r"^\* (`.*?`)(?: \(.*?\))?: ((?:.*\n?)(?:  .*\n?)*)", inspect.getdoc(row) or "", re.MULTILINE)
+    for names, text in listed:
         plain = " ".join(text.split())
-        found |= {name: plain for name in names.split(", ") if not plain.startswith("As in ")}
+        found |= {
+            name: plain[0].upper() + plain[1:]
+            for name in re.findall(r"`(\w+)`", names)
+            if not plain.startswith("As in ")
+        }
     return found
 
 

@@ -80,7 +80,6 @@ def is_assumed(source: str) -> bool:
 
 @cache
 def _words_for_assumed() -> frozenset[str]:
-    """Return how the sources of assumed types begin, in every language."""
     sources = [one for one in catalogue_texts() if one.startswith(ASSUMED)]
     catalogues = [load_catalogue(code) for code in LANGUAGES]
     found = {one.find(source, "", 1).split(":")[0].casefold() for one in catalogues for source in sources}
@@ -102,6 +101,5 @@ def _read_type(line: dict[str, str], units: "Units") -> dict[str, Any]:
 
 
 def _by_number(name: str) -> list[tuple[int, int | str]]:
-    """Sort names as people do: letter case aside, 2 before 10."""
     parts = re.split(r"(\d+)", name.casefold())
     return [(0, int(part)) if part.isdigit() else (1, part) for part in parts if part]

@@ -295,7 +295,6 @@ def check_items(tables: Tables) -> Iterator[Problem]:
 
 
 def _check_reach(table: Table, row: Row) -> Iterator[Problem]:
-    """Warn of a piece that may fall onto a route, and of which it is not known how wide it is."""
     if not table.spoilt("width", row) and not table.spoilt("type", row) and table.says(row, "x", "y", "route"):
         label, kind, breadth = (fill(table.label(name)) for name in ("width", "type", "breadth"))
         message = fill(

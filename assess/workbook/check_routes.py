@@ -236,7 +236,6 @@ def _has_unnamed(routes: Table, route: str) -> bool:
 
 
 def _check_item_floor(items: Table, row: Row, name: str, floors: set[str | None]) -> Iterator[Problem]:
-    """Report a route, or a segment, that is on other floors than the item; one without a floor is on any."""
     own = items.sound("floor", row)
     if own is None or None in floors or own in floors:
         return

@@ -123,14 +123,10 @@ SHAKING = {"pfa_x": 0.3, "pfa_y": 0.25, "pfv_x": 28, "pfv_y": 24}
 def room_content(use: str, units: Units = "si", *, is_shaken: bool = False) -> Content:
     """Return the types of a use and its example room, in the language in use.
 
-    Parameters
-    ----------
-    use : str
-        One of `assess.workbook.schema.USES`.
-    units : "si" or "imperial"
-        Of the headers.
-    is_shaken : bool
-        Whether the floor gets a made-up shaking, so that the workbook can be run; otherwise shaking is all it lacks.
+    * `use`: One of `assess.workbook.schema.USES`.
+    * `units` ("si" or "imperial"): Of the headers.
+    * `is_shaken`: Whether the floor gets a made-up shaking, so that the workbook can be run; otherwise shaking is all
+      it lacks.
     """
     building = {"use": use} | ({"scenario": SCENARIO} if is_shaken else {})
     floor = FLOOR | (SHAKING if is_shaken else {})

@@ -86,18 +86,11 @@ class CellError(Exception):
 class Remark:
     """What is remarkable about a cell that can be read.
 
-    Attributes
-    ----------
-    message, fix : str
-        As in a `Problem`.
-    severity : str
-        A note where the cell was merely typed otherwise than asked for.
-    habit : str
-        Key of the habit, "" for none.
-    value : float or str, optional
-        What belongs into the cell instead, as in a `Correction`; None where nothing is to be corrected.
-    why : str
-        What the correction does.
+    * `message`, `fix`: As in a `Problem`.
+    * `severity`: A note where the cell was merely typed otherwise than asked for.
+    * `habit`: Key of the habit, "" for none.
+    * `value`: What belongs into the cell instead, as in a `Correction`; None where nothing is to be corrected.
+    * `why`: What the correction does.
     """
 
     message: Text
@@ -111,18 +104,11 @@ class Remark:
 def note(habit: str, column: Text | str, text: str, value: object, corrected: float | str) -> Remark:
     """Return the note on a cell that shows a habit.
 
-    Parameters
-    ----------
-    habit : str
-        Key of the habit.
-    column : str
-        Header of the column, with its unit.
-    text : str
-        What the cell holds, in quotes.
-    value : object
-        What it is read as, as the note shows it.
-    corrected : float or str
-        What belongs into the cell.
+    * `habit`: Key of the habit.
+    * `column`: Header of the column, with its unit.
+    * `text`: What the cell holds, in quotes.
+    * `value`: What it is read as, as the note shows it.
+    * `corrected`: What belongs into the cell.
     """
     said, why = _HABITS[habit]
     message = nfill(said.template, said.many, 1, **{**_BLANK, "column": column, "text": text, "value": value})
@@ -147,7 +133,6 @@ def list_groups(problems: Iterable[Problem]) -> list[tuple[Problem, list[Problem
 
 
 def _kind(problem: Problem) -> tuple[object, ...]:
-    """Return by what problems belong together: sheet, column, kind of message, its reason, and the name it is about."""
     message, fix = problem.message, problem.fix
     name = message.values.get("name") if isinstance(message, Text) else None
     parts = message.values.values() if isinstance(message, Text) else ()

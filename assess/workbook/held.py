@@ -30,25 +30,15 @@ _CONTENT = frozenset({"v", "f", "is", "t", "r", "rPh", "phoneticPr", "rPr", "rFo
 class Marks:
     """What the values of a sheet's cells do not show; it stays while these change.
 
-    Attributes
-    ----------
-    formulas : set of Place
-        Cells that hold a formula.
-    unknown : set of Place
-        Cells that hold elements which no change understands.
-    locked : sequence of (Area, Text)
-        Areas of formulas of several cells, and what they are.
-    formats : mapping of Place to str or None
-        The format of a cell that shows its number as a date, a time or a percentage; None for a cell that does not,
-        although its row or column does.
-    row_formats : mapping of int to str or None
-        That of the rows that have one.
-    column_formats : sequence of (int, int, str or None)
-        First and last column, from 0, and that of those columns.
-    low : int
-        Last row of a cell that holds something but no value that is read, such as a formula whose result is blank.
-    is_1904 : bool
-        Whether dates are counted from 1904.
+    * `formulas`: Cells that hold a formula.
+    * `unknown`: Cells that hold elements which no change understands.
+    * `locked` (sequence of (Area, Text)): Areas of formulas of several cells, and what they are.
+    * `formats`: The format of a cell that shows its number as a date, a time or a percentage; None for a cell that does
+      not, although its row or column does.
+    * `row_formats`: That of the rows that have one.
+    * `column_formats` (sequence of (int, int, str or None)): First and last column, from 0, and that of those columns.
+    * `low`: Last row of a cell that holds something but no value that is read, such as a formula whose result is blank.
+    * `is_1904`: Whether dates are counted from 1904.
     """
 
     formulas: frozenset[Place] = frozenset()
@@ -164,18 +154,11 @@ class HeldCells:
 class HeldSheets:
     """The sheets of a workbook that are read, by their English names; those of one's own are left out.
 
-    Attributes
-    ----------
-    name : str
-        How messages call the workbook.
-    cells : mapping of str to HeldCells
-        The sheets that it has.
-    languages : mapping of str to str
-        Codes of the languages of their names.
-    language : str
-        That of the workbook.
-    problems : tuple of Problem
-        Sheets that are missing, there twice or hidden.
+    * `name`: How messages call the workbook.
+    * `cells`: The sheets that it has.
+    * `languages`: Codes of the languages of their names.
+    * `language`: That of the workbook.
+    * `problems`: Sheets that are missing, there twice or hidden.
     """
 
     name: str

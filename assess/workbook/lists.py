@@ -135,7 +135,6 @@ class ListsWriter:
         self.book.define_name(name, f"={gettext(sheet)}!${column}${first}:${end or column}${last}")
 
     def _write_columns(self, at: int, columns: Iterable[tuple[str, str, Sequence[Any]]]) -> int:
-        """Write columns of a name, a header and values, which the name stands for; return the next column."""
         for name, header, values in columns:
             self.page.write_string(2, at, header)
             for row, value in enumerate(values, 3):
@@ -148,7 +147,6 @@ class ListsWriter:
         return at
 
     def _write_floor_table(self, at: int) -> int:
-        """Write the table of floor medians with what it is by."""
         at = self._write_columns(at, live_ground.list_scales())
         rows = live_ground.list_medians()
         for number, row in enumerate(rows, 3):
@@ -170,7 +168,6 @@ class ListsWriter:
         return at
 
     def _write_definitions(self, at: int) -> int:
-        """Write what has one cell each: factors of headers, words, and what Building says."""
         self.page.write_row(2, at, (gettext("header"), gettext("factor")))
         letter, rows = xl_col_to_name(at + 1), [*self._list_factors(), *_list_words()]
         rows += _list_scenario(*(f"${letter}${4 + len(rows) + line}" for line in range(2)))
@@ -184,7 +181,6 @@ class ListsWriter:
         return at + 2
 
     def _list_factors(self) -> Iterator[Definition]:
-        """Yield the factor of every header that a live formula needs, read from the header's own bracket."""
         sheets = {sheet.name: sheet for sheet in SHEETS}
         for name, field in _NEEDED_FACTORS:
             column = sheets[name].column(field)
@@ -234,7 +230,6 @@ def _list_shakings() -> Iterator[tuple[str, str, list[float]]]:
 
 
 def _list_nodes() -> Iterator[tuple[str, str, list[str]]]:
-    """Yield what a floor has of the ground's PFA and PFV at each z/h of the table, by axis."""
     for axis in "xy":
         every = [f"={one}" for one in live_ground.list_nodes(axis)]
         half = len(every) // 2
@@ -311,7 +306,6 @@ def _typed(name: str) -> str:
 
 
 def _key(cell: str) -> str:
-    """Expression for a name as it is looked up; 0 where there is none, which no name is."""
     return f'IF({cell}="",0,{trim(cell)})'
 
 
@@ -321,7 +315,6 @@ def _if_number(cell: str, number: str, blank: str = '""') -> str:
 
 
 def _line(name: str) -> int:
-    """Row of the form Building in which the empty workbook has a field."""
     return BUILDING.columns.index(BUILDING.column(name)) + 1
 
 

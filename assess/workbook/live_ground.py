@@ -53,12 +53,8 @@ def list_medians() -> list[list[float]]:
 def list_names(building: Mapping[str, str], run_assess: str, wrong: str) -> Iterator[tuple[str, str]]:
     """Yield names and the formulas that they stand for, each from those before it.
 
-    Parameters
-    ----------
-    building : mapping of str to str
-        Cells of the sheet Building, by field.
-    run_assess, wrong : str
-        Literals of what is shown where the program alone knows, and of what is no number.
+    * `building`: Cells of the sheet Building, by field.
+    * `run_assess`, `wrong`: Literals of what is shown where the program alone knows, and of what is no number.
     """
     yield from ((f"given_{name}", _read_number(name, building[name], wrong)) for name in _NUMBERS)
     yield from _list_ground(building, run_assess)
@@ -93,7 +89,6 @@ def list_names(building: Mapping[str, str], run_assess: str, wrong: str) -> Iter
 
 
 def _read_number(name: str, cell: str, wrong: str) -> str:
-    """Expression for a number of Building in SI, "" where it is blank, and a word where the program refuses it."""
     column, unit = BUILDING.column(name), f"unit_building_{name}"
     number = f"{cell}*{unit}" if column.quantity else cell
     found = f"IF({between(number, column)},{number},{wrong})"
@@ -129,7 +124,6 @@ def _list_ground(building: Mapping[str, str], run_assess: str) -> Iterator[tuple
 
 
 def _find_ratio(axis: str, run_assess: str) -> str:
-    """Expression for PGV/PGA of the ground along an axis [cm/s per g]: that of a typed motion at grade comes first."""
     other = "yx"["xy".index(axis)]
     own = f'INDEX(floor_own_pfa_{axis},grade_row)=""'
     pfa, pfv = (

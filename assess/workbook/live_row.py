@@ -52,7 +52,6 @@ def _unless_blank(formula: str) -> str:
 
 
 def _chosen_class(cells: Mapping[str, str]) -> str:
-    """Return the formula for the class by the formula that Building chooses; words in its place are those of OR."""
     by_paper, risk = cells[CLASS_OR], cells[adopted_formula().short_title]
     is_held = ",".join(f"{by_paper}={_say(word)}" for word in (IS_ANCHORED, RUN_ASSESS))
     is_none = f'AND(ISNUMBER({cells[LIVE[0]]}),{live.is_stocky(cells[LIVE[0]])},{risk}="")'
@@ -62,7 +61,6 @@ def _chosen_class(cells: Mapping[str, str]) -> str:
 
 
 def _paper_class(cells: Mapping[str, str]) -> str:
-    """Return the formula for the class by OR; a piece that is anchored has none, whatever its motion."""
     risk = cells[paper_formula().short_title]
     is_anchored, is_known = is_among(_own("anchored"), "anchored_words"), _own("bracket_capacity")
     # whether a bracket of known capacity holds is for the program to say
@@ -73,20 +71,17 @@ def _paper_class(cells: Mapping[str, str]) -> str:
 
 
 def _kind() -> str:
-    """Expression for the row of its type in the Catalogue; nothing where it names none."""
     own = _own("type")
     return f'IF(TRIM({own})="","",IFERROR({find_row(trim(own), "type_key")},{_say(NO_TYPE)}))'
 
 
 def _size(name: str, kind: str) -> str:
-    """Expression for a size [cm]: the row's own, else its type's, else nothing."""
     own, listed = _own(name), f"IF(ISNUMBER({kind}),INDEX(type_{name},{kind}),{kind})"
     number = f"IF(ISNUMBER({own}),{own}*unit_items_{name}*100,{_say(WRONG)})"
     return f'IF(sizes_unit<>"",sizes_unit,IF(TRIM({own})="",{listed},{number}))'
 
 
 def _width(kind: str) -> str:
-    """Expression for the width [cm] that Breadth must not exceed: the row's own, else its type's, else nothing."""
     own = _own("width")
     return f'IFERROR(IF(TRIM({own})="",INDEX(type_width,{kind}),{own}*unit_items_width*100),"")'
 
@@ -112,7 +107,6 @@ def _can_rock(ratio: str, pfa: str, kind: str, floor: str) -> str:
 
 
 def _centre(unit: str, kind: str) -> str:
-    """Expression for the height of the centre of gravity [-]: the row's own, else its type's, else the middle."""
     own = _own("centre_of_gravity")
     inside = live.between(f"{own}*{unit}", ITEMS.column("centre_of_gravity"))
     number = f"IF(ISNUMBER({own}),IF({inside},{own}*{unit},{_say(WRONG)}),{_say(WRONG)})"
@@ -120,14 +114,12 @@ def _centre(unit: str, kind: str) -> str:
 
 
 def _is_free() -> str:
-    """Expression for whether a piece may topple along either axis."""
     angle = _own("angle_deg")
     turned = f"IF(ISNUMBER({angle}),ABS(MOD({angle},90)-45)<{45 - NEAR_AXIS:g},TRUE)"
     return f'IF(TRIM({_own("axis")})="",{turned},FALSE)'
 
 
 def _axis(floor: str) -> str:
-    """Expression for the axis that governs: the row's own, else its angle's, else the worse of the floor's."""
     axis, angle, near = trim(_own("axis")), _own("angle_deg"), f"<={NEAR_AXIS:g}"
     worse = f"INDEX(floor_best,{floor})"
     turned = f'IF(ABS(MOD({angle}+90,180)-90){near},"X",IF(ABS(MOD({angle},180)-90){near},"Y",{worse}))'
@@ -136,14 +128,12 @@ def _axis(floor: str) -> str:
 
 
 def _find_class(method: Method, cells: Mapping[str, str]) -> str:
-    """Expression for the class by the chance of a method: low where the piece cannot rock."""
     ratio, pfa, *_, rocks = (cells[label] for label in LIVE)
     found = live.risk_class(method, f"SUM({cells[method.short_title]})", ratio, pfa)  # of a text: 0
     return f'IF({rocks}={_say(NO)},"{live.say_class(RiskClass.LOW)}",{found})'
 
 
 def _say(hint: str) -> str:
-    """Literal for a word in the language in use."""
     return f'"{gettext(hint)}"'
 
 
@@ -161,19 +151,16 @@ def _divide(breadth: str, height: str, width: str) -> str:
 
 
 def _served(floor: str, axis: str, what: str, otherwise: str) -> str:
-    """Expression for the PFA [g] or PFV [cm/s] along an axis, from the helper columns of Lists."""
     x, y = (f"INDEX(floor_{what}_{letter},{floor})" for letter in "xy")
     served = f'IF({axis}="X",{x},IF({axis}="Y",{y},{otherwise}))'
     return f"IF(ISNUMBER({floor}),IFERROR({served},{_say(WRONG)}),{floor})"
 
 
 def _write(method: Method, references: Mapping[str, str]) -> str:
-    """Return the formula of a method with the default settings."""
     settings = Settings()
     parameters = {one.setting: f"{getattr(settings, one.setting):.12g}" for one in method.parameters}
     return live.write_live(method, references, parameters)["value"]
 
 
 def _ready(ratio: str, pfa: str, formula: str) -> str:
-    """Show a result once B/H and PFA are numbers; until then what they say instead."""
     return f"=IF(ISNUMBER({ratio}),IF(ISNUMBER({pfa}),{formula},{pfa}),{ratio})"

@@ -346,8 +346,6 @@ class _Strings(Part):
 
 @dataclass(frozen=True, slots=True)
 class _Shared:
-    """What the cells of all sheets refer to."""
-
     strings: list[str] = field(default_factory=list)
     styles: list[str | None] = field(default_factory=list)
     is_1904: bool = False
@@ -550,7 +548,6 @@ class SheetCells(Part):
 
 
 def _check_kind(types: Tree, book: Tree) -> None:
-    """Raise WorkbookError unless the workbook is where every program looks for it, with the usual names of elements."""
     for one in types.find("Override"):
         part = one.get("PartName", "").lstrip("/")
         if part and part != WORKBOOK and one.get("ContentType", "").endswith(_MAIN):
@@ -576,10 +573,8 @@ class Book:
 
     `hidden` holds the names of those that are not shown.
 
-    Raises
-    ------
-    WorkbookError
-        Also while its sheets are read: if the file is damaged, is no workbook, or is larger than an honest one.
+    Raises WorkbookError: also while its sheets are read: if the file is damaged, is no workbook, or is larger than an
+    honest one.
     """
 
     def __init__(self, data: bytes, name: str, progress: Progress = SILENT) -> None:

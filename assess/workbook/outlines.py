@@ -115,12 +115,10 @@ def _meet(a: Corner, b: Corner, c: Corner, d: Corner) -> bool:
 
 
 def _turn(a: Corner, b: Corner, c: Corner) -> float:
-    """Return above 0 where c lies to the left of the line from a to b, 0 on it, but for rounding."""
     cross = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     size = hypot(b[0] - a[0], b[1] - a[1]) * hypot(c[0] - a[0], c[1] - a[1])
     return 0.0 if abs(cross) <= ROUNDING * size else cross
 
 
 def _is_between(a: Corner, b: Corner, c: Corner) -> bool:
-    """Tell whether c, which lies on the line through a and b, lies between them."""
     return all(min(one, two) - SAME <= at <= max(one, two) + SAME for one, two, at in zip(a, b, c, strict=True))

@@ -99,30 +99,17 @@ class Row:
 class Table:
     """One sheet as it was read; a form is a table of one row.
 
-    Parameters
-    ----------
-    sheet : Sheet
-        With the names that the workbook gives it and its columns; `language` is that of its own name.
-    found : bool
-        Whether the workbook has the sheet.
-    places : mapping of str to int
-        In which column of the sheet a field stands, from 0; in which row, for a form.
-    rows : tuple of Row
-        Those that hold anything.
-    extra : tuple of str
-        Headers of the unknown columns.
-    blind : frozenset of str
-        Fields whose header gives no known unit, which has been reported.
-    failed : frozenset of str
-        Addresses of the cells that have been reported as wrong.
-    corrections : tuple of Correction
-        Cells that were understood although they are not typed as their column asks.
-    source : Source, optional
-        Knows how messages call a cell.
-    header : int
-        The row of the headers, 0 where none was found; of a form 0.
-    units : mapping of str to str
-        Of the numbers, by field, as the headers name them; "" where a field has none.
+    * `sheet`: With the names that the workbook gives it and its columns; `language` is that of its own name.
+    * `found`: Whether the workbook has the sheet.
+    * `places`: In which column of the sheet a field stands, from 0; in which row, for a form.
+    * `rows`: Those that hold anything.
+    * `extra`: Headers of the unknown columns.
+    * `blind`: Fields whose header gives no known unit, which has been reported.
+    * `failed`: Addresses of the cells that have been reported as wrong.
+    * `corrections`: Cells that were understood although they are not typed as their column asks.
+    * `source`: Knows how messages call a cell.
+    * `header`: The row of the headers, 0 where none was found; of a form 0.
+    * `units`: Of the numbers, by field, as the headers name them; "" where a field has none.
     """
 
     sheet: Sheet
@@ -198,7 +185,6 @@ class Table:
 
 
 def _repeats(cells: Cells, headers: Cells, needed: Sequence[int]) -> bool:
-    """Tell whether a row repeats the headers of the columns that are needed, and no less than two headers."""
     return (
         all(cells.get(at) == headers[at] for at in needed)
         and sum(headers.get(at) == it for at, it in cells.items()) > 1
@@ -225,14 +211,10 @@ Tables = Mapping[str, Table]
 def parse_sheet(english: Sheet, own: Sheet, language: str, source: Source) -> tuple[Table, list[Problem]]:
     """Read a sheet.
 
-    Parameters
-    ----------
-    english, own : Sheet
-        With its English names, and with the name that the workbook gives it and labels in that language.
-    language : str
-        Code of the language of its name.
-    source : Source
-        Its cells.
+    * `english`, `own`: With its English names, and with the name that the workbook gives it and labels in that
+      language.
+    * `language`: Code of the language of its name.
+    * `source`: Its cells.
     """
     parser = _Parser(english, own, source)
     table = Table(sheet=own, language=language, found=True, source=source)
@@ -326,7 +308,6 @@ class _Parser:
         return found
 
     def _read_rows(self, header: int, headers: Cells, body: Iterable[tuple[int, Cells]]) -> list[Row]:
-        """Return the entries below the headers, with a note on every heading between them."""
         known, first = {*self.columns, *self.others}, sorted(self.columns)[:FIRST_COLUMNS]
         needed = sorted(self.required)
         found: dict[int, Row | None] = {}
@@ -530,7 +511,6 @@ class _Parser:
     # ------------------------------------------------------------------ cells
 
     def _value(self, column: Column, value: Any, number: int, at: int) -> Any:
-        """Return a cell's value in SI, None where it is blank or wrong."""
         if value is None and not column.required:
             return None
         if self.blind and column.name in self.blind and value is not UNSAVED:

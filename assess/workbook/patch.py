@@ -81,34 +81,21 @@ def patch_workbook(
 ) -> Patched:
     """Set cells of a workbook and leave every other byte of its parts as it is.
 
-    Parameters
-    ----------
-    data : bytes
-        The .xlsx or .xlsm.
-    changes : mapping of str to mapping of str to value
-        The values by the workbook's own names of its sheets and the addresses of cells. A cell keeps its format; a
-        formula in it is replaced; None leaves it blank. A cell or row that is missing is added in its place, with the
-        format of its row or column.
-    results : mapping of str to mapping of str to value, optional
-        Likewise the stored results of formulas, which stay; None takes the result out, so that every program
-        computes it when it opens the workbook.
-    name : str
-        How messages call the workbook.
-    progress : Progress
-        Checked while it is read.
+    * `data`: The .xlsx or .xlsm.
+    * `changes`: The values by the workbook's own names of its sheets and the addresses of cells. A cell keeps its
+      format; a formula in it is replaced; None leaves it blank. A cell or row that is missing is added in its place,
+      with the format of its row or column.
+    * `results`: Likewise the stored results of formulas, which stay; None takes the result out, so that every program
+      computes it when it opens the workbook.
+    * `name`: How messages call the workbook.
+    * `progress`: Checked while it is read.
 
-    Returns
-    -------
-    Patched
-        The same values set again give the same bytes. Where anything changed, programs are asked to recalculate the
-        workbook when they open it.
+    The same values set again give the same bytes. Where anything changed, programs are asked to recalculate the
+    workbook when they open it.
 
-    Raises
-    ------
-    WorkbookError
-        If it cannot be opened, or if something in it cannot be changed with certainty; nothing is changed then. The
-        problems name every cell that is refused: one where a formula of several cells begins, one of an array or data
-        table, a header of a table, a value that a cell cannot hold.
+    Raises WorkbookError if it cannot be opened, or if something in it cannot be changed with certainty; nothing is
+    changed then. The problems name every cell that is refused: one where a formula of several cells begins, one of an
+    array or data table, a header of a table, a value that a cell cannot hold.
     """
     kept = {sheet: values for sheet, values in (results or {}).items() if values}
     wanted = {sheet: values for sheet, values in changes.items() if values}
@@ -143,11 +130,8 @@ def list_formulas(data: bytes, sheet: str, *, name: str = "workbook.xlsx") -> di
 def find_headers(data: bytes, sheet: str, *, name: str = "workbook.xlsx") -> list[tuple[Area, Text]]:
     """Return the cells of a sheet that `patch_workbook` refuses to change since they are headers of tables, with why.
 
-    Raises
-    ------
-    WorkbookError
-        If the workbook cannot be opened, or if the sheet cannot be changed at all. Of a large sheet this shows only
-        when it is changed.
+    Raises WorkbookError if the workbook cannot be opened, or if the sheet cannot be changed at all. Of a large sheet
+    this shows only when it is changed.
     """
     with Book(data, name) as book:
         _check_names(book, [sheet])
@@ -382,7 +366,6 @@ def _widen(places: SheetPlaces, added: Sequence[tuple[int, int]]) -> list[Edit]:
 
 
 def _pack(book: Book, parts: Mapping[str, bytes | None]) -> bytes:
-    """Return the zip with other bytes for some parts, and without those that are None."""
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED, compresslevel=_LEVEL) as out:
         out.comment = book.archive.comment
@@ -493,7 +476,6 @@ def find_totals(data: bytes, sheet: str, name: str) -> list[int]:
 
 
 def _list_tables(book: Book, path: str) -> list[tuple[tuple[int, int, int, int], Mapping[str, str]]]:
-    """Return the area of each table of a sheet, and its attributes."""
     folder, name = posixpath.split(path)
     relations = book.find_part(folder, f"_rels/{name}.rels")
     if relations is None:

@@ -38,14 +38,9 @@ class PictureReader:
     `folder`: where they are; None where the workbook was read without one.
     `kept`: what earlier readings of the workbook made of its files.
 
-    Attributes
-    ----------
-    logo : Path, optional
-        The building's logo.
-    plans : dict of int to FloorPlan
-        The plans of the floors that are drawn, by the number of their row.
-    photos : dict of str to bytes
-        The photos of the pieces as small JPEGs, by the text of their cell.
+    * `logo`: The building's logo.
+    * `plans`: The plans of the floors that are drawn, by the number of their row.
+    * `photos`: The photos of the pieces as small JPEGs, by the text of their cell.
     """
 
     def __init__(self, folder: Path | None, progress: Progress, kept: KeptFiles | None = None) -> None:

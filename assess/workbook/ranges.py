@@ -66,7 +66,6 @@ def find_slip(column: Column, number: float, unit: str) -> Text | str:
 
 
 def _list_units(column: Column, number: float, unit: str) -> list[str]:
-    """Return other units in which a number would be usual, those of the header's own system first."""
     systems: tuple[tuple[str, ...], ...] = (_IMPERIAL, _METRIC) if unit in _IMPERIAL else (_METRIC, _IMPERIAL)
     if column.quantity == "acceleration":
         systems = (_ACCELERATIONS,)

@@ -55,36 +55,23 @@ def read_inventory(
 ) -> Inventory:
     """Read and check a workbook, or rows that are given in code.
 
-    Parameters
-    ----------
-    source : str, Path, bytes or mapping
-        The .xlsx (or .xlsm, whose macros are never run), its bytes, or rows by sheet: ``{"Items": [{"item": "A1",
-        "Height [m]": 1.8}], "Floors": [...], "Building": {...}}``, where a table of pandas serves as well. A key is a
-        field of `assess.workbook.schema`, its value in the unit of an empty workbook's header, or a header with its
-        unit.
-    records : mapping of str to bytes, or path of a folder, optional
-        The recorded motions and pictures that the workbook names: their bytes by name, or the folder that holds them.
-        By default they are looked for in the folder of the workbook.
-    building : mapping of str to Any, optional
-        Values for the lines of Building that the workbook leaves blank, as rows in code have them.
-    ground : GroundField, optional
-        The ground motion of the run, such as a `assess.motion.shakemap.ShakeMap`: at Latitude and Longitude it takes
-        the place of Ground PGA, SDS, Ground PGV, ShakeMap file and Shaking. Floors keep a motion of their own.
-    strict : bool
-        Whether an error stops the reading. If not, faulty rows are left out, and `Inventory.problems` holds the errors.
-    progress : Progress
-        Reports the stage "reading"; obeys a cancel.
+    * `source`: The .xlsx (or .xlsm, whose macros are never run), its bytes, or rows by sheet: ``{"Items": [{"item":
+      "A1", "Height [m]": 1.8}], "Floors": [...], "Building": {...}}``, where a table of pandas serves as well. A key is
+      a field of `assess.workbook.schema`, its value in the unit of an empty workbook's header, or a header with its
+      unit.
+    * `records`: The recorded motions and pictures that the workbook names: their bytes by name, or the folder that
+      holds them. By default they are looked for in the folder of the workbook.
+    * `building`: Values for the lines of Building that the workbook leaves blank, as rows in code have them.
+    * `ground`: The ground motion of the run, such as a `assess.motion.shakemap.ShakeMap`: at Latitude and Longitude it
+      takes the place of Ground PGA, SDS, Ground PGV, ShakeMap file and Shaking. Floors keep a motion of their own.
+    * `strict`: Whether an error stops the reading. If not, faulty rows are left out, and `Inventory.problems` holds the
+      errors.
+    * `progress`: Reports the stage "reading"; obeys a cancel.
 
-    Returns
-    -------
-    Inventory
-        In SI units, with the warnings and notes of the check.
+    In SI units, with the warnings and notes of the check.
 
-    Raises
-    ------
-    WorkbookError
-        If it cannot be opened as a workbook or, if `strict`, anything in it cannot be used; its `problems` name every
-        sheet and cell.
+    Raises WorkbookError if it cannot be opened as a workbook or, if `strict`, anything in it cannot be used; its
+    `problems` name every sheet and cell.
     """
     path = Path(source) if isinstance(source, str | Path) else Path(IN_CODE)
     files = Path(records) if isinstance(records, str | Path) else records
@@ -187,18 +174,11 @@ def build_held(
 ) -> Inventory:
     """Return the inventory of tables that `parse_held` returned, as ``read_inventory(strict=False)`` does.
 
-    Parameters
-    ----------
-    tables, problems
-        What `parse_held` returned.
-    path : Path
-        The workbook; it is not read.
-    records : mapping of str to bytes, or Path, optional
-        The files that it names, or the folder in which they are.
-    progress : Progress
-        Checked before every file.
-    kept : KeptFiles, optional
-        What earlier readings made of those files.
+    * `tables`, `problems`: What `parse_held` returned.
+    * `path`: The workbook; it is not read.
+    * `records`: The files that it names, or the folder in which they are.
+    * `progress`: Checked before every file.
+    * `kept`: What earlier readings made of those files.
     """
     reader = FileReader(records, progress, kept)
     pictures = PictureReader(reader.folder, progress, kept)
@@ -276,7 +256,6 @@ def _describe_missing(sheet: Sheet, language: str, unknown: Sequence[str]) -> It
 
 
 def _list_rows(name: str, content: Any) -> list[Mapping[str, Any]]:
-    """Return the rows of a sheet that is given in code; raises InputError if they are none."""
     if hasattr(content, "to_dict"):
         content = content.astype(object).where(content.notna(), None).to_dict("records")
     listed = [content] if isinstance(content, Mapping) else list(content)
@@ -286,7 +265,6 @@ def _list_rows(name: str, content: Any) -> list[Mapping[str, Any]]:
 
 
 def _tables_in_code(rows: Mapping[str, Sequence[Mapping[str, Any]]]) -> tuple[Tables, list[Problem]]:
-    """Read rows that are given in code; raises InputError if a sheet is not known."""
     given: dict[str, tuple[Source, str]] = {}
     for name, content in rows.items():
         found = find_sheet(name)
@@ -332,7 +310,6 @@ def _checks(files: FileReader, pictures: PictureReader) -> tuple[Check, ...]:
 def _check(
     tables: Tables, found: list[Problem], checks: Sequence[Check], *, strict: bool
 ) -> tuple[Tables, list[Problem]]:
-    """Return the tables with names resolved, without what is faulty, and all problems; `strict` raises for errors."""
     tables, notes = correct_names(tables)
     tables, more = check.run_checks(resolve(tables), checks)
     problems = [*found, *notes, *more]

@@ -153,27 +153,15 @@ Files = Mapping[str, bytes] | Path | None
 class FileReader:
     """Reads the files that a workbook names, each once, and checks them as the functions of `check` do.
 
-    Parameters
-    ----------
-    files : mapping of str to bytes, or Path, optional
-        The files by name, or the folder in which they are.
-    progress : Progress
-        Checked before every file, and every member of an archive.
-    kept : KeptFiles, optional
-        What earlier readings of the workbook made of its files.
-    ground : GroundField, optional
-        The ground motion of the run, in place of the workbook's own.
+    * `files`: The files by name, or the folder in which they are.
+    * `progress`: Checked before every file, and every member of an archive.
+    * `kept`: What earlier readings of the workbook made of its files.
+    * `ground`: The ground motion of the run, in place of the workbook's own.
 
-    Attributes
-    ----------
-    hashes : dict of str to str
-        SHA-256 of the recorded motions, of the hazard curve and of the ShakeMap, by the name of the file.
-    hazard : HazardCurve, optional
-        The hazard curve of the site.
-    site_ground : SiteGround, optional
-        How the ground shakes at the building by a ShakeMap or scenarios.
-    records : dict
-        The recorded motions of the floors, by the number of their row and axis.
+    * `hashes`: SHA-256 of the recorded motions, of the hazard curve and of the ShakeMap, by the name of the file.
+    * `hazard`: The hazard curve of the site.
+    * `site_ground`: How the ground shakes at the building by a ShakeMap or scenarios.
+    * `records`: The recorded motions of the floors, by the number of their row and axis.
     """
 
     def __init__(
@@ -262,7 +250,6 @@ class FileReader:
         return map_
 
     def _find_beside(self, file: str) -> tuple[bytes | Path | None, str]:
-        """Return the file of uncertainties beside the grid of a ShakeMap, and its name; None where there is none."""
         for path in list_beside(file):
             try:
                 return self._find(path)[0], path

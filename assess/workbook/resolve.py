@@ -85,7 +85,6 @@ def _map(table: Table, change: Callable[[Row], Mapping[str, Any]]) -> Table:
 
 
 def _spell(table: Table, sheet: str, names: Mapping[str, Mapping[str, str]]) -> Table:
-    """Spell the names of the other sheets, and those of segments' routes."""
     sources = {column.name: column.source for column in table.sheet.columns if column.source}
     sources |= {_DEFINED_BY[sheet]: sheet} if sheet == "Routes" else {}
 
@@ -198,7 +197,6 @@ def filled_sizes(table: Table, row: Row, types: Mapping[str, CatalogueType]) -> 
 
 
 def _find_in_type(table: Table, row: Row, types: Mapping[str, CatalogueType], names: Iterable[str]) -> dict[str, float]:
-    """Return what the type of an item gives of the fields that are blank in its row."""
     kind = types.get(key(row.get("type") or ""))
     blank = (name for name in names if kind is not None and name not in row.values and not table.spoilt(name, row))
     return {name: value for name in blank if (value := getattr(kind, name)) is not None}
@@ -263,7 +261,6 @@ def _without(table: Table, gone: Iterable[Row]) -> Table:
 
 
 def _warn_left_out(table: Table, name: str, rows: Iterable[Row]) -> Iterable[Problem]:
-    """Warn, once a name, of the rows that are left out with the row that they name."""
     by_name: dict[str, list[Row]] = {}
     for row in rows:
         by_name.setdefault(row.get(name), []).append(row)

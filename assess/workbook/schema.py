@@ -32,38 +32,22 @@ DEFAULT_WIDTH = 0.9
 class Column:
     """One column of a table, or one line of a form.
 
-    Parameters
-    ----------
-    name : str
-        Field of the model in `assess.model`.
-    label : str
-        Heading, without the unit.
-    kind : str
-        What a cell may hold.
-    help : str
-        What to fill in: the input message in Excel and the README's table.
-    quantity, unit, imperial : str
-        Key of `assess.units.QUANTITIES`, and the unit that the empty workbook offers (SI, imperial).
-    required : bool
-        Whether the table cannot be read without it.
-    low, high : float, optional
-        Outside these an error, in `unit`.
-    usual_low, usual_high : float, optional
-        Outside these a warning, in `unit`.
-    choices : tuple of str
-        What a choice may be; of a flag `YES` and `NO`, which are read as True and False.
-    offered : tuple of str
-        What the drop-down of a text offers; any other text is kept, too.
-    source : str
-        Sheet whose first column lists what the cell may name.
-    default : str
-        What a blank means, in words.
-    width : int
-        Width in the empty workbook [characters].
-    language : str
-        Code of the language that `label` is in.
-    aliases : tuple of str
-        Earlier labels, by which a workbook may still call it.
+    * `name`: Field of the model in `assess.model`.
+    * `label`: Heading, without the unit.
+    * `kind`: What a cell may hold.
+    * `help`: What to fill in: the input message in Excel and the README's table.
+    * `quantity`, `unit`, `imperial`: Key of `assess.units.QUANTITIES`, and the unit that the empty workbook offers (SI,
+      imperial).
+    * `required`: Whether the table cannot be read without it.
+    * `low`, `high`: Outside these an error, in `unit`.
+    * `usual_low`, `usual_high`: Outside these a warning, in `unit`.
+    * `choices`: What a choice may be; of a flag `YES` and `NO`, which are read as True and False.
+    * `offered`: What the drop-down of a text offers; any other text is kept, too.
+    * `source`: Sheet whose first column lists what the cell may name.
+    * `default`: What a blank means, in words.
+    * `width`: Width in the empty workbook [characters].
+    * `language`: Code of the language that `label` is in.
+    * `aliases`: Earlier labels, by which a workbook may still call it.
     """
 
     name: str

@@ -122,16 +122,11 @@ def write_workbook(
 
     Raises OSError if it cannot be written.
 
-    Parameters
-    ----------
-    path : Path
-        Where to; overwritten.
-    content : Content, optional
-        What to fill in; an empty workbook still has the catalogue.
-    units : "si" or "imperial"
-        Of the headers.
-    spare : int, optional
-        Rows of each sheet that are prepared beyond those filled in, for many small workbooks; None prepares `ROWS`.
+    * `path`: Where to; overwritten.
+    * `content`: What to fill in; an empty workbook still has the catalogue.
+    * `units` ("si" or "imperial"): Of the headers.
+    * `spare`: Rows of each sheet that are prepared beyond those filled in, for many small workbooks; None prepares
+      `ROWS`.
     """
     filled = content or Content()
 
@@ -371,7 +366,6 @@ def count_text_lines(text: str, width: float) -> int:
 
 
 def _wrap(text: str, room: float) -> tuple[int, int]:
-    """Return the lines of a text that is broken at its spaces, and the letters in the last."""
     lines, used = 1, 0
     for word in text.split():
         needed = used + bool(used) + len(word)

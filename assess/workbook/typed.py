@@ -62,23 +62,13 @@ def understand(column: Column, value: object, unit: str, quote: Quote) -> tuple[
 
     Raises CellError if the cell can be read in two ways, or holds a day that does not exist.
 
-    Parameters
-    ----------
-    column : Column
-        Its column.
-    value : object
-        What it holds, if that is not a plain number.
-    unit : str
-        That of the header: numbers are returned in it.
-    quote : callable
-        Returns a value as messages quote it.
+    * `column`: Its column.
+    * `value`: What it holds, if that is not a plain number.
+    * `unit`: That of the header: numbers are returned in it.
+    * `quote`: Returns a value as messages quote it.
 
-    Returns
-    -------
-    value : object
-        A number, a choice, a date or a name; `value` itself where nothing else can be meant.
-    remark : Remark, optional
-        The note.
+    * `value`: A number, a choice, a date or a name; `value` itself where nothing else can be meant.
+    * `remark`: The note.
     """
     take = _TAKERS.get(column.kind)
     return take(column, value, unit, quote) if take else (value, None)

@@ -20,8 +20,6 @@ _TEXT_STAYS_TEXT = dict.fromkeys(("strings_to_formulas", "strings_to_urls", "str
 
 
 class _Packed(io.BytesIO):
-    """The packed file, which asks before each write whether to stop."""
-
     def __init__(self, progress: Progress) -> None:
         super().__init__()
         self._progress = progress
