@@ -35,18 +35,6 @@ def test_a_low_bracket_takes_more_than_the_force_and_the_base_slides_to_the_wall
     assert found == pytest.approx([0.25, 0], abs=1e-12)
 
 
-def test_where_the_weight_holds_it_alone_there_is_no_tension():
-    """Below B/(2 z) it does not start to turn."""
-    limit = 0.40 / 2 / 0.90
-    found = find_tension(**PIECE, acceleration=[0.5 * limit, limit, 1.01 * limit], breadth=0.40)
-    assert found[:2] == pytest.approx([0, 0], abs=1e-12)
-    assert found[2] > 0
-
-
-def test_a_base_that_hangs_needs_any_friction():
-    assert find_needed_friction(weight=1.0, acceleration=0.5, tension=0.1, vertical=1.0) == np.inf
-
-
 def test_demand_of_the_code_of_physics_f():
     """With the period of the building, and where it is not known."""
     known = {"period": 0.8, "ductility": 1.3, "resonance": 1}

@@ -7,8 +7,6 @@ from pathlib import Path
 import pytest
 
 from assess.cache_folder import cache_folder, choose_folder, examine_folder
-from tests.cli.calling import run
-from tests.test_compiled import FIRST_USE, _child, _kept
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "getuid"), reason="access rights of Windows are others")
 
@@ -85,21 +83,3 @@ def test_the_group_of_one_user_is_no_other(tmp_path, own, monkeypatch):
         monkeypatch.setattr(grp, "getgrgid", lambda _, n=name, m=members: grp.struct_group((n, "x", group, m)))
         examine_folder.cache_clear()
         assert (choose_folder(str(named))[0] == named) is is_safe, (members, name)
-
-
-@pytest.mark.slow
-def test_compiling_goes_to_the_users_own_folder(tmp_path):
-    shared = made(tmp_path / "shared", 0o777)
-    _child(FIRST_USE, NUMBA_CACHE_DIR=shared, XDG_CACHE_HOME=tmp_path / "own")
-    assert list(shared.iterdir()) == []
-    assert _kept(tmp_path / "own")
-
-
-@pytest.mark.slow
-def test_doctor_says_so(tmp_path, own, monkeypatch):
-    assert f"ok       compiled code: kept in {own}" in run("doctor").stdout
-    shared = made(tmp_path / "shared", 0o777)
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(shared))
-    done = run("doctor")
-    assert f"missing  compiled code: others can write to {shared}. kept in {own}. Give the folder" in done.stdout
-    assert done.exit_code == 1

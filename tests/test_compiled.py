@@ -10,7 +10,6 @@ import pytest
 
 import assess
 from assess.cache_folder import cache_folder
-from assess.compiled import compiled
 from tests.shaking import write_records
 from tests.workbooks import write
 
@@ -57,17 +56,6 @@ def test_a_folder_that_cannot_be_written_is_done_without(tmp_path):
     assert (tmp_path / "assess").is_file()
 
 
-def test_where_nothing_can_be_kept_on_disk_it_is_compiled_anew(monkeypatch):
-    from numba.core import caching
-
-    monkeypatch.setattr(caching.CacheImpl, "_locator_classes", [])
-
-    def double(value: float) -> float:
-        return 2 * value
-
-    assert compiled(double)(1.5) == 3.0
-
-
 def test_each_system_has_its_folder(monkeypatch):
     for system, variables, folder in (
         ("linux", {"XDG_CACHE_HOME": "/caches"}, "/caches/assess"),
@@ -98,22 +86,6 @@ it."""
 
 
 GENERIC = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""}
-BENT = (
-    "import numpy as np\nfrom assess.motion.recipe import bend_rows\n"
-    "rows = np.sin(np.arange(1000.0, dtype=np.float32)).reshape(2, 500)\n"
-    "bend_rows(rows, 1.0, 0.1)\nprint(*rows.ravel().tolist())\n"
-)
-
-
-@pytest.mark.slow
-def test_without_wide_vectors_a_motion_is_bent_alike(tmp_path):
-    """One function is compiled anew, and kept where NUMBA_CACHE_DIR says."""
-    generic = _child(BENT, NUMBA_CACHE_DIR=tmp_path / "cache", **GENERIC)
-    native = _child(BENT, NUMBA_CACHE_DIR=os.environ.get("NUMBA_CACHE_DIR"))
-    assert _kept(tmp_path / "cache")
-    values = [[float(one) for one in text.split()] for text in (native, generic)]
-    assert len(set(values[0])) > 100
-    assert values[1] == pytest.approx(values[0], rel=1e-4, abs=1e-5)
 
 
 @pytest.mark.long

@@ -1,33 +1,21 @@
 """Tables: each field is read, named and formatted once; columns, rows, records and their text say the same."""
 
 import json
-from collections import Counter
 from dataclasses import replace
 
 import pytest
 
 import assess
-from assess.fields import MOTION_FIELDS, method_fields
-from assess.report.data import write_json
 from assess.settings import Settings
 from assess.table import unnest
 from tests.report.routed import assess_routed
 from tests.workbooks import ITEMS, assessed
-
-TABLES = ("items", "cases", "floors", "segments", "routes", "rooms", "schedule", "problems")
 
 
 @pytest.fixture(scope="module", params=["none", "all"])
 def results(request, tmp_path_factory):
     path = tmp_path_factory.mktemp("fields") / "w.xlsx"
     return assess_routed(path, Settings(verify=request.param, runs=10))
-
-
-def test_keys_and_places_are_unique(results):
-    for name in TABLES:
-        fields = results.table(name).fields
-        assert max(Counter(one.key for one in fields).values()) == 1
-        assert max(Counter(one.place for one in fields).values()) == 1
 
 
 def test_columns_rows_records_and_their_text_agree(results):
@@ -53,39 +41,6 @@ def test_a_part_of_the_rows_is_read_like_the_whole(monkeypatch, results):
     assert list(results.table("items").records()) == whole
     assert [one.item.item for one in results] == [one["item"] for one in whole]
     assert results.result(1) == list(results)[1]
-
-
-def test_the_document_holds_the_records_of_the_tables(results, tmp_path):
-    write_json(results, tmp_path / "r.json")
-    found = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))
-    assert found["items"] == list(results.table("items").records())
-    assert found["schedule"]["entries"] == list(results.table("schedule").records())
-    for floor in found["floors"]:
-        motions = [one for axis in "XY" for one in results.motions_of(floor["floor"], axis)]
-        for record, motion in zip(floor["demands"], motions, strict=True):
-            assert unnest(record, MOTION_FIELDS) == {one.key: one.flatten(one.read(motion)) for one in MOTION_FIELDS}
-
-
-def test_units_of_keys_and_headings_agree(results):
-    """``breadth_cm`` is "Breadth [cm]": what a key ends in is the unit of its heading."""
-    marks = {"cm": "cm", "m": "m", "g": "g", "cm/s": "cm_s", "deg": "deg", "Hz": "hz", "s": "s", "kg": "kg", "kN": "kn"}
-    for one in (*results.table("items").fields, *MOTION_FIELDS):
-        if one.unit:
-            assert one.heading() == f"{one.label} [{one.unit}]"
-        if one.unit and "^" not in one.unit:
-            assert one.key.endswith(f"_{marks[one.unit]}"), one.key
-
-
-def test_the_columns_of_a_method_follow_from_what_it_says_of_itself(results):
-    for method in results.methods:
-        own = {one.key: one for one in method_fields(method)}
-        columns = () if method.role == "simulation" else method.columns
-        names = [f"{method.key}_{column.name}" for column in columns]
-        assert list(own) == [method.key, *names, f"{method.key}_flags"]
-        for column, name in zip(columns, names, strict=True):
-            decimals = column.format.rstrip("f").partition(".")[2]
-            assert len(own[name].format.partition(".")[2]) == int(decimals or 0)
-        assert own[method.key].format == ("0.0%" if method.kind == "probability" else "0")
 
 
 def test_texts_with_signs_of_json_and_of_patterns_come_back(tmp_path):

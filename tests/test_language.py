@@ -25,8 +25,7 @@ from assess.i18n import (
     placeholders,
     speaking,
 )
-from assess.methods import Reference, all_methods
-from assess.report.provenance import say_date, say_reference
+from assess.report.provenance import say_date
 from docs.texts import collect
 
 
@@ -98,20 +97,6 @@ def test_one_and_many_and_numbers():
     assert number(1234.5, ",.2f") == "1,234.50"
 
 
-def test_one_may_hold_other_names_than_many(tmp_path):
-    lines = (
-        'msgid "{a} box"\nmsgid_plural "{n:,} boxes: {b}"\nmsgstr[0] "{a} scatola"\nmsgstr[1] "{n:,} scatole: {b}"\n'
-    )
-    with speaking(load_catalogue("it", write(tmp_path, lines))):
-        assert [gettext(nfill("{a} box", "{n:,} boxes: {b}", n, a="A", b="B")) for n in (1, 2)] == [
-            "A scatola",
-            "2 scatole: B",
-        ]
-    load_catalogue.cache_clear()
-    with pytest.raises(InputError, match="has to hold the same names in braces; check c"):
-        load_catalogue("it", write(tmp_path, lines.replace("scatole: {b}", "scatole: {b} {c}")))
-
-
 def test_values_are_escaped_and_tags_of_the_text_are_not():
     assert str(markup("<b>{name}</b> & {n}", name="<i>", n=1)) == "<b>&lt;i&gt;</b> & 1"
     assert str(markup('a "{name}"', name="x")) == "a &#34;x&#34;"
@@ -146,16 +131,3 @@ def test_dates_are_written_as_the_language_does():
         assert say_date(given) == english
         with speaking(load_catalogue("it")):
             assert say_date(given) == italian
-
-
-def test_references_keep_their_titles_and_their_remarks_are_translated():
-    for method in all_methods():
-        reference = method.reference
-        assert say_reference(reference) == str(reference)
-        with speaking(load_catalogue("it")):
-            said = say_reference(reference)
-        assert said.startswith(reference.bibliographic)
-        assert (said == str(reference)) == (not reference.remark), method.key
-    full = Reference(authors="A B", year="1999", title="On blocks", source="J 1:2", doi="10.1/x", remark="Section 2.")
-    assert str(full) == "A B (1999). On blocks. J 1:2. doi:10.1/x Section 2."
-    assert str(Reference(authors="", year="", title="On blocks", source="")) == "On blocks."

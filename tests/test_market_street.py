@@ -86,14 +86,6 @@ def test_of_parallel_channels_that_of_the_larger_velocity_governs(example):
             assert one.governing.motion.pfv_cm_s == max(case.motion.pfv_cm_s for case in one.cases), one.item.item
 
 
-def test_by_the_paper_that_of_the_larger_acceleration_governs(example_inventory):
-    """Of the 34th floor PFA and PFV tell different channels."""
-    found = run(example_inventory, replace(UNVERIFIED, class_by="proposed OR"))
-    own = [one for one in found if one.item.floor == "34" and one.item.axis_given == "X"]
-    assert {one.governing.motion.record[-5] for one in own} == {"d"}
-    assert {one.by_formula.motion.record[-5] for one in own} == {"d"}
-
-
 def test_stored_live_values_are_those_of_the_program_and_of_a_spreadsheet_engine(example_inventory):
     page = openpyxl.load_workbook(WORKBOOK, data_only=True)["Items"]
     book = formualizer.load_workbook(str(WORKBOOK))

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from assess.errors import RecordError
-from assess.model import STRUCTURES, Floor, FloorRecord, Inventory
-from assess.motion.assumed import STIFFNESS, UNKNOWN
+from assess.model import FloorRecord, Inventory
 from assess.motion.formats import read_records
 from assess.workbook.read import read_inventory
 from tests.workbook.books import read, write
@@ -82,29 +81,9 @@ def test_a_record_of_no_file_is_pickled_with_its_waveform(tmp_path: Path) -> Non
     assert FloorRecord(name="mine", record=louder) != one
 
 
-def test_inventories_with_other_records_differ(tmp_path: Path) -> None:
-    one = recorded(tmp_path)
-    write_record(tmp_path / "one.csv", "time [s],EW [g]")
-    other = read_inventory(tmp_path / "book.xlsx")
-    assert one.floors != other.floors
-    assert one.floors[0] == dataclasses.replace(other.floors[0], records=one.floors[0].records)
-    assert isinstance(one.floors[0], Floor)
-
-
 def test_a_frame_has_units_in_its_names(market_street: Inventory) -> None:
     frame = market_street.frame()
     assert {"breadth_cm", "width_cm", "height_cm", "x_m", "y_m", "angle_deg", "edge_distance_m"} <= {*frame.columns}
     assert not {"breadth", "height", "x"} & {*frame.columns}
     first = market_street.items[0]
     assert frame.loc[first.item, "height_cm"] == pytest.approx(100 * first.height)
-
-
-def test_a_notebook_shows_one_line(market_street: Inventory) -> None:
-    shown = dataclasses.replace(market_street, building=dataclasses.replace(market_street.building, building="<b>"))
-    assert "<b>&lt;b&gt;</b>: 121 items on 4 floors" in shown._repr_html_()
-    assert len(shown._repr_html_()) < 300
-
-
-def test_every_structure_has_a_stiffness():
-    assert tuple(STIFFNESS) == STRUCTURES
-    assert STRUCTURES[-1] == UNKNOWN

@@ -53,17 +53,6 @@ def floors(*elevations):
     return [{"floor": name, "elevation": at} | motion for name, at in zip(("L11", "L3"), elevations, strict=True)]
 
 
-def test_floors_out_of_order_are_shown_by_elevation(tmp_path):
-    top, bottom = floors(44.0, 12.0)
-    for elevations in ((None, None), (None, 12.0)):  # without elevations they stay as the workbook has them
-        content = build_content(assessed(tmp_path / "w.xlsx", ITEMS, floors(*elevations)))
-        assert [page.floor.floor for page in content.floors] == ["L11", "L3"]
-    rows = [top, bottom, top | {"floor": "L7", "elevation": 28.0}]
-    for order, shown in (((0, 2, 1), "L11 L7 L3"), ((2, 0, 1), "L11 L7 L3"), ((1, 0, 2), "L3 L7 L11")):
-        content = build_content(assessed(tmp_path / "w.xlsx", ITEMS, [rows[at] for at in order]))
-        assert " ".join(page.floor.floor for page in content.floors) == shown, order
-
-
 @pytest.fixture(scope="module")
 def results(tmp_path_factory):
     return assessed(tmp_path_factory.mktemp("natural") / "w.xlsx", ITEMS, floors(44.0, 12.0), settings=UNVERIFIED)

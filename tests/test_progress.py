@@ -16,7 +16,6 @@ from assess.pipeline.series import write_series
 from assess.progress import SILENT, Progress, Report, check_waits
 from assess.report.figures.draw import draw
 from assess.report_formats import DEFAULT
-from assess.workbook.writer import write_book
 from tests.waiting import PATIENCE
 from tests.workbooks import UNVERIFIED, write
 
@@ -189,18 +188,6 @@ def test_no_format_leaves_a_file(tmp_path, monkeypatch):
             assert [path.name for path in tmp_path.iterdir()] == ["w.xlsx"], name
 
 
-def test_a_workbook_is_left_in_the_midst_of_packing(tmp_path):
-    cancel = Event()
-
-    def fill(book):
-        book.add_worksheet().write_string(0, 0, "text")
-        cancel.set()  # what is left is XlsxWriter's own work
-
-    with pytest.raises(CancelledError):
-        write_book(tmp_path / "book.xlsx", fill, by_row=True, progress=Progress(cancel=cancel))
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_a_figure_is_left_with_the_next_thing_put_into_it():
     before, cancel, put = dict(mpl.rcParams), Event(), []
 
@@ -225,16 +212,3 @@ def test_a_figure_is_left_with_the_next_thing_put_into_it():
     assert dict(mpl.rcParams) == before
     whole = draw(3, 2, lambda figure: figure.subplots(), progress=Progress(cancel=Event()))
     assert whole == draw(3, 2, lambda figure: figure.subplots())
-
-
-def test_a_figure_that_waits_for_another_can_be_cancelled(monkeypatch):
-    cancel, drawn = Event(), list[object]()
-    progress = Progress(cancel=cancel)
-    monkeypatch.setattr(progress, "check", _after(3, progress.check, cancel, []))
-
-    def paint_inside(_figure):
-        with pytest.raises(CancelledError):
-            draw(3, 2, drawn.append, progress=progress)
-
-    draw(3, 2, paint_inside)
-    assert drawn == []

@@ -4,14 +4,11 @@ import pickle
 from dataclasses import replace
 
 import numpy as np
-import pandas as pd
 import pytest
 
 from assess.errors import InputError
-from assess.report import write_reports
 from assess.results import find_ideal_class
 from assess.settings import Settings
-from tests.report.routed import assess_routed
 from tests.workbooks import ITEMS, assessed
 
 TABLES = ("items", "cases", "floors", "segments", "routes", "rooms", "problems")
@@ -47,14 +44,6 @@ def test_only_a_class_above_that_of_the_piece_is_called_higher(simulated):
     assert not all(higher)
 
 
-def test_reports_of_results_that_were_pickled_are_the_same(simulated, tmp_path):
-    again = pickle.loads(pickle.dumps(simulated))
-    for name, results in (("a", simulated), ("b", again)):
-        write_reports(results, tmp_path / name, ["json", "csv", "npz"])
-    for file in ("results.json", "items.csv", "outcomes.npz"):
-        assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes(), file
-
-
 def test_series_that_are_gone_are_known_to_be(simulated, tmp_path):
     assert simulated.series.is_there
     name = f"motion/{next(one.index for one in simulated.motions if one.ensemble)}/runs"
@@ -67,12 +56,6 @@ def test_series_that_are_gone_are_known_to_be(simulated, tmp_path):
 
 
 # ---------------------------------------------------------------- rows by name
-
-
-def test_a_row_is_found_by_its_name(simulated):
-    assert simulated["A3"].item.quantity == 3
-    assert simulated["A3"] == list(simulated)[2]
-    assert len(simulated) == len(ITEMS)
 
 
 def test_an_unknown_name_is_an_input_error_with_a_hint(example, simulated):
@@ -94,28 +77,6 @@ def test_tables_have_one_type_a_column_whatever_the_rows(name, example, simulate
         for column in table.columns[table.dtypes == "object"]:
             assert all(isinstance(value, list) for value in table[column]), column
     assert dict(tables[0].dtypes) == dict(tables[1].dtypes)
-
-
-def test_items_have_the_columns_of_items_csv(simulated, tmp_path):
-    written = write_reports(simulated, tmp_path, ["csv"])
-    read = pd.read_csv(written["csv"], encoding="utf-8-sig")
-    items = simulated.items
-    assert list(items.columns) == list(read.columns)
-    for column in ("breadth_cm", "pfa_g", "adopted_probability", "verification_runs", "quantity"):
-        assert items[column].tolist() == pytest.approx(read[column].tolist(), nan_ok=True)
-    assert items["item"].tolist() == read["item"].tolist()
-
-
-def test_tables_of_routes_join_by_name_and_index(tmp_path):
-    results = assess_routed(tmp_path / "w.xlsx")
-    segments, routes, rooms = results.segments, results.routes, results.rooms
-    assert segments["segment"].tolist() == [one.segment for one in results.route_tables.segments]
-    chances = [one.blocked.probability if one.blocked else None for one in results.route_tables.segments]
-    assert [None if pd.isna(value) else value for value in segments["blocked_probability"]] == chances
-    assert set(segments["state"]) <= {"open", "doubtful", "blocked", "not known"}
-    assert routes["segment_indices"].tolist() == [[0, 1, 2], [3], [4]]
-    assert routes["fixes"].tolist()[0] == ["tall"]
-    assert rooms["ways"].tolist() == [["Street"], ["Street"]]
 
 
 # ---------------------------------------------------------------- in a notebook

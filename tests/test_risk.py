@@ -20,11 +20,6 @@ def test_a_limit_belongs_to_the_higher_class():
             classify(outside)
 
 
-def test_classes_rise_and_have_signs_of_their_own():
-    assert [member.word for member in sorted(RiskClass)] == ["low", "medium", "high", "very high"]
-    assert len({member.symbol for member in RiskClass}) == len(RiskClass)
-
-
 # --- intervals ---
 
 

@@ -1,17 +1,14 @@
 """The evacuation routes in results.json: every number is that of the run, and the schema holds."""
 
 import json
-import pickle
 from dataclasses import asdict
 
 import jsonschema
 import pytest
 
 from assess.report.data import SCHEMA, write_json
-from assess.route_results import RouteTables
 from assess.settings import Settings
-from tests.report.routed import DOUBTED, KNOWN, ROUTES, assess_routed
-from tests.workbooks import assessed
+from tests.report.routed import KNOWN, ROUTES, assess_routed
 
 VERIFIED = Settings(verify="all", runs=20, route_risk=0.1)
 
@@ -98,14 +95,6 @@ def test_rows_join_the_other_tables(written):
         assert room.unevaluated_segments == tuple(routes.segments[at].segment for at in room.unevaluated_indices)
 
 
-def test_a_round_trip_changes_nothing_and_is_small(written):
-    routes = written[0].route_tables
-    kept = pickle.dumps(routes)
-    assert pickle.loads(kept) == routes
-    assert pickle.loads(kept).to_record() == routes.to_record()
-    assert len(kept) < 20_000
-
-
 def test_widths_needs_and_what_blocks(written):
     """From the rows of the workbook to what is said of each segment."""
     rows = {one.item: one.row for one in written[0].item_rows}
@@ -149,40 +138,3 @@ def test_a_stair_is_open_and_without_a_clear_width_not_known(written, tmp_path):
     assert [one["unevaluated_segments"] for one in found["rooms"]] == [["flight"], ["flight"]]
     assert [one["uncounted_pieces"] for one in found["floors"]] == [1, 0]
     assert found["uncounted_pieces"] == 1
-
-
-@pytest.mark.slow
-def test_what_depends_on_unconfirmed_pieces_is_not_known(tmp_path):
-    """Neither T1 nor height is known: the simulated class of the bookcase is lower, and is not adopted."""
-    run = assess_routed(tmp_path / "w.xlsx", VERIFIED, **DOUBTED)
-    write_json(run, tmp_path / "r.json")
-    whole = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))
-    jsonschema.validate(whole, _schema())
-    found = whole["routes"]
-    aisle, west = found["segments"][0], found["routes"][0]
-    for one in (aisle, west):
-        assert one["state"] == "not known"
-        assert {"what": "unconfirmed_building", "names": ["tall"], "cells": []} in one["missing"]
-        assert (one["blocked"]["probability"], one["blocked"]["pieces"], one["blocked"]["unconfirmed"]) == (0, 0, 1)
-        assert one["blocked_if_unconfirmed_fall"]["probability"] == 1
-    assert aisle["pieces"][0]["falls_while_blocked"] is None
-    assert "unconfirmed_building" in aisle["pieces"][0]["flags"]
-    assert [one["state"] for one in found["rooms"]] == ["not known", "not known"]
-    assert found["rooms"][0]["loses_if_unconfirmed_fall"]["probability"] == 1
-    assert (found["unknown_routes"], found["unknown_rooms"], found["blocked_routes_expected"]) == (2, 2, 0)
-    assert [one["unknown_segments"] for one in found["floors"]] == [2, 0]
-    assert [one["state"] for one in found["routes"]] == ["not known", "not known", "open"]
-    assert [(fix["item"], fix["left"]) for fix in west["fixes"]] == [("tall", 0)], "it counts as fallen"
-
-
-def test_without_routes_lists_are_empty(tmp_path):
-    run = assessed(tmp_path / "w.xlsx")
-    assert RouteTables(risk=0.03).to_record() == {
-        "risk": 0.03, "blocked_routes_expected": 0.0, "cut_off_rooms_expected": 0.0, "unknown_routes": 0,
-        "unknown_rooms": 0, "draws": 0, "unjoined_rooms": [], "furnished_rooms": 0, "counted_rooms": 0,
-        "uncounted_pieces": 0, "segments": [], "routes": [], "rooms": [], "floors": [],
-    }  # fmt: skip
-    write_json(run, tmp_path / "r.json")
-    found = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))
-    assert found["routes"] == RouteTables(risk=0.03).to_record()
-    assert found["assess"]["settings"]["route_risk"] == 0.03

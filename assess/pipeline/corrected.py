@@ -14,9 +14,10 @@ from assess.i18n import LANGUAGES, load_catalogue, speaking
 from assess.model import Inventory
 from assess.pipeline.live_values import live_values
 from assess.progress import SILENT, Progress
+from assess.workbook.held import list_formulas
 from assess.workbook.names import is_live, plain, say_live, split_header
 from assess.workbook.open import HEADER_ROWS, Book
-from assess.workbook.patch import Value, Values, list_formulas, patch_workbook
+from assess.workbook.patch import Value, Values, patch_workbook
 from assess.workbook.plain_rows import column_letters, split_address
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import ITEMS, LISTS, LIVE

@@ -12,8 +12,9 @@ from assess.pipeline.corrected import find_live_rows, is_lists
 from assess.web.cell_edits import CellPlace
 from assess.web.columns import PageSheet
 from assess.web.snapshot import Snapshot
+from assess.workbook.held import list_formulas
 from assess.workbook.open import UNSAVED, Book
-from assess.workbook.patch import Value, list_formulas, patch_workbook
+from assess.workbook.patch import Value, patch_workbook
 from assess.workbook.plain_rows import column_letters
 from assess.workbook.schema import ITEMS
 

@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 
 from assess.errors import Problem
 from assess.i18n import Text
-from assess.workbook.open import HEADER_ROWS, TRUE, Book, Cells, Percent, SheetCells, read_number
+from assess.workbook.open import HEADER_ROWS, TRUE, UNSAVED, Book, Cells, Percent, SheetCells, read_number
 from assess.workbook.patch import LOCKED, Area, Value, read_back
 from assess.workbook.plain_rows import column_letters, split_range
 
@@ -194,6 +194,16 @@ def hold_cells(book: Book, sheet: str) -> HeldCells:
         hidden_rows=tuple(found.hidden_rows),
         hidden_columns=frozenset(found.hidden_columns),
     )
+
+
+def list_formulas(data: bytes, sheet: str, *, name: str = "workbook.xlsx") -> dict[str, bool]:
+    """Return whether each formula of a sheet has stored a result that is not blank, by its address.
+
+    Raises WorkbookError if the workbook cannot be opened.
+    """
+    with Book(data, name) as book:
+        held = hold_cells(book, sheet)
+    return {held.address(*place): held.value(place) not in (None, UNSAVED) for place in sorted(held.marks.formulas)}
 
 
 class HoldingCells(SheetCells):

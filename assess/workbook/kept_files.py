@@ -4,9 +4,10 @@ Each file is known by where it lies, when it was changed and its size. What read
 with it, and taken again in every reading, so that the limits of a workbook hold as if it were read anew.
 """
 
+from collections import Counter
 from collections.abc import Callable, Hashable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from threading import RLock
 from typing import Any, Self
@@ -32,97 +33,50 @@ MOST_PHOTO_BYTES = 30_000_000
 """Bytes of all photos as reports hold them."""
 
 
-@dataclass(slots=True)
 class Allowance:
     """What has been taken of it by the files read so far, each file once."""
 
-    record_bytes: int = 0
-    samples: int = 0
-    archives: int = 0
-    pixels: int = 0
-    drawings: int = 0
-    drawing_bytes: int = 0
-    photos: int = 0
-    photo_bytes: int = 0
+    def __init__(self) -> None:
+        self.taken: Counter[str] = Counter()
 
-    def copy(self) -> Self:
-        """Return what has been taken so far."""
-        return replace(self)
-
-    def less(self, before: "Allowance") -> "Allowance":
-        """Return what has been taken since a copy was made."""
-        return Allowance(*(getattr(self, one.name) - getattr(before, one.name) for one in fields(self)))
-
-    def add(self, taken: "Allowance") -> None:
-        """Take once more what was taken for a file; CellError where that is more than a workbook may name."""
-        if taken.record_bytes:
-            self.take_record(taken.record_bytes, is_archive=bool(taken.archives))
-            self.take_samples(taken.samples)
-        if taken.pixels:
-            self.take_pixels(taken.pixels)
-        if taken.drawings:
-            self.take_drawing(taken.drawing_bytes)
-        if taken.photos:
-            self.take_photo()
-        if taken.photo_bytes:
-            self.take_photo(taken.photo_bytes)
-
-    def take_record(self, size: int, *, is_archive: bool) -> None:
-        """Count a file of `size` bytes before it is read; CellError where that is more than a workbook may name."""
-        self.record_bytes += size
-        self.archives += is_archive
-        if self.record_bytes > MOST_RECORD_BYTES:
-            raise _fewer_records(
-                fill("the record files of this workbook have more than {most:.0f} MB.", most=MOST_RECORD_BYTES / 1e6)
-            )
-        if self.archives > MOST_ARCHIVES:
-            raise _fewer_records(fill("this workbook names more than {most} zip archives.", most=MOST_ARCHIVES))
-
-    def take_samples(self, count: int) -> None:
-        """Count the samples of a file; CellError where they are too many."""
-        self.samples += count
-        if self.samples > MOST_RECORD_SAMPLES:
-            raise _fewer_records(
-                fill("the record files of this workbook have more than {most:,} samples.", most=MOST_RECORD_SAMPLES)
-            )
-
-    def take_pixels(self, count: int) -> None:
-        """Count the pixels of a picture before it is decoded; CellError where they are too many."""
-        self.pixels += count
-        if self.pixels > MOST_PICTURE_PIXELS:
-            message = fill(
-                "the pictures of this workbook have more than {most:.0f} million pixels.",
-                most=MOST_PICTURE_PIXELS / 1e6,
-            )
-            raise CellError(message, fill("Save them smaller, or name fewer."))
-
-    def take_drawing(self, size: int) -> None:
-        """Count a drawing of `size` bytes before it is read; CellError where they are too many."""
-        self.drawings += 1
-        self.drawing_bytes += size
-        if self.drawings > MOST_DRAWINGS or self.drawing_bytes > MOST_DRAWING_BYTES:
-            message = fill(
-                "this workbook names more than {most} drawings as plans, or drawings of more than {size:.0f} MB.",
-                most=MOST_DRAWINGS,
-                size=MOST_DRAWING_BYTES / 1e6,
-            )
-            raise CellError(message, fill("Save the walls and doors alone, or name fewer."))
-
-    def take_photo(self, size: int = 0) -> None:
-        """Count a photo before it is read, and its `size` in bytes after; CellError where they are too many."""
-        self.photos += not size
-        self.photo_bytes += size
-        if self.photos > MOST_PHOTOS or self.photo_bytes > MOST_PHOTO_BYTES:
-            message = fill(
-                "this workbook names more than {most} photos, or photos of more than {size:.0f} MB when prepared.",
-                most=MOST_PHOTOS,
-                size=MOST_PHOTO_BYTES / 1e6,
-            )
-            raise CellError(message, fill("Name fewer: those of the pieces to fix."))
+    def take(self, **amounts: int) -> None:
+        """Count what is read of files, by the names of `_list_limits`; CellError where it is too much."""
+        self.taken.update(amounts)
+        limits = _list_limits()
+        for name in amounts:
+            most, message, fix = limits[name]
+            if self.taken[name] > most:
+                raise CellError(message, fix)
 
 
-def _fewer_records(message: Text) -> CellError:
-    return CellError(message, fill("Name fewer files, with the channels that are needed, cut to the shaking."))
+def _list_limits() -> dict[str, tuple[int, Text, Text]]:
+    fewer = fill("Name fewer files, with the channels that are needed, cut to the shaking.")
+    drawings = (
+        fill("this workbook names more than {most} drawings as plans, or drawings of more than {size:.0f} MB.",
+             most=MOST_DRAWINGS, size=MOST_DRAWING_BYTES / 1e6),
+        fill("Save the walls and doors alone, or name fewer."),
+    )  # fmt: skip
+    photos = (
+        fill("this workbook names more than {most} photos, or photos of more than {size:.0f} MB when prepared.",
+             most=MOST_PHOTOS, size=MOST_PHOTO_BYTES / 1e6),
+        fill("Name fewer: those of the pieces to fix."),
+    )  # fmt: skip
+    record_bytes = fill("the record files of this workbook have more than {most:.0f} MB.", most=MOST_RECORD_BYTES / 1e6)
+    samples = fill("the record files of this workbook have more than {most:,} samples.", most=MOST_RECORD_SAMPLES)
+    archives = fill("this workbook names more than {most} zip archives.", most=MOST_ARCHIVES)
+    pixels = fill(
+        "the pictures of this workbook have more than {most:.0f} million pixels.", most=MOST_PICTURE_PIXELS / 1e6
+    )
+    return {
+        "record_bytes": (MOST_RECORD_BYTES, record_bytes, fewer),
+        "archives": (MOST_ARCHIVES, archives, fewer),
+        "samples": (MOST_RECORD_SAMPLES, samples, fewer),
+        "pixels": (MOST_PICTURE_PIXELS, pixels, fill("Save them smaller, or name fewer.")),
+        "drawings": (MOST_DRAWINGS, *drawings),
+        "drawing_bytes": (MOST_DRAWING_BYTES, *drawings),
+        "photos": (MOST_PHOTOS, *photos),
+        "photo_bytes": (MOST_PHOTO_BYTES, *photos),
+    }
 
 
 Key = tuple[Hashable, ...]
@@ -136,7 +90,7 @@ class KeptFiles:
     after it, and readings of other threads wait.
     """
 
-    _made: dict[Key, tuple[Any, Allowance]] = field(default_factory=dict)
+    _made: dict[Key, tuple[Any, Counter[str]]] = field(default_factory=dict)
     _asked: set[Key] = field(default_factory=set)
     _lock: RLock = field(default_factory=RLock)
 
@@ -168,11 +122,11 @@ class KeptFiles:
         self._asked.add(key)
         if key in self._made:
             found, taken = self._made[key]
-            allowance.add(taken)
+            allowance.take(**taken)
             return found
-        before = allowance.copy()
+        before = Counter(allowance.taken)
         found = make()
-        self._made[key] = found, allowance.less(before)
+        self._made[key] = found, allowance.taken - before
         return found
 
 

@@ -32,7 +32,6 @@ from assess.workbook.places import (
     CellPlace,
     Edit,
     RowPlace,
-    SheetFormulas,
     SheetPlaces,
     SmallPart,
     add_attribute,
@@ -116,15 +115,6 @@ def patch_workbook(
         parts |= set_recalculation(book)
         parts |= drop_from_chain(book, formulas)
         return Patched(_pack(book, parts), tuple(formulas))
-
-
-def list_formulas(data: bytes, sheet: str, *, name: str = "workbook.xlsx") -> dict[str, bool]:
-    """Return whether each formula of a sheet has stored a result that is not blank, by its address.
-
-    Raises WorkbookError if the workbook cannot be opened.
-    """
-    with Book(data, name) as book:
-        return book.read(SheetFormulas, book.sheets[sheet]).found
 
 
 def find_headers(data: bytes, sheet: str, *, name: str = "workbook.xlsx") -> list[tuple[Area, Text]]:

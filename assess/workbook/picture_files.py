@@ -62,7 +62,7 @@ class PictureReader:
                 yield table.problem("logo", row, _left_out(error.message), error.fix, "warning")
 
     def _take_logo(self, data: bytes) -> None:
-        self._allowance.take_pixels(count_pixels(data))
+        self._allowance.take(pixels=count_pixels(data))
         check_picture(data)
 
     def check_photos(self, tables: Tables) -> Iterator[Problem]:
@@ -80,9 +80,9 @@ class PictureReader:
                 yield table.habit("photo", row, _left_out(useless.message), useless.fix, "warning")
 
     def _take_photo(self, data: bytes) -> bytes:
-        self._allowance.take_photo()
+        self._allowance.take(photos=1)
         photo = prepare_photo(data)
-        self._allowance.take_photo(len(photo))
+        self._allowance.take(photo_bytes=len(photo))
         return photo
 
     def check_plans(self, tables: Tables) -> Iterator[Problem]:
@@ -140,9 +140,9 @@ class PictureReader:
 
     def _take_plan(self, data: bytes, width: float | None) -> Drawing:
         if is_picture(data):
-            self._allowance.take_pixels(count_pixels(data))
+            self._allowance.take(pixels=count_pixels(data))
         else:
-            self._allowance.take_drawing(len(data))
+            self._allowance.take(drawings=1, drawing_bytes=len(data))
         return read_plan(data, width)
 
     def _read(self, text: str, take: Callable[[bytes], Taken], purpose: str, side: int = 0) -> tuple[Path, Taken]:

@@ -13,7 +13,7 @@ from assess.errors import WorkbookError
 from assess.i18n import Text, fill
 from assess.progress import SILENT, Progress
 from assess.workbook.open import Part, damaged, unreadable
-from assess.workbook.plain_rows import column_letters, split_address, split_range
+from assess.workbook.plain_rows import split_address, split_range
 
 _TAG = re.compile(rb"""<[^>"']*(?:(?:"[^"]*"|'[^']*')[^>"']*)*>""")
 _ATTRIBUTE = re.compile(rb"""\s+([^\s=/>]+)\s*=\s*(?:"[^"]*"|'[^']*')""")
@@ -311,37 +311,3 @@ class SheetPlaces(LocatedPart):
             self._sheet_data = one
         elif self.depth == 2 and name == "dimension":
             self.dimension = one
-
-
-class SheetFormulas(Part):
-    """Whether each formula of a sheet has stored a result that is not blank, `found` by its address."""
-
-    limits = None
-
-    def __init__(self, archive: zipfile.ZipFile, path: str, name: str, progress: Progress = SILENT) -> None:
-        super().__init__(archive, path, name, progress)
-        self.found: dict[str, bool] = {}
-        self._row = self._column = 0
-        self._has_formula = self._is_value = self._is_filled = False
-
-    def start(self, tag: str, attributes: dict[str, str]) -> None:
-        """Note a row, a cell, and what is in it."""
-        if tag == "row":
-            self._row, self._column = int(attributes.get("r", self._row + 1)), 0
-        elif tag == "c":
-            place = split_address(attributes.get("r", ""))
-            self._column = place[0] if place else self._column + 1
-            self._has_formula = self._is_filled = False
-        elif tag == "f":
-            self._has_formula = True
-        self._is_value = tag == "v"
-
-    def text(self, data: str) -> None:
-        """Note that a value is not blank."""
-        self._is_filled = self._is_filled or (self._is_value and bool(data))
-
-    def end(self, tag: str) -> None:
-        """Keep the cell that has ended."""
-        self._is_value = False
-        if tag == "c" and self._has_formula:
-            self.found[f"{column_letters(self._column - 1)}{self._row}"] = self._is_filled

@@ -334,9 +334,9 @@ def _parse(
 ) -> tuple[tuple[Record, ...] | CellError, str]:
     try:
         read = data if isinstance(data, bytes) else read_bytes(data)
-        allowance.take_record(len(read), is_archive=is_archive(read))
+        allowance.take(record_bytes=len(read), archives=int(is_archive(read)))
         found = parse_records(read, PurePosixPath(_posix(address)).name, progress=progress)
-        allowance.take_samples(sum(record.acceleration.size for record in found))
+        allowance.take(samples=sum(record.acceleration.size for record in found))
         return found, hashlib.sha256(read).hexdigest()
     except RecordError as error:
         return CellError(fill("the record cannot be read: {why}.", why=error.message)), ""

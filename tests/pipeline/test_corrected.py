@@ -13,7 +13,8 @@ import pytest
 from assess.pipeline.corrected import Corrected, correct_workbook
 from assess.pipeline.live_values import live_values, with_live
 from assess.workbook.example import example_content
-from assess.workbook.patch import list_formulas, patch_workbook
+from assess.workbook.held import list_formulas
+from assess.workbook.patch import patch_workbook
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import LIVE
 from assess.workbook.template import write_workbook

@@ -6,8 +6,6 @@ from typing import Any
 
 from assess.model import Inventory
 from assess.workbook.read import read_inventory
-from assess.workbook.schema import DEFAULT_WIDTH
-from assess.workbook.schema import ROUTES as ROUTES_SHEET
 from tests.workbook.books import FLOORS, Sheet, errors_of, problems_of, remarks, write
 
 TWO_FLOORS: Sheet = [*FLOORS, ["2", 0.5]]
@@ -259,10 +257,6 @@ MORE: list[tuple[list[tuple[str, list[Any]]], dict[str, dict[str, Any]], set[str
 def test_rows_that_are_added_are_told_of_once(tmp_path: Path) -> None:
     for more, changes, expected in MORE:
         assert {f"{one.severity} {one}" for one in sound(tmp_path, *more, **changes).problems} == expected
-
-
-def test_the_default_width_is_what_the_column_says() -> None:
-    assert ROUTES_SHEET.column("required_width").default == f"{DEFAULT_WIDTH} m"
 
 
 def test_no_column_of_clear_width_is_said_once(tmp_path: Path) -> None:

@@ -25,15 +25,6 @@ def read(folder, *rows):
     return read_inventory(write_book(folder / "w.xlsx", sheets))
 
 
-def test_costs_are_read(tmp_path):
-    inventory = read(
-        tmp_path, ["base angle", 40.5, "offer of May"], ["L-bracket to studs", 0, ""], ["ceiling pole", None]
-    )
-    found = [(one.row, one.detail, one.unit_cost, one.source) for one in inventory.costs]
-    assert found == [(2, "base angle", 40.5, "offer of May"), (3, "L-bracket to studs", 0, "")]
-    assert not [one for one in inventory.problems if one.sheet == "Costs"]
-
-
 def test_what_is_wrong_is_an_error_at_its_cell(tmp_path):
     """Numbers that are wrong: test_values."""
     rows = [["base angle", 4], ["Base angle", 5], [None, 4], ["bracket", 4], ["L-bracket to studs", 5]]

@@ -6,19 +6,17 @@ from typing import Any
 import openpyxl
 import pytest
 
-import assess
-from assess.cli.command_new import Use, write_new_workbook
+from assess.cli.command_new import write_new_workbook
 from assess.i18n import load_catalogue, speaking
 from assess.pipeline.live_values import live_values, with_live
-from assess.workbook.catalogue import read_catalogue, read_table
-from assess.workbook.example import ROOM, SCENARIO, example_content, room_content
+from assess.workbook.catalogue import read_catalogue
+from assess.workbook.example import SCENARIO, example_content, room_content
 from assess.workbook.lists import PLACES
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import ITEMS, LIVE, SHEETS, USES
 from assess.workbook.template import write_workbook
 from tests.cli.calling import error, run
 from tests.workbook.test_live import AGREEMENT, by_formualizer, poison
-from tests.workbooks import UNVERIFIED
 
 
 @pytest.fixture(scope="module", params=["si", "imperial"])
@@ -38,30 +36,8 @@ def inventory(path):
     return read_inventory(path)
 
 
-@pytest.fixture(scope="module")
-def results(inventory):
-    return assess.run(inventory, UNVERIFIED)
-
-
 def same(one: Any, other: Any) -> bool:
     return bool(one == other if isinstance(other, str) else one == pytest.approx(other, abs=1e-9, rel=0))
-
-
-def test_it_warns_only_of_pieces_that_stand_nowhere(results):
-    warned = [problem for problem in results.problem_rows if problem.severity != "note"]
-    rows = {item.row: item.item for item in results.item_rows}
-    assert {rows[int(problem.cell[1:])] for problem in warned} == {"1-5", "2-6"}
-    assert all(" neither a position nor a Route" in problem.message for problem in warned)
-
-
-def test_its_routes_lead_down_a_flight_of_stairs(inventory):
-    """And it says that it is an example, and names no file."""
-    assert [(one.segment, one.floor) for one in inventory.routes] == [("aisle", "2"), ("flight", ""), ("hall", "1")]
-    steps = [(one.start, one.end) for one in inventory.routes]
-    assert [end for _, end in steps[:-1]] == [start for start, _ in steps[1:]]
-    assert inventory.building.scenario == SCENARIO == "Example values, not a real building"
-    assert inventory.files == {}
-    assert {item.anchored for item in inventory.items} >= {"no", "yes", "partly", "unknown"}
 
 
 @pytest.mark.parametrize("sheet", SHEETS[:5], ids=lambda sheet: sheet.name)
@@ -75,16 +51,6 @@ def test_imperial_rows_are_the_si_rows_converted(sheet):
             else:
                 factor = {"in": 1 / 2.54, "ft": 1 / 0.3048, "in/s": 1 / 2.54}[sheet.column(name).imperial]
                 assert imperial[name] == pytest.approx(value * factor, abs=0.051)
-
-
-def test_route_items_stand_where_they_say(inventory):
-    y = {place.place: place.y for place in inventory.places}
-    for item in (item for item in inventory.items if item.route):
-        segment = next(one for one in inventory.routes if one.segment == item.segment)
-        assert item.floor == segment.floor
-        assert item.angle_deg == 90, "Breadth lies across the route, which runs along X"
-        edge = y[segment.start] - segment.clear_width / 2 - (item.y + item.breadth / 2)
-        assert item.edge_distance == pytest.approx(edge, abs=0.01)
 
 
 def test_stored_live_values_are_the_programs_and_those_of_a_spreadsheet_engine(path):
@@ -114,18 +80,6 @@ def stored(path):
     places = [PLACES[ITEMS.name, label] for label in LIVE]
     rows = book.worksheets[3].iter_rows(min_row=2, values_only=True)
     return [tuple(row[at] for at in places) for row in rows if row[0]]
-
-
-def test_rooms_are_of_types_of_their_use():
-    assert [use.value for use in Use] == [use.lower() for use in USES]
-    lines = read_table("rooms.csv")
-    for use in USES:
-        own = [line for line in lines if line["use"] == use]
-        assert 3 <= len({line["item"] for line in own}) == len(own) <= 6
-        assert {line["type"] for line in own} <= {row["type"] for row in read_catalogue(use=use)}
-        assert {row["room"] for row in room_content(use).rows["Items"]} == {ROOM}
-    assert {line["use"] for line in lines} == set(USES)
-    assert "delete" in ROOM
 
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")

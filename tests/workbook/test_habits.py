@@ -1,6 +1,5 @@
 """Workbooks as people fill them in: habits that are understood, mistakes that are named once, rows that are no entries."""
 
-import re
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +13,6 @@ from assess.model import Inventory
 from assess.report.content import build_content
 from assess.results import Results
 from assess.workbook.habits import count_kinds, group_problems
-from assess.workbook.parse import list_ranges
 from assess.workbook.read import read_inventory
 from tests.cli.calling import run
 from tests.workbook.books import FLOORS, ITEMS, Sheet, errors_of, read, remarks, write
@@ -96,14 +94,6 @@ def test_a_hospital_typed_with_every_habit_is_read_with_notes_and_no_error(typed
         assert len([one for one in rows if one.group == "breadth: unit"]) == count
 
 
-def test_check_accepts_the_hospital_and_shows_each_habit_in_a_line(typed: Path) -> None:
-    done = run("check", typed)
-    assert done.exit_code == 0, done.stderr
-    assert "no errors. 54 rows of furniture on 3 floors" in done.stdout
-    assert not [line for line in done.stderr.splitlines() if line.startswith("error")]
-    assert len(done.stderr.splitlines()) < 40
-
-
 def test_mistakes_of_one_habit_are_one_message(tmp_path: Path) -> None:
     """Names that differ are different mistakes."""
     rows = [
@@ -138,13 +128,6 @@ def test_problems_that_differ_stay_apart() -> None:
     assert shown[0].message == "Height is odd. The same in 2 cells (H2, H9)."
     assert count_kinds([*alike, *others]) == (5, 6)
     assert group_problems([]) == []
-
-
-def test_statements_on_different_floors_stay_apart(tmp_path: Path) -> None:
-    """They share a column and a kind of message, yet each counts pieces of its own."""
-    problems = read_inventory(Path(__file__).parents[2] / "inventories" / "market-street.xlsx").problems
-    shown = [one.cell for one in group_problems(problems) if "have neither a position nor a Route" in one.message]
-    assert shown == ["N34", "N68", "N100"]
 
 
 def read_merged(folder: Path, merged: str, items: Sheet, floors: Sheet = FLOORS, sheet: str = "Items") -> Inventory:
@@ -196,13 +179,6 @@ def test_hidden_columns_and_sheets_are_noted(tmp_path: Path) -> None:
         "Items!E1: the hidden column Friction is read as well.", "Floors!A2: hidden row 2 is read as well.",
         "Places: the sheet is hidden; it is read as well.",
     }  # fmt: skip
-
-
-def test_numbers_of_rows_are_told_as_ranges() -> None:
-    assert list_ranges([12, 15, 16]) == "12, 15 to 16"
-    assert list_ranges([3]) == "3"
-    assert list_ranges([1, 2, 3, 5, 6, 9]) == "1 to 3, 5 to 6, 9"
-    assert re.fullmatch(r"(\d+, ){10}\.\.\.", list_ranges(range(1, 100, 2)))
 
 
 TYPES: Sheet = [["Type", "Height [cm]"], ["Locker", 180]]

@@ -14,10 +14,7 @@ from assess.workbook.schema import CLASS, LISTS, SHEETS, Sheet
 from assess.workbook.template import (
     CHECKED,
     ROWS,
-    count_heading_lines,
-    count_text_lines,
     describe,
-    fit_width,
     write_workbook,
 )
 from tests.workbook.books import read_part
@@ -110,14 +107,6 @@ def _width(page: Any, at: int) -> float:
     """Return the width of a column; openpyxl gives neighbours of the same width as one."""
     found = (one for one in page.column_dimensions.values() if one.min <= at <= one.max)
     return float(next(found).width)
-
-
-def test_lines_of_a_heading() -> None:
-    assert fit_width("Kaneko-Hayashi", 10) > LETTER * 14
-    assert fit_width("B/H", 10) == 10
-    assert [count_heading_lines(text, 12) for text in ("Item", "Edge distance [m]")] == [1, 3]
-    assert count_heading_lines("Height [cm]", 14) == 2, "the button of the filter would cover its unit"
-    assert [count_text_lines(text, 20) for text in ("", "a b", "twenty letters or so, and more")] == [1, 1, 2]
 
 
 def test_who_fills_in_more_rows_than_prepared_learns_what_to_do(path: Path, pages: list[Any]) -> None:

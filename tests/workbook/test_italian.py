@@ -11,15 +11,12 @@ import openpyxl
 import pytest
 
 from assess.cli.command_new import write_new_workbook
-from assess.errors import WorkbookError
-from assess.i18n import LANGUAGES, find_language, gettext, load_catalogue, speaking
+from assess.i18n import LANGUAGES, gettext, load_catalogue, speaking
 from assess.model import Inventory
-from assess.workbook.lists import LETTERS, list_columns
-from assess.workbook.names import fold, plain, say_choices, say_live, translate
+from assess.workbook.names import plain, say_choices, say_live, translate
 from assess.workbook.read import read_inventory
-from assess.workbook.schema import CLASS, LISTS, LIVE, SHEETS, WORKINGS
+from assess.workbook.schema import LISTS, LIVE, SHEETS, WORKINGS
 from assess.workbook.template import describe
-from tests.cli.calling import run
 from tests.motion.writers import zipped
 from tests.workbook.books import Sheet as Rows
 from tests.workbook.books import errors_of, problems_of, remarks, write_book
@@ -70,11 +67,6 @@ def test_labels_can_be_told_apart_and_fit_the_spreadsheet() -> None:
     assert not live & {plain(column.label) for column in items.columns}
 
 
-def test_every_language_can_be_chosen_for_the_report() -> None:
-    choices = SHEETS[0].column("language").choices
-    assert tuple(find_language(choice) for choice in choices) == LANGUAGES
-
-
 @pytest.mark.slow
 def test_the_example_says_the_same_in_both_languages(tmp_path: Path) -> None:
     english, italian = (read_inventory(example(tmp_path, language)) for language in LANGUAGES)
@@ -95,33 +87,9 @@ def test_the_example_says_the_same_in_both_languages(tmp_path: Path) -> None:
     assert italian.items[0].description == "Vetrina accanto alla via di uscita"
 
 
-def test_the_command_line_names_the_language(tmp_path: Path) -> None:
-    path = tmp_path / "nuovo.xlsx"
-    assert run("new", str(path), "--language", "Italiano").exit_code == 0
-    assert {problem.sheet for problem in problems_of(path)} <= {"Piani", "Arredi"}
-
-
 @pytest.fixture(scope="module")
 def book(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return openpyxl.load_workbook(example(tmp_path_factory.mktemp("it"), "it"))
-
-
-def test_everything_shown_is_italian(book: Any) -> None:
-    assert book.sheetnames == ["Guida", *(sheet.name for sheet in ITALIAN), "Elenchi"]
-    with speaking(load_catalogue("it")):
-        live = {label: say_live(label) for label in (*LIVE, *WORKINGS)}
-    for sheet, english_sheet in zip(ITALIAN, SHEETS, strict=True):
-        page, wanted = book[sheet.name], [column.header() for column in sheet.columns]
-        if sheet.layout == "form":
-            assert [cell.value for cell in page["A"]] == wanted
-        else:
-            headers = {column.name: header for column, header in zip(sheet.columns, wanted, strict=True)} | live
-            assert [cell.value for cell in page[1]] == [headers[name] for name in list_columns(english_sheet)]
-    english = {fold(one.label) for one in COLUMNS} - {fold(one.label) for sheet in ITALIAN for one in sheet.columns}
-    texts = {fold(str(cell.value)).split("[")[0] for page in book for row in page.iter_rows() for cell in row}
-    assert not texts & english
-    formula = book["Arredi"][f"{LETTERS['Items', CLASS]}2"].value
-    assert all(f'"{word}"' in formula for word in ("○ basso", "◇ medio", "▲ alto", "■ molto alto"))
 
 
 def test_a_workbook_typed_by_hand(tmp_path: Path) -> None:
@@ -243,18 +211,6 @@ def test_what_is_wrong_with_a_record_is_said_in_italian(tmp_path: Path) -> None:
             assert gettext(problem.message) == f"la registrazione non può essere letta: {name}: {why}."
 
 
-def test_what_the_scenario_lacks_is_told_of_the_workbooks_own_sheet(tmp_path: Path) -> None:
-    import assess
-
-    inventory = read(tmp_path, Edificio=[["Tipo di scenario", "NTC 2018"]])
-    with pytest.raises(WorkbookError) as caught:
-        assess.run(inventory, assess.Settings(verify="none"))
-    assert {problem.sheet for problem in caught.value.problems} == {"Edificio", "Piani"}
-    ground = [["SDS [g]", 0.3], ["Ground PGA [g]", 0.4]]  # of which floors follow one; Ground PGV has no line
-    notes = assess.run(read(tmp_path, Edificio=ground), assess.Settings(verify="none")).problem_rows
-    assert {problem.place for problem in notes} == {"Edificio!B1", "Edificio", "Piani!A2"}
-
-
 def test_did_you_mean_in_both_languages(tmp_path: Path) -> None:
     """And headers that are no slip."""
     slips = {
@@ -272,29 +228,6 @@ def test_did_you_mean_in_both_languages(tmp_path: Path) -> None:
     english: Rows = [["Item", "Floor", "Breadth [cm]", "Height [cm]", "Ancoratto"], ["A1", "1", 40, 180, "no"]]
     path = write_book(tmp_path / "book.xlsx", {"Items": english, "Floors": FLOORS})
     assert errors_of(path) == {"Items!E1: the column 'Ancoratto' is not known. Did you mean Ancorato?"}
-
-
-@pytest.mark.parametrize(
-    ("sheets", "errors"),
-    [
-        ({"Piani": FLOORS},
-         {"Arredi: the sheet is missing. Add it, or start from a workbook made with `assess new`."}),
-        ({"Piani": FLOORS, "Arrredi": ITEMS, "Luogi": [["Luogo"]]},
-         {"Arrredi: there is no sheet named Arredi. Did you mean Arredi? Rename it.",
-          "Luogi: there is no sheet named Luoghi. Did you mean Luoghi? Rename it."}),
-        ({"Floors": FLOORS, "Items": ITEMS, "Arredi": ITEMS},
-         {"Items: the sheets Items and Arredi are the same in two languages. Delete all but one, or rename them."}),
-        ({"Piani": FLOORS, "Arredi": [[*ITEMS[0], "Height [mm]"], [*ITEMS[1], 1800]]},
-         {"Arredi!E1: duplicate column Height, also in D1. Delete one of them."}),
-        ({"Piani": FLOORS, "Arredi": [["Elemento", *ITEMS[0][2:]], ["A1", 40, 180]]},
-         {"Arredi!A1: the column Piano is missing. Add it to the header row."}),
-    ],
-    ids=["missing", "nearly there", "twice", "a column twice", "a column missing"],
-)  # fmt: skip
-def test_sheets_and_columns_that_are_missing_or_twice(
-    tmp_path: Path, sheets: dict[str, Rows], errors: set[str]
-) -> None:
-    assert errors_of(write_book(tmp_path / "book.xlsx", sheets)) == errors
 
 
 @pytest.mark.slow

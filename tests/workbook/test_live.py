@@ -16,10 +16,9 @@ from openpyxl.formula.translate import Translator
 
 from assess.errors import WorkbookError
 from assess.i18n import gettext, load_catalogue, speaking
-from assess.pipeline.live_values import live_values, without_shaking
+from assess.pipeline.live_values import live_values
 from assess.units import QUANTITIES
 from assess.workbook.catalogue import read_catalogue
-from assess.workbook.formulas import LIVE_METHODS
 from assess.workbook.lists import LETTERS, PLACES
 from assess.workbook.names import say_live
 from assess.workbook.read import read_inventory
@@ -205,37 +204,6 @@ def test_live_columns_follow_the_headers(tmp_path: Path, units: str) -> None:
     check(retype(path, RETYPED[units]))
 
 
-GROUND = {"period": 2.5, "ground_pga": 0.14, "ground_pgv": 28.0}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("header", "value"), [("Ground PGV [in/s]", 28 / 2.54), ("Ground PGV [m/s]", 0.28)])
-def test_the_ground_follows_the_unit_of_its_line(tmp_path: Path, header: str, value: float) -> None:
-    path = fill(tmp_path / "book.xlsx", GRID, FLOORS, GROUND)
-    plain = by_formualizer(poison(path))
-    retype_ground_velocity(path, header, value)
-    check(path)
-    assert by_formualizer(path)[2] == pytest.approx(plain[2])
-
-
-def retype_ground_velocity(path: Path, header: str, value: float) -> None:
-    book = openpyxl.load_workbook(path)
-    (row,) = [row for row in book["Building"].iter_rows() if str(row[0].value).startswith("Ground PGV")]
-    row[0].value, row[1].value = header, value
-    book.save(path)
-
-
-@pytest.mark.parametrize(("pga", "shown"), [(0.14, "unit?"), (None, 0.3)])
-def test_a_ground_velocity_with_an_unreadable_unit_shows_no_class_where_it_counts(
-    tmp_path: Path, pga: float | None, shown: Any
-) -> None:
-    """Without Ground PGA the ratio of both does not depend on it. The program refuses the unit."""
-    floors, item = [{"floor": "1", "pfa_x": 0.3}], {"item": "A1", "floor": "1", "breadth": 40, "height": 180}
-    path = fill(tmp_path / "book.xlsx", [item], floors, GROUND | {"ground_pga": pga})
-    retype_ground_velocity(path, "Ground PGV [knots]", 28.0)
-    assert by_formualizer(poison(path))[2][1] == shown
-
-
 def test_a_stored_result_is_not_taken_for_a_computed_one(tmp_path: Path) -> None:
     """The poison is there: without it, and without a recalculation, the tests above would compare nothing."""
     path = poison(fill(tmp_path / "book.xlsx", GRID[:1], FLOORS, {}))
@@ -276,15 +244,6 @@ def test_words_of_an_italian_workbook(tmp_path: Path) -> None:
         for shown, (item, wanted) in zip(found, rows, strict=True):
             assert shown[1] == wanted, (building, item)
             assert isinstance(wanted, float) or set(shown[1:]) == {wanted}
-
-
-def test_an_unreadable_unit_of_an_italian_workbook(tmp_path: Path) -> None:
-    with speaking(load_catalogue("it")):
-        path = fill(tmp_path / "book.xlsx", GRID[:1], FLOORS, {})
-        book = openpyxl.load_workbook(path)
-        book["Arredi"][f"{LETTERS['Items', 'height']}1"] = "Altezza"
-        book.save(path)
-        assert by_formualizer(poison(path))[2][2:] == ["unità?"] * 6
 
 
 # ---------------------------------------------------------------- words in place of numbers
@@ -364,15 +323,6 @@ KINDS = [("given", 0.5), ("recorded", "run assess"), ("as filled", "run assess")
 def test_scenario_kind(tmp_path: Path, kind: str, pfa: Any) -> None:
     floors = [{"floor": "1", "pfa_x": 0.5, "record_x": "roof.csv"}]
     assert shown_of(tmp_path, {}, floors, scenario_kind=kind)[1] == pfa
-
-
-def test_recorded_floors_without_a_record_show_no_class(tmp_path: Path) -> None:
-    """They may be interpolated, which is the program's task."""
-    assert shown_of(tmp_path, {}, scenario_kind="recorded")[1:] == ["shaking?"] * 7
-    floors: Rows = [{"floor": "1", "pfa_x": 0.5, "elevation": 4}, *({"floor": f"r{z}", "elevation": z} for z in (0, 8))]
-    between = [floors[0], *({**floor, "record_x": "roof.csv"} for floor in floors[1:])]
-    (tmp_path / "between").mkdir()
-    assert shown_of(tmp_path / "between", {}, between, scenario_kind="recorded")[1:] == ["run assess"] * 7
 
 
 UNSERVED: list[tuple[dict[str, Any], dict[str, Any], str | None]] = [
@@ -455,26 +405,6 @@ def shows_a_run(folder: Path, elevations: Sequence[Any], z: float | None, kind: 
     return bool(word == "run assess")
 
 
-def test_a_row_without_a_name_serves_no_floor(tmp_path: Path) -> None:
-    """Rows without a name are no floors, whatever else they hold; nor is a blank name theirs."""
-    floors = [{"floor": "1", "elevation": 4}, {"pfa_x": 0.3, "elevation": 0}, {"pfa_x": 0.3, "elevation": 8}]
-    named, blank = shown_rows(tmp_path, [{}, {"floor": None}], floors)
-    assert (named[1:], blank[1:]) == (["shaking?"] * 7, ["floor?"] * 7)
-
-
-@pytest.mark.parametrize("kind", ["ASCE 7-22", "ASCE 7-16", "EN 1998-1", "NTC 2018"])
-def test_a_profile_serves_floors_with_a_pfa_too(tmp_path: Path, kind: str) -> None:
-    floors = [{"floor": "1", "pfa_x": 0.5, "elevation": 3}]
-    items: Rows = [{}, {"axis": "X"}, {"axis": "Y"}]
-    shown = shown_rows(tmp_path, items, floors, scenario_kind=kind, ground_pga=0.2)
-    assert [row[1:] for row in shown] == [["run assess"] * 7] * 3
-
-
-def test_floors_beside_one_with_nothing_of_its_own_keep_theirs(tmp_path: Path) -> None:
-    floors = [{"floor": "0", "elevation": 0}, {"floor": "1", "pfa_x": 0.5, "elevation": 4}]
-    assert shown_of(tmp_path, {}, floors, ground_pga=0.2)[1] == 0.5
-
-
 ROCKING: dict[Any, list[tuple[dict[str, Any], str]]] = {
     None: [({"breadth": 19}, "yes"), ({"breadth": 20}, "no"), ({"centre_of_gravity": "top"}, "check")],
     0: [
@@ -505,44 +435,21 @@ def test_whether_a_piece_can_rock(tmp_path: Path, uncertainty: Any) -> None:
     assert {row[-2] for row in shown if row[-1] == "no"} <= {"○ low"}
 
 
-def test_an_unreadable_unit_of_the_centre_of_gravity(tmp_path: Path) -> None:
-    path = fill(tmp_path / "book.xlsx", [GRID[0] | {"centre_of_gravity": 60}], FLOORS, {})
-    book = openpyxl.load_workbook(path)
-    places = {str(cell.value).split(" [")[0]: cell for cell in book["Items"][1]}
-    places["Centre of gravity"].value = "Centre of gravity"
-    book.save(path)
-    assert by_formualizer(poison(path))[2][7] == "unit?"
+UNREADABLE = {
+    ("Items", "breadth"): "Breadth [kg]", ("Items", "height"): "Height", ("Floors", "pfa_x"): "PFA X [m/s3]",
+    ("Floors", "pfv_x"): "PFV X [knots]", ("Items", "centre_of_gravity"): "Centre of gravity",
+    ("Catalogue", "height"): "Height (cm)",
+}  # fmt: skip
+"""Headers, by their columns."""
 
 
-UNREADABLE = [
-    ("Items", "breadth", "Breadth [kg]"), ("Items", "height", "Height"), ("Catalogue", "height", "Height (cm)"),
-    ("Floors", "pfa_x", "PFA X [m/s3]"),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("sheet", "name", "header"), UNREADABLE)
-def test_unreadable_units(tmp_path: Path, sheet: str, name: str, header: str) -> None:
-    path = fill(tmp_path / "book.xlsx", GRID[:1], FLOORS, {})
-    book = openpyxl.load_workbook(path)
-    book[sheet][f"{LETTERS[sheet, name]}1"] = header
-    book.save(path)
-    ratio, pfa, *rest = by_formualizer(poison(path))[2]
-    assert "unit?" in (ratio, pfa)
-    assert rest == ["unit?"] * 6
-
-
-def test_a_pfv_with_an_unreadable_unit_shows_no_class(tmp_path: Path) -> None:
-    path = fill(tmp_path / "book.xlsx", [{"item": "A1", "floor": "both", "breadth": 40, "height": 180}], FLOORS, {})
-    book = openpyxl.load_workbook(path)
-    book["Floors"]["F1"] = "PFV X [knots]"
-    book.save(path)
-    assert by_formualizer(poison(path))[2][1:] == ["unit?"] * 7
-
-
-def test_sorting_floors_and_inserting_rows_moves_no_reference(tmp_path: Path) -> None:
-    """The floors' helper rows find their row by number, not by a reference that sorting would drag along."""
-    path = fill(tmp_path / "book.xlsx", GRID, list(reversed(FLOORS)), {})
-    check(path)
+def test_unreadable_units(tmp_path: Path) -> None:
+    for (sheet, name), header in UNREADABLE.items():
+        path = fill(tmp_path / "book.xlsx", [GRID[0] | {"floor": "both", "centre_of_gravity": 60}], FLOORS, {})
+        book = openpyxl.load_workbook(path)
+        book[sheet][f"{LETTERS[sheet, name]}1"] = header
+        book.save(path)
+        assert by_formualizer(poison(path))[2][7] == "unit?", header
 
 
 # ---------------------------------------------------------------- names and choices as people type them
@@ -608,26 +515,6 @@ def test_an_anchored_piece_has_no_class(tmp_path: Path) -> None:
         assert all(isinstance(one, float) for one in numbers)
 
 
-@pytest.mark.parametrize("anchored", ["no", "yes", "partly", "unknown"])
-def test_the_class_of_what_is_anchored_equals_the_program(tmp_path: Path, anchored: str) -> None:
-    floors = [{"floor": "1", "pfa_x": 0.5}]
-    row = {"item": "A1", "floor": "1", "breadth": 40, "height": 180, "anchored": anchored}
-    check(fill(tmp_path / "book.xlsx", [row], floors, {}))
-    with speaking(load_catalogue("it")):
-        check(fill(tmp_path / "libro.xlsx", [row], floors, {}))
-
-
-def test_an_anchored_piece_of_an_unknown_floor_still_says_so(tmp_path: Path) -> None:
-    assert shown_of(tmp_path, {"anchored": "yes", "floor": "9"})[5] == "floor?"
-    assert shown_of(tmp_path, {"anchored": "yes"}, [{"floor": "1", "record_x": "roof.csv"}])[1:] == [
-        *["run assess"] * 4, *["anchored"] * 2, "run assess",
-    ]  # fmt: skip
-    (tmp_path / "none").mkdir()
-    assert shown_of(tmp_path / "none", {"anchored": "yes"}, [{"floor": "1"}])[1:] == [
-        *["shaking?"] * 4, *["anchored"] * 2, "shaking?",
-    ]  # fmt: skip
-
-
 BRACKETS: Rows = [
     {"anchored": word, "bracket_capacity": capacity, "bracket_height": height}
     for word in ("yes", "Sì", "partly", "no", "unknown")
@@ -653,16 +540,6 @@ def test_a_typed_capacity_leaves_it_to_the_program(tmp_path: Path, language: str
             is_left = one["anchored"] in ("yes", "Sì") and isinstance(one["bracket_capacity"], float | int)
             assert (label == run) == (by_paper == run) == is_left, one
             assert all(isinstance(number, float) for number in numbers), "its chance as a free-standing piece"
-
-
-def test_a_typed_capacity_is_left_to_the_program_without_shaking(tmp_path: Path) -> None:
-    held = {"anchored": "yes", "bracket_capacity": 2.0}
-    assert shown_of(tmp_path, held, [{"floor": "1"}])[1:] == [
-        *["shaking?"] * 4, *["run assess"] * 2, "shaking?",
-    ]  # fmt: skip
-    unshaken = without_shaking(Content({"Items": [{"item": "A1", "floor": "1", "breadth": 40, "height": 180, **held}],
-                                        "Floors": [{"floor": "1"}], "Building": [{}]}))  # fmt: skip
-    assert [row[5] for row in unshaken.live or ()] == ["run assess"]
 
 
 # ---------------------------------------------------------------- what is no number, or no sensible one
@@ -724,28 +601,11 @@ def test_a_breadth_up_to_the_width_shows_its_class(tmp_path: Path) -> None:
     assert [shown[row][0] for row in range(2, 7)] == pytest.approx([40 / 180] * 5)
 
 
-def test_whether_it_can_rock_rests_on_numbers_alone(tmp_path: Path) -> None:
-    catalogue: Rows = [{"type": "light", "centre_of_gravity": 1}, {"type": "text", "centre_of_gravity": "40 %"}]
-    items: Rows = [{}, {"centre_of_gravity": 0.6}, {"centre_of_gravity": "60"}, {"type": "light"}, {"type": "text"}]
-    good, *others = shown_rows(tmp_path, [{"breadth": 150, **item} for item in items], catalogue=catalogue)
-    assert good[7] in ("yes", "no")
-    assert [row[7] for row in others] == ["check"] * 4
-    for uncertainty in ("0,4", -1):
-        assert shown_of(tmp_path, {"breadth": 150}, motion_uncertainty=uncertainty)[7] == "check"
-
-
 def test_blank_looking_cells_are_blank(tmp_path: Path) -> None:
     """Cells that were emptied with the space bar."""
     row = {"breadth": " ", "height": "  ", "angle_deg": " ", "axis": " ", "type": "plain", "centre_of_gravity": " "}
     shown = shown_of(tmp_path, row, catalogue=[{"type": "plain", "breadth": 30, "height": 150}])
     assert shown[:2] == pytest.approx([0.2, 0.5])
-
-
-def test_a_pfv_that_the_program_refuses_shows_no_class(tmp_path: Path) -> None:
-    floors = [{"floor": str(at), "pfa_x": 0.5, "pfv_x": pfv} for at, pfv in enumerate((20, "1,5", 0, -20, 2000))]
-    good, *others = shown_rows(tmp_path, [{"floor": str(at)} for at in range(5)], floors)
-    assert good[1] == 0.5
-    assert [row[1:] for row in others] == [["check"] * 7] * 4
 
 
 # ---------------------------------------------------------------- more rows than prepared
@@ -780,14 +640,3 @@ def test_a_piece_that_the_slower_motion_alone_can_start_is_not_called_low(tmp_pa
     check(path)
     shown = by_formualizer(path)
     assert [shown[row][5] for row in range(2, 7)] == ["◇ medium", "○ low", "◇ medium", "○ low", "◇ medium"]
-
-
-def test_every_live_method_has_its_column() -> None:
-    assert (
-        "B/H",
-        "PFA used [g]",
-        *(method.short_title for method in LIVE_METHODS),
-        "Class (formula)",
-        "Class (OR)",
-        "Can rock",
-    ) == LIVE

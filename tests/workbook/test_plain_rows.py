@@ -7,11 +7,9 @@ from typing import Any
 import pytest
 
 from assess.errors import WorkbookError
-from assess.pipeline.live_values import fill_content
 from assess.workbook.open import UNSAVED, Book, read_file
 from assess.workbook.plain_rows import RowCutter
 from assess.workbook.read import hold_sheets
-from assess.workbook.template import Content, write_workbook
 from tests.conftest import EXAMPLE
 from tests.workbook.books import change_parts, read_part, write
 from tests.workbook.raw import MAIN, SHEET
@@ -77,14 +75,6 @@ def test_prepared_rows_are_not_parsed(monkeypatch: pytest.MonkeyPatch, tmp_path:
     monkeypatch.setattr(RowCutter, "_take", note)
     look(change_parts(write(tmp_path), {SHEET: body(prepared(*FEW))}).read_bytes())
     assert cut == [str(n) for n in FEW] * 2  # once for each way to read
-
-
-@pytest.mark.slow
-def test_a_new_workbook_with_all_its_prepared_rows(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    path = tmp_path / "new.xlsx"
-    for content in (Content(), fill_content("imperial", "Hospital", is_example=True)):
-        write_workbook(path, content)
-        assert look(path.read_bytes()) == parse_alone(monkeypatch, path.read_bytes())
 
 
 def test_the_worked_example(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,14 +9,13 @@ import pandas as pd
 import pytest
 
 from assess.errors import CancelledError, InputError, WorkbookError
-from assess.i18n import gettext, load_catalogue, speaking
 from assess.model import Inventory
 from assess.progress import Progress, Report
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.example import example_content
 from assess.workbook.read import read_inventory
 from assess.workbook.template import write_workbook
-from tests.workbook.books import FLOORS, ITEMS, Sheet, problems_of, write, write_book
+from tests.workbook.books import FLOORS, ITEMS, Sheet, problems_of, write
 from tests.workbook.test_records import floors_with, write_record
 
 CODE: dict[str, Any] = {
@@ -56,18 +55,6 @@ def test_records_are_handed_over_as_bytes_or_lie_in_another_folder(tmp_path: Pat
     assert read_inventory(path, records=tmp_path / "records").floors[0].records["X"]
     with pytest.raises(WorkbookError, match=r"Floors!B2: the file .* is not among the records that were passed"):
         read_inventory(data)
-
-
-def test_rows_in_code_are_read_as_a_workbooks() -> None:
-    inventory = read_inventory(CODE)
-    assert [(one.row, one.item, one.floor, one.breadth, one.height) for one in inventory.items] == [
-        (1, "A1", "1", 0.4, 1.8),
-        (2, "A2", "1", 0.3, 1.5),
-    ]
-    assert inventory.building.building == "Town hall"
-    assert [inventory.friction_of(one) for one in inventory.items] == [0.4, 0.4]
-    assert (len(inventory.sha256), inventory.data, inventory.problems) == (64, None, ())
-    assert read_inventory({**CODE, "Building": {}}).sha256 != inventory.sha256
 
 
 def test_tables_of_pandas_are_rows_in_code() -> None:
@@ -183,17 +170,3 @@ def test_reading_reports_and_obeys_a_cancel(tmp_path: Path) -> None:
 
     with pytest.raises(CancelledError):
         read_inventory(path, progress=Progress(stop, cancel))
-
-
-def test_errors_can_be_said_in_italian(tmp_path: Path) -> None:
-    floors: Sheet = [["Piano", "PFA X [g]"], ["1", 0.5]]
-    items: Sheet = [["Elemento", "Piano", "Profondità [cm]", "Altezza [cm]"], ["A1", "9", 40, 1.8]]
-    with pytest.raises(WorkbookError) as caught:
-        read_inventory(write_book(tmp_path / "cartella.xlsx", {"Piani": floors, "Arredi": items}))
-    assert caught.value.language == "it"
-    with speaking(load_catalogue("it")):
-        said = [f"{gettext(one.message)} {gettext(one.fix)}" for one in caught.value.problems]
-    assert said == [
-        "Altezza è 1,8 cm, atteso da 5 a 600 cm. Si intendeva 1,8 m = 180 cm?",
-        "Piano '9' non è nel foglio Piani. Scegliere una voce del foglio Piani, oppure aggiungerla lì.",
-    ]

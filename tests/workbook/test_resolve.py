@@ -5,10 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from assess import model
 from assess.model import axis_of
 from assess.units import GRAVITY
-from assess.workbook.schema import SHEETS
 from tests.workbook.books import ITEMS, Sheet, errors_of, read, read_item, remarks, write
 
 TYPES: Sheet = [["Type", "Breadth [in]", "Width [in]", "Height [in]", "Source"], ["Locker", 12, 24, 72, "catalogue"]]
@@ -20,20 +18,6 @@ def test_blank_sizes_come_from_the_catalogue(tmp_path: Path) -> None:
         "Locker", 12 * 0.0254, 24 * 0.0254, 2.0,
     )  # fmt: skip
     assert found.assumed == ("breadth", "width", "quantity", "anchored")
-
-
-def test_no_assumption_where_all_is_given(tmp_path: Path) -> None:
-    header = ["Type", "Breadth [cm]", "Width [cm]", "Height [cm]", "Quantity", "Anchored", "Friction", "Axis"]
-    found = read_item(tmp_path, header, ["Locker", 40, 60, 200, 2, "no", 0.4, "X"], Catalogue=TYPES)
-    assert (found.assumed, found.friction, found.quantity) == ((), 0.4, 2)
-
-
-def test_a_type_without_that_size(tmp_path: Path) -> None:
-    path = write(tmp_path, [["Item", "Floor", "Type"], ["A1", "1", "Shelf"]],
-                 Catalogue=[["Type", "Breadth [cm]"], ["Shelf", 30]])  # fmt: skip
-    assert errors_of(path) == {
-        "Items!A1: the column Height [cm] is missing, and row 2 has no Type that gives it. Add the column, or give those rows such a Type."
-    }
 
 
 def test_breadth_is_the_shorter_side_with_the_catalogue_too(tmp_path: Path) -> None:
@@ -73,18 +57,6 @@ def test_the_centre_of_gravity_is_the_rows_own_else_the_types_else_at_mid_height
     assert [one.centre_of_gravity for one in inventory.catalogue] == [0.6, None]
     assert inventory.frame()["centre_of_gravity"].tolist() == pytest.approx([0.45, 0.6, 0.5], abs=1e-15)
     assert all(one.more == {} for one in inventory.items)
-
-
-def test_a_centre_of_gravity_needs_its_unit(tmp_path: Path) -> None:
-    known = "the column '{}' is not known. Did you mean Centre of gravity [%]?"
-    for header, message in {
-        "Centre of gravity": "Centre of gravity has no unit. Write the unit that the numbers are in",
-        "Centre of gravity [cm]": "the unit 'cm' of Centre of gravity is not known. Write the unit that the numbers",
-        "Centre of gravity %": known,
-        "Center of gravity [%]": known,
-    }.items():
-        (error,) = errors_of(write(tmp_path, [[*ITEMS[0], header], [*ITEMS[1], 45]]))
-        assert error.startswith(f"Items!E1: {message.format(header)}")
 
 
 ANGLES = [
@@ -171,14 +143,6 @@ def test_places_and_routes(tmp_path: Path) -> None:
     assert inventory.items[0].route == "R1"
     assert inventory.items[0].segment == "a", "spelt as in Routes"
     assert remarks(inventory, "note") == set()
-
-
-def test_every_field_of_the_model_has_a_column() -> None:
-    kinds = {"Building": model.Building, "Items": model.Item, "Places": model.Place, "Routes": model.Segment,
-             "Catalogue": model.CatalogueType, "Costs": model.Cost}  # fmt: skip
-    for sheet in (one for one in SHEETS if one.name != "Floors"):
-        own = {one.name for one in dataclasses.fields(kinds[sheet.name])} - {"row", "assumed", "extra", "more", "cells"}
-        assert {column.name for column in sheet.columns} - {"photo", "source_id"} == own
 
 
 def test_weights_and_brackets_are_read_in_any_unit(tmp_path: Path) -> None:

@@ -7,14 +7,11 @@ from typing import Any
 import openpyxl
 import pytest
 
-from assess.i18n import LANGUAGES, gettext, load_catalogue, speaking
 from assess.workbook.catalogue import read_catalogue
-from assess.workbook.lists import LETTERS, NO_SHAKING, NO_UNIT, RUN_ASSESS, WRONG, list_columns
-from assess.workbook.live_row import NO_AXIS, NO_FLOOR
-from assess.workbook.names import say_live
+from assess.workbook.lists import LETTERS
 from assess.workbook.read import read_inventory
-from assess.workbook.schema import CATALOGUE, CLASS, ITEMS, LIVE, SHEETS, WORKINGS
-from assess.workbook.template import CHECKED, ROWS, Content, Units, describe, write_workbook
+from assess.workbook.schema import ITEMS, LIVE, SHEETS, WORKINGS
+from assess.workbook.template import ROWS, Content, Units, write_workbook
 from tests.workbook.books import problems_of, read_part
 
 UNITS: tuple[Units, Units] = ("si", "imperial")
@@ -22,9 +19,6 @@ TABLES = [sheet for sheet in SHEETS if sheet.layout == "table"]
 NAMES = [sheet.name for sheet in SHEETS]
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
-
-HINTS = (NO_SHAKING, RUN_ASSESS, WRONG, NO_FLOOR, NO_AXIS, NO_UNIT)
-"""Words in place of a class; those in the comment of its column come first."""
 
 
 @pytest.fixture(scope="module", params=UNITS)
@@ -78,34 +72,6 @@ def test_tables_can_be_scrolled_sorted_and_printed(book: Any) -> None:
         assert "&P" in page.oddFooter.center.text
 
 
-def test_prepared_rows_are_all_checked(book: Any) -> None:
-    for sheet in TABLES:
-        for check in book[sheet.name].data_validations.dataValidation:
-            (area,) = check.sqref.ranges
-            last = 1 + CHECKED.get(sheet.name, ROWS[sheet.name])
-            first = ROWS[sheet.name] + 2 if sheet is ITEMS and list_columns(sheet)[area.min_col - 1] == CLASS else 2
-            assert (area.min_row, area.max_row) == (first, last)
-
-
-def test_help_mentions_every_column(book: Any, units: Units) -> None:
-    rows = {(row[0].value, row[1].value): row[2].value for row in book["Help"].iter_rows(min_row=2)}
-    for sheet in SHEETS:
-        for column in sheet.columns:
-            star = " *" if column.required else ""
-            assert rows[sheet.name, column.header(units) + star] == describe(column)
-
-
-def test_names_are_sound_and_formulas_use_those_that_exist(book: Any) -> None:
-    names = set(book.defined_names)
-    area = r"(Building|Floors|Items|Places|Routes|Catalogue|Lists)!\$[A-Z]+\$\d+(:\$[A-Z]+\$\d+)?"
-    for name, defined in book.defined_names.items():
-        assert re.fullmatch(r"[a-z_]+", name)
-        assert re.fullmatch(area, defined.attr_text), name
-    cells = [cell for sheet in ("Items", "Lists") for row in book[sheet].iter_rows(max_row=4) for cell in row]
-    for cell in (one for one in cells if isinstance(one.value, str) and one.value.startswith("=")):
-        assert set(re.findall(r"\b[a-z]+_[a-z_]+\b", re.sub(r'"[^"]*"', "", cell.value))) <= names, cell.coordinate
-
-
 def test_formulas_are_those_of_excel_2007(path: Path) -> None:
     """No dynamic arrays, no @, no functions that need a prefix, within 8192 characters."""
     for number in (4, len(SHEETS) + 2):
@@ -152,31 +118,3 @@ def test_more_rows_than_prepared(tmp_path: Path) -> None:
         assert book.defined_names[name].attr_text.endswith(f"${count + 1}")
     for label in (*LIVE, *WORKINGS):
         assert str(book["Items"][f"{LETTERS['Items', label]}{count + 1}"].value).startswith("=")
-
-
-@pytest.mark.slow
-def test_a_type_of_ones_own_replaces_none(tmp_path: Path) -> None:
-    """Rows for the catalogue stand in place of the built-in ones: the user asked for these."""
-    rows = {"Catalogue": [{"type": "Mine", "breadth": 40, "height": 180}]}
-    write_workbook(tmp_path / "book.xlsx", Content(rows))
-    page = openpyxl.load_workbook(tmp_path / "book.xlsx")[CATALOGUE.name]
-    assert [page["A2"].value, page["A3"].value] == ["Mine", None]
-
-
-@pytest.mark.parametrize("code", LANGUAGES)
-@pytest.mark.slow
-def test_help_and_the_comment_of_the_class_explain_its_words(tmp_path: Path, code: str) -> None:
-    with speaking(load_catalogue(code)):
-        write_workbook(tmp_path / "book.xlsx")
-        words, others = ([gettext(one) for one in some] for some in (HINTS[:3], HINTS[3:]))
-        label = say_live(CLASS)
-    book = openpyxl.load_workbook(tmp_path / "book.xlsx")
-    (page,) = (book[name] for name in book.sheetnames[3:4])
-    (head,) = [cell for cell in page[1] if cell.value == label]
-    assert head.comment is not None
-    (line,) = [text for row in book.worksheets[0].iter_rows() if f"{words[0]}:" in (text := str(row[0].value))]
-    for word in words:
-        assert f"{word}:" in line
-        assert f"{word}:" in head.comment.text
-    assert all(word in line for word in others)
-    assert "assess check" in line

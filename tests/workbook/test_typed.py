@@ -15,8 +15,8 @@ from assess.workbook.names import translate
 from assess.workbook.open import Percent
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import BUILDING, FLOORS, ITEMS, Column
-from assess.workbook.typed import find_meant, straighten, understand
-from tests.workbook.books import Sheet, read, remarks, write, write_book
+from assess.workbook.typed import find_meant, understand
+from tests.workbook.books import Sheet, read, remarks, write
 
 HEIGHT, WEIGHT, CENTRE = (ITEMS.column(name) for name in ("height", "weight", "centre_of_gravity"))
 FRICTION, QUANTITY, PFA = ITEMS.column("friction"), ITEMS.column("quantity"), FLOORS.column("pfa_x")
@@ -240,13 +240,6 @@ def test_every_cell_that_is_taken_has_a_note_and_a_correction(tmp_path: Path) ->
     }
 
 
-def test_corrections_name_the_sheet_as_the_workbook_does_and_survive_errors(tmp_path: Path) -> None:
-    items: Sheet = [["Item", "Floor", "Breadth [cm]", "Height [cm]"], ["A1", "1", "40 cm", "high"]]
-    path = write_book(tmp_path / "book.xlsx", {"ITEMS": items, "Floors": [["Floor", "PFA X [g]"], ["1", 0.5]]})
-    (correction,) = read_inventory(path, strict=False).corrections
-    assert (correction.sheet, correction.cell) == ("ITEMS", "C2")
-
-
 def test_rows_in_code_are_taken_without_corrections() -> None:
     rows = {"Items": [{"item": "A1", "floor": "1", "breadth": "45 cm", "height": 180}],
             "Floors": [{"floor": "1", "pfa_x": 0.5}]}  # fmt: skip
@@ -255,8 +248,3 @@ def test_rows_in_code_are_taken_without_corrections() -> None:
     assert remarks(inventory, "note") == {
         "Items row 1 Breadth: Breadth [cm]: '45 cm' holds its unit; it is read as 45 cm."
     }
-
-
-def test_look_alikes_become_plain() -> None:
-    pairs = {"a\u00a0 b": "a b", "\u22121": "-1", "１２ｃｍ": "12cm", "3\u2019000": "3'000", "4²": "4²"}
-    assert {text: straighten(text) for text in pairs} == pairs
