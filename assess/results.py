@@ -26,7 +26,7 @@ from assess.rocking.draws import TRIED, Uncertainty
 from assess.route_results import RouteTables
 from assess.schedule_results import NOTHING, Schedule
 from assess.settings import CLASS_BY, Settings
-from assess.table import Columns, Table
+from assess.table import PART, Columns, Table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -99,8 +99,6 @@ CARRIED = ("fell_in_record", "ideal_higher", "undecided")
 """Flags that count for a piece under whichever of its motions they were raised."""
 MOST_KEPT = 2000
 """Items up to which what was read of them is kept; that of a larger inventory would fill the memory."""
-PART = 1000
-"""Items that are read at a time."""
 
 
 # ---------------------------------------------------------------- rows

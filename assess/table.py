@@ -39,6 +39,8 @@ _DTYPES: Mapping[Kind, str] = {
     "text": "string", "class": "string", "number": "float64", "share": "float64", "count": "Int64", "flag": "boolean",
 }  # fmt: skip
 """Of the columns of a pandas table: the same whatever the rows are, also where there are none."""
+PART = 1000
+"""Rows whose columns and texts are made at a time."""
 _dump = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(", ", ": ")).encode
 
 
@@ -185,7 +187,7 @@ class Table:
     @classmethod
     def of(cls, fields: Iterable[Field], rows: Sequence[Any]) -> "Table":
         """Return the table of rows that are there as objects."""
-        return cls(fields, lambda: (Columns(rows),))
+        return cls(fields, lambda: (Columns(rows[at : at + PART]) for at in range(0, max(1, len(rows)), PART)))
 
     def __len__(self) -> int:
         return sum(map(len, self.parts()))
