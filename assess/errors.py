@@ -16,7 +16,9 @@ AssessError
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Literal, Self
+from typing import Any, ClassVar, Literal, Self
+
+from assess.text import fill
 
 Severity = Literal["error", "warning", "note"]
 
@@ -87,6 +89,11 @@ class AssessError(Exception):
     def message(self) -> str:
         """The English text that `str` returns; as the `assess.i18n.Text` that it is, it can be translated."""
         return self.args[0] if self.args else ""
+
+    @classmethod
+    def about(cls, template: str, /, **values: Any) -> Self:
+        """Return the error whose message is `template` with `values` put in, a text that can be translated."""
+        return cls(fill(template, **values))
 
 
 class InputError(AssessError):

@@ -1,8 +1,8 @@
 """Collect every text of the reports, the workbook and the page into the catalogues: ``make texts``.
 
-Texts are the arguments of `_`, `gettext`, `ngettext`, `fill` and `nfill` in the code and in the templates, of `t` and
-`tn` in the modules of the page, and the texts of methods, profiles, flags and columns. Translations are kept; texts
-that are no longer used are removed.
+Texts are the arguments of `_`, `gettext`, `ngettext`, `fill`, `nfill` and of the `about` of errors in the code and in
+the templates, of `t` and `tn` in the modules of the page, and the texts of methods, profiles, flags and columns.
+Translations are kept; texts that are no longer used are removed.
 """
 
 import sys
@@ -19,7 +19,7 @@ from assess.i18n import LANGUAGES
 from assess.web.texts import list_texts
 
 ROOT = Path(__file__).parents[1]
-KEYWORDS = {"_": None, "gettext": None, "fill": None, "ngettext": (1, 2), "nfill": (1, 2)}
+KEYWORDS = {"_": None, "gettext": None, "fill": None, "about": None, "ngettext": (1, 2), "nfill": (1, 2)}
 HEAD = """# Texts of assess in {name}. Made by: make texts. {purpose}
 msgid ""
 msgstr ""

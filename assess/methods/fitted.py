@@ -207,7 +207,6 @@ def build_method(model: Fitted, source: str) -> Method:
 
 
 def _work(equations: Sequence[str], example: Example) -> list[str]:
-    """Put what the model reads next to its equation and coefficients, which hold for any piece."""
     velocity = [] if np.isnan(example.pfv) else [localise(f"PFV = {example.pfv:.6g} cm/s")]
     result = localise(f"R = {example.number('raw'):.4f}")
     return [show_ratio(example), show_pfa(example), *velocity, *equations, result]
@@ -269,13 +268,11 @@ def _list_reasons(fitted: FittedOn) -> tuple[Reason, ...]:
 
 
 def _shorten(data: str) -> str:
-    """Return the first part of what a model was fitted on, which heads a column: the buildings."""
     first = data.partition(", ")[0]
     return first if len(first) <= LONGEST else f"{first[: LONGEST - 1]}…"
 
 
 def _round(one: Range) -> Range:
-    """Return a range as it is shown, to three digits."""
     return Range(float(f"{one.low:.3g}"), float(f"{one.high:.3g}"), one.unit)
 
 
@@ -290,7 +287,6 @@ def _describe(fitted: FittedOn) -> Text:
 
 
 def _judge(fitted: FittedOn) -> Text:
-    """Return in words how a model does beside a constant."""
     if fitted.is_no_better:
         return fill(
             "Beware: for a building that it was not fitted to, it is no better than a constant, that is, one chance "
@@ -396,13 +392,12 @@ def read_model(path: Path | str) -> Method:
 
 
 def _read_text(path: Path) -> str:
-    """Return the text of a file; raises InputError where it is not a text file, too large or not readable."""
     try:
         if not path.exists():
-            raise InputError(fill("{path}: there is no such file. Check the name.", path=path))
+            raise InputError.about("{path}: there is no such file. Check the name.", path=path)
         if not path.is_file():
-            raise InputError(
-                fill("{path}: it is not a file: name the .toml file that `assess study fit` wrote.", path=path)
+            raise InputError.about(
+                "{path}: it is not a file: name the .toml file that `assess study fit` wrote.", path=path
             )
         with path.open("rb") as file:
             data = file.read(MOST_BYTES + 1)
@@ -410,12 +405,10 @@ def _read_text(path: Path) -> str:
         text = fill("{path}: the file cannot be read: {why}. Check its permissions.", path=path, why=str(error))
         raise InputError(text) from None
     if len(data) > MOST_BYTES:
-        raise InputError(
-            fill(
-                "{path}: the file is larger than {most} kB, the limit for a fitted model. Name another file.",
-                path=path,
-                most=MOST_BYTES >> 10,
-            )
+        raise InputError.about(
+            "{path}: the file is larger than {most} kB, the limit for a fitted model. Name another file.",
+            path=path,
+            most=MOST_BYTES >> 10,
         )
     try:
         return data.decode("utf-8")
@@ -438,19 +431,17 @@ def parse_model(text: str, file: str) -> Fitted:
         raise InputError(message) from None
     if found.get("format") != FORMAT or isinstance(found.get("format"), bool):
         given = _show(found["format"]) if "format" in found else fill("missing")
-        raise InputError(
-            fill(
-                "{file}: format is {value}, expected {expected}. Have a study of this version write the file.",
-                file=file,
-                value=given,
-                expected=FORMAT,
-            )
+        raise InputError.about(
+            "{file}: format is {value}, expected {expected}. Have a study of this version write the file.",
+            file=file,
+            value=given,
+            expected=FORMAT,
         )
     kind = found.get("kind")
     if not isinstance(kind, str) or kind not in KINDS:
         given = _show(kind) if "kind" in found else fill("missing")
-        raise InputError(
-            fill("{file}: kind is {value}, expected one of: {names}.", file=file, value=given, names=", ".join(KINDS))
+        raise InputError.about(
+            "{file}: kind is {value}, expected one of: {names}.", file=file, value=given, names=", ".join(KINDS)
         )
     return _build(file, found, kind)
 
@@ -471,8 +462,6 @@ def _build(file: str, found: dict[str, Any], kind: str) -> Fitted:
 
 
 class _Table:
-    """A table of the file, whose faults are reported with their keys."""
-
     def __init__(self, file: str, name: str, values: object, keys: Sequence[str]) -> None:
         self.file, self.name = file, name
         if not isinstance(values, dict):

@@ -1,25 +1,8 @@
-"""Housner Monte Carlo (key ``housner_monte_carlo``): the rocking of each piece, integrated under many motions.
+"""Housner Monte Carlo: the rocking of each piece, integrated under many motions.
 
-Reference
----------
-Sections 2.1 and 3.2.2 of "Overturning Risk of Furniture in Earthquake Affected Areas", equations (1) to (4); the block
-is Housner's (1963), of any height of the centre of gravity.
-
-Equations
----------
-theta'' = -p2 [sin(alpha sgn theta - theta) + (a_g/g) cos(alpha sgn theta - theta)], p2 = m g R / I0; risk =
-overturned / N, with its Wilson interval.
-
-Validity
---------
-Rigid, free-standing pieces that neither slide nor bounce, with B/H below 1.41 (of a uniform block), in plane motion.
-
-Departures
-----------
-N is 200 by default; the paper's is 100, of which none fallen cannot show "low". With N "auto", the interval is that of
-six checks. What the piece does under the recorded motion itself is found too. The paper's Monte Carlo takes the floor's
-motion and the piece as exactly known; that is found as well (`ideal`), but adopted is the chance in an earthquake like
-this one, of a piece like this one: see `assess.rocking.draws`.
+The paper's Monte Carlo takes the floor's motion and the piece as exactly known; that is found as well (`ideal`), but
+adopted is the chance in an earthquake like this one, of a piece like this one: see `assess.rocking.draws`. What the
+piece does under the recorded motion itself is found too. With N "auto", the interval is that of six checks.
 """
 
 import math
@@ -137,8 +120,6 @@ def _count(fallen: IntArray, runs: IntArray, draws: IntArray, settings: Settings
 
 @dataclass(frozen=True, slots=True)
 class _Run:
-    """The cases `own` under ensemble `number`."""
-
     cases: Cases
     own: NDArray[np.intp]
     number: int
@@ -218,7 +199,6 @@ class _Run:
         return {"one_sided": chance, "wall_higher": chance > alone}
 
     def _rock_under_record(self) -> dict[str, FloatArray]:
-        """Return whether each case overturns under the record itself, and how far it turns; nothing without one."""
         if self.ensemble.record is None or not self.own.size:
             return {}
         motion, time_step = self.ensemble.record
@@ -278,7 +258,6 @@ def _work_block(example: Example) -> list[Text]:
 
 
 def _uniform(B: Any, H: Any) -> tuple[list[Text], Text, Any]:
-    """Work a uniform block, as published: its numbers, its restitution, and where rocking starts."""
     alpha, r, g = np.arctan(B / H), 0.5 * np.sqrt(B**2 + H**2), number(GRAVITY, ".5f")
     limit = g * B / H
     p = np.sqrt(3 * g / (4 * number(float(r.value), ".6g")))
@@ -292,7 +271,6 @@ def _uniform(B: Any, H: Any) -> tuple[list[Text], Text, Any]:
 
 
 def _any_body(B: Any, H: Any, centre: float) -> tuple[list[Text], Text, Any]:
-    """Work a body whose centre of gravity is not at mid-height: its numbers, restitution, and where rocking starts."""
     half, height = B / 2, number(centre, ".4g") * H
     b, z, g = number(float(half.value), ".6g"), number(float(height.value), ".6g"), number(GRAVITY, ".5f")
     limit, alpha, radius = g * b / z, np.arctan(b / z), np.sqrt(b**2 + z**2)

@@ -280,7 +280,6 @@ class Corrections:
 
 
 def _widest(off: FloatArray, width: int) -> FloatArray:
-    """Return the largest value among `width` neighbours of each."""
     return np.asarray(sliding_window_view(np.pad(off, width // 2, mode="edge"), width).max(axis=1))
 
 

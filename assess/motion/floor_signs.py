@@ -121,7 +121,6 @@ def _join(coherence: FloatArray, is_clear: NDArray[np.bool_], peaks: FloatArray)
 
 
 def _by_coherence(coherence: FloatArray) -> Iterator[tuple[int, int]]:
-    """Yield each two floors, the most coherent first."""
     ones, others = np.triu_indices(len(coherence), 1)
     order = np.argsort(-np.abs(coherence[ones, others]), kind="stable")
     yield from zip(ones[order].tolist(), others[order].tolist(), strict=True)

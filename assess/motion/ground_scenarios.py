@@ -100,21 +100,18 @@ class GroundScenarios:
         place = {"lat": float(self.latitude[nearest]), "lon": float(self.longitude[nearest])}
         count = rows.stop - rows.start
         if count < self.event_count:
-            raise InputError(
-                fill(
-                    "{file}: the site at latitude {lat:.4f}, longitude {lon:.4f}, nearest to the building, has {count} "
-                    "of {events} events: the others lie below the engine's minimum. Compute the fields with "
-                    "minimum_intensity 0",
-                    file=self.file,
-                    count=count,
-                    events=self.event_count,
-                    **place,
-                )
+            raise InputError.about(
+                "{file}: the site at latitude {lat:.4f}, longitude {lon:.4f}, nearest to the building, has {count} "
+                "of {events} events: the others lie below the engine's minimum. Compute the fields with "
+                "minimum_intensity 0",
+                file=self.file,
+                count=count,
+                events=self.event_count,
+                **place,
             )
         return self._describe(np.log(self.values[rows]), float(distances[nearest]))
 
     def _describe_gap(self, latitude: float, longitude: float, distance: float) -> Text:
-        """Return why the scenarios do not cover a place, with how to fix it."""
         return fill(
             "{file}: the scenarios do not cover latitude {lat:.4f}, longitude {lon:.4f}: their nearest site is "
             "{km:,.0f} km away, expected at most {most:.0f} km. Check Latitude and Longitude, or compute the fields "
@@ -192,7 +189,7 @@ def read_scenarios(folder: Path) -> GroundScenarios:
     sites_file = next((name for name in SITES if (folder / name).is_file()), None)
     if sites_file is None or not (folder / VALUES).is_file():
         missing = " or ".join(SITES) if (folder / VALUES).is_file() else VALUES
-        raise InputError(fill("{folder}: the folder has no {file}", folder=folder.name, file=missing))
+        raise InputError.about("{folder}: the folder has no {file}", folder=folder.name, file=missing)
     texts: dict[str, int] = {}
     sites, data = _read_table(folder / sites_file, texts), _read_table(folder / VALUES, texts)
     with naming(VALUES):
@@ -207,7 +204,7 @@ def read_scenarios(folder: Path) -> GroundScenarios:
         events = data.numbers[order, data.column("event_id")].astype(np.int64)
         again = (np.diff(rows) == 0) & (np.diff(events) == 0)
         if again.any():
-            raise InputError(fill("event {event} is there twice at a site", event=int(events[int(again.argmax())])))
+            raise InputError.about("event {event} is there twice at a site", event=int(events[int(again.argmax())]))
     hashes = data.sha256, sites.sha256
     return GroundScenarios(
         file=VALUES,
@@ -256,18 +253,18 @@ def _read_table(path: Path, texts: dict[str, int]) -> _Table:
 
 def _parse_table(data: bytes, texts: dict[str, int]) -> _Table:
     if len(data) > LARGEST_FILE:
-        raise InputError(fill("the file is larger than {most:.0f} MB", most=LARGEST_FILE / 1e6))
+        raise InputError.about("the file is larger than {most:.0f} MB", most=LARGEST_FILE / 1e6)
     if b"\0" in data or data.startswith((b"PK", b"\x89HDF", b"\x1f\x8b", b"\xff\xfe", b"\xfe\xff")):
-        raise InputError(fill("the file is not plain text. Export it from OpenQuake as CSV"))
+        raise InputError.about("the file is not plain text. Export it from OpenQuake as CSV")
     if data.count(b"\n") + data.count(b"\r") > MOST_ROWS:
-        raise InputError(fill("the file has more than {most:,} rows: keep fewer events or sites", most=MOST_ROWS))
+        raise InputError.about("the file has more than {most:,} rows: keep fewer events or sites", most=MOST_ROWS)
     start, head, first = _read_head(data)
     if len(head) > MOST_COLUMNS or len(set(head)) < len(head):
-        raise InputError(fill("the first row has a heading twice, or more than {most} headings", most=MOST_COLUMNS))
+        raise InputError.about("the first row has a heading twice, or more than {most} headings", most=MOST_COLUMNS)
     if not data[start:].strip():
-        raise InputError(fill("there are no rows below the headings"))
+        raise InputError.about("there are no rows below the headings")
     if not data.endswith((b"\n", b"\r")):
-        raise InputError(fill("the last line has no end: the file is cut off. Export it again"))
+        raise InputError.about("the last line has no end: the file is cut off. Export it again")
     numbers = _parse_rows(data[start:], head, first, lambda text: texts.setdefault(text.strip(), len(texts)))
     return _Table(head, numbers, first, hashlib.sha256(data).hexdigest(), _number_lines(data[start:], first))
 
@@ -288,18 +285,17 @@ def _read_head(data: bytes) -> tuple[int, tuple[str, ...], int]:
         text, at, line = data[at:end].decode("utf-8-sig", "replace").strip(), end + 1, line + 1
         if text and not text.startswith(("#", '"#')):
             return at, _split_head(text, line), line + 1
-    raise InputError(fill("there is no table"))
+    raise InputError.about("there is no table")
 
 
 def _split_head(text: str, line: int) -> tuple[str, ...]:
     try:
         return tuple(cell.strip() for cell in next(csv.reader([text])))
     except csv.Error:  # an end of line of its own in the middle
-        raise InputError(fill("line {line}: the headings cannot be read", line=line)) from None
+        raise InputError.about("line {line}: the headings cannot be read", line=line) from None
 
 
 def _parse_rows(data: bytes, head: Sequence[str], first: int, number_text: Callable[[str], int]) -> FloatArray:
-    """Return the numbers of the rows, (rows, columns)."""
     texts = [head.index(_TEXT)] if _TEXT in head else []
     converters: dict[int | str, Callable[[str], Any]] = dict.fromkeys(texts, number_text)
     try:
@@ -318,19 +314,17 @@ def _describe_row(data: bytes, width: int, first: int, texts: Sequence[int]) -> 
     for line, row in enumerate(data.decode("utf-8", "replace").splitlines(), first):
         cells = row.split(",")
         if row.strip() and len(cells) != width:
-            return InputError(
-                fill(
-                    "line {line}: the number of cells is {cells}, but there are {headings} headings",
-                    line=line,
-                    cells=len(cells),
-                    headings=width,
-                )
+            return InputError.about(
+                "line {line}: the number of cells is {cells}, but there are {headings} headings",
+                line=line,
+                cells=len(cells),
+                headings=width,
             )
         numbers = [cell for at, cell in enumerate(cells) if row.strip() and at not in texts]
         bad = next((cell for cell in numbers if not _is_number(cell)), None)
         if bad is not None:
-            return InputError(fill("line {line}: {text!r} is not a number", line=line, text=bad.strip()[:40]))
-    return InputError(fill("the rows cannot be read"))
+            return InputError.about("line {line}: {text!r} is not a number", line=line, text=bad.strip()[:40])
+    return InputError.about("the rows cannot be read")
 
 
 def _is_number(cell: str) -> bool:
@@ -345,14 +339,13 @@ def _is_number(cell: str) -> bool:
 
 
 def _find_key(data: _Table, sites: _Table, sites_file: str) -> str:
-    """Return the column that names the site in both tables."""
     key = next((name for name in _KEYS if name in data.headings and name in sites.headings), None)
     if key is None:
         fault = "neither site_id nor custom_site_id is a column of both this file and {file}: one of them has to be"
-        raise InputError(fill(fault, file=sites_file))
+        raise InputError.about(fault, file=sites_file)
     missing = next((name for name in ("event_id", "gmv_PGA") if name not in data.headings), None)
     if missing is not None:
-        raise InputError(fill("the column {name} is missing", name=missing))
+        raise InputError.about("the column {name} is missing", name=missing)
     return key
 
 
@@ -360,14 +353,14 @@ def _read_sites(sites: _Table, key: str) -> tuple[FloatArray, FloatArray, FloatA
     """Return the numbers of the sites, rising, with latitude and longitude [deg]."""
     missing = next((name for name in ("lon", "lat") if name not in sites.headings), None)
     if missing is not None:
-        raise InputError(fill("the column {name} is missing", name=missing))
+        raise InputError.about("the column {name} is missing", name=missing)
     names, latitude, longitude = (sites.numbers[:, sites.column(name)] for name in (key, "lat", "lon"))
     bad = ~((np.abs(latitude) <= 90) & (np.abs(longitude) <= 360))
     if bad.any():
         line = sites.line(int(bad.argmax()))
-        raise InputError(fill("line {line}: lon and lat are not a place on earth", line=line))
+        raise InputError.about("line {line}: lon and lat are not a place on earth", line=line)
     if np.unique(names).size < names.size:
-        raise InputError(fill("a {key} is there twice", key=key))
+        raise InputError.about("a {key} is there twice", key=key)
     order = np.argsort(names)
     return names[order], latitude[order], longitude[order]
 
@@ -379,15 +372,13 @@ def _check_values(data: _Table, measures: Sequence[str]) -> None:
         bad = ~((values > 0) & (values <= most))  # what is no number is bad, too
         if bad.any():
             at = int(bad.argmax())
-            raise InputError(
-                fill(
-                    "line {line}: {name} is {value:g}, expected above 0 and at most {most:g} {unit}",
-                    line=data.line(at),
-                    name=name,
-                    value=float(values[at]),
-                    most=most,
-                    unit="cm/s" if name == "gmv_PGV" else "g",
-                )
+            raise InputError.about(
+                "line {line}: {name} is {value:g}, expected above 0 and at most {most:g} {unit}",
+                line=data.line(at),
+                name=name,
+                value=float(values[at]),
+                most=most,
+                unit="cm/s" if name == "gmv_PGV" else "g",
             )
 
 
@@ -396,11 +387,11 @@ def _sort_rows(data: _Table, key: str, names: FloatArray, sites_file: str) -> tu
     own, events = data.numbers[:, data.column(key)], data.numbers[:, data.column("event_id")]
     bad = ~(np.isfinite(events) & (np.abs(events) < 2**53) & (events == np.floor(events)))
     if bad.any():
-        raise InputError(fill("line {line}: event_id has to be a whole number", line=data.line(int(bad.argmax()))))
+        raise InputError.about("line {line}: event_id has to be a whole number", line=data.line(int(bad.argmax())))
     at = np.searchsorted(names, own)
     unknown = names[np.minimum(at, names.size - 1)] != own
     if unknown.any():
         line = data.line(int(unknown.argmax()))
-        raise InputError(fill("line {line}: its {key} is not in {file}", line=line, key=key, file=sites_file))
+        raise InputError.about("line {line}: its {key} is not in {file}", line=line, key=key, file=sites_file)
     order = np.lexsort((events, at))
     return at[order], order

@@ -318,7 +318,7 @@ def build_series(times: FloatArray, values: FloatArray) -> Series:
     if wrong.any():
         place = int(wrong.argmax())
         time = float(times[place])
-        raise RecordError(fill("the time of sample {number} is {time:g} s: correct it", number=place + 1, time=time))
+        raise RecordError.about("the time of sample {number} is {time:g} s: correct it", number=place + 1, time=time)
     forward = np.append(True, times[1:] > np.maximum.accumulate(times)[:-1])
     notes = _note_left_out(times.size - int(forward.sum()), times.size)
     times, values = times[forward], values[forward]
@@ -334,7 +334,7 @@ def _even_out(times: FloatArray, values: FloatArray, notes: tuple[str, ...]) -> 
     check_time_step(median)
     if times[-1] - times[0] > MOST_SAMPLES * RESAMPLED_STEP:
         span = float(times[-1] - times[0])
-        raise RecordError(fill("the times span {span:.6g} s: cut the record to the shaking", span=span))
+        raise RecordError.about("the times span {span:.6g} s: cut the record to the shaking", span=span)
     resampled = resample(times, values, RESAMPLED_STEP)
     note = fill(
         "unevenly sampled (median step {median:.3g} s): resampled linearly to {step:g} s, which changes the peak by "
@@ -385,46 +385,40 @@ def _note_gaps(times: FloatArray, median: float) -> tuple[str, ...]:
 def check_count(count: int) -> None:
     """Raise RecordError if a channel has more samples than are read."""
     if count > MOST_SAMPLES:
-        raise RecordError(
-            fill(
-                "the number of samples is {count:,}, expected at most {most:,}: cut the record to the shaking",
-                count=count,
-                most=MOST_SAMPLES,
-            )
+        raise RecordError.about(
+            "the number of samples is {count:,}, expected at most {most:,}: cut the record to the shaking",
+            count=count,
+            most=MOST_SAMPLES,
         )
 
 
 def check_samples(values: FloatArray) -> None:
     """Raise RecordError unless `values` (n,) [m/s2] can be a recorded acceleration."""
     if values.size < FEWEST_SAMPLES:
-        raise RecordError(
-            fill("the number of samples is {count}, expected at least {least}", count=values.size, least=FEWEST_SAMPLES)
+        raise RecordError.about(
+            "the number of samples is {count}, expected at least {least}", count=values.size, least=FEWEST_SAMPLES
         )
     check_count(values.size)
     if not np.isfinite(values).all():
         number = int(np.isfinite(values).argmin()) + 1
-        raise RecordError(fill("sample {number} is not a number: correct or remove it", number=number))
+        raise RecordError.about("sample {number} is not a number: correct or remove it", number=number)
     if peak(values) > MOST_ACCELERATION:
-        raise RecordError(
-            fill(
-                "the peak is {peak:.3g} g, expected at most {most:g} g: is the unit right?",
-                peak=peak(values) / GRAVITY,
-                most=MOST_ACCELERATION / GRAVITY,
-            )
+        raise RecordError.about(
+            "the peak is {peak:.3g} g, expected at most {most:g} g: is the unit right?",
+            peak=peak(values) / GRAVITY,
+            most=MOST_ACCELERATION / GRAVITY,
         )
     if values.min() == values.max():
         first = float(values[0])
-        raise RecordError(fill("every sample is {value:g} m/s2: the channel holds no motion", value=first))
+        raise RecordError.about("every sample is {value:g} m/s2: the channel holds no motion", value=first)
 
 
 def check_time_step(time_step: float) -> None:
     """Raise RecordError unless `time_step` [s] can be that of a record."""
     if not SHORTEST_STEP <= time_step <= LONGEST_STEP:
-        raise RecordError(
-            fill(
-                "the time step is {step:.4g} s, expected {shortest:g} to {longest:g} s: is the time in seconds?",
-                step=time_step,
-                shortest=SHORTEST_STEP,
-                longest=LONGEST_STEP,
-            )
+        raise RecordError.about(
+            "the time step is {step:.4g} s, expected {shortest:g} to {longest:g} s: is the time in seconds?",
+            step=time_step,
+            shortest=SHORTEST_STEP,
+            longest=LONGEST_STEP,
         )

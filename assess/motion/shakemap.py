@@ -137,7 +137,7 @@ class ShakeMap:
             pga = read("PGA", logarithmic=True)
             if math.isnan(pga):
                 place = _describe_place(latitude, longitude)
-                raise InputError(fill("the PGA of the map is 0 or not a number (NaN) at {place}", place=place))
+                raise InputError.about("the PGA of the map is 0 or not a number (NaN) at {place}", place=place)
         return self._describe(read, pga, latitude, longitude)
 
     def _describe(self, read: "_Reading", pga: float, latitude: float, longitude: float) -> SiteGround:
@@ -311,7 +311,6 @@ def parse_shakemap(
 
 
 def _count_gaps(grid: Grid) -> int:
-    """Return at how many points a field is not a number."""
     return int(np.logical_or.reduce([np.isnan(values) for values in grid.fields.values()]).sum())
 
 
@@ -319,7 +318,7 @@ def _count_gaps(grid: Grid) -> int:
 def _read_grid(data: bytes) -> Grid:
     grid = _parse_grid(data)
     if "PGA" not in grid.fields:
-        raise InputError(fill("the field PGA is missing: give the file grid.xml of a ShakeMap"))
+        raise InputError.about("the field PGA is missing: give the file grid.xml of a ShakeMap")
     psa = [name for name, _ in _list_psa(grid)]
     _check_field(grid, "PGA", _PER_CENT_G, "%g", 100 * LARGEST_PGA / GRAVITY)
     for name in psa:
@@ -331,7 +330,6 @@ def _read_grid(data: bytes) -> Grid:
 
 
 def _read_uncertainty(data: bytes, grid: Grid, name: str, grid_name: str) -> Grid:
-    """Return what a file of uncertainties holds; InputError, which says what the map gives without it."""
     try:
         with naming(name):
             return _check_uncertainty(_parse_grid(data), grid)
@@ -347,7 +345,6 @@ def _read_uncertainty(data: bytes, grid: Grid, name: str, grid_name: str) -> Gri
 
 
 def _check_uncertainty(beside: Grid, grid: Grid) -> Grid:
-    """Return a grid of uncertainties with the fields that are used."""
     own, other = _find_event(grid), _find_event(beside)
     if own != other:
         message = fill(
@@ -374,15 +371,13 @@ def _check_field(grid: Grid, name: str, units: frozenset[str], unit: str, most: 
         row, column = divmod(int(bad.argmax()), values.shape[1])
         place = _describe_place(float(grid.latitude[row]), float(grid.longitude[column]))
         value = float(values[row, column])
-        raise InputError(
-            fill(
-                "the field {name} is {value:g} at {place}, expected 0 to {most:g} {unit}",
-                name=name,
-                value=value,
-                place=place,
-                most=most,
-                unit=unit,
-            )
+        raise InputError.about(
+            "the field {name} is {value:g} at {place}, expected 0 to {most:g} {unit}",
+            name=name,
+            value=value,
+            place=place,
+            most=most,
+            unit=unit,
         )
 
 
@@ -411,7 +406,6 @@ def _read_magnitude(grid: Grid) -> float:
 
 
 def _find_shared(beside: "_Reading | None", measure: str) -> float | None:
-    """Return the share of the variance of the ground-motion model that lies between earthquakes [-]."""
     parts = f"GMPE_INTER_STD{measure}", f"GMPE_INTRA_STD{measure}"
     if beside is None or not set(parts) <= beside.fields.keys():
         return None
@@ -448,16 +442,14 @@ def _locate(grid: Grid, latitude: float, longitude: float) -> _Reading:
     if not (limits[0] <= latitude <= limits[1] and limits[2] <= turned <= limits[3]):
         place = _describe_place(latitude, longitude)
         south, north, west, east = limits
-        raise InputError(
-            fill(
-                "{place} is outside the map, which covers latitude {south:.4f} to {north:.4f} and longitude {west:.4f} "
-                "to {east:.4f}",
-                place=place,
-                south=south,
-                north=north,
-                west=west,
-                east=east,
-            )
+        raise InputError.about(
+            "{place} is outside the map, which covers latitude {south:.4f} to {north:.4f} and longitude {west:.4f} "
+            "to {east:.4f}",
+            place=place,
+            south=south,
+            north=north,
+            west=west,
+            east=east,
         )
     rows, north = _find_cell(grid.latitude, latitude)
     columns, east = _find_cell(grid.longitude, turned)
@@ -478,7 +470,6 @@ def _find_turn(longitude: float, grid: Grid) -> float:
 
 
 def _describe_place(latitude: float, longitude: float) -> Text:
-    """Return a place [deg] in words."""
     return fill("latitude {latitude:.4f}, longitude {longitude:.4f}", latitude=latitude, longitude=longitude)
 
 
@@ -495,11 +486,11 @@ def _parse_grid(data: bytes) -> Grid:
         entities, holds something that is not a number, or its places are not a regular grid.
     """
     if len(data) > LARGEST_FILE:
-        raise InputError(fill("the file is larger than {most:.0f} MB", most=LARGEST_FILE / 1e6))
+        raise InputError.about("the file is larger than {most:.0f} MB", most=LARGEST_FILE / 1e6)
     if not data.strip():
-        raise InputError(fill("the file is empty"))
+        raise InputError.about("the file is empty")
     if data.startswith(_FOREIGN):
-        raise InputError(fill("the file is not XML. {hint}", hint=_HINT))
+        raise InputError.about("the file is not XML. {hint}", hint=_HINT)
     reader = _Reader()
     try:
         reader.parser.Parse(data, True)
@@ -514,10 +505,10 @@ _HINT = fill("Download grid.xml from the products of the event's ShakeMap at ear
 def _damaged(error: Exception, reader: "_Reader") -> InputError:
     line = getattr(error, "lineno", None)
     if not reader.is_shakemap:
-        return InputError(fill("the file is not the XML of a ShakeMap. {hint}", hint=_HINT))
+        return InputError.about("the file is not the XML of a ShakeMap. {hint}", hint=_HINT)
     if line is None:
-        return InputError(fill("the XML cannot be read. Download it again"))
-    return InputError(fill("line {line}: the XML is damaged or cut off. Download it again", line=line))
+        return InputError.about("the XML cannot be read. Download it again")
+    return InputError.about("line {line}: the XML is damaged or cut off. Download it again", line=line)
 
 
 class _Reader:
@@ -541,12 +532,12 @@ class _Reader:
             raise InputError(text)
         self.is_shakemap = True
         if self._elements > MOST_ELEMENTS:
-            raise InputError(fill("the file has more than {most:,} elements", most=MOST_ELEMENTS))
+            raise InputError.about("the file has more than {most:,} elements", most=MOST_ELEMENTS)
         clean = {key: _shorten(value) for key, value in attributes.items()}
         if name == "grid_field":
             self.names.append((clean.get("index", ""), clean.get("name", ""), clean.get("units", "")))
         elif name in self.found:
-            raise InputError(fill("the element {name} is there twice", name=name))
+            raise InputError.about("the element {name} is there twice", name=name)
         elif name in ("shakemap_grid", "event", "grid_specification", "grid_data"):
             self.found[name] = clean
         self._is_data = name == "grid_data"
@@ -559,7 +550,7 @@ class _Reader:
             self.texts.append(text)
 
     def _refuse(self, *_: object) -> None:
-        raise InputError(fill("the file declares XML entities, which no ShakeMap does. {hint}", hint=_HINT))
+        raise InputError.about("the file declares XML entities, which no ShakeMap does. {hint}", hint=_HINT)
 
 
 def _shorten(text: str) -> str:
@@ -572,17 +563,15 @@ def _shorten(text: str) -> str:
 def _build(reader: _Reader) -> Grid:
     for name in ("event", "grid_specification", "grid_data"):
         if name not in reader.found:
-            raise InputError(fill("the element {name} is missing", name=name))
+            raise InputError.about("the element {name} is missing", name=name)
     names = _name_fields(reader.names)
     columns, rows = (_read_count(reader.found["grid_specification"], name) for name in ("nlon", "nlat"))
     if columns * rows > MOST_POINTS:
-        raise InputError(
-            fill(
-                "grid_specification: {columns:,} x {rows:,} points are more than {most:,}",
-                columns=columns,
-                rows=rows,
-                most=MOST_POINTS,
-            )
+        raise InputError.about(
+            "grid_specification: {columns:,} x {rows:,} points are more than {most:,}",
+            columns=columns,
+            rows=rows,
+            most=MOST_POINTS,
         )
     table = _read_numbers(reader.texts, len(names), rows * columns)
     fields = {name: table[:, at] for at, (name, _) in enumerate(names)}
@@ -598,51 +587,47 @@ def _build(reader: _Reader) -> Grid:
 
 
 def _name_fields(listed: Sequence[tuple[str, str, str]]) -> list[tuple[str, str]]:
-    """Return name and unit of the fields in the order of their columns."""
     if len(listed) > MOST_FIELDS:
-        raise InputError(fill("the file has more than {most} fields", most=MOST_FIELDS))
+        raise InputError.about("the file has more than {most} fields", most=MOST_FIELDS)
     indices = [index for index, *_ in listed]
     if sorted(indices) != sorted(str(at + 1) for at in range(len(listed))):
-        raise InputError(fill("the fields (grid_field) are not numbered from 1 on, each once"))
+        raise InputError.about("the fields (grid_field) are not numbered from 1 on, each once")
     names = [(name.upper(), unit) for _, name, unit in sorted(listed, key=lambda one: int(one[0]))]
     spelt = [name for name, _ in names]
     twice = next((name for name in spelt if spelt.count(name) > 1), None)
     if twice is not None:
-        raise InputError(fill("the field {name} is there twice", name=twice))
+        raise InputError.about("the field {name} is there twice", name=twice)
     missing = next((name for name in ("LON", "LAT") if name not in spelt), None)
     if missing is not None:
-        raise InputError(fill("the field {name} is missing", name=missing))
+        raise InputError.about("the field {name} is missing", name=missing)
     return names
 
 
 def _read_count(specification: Mapping[str, str], name: str) -> int:
     text = specification.get(name, "")
     if not (text.isascii() and text.isdigit() and len(text) < 20 and int(text) > 1):
-        raise InputError(fill("grid_specification: {name} is {text!r}, expected 2 or more", name=name, text=text))
+        raise InputError.about("grid_specification: {name} is {text!r}, expected 2 or more", name=name, text=text)
     return int(text)
 
 
 def _read_numbers(texts: Sequence[str], width: int, rows: int) -> FloatArray:
-    """Return the numbers of the grid, (rows, width)."""
     found = np.empty(rows * width)
     at = 0
     for cells in _split(texts):
         if at + len(cells) > found.size:
-            raise InputError(fill("there are more than {rows:,} rows, which nlon x nlat gives", rows=rows))
+            raise InputError.about("there are more than {rows:,} rows, which nlon x nlat gives", rows=rows)
         try:
             found[at : at + len(cells)] = np.fromiter(map(float, cells), dtype=float, count=len(cells))
         except ValueError:
             raise _describe_text(cells, at, width) from None
         at += len(cells)
     if at < found.size:
-        raise InputError(
-            fill(
-                "there are {found:,} whole rows of {width} numbers, expected {rows:,} (nlon x nlat): the file is cut "
-                "off or damaged. Download it again",
-                found=at // width,
-                width=width,
-                rows=rows,
-            )
+        raise InputError.about(
+            "there are {found:,} whole rows of {width} numbers, expected {rows:,} (nlon x nlat): the file is cut "
+            "off or damaged. Download it again",
+            found=at // width,
+            width=width,
+            rows=rows,
         )
     return found.reshape(rows, width)
 
@@ -652,7 +637,7 @@ def _split(texts: Sequence[str]) -> Iterator[list[str]]:
     rest = ""
     for text in texts:
         if len(rest) > _LONGEST or "_" in text or not text.isascii():
-            raise InputError(fill("grid_data holds something that is not a number"))
+            raise InputError.about("grid_data holds something that is not a number")
         cells = (rest + text).split()
         rest = cells.pop() if cells and not text[-1].isspace() else ""
         yield cells
@@ -666,10 +651,10 @@ def _describe_text(cells: Sequence[str], at: int, width: int) -> InputError:
         except ValueError:
             row, column = divmod(place, width)
             places = {"row": row + 1, "column": column + 1, "text": _shorten(cell)[:40]}
-            return InputError(
-                fill("grid_data, row {row:,}: number {column} is {text!r}, which is not a number", **places)
+            return InputError.about(
+                "grid_data, row {row:,}: number {column} is {text!r}, which is not a number", **places
             )
-    return InputError(fill("the XML cannot be read. Download it again"))  # pragma: no cover - one is not a number
+    return InputError.about("the XML cannot be read. Download it again")  # pragma: no cover - one is not a number
 
 
 # ---------------------------------------------------------------- places
@@ -683,15 +668,15 @@ def _arrange(
     if not is_place.all():
         row = int((~is_place).argmax())
         places = {"lat": float(latitudes[row]), "lon": float(longitudes[row])}
-        raise InputError(
-            fill("grid_data, row {row:,}: LON {lon:g} and LAT {lat:g} are not a place on earth", row=row + 1, **places)
+        raise InputError.about(
+            "grid_data, row {row:,}: LON {lon:g} and LAT {lat:g} are not a place on earth", row=row + 1, **places
         )
     longitudes = _unwrap(longitudes)
     order = np.lexsort((longitudes, latitudes))
     north, east = (values[order].reshape(rows, columns) for values in (latitudes, longitudes))
     is_regular = (north == north[:, :1]).all() and (east == east[:1]).all()
     if not (is_regular and _is_even(north[:, 0]) and _is_even(east[0])):
-        raise InputError(fill("LON and LAT are not those of a regular grid of nlon x nlat points"))
+        raise InputError.about("LON and LAT are not those of a regular grid of nlon x nlat points")
     return north[:, 0].copy(), east[0].copy(), order
 
 

@@ -133,7 +133,6 @@ def share_motions(
 
 
 def _name(target: Target, grid: Grid, seed: int, axis: str, signs: Signs | None) -> bytes:
-    """Return the hash of all that the motions depend on."""
     envelopes, signs = target.envelopes, signs if signs is not None and min(signs) < 0 else None
     found = hashlib.sha256(repr((grid, seed, axis, signs)).encode())
     numbers = target.pfa, target.pfv, envelopes.half_time

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal, Protocol, TypeVar
 
 from assess.errors import InputError
-from assess.i18n import Text, fill, join
+from assess.i18n import Text, join
 from assess.input_file import read_input
 from assess.motion.spatial_field import Measure
 
@@ -81,7 +81,7 @@ def read_again(read: Callable[[Path], Field], path: Path, sha256: str) -> Field:
     """Return what `read` makes of a path, once a process; InputError where its hash is another one by now."""
     found = read(path)
     if found.sha256 != sha256:
-        raise InputError(fill("{file} has changed since the run began: start it again.", file=path.name))
+        raise InputError.about("{file} has changed since the run began: start it again.", file=path.name)
     return found
 
 
@@ -100,4 +100,4 @@ def read_ground_file(path: Path, most: int) -> bytes:
         return read_input(path, most)
     except (OSError, ValueError) as error:  # ValueError: a zero character in the name
         why = getattr(error, "strerror", None) or str(error)
-        raise InputError(fill("{file}: the file cannot be read ({why})", file=path.name, why=why)) from None
+        raise InputError.about("{file}: the file cannot be read ({why})", file=path.name, why=why) from None

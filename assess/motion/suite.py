@@ -88,7 +88,7 @@ def read_suite(folder: Path | str, *, progress: Progress = SILENT) -> Suite:
     """
     folder = Path(folder)
     if not folder.is_dir():
-        raise RecordError(fill("{folder}: there is no such folder. Name a folder of floor records", folder=folder))
+        raise RecordError.about("{folder}: there is no such folder. Name a folder of floor records", folder=folder)
     paths = [path for path in sorted(folder.iterdir()) if path.is_file() and not path.name.startswith(".")]
     paths = [path for path in paths if path.suffix.lower() not in TEXTS]
     return progress.wait_for(lambda: _read_suite(folder, paths, progress))
@@ -112,7 +112,6 @@ def _read_suite(folder: Path, paths: list[Path], progress: Progress) -> Suite:
 
 
 def _note_directions(found: Mapping[Path, tuple[Record, ...]]) -> Iterator[str]:
-    """Yield what is left out for its direction."""
     channels = [(f"{path.name}#{one.channel}", one.vertical) for path, records in found.items() for one in records]
     vertical, unknown = ([name for name, kind in channels if kind is which] for which in (True, None))
     if vertical:
@@ -138,7 +137,7 @@ def _read(path: Path, progress: Progress) -> tuple[Record, ...]:
     try:
         return read_records(path, progress=progress)
     except RecordError as error:
-        raise RecordError(fill("{why}. Correct it, or move it out of the folder", why=error.message)) from None
+        raise RecordError.about("{why}. Correct it, or move it out of the folder", why=error.message) from None
 
 
 def _horizontal(path: Path, records: tuple[Record, ...], progress: Progress) -> Iterator[tuple[str, Motion]]:

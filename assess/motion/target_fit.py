@@ -109,7 +109,6 @@ def _summarise(
     deviation: FloatArray,
     peaks: FloatArray,
 ) -> Fit:
-    """Return the figures of spectra (k, p), whose mean deviates from the target's, and of peaks (k, 3)."""
     worst, mean = int(np.abs(deviation).argmax()), pseudo.mean(axis=0, dtype=np.float64)
     pfa, pfv, end = peaks.T
     return Fit(

@@ -56,7 +56,6 @@ def build_wavelets(periods: tuple[float, ...], time_step: float) -> Wavelets:
 
 
 def _tapered_cosine(period: float, time_step: float) -> Single:
-    """Return a wavelet whose velocity ends at 0."""
     width = CYCLES * period
     half = math.ceil(EXTENT * width / time_step)
     times = np.arange(-half, half + 1) * time_step

@@ -355,7 +355,6 @@ def _settle(s: FloatArray, count: IntArray, lane: int) -> bool:  # pragma: no co
 
 @compiled_into
 def _put(s: FloatArray, count: IntArray, lane: int, width: int, outcome: FloatArray) -> None:  # pragma: no cover
-    """Write down a lane's decided pair."""
     motion = count[MOTION + lane]
     one = outcome[count[BLOCK + lane], motion]
     one[ROTATION], one[STRUCK], one[FALL] = s[PEAK + lane] / s[ALPHA + lane], count[IMPACTS + lane], -1.0

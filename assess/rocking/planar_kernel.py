@@ -110,7 +110,6 @@ def _rests(horizontal: FloatArray, vertical: FloatArray, place: int, tan: float)
 
 @compiled_into
 def _note(state: FloatArray, trace: FloatArray, since: float) -> None:  # pragma: no cover
-    """Add a point to the path."""
     row = int(state[ROWS])
     if row < len(trace):
         trace[row, 0] = since + state[DONE]
@@ -261,7 +260,6 @@ def _evaluate(path: FloatArray, order: int, u: float) -> tuple[float, float]:  #
 def _strike(
     body: FloatArray, state: FloatArray, ground: tuple[float, float, float, float], share: float, away: int
 ) -> None:  # pragma: no cover
-    """Have a body strike its other edge, or the wall."""
     factor = body[ETA] if away == 0 else body[REBOUND]
     state[VELOCITY], state[PHI] = factor * max(0.0, -state[VELOCITY]), 0.0
     state[EDGE] = -state[EDGE] if away == 0 else state[EDGE]

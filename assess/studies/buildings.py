@@ -187,7 +187,6 @@ def rock_building(building: Building, levels: Mapping[Channel, Sequence[float]],
 
 
 def _rock(channel: Channel, grid: Grid, pfa: FloatArray, options: Options) -> Trials:
-    """Return the trials of one channel, from kept results where there are any."""
     (breadth, height), motion = build_blocks(), channel.read()
     digest = hashlib.sha256(channel.file.read_bytes()).hexdigest()
     sizes = breadth.tolist(), height.tolist()

@@ -214,7 +214,6 @@ def _paint(blocks: Sequence[Block], judged: Mapping[str, Judgement], figure: Any
 
 
 def _name_blocks(axes: Any, blocks: Sequence[Block], medians: FloatArray) -> None:
-    """Write the names of the blocks of each B/H at the end of their bars."""
     for ratio, median in {one.ratio: median for one, median in zip(blocks, medians, strict=True)}.items():
         own = [one for one in blocks if one.ratio == ratio]
         end = max(one.pga["max"] for one in own), median

@@ -97,7 +97,7 @@ def parse_records(data: bytes, name: str, *, progress: Progress = SILENT) -> tup
     """
     try:
         if not data:
-            raise RecordError(fill("the file is empty. Get it again"))
+            raise RecordError.about("the file is empty. Get it again")
         if len(data) > LARGEST_FILE:
             text = fill(
                 "the file is larger than {most:.0f} MB. Cut it to the shaking, or split its channels",
@@ -117,8 +117,8 @@ def parse_records(data: bytes, name: str, *, progress: Progress = SILENT) -> tup
 def _unsupported(data: bytes) -> RecordError:
     why = next((reason for start, reason in _FOREIGN.items() if data.startswith(start)), _PLAIN_CSV)
     known = ", ".join(candidate.title for candidate in all_formats())
-    return RecordError(
-        fill("the file format is not supported (supported: {known}; also in zip archives). {why}", known=known, why=why)
+    return RecordError.about(
+        "the file format is not supported (supported: {known}; also in zip archives). {why}", known=known, why=why
     )
 
 
@@ -126,7 +126,7 @@ def _read_member(data: bytes, file: str) -> tuple[Record, ...]:
     """Read a file of an archive: there may be many of no known format, and they are left out."""
     found = _find_format(data[:HEAD])
     if found is None:
-        raise RecordError(fill("unsupported file format"))
+        raise RecordError.about("unsupported file format")
     return found.read(data, file)
 
 

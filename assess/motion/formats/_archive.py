@@ -81,9 +81,9 @@ def read_archive(data: bytes, file: str, read: ReadMember, progress: Progress = 
         first, *others = found.records
         return (replace(first, notes=(*first.notes, note)), *others)
     if not found.reasons:
-        raise RecordError(fill("the zip archive is empty. Get it again"))
+        raise RecordError.about("the zip archive is empty. Get it again")
     listed = fill("{members}; and {more} more", members=listed, more=more) if more > 0 else listed
-    raise RecordError(fill("nothing in the zip archive can be read as a record: {members}", members=listed))
+    raise RecordError.about("nothing in the zip archive can be read as a record: {members}", members=listed)
 
 
 class _BombError(RecordError):
@@ -92,7 +92,7 @@ class _BombError(RecordError):
 
 def _read_members(data: bytes, file: str, read: ReadMember, found: _Found, progress: Progress, depth: int) -> None:
     if depth > DEEPEST:
-        raise RecordError(fill("the zip archives are nested more than {most} deep: unpack them", most=DEEPEST))
+        raise RecordError.about("the zip archives are nested more than {most} deep: unpack them", most=DEEPEST)
     with _open(data) as archive:
         for member in _list_members(archive, found):
             progress.check()
@@ -130,11 +130,11 @@ def _open(data: bytes) -> zipfile.ZipFile:
     try:
         return zipfile.ZipFile(io.BytesIO(data))
     except Exception as error:  # what zipfile raises of damaged archives is any of ten kinds
-        raise RecordError(fill("the zip archive is damaged: its directory cannot be read. Get it again")) from error
+        raise RecordError.about("the zip archive is damaged: its directory cannot be read. Get it again") from error
 
 
 def _too_many() -> _BombError:
-    return _BombError(fill("the zip archive has more than {most:,} members: unpack it", most=MOST_MEMBERS))
+    return _BombError.about("the zip archive has more than {most:,} members: unpack it", most=MOST_MEMBERS)
 
 
 def _list_members(archive: zipfile.ZipFile, found: _Found) -> list[zipfile.ZipInfo]:
@@ -144,14 +144,11 @@ def _list_members(archive: zipfile.ZipFile, found: _Found) -> list[zipfile.ZipIn
     if found.members > MOST_MEMBERS:
         raise _too_many()
     if any(member.filename in _OFFICE for member in members):
-        raise RecordError(fill("the file is a workbook or another office file, not a record: save the sheet as CSV"))
+        raise RecordError.about("the file is a workbook or another office file, not a record: save the sheet as CSV")
     locked = next((clean_name(member) for member in members if member.flag_bits & _LOCKED), None)
     if locked is not None:
-        raise _BombError(
-            fill(
-                "{member} is locked with a password: unpack the archive, and name the file of the channel",
-                member=locked,
-            )
+        raise _BombError.about(
+            "{member} is locked with a password: unpack the archive, and name the file of the channel", member=locked
         )
     return members
 
@@ -170,13 +167,11 @@ def _unpack(archive: zipfile.ZipFile, member: zipfile.ZipInfo, found: _Found) ->
         raise RecordError(why) from error
     found.unpacked += len(content)
     if len(content) > room:
-        raise _BombError(
-            fill(
-                "the zip archive holds more than {most:.0f} MB, or {largest:.0f} MB in one member: unpack it, and name "
-                "the file of the channel",
-                most=MOST_UNPACKED / 1e6,
-                largest=LARGEST_MEMBER / 1e6,
-            )
+        raise _BombError.about(
+            "the zip archive holds more than {most:.0f} MB, or {largest:.0f} MB in one member: unpack it, and name "
+            "the file of the channel",
+            most=MOST_UNPACKED / 1e6,
+            largest=LARGEST_MEMBER / 1e6,
         )
     return content
 
@@ -184,17 +179,13 @@ def _unpack(archive: zipfile.ZipFile, member: zipfile.ZipInfo, found: _Found) ->
 def _check_member(member: zipfile.ZipInfo) -> None:
     """Raise RecordError for a member that is not to be unpacked, going by its directory entry."""
     if member.compress_type not in _METHODS:
-        raise RecordError(
-            fill(
-                "the file is compressed by a method that is not supported ({method}): unpack the archive",
-                method=member.compress_type,
-            )
+        raise RecordError.about(
+            "the file is compressed by a method that is not supported ({method}): unpack the archive",
+            method=member.compress_type,
         )
     if member.file_size > max(RATIO_FROM, MOST_RATIO * member.compress_size):
-        raise _BombError(
-            fill(
-                "{member} unpacks to more than {most} times its size, which no record does. Get the archive again",
-                member=clean_name(member),
-                most=MOST_RATIO,
-            )
+        raise _BombError.about(
+            "{member} unpacks to more than {most} times its size, which no record does. Get the archive again",
+            member=clean_name(member),
+            most=MOST_RATIO,
         )

@@ -50,39 +50,33 @@ def select(records: Sequence[Record], channel: str | None = None) -> Record:
     if numbered and (len(records) == 1 or not (is_archive or any(one.channel.isdecimal() for one in records))):
         return numbered[0]
     names = _list(list_addresses(records))
-    raise RecordError(
-        fill(
-            "{file} has no channel {channel!r}. It holds: {names}",
-            file=_name_file(records),
-            channel=channel.strip(),
-            names=names,
-        )
+    raise RecordError.about(
+        "{file} has no channel {channel!r}. It holds: {names}",
+        file=_name_file(records),
+        channel=channel.strip(),
+        names=names,
     )
 
 
 def _unnamed(records: Sequence[Record]) -> RecordError:
     names = list_addresses(records)
-    return RecordError(
-        fill(
-            "{file} holds {count} channels: {names}. Name one of them, such as {file}#{first}",
-            file=_name_file(records),
-            count=len(records),
-            names=_list(names),
-            first=names[0],
-        )
+    return RecordError.about(
+        "{file} holds {count} channels: {names}. Name one of them, such as {file}#{first}",
+        file=_name_file(records),
+        count=len(records),
+        names=_list(names),
+        first=names[0],
     )
 
 
 def _ambiguous(records: Sequence[Record], channel: str, named: Sequence[Record]) -> RecordError:
     addresses = zip(list_addresses(records), records, strict=True)
-    return RecordError(
-        fill(
-            "{file} has {count} channels named {channel!r}. Name one of them: {names}",
-            file=_name_file(records),
-            count=len(named),
-            channel=channel.strip(),
-            names=_list([address for address, record in addresses if record in named]),
-        )
+    return RecordError.about(
+        "{file} has {count} channels named {channel!r}. Name one of them: {names}",
+        file=_name_file(records),
+        count=len(named),
+        channel=channel.strip(),
+        names=_list([address for address, record in addresses if record in named]),
     )
 
 
@@ -102,7 +96,6 @@ def rename_duplicates(records: Sequence[Record]) -> tuple[Record, ...]:
 
 
 def _ways(record: Record) -> Iterator[str]:
-    """Yield how a record can be addressed, the shortest way first."""
     yield record.channel
     parts = record.file.split("/")[1:]
     for first in reversed(range(len(parts))):
@@ -110,12 +103,10 @@ def _ways(record: Record) -> Iterator[str]:
 
 
 def _spellings(record: Record) -> set[str]:
-    """Return every way, and each member without its channel."""
     return {spelling for way in _ways(record) for spelling in _short(way, record)}
 
 
 def _whole(record: Record) -> set[str]:
-    """Return the longest way, and the same without the channel, for a record of an archive."""
     return _short(list(_ways(record))[-1], record) if "/" in record.file else set()
 
 

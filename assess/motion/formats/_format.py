@@ -96,7 +96,6 @@ def build_record(
 
 
 def _note_peak(header_pfa: float | None, file_pfa: float) -> tuple[Text, ...]:
-    """Return a note where the peak printed in the header [m/s2] is not that of the data [m/s2]."""
     if header_pfa is None or abs(header_pfa - file_pfa) <= HEADER_PEAK_WITHIN * file_pfa:
         return ()
     note = fill(
@@ -117,18 +116,16 @@ def even_series(values: FloatArray, time_step: float, notes: Sequence[str] = ())
 def check_channels(count: int) -> None:
     """Raise RecordError if a file has more channels than are read."""
     if count > MOST_CHANNELS:
-        raise RecordError(
-            fill("the file has more than {most} channels: give a file with those that are needed", most=MOST_CHANNELS)
+        raise RecordError.about(
+            "the file has more than {most} channels: give a file with those that are needed", most=MOST_CHANNELS
         )
 
 
 def too_many_values() -> RecordError:
     """Return the error for a file with more samples than are read."""
-    return RecordError(
-        fill(
-            "the file has more than {most:,} samples: give the channels that are needed, cut to the shaking",
-            most=MOST_VALUES,
-        )
+    return RecordError.about(
+        "the file has more than {most:,} samples: give the channels that are needed, cut to the shaking",
+        most=MOST_VALUES,
     )
 
 
@@ -150,8 +147,8 @@ def keep_readable(parts: Iterable[tuple[str, T]], read: Callable[[T], Record]) -
         raise RecordError(reasons[0][1])
     if not records:
         listed = join("; ", (join(": ", reason) for reason in reasons[:MOST_NOTES]))
-        raise RecordError(
-            fill("none of its {count} channels can be read: {reasons}", count=len(reasons), reasons=listed)
+        raise RecordError.about(
+            "none of its {count} channels can be read: {reasons}", count=len(reasons), reasons=listed
         )
     notes = [
         fill("{part} of the file is left out: {reason}", part=name, reason=reason)

@@ -134,7 +134,7 @@ def split_lines(data: bytes) -> Lines:
         If there are more than any record has.
     """
     if data.count(b"\n") + data.count(b"\r") > MOST_LINES:
-        raise RecordError(fill("the file has more than {most:,} lines: cut it to the shaking", most=MOST_LINES))
+        raise RecordError.about("the file has more than {most:,} lines: cut it to the shaking", most=MOST_LINES)
     text = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     signs = np.frombuffer(text, dtype=np.uint8)
     ends = [at + np.flatnonzero(signs[at : at + BLOCK] == ord("\n")) for at in range(0, len(text), BLOCK)]
@@ -181,7 +181,7 @@ def text_format(
         found = (place for place, line in enumerate(lines) if starts.match(line[:LONGEST_TEXT]))
         places = list(islice(found, MOST_CHANNELS + 1))
         if not places:
-            raise RecordError(fill("{what}. Get the file again", what=missing))
+            raise RecordError.about("{what}. Get the file again", what=missing)
         check_channels(len(places))
         sections = choose([Section(lines[place:end], place) for place, end in pairwise([*places, len(lines)])])
         numbered = ((fill("channel {number}", number=number), one) for number, one in enumerate(sections, start=1))
@@ -271,34 +271,28 @@ def note_beyond(beyond: int, count: int) -> tuple[Text, ...]:
 
 def _check_count(count: float) -> None:
     if not 1 <= count <= 2 * MOST_SAMPLES:  # twice: pairs of time and acceleration
-        raise RecordError(
-            fill(
-                "the header announces {count:.10g} data values, expected 1 to {most:,}. Get the file again",
-                count=count,
-                most=2 * MOST_SAMPLES,
-            )
+        raise RecordError.about(
+            "the header announces {count:.10g} data values, expected 1 to {most:,}. Get the file again",
+            count=count,
+            most=2 * MOST_SAMPLES,
         )
 
 
 def cut_short(announced: int, there: int) -> RecordError:
     """Return the error for a file with fewer numbers than its header announces."""
-    return RecordError(
-        fill(
-            "the file is cut short: it has {there} of the {announced} data values that its header announces. Get "
-            "the file again",
-            there=there,
-            announced=announced,
-        )
+    return RecordError.about(
+        "the file is cut short: it has {there} of the {announced} data values that its header announces. Get "
+        "the file again",
+        there=there,
+        announced=announced,
     )
 
 
 def too_long(announced: int) -> RecordError:
     """Return the error for a file with more numbers than its header announces."""
-    return RecordError(
-        fill(
-            "the file has more data values than the {announced} that its header announces. Get the file again",
-            announced=announced,
-        )
+    return RecordError.about(
+        "the file has more data values than the {announced} that its header announces. Get the file again",
+        announced=announced,
     )
 
 
@@ -355,4 +349,4 @@ def _no_number(text: str, place: int, section: Section, start: int, per_line: in
     where = fill("number {number} of the data", number=place + 1)
     if per_line is not None:
         where = fill("line {line}", line=section.number(start + place // per_line))
-    return RecordError(fill("{where}: {what}. Get the file again", where=where, what=what))
+    return RecordError.about("{where}: {what}. Get the file again", where=where, what=what)

@@ -41,7 +41,7 @@ def require_unit(text: str) -> float:
     """Return the factor from the unit that `text` names to m/s2; RecordError where it is no unit of acceleration."""
     factor = read_acceleration_unit(text)
     if factor is None:
-        raise RecordError(fill("{unit!r} is not a known unit of acceleration. Get the file again", unit=text[:20]))
+        raise RecordError.about("{unit!r} is not a known unit of acceleration. Get the file again", unit=text[:20])
     return factor
 
 

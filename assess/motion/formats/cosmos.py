@@ -69,16 +69,13 @@ class _Numbers:
 
 
 def _choose(sections: list[Section]) -> list[Section]:
-    """Return the sections that hold accelerations."""
     found = [_START.match(section.lines[0]) for section in sections]
     kinds = [hit["kind"].strip() if hit else "" for hit in found]
     wanted = [section for section, kind in zip(sections, kinds, strict=True) if _WANTED.search(kind)]
     if not wanted:
-        raise RecordError(
-            fill(
-                "the file holds {kind}, not accelerations. Give the acceleration file of the same channel",
-                kind=kinds[0][:40].lower() or fill("unnamed data"),
-            )
+        raise RecordError.about(
+            "the file holds {kind}, not accelerations. Give the acceleration file of the same channel",
+            kind=kinds[0][:40].lower() or fill("unnamed data"),
         )
     return wanted
 
@@ -101,7 +98,7 @@ def _read_data(section: Section, header: _Numbers) -> Series:
     title = section.text(header.data or 0)
     found = _DATA.match(title)
     if header.data is None or found is None or len(header.integers) <= AZIMUTH or len(header.reals) <= STEP:
-        raise RecordError(fill("the header is incomplete. Get the file again"))
+        raise RecordError.about("the header is incomplete. Get the file again")
     factor = _factor(found["unit"].strip(), int(found["code"]))
     columns = read_format(title, Columns(8, 10))
     values = read_columns(section, header.data + 1, int(found["count"]), columns, factor)
@@ -132,22 +129,18 @@ def _read_channel(section: Section, file: str) -> Record:
 
 def _factor(unit: str, code: int) -> float:
     if unit.lower() in {"counts", "count", "volts", "volt", "mvolts"}:
-        raise RecordError(
-            fill(
-                "the file holds raw data in {unit} (volume 0), not accelerations. Give volume 1 or 2 of the same "
-                "channel, or convert it to m/s2 and save it as plain CSV",
-                unit=unit,
-            )
+        raise RecordError.about(
+            "the file holds raw data in {unit} (volume 0), not accelerations. Give volume 1 or 2 of the same "
+            "channel, or convert it to m/s2 and save it as plain CSV",
+            unit=unit,
         )
     factor = UNITS.get(code)
     named = read_acceleration_unit(unit)
     if factor is None or (named is not None and abs(named / factor - 1) > 1e-9):
-        raise RecordError(
-            fill(
-                "the unit {unit!r} with the code {code} is not a known unit of acceleration. Get the file again",
-                unit=unit[:20],
-                code=code,
-            )
+        raise RecordError.about(
+            "the unit {unit!r} with the code {code} is not a known unit of acceleration. Get the file again",
+            unit=unit[:20],
+            code=code,
         )
     return factor
 

@@ -79,15 +79,14 @@ def _read_v1(section: Section, file: str) -> Record:
 
 
 def _read_data_v1(section: Section) -> tuple[FloatArray, Series]:
-    """Return the file's own samples [m/s2], and the same evenly spaced."""
     title = read_fields(section, TITLE_V1)
     if not title["count"]:
         return _read_pairs(section)
     rate, factor = read_finite(title["rate"]), read_acceleration_unit(title["unit"])
     if not rate or factor is None:
         line = section.number(DATA_V1)
-        raise RecordError(
-            fill("line {line}: the sampling rate or the unit cannot be read. Get the file again", line=line)
+        raise RecordError.about(
+            "line {line}: the sampling rate or the unit cannot be read. Get the file again", line=line
         )
     columns = read_format(section.text(DATA_V1), EVEN)
     own = read_columns(section, DATA_V1 + 1, int(title["count"]), columns, factor)
@@ -98,7 +97,7 @@ def _read_pairs(section: Section) -> tuple[FloatArray, Series]:
     header = "\n".join(section.lines[:TEXT_V1])
     points, unit = _COUNT.search(header), _UNIT.search(header)
     if not points or not unit:
-        raise RecordError(fill("the header does not give the number of points, or their unit. Get the file again"))
+        raise RecordError.about("the header does not give the number of points, or their unit. Get the file again")
     numbers = read_columns(section, DATA_V1, 2 * int(points[1]), PAIRS)
     with np.errstate(over="ignore"):  # what becomes infinite is refused where samples are checked
         own = numbers[1::2] * (read_acceleration_unit(unit[1]) or np.nan)
@@ -109,14 +108,12 @@ def _read_v2(section: Section, file: str) -> Record:
     lines = enumerate(section.lines[TEXT_V2:], start=TEXT_V2)
     place = next((place for place, line in lines if _DATA_V2.match(line)), None)
     if place is None:
-        raise RecordError(fill('no line says "points of accel data equally spaced at". Get the file again'))
+        raise RecordError.about('no line says "points of accel data equally spaced at". Get the file again')
     title = read_fields(section, TITLE_V2, place)
     factor, step = read_acceleration_unit(title["unit"]), read_finite(title["step"])
     if step is None or factor is None:
-        raise RecordError(
-            fill(
-                "line {line}: the time step or the unit cannot be read. Get the file again", line=section.number(place)
-            )
+        raise RecordError.about(
+            "line {line}: the time step or the unit cannot be read. Get the file again", line=section.number(place)
         )
     columns = read_format(section.text(place), CORRECTED)
     own = read_columns(section, place + 1, int(title["count"]), columns, factor)
@@ -151,10 +148,8 @@ def _build(
 
 def _refuse_spectra(sections: list[Section]) -> list[Section]:
     if _SPECTRA.match(sections[0].lines[0]):
-        raise RecordError(
-            fill(
-                "the file holds response spectra (volume 3), not accelerations. Give volume 2 or 1 of the same channels"
-            )
+        raise RecordError.about(
+            "the file holds response spectra (volume 3), not accelerations. Give volume 2 or 1 of the same channels"
         )
     return [section for section in sections if not _SPECTRA.match(section.lines[0])]
 

@@ -8,7 +8,6 @@ import re
 from collections import defaultdict
 
 from assess.errors import RecordError
-from assess.i18n import fill
 from assess.motion.formats._direction import read_direction
 from assess.motion.formats._format import build_record, even_series
 from assess.motion.formats._text import Section, read_words, text_format
@@ -30,16 +29,14 @@ def _read_channel(section: Section, file: str) -> Record:
     header, first = _read_header(section)
     kind = header.get("DATA_TYPE", "ACCELERATION")
     if kind.upper() != "ACCELERATION":
-        raise RecordError(
-            fill(
-                "the file holds {kind}, not accelerations. Give the .ACC. file of the same channel",
-                kind=name_quantity(kind[:40]),
-            )
+        raise RecordError.about(
+            "the file holds {kind}, not accelerations. Give the .ACC. file of the same channel",
+            kind=name_quantity(kind[:40]),
         )
     factor = require_unit(header["UNITS"])
     count, step = read_finite(header["NDATA"]), read_finite(header["SAMPLING_INTERVAL_S"])
     if count is None or step is None:
-        raise RecordError(fill("the header does not give NDATA and SAMPLING_INTERVAL_S. Get the file again"))
+        raise RecordError.about("the header does not give NDATA and SAMPLING_INTERVAL_S. Get the file again")
     values, notes = read_words(section, first, count, factor)
     name, code = header["STATION_NAME"], header["STATION_CODE"]
     return build_record(
@@ -66,7 +63,7 @@ def _read_header(section: Section) -> tuple[dict[str, str], int]:
         if not found:
             return header, place
         header[found[1]] = found[2].strip()
-    raise RecordError(fill("there are no data below the header. Get the file again"))
+    raise RecordError.about("there are no data below the header. Get the file again")
 
 
 FORMAT = text_format(

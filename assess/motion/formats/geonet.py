@@ -56,33 +56,29 @@ def _read_channel(section: Section, file: str) -> Record:
 
 
 def _read_number(section: Section, line: int, column: int) -> float:
-    """Return a number of the header; they have blanks between them."""
     words = section.text(TEXT + line).split()
     number = read_finite(words[column]) if column < len(words) else None
     if number is None:
-        raise RecordError(
-            fill(
-                "line {line}: number {number} is missing. Get the file again",
-                line=section.number(TEXT + line),
-                number=column + 1,
-            )
+        raise RecordError.about(
+            "line {line}: number {number} is missing. Get the file again",
+            line=section.number(TEXT + line),
+            number=column + 1,
         )
     return number
 
 
 def _read_units(section: Section, header: dict[str, str]) -> tuple[float, float]:
-    """Return the factor to m/s2, and the peak printed in the header [m/s2]."""
     factor = read_acceleration_unit(header["unit"])
     header_pfa = read_peak(header["peak"], factor)
     if factor is None or header_pfa is None:
         line = section.number(13)
-        raise RecordError(fill("line {line}: the peak and its unit cannot be read. Get the file again", line=line))
+        raise RecordError.about("line {line}: the peak and its unit cannot be read. Get the file again", line=line)
     if not header["raw"]:
         return factor, header_pfa
     multiple, unit = read_finite(header["multiple"]), read_acceleration_unit(header["raw_unit"])
     if not multiple or unit is None:
         line = section.number(10)
-        raise RecordError(fill("line {line}: the unit cannot be read. Get the file again", line=line))
+        raise RecordError.about("line {line}: the unit cannot be read. Get the file again", line=line)
     return multiple * unit, header_pfa
 
 

@@ -14,7 +14,6 @@ import re
 from datetime import datetime, timedelta
 
 from assess.errors import RecordError
-from assess.i18n import fill
 from assess.motion.formats._direction import read_direction
 from assess.motion.formats._format import build_record, even_series
 from assess.motion.formats._text import Section, read_words, text_format
@@ -52,11 +51,9 @@ def _read_channel(section: Section, file: str) -> Record:
     found = _SCALE.match(text)
     above, below = (read_finite(found[1]), read_finite(found[2])) if found else (None, None)
     if not above or not below:
-        raise RecordError(
-            fill(
-                "the scale factor is {text!r}, expected a ratio such as 3920(gal)/6182761. Get the file again",
-                text=text[:40],
-            )
+        raise RecordError.about(
+            "the scale factor is {text!r}, expected a ratio such as 3920(gal)/6182761. Get the file again",
+            text=text[:40],
         )
     values, notes = read_words(section, HEADER, rate * seconds, above / below * GAL)
     direction = header.get("Dir.", "")
@@ -82,12 +79,10 @@ def _number(header: dict[str, str], key: str) -> float:
     found = _NUMBER.match(header.get(key, ""))
     number = read_finite(found[0]) if found else None
     if not number:
-        raise RecordError(
-            fill(
-                "{key} is {text!r} in the header, expected a number above 0. Get the file again",
-                key=key,
-                text=header.get(key, "")[:40],
-            )
+        raise RecordError.about(
+            "{key} is {text!r} in the header, expected a number above 0. Get the file again",
+            key=key,
+            text=header.get(key, "")[:40],
         )
     return number
 

@@ -90,11 +90,11 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
             channels.setdefault(part.id, []).append(part)
             check_channels(len(channels))
             if number >= MOST_PARTS:
-                raise RecordError(
-                    fill("the file has more than {most:,} records of miniSEED: cut it to the shaking", most=MOST_PARTS)
+                raise RecordError.about(
+                    "the file has more than {most:,} records of miniSEED: cut it to the shaking", most=MOST_PARTS
                 )
     if not channels:
-        raise RecordError(fill("the file has no complete miniSEED record. Get the file again"))
+        raise RecordError.about("the file has no complete miniSEED record. Get the file again")
     codes = [parts[0].code for parts in channels.values()]
     note = nfill(
         "{n} byte that is no whole record of miniSEED was left out",
@@ -181,7 +181,6 @@ def _list_blockettes(data: bytes, at: int, place: int, order: str) -> Iterator[t
 
 
 def _nominal_rate(factor: int, multiplier: int) -> float:
-    """Return the samples per second; a factor or a multiplier below zero divides."""
     if not factor or not multiplier:
         return 0.0
     rate = float(factor) if factor > 0 else -1.0 / factor
@@ -189,13 +188,11 @@ def _nominal_rate(factor: int, multiplier: int) -> float:
 
 
 def _read_names(data: bytes, at: int) -> _Names:
-    """Return network, station, location and channel."""
     text = data[at + 8 : at + 20].decode("latin-1").replace("\0", " ")
     return text[10:12].strip(), text[:5].strip(), text[5:7].strip(), text[7:10].strip()
 
 
 def _read_channel(file: str, parts: Sequence[_Part], notes: Sequence[str], whole_name: bool) -> Record:
-    """Read one channel from its parts; `whole_name` where other channels have the same code."""
     first = parts[0]
     network, station, location, code = first.names
     _check_samples_type(code, parts)
@@ -219,22 +216,18 @@ def _read_channel(file: str, parts: Sequence[_Part], notes: Sequence[str], whole
 def _check_samples_type(code: str, parts: Sequence[_Part]) -> None:
     encodings = {part.encoding for part in parts}
     if encodings - {TEXT, *REALS}:
-        raise RecordError(
-            fill(
-                "the channel holds raw counts, not accelerations. Remove the instrument's response with ObsPy "
-                '(stream.remove_response(inventory, output="ACC")) and save the result as miniSEED, or as plain CSV in '
-                "m/s2"
-            )
+        raise RecordError.about(
+            "the channel holds raw counts, not accelerations. Remove the instrument's response with ObsPy "
+            '(stream.remove_response(inventory, output="ACC")) and save the result as miniSEED, or as plain CSV in '
+            "m/s2"
         )
     if TEXT in encodings:
-        raise RecordError(fill("the channel holds no numbers. Give a channel of an accelerometer"))
+        raise RecordError.about("the channel holds no numbers. Give a channel of an accelerometer")
     if code[1:2] != "N":
-        raise RecordError(
-            fill(
-                "the channel's code {code!r} is not that of an accelerometer (such as HNE). Save the accelerations as "
-                "plain CSV in m/s2",
-                code=code,
-            )
+        raise RecordError.about(
+            "the channel's code {code!r} is not that of an accelerometer (such as HNE). Save the accelerations as "
+            "plain CSV in m/s2",
+            code=code,
         )
 
 
@@ -259,7 +252,6 @@ def _join(parts: Sequence[_Part], notes: Sequence[str]) -> tuple[Series, FloatAr
 
 
 def _follows(before: _Part, part: _Part) -> bool:
-    """Return whether a record goes on where the one before it ended."""
     passed = (part.start - before.start).total_seconds()
     return part.rate == before.rate and abs(passed * part.rate - before.samples.size) <= JOINED
 

@@ -9,7 +9,6 @@ Source: Pacific Earthquake Engineering Research Center, NGA ground motion databa
 import re
 
 from assess.errors import RecordError
-from assess.i18n import fill
 from assess.motion.formats._direction import read_direction
 from assess.motion.formats._format import build_record, even_series
 from assess.motion.formats._text import Section, fields, read_fields, read_words, text_format
@@ -34,19 +33,16 @@ def _read_channel(section: Section, file: str) -> Record:
     header = read_fields(section, HEADER)
     kind = header["kind"].lower()
     if not kind:
-        raise RecordError(fill("the header does not name what the file holds. Get the file again"))
+        raise RecordError.about("the header does not name what the file holds. Get the file again")
     if kind != "acceleration":
-        raise RecordError(
-            fill(
-                "the file holds {kind}, not accelerations. Give the .AT2 file of the same channel",
-                kind=name_quantity(kind),
-            )
+        raise RecordError.about(
+            "the file holds {kind}, not accelerations. Give the .AT2 file of the same channel", kind=name_quantity(kind)
         )
     factor = require_unit(header["unit"])
     count, step = header["count"] or header["old_count"], read_finite(header["step"] or header["old_step"])
     if not count or step is None:
-        raise RecordError(
-            fill("line {line} does not give the number of points and their time step. Get the file again", line=DATA)
+        raise RecordError.about(
+            "line {line} does not give the number of points and their time step. Get the file again", line=DATA
         )
     values, notes = read_words(section, DATA, int(count), factor)
     event, station, component = _read_title(header["title"])

@@ -121,7 +121,6 @@ def _heading_line(lines: Sequence[str]) -> tuple[int, str]:
 
 
 def _read_head(data: bytes) -> _Table:
-    """Take apart what stands before the samples; refuse more channels than are read before they are told apart."""
     lines, start = _split_head(data)
     separator = next((mark for mark in "\t;" if mark in lines[-1]), ",")
     headings = _cells(lines[-1], separator)
@@ -132,7 +131,6 @@ def _read_head(data: bytes) -> _Table:
 
 
 def _split_head(data: bytes) -> tuple[list[str], int]:
-    """Return the lines down to the headings, and where the next line starts [bytes]."""
     head, start, line = data[:MOST_HEAD], 0, 1
     for end in _LINE_END.finditer(head if len(data) > MOST_HEAD else head + b"\n"):
         own = decode(head[start : end.start()])
@@ -141,22 +139,19 @@ def _split_head(data: bytes) -> tuple[list[str], int]:
         start, line = end.end(), line + 1
     if len(data) > MOST_HEAD:
         raise _too_long(line)
-    raise RecordError(fill("there is no row of headings. Add one, such as: time [s], north [cm/s2]"))
+    raise RecordError.about("there is no row of headings. Add one, such as: time [s], north [cm/s2]")
 
 
 def _too_long(line: int) -> RecordError:
-    return RecordError(
-        fill(
-            "line {line} has more than {most} channels, or the end of the line is missing: give a file with the "
-            "channels that are needed, one row to a line",
-            line=line,
-            most=MOST_CHANNELS,
-        )
+    return RecordError.about(
+        "line {line} has more than {most} channels, or the end of the line is missing: give a file with the "
+        "channels that are needed, one row to a line",
+        line=line,
+        most=MOST_CHANNELS,
     )
 
 
 def _cells(line: str, separator: str) -> list[str]:
-    """Return the cells of a line, without the empty ones that spreadsheets leave at its end."""
     cells = [cell.strip().strip('"').strip() for cell in line.split(separator)]
     while cells and not cells[-1]:
         cells.pop()
@@ -171,19 +166,19 @@ def _read_comment(line: str) -> tuple[str, str] | None:
 def _read_columns(headings: Sequence[str], line: int) -> tuple[_Column, ...]:
     if _take_unit(headings[0])[1] not in TIME:
         heading = headings[0][:80]
-        raise RecordError(
-            fill("line {line}: {heading!r} needs its unit, seconds: time [s]", line=line, heading=heading)
+        raise RecordError.about(
+            "line {line}: {heading!r} needs its unit, seconds: time [s]", line=line, heading=heading
         )
     columns = tuple(_read_column(heading, line) for heading in headings[1:])
     names = [column.name.casefold() for column in columns]
     if not columns:
-        raise RecordError(
-            fill("line {line}: there is no channel next to time. Add one, such as: north [cm/s2]", line=line)
+        raise RecordError.about(
+            "line {line}: there is no channel next to time. Add one, such as: north [cm/s2]", line=line
         )
     twice = next((column.name for column in columns if names.count(column.name.casefold()) > 1), None)
     if twice is not None:
-        raise RecordError(
-            fill("line {line}: two channels are called {name!r}. Give each its own name", line=line, name=twice[:80])
+        raise RecordError.about(
+            "line {line}: two channels are called {name!r}. Give each its own name", line=line, name=twice[:80]
         )
     return columns
 
@@ -191,21 +186,18 @@ def _read_columns(headings: Sequence[str], line: int) -> tuple[_Column, ...]:
 def _read_column(heading: str, line: int) -> _Column:
     name, unit = _take_unit(heading)
     if unit not in ACCELERATION:
-        raise RecordError(
-            fill(
-                "line {line}: {heading!r} has no known unit of acceleration (known: {units}). Write it in brackets: "
-                "{name} [cm/s2]",
-                line=line,
-                heading=heading[:80],
-                units=UNITS,
-                name=name[:60],
-            )
+        raise RecordError.about(
+            "line {line}: {heading!r} has no known unit of acceleration (known: {units}). Write it in brackets: "
+            "{name} [cm/s2]",
+            line=line,
+            heading=heading[:80],
+            units=UNITS,
+            name=name[:60],
         )
     return _Column(name or "acceleration", ACCELERATION[unit])
 
 
 def _take_unit(heading: str) -> tuple[str, str]:
-    """Split ``name [unit]``; the unit is "" where there are no brackets."""
     name, bracket, unit = heading.rpartition("[")
     if not bracket or not unit.endswith("]"):
         return heading, ""
@@ -220,14 +212,14 @@ def _read_values(data: bytes, table: _Table) -> list[FloatArray]:
         numbers = _read_block(block, table, line)
         rows += len(numbers) // width
         if rows > MOST_SAMPLES:
-            raise RecordError(fill("the file has more than {most:,} rows: cut it to the shaking", most=MOST_SAMPLES))
+            raise RecordError.about("the file has more than {most:,} rows: cut it to the shaking", most=MOST_SAMPLES)
         if rows * width > MOST_VALUES:
             raise too_many_values()
         found = np.array(numbers).reshape(-1, width)
         for column, own in zip(columns, found.T, strict=True):
             column.append(own.copy())
     if not rows:
-        raise RecordError(fill("there are no rows below the headings. Add the samples"))
+        raise RecordError.about("there are no rows below the headings. Add the samples")
     whole = []
     while columns:  # each is let go as it is joined
         whole.append(np.concatenate(columns.pop(0)))
@@ -295,13 +287,11 @@ def _read_lines(lines: Sequence[bytes], table: _Table, first: int) -> list[float
 def _read_row(cells: Sequence[str], table: _Table, line: int) -> list[float]:
     width = 1 + len(table.columns)
     if len(cells) != width:
-        raise RecordError(
-            fill(
-                "line {line}: the number of cells is {cells}, but there are {headings} headings",
-                line=line,
-                cells=len(cells),
-                headings=width,
-            )
+        raise RecordError.about(
+            "line {line}: the number of cells is {cells}, but there are {headings} headings",
+            line=line,
+            cells=len(cells),
+            headings=width,
         )
     return [_read_number(cell, table.separator, line) for cell in cells]
 
@@ -309,7 +299,7 @@ def _read_row(cells: Sequence[str], table: _Table, line: int) -> list[float]:
 def _read_number(cell: str, separator: str, line: int) -> float:
     text = cell if separator == "," else cell.replace(",", ".")
     if not _NUMBER.fullmatch(text):
-        raise RecordError(fill("line {line}: {text!r} is not a number", line=line, text=cell[:40]))
+        raise RecordError.about("line {line}: {text!r} is not a number", line=line, text=cell[:40])
     return float(text)
 
 
@@ -321,16 +311,14 @@ def _read_directions(table: _Table) -> dict[str, Direction]:
     for part in parts:
         name, equals, value = part.rpartition("=")
         if len(parts) > 1 and not equals:
-            raise RecordError(
-                fill("several azimuths need the names of their channels, such as: # azimuth: north=0, east=90")
+            raise RecordError.about(
+                "several azimuths need the names of their channels, such as: # azimuth: north=0, east=90"
             )
         if equals and name.strip().casefold() not in given:
-            raise RecordError(
-                fill(
-                    "an azimuth is given for {name!r}, but the channels are: {names}",
-                    name=name.strip()[:80],
-                    names=", ".join(directions),
-                )
+            raise RecordError.about(
+                "an azimuth is given for {name!r}, but the channels are: {names}",
+                name=name.strip()[:80],
+                names=", ".join(directions),
             )
         for own in [given[name.strip().casefold()]] if equals else list(directions):
             directions[own] = _read_azimuth(value.strip())
@@ -343,11 +331,8 @@ def _read_azimuth(text: str) -> Direction:
         return float(number), False
     found = read_direction(text, bare_degrees=False)
     if found == UNKNOWN:
-        raise RecordError(
-            fill(
-                "the azimuth is {text!r}, expected 0 to 360 degrees clockwise from north, or up",
-                text=text[:40],
-            )
+        raise RecordError.about(
+            "the azimuth is {text!r}, expected 0 to 360 degrees clockwise from north, or up", text=text[:40]
         )
     return found
 
@@ -358,11 +343,11 @@ def _build_record(
     try:
         series = build_series(times, own)
     except RecordError as error:
-        raise RecordError(fill("channel {name!r}: {why}", name=column.name, why=error.message)) from None
+        raise RecordError.about("channel {name!r}: {why}", name=column.name, why=error.message) from None
     comments = table.comments
     answer = comments.get("corrected", "").lower()
     if answer not in _ANSWERS:
-        raise RecordError(fill("corrected is {text!r}, expected yes or no", text=answer[:40]))
+        raise RecordError.about("corrected is {text!r}, expected yes or no", text=answer[:40])
     unknown = ", ".join(repr(key[:40]) for key in comments if key not in KEYS)
     note = fill("comments that are not used: {names} (known: {known})", names=unknown, known=", ".join(KEYS))
     return build_record(

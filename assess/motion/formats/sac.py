@@ -79,7 +79,7 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
     """
     header = _read_header(data)
     if header is None:
-        raise RecordError(fill("the header is not that of a SAC file. Get the file again"))
+        raise RecordError.about("the header is not that of a SAC file. Get the file again")
     _check_header(header, len(data))
     with np.errstate(all="ignore"):  # what becomes infinite is refused further on
         samples = np.frombuffer(data, f"{header.order}f4", header.integers["count"], HEADER).astype(np.float64)
@@ -102,7 +102,6 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
 
 
 def _read_header(data: bytes) -> _Header | None:
-    """Return the header, None where it is not that of a SAC file."""
     for order in "<>" if len(data) >= HEADER else "":
         numbers = {name: int(struct.unpack_from(f"{order}i", data, 4 * place)[0]) for name, place in INTEGERS.items()}
         if numbers["version"] in VERSIONS and numbers["kind"] in KINDS and numbers["even"] in {0, 1}:
@@ -120,24 +119,19 @@ def _read_text(data: bytes, start: int, length: int) -> str:
 def _check_header(header: _Header, size: int) -> None:
     numbers = header.integers
     if numbers["kind"] != TIME_SERIES or numbers["even"] != 1:
-        raise RecordError(fill("the file holds no evenly sampled time series. Give the record itself"))
+        raise RecordError.about("the file holds no evenly sampled time series. Give the record itself")
     count, there = numbers["count"], (size - HEADER - FOOTER * (numbers["version"] == max(VERSIONS))) / 4
     if count <= 0 or count != there:
-        raise RecordError(
-            fill(
-                "the number of data values is {there:.10g}, but {announced} in the header. Get the file again",
-                announced=count,
-                there=there,
-            )
+        raise RecordError.about(
+            "the number of data values is {there:.10g}, but {announced} in the header. Get the file again",
+            announced=count,
+            there=there,
         )
     check_count(count)
     meaning = OTHER_MEANINGS.get(numbers["meaning"])
     if meaning:
-        raise RecordError(
-            fill(
-                "the file holds {kind}, not accelerations. Give the acceleration file of the same channel",
-                kind=meaning,
-            )
+        raise RecordError.about(
+            "the file holds {kind}, not accelerations. Give the acceleration file of the same channel", kind=meaning
         )
 
 
@@ -150,16 +144,14 @@ def _read_unit(header: _Header, values: FloatArray) -> tuple[float, str]:
             note = fill("the unit is that of the header's field {field}: {unit}", field=key.upper(), unit=text)
             return factor, note
     if header.integers["meaning"] != ACCELERATION:
-        raise RecordError(fill("the file does not give its unit. {fix}", fix=_FIX))
+        raise RecordError.about("the file does not give its unit. {fix}", fix=_FIX)
     in_nm = NM_S2 * peak(values - values.mean())
     if not in_nm >= LEAST:
-        raise RecordError(
-            fill(
-                "the header gives the type acceleration (IDEP), whose unit is nm/s2, but the peak would then be "
-                "{peak:.2g} cm/s2: the unit must be a different one. {fix}",
-                peak=100 * in_nm,
-                fix=_FIX,
-            )
+        raise RecordError.about(
+            "the header gives the type acceleration (IDEP), whose unit is nm/s2, but the peak would then be "
+            "{peak:.2g} cm/s2: the unit must be a different one. {fix}",
+            peak=100 * in_nm,
+            fix=_FIX,
         )
     return NM_S2, fill("the unit is nm/s2, what the type of the samples (IDEP) means")
 

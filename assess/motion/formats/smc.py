@@ -75,7 +75,7 @@ class _Numbers:
 def _read_channel(section: Section, file: str) -> Record:
     kind = _KIND.match(section.lines[0])
     if not kind:
-        raise RecordError(fill("the first line names no type of SMC file. Get the file again"))
+        raise RecordError.about("the first line names no type of SMC file. Get the file again")
     header = read_fields(section, HEADER)
     numbers = _read_numbers(section, kind[1], header["title"])
     own, series = _read_series(section, numbers)
@@ -104,21 +104,17 @@ def _read_channel(section: Section, file: str) -> Record:
 
 def _read_numbers(section: Section, kind: str, title: str) -> _Numbers:
     if len(section.lines) <= COMMENTS:
-        raise RecordError(
-            fill(
-                "the file is cut short: its header takes {header} lines, the file has {lines}. Get the file again",
-                header=COMMENTS,
-                lines=len(section.lines),
-            )
+        raise RecordError.about(
+            "the file is cut short: its header takes {header} lines, the file has {lines}. Get the file again",
+            header=COMMENTS,
+            lines=len(section.lines),
         )
     if kind in _REFUSED:
-        raise RecordError(
-            fill(
-                "the file holds {kind} ({title}), not accelerations. Give the acceleration file of the same channel "
-                "(type 1 or 2)",
-                kind=_REFUSED[kind],
-                title=title[:40],
-            )
+        raise RecordError.about(
+            "the file holds {kind} ({title}), not accelerations. Give the acceleration file of the same channel "
+            "(type 1 or 2)",
+            kind=_REFUSED[kind],
+            title=title[:40],
         )
     integers = _read_integers(section)
     comments = _read_comments(section.lines, integers[COMMENT_LINES])
@@ -144,14 +140,12 @@ def _read_integers(section: Section) -> list[int | None]:
 def _read_comments(lines: Sequence[str], count: int | None) -> Sequence[str]:
     found = next((place for place, line in enumerate(lines[COMMENTS:]) if not line.startswith("|")), None)
     if found is None:
-        raise RecordError(fill("there are no data below the header. Get the file again"))
+        raise RecordError.about("there are no data below the header. Get the file again")
     if found != (count or 0):
-        raise RecordError(
-            fill(
-                "the number of comment lines is {there}, but {announced} in the header. Get the file again",
-                announced=count or 0,
-                there=found,
-            )
+        raise RecordError.about(
+            "the number of comment lines is {there}, but {announced} in the header. Get the file again",
+            announced=count or 0,
+            there=found,
         )
     return [line[: 2 * LINE] for line in lines[COMMENTS : COMMENTS + found]]
 
@@ -163,29 +157,24 @@ def _read_sampling_rate(section: Section) -> float | None:
     if rate == unknown:
         return None
     if not (math.isfinite(rate) and rate > 0):
-        raise RecordError(
-            fill(
-                "line {line}: the sampling rate is {rate:g} Hz, expected above 0. Get the file again",
-                line=section.number(REALS),
-                rate=rate,
-            )
+        raise RecordError.about(
+            "line {line}: the sampling rate is {rate:g} Hz, expected above 0. Get the file again",
+            line=section.number(REALS),
+            rate=rate,
         )
     return rate
 
 
 def _read_series(section: Section, header: _Numbers) -> tuple[FloatArray, Series]:
-    """Return the file's own samples [m/s2], and the same evenly spaced."""
     numbers, notes = _read_data(section, header)
     if header.sampling_rate is not None:
         own = numbers * CM_S2
         return own, even_series(own, 1 / header.sampling_rate, notes)
     if numbers.size % 2:
-        raise RecordError(
-            fill(
-                "the number of data values is {count}, which is odd: they cannot be pairs of time and acceleration. "
-                "Get the file again",
-                count=numbers.size,
-            )
+        raise RecordError.about(
+            "the number of data values is {count}, which is odd: they cannot be pairs of time and acceleration. "
+            "Get the file again",
+            count=numbers.size,
         )
     own = numbers[1::2] * CM_S2
     series = build_series(numbers[0::2], own)
@@ -196,18 +185,16 @@ def _read_data(section: Section, header: _Numbers) -> tuple[FloatArray, tuple[st
     """Return as many numbers as the header announces, and a note on those beyond."""
     announced, first = header.integers[DATA_COUNT] or 0, COMMENTS + len(header.comments)
     if announced <= 0:
-        raise RecordError(
-            fill("the number of data values is {announced} in the header. Get the file again", announced=announced)
+        raise RecordError.about(
+            "the number of data values is {announced} in the header. Get the file again", announced=announced
         )
     lines = section.lines[first:]
     wide = next((place for place in np.flatnonzero(lines.lengths > LINE).tolist() if lines[place][LINE:].strip()), None)
     if wide is not None:
-        raise RecordError(
-            fill(
-                "line {line} is longer than {most} characters. Get the file again",
-                line=section.number(first + wide),
-                most=LINE,
-            )
+        raise RecordError.about(
+            "line {line} is longer than {most} characters. Get the file again",
+            line=section.number(first + wide),
+            most=LINE,
         )
     there = sum(int(has_text(cells).sum()) for cells in lines.cut(DATA, is_whole=True))
     if not 0 <= there - announced <= MOST_BEYOND * announced:

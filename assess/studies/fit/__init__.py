@@ -126,7 +126,6 @@ def collect(fits: Fits) -> dict[str, object]:
 
 
 def _describe_coefficients(fitted: Alternative) -> list[dict[str, object]]:
-    """Return the coefficients of a probit, and their range over the fits that leave a building out."""
     found: list[dict[str, object]] = []
     for name, letter in (("b0", "b₀"), ("b1", "b₁"), ("b2", "b₂")):
         value, *spread = (float(getattr(one, name)) for one in (fitted.probit, *fitted.without))
@@ -135,7 +134,6 @@ def _describe_coefficients(fitted: Alternative) -> list[dict[str, object]]:
 
 
 def _list_models(fits: Fits) -> Iterator[tuple[str, int, LeftOut]]:
-    """Yield title, number of coefficients fitted, and errors of the models that the page compares."""
     for title, left_out in fits.published.items():
         yield f"{title} (not fitted)", 0, left_out
     named = {CONSTANT: "", EQUATION_8: " (equation (8) fitted again)", fits.best.surface.candidate: " (smallest error)"}

@@ -256,6 +256,5 @@ def rank_surfaces(points: Points, candidates: Iterable[Candidate] = CANDIDATES) 
 
 
 def _find_places(values: Sequence[float]) -> list[int]:
-    """Return the place of each value, 1 for the smallest."""
     order = sorted(range(len(values)), key=values.__getitem__)
     return [place for _, place in sorted((at, place) for place, at in enumerate(order, 1))]

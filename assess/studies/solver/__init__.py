@@ -132,17 +132,14 @@ def _find_errors(found: Results, solver: Solver) -> list[float]:
 
 
 def _find_worst(found: Results, solver: Solver) -> float:
-    """Return a solver's largest error [alpha g]; limits that it does not find are left out."""
     return max((abs(one) for one in _find_errors(found, solver) if not math.isnan(one)), default=math.nan)
 
 
 def _count_evaluations(found: Sequence[Found]) -> float:
-    """Return the mean number of evaluations of a run."""
     return float(np.mean([side.evaluations for one in found for side in (one.below, one.above)]))
 
 
 def _count_right(limits: Sequence[Limit], own: Sequence[Found]) -> int:
-    """Return how many verdicts at the distance `NEAR` from the limits are right."""
     return sum(
         (one.below.overturned == limit.over_below) + (one.above.overturned != limit.over_below)
         for limit, one in zip(limits, own, strict=True)
@@ -150,13 +147,11 @@ def _count_right(limits: Sequence[Limit], own: Sequence[Found]) -> int:
 
 
 def _count_closer(found: Results, one: Solver, other: Solver) -> int:
-    """Return at how many limits one solver is closer to the exact one than another."""
     pairs = zip(_find_errors(found, one), _find_errors(found, other), strict=True)
     return sum(abs(a) < abs(b) for a, b in pairs)
 
 
 def _find_other_bands(bands: Sequence[Row]) -> list[str]:
-    """Return where the scan over amplitudes has another verdict than that of DOP853."""
     seen = {tuple(row[:3]): tuple(row[3:]) for row in bands}
     return [
         f"{name} at {amplitude} ({equation})"

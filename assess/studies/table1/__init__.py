@@ -78,7 +78,6 @@ def run(options: Options) -> Finding:
 
 
 def _collect(climbs: Climbs, options: Options) -> dict[str, object]:
-    """Return what the page shows."""
     usual, longer = climbs.usual, climbs.longer
     chances = {key: usual.find_worst(key) for key in SHORT_TITLES}
     cannot_rock = [number for number, value in usual.find_worst(STATIC).items() if value == 0]
@@ -101,19 +100,16 @@ def _collect(climbs: Climbs, options: Options) -> dict[str, object]:
 
 
 def _rank(climbed: Climbed, key: str) -> list[str]:
-    """Return the buildings by their risk at the roof, the highest first."""
     found = climbed.find_worst(key)
     return sorted(found, key=lambda number: (-np.nan_to_num(found[number], nan=-1.0), number))
 
 
 def _find_places(climbed: Climbed) -> dict[str, list[int]]:
-    """Return the places of the paper's worst buildings by each formula that is known on every floor."""
     known = [key for key in SHORT_TITLES if not np.isnan(climbed.values[key]).any()]
     return {key: [_rank(climbed, key).index(one) + 1 for one in PAPERS_WORST] for key in known}
 
 
 def _describe_roof(climbed: Climbed, number: str) -> dict[str, object]:
-    """Return the roof of a building in the worse direction: station, peaks, chances, and those of the paper."""
     roofs = [one for one in climbed.levels if one.station.number == number and one.is_roof]
     roof = max(roofs, key=lambda one: one.pfa)
     return {

@@ -84,7 +84,6 @@ def _spell(text: str) -> str:
 
 
 def _list_first(texts: Sequence[str]) -> str:
-    """Return the first `SHOWN` texts, and the number of the others."""
     rest = len(texts) - SHOWN
     return "; ".join(texts[:SHOWN]) + (f"; and {rest} more" if rest > 0 else "")
 

@@ -154,7 +154,6 @@ def paint_climbed(climbed: Climbed, names: Mapping[str, str], figure: Any) -> No
 
 
 def _dashes(climbed: Climbed, key: str) -> tuple[FloatArray, FloatArray]:
-    """Return one broken line (n,) with a dash at the risk of each floor, separated by NaN."""
     every = zip(climbed.levels, climbed.values[key].tolist(), strict=True)
     dashes = sorted({(int(one.station.number), round(value, 3)) for one, value in every if value == value})
     points = np.array([((at - 0.3, risk), (at + 0.3, risk), (at, np.nan)) for at, risk in dashes]).reshape(-1, 2)
