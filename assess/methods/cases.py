@@ -86,43 +86,24 @@ class Motions(Protocol):
 class Cases:
     """A batch of (piece, floor motion) pairs as arrays of one length n, in SI; NaN is unknown.
 
-    Parameters
-    ----------
-    breadth, height : (n,) arrays
-        Sizes of the piece [m]; breadth is the side parallel to the motion.
-    pfa, pfv : (n,) arrays
-        Peak floor acceleration [m/s2] and velocity [m/s].
-    friction : (n,) array
-        Coefficient of friction [-]; NaN where no sliding is assumed.
-    restitution : (n,) array
-        Angular velocity after an impact over that before it [-]; NaN is Housner's.
-    ensemble : (n,) integer array
-        Which of `ensembles` is the case's motion; -1 where it is not to be integrated.
-    centre : (n,) array
-        Height of the centre of gravity as a share of the piece's [-].
-    name : (n,) integer array
-        The piece, from `assess.rocking.draws.name_number`: by it what is not known of it is drawn.
-    scanned : (n,) boolean array
-        Where the sizes were measured by a scan, so that they are less certain.
-    slides_under : (n,) integer array
-        Which of `ensembles` the slip of the piece is to be found under; -1 where it is not.
-    alike : (n,) integer array
-        Cases of one number differ in nothing that is computed with: they have one chance.
-    quantity : (n,) integer array
-        Pieces of the row.
-    wall : (n,) integer array
-        `NO_WALL`; else the direction along the motion in which a wall at its back leaves it free to turn, 1 or -1; or
-        `SIDE_UNKNOWN`.
-    dispersion : (n,) array
-        Standard deviation of ln amplitude of the floor's motion from one earthquake to the next [-].
-    peak : (n,) array
-        That of ln of the peaks of its motions over `pfa` [-].
-    ensembles : sequence of Ensemble
-        Motions of floors.
-    uncertainty : Uncertainty
-        What is drawn.
-    earthquakes : Earthquakes
-        By which numbers the draws of an earthquake scale the motions.
+    * `breadth`, `height` (n,): sizes of the piece [m]; breadth is the side parallel to the motion.
+    * `pfa`, `pfv` (n,): peak floor acceleration [m/s2] and velocity [m/s].
+    * `friction` (n,): coefficient of friction [-]; NaN where no sliding is assumed.
+    * `restitution` (n,): angular velocity after an impact over that before it [-]; NaN is Housner's.
+    * `ensemble` (n,): which of `ensembles` is the case's motion; -1 where it is not to be integrated.
+    * `centre` (n,): height of the centre of gravity as a share of the piece's [-].
+    * `name` (n,): the piece, from `assess.rocking.draws.name_number`: by it what is not known of it is drawn.
+    * `scanned` (n,): where the sizes were measured by a scan, so that they are less certain.
+    * `slides_under` (n,): which of `ensembles` the slip of the piece is to be found under; -1 where it is not.
+    * `alike` (n,): cases of one number differ in nothing that is computed with: they have one chance.
+    * `quantity` (n,): pieces of the row.
+    * `wall` (n,): `NO_WALL`; else the direction along the motion in which a wall at its back leaves it free to turn, 1
+      or -1; or `SIDE_UNKNOWN`.
+    * `dispersion` (n,): standard deviation of ln amplitude of the floor's motion from one earthquake to the next [-].
+    * `peak` (n,): that of ln of the peaks of its motions over `pfa` [-].
+    * `ensembles`: motions of floors.
+    * `uncertainty`: what is drawn.
+    * `earthquakes`: by which numbers the draws of an earthquake scale the motions.
     """
 
     breadth: FloatArray
@@ -205,30 +186,18 @@ class Cases:
 class Joint:
     """What m cases did motion by motion under one ensemble: motion k is one earthquake for the whole building.
 
-    Parameters
-    ----------
-    ensemble : int
-        Its place in `Cases.ensembles`.
-    cases : (m,) integer array
-        Places in the batch.
-    runs : (m,) integer array
-        Motions that each case was integrated under, the first ones.
-    fell : (m, k) boolean array
-        Whether it overturned in each draw, of the motion and of the piece; False beyond its runs.
-    ideal : (m, k) boolean array
-        Whether it overturned, as it is given, under each motion itself; False beyond its runs.
-    rotation : (m, k) array
-        Largest |theta| over the critical angle in each draw [-]; 0 beyond its runs.
-    examples : sequence of ((n,) array, float)
-        The first three motions [m/s2] and their time steps [s].
-    fit : Fit, optional
-        How the motions meet their target.
-    spectra : Spectra, optional
-        Response spectra of the first motions, at most 100, under which a case was integrated, and of their target.
-    is_weak : bool
-        Whether the motions are weaker than the floor's.
-    bands : tuple of two floats, optional
-        Factors by which drawn motions were brought to the floor's peaks [-].
+    * `ensemble`: its place in `Cases.ensembles`.
+    * `cases` (m,): places in the batch.
+    * `runs` (m,): motions that each case was integrated under, the first ones.
+    * `fell` (m, k): whether it overturned in each draw, of the motion and of the piece; False beyond its runs.
+    * `ideal` (m, k): whether it overturned, as it is given, under each motion itself; False beyond its runs.
+    * `rotation` (m, k): largest |theta| over the critical angle in each draw [-]; 0 beyond its runs.
+    * `examples`: the first three motions [m/s2] and their time steps [s].
+    * `fit`: how the motions meet their target.
+    * `spectra`: response spectra of the first motions, at most 100, under which a case was integrated, and of their
+      target.
+    * `is_weak`: whether the motions are weaker than the floor's.
+    * `bands`: factors by which drawn motions were brought to the floor's peaks [-].
     """
 
     ensemble: int
@@ -248,12 +217,8 @@ class Joint:
 class Alike:
     """Which of m rows are alike, and how much each counts among them.
 
-    Parameters
-    ----------
-    group : (m,) integer array
-        The number of the group of each, from 0.
-    weight : (m,) integer array
-        The pieces of each over the largest number that divides those of its whole group [-].
+    * `group` (m,): the number of the group of each, from 0.
+    * `weight` (m,): the pieces of each over the largest number that divides those of its whole group [-].
     """
 
     group: NDArray[np.intp]

@@ -137,16 +137,10 @@ QUANTITIES: Mapping[str, Quantity] = {
 class Fitted:
     """A fitted model.
 
-    Parameters
-    ----------
-    key, title : str
-        The key begins with `PREFIX`.
-    formula : Polynomial or Probit
-        With its coefficients.
-    fitted : FittedOn
-        Buildings, motions, runs and seed, in words, and the errors where a building is left out of the fit.
-    ranges : mapping of str to Range
-        What it was fitted to, by the keys of `QUANTITIES`.
+    * `key`, `title`: the key begins with `PREFIX`.
+    * `formula`: with its coefficients.
+    * `fitted`: buildings, motions, runs and seed, in words, and the errors where a building is left out of the fit.
+    * `ranges`: what it was fitted to, by the keys of `QUANTITIES`.
     """
 
     key: str
@@ -344,10 +338,7 @@ KEY = re.compile(rf"{PREFIX}[a-z0-9_]{{1,40}}(?<!_raw)(?<!_flags)", re.ASCII)
 def write_model(model: Fitted) -> str:
     """Return the file of a model.
 
-    Raises
-    ------
-    InputError
-        If it holds what could not be read back, as a number that is not finite.
+    Raises InputError if it holds what could not be read back, as a number that is not finite.
     """
     top = {"key": model.key, "title": model.title, "kind": model.kind, "fitted_on": model.fitted.data}
     lines = [
@@ -380,10 +371,7 @@ def _number(value: float) -> str:
 def read_model(path: Path | str) -> Method:
     """Return the model of a TOML file as a method.
 
-    Raises
-    ------
-    InputError
-        If it cannot be used: the message names the file, the key and how to fix it.
+    Raises InputError if it cannot be used: the message names the file, the key and how to fix it.
     """
     path = Path(path)
     text = _read_text(path)

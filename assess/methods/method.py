@@ -122,19 +122,13 @@ PFV_FLAGS: Mapping[str, str] = {
 class Reason:
     """A typical reason why a method differs from another, with the conditions under which it applies.
 
-    Parameters
-    ----------
-    text : str
-        A sentence with ``{names}``: of `FACTS`, of the method's columns, and ``{value}``, the method's probability as a
-        percentage. A report fills them with numbers, or with ranges for several pieces.
-    side : "above", "below" or ""
-        Applies where the method gives the higher or the lower class of the two; "": in both cases.
-    flag : str
-        Applies where the method raised this flag; "": always.
-    column, equals : str
-        Applies where the method's column has this text; "": always.
-    can_rock : bool, optional
-        Applies where PFA exceeds g·B/H (True), or does not (False).
+    * `text`: a sentence with ``{names}``: of `FACTS`, of the method's columns, and ``{value}``, the method's
+      probability as a percentage. A report fills them with numbers, or with ranges for several pieces.
+    * `side` "above", "below" or "": applies where the method gives the higher or the lower class of the two; "": in
+      both cases.
+    * `flag`: applies where the method raised this flag; "": always.
+    * `column`, `equals`: applies where the method's column has this text; "": always.
+    * `can_rock`: applies where PFA exceeds g·B/H (True), or does not (False).
     """
 
     text: str
@@ -158,51 +152,30 @@ class Reason:
 class MethodInfo:
     """One method in texts and numbers.
 
-    Parameters
-    ----------
-    key, title : str
-        Name in results.json and in reports.
-    short_title : str
-        Heading of a narrow column.
-    symbol : str
-        Of its value in equations: "OR", "R", "P".
-    role : "best formula", "proposed OR", "simulation" or "other"
-        Of the first two the one that `Settings.class_by` names is adopted where nothing was simulated; the simulation
-        integrates the cases that have an ensemble. There is one of each.
-    kind : "probability" or "criterion"
-        A probability has a class; a criterion is met or not met.
-    order : int
-        Place in reports.
-    predicts : str
-        One sentence: what a reader learns from it.
-    reference : Reference
-        The publication.
-    needs : frozenset of str
-        Fields of `Cases` it cannot do without.
-    selects : bool
-        Whether pieces of its classes high and very high are simulated with ``verify="high"``.
-    selecting_flags : tuple of str
-        Flags that have a piece simulated with ``verify="high"`` whatever its class.
-    is_live : bool
-        Whether the workbook computes it (`Method.live`); tables of pieces and the map of risk show these methods.
-    tells_rocking : bool
-        Whether it is the criterion by which a piece can start to rock at all.
-    valid : mapping of str to Range
-        Where it has been checked, by quantity.
-    equations, assumptions, departures : tuple of str
-        In the symbols of the publication; for the methods appendix.
-    flags : mapping of flag to str
-        Every flag it can raise, and what that means.
-    words : pair of str
-        A criterion's outcome in words: met, not met.
-    columns : tuple of Column
-        Every name in `Outcome.detail`, in the order of results.
-    parameters : tuple of Parameter
-        The settings that it reads.
-    reasons : tuple of Reason
-        Why it typically differs from other methods, the most important first.
-    fitted : FittedOn, optional
-        Of a model that a study fitted; None of a published method.
+    * `key`, `title`: name in results.json and in reports.
+    * `short_title`: heading of a narrow column.
+    * `symbol`: of its value in equations: "OR", "R", "P".
+    * `role` "best formula", "proposed OR", "simulation" or "other": of the first two the one that `Settings.class_by`
+      names is adopted where nothing was simulated; the simulation integrates the cases that have an ensemble. There is
+      one of each.
+    * `kind` "probability" or "criterion": a probability has a class; a criterion is met or not met.
+    * `order`: place in reports.
+    * `predicts`: one sentence: what a reader learns from it.
+    * `reference`: the publication.
+    * `needs`: fields of `Cases` it cannot do without.
+    * `selects`: whether pieces of its classes high and very high are simulated with ``verify="high"``.
+    * `selecting_flags`: flags that have a piece simulated with ``verify="high"`` whatever its class.
+    * `is_live`: whether the workbook computes it (`Method.live`); tables of pieces and the map of risk show these
+      methods.
+    * `tells_rocking`: whether it is the criterion by which a piece can start to rock at all.
+    * `valid`: where it has been checked, by quantity.
+    * `equations`, `assumptions`, `departures`: in the symbols of the publication; for the methods appendix.
+    * `flags`: every flag it can raise, and what that means.
+    * `words`: a criterion's outcome in words: met, not met.
+    * `columns`: every name in `Outcome.detail`, in the order of results.
+    * `parameters`: the settings that it reads.
+    * `reasons`: why it typically differs from other methods, the most important first.
+    * `fitted`: of a model that a study fitted; None of a published method.
     """
 
     key: str
@@ -255,16 +228,11 @@ class MethodInfo:
 class Outcome:
     """What a method says of a batch of n cases.
 
-    Parameters
-    ----------
-    value : (n,) array
-        For a probability: the chance of overturning in [0, 1]. For a criterion: 1 met, 0 not met. NaN: not evaluated.
-    detail : mapping of name to (n,) array
-        What stands beside the value, ``raw`` or a median, under the name it has in results.json.
-    flags : mapping of flag to (n,) boolean array
-        Where a caution holds; the flag's meaning stands in `Method.flags`.
-    joints : sequence of Joint
-        What a method that integrates found, motion by motion.
+    * `value` (n,): for a probability: the chance of overturning in [0, 1]. For a criterion: 1 met, 0 not met. NaN: not
+      evaluated.
+    * `detail`: what stands beside the value, ``raw`` or a median, under the name it has in results.json.
+    * `flags` (n,): where a caution holds; the flag's meaning stands in `Method.flags`.
+    * `joints`: what a method that integrates found, motion by motion.
     """
 
     value: FloatArray
@@ -320,17 +288,13 @@ class LiveCells:
 class Method(MethodInfo):
     """One method: what it says of itself, and the functions that evaluate it.
 
-    Parameters
-    ----------
-    evaluate : callable
-        ``evaluate(cases, settings) -> Outcome``; inputs are left untouched. That of the simulation takes the keyword
-        arguments ``threads: int = 1`` and ``stage: Stage | None = None`` as well, of which each ensemble is a part.
-    steps : callable, optional
-        ``steps(example) -> sequence of texts``: the calculation for one piece, with its numbers. A step that computes
-        reads ``symbol = numbers = result [unit]``, so that a reader with a calculator finds the result again. Each is
-        passed through `assess.i18n.gettext` where it is shown.
-    live : callable, optional
-        ``live(cells) -> mapping``: the expression of "value", and of columns, from `LiveCells`.
+    * `evaluate`: ``evaluate(cases, settings) -> Outcome``; inputs are left untouched. That of the simulation takes the
+      keyword arguments ``threads: int = 1`` and ``stage: Stage | None = None`` as well, of which each ensemble is a
+      part.
+    * `steps`: ``steps(example) -> sequence of texts``: the calculation for one piece, with its numbers. A step that
+      computes reads ``symbol = numbers = result [unit]``, so that a reader with a calculator finds the result again.
+      Each is passed through `assess.i18n.gettext` where it is shown.
+    * `live`: ``live(cells) -> mapping``: the expression of "value", and of columns, from `LiveCells`.
     """
 
     evaluate: Callable[..., Outcome]

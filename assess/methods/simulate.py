@@ -149,14 +149,9 @@ def may_slide(cases: Cases, settings: Settings) -> BoolArray:
 class Beside:
     """Finds slip and falls beside a wall for cases of one ensemble, batch by batch of its motions.
 
-    Parameters
-    ----------
-    cases : Cases
-        All of them.
-    settings : Settings
-        Seed, and whether nothing is drawn.
-    sliders, walled : (p,) and (q,) integer arrays
-        The cases whose slip, and whose falls beside a wall, are wanted.
+    * `cases`: all of them.
+    * `settings`: seed, and whether nothing is drawn.
+    * `sliders`, `walled` (p,) and (q,): the cases whose slip, and whose falls beside a wall, are wanted.
     """
 
     cases: Cases

@@ -51,16 +51,10 @@ def read_table() -> dict[str, FloatArray]:
 def find_medians(period: float | None, place: float | None, structure: str, ratio: float) -> tuple[float, float]:
     """Return median PFA/PGA and PFV/PGV of a floor [-].
 
-    Parameters
-    ----------
-    period : float, optional
-        T1 [s]; None where nothing is known of the building.
-    place : float, optional
-        z/h [-]; None where it is not known.
-    structure : str
-        Key of `assess.motion.beam.STIFFNESS`.
-    ratio : float
-        PGV/PGA of the ground [s].
+    * `period`: T1 [s]; None where nothing is known of the building.
+    * `place`: z/h [-]; None where it is not known.
+    * `structure`: key of `assess.motion.beam.STIFFNESS`.
+    * `ratio`: PGV/PGA of the ground [s].
     """
     if place is not None and place <= 0:
         return 1.0, 1.0

@@ -35,17 +35,10 @@ def find_coherence(accelerations: FloatArray, time_step: float) -> FloatArray:
     It is the sum over the octave of the real part of the cross spectrum, over the root of the product of the sums of
     the two spectra: 1 where two floors move alike, -1 where one moves against the other.
 
-    Parameters
-    ----------
-    accelerations : (k, n) array
-        Records of k floors along one axis [m/s2], with a common start.
-    time_step : float
-        [s]
+    * `accelerations` (k, n): records of k floors along one axis [m/s2], with a common start.
+    * `time_step`: [s].
 
-    Raises
-    ------
-    ValueError
-        If there is no floor, or a record is not finite or without motion.
+    Raises ValueError if there is no floor, or a record is not finite or without motion.
     """
     rows = _check(accelerations)
     from scipy.fft import rfft
@@ -133,12 +126,8 @@ def turn_phases(frequencies: FloatArray, signs: Sequence[int] | ArrayLike) -> ND
     cycle, so that no amplitude is lost there, which it would be if one octave faded into the other. It always turns the
     same way, so that two floors that both turn there keep their relation.
 
-    Parameters
-    ----------
-    frequencies : (f,) array
-        [Hz]
-    signs : (b,) integers
-        By octave of `octaves`, 1 or -1.
+    * `frequencies` (f,): [Hz].
+    * `signs` (b,): by octave of `octaves`, 1 or -1.
     """
     places = np.log2(np.maximum(frequencies, 1e-9))
     half_cycles = np.cumsum(np.abs(np.diff(np.asarray(signs), prepend=1)) // 2)

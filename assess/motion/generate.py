@@ -66,10 +66,7 @@ class Generator:
         A realisation is the same whatever else is made with it. It has the same phases on all floors of a building but
         for the signs of those that have any.
 
-        Raises
-        ------
-        CancelledError
-            If the caller stops the work.
+        Raises CancelledError if the caller stops the work.
         """
 
         def make(group: int) -> Single:
@@ -98,29 +95,15 @@ def build_generator(
 ) -> Generator:
     """Find the filter, the bending and the wavelets that make an ensemble meet its target.
 
-    Parameters
-    ----------
-    target : Target
-        Of the floor, on the grid of its building.
-    grid : Grid
-        The building's samples.
-    seed : int
-        0 or above. Phases and durations come from (seed, axis, number of the realisation) only.
-    axis : "X" or "Y"
-        Each axis has its own phases.
-    threads : int
-        Number of threads that share the work; it does not change a result.
-    progress : Progress
-        Asked often, here and in `Generator.realise`, whether to stop.
-    signs : (b,) tuple of int, optional
-        Of the floor, 1 or -1 by octave, from `assess.motion.floor_signs.find_signs`.
+    * `target`: of the floor, on the grid of its building.
+    * `grid`: the building's samples.
+    * `seed`: 0 or above. Phases and durations come from (seed, axis, number of the realisation) only.
+    * `axis` "X" or "Y": each axis has its own phases.
+    * `threads`: number of threads that share the work; it does not change a result.
+    * `progress`: asked often, here and in `Generator.realise`, whether to stop.
+    * `signs` (b,): of the floor, 1 or -1 by octave, from `assess.motion.floor_signs.find_signs`.
 
-    Raises
-    ------
-    CancelledError
-        If the caller stops the work.
-    KeyError
-        If the axis is not "X" or "Y".
+    Raises CancelledError if the caller stops the work; KeyError if the axis is not "X" or "Y".
     """
     bench = Bench(threads, progress)
     noise: list[Transforms] = [np.empty((0, 0), np.complex64)] * (CALIBRATED // GROUP)

@@ -87,10 +87,7 @@ class GroundScenarios:
     def at(self, latitude: float, longitude: float) -> SiteGround:
         """Return the motion at the site nearest to a place [deg].
 
-        Raises
-        ------
-        InputError
-            If that site is farther than `FARTHEST`, or events are missing there.
+        Raises InputError if that site is farther than `FARTHEST`, or events are missing there.
         """
         distances = find_distance(latitude, longitude, self.latitude, self.longitude)
         nearest = int(distances.argmin())
@@ -179,11 +176,8 @@ def _list_psa(measures: Sequence[str]) -> list[tuple[str, float]]:
 def read_scenarios(folder: Path) -> GroundScenarios:
     """Read the scenarios of a folder.
 
-    Raises
-    ------
-    InputError
-        If a file is missing, cut off or another one, or a number in it cannot be; the message names the file, and the
-        line where there is one.
+    Raises InputError if a file is missing, cut off or another one, or a number in it cannot be; the message names the
+    file, and the line where there is one.
     """
     folder = folder.resolve()
     sites_file = next((name for name in SITES if (folder / name).is_file()), None)

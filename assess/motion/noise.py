@@ -87,10 +87,7 @@ def draw_bands(grid: Grid, seed: int, axis: str, group: int, progress: Progress,
 
     Where a floor has `signs`, its phases are turned by them; with 1 in every octave the noise is that of all floors.
 
-    Raises
-    ------
-    KeyError
-        If the axis is not "X" or "Y".
+    Raises KeyError if the axis is not "X" or "Y".
     """
     signs = signs if signs is not None and min(signs) < 0 else None
     key = (grid, seed, _AXES[axis], group, signs)

@@ -34,15 +34,9 @@ def high_pass_both_ways(
 ) -> FloatArray:
     """Return `values` (n,) filtered, with `pad` zeros before and after them, (n + 2 pad,).
 
-    Parameters
-    ----------
-    values : (n,) array
-    time_step, corner : float
-        [s] and [Hz]
-    pad : int
-        Zeros at each end.
-    progress : Progress
-        Asked for every `SLICE` samples whether to stop.
+    * `time_step`, `corner`: [s] and [Hz].
+    * `pad`: zeros at each end.
+    * `progress`: asked for every `SLICE` samples whether to stop.
     """
     section = _butterworth(time_step, corner)
     # The zeros in front leave a filter at rest as it is: only those at the end are passed through it.
@@ -145,10 +139,7 @@ class Record:
     * `notes`: what reading changed, in plain words.
     * `recorder`: number of the recorder, whose channels share one clock; "" where the file does not say.
 
-    Raises
-    ------
-    RecordError
-        If the samples or the time step cannot be a recorded motion.
+    Raises RecordError if the samples or the time step cannot be a recorded motion.
     """
 
     file: str
@@ -218,13 +209,8 @@ def peak(values: FloatArray) -> float:
 def treat(record: Record, baseline: Baseline = "standard", *, progress: Progress = SILENT) -> Motion:
     """Return the motion that every method uses; `treatment` describes it in words.
 
-    Parameters
-    ----------
-    record : Record
-    baseline : str
-        "standard"; "none" leaves out the filter, not the removal of an uncorrected record's mean.
-    progress : Progress
-        Asked often whether to stop; CancelledError then.
+    * `baseline`: "standard"; "none" leaves out the filter, not the removal of an uncorrected record's mean.
+    * `progress`: asked often whether to stop; CancelledError then.
 
     Returns
     -------
@@ -303,15 +289,9 @@ def resample(times: FloatArray, values: FloatArray, time_step: float) -> FloatAr
 def build_series(times: FloatArray, values: FloatArray) -> Series:
     """Make samples at given times evenly spaced, changing as little as that takes.
 
-    Parameters
-    ----------
-    times, values : (n,) arrays
-        Times [s], and accelerations [m/s2] as recorded then.
+    * `times`, `values` (n,): times [s], and accelerations [m/s2] as recorded then.
 
-    Raises
-    ------
-    RecordError
-        If over 1 % of the times do not run forwards, or times or values cannot be those of a record.
+    Raises RecordError if over 1 % of the times do not run forwards, or times or values cannot be those of a record.
     """
     check_samples(values)
     wrong = ~(np.abs(times) <= LATEST_TIME)

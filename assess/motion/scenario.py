@@ -58,15 +58,10 @@ class Profile:
     ) -> float:
         """Return PFA over ground PGA [-].
 
-        Parameters
-        ----------
-        height_ratio : float
-            z/h: height of the floor over that of the roof [-]; below 0 counts as 0, above 1 as 1.
-        period : float, optional
-            First period T1 of the building [s].
-        ductility_reduction : float
-            R_mu, at least 1, by which ASCE 7-22 alone divides. A floor never gets less than the ground, which the code
-            leaves unreduced.
+        * `height_ratio`: z/h: height of the floor over that of the roof [-]; below 0 counts as 0, above 1 as 1.
+        * `period`: first period T1 of the building [s].
+        * `ductility_reduction`: R_mu, at least 1, by which ASCE 7-22 alone divides. A floor never gets less than the
+          ground, which the code leaves unreduced.
         """
         factor = self.factor(min(max(height_ratio, 0.0), 1.0), period)
         return max(1.0, factor / ductility_reduction) if self.reduced else factor

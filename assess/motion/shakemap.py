@@ -127,10 +127,8 @@ class ShakeMap:
     def at(self, latitude: float, longitude: float) -> SiteGround:
         """Return the shaking at a place [deg].
 
-        Raises
-        ------
-        InputError
-            If the grid does not cover the place, or has no PGA there; the message names the place and the grid.
+        Raises InputError if the grid does not cover the place, or has no PGA there; the message names the place and the
+        grid.
         """
         with naming(self.file):
             read = _locate(self.grid, latitude, longitude)
@@ -248,10 +246,7 @@ class ShakeMap:
 def read_shakemap(path: Path) -> ShakeMap:
     """Read the map of a grid.xml, with the uncertainty.xml in its folder.
 
-    Raises
-    ------
-    InputError
-        If a file cannot be read or used; the message names it.
+    Raises InputError if a file cannot be read or used; the message names it.
     """
     path = path.resolve()
     beside = next(
@@ -282,11 +277,8 @@ def parse_shakemap(
 ) -> ShakeMap:
     """Return the map of the bytes of a grid.xml, and of an uncertainty.xml; names are how messages call them.
 
-    Raises
-    ------
-    InputError
-        If one is not such a file, is damaged or cut off, lacks PGA, has an unknown unit, or holds a number that is
-        impossible; if the two are of different earthquakes.
+    Raises InputError if one is not such a file, is damaged or cut off, lacks PGA, has an unknown unit, or holds a
+    number that is impossible; if the two are of different earthquakes.
     """
     with naming(name):
         grid = _read_grid(data)
@@ -479,11 +471,8 @@ def _describe_place(latitude: float, longitude: float) -> Text:
 def _parse_grid(data: bytes) -> Grid:
     """Read a grid from the bytes of its file.
 
-    Raises
-    ------
-    InputError
-        If it is not XML of ShakeMap, is cut off, claims more points than it has rows or than can be read, declares
-        entities, holds something that is not a number, or its places are not a regular grid.
+    Raises InputError if it is not XML of ShakeMap, is cut off, claims more points than it has rows or than can be read,
+    declares entities, holds something that is not a number, or its places are not a regular grid.
     """
     if len(data) > LARGEST_FILE:
         raise InputError.about("the file is larger than {most:.0f} MB", most=LARGEST_FILE / 1e6)

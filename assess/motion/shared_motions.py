@@ -112,14 +112,10 @@ def share_motions(
 ) -> SharedMotions:
     """Return the motions of a floor whose target is `factor` times another, which floors share.
 
-    Parameters
-    ----------
-    target : Target
-        Of the shape.
-    factor : float
-        That of the floor over it [-].
-    grid, seed, axis, threads, progress, signs
-        As of `assess.motion.generate.build_generator`; errors likewise.
+    * `target`: of the shape.
+    * `factor`: that of the floor over it [-].
+    * `grid`, `seed`, `axis`, `threads`, `progress`, `signs`: as of `assess.motion.generate.build_generator`; errors
+      likewise.
     """
 
     def make() -> _Entry:

@@ -55,28 +55,15 @@ def response_spectrum(
 
     Oscillators start at rest and are watched at the samples, from the first to the last.
 
-    Parameters
-    ----------
-    acceleration : (n,) or (k, n) array
-        Base acceleration of one motion, or of k [m/s2].
-    time_step : float
-        [s]
-    periods : (m,) array
-        Above 0 [s].
-    damping : float
-        Share of critical damping, above 0 and below 1 [-].
-    threads : int
-        Number of threads that share the motions; it does not change a result.
-    progress : Progress
-        Asked before each motion whether to stop.
+    * `acceleration` (n,) or (k, n): base acceleration of one motion, or of k [m/s2].
+    * `time_step`: [s].
+    * `periods` (m,): above 0 [s].
+    * `damping`: share of critical damping, above 0 and below 1 [-].
+    * `threads`: number of threads that share the motions; it does not change a result.
+    * `progress`: asked before each motion whether to stop.
 
-    Raises
-    ------
-    CancelledError
-        If the caller stops the work.
-    ValueError
-        If a period, the damping or the time step is outside these limits, or a motion has fewer than two samples or one
-        that is not finite.
+    Raises CancelledError if the caller stops the work; ValueError if a period, the damping or the time step is outside
+    these limits, or a motion has fewer than two samples or one that is not finite.
     """
     peaks = _respond(acceleration, time_step, periods, damping, threads, progress, both=True)
     squared = (2 * np.pi / np.asarray(periods)) ** 2

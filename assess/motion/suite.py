@@ -80,11 +80,8 @@ def _stack(rows: list[FloatArray]) -> FloatArray:
 def read_suite(folder: Path | str, *, progress: Progress = SILENT) -> Suite:
     """Read every record of a folder, but not of folders within it.
 
-    Raises
-    ------
-    RecordError
-        If there is no such folder, no horizontal channel in it, or a file cannot be read as a record: the message names
-        it. Texts (.md, .html, .pdf, .rst), .ini and .db, and hidden files are passed over.
+    Raises RecordError if there is no such folder, no horizontal channel in it, or a file cannot be read as a record:
+    the message names it. Texts (.md, .html, .pdf, .rst), .ini and .db, and hidden files are passed over.
     """
     folder = Path(folder)
     if not folder.is_dir():

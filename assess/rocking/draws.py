@@ -158,20 +158,12 @@ def draw_bodies(
 ) -> DrawnBodies:
     """Draw the bodies of m pieces.
 
-    Parameters
-    ----------
-    breadth, height : (m,) arrays
-        Nominal sizes [m].
-    centre : (m,) array
-        Nominal height of the centre of gravity as a share of the height [-].
-    restitution : (m,) array
-        Nominal [-]; NaN is that of the drawn body by equal angular momentum.
-    names : (m,) integers
-        From `name_number`; pieces of one name draw alike.
-    seed, first, count : int
-        Draws `first` to `first + count - 1`.
-    scanned : (m,) boolean array, optional
-        Which sizes were measured by a scan; None: none. The draws of the others do not depend on it.
+    * `breadth`, `height` (m,): nominal sizes [m].
+    * `centre` (m,): nominal height of the centre of gravity as a share of the height [-].
+    * `restitution` (m,): nominal [-]; NaN is that of the drawn body by equal angular momentum.
+    * `names` (m,): from `name_number`; pieces of one name draw alike.
+    * `seed`, `first`, `count`: draws `first` to `first + count - 1`.
+    * `scanned` (m,): which sizes were measured by a scan; None: none. The draws of the others do not depend on it.
 
     Returns
     -------

@@ -122,35 +122,21 @@ def rock_blocks(
     A motion is linear between its samples and followed by rest; a block that is still rocking at its end is followed
     until it can no longer fall. A block at rest starts again where the motion exceeds its threshold, g b/z.
 
-    Parameters
-    ----------
-    breadth, height : (m,) or (m, k) arrays
-        Sizes of the blocks [m]; breadth is the side parallel to the motion. With (m, k) a block has other sizes under
-        each motion. Equal blocks of (m,) are integrated once.
-    motions : (k, n) array
-        Base accelerations [m/s2].
-    time_step : float
-        [s]
-    restitution : (m,) or (m, k) array or float
-        Angular velocity after an impact over that before it [-], 0 to 1; NaN is that of equal angular momentum,
-        Housner's 1 - 1.5 sin2(alpha) for a uniform block.
-    centre : (m,) or (m, k) array or float
-        Height of the centre of gravity as a share of the block's [-]; 0.5 for a uniform one.
-    scale : (m,) or (m, k) array or float
-        Factor on the motion [-].
-    threads : int
-        Tiles are shared out among as many; they do not change a result, nor do the order of blocks or of motions.
-    progress : Progress
-        Asked before each tile whether to stop.
+    * `breadth`, `height` (m,) or (m, k): sizes of the blocks [m]; breadth is the side parallel to the motion. With (m,
+      k) a block has other sizes under each motion. Equal blocks of (m,) are integrated once.
+    * `motions` (k, n): base accelerations [m/s2].
+    * `time_step`: [s].
+    * `restitution` (m,) or (m, k): angular velocity after an impact over that before it [-], 0 to 1; NaN is that of
+      equal angular momentum, Housner's 1 - 1.5 sin2(alpha) for a uniform block.
+    * `centre` (m,) or (m, k): height of the centre of gravity as a share of the block's [-]; 0.5 for a uniform one.
+    * `scale` (m,) or (m, k): factor on the motion [-].
+    * `threads`: tiles are shared out among as many; they do not change a result, nor do the order of blocks or of
+      motions.
+    * `progress`: asked before each tile whether to stop.
 
-    Raises
-    ------
-    CancelledError
-        If the caller stops the work.
-    ValueError
-        If a size is not above 0, a block without a restitution is too stocky to rock (B/H of 1.41 or more, if uniform),
-        a centre is not within the block, a restitution is outside 0 to 1, or the motions or their time step are not
-        finite numbers of that shape.
+    Raises CancelledError if the caller stops the work; ValueError if a size is not above 0, a block without a
+    restitution is too stocky to rock (B/H of 1.41 or more, if uniform), a centre is not within the block, a restitution
+    is outside 0 to 1, or the motions or their time step are not finite numbers of that shape.
     """
     bodies, motions = Bodies.of(breadth, height, restitution, centre, scale), check_motions(motions, time_step)
     bodies, which = _drop_alike(bodies)

@@ -88,19 +88,13 @@ def rock(
 ) -> int:  # pragma: no cover
     """Integrate every block under motions `first` to `last` - 1.
 
-    Parameters
-    ----------
-    blocks : (m, 1 or k, 5) array
-        Critical angle [rad], (p dt)2 [-], restitution [-], threshold tan(alpha) [g] and factor on the motion [-]: the
-        same under all motions, or one a motion.
-    motions : (k, n + 2) array
-        Base acceleration [g], each row followed by two zeros.
-    first, last : int
-        Rows of `motions`.
-    outcome : (m, k, 3) array
-        Filled: `ROTATION`, `FALL`, `STRUCK`.
-    trace : (t, 3) array
-        Filled with time [samples], theta [rad] and impacts so far after each step of the first lane; empty for none.
+    * `blocks` (m, 1 or k, 5): critical angle [rad], (p dt)2 [-], restitution [-], threshold tan(alpha) [g] and factor
+      on the motion [-]: the same under all motions, or one a motion.
+    * `motions` (k, n + 2): base acceleration [g], each row followed by two zeros.
+    * `first`, `last`: rows of `motions`.
+    * `outcome` (m, k, 3): filled: `ROTATION`, `FALL`, `STRUCK`.
+    * `trace` (t, 3): filled with time [samples], theta [rad] and impacts so far after each step of the first lane;
+      empty for none.
 
     Returns
     -------

@@ -66,10 +66,7 @@ class Body:
         With 2 m R2/I_0 = 2 p2 R/g, restitution is 1 - (2 m R2/I_0) sin2(alpha) where it is NaN; the rebound from a wall
         is that of `wall_restitution`.
 
-        Raises
-        ------
-        ValueError
-            If a number is not finite and above 0, or the restitution is outside 0 to 1.
+        Raises ValueError if a number is not finite and above 0, or the restitution is outside 0 to 1.
         """
         b, z, p, eta = (
             np.asarray(values, dtype=np.float64)
@@ -91,10 +88,7 @@ class Body:
     ) -> Self:
         """Build a body of sizes [m], its centre of gravity at `centre` times the height, I_cg = m (B2 + H2)/12.
 
-        Raises
-        ------
-        ValueError
-            As `of`.
+        Raises ValueError as `of`.
         """
         B, H = np.asarray(breadth, dtype=np.float64), np.asarray(height, dtype=np.float64)
         p = block.frequency_parameter(B, H, np.asarray(centre))
@@ -109,14 +103,9 @@ def wall_restitution(critical_angle: ArrayLike, restitution: ArrayLike, *, shape
     e = eta2 (1 - 1.5 cos2(alpha)); with Housner's eta = 1 - 1.5 sin2(alpha) that of Sorrentino et al. (2011), to be
     checked against the printed paper. A body strikes the floor, the wall and the floor again.
 
-    Parameters
-    ----------
-    critical_angle : array
-        alpha [rad].
-    restitution : array
-        eta of an impact on the floor [-].
-    shape : array
-        2 m R2/I_0 [-]; 1.5 for a homogeneous rectangle.
+    * `critical_angle`: alpha [rad].
+    * `restitution`: eta of an impact on the floor [-].
+    * `shape`: 2 m R2/I_0 [-]; 1.5 for a homogeneous rectangle.
     """
     eta, alpha = np.asarray(restitution, dtype=np.float64), np.asarray(critical_angle, dtype=np.float64)
     return np.asarray(eta**2 * (1 - np.asarray(shape) * np.cos(alpha) ** 2))
@@ -138,32 +127,18 @@ def rock_bodies(
     A motion is linear between its samples and followed by rest, to which it falls within one step; a body that is still
     rocking then is followed until it can no longer fall.
 
-    Parameters
-    ----------
-    body : Body
-        Of arrays that broadcast to (m, k); (m, 1) for bodies that are the same under all motions.
-    motions : (k, n) array
-        Horizontal accelerations of the floor [m/s2].
-    time_step : float
-        [s]
-    vertical : (k, n) array, optional
-        Vertical accelerations, upwards positive [m/s2].
-    away : int
-        -1 or 1 beside a wall; see `Away`.
-    scale : (k,) array or float
-        Each motion is multiplied by its own [-], the vertical one too.
-    threads : int
-        Motions are shared out among as many; they do not change a result.
-    progress : Progress
-        Asked before each motion whether to stop.
+    * `body`: of arrays that broadcast to (m, k); (m, 1) for bodies that are the same under all motions.
+    * `motions` (k, n): horizontal accelerations of the floor [m/s2].
+    * `time_step`: [s].
+    * `vertical` (k, n): vertical accelerations, upwards positive [m/s2].
+    * `away`: -1 or 1 beside a wall; see `Away`.
+    * `scale` (k,): each motion is multiplied by its own [-], the vertical one too.
+    * `threads`: motions are shared out among as many; they do not change a result.
+    * `progress`: asked before each motion whether to stop.
 
-    Raises
-    ------
-    CancelledError
-        If the caller stops the work.
-    ValueError
-        If the motions, their scale or their time step are not finite numbers of that shape, or the vertical
-        acceleration is 1 g or more downwards, where a body leaves the floor.
+    Raises CancelledError if the caller stops the work; ValueError if the motions, their scale or their time step are
+    not finite numbers of that shape, or the vertical acceleration is 1 g or more downwards, where a body leaves the
+    floor.
     """
     across, up = _check_motions(motions, vertical, time_step, scale)
     fields = (body.critical_angle, body.frequency_parameter, body.restitution, body.rebound)
@@ -184,23 +159,13 @@ def follow_body(
 ) -> Response:
     """Integrate one body under one motion, as `rock_bodies` does, and keep its path.
 
-    Parameters
-    ----------
-    body : Body
-        Of numbers.
-    acceleration : (n,) array
-        Horizontal acceleration of the floor [m/s2].
-    time_step : float
-        [s]
-    vertical : (n,) array, optional
-        Vertical acceleration, upwards positive [m/s2].
-    away : int
-        -1 or 1 beside a wall; see `Away`.
+    * `body`: of numbers.
+    * `acceleration` (n,): horizontal acceleration of the floor [m/s2].
+    * `time_step`: [s].
+    * `vertical` (n,): vertical acceleration, upwards positive [m/s2].
+    * `away`: -1 or 1 beside a wall; see `Away`.
 
-    Raises
-    ------
-    ValueError
-        As `rock_bodies`.
+    Raises ValueError as `rock_bodies`.
     """
     both = (np.asarray(acceleration)[np.newaxis], None if vertical is None else np.asarray(vertical)[np.newaxis])
     (across,), (up,) = _check_motions(*both, time_step, 1.0)

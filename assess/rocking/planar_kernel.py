@@ -59,20 +59,13 @@ def rock(
 ) -> None:  # pragma: no cover
     """Integrate one body that starts at rest.
 
-    Parameters
-    ----------
-    body : (4,) array
-        `ALPHA` [rad], `P` [rad/s], `ETA` [-], `REBOUND` [-].
-    horizontal, vertical : (n + 2,) arrays
-        Accelerations of the floor [g], followed by two zeros.
-    time_step : float
-        [s]
-    away : int
-        Sign of theta to which a wall leaves the body free; 0 without a wall.
-    state : (9,) array
-        As the body is at first: zeros but for `RESTS`, 1, and `FALL`, -1. Filled with what it did.
-    trace : (t, 3) array
-        Filled with time [s], theta [rad] and impacts so far at each start and after each step; empty for none.
+    * `body` (4,): `ALPHA` [rad], `P` [rad/s], `ETA` [-], `REBOUND` [-].
+    * `horizontal`, `vertical` (n + 2,): accelerations of the floor [g], followed by two zeros.
+    * `time_step`: [s].
+    * `away`: sign of theta to which a wall leaves the body free; 0 without a wall.
+    * `state` (9,): as the body is at first: zeros but for `RESTS`, 1, and `FALL`, -1. Filled with what it did.
+    * `trace` (t, 3): filled with time [s], theta [rad] and impacts so far at each start and after each step; empty for
+      none.
     """
     terms = np.zeros((3, ORDER + 1))
     last, tan = horizontal.size - 2, math.tan(body[ALPHA])

@@ -52,23 +52,14 @@ def follow_block(
 ) -> Response:
     """Integrate one block under one motion, as `assess.rocking.ensemble.rock_blocks` does, and keep its path.
 
-    Parameters
-    ----------
-    breadth, height : float
-        Sizes of the block [m]; breadth is the side parallel to the motion.
-    acceleration : (n,) array
-        Base acceleration [m/s2].
-    time_step : float
-        [s]
-    restitution : float
-        Angular velocity after an impact over that before it [-], 0 to 1; NaN is that of equal angular momentum.
-    centre : float
-        Height of the centre of gravity as a share of the block's [-].
+    * `breadth`, `height`: sizes of the block [m]; breadth is the side parallel to the motion.
+    * `acceleration` (n,): base acceleration [m/s2].
+    * `time_step`: [s].
+    * `restitution`: angular velocity after an impact over that before it [-], 0 to 1; NaN is that of equal angular
+      momentum.
+    * `centre`: height of the centre of gravity as a share of the block's [-].
 
-    Raises
-    ------
-    ValueError
-        As `rock_blocks`.
+    Raises ValueError as `rock_blocks`.
     """
     body = Bodies.of(breadth, height, restitution, centre, 1.0)
     motions = check_motions(np.asarray(acceleration)[np.newaxis], time_step)

@@ -51,14 +51,9 @@ def critical_friction(
     centre of gravity is not in the middle, it follows in the same way from the forces at the first instant, with the
     moment of inertia m (B2 + H2)/12 about it.
 
-    Parameters
-    ----------
-    breadth, height : (n,) arrays or floats
-        Sizes [m]; breadth is the side parallel to the motion.
-    acceleration : (n,) array or float
-        Of the floor, of either sign [m/s2].
-    centre : (n,) array or float
-        Height of the centre of gravity over `height` [-].
+    * `breadth`, `height` (n,): sizes [m]; breadth is the side parallel to the motion.
+    * `acceleration` (n,): of the floor, of either sign [m/s2].
+    * `centre` (n,): height of the centre of gravity over `height` [-].
 
     Returns
     -------
@@ -82,12 +77,8 @@ def branch(
     gravity. Above, it slides if friction is below b/z_c, rocks if friction is at least `critical_friction`, and slides
     and rocks in between.
 
-    Parameters
-    ----------
-    breadth, height, acceleration, centre
-        As of `critical_friction`.
-    friction : (n,) array or float
-        Coefficient of friction [-]; resting and sliding friction are taken to be equal.
+    * `breadth`, `height`, `acceleration`, `centre`: as of `critical_friction`.
+    * `friction` (n,): coefficient of friction [-]; resting and sliding friction are taken to be equal.
 
     Returns
     -------
@@ -126,33 +117,20 @@ def peak_slip(
     stops and samples. A motion is linear between its samples and followed by rest, to which it falls within one step;
     a body that is still sliding then slides on until it stops.
 
-    Parameters
-    ----------
-    friction : (m,) array or float
-        Coefficients of friction [-].
-    motions : (k, n) array
-        Accelerations of the floor [m/s2].
-    time_step : float
-        [s]
-    scale : (k,) array or float
-        Each motion is multiplied by its own [-].
-    threads : int
-        Motions are shared out among as many; they do not change a result.
-    progress : Progress
-        Asked before each motion whether to stop.
+    * `friction` (m,): coefficients of friction [-].
+    * `motions` (k, n): accelerations of the floor [m/s2].
+    * `time_step`: [s].
+    * `scale` (k,): each motion is multiplied by its own [-].
+    * `threads`: motions are shared out among as many; they do not change a result.
+    * `progress`: asked before each motion whether to stop.
 
     Returns
     -------
     (m, k) array
         Of each friction under each motion [m].
 
-    Raises
-    ------
-    CancelledError
-        If the caller stops the work.
-    ValueError
-        If a coefficient of friction is not above 0, or the motions, their scale or their time step are not finite
-        numbers of that shape.
+    Raises CancelledError if the caller stops the work; ValueError if a coefficient of friction is not above 0, or the
+    motions, their scale or their time step are not finite numbers of that shape.
     """
     from assess.rocking.slip import slide
 

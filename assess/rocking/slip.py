@@ -21,16 +21,10 @@ MOST_PARTS = 8
 def slide(motion: FloatArray, scale: float, resistance: float, time_step: float) -> float:  # pragma: no cover
     """Return the largest |displacement| relative to the floor [m] of a body that starts at rest.
 
-    Parameters
-    ----------
-    motion : (n,) array
-        Acceleration of the floor [m/s2]; after its last sample it falls to zero within one step.
-    scale : float
-        The motion is multiplied by it [-].
-    resistance : float
-        Friction times gravity [m/s2], above 0.
-    time_step : float
-        [s]
+    * `motion` (n,): acceleration of the floor [m/s2]; after its last sample it falls to zero within one step.
+    * `scale`: the motion is multiplied by it [-].
+    * `resistance`: friction times gravity [m/s2], above 0.
+    * `time_step`: [s].
     """
     place, velocity, peak = 0.0, 0.0, 0.0
     for at in range(motion.size):

@@ -42,10 +42,7 @@ def write_files(folder: Path, files: Mapping[str, bytes]) -> None:
 
     Each file appears whole, and if one cannot be written, none is: see `assess.delivery`.
 
-    Raises
-    ------
-    OutputError
-        If a file cannot be written.
+    Raises OutputError if a file cannot be written.
     """
     taken = next((name for name in files if (folder / name).is_dir()), None)
     if taken is not None:
@@ -62,19 +59,11 @@ def load_or_compute(folder: Path, inputs: object, compute: Callable[[], Arrays])
     The name of its file is a hash of `inputs`, the code in `SOURCES` and the versions of the numerical libraries. Only
     plain arrays are loaded, never pickles: a folder may come from someone else.
 
-    Parameters
-    ----------
-    folder : Path
-        Made if missing.
-    inputs : object
-        Everything that the numbers depend on, other than the code; identified by its `repr`.
-    compute : callable
-        Called where nothing is kept, or what is kept is damaged.
+    * `folder`: made if missing.
+    * `inputs`: everything that the numbers depend on, other than the code; identified by its `repr`.
+    * `compute`: called where nothing is kept, or what is kept is damaged.
 
-    Raises
-    ------
-    OutputError
-        If the result cannot be kept.
+    Raises OutputError if the result cannot be kept.
     """
     name = hashlib.sha256(repr((inputs, _state())).encode()).hexdigest()[:24]
     file = folder / f"{name}.npz"

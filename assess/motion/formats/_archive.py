@@ -54,21 +54,12 @@ def is_archive(head: bytes) -> bool:
 def read_archive(data: bytes, file: str, read: ReadMember, progress: Progress = SILENT) -> tuple[Record, ...]:
     """Read every channel of every member that `read` can read, inner archives included.
 
-    Parameters
-    ----------
-    data : bytes
-        The archive.
-    file : str
-        Its name; that of a member's record is ``file/inner.zip/folder/member``.
-    read : callable
-        Reads the bytes of one member, given its name.
-    progress : Progress
-        Asked before each member whether to stop.
+    * `data`: the archive.
+    * `file`: its name; that of a member's record is ``file/inner.zip/folder/member``.
+    * `read`: reads the bytes of one member, given its name.
+    * `progress`: asked before each member whether to stop.
 
-    Raises
-    ------
-    RecordError
-        If nothing in it can be read, it is locked, or it unpacks to more than a set of records can have.
+    Raises RecordError if nothing in it can be read, it is locked, or it unpacks to more than a set of records can have.
     """
     found = _Found()
     _read_members(data, file, read, found, progress, depth=1)

@@ -19,18 +19,11 @@ def select(records: Sequence[Record], channel: str | None = None) -> Record:
     ``set.zip#CHAN01.V2/1``, with as many folders and inner archives before it as it takes:
     ``set.zip#Free Field.zip/CHAN01.V2/1``. The member alone, ``set.zip#CHAN01.V2``, is enough where it has one channel.
 
-    Parameters
-    ----------
-    records : sequence of Record
-        All channels of one file.
-    channel : str, optional
-        A channel's name in any letter case; or its number in the file from 1 on, but not in an archive, nor where a
-        channel's name is a number, unless there is only one. None where there is only one.
+    * `records`: all channels of one file.
+    * `channel`: a channel's name in any letter case; or its number in the file from 1 on, but not in an archive, nor
+      where a channel's name is a number, unless there is only one. None where there is only one.
 
-    Raises
-    ------
-    RecordError
-        If no channel, or more than one, is meant; the message lists them.
+    Raises RecordError if no channel, or more than one, is meant; the message lists them.
     """
     if channel is None or not channel.strip():
         if len(records) == 1:

@@ -46,12 +46,9 @@ _QUADRANT = re.compile(r"([NS])\s*(\d{1,2}(?:\.\d*)?)\s*(?:deg\w*\.?|°)?\s*([EW
 def read_direction(text: str, *, bare_degrees: bool = True) -> Direction:
     """Return the direction that the name of a channel or the header's word for it tells.
 
-    Parameters
-    ----------
-    text : str
-        Such as "N21W", "090", "HNZ--", "UD2", "roof, east" or "Düşey".
-    bare_degrees : bool
-        Whether a number alone, or at the end of a station's code, is an azimuth and not the number of the channel.
+    * `text`: such as "N21W", "090", "HNZ--", "UD2", "roof, east" or "Düşey".
+    * `bare_degrees`: whether a number alone, or at the end of a station's code, is an azimuth and not the number of the
+      channel.
 
     Returns
     -------

@@ -58,20 +58,12 @@ def build_record(
 ) -> Record:
     """Return the record of one channel; see `Record` for the parameters that are not named here.
 
-    Parameters
-    ----------
-    title, file : str
-        Title of the format, name of the file.
-    series : Series
-        Evenly spaced samples [m/s2].
-    own : (n,) array, optional
-        The file's own samples [m/s2], where they are not evenly spaced.
-    direction : Direction
-        Azimuth [deg] and whether it is vertical; None where it is not known.
-    has_offset : bool
-        Whether the samples carry the instrument's offset: the peak is then that about their mean.
-    notes : sequence of str
-        Further notes than those of the series.
+    * `title`, `file`: title of the format, name of the file.
+    * `series`: evenly spaced samples [m/s2].
+    * `own` (n,): the file's own samples [m/s2], where they are not evenly spaced.
+    * `direction`: azimuth [deg] and whether it is vertical; None where it is not known.
+    * `has_offset`: whether the samples carry the instrument's offset: the peak is then that about their mean.
+    * `notes`: further notes than those of the series.
     """
     own = series.values if own is None else own
     file_pfa = peak(own - own.mean() if has_offset else own)
@@ -132,10 +124,7 @@ def too_many_values() -> RecordError:
 def keep_readable(parts: Iterable[tuple[str, T]], read: Callable[[T], Record]) -> tuple[Record, ...]:
     """Read every named part that can be read; why the others cannot is noted on those.
 
-    Raises
-    ------
-    RecordError
-        If none can be read.
+    Raises RecordError if none can be read.
     """
     records, reasons = [], []
     for name, part in parts:

@@ -128,10 +128,7 @@ def has_text(cells: Cells) -> NDArray[np.bool_]:
 def split_lines(data: bytes) -> Lines:
     """Return the lines of a text file, whichever system it comes from.
 
-    Raises
-    ------
-    RecordError
-        If there are more than any record has.
+    Raises RecordError if there are more than any record has.
     """
     if data.count(b"\n") + data.count(b"\r") > MOST_LINES:
         raise RecordError.about("the file has more than {most:,} lines: cut it to the shaking", most=MOST_LINES)
@@ -154,21 +151,13 @@ def text_format(
 ) -> Format:
     """Return the format of a text file.
 
-    Parameters
-    ----------
-    key, title : str
-        As of `Format`.
-    recognised : pattern
-        Matches the beginning of a file, whose lines end with a line feed here.
-    read_channel : callable
-        From a channel's section of the file and the name of the file to its record.
-    starts : pattern, optional
-        Matches the first line of each channel; what stands before the first is left out. None where a file has one
-        channel.
-    missing : str
-        What is wrong with a file that has no such line.
-    choose : callable, optional
-        Returns the sections that are to be read; raises RecordError where there are none.
+    * `key`, `title`: as of `Format`.
+    * `recognised`: matches the beginning of a file, whose lines end with a line feed here.
+    * `read_channel`: from a channel's section of the file and the name of the file to its record.
+    * `starts`: matches the first line of each channel; what stands before the first is left out. None where a file has
+      one channel.
+    * `missing`: what is wrong with a file that has no such line.
+    * `choose`: returns the sections that are to be read; raises RecordError where there are none.
     """
 
     def recognises(head: bytes) -> bool:
@@ -223,10 +212,7 @@ def read_format(text: str, default: Columns) -> Columns:
 def read_columns(section: Section, start: int, count: int, columns: Columns, factor: float = 1.0) -> FloatArray:
     """Return `count` numbers in `columns`, from the section's line at `start` on, times `factor`.
 
-    Raises
-    ------
-    RecordError
-        If there are fewer, or one cannot be read; the message names the line.
+    Raises RecordError if there are fewer, or one cannot be read; the message names the line.
     """
     _check_count(count)
     rows = section.lines[start : start + math.ceil(count / columns.per_line)]
@@ -308,10 +294,7 @@ def convert(
 
     `per_line` is None where lines do not count.
 
-    Raises
-    ------
-    RecordError
-        If one is no number; the message names its line or its place.
+    Raises RecordError if one is no number; the message names its line or its place.
     """
     values, done = np.empty(count), 0
     for block in blocks:

@@ -76,10 +76,7 @@ def recognises(head: bytes) -> bool:
 def read(data: bytes, file: str) -> tuple[Record, ...]:
     """Read every channel of a miniSEED file.
 
-    Raises
-    ------
-    RecordError
-        If no channel holds accelerations, or the file is damaged.
+    Raises RecordError if no channel holds accelerations, or the file is damaged.
     """
     channels: dict[str, list[_Part]] = {}
     skipped, names = 0, dict[bytes, _Names]()

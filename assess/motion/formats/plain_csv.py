@@ -79,10 +79,7 @@ def recognises(head: bytes) -> bool:
 def read(data: bytes, file: str) -> tuple[Record, ...]:
     """Read every channel of a plain CSV file.
 
-    Raises
-    ------
-    RecordError
-        If a heading has no known unit, or a cell is no number; the message names the line.
+    Raises RecordError if a heading has no known unit, or a cell is no number; the message names the line.
     """
     table = _read_head(data)
     values = _read_values(data, table)

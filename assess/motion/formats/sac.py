@@ -72,10 +72,7 @@ def recognises(head: bytes) -> bool:
 def read(data: bytes, file: str) -> tuple[Record, ...]:
     """Read the one channel of a SAC file.
 
-    Raises
-    ------
-    RecordError
-        If the unit is not known, or the file is damaged.
+    Raises RecordError if the unit is not known, or the file is damaged.
     """
     header = _read_header(data)
     if header is None:

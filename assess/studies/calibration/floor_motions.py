@@ -216,23 +216,13 @@ def shake_beam(
 ) -> FloatArray:
     """Return the absolute acceleration of a floor [m/s2], (n,), of a beam at rest that a ground motion shakes.
 
-    Parameters
-    ----------
-    ground : (n,) array
-        Ground acceleration [m/s2], linear between its samples.
-    time_step : float
-        [s]
-    period : float
-        T1 [s].
-    place : float
-        Height of the floor over that of the building, z/h [-].
-    modes : int, optional
-        Number of modes that are not taken as rigid; `count_modes` if it is not given.
+    * `ground` (n,): ground acceleration [m/s2], linear between its samples.
+    * `time_step`: [s].
+    * `period`: T1 [s].
+    * `place`: height of the floor over that of the building, z/h [-].
+    * `modes`: number of modes that are not taken as rigid; `count_modes` if it is not given.
 
-    Raises
-    ------
-    ValueError
-        If T1 is not above 0, or z/h is outside 0 to 1.
+    Raises ValueError if T1 is not above 0, or z/h is outside 0 to 1.
     """
     if not (0 < period < math.inf and 0 <= place <= 1):
         raise ValueError(f"T1 is {period} s and z/h {place}, expected above 0 and 0 to 1")

@@ -101,11 +101,8 @@ def fit_probit(counts: Counts, *, with_pfv: bool = True, check: Check = lambda: 
 
     `check` is called in each iteration; it may raise CancelledError.
 
-    Raises
-    ------
-    InputError
-        If the counts do not determine it: all fell, or none; a limit separates both without an overlap; or A and V
-        vary too little.
+    Raises InputError if the counts do not determine it: all fell, or none; a limit separates both without an overlap;
+    or A and V vary too little.
     """
     columns, total = design(counts), int(counts.runs.sum())
     if not 0 < int(counts.fallen.sum()) < total:

@@ -171,10 +171,7 @@ class Surface:
 def fit_surface(candidate: Candidate, points: Points) -> Surface:
     """Fit a candidate by ordinary least squares, and once more without each group.
 
-    Raises
-    ------
-    InputError
-        If the cases, or those without one group, do not determine it.
+    Raises InputError if the cases, or those without one group, do not determine it.
     """
     columns = np.column_stack(expand(candidate.base, candidate.powers, points.x, points.y))
     coefficients, condition = _solve(columns, points.z, candidate)
@@ -236,10 +233,7 @@ def rank_surfaces(points: Points, candidates: Iterable[Candidate] = CANDIDATES) 
     Source: the rule of one standard error. Hastie T, Tibshirani R, Friedman J (2009). The Elements of Statistical
     Learning, 2nd ed. Springer: section 7.10.1.
 
-    Raises
-    ------
-    InputError
-        If the cases do not determine one of them.
+    Raises InputError if the cases do not determine one of them.
     """
     surfaces = [fit_surface(one, points) for one in candidates]
     best = min((one.left_out for one in surfaces), key=lambda one: one.error)

@@ -56,11 +56,8 @@ class Ode23s(OdeSolver):  # type: ignore[misc]  # scipy is not typed
     * `max_step`: longest step.
     * `vectorized`: whether `fun` accepts several y at once.
 
-    Raises
-    ------
-    ValueError
-        If a tolerance or the length of a step is not above 0, `y0` is not a list of finite numbers, or an option is
-        unknown.
+    Raises ValueError if a tolerance or the length of a step is not above 0, `y0` is not a list of finite numbers, or an
+    option is unknown.
     """
 
     t: float

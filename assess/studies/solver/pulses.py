@@ -126,10 +126,7 @@ class Response:
 def follow(case: Case, amplitude: float, solver: Solver, until: float = 0.0) -> Response:
     """Rock the block under a pulse until it has fallen, or until it can no longer fall and `until` [s] is past.
 
-    Raises
-    ------
-    ArithmeticError
-        If it neither strikes its base nor falls within a minute, or its impacts do not end.
+    Raises ArithmeticError if it neither strikes its base nor falls within a minute, or its impacts do not end.
     """
     if not solver.method:
         return _follow_by_kernel(case, amplitude, until)

@@ -39,10 +39,7 @@ class Folder:
 def read_folder(path: Path, out: Path) -> Folder:
     """Read every file of a folder as a record, except for `out`, the folder of the study's own files.
 
-    Raises
-    ------
-    InputError
-        If the folder is missing, cannot be read, or has no readable horizontal channel.
+    Raises InputError if the folder is missing, cannot be read, or has no readable horizontal channel.
     """
     if not path.is_dir():
         raise InputError(f"{path}: there is no such folder. Name a folder of floor records")
