@@ -49,19 +49,26 @@ class Exchange:
     left_out: tuple[LeftOut, ...]
 
 
-def refuse_nothing(program: str, kept: Sequence[object], left_out: Sequence[LeftOut]) -> None:
-    """Raise InputError where no curve can be written; it gives the reason of the first one."""
-    if kept:
-        return
-    raise InputError(
-        fill(
-            "formats: none of the {count} curves can be written for {program}. The first is {name}: {why}",
-            count=len(left_out),
-            program=program,
-            name=plain_line(left_out[0].name),
-            why=left_out[0].why,
+def choose_curves(
+    program: str, curves: Iterable[PieceFragility], judge: Callable[[PieceFragility], Text | None]
+) -> tuple[list[PieceFragility], tuple[LeftOut, ...]]:
+    """Return the curves that `judge` has nothing against, and those left out with the reason that it gives.
+
+    Raises InputError, with the reason of the first one, where no curve can be written.
+    """
+    judged = [(one, judge(one)) for one in curves]
+    left = tuple(LeftOut(one.name, why) for one, why in judged if why is not None)
+    if len(left) == len(judged):
+        raise InputError(
+            fill(
+                "formats: none of the {count} curves can be written for {program}. The first is {name}: {why}",
+                count=len(left),
+                program=program,
+                name=plain_line(left[0].name),
+                why=left[0].why,
+            )
         )
-    )
+    return [one for one, why in judged if why is None], left
 
 
 def name_safely(names: Iterable[str], joint: str) -> list[str]:
@@ -137,12 +144,3 @@ def say_sizes(one: PieceFragility) -> str:
 def _span(values: Sequence[float], form: str) -> str:
     low, high = format(min(values), form), format(max(values), form)
     return low if low == high else f"{low} to {high}"
-
-
-def sort_out(
-    curves: Iterable[PieceFragility], judge: Callable[[PieceFragility], Text | None]
-) -> tuple[list[PieceFragility], tuple[LeftOut, ...]]:
-    """Return the curves that `judge` has nothing against, and those left out with the reason that it gives."""
-    judged = [(one, judge(one)) for one in curves]
-    left = tuple(LeftOut(one.name, why) for one, why in judged if why is not None)
-    return [one for one, why in judged if why is None], left

@@ -27,13 +27,12 @@ from assess.plain_text import plain_line
 from assess.report.interchange.exchange_files import (
     Exchange,
     LeftOut,
+    choose_curves,
     describe_curve,
     describe_origin,
     find_stem,
     name_safely,
-    refuse_nothing,
     round_number,
-    sort_out,
 )
 from assess.units import GRAVITY
 
@@ -85,8 +84,7 @@ def write_nrml(assessment: Assessment, found: PieceFragilities) -> Exchange:
         If the measure is PFV, the ground PGA of the scenario is not known, or there is no curve to be written.
     """
     pga = find_ground_pga(assessment, found.im)
-    kept, left = sort_out(found.curves, _judge)
-    refuse_nothing("OpenQuake", kept, left)
+    kept, left = choose_curves("OpenQuake", found.curves, _judge)
     functions = [_Function(name, floor, one, _find_ratio(one, floor, pga)) for name, floor, one in _name(kept)]
     stem = find_stem(assessment)
     data = _write(assessment, found, pga, functions, left)

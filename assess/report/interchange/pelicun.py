@@ -27,14 +27,13 @@ from assess.plain_text import plain_line
 from assess.report.interchange.exchange_files import (
     Exchange,
     LeftOut,
+    choose_curves,
     describe_curve,
     describe_origin,
     find_stem,
     name_safely,
-    refuse_nothing,
     round_number,
     say_sizes,
-    sort_out,
 )
 from assess.units import GRAVITY
 from assess.version import __version__
@@ -75,8 +74,7 @@ def write_pelicun(assessment: Assessment, found: PieceFragilities) -> Exchange:
     InputError
         If there is no curve to be written.
     """
-    kept, left = sort_out(found.curves, _judge)
-    refuse_nothing("pelicun", kept, left)
+    kept, left = choose_curves("pelicun", found.curves, _judge)
     stem = find_stem(assessment)
     names = name_safely((f"{stem} {one.name} {found.im}" for one in kept), ".")
     ids = [f"assess.{name}" for name in names]

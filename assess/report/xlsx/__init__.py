@@ -16,26 +16,26 @@ import xlsxwriter
 from assess.i18n import fill
 from assess.i18n import gettext as _
 from assess.progress import SILENT, Progress
+from assess.report import words
 from assess.report.content import Content, report_date
-from assess.report.xlsx import (
-    annual_sheet,
-    floors_sheet,
-    items_sheet,
-    method_sheets,
-    route_sheets,
-    summary_sheet,
-    work_sheet,
-)
-from assess.report.xlsx.pen import Pen, name_sheets, set_print
+from assess.report.say.ground import name_source
+from assess.report.say.simulation import say_scenario
+from assess.report.xlsx import floors_sheet, items_sheet, list_sheets, route_sheets, summary_sheet, work_sheet
+from assess.report.xlsx.pen import Pen, name_sheets, set_page
+from assess.results import Results
 from assess.workbook.formulas import write_plainly
 from assess.workbook.writer import write_book
 
-Write = Callable[[Pen, Any, Content], None]
+Write = Callable[[Pen, Any, Content], object]
 IsThere = Callable[[Content], bool]
 
 
-def _always(content: Content) -> bool:
+def _always(_content: Content) -> bool:
     return True
+
+
+def _listing(find: Callable[[Content], list_sheets.Listing]) -> Write:
+    return lambda pen, page, content: pen.listing(page, *find(content))
 
 
 SHEETS: tuple[tuple[str, Write, IsThere], ...] = (
@@ -43,16 +43,16 @@ SHEETS: tuple[tuple[str, Write, IsThere], ...] = (
     (fill("Work list"), work_sheet.write_work, _always),
     (fill("Floors"), floors_sheet.write_floors, _always),
     (fill("Items"), items_sheet.write_items, _always),
-    (fill("Motions"), floors_sheet.write_motions, _always),
-    (fill("Verification"), floors_sheet.write_verification, lambda content: content.run.has_simulated),
+    (fill("Motions"), _listing(list_sheets.list_motions), _always),
+    (fill("Verification"), _listing(list_sheets.list_fits), lambda content: content.run.has_simulated),
     (fill("Routes"), route_sheets.write_routes, _always),
     (fill("Route pieces"), route_sheets.write_route_pieces, route_sheets.has_pieces),
     (fill("Route rooms"), route_sheets.write_route_rooms, lambda content: bool(content.run.route_tables.rooms)),
-    (fill("Annual"), annual_sheet.write_annual, lambda content: content.annual is not None),
-    (fill("Methods"), method_sheets.write_methods, _always),
-    (fill("Assumptions"), method_sheets.write_assumptions, _always),
-    (fill("Quality log"), method_sheets.write_quality, _always),
-    (fill("Notes"), method_sheets.write_notes, lambda content: bool(method_sheets.list_notes(content))),
+    (fill("Annual"), list_sheets.write_annual, lambda content: content.annual is not None),
+    (fill("Methods"), _listing(list_sheets.list_methods), _always),
+    (fill("Assumptions"), list_sheets.write_assumptions, _always),
+    (fill("Quality log"), _listing(list_sheets.list_quality), _always),
+    (fill("Notes"), _listing(list_sheets.list_notes), lambda content: bool(list_sheets.list_notes(content)[1])),
 )
 """The sheets in order: title in English, what writes each, and whether it is there, as it is left out if empty."""
 
@@ -72,19 +72,35 @@ def write_xlsx(content: Content, path: Path, progress: Progress = SILENT) -> Non
         created = datetime.datetime.fromisoformat(report_date())
         title = _("Furniture in earthquakes: {title}", title=content.title[:200])
         book.set_properties({"title": title, "created": created})
-        _write_sheets(book, content, progress)
+        there = [(title, write) for title, write, is_there in SHEETS if is_there(content)]
+        pen = Pen(book, name_sheets({str(title): _(title) for title, _write in there}), progress)
+        pages = [book.add_worksheet(name) for name in pen.sheets.values()]
+        for row, (name, _meaning, _value) in enumerate(list_sheets.named_values(content.run), 2):
+            book.define_name(name, f"={pen.refer('Assumptions')}$B${row}")
+        for page, name, (_title, write) in zip(pages, pen.sheets.values(), there, strict=True):
+            progress.check()
+            write_plainly(page)
+            set_page(
+                page,
+                words.cut(content.title, 80),
+                name,
+                _say_conditions(content.run),
+                say_scenario(content.run).rstrip("."),
+            )
+            write(pen, page, content)
 
     write_book(path, write, by_row=True, progress=progress)
 
 
-def _write_sheets(book: xlsxwriter.Workbook, content: Content, progress: Progress) -> None:
-    there = [(title, write) for title, write, is_there in SHEETS if is_there(content)]
-    pen = Pen(book, name_sheets({str(title): _(title) for title, _write in there}), progress)
-    pages = [book.add_worksheet(name) for name in pen.sheets.values()]
-    for row, (name, _meaning, _value) in enumerate(method_sheets.named_values(content.run), 2):
-        book.define_name(name, f"={pen.refer('Assumptions')}$B${row}")
-    for page, name, (_title, write) in zip(pages, pen.sheets.values(), there, strict=True):
-        progress.check()
-        write_plainly(page)
-        set_print(page, content.title, name, content.run)
-        write(pen, page, content)
+def _say_conditions(run: Results) -> str:
+    """Return what holds for all numbers, shortly: it stands above every printed page."""
+    settings, texts = run.settings, []
+    if run.provenance.shaking:
+        texts.append(_("assumed shaking, {intensity}", intensity=run.provenance.shaking.name))
+    if run.provenance.site_ground:
+        texts.append(name_source(run.provenance.site_ground))
+    if settings.scale != 1:
+        texts.append(_("motion × {scale:g}", scale=settings.scale))
+    if settings.ideal:
+        texts.append(_("if exactly this motion recurred"))
+    return ", ".join(texts)

@@ -1,63 +1,76 @@
-"""The sheets on motions: Floors, to be edited, with whether it was; Motions, all of them; Verification, their fit."""
+"""The sheet Floors: the motion that serves each floor and axis, to be edited, with whether it was.
 
-from collections.abc import Sequence
+It has one line a floor, then one for every further record that serves a floor. Where several records serve a floor, the
+one with the largest peak that rules the formula, along each axis, stands in the floor's own line, which formulas look
+up by its name; the others stand in lines of the same name below the last floor.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any
 
 from xlsxwriter.utility import xl_col_to_name
 
-from assess.fields import MOTION_FIELDS
 from assess.i18n import gettext as _
 from assess.model import AXES
-from assess.report import words
 from assess.report.content import Content
-from assess.report.say.ground import describe_origin, describe_source, describe_treatment, factors
+from assess.report.row_order import order_floors
+from assess.report.say.ground import describe_source, factors
 from assess.report.xlsx import charts
 from assess.report.xlsx.item_formulas import FLOOR_AT, FLOOR_KEYS, edited_motion, top_motion
-from assess.report.xlsx.items_sheet import HEAD, has_brackets
-from assess.report.xlsx.motion_lines import list_lines
-from assess.report.xlsx.pen import COUNT, LINE, Column, Pen, count_lines, of_field, with_unit
-from assess.results import MotionRow
+from assess.report.xlsx.pen import HEAD, LINE, Pen, count_lines
+from assess.results import FloorRow, MotionRow, Results
 
 _WIDTHS = {"floor": 12, "name": 22, "pfa": 12, "pfv": 14, "source": 44, "elevation": 12, "edited": 10}
 _CODES = {"pfa": "0.000", "pfv": "0.0"}
 
 
+@dataclass(frozen=True, slots=True)
+class MotionLine:
+    """One line: the motion of a floor along each axis that has one; `further` are the places of its other records.
+
+    Places count the lines from 0. `further` is empty in a line that is not the floor's own.
+    """
+
+    floor: FloorRow
+    motions: Mapping[str, MotionRow]
+    further: tuple[int, ...] = ()
+
+
+def list_lines(results: Results) -> list[MotionLine]:
+    """Return the lines in order."""
+    peak = attrgetter({"pfa": "pfa_g", "pfv": "pfv_cm_s"}[results.formula.ruled_by])
+
+    def sort(motions: Sequence[MotionRow]) -> list[MotionRow]:
+        """Return parallel motions, that of the largest ruling peak first; in the results' order otherwise."""
+        largest = max(motions, key=lambda one: round(peak(one) or 0.0, 9), default=None)
+        return sorted(motions, key=lambda one: one is not largest)
+
+    floors = order_floors(results.floor_rows)
+    own, below = [], []
+    for floor in floors:
+        motions = {axis: sort(results.motions_of(floor.floor, axis)) for axis in AXES}
+        first = len(floors) + len(below)
+        below += [
+            MotionLine(floor, {axis: rows[at] for axis, rows in motions.items() if at < len(rows)})
+            for at in range(1, max(map(len, motions.values())))
+        ]
+        places = tuple(range(first, len(floors) + len(below)))
+        own.append(MotionLine(floor, {axis: rows[0] for axis, rows in motions.items() if rows}, places))
+    return [*own, *below]
+
+
+def find_places(lines: Sequence[MotionLine]) -> dict[int, int]:
+    """Return the line of every motion by `MotionRow.index`, 1 for the first."""
+    return {motion.index: place for place, line in enumerate(lines, 1) for motion in line.motions.values()}
+
+
 def write_floors(pen: Pen, page: Any, content: Content) -> None:
-    """Write the motion that serves each floor and axis, to be edited: Items and Summary follow."""
-    lines, rows = list_lines(content.run), len(content.floors)
-    pen.heads(page, _heads(), [_WIDTHS.get(key.split("_")[0], 20) for key in FLOOR_KEYS])
-    _comment(page, content.run.formula.ruled_by)  # now: what is above the row being written is left out
-    for row, line in enumerate(lines, HEAD):
-        floor, motions = line.floor, line.motions
-        texts = (floor.name, *map(_source, motions.values()))
-        heights = map(count_lines, texts, (_WIDTHS["name"], _WIDTHS["source"], _WIDTHS["source"]))
-        page.set_row(row, LINE * max(heights))
-        pen.put(page, row, FLOOR_AT["floor"], floor.floor, pen.style("text"))
-        pen.put(page, row, FLOOR_AT["name"], floor.name, pen.style("text"))
-        for axis, motion in motions.items():
-            further = [at for at in line.further if axis in lines[at].motions]
-            _write_motion(pen, page, row, motion)
-            _write_as_run(pen, page, row, [motion, *(lines[at].motions[axis] for at in further)], further)
-            if row < HEAD + rows:
-                _write_top(page, row, motion, further, content.run.formula.ruled_by)
-        pen.put(page, row, FLOOR_AT["elevation"], floor.elevation_m, pen.style("plain"))
-    _dress(page, len(lines), has_edits=content.run.has_simulated or has_brackets(content.run))
-    tops: dict[str, int] = {axis: FLOOR_AT[f"pfa_top_{axis}"] for axis in AXES}
-    charts.add_motion(pen, page, (HEAD + len(lines) + 1, 0), (HEAD, HEAD + rows - 1), tops)
-
-
-def _heads() -> list[str]:
-    return [
-        _("Floor"), _("Name"), with_unit(_("PFA X"), "g"), with_unit(_("PFV X"), "cm/s"), _("Source X"),
-        with_unit(_("PFA Y"), "g"), with_unit(_("PFV Y"), "cm/s"), _("Source Y"), with_unit(_("Elevation"), "m"),
-        _("X since the run"), _("Y since the run"), with_unit(_("PFA X as run"), "g"),
-        with_unit(_("PFV X as run"), "cm/s"), with_unit(_("PFA Y as run"), "g"), with_unit(_("PFV Y as run"), "cm/s"),
-        with_unit(_("PFA X of the stronger record"), "g"), with_unit(_("PFV X of that record"), "cm/s"),
-        with_unit(_("PFA Y of the stronger record"), "g"), with_unit(_("PFV Y of that record"), "cm/s"),
-    ]  # fmt: skip
-
-
-def _comment(page: Any, ruling: str) -> None:
+    """Write the motions: Items and Summary follow what is edited here."""
+    run, rows = content.run, len(content.floors)
+    lines, ruling = list_lines(run), run.formula.ruled_by
+    pen.heads(page, _list_heads(), [_WIDTHS.get(key.split("_")[0], 20) for key in FLOOR_KEYS])
     edit_here = _(
         "Edit the PFA and PFV here: rows that were not simulated follow; simulated rows on the floor say 'run again' "
         "and leave all counts. Where several records serve a floor, the one with the largest {peak} stands in its "
@@ -65,21 +78,45 @@ def _comment(page: Any, ruling: str) -> None:
         "rows go by the largest {peak}. Interpolated floors and those of a code's profile hold numbers as run: they "
         "do not follow when another floor is edited.",
         peak=ruling.upper(),
-    )
+    )  # written now: what is above the row being written is left out
     page.write_comment(0, FLOOR_AT["pfa_X"], edit_here, {"x_scale": 2, "y_scale": 1.5})
-
-
-def _dress(page: Any, lines: int, *, has_edits: bool) -> None:
-    """Freeze, filter, hide what holds the run's motions, and what shows edits where no row asks for a new run."""
-    last = len(FLOOR_KEYS) - 1
+    for row, line in enumerate(lines, HEAD):
+        texts = (line.floor.name, *map(_say_source, line.motions.values()))
+        heights = map(count_lines, texts, (_WIDTHS["name"], _WIDTHS["source"], _WIDTHS["source"]))
+        page.set_row(row, LINE * max(heights))
+        pen.put(page, row, FLOOR_AT["floor"], line.floor.floor, pen.style("text"))
+        pen.put(page, row, FLOOR_AT["name"], line.floor.name, pen.style("text"))
+        for axis, motion in line.motions.items():
+            further = [at for at in line.further if axis in lines[at].motions]
+            _write_motion(pen, page, row, motion)
+            _write_as_run(pen, page, row, [motion, *(lines[at].motions[axis] for at in further)], further)
+            if row < HEAD + rows:
+                _write_top(page, row, motion, further, ruling)
+        pen.put(page, row, FLOOR_AT["elevation"], line.floor.elevation_m, pen.style("plain"))
     page.freeze_panes(1, 1)
     page.repeat_rows(0)
-    page.autofilter(0, 0, lines, last)
+    page.autofilter(0, 0, len(lines), len(FLOOR_KEYS) - 1)
     for axis in AXES:
         at = FLOOR_AT[f"pfa_{axis}"]
-        page.data_validation(HEAD, at, lines, at, {"validate": "decimal", "criteria": ">=", "value": 0})
-    first = "pfa_run_X" if has_edits else "edited_X"
-    page.set_column(FLOOR_AT[first], last, 10, None, {"hidden": True})
+        page.data_validation(HEAD, at, len(lines), at, {"validate": "decimal", "criteria": ">=", "value": 0})
+    # hidden: the run's motions, and what shows edits where no row asks for a new run
+    has_brackets = any(one.anchor.bracket_capacity_kn is not None for one in run.item_rows)
+    first = "pfa_run_X" if run.has_simulated or has_brackets else "edited_X"
+    page.set_column(FLOOR_AT[first], len(FLOOR_KEYS) - 1, 10, None, {"hidden": True})
+    tops = {axis: FLOOR_AT[f"pfa_top_{axis}"] for axis in AXES}
+    charts.add_motion(pen, page, (HEAD + len(lines) + 1, 0), (HEAD, HEAD + rows - 1), tops)
+
+
+def _list_heads() -> list[str]:
+    heads = (
+        (_("Floor"), ""), (_("Name"), ""), (_("PFA X"), "g"), (_("PFV X"), "cm/s"), (_("Source X"), ""),
+        (_("PFA Y"), "g"), (_("PFV Y"), "cm/s"), (_("Source Y"), ""), (_("Elevation"), "m"),
+        (_("X since the run"), ""), (_("Y since the run"), ""), (_("PFA X as run"), "g"), (_("PFV X as run"), "cm/s"),
+        (_("PFA Y as run"), "g"), (_("PFV Y as run"), "cm/s"),
+        (_("PFA X of the stronger record"), "g"), (_("PFV X of that record"), "cm/s"),
+        (_("PFA Y of the stronger record"), "g"), (_("PFV Y of that record"), "cm/s"),
+    )  # fmt: skip
+    return [f"{label} [{unit}]" if unit else label for label, unit in heads]
 
 
 def _write_motion(pen: Pen, page: Any, row: int, motion: MotionRow) -> None:
@@ -95,7 +132,7 @@ def _write_motion(pen: Pen, page: Any, row: int, motion: MotionRow) -> None:
             page.write_formula(row, at, formula, pen.style("live", _CODES[peak]), "" if value is None else value)
         else:
             pen.put(page, row, at, value, pen.style("input", _CODES[peak]))
-    pen.put(page, row, FLOOR_AT[f"source_{axis}"], _source(motion), pen.style("text"))
+    pen.put(page, row, FLOOR_AT[f"source_{axis}"], _say_source(motion), pen.style("text"))
 
 
 def _write_as_run(pen: Pen, page: Any, row: int, motions: Sequence[MotionRow], further: Sequence[int]) -> None:
@@ -114,12 +151,11 @@ def _write_as_run(pen: Pen, page: Any, row: int, motions: Sequence[MotionRow], f
 def _write_top(page: Any, row: int, motion: MotionRow, further: Sequence[int], ruling: str) -> None:
     """Write the peaks of the record of the largest ruling peak along an axis: as run, that of the floor's own line."""
     axis, rows = motion.axis, (row, *(HEAD + at for at in further))
-    other = "pfa" if ruling == "pfv" else "pfv"
-    first, second = ([_cell(f"{peak}_{axis}", at) for at in rows] for peak in (ruling, other))
     values = {"pfa": motion.pfa_g, "pfv": motion.pfv_cm_s}
-    for peak, formula in zip(
-        (ruling, other), top_motion(first, second, _cell(f"{ruling}_top_{axis}", row)), strict=True
-    ):
+    peaks = sorted(values, key=lambda peak: peak != ruling)
+    first, second = ([_cell(f"{peak}_{axis}", at) for at in rows] for peak in peaks)
+    formulas = top_motion(first, second, _cell(f"{ruling}_top_{axis}", row))
+    for peak, formula in zip(peaks, formulas, strict=True):
         value = values[peak]
         page.write_formula(row, FLOOR_AT[f"{peak}_top_{axis}"], formula, None, "" if value is None else value)
 
@@ -128,60 +164,7 @@ def _cell(key: str, row: int) -> str:
     return f"{xl_col_to_name(FLOOR_AT[key])}{row + 1}"
 
 
-def _source(motion: MotionRow) -> str:
+def _say_source(motion: MotionRow) -> str:
     detail = factors(motion) if motion.profile else motion.record
     source = describe_source(motion)
     return _("{source}: {detail}", source=source, detail=detail) if detail else source
-
-
-def _of_motion(key: str, width: int = 10, **more: Any) -> Column:
-    field = next(one for one in MOTION_FIELDS if one.key == key)
-    return of_field(field, width=width, **more)
-
-
-def write_motions(pen: Pen, page: Any, content: Content) -> None:
-    """Write every motion, with what was done to it."""
-    columns = [
-        Column(_("Floor"), 9, lambda one: one.floor),
-        _of_motion("axis", 6),
-        Column(_("Source"), 30, describe_source),
-        Column(_("Record"), 30, lambda one: one.record),
-        Column(_("Computed from"), 36, lambda one: "" if one.has_record else describe_origin(one)),
-        *map(_of_motion, ("height_ratio", "amplification", "pfa_g", "pfv_cm_s", "pfa_file_g")),
-        _of_motion("station", 24),
-        _of_motion("event", 24),
-        _of_motion("azimuth_deg"),
-        Column(_("Treatment"), 60, describe_treatment),
-    ]
-    pen.listing(page, columns, [one for floor in content.floors for one in floor.motions])
-
-
-_FIT = (
-    "matched_to_s", "mean_deviation", "worst_deviation", "worst_period_s", "pfa_ratio", "pfa_scatter", "pfv_ratio",
-    "pfv_scatter", "spectrum_scatter",
-)  # fmt: skip
-
-
-def write_verification(pen: Pen, page: Any, content: Content) -> None:
-    """Write the motions of every floor and axis under which pieces were simulated, and how they meet their target."""
-    suite, seed = content.run.provenance.suite, content.run.settings.seed
-
-    def kind(one: MotionRow) -> str:
-        if suite is None:
-            return _("assumed") if one.ensemble and one.ensemble.assumed_motion else _("recorded")
-        folder = words.cut(suite.folder, 60)
-        return _("suite {folder}, scaled", folder=folder) if suite.is_scaled else _("suite {folder}", folder=folder)
-
-    columns = [
-        Column(_("Floor"), 9, lambda one: one.floor),
-        _of_motion("axis", 6),
-        Column(_("Source"), 34, describe_source),
-        Column(_("Record"), 30, lambda one: one.record),
-        Column(_("Motion"), 14, kind),
-        _of_motion("ensemble_motions", 9),
-        Column(_("Seed"), 8, lambda _one: None if suite else seed, "0"),
-        *(_of_motion(f"ensemble_fit_{name}") for name in _FIT),
-        Column(_("Rows"), 8, lambda one: one.ensemble.cases, COUNT),
-        Column(_("Rows that overturn under the record"), 18, lambda one: one.ensemble.fell_in_record, COUNT),
-    ]
-    pen.listing(page, columns, [one for floor in content.floors for one in floor.motions if one.ensemble])

@@ -21,16 +21,12 @@ from assess.workbook.formulas import say_class
 
 ANCHORED = "⚓ "
 """Mark before the class of an anchored piece, which is that of the piece without its anchor; it is not coloured."""
-TOLERANCE = "1E-9"
-"""How far a number may lie from the one as run [-] before it counts as edited."""
 LIMITS = ("limit_medium", "limit_high", "limit_very_high")
 """Names of the cells that hold the limits of the classes."""
 ROW = "\x00"
 """Stands for the number of the row in a formula."""
-CLASS_WEIGHT, ROW_WEIGHT = 10, "1E-9"
+CLASS_WEIGHT = 10
 """In the order of the pieces a class weighs more than any chance; of equal chances the upper row comes first."""
-ABOVE_ANY_PEAK = "1E5"
-"""Weighs more than any peak [cm/s]."""
 SAME = ("breadth_cm", "width_cm", "height_cm", "centre_of_gravity", "friction")
 """Numbers of a row that a simulated class holds for; a blank one must stay blank."""
 SAME_WORDS = ("floor", "axis_given")
@@ -101,6 +97,11 @@ def build_terms() -> Terms:
     )
 
 
+def _differs(now: str, as_run: str) -> str:
+    """Return whether a number is not the one as run, but for its last digits."""
+    return f"ABS({now}-{as_run})>1E-9*{as_run}"
+
+
 # ---------------------------------------------------------------- Floors
 
 
@@ -130,16 +131,13 @@ def top_motion(ruling: Sequence[str], other: Sequence[str], top: str) -> tuple[s
     return f'=IF(COUNT({",".join(ruling)})=0,"",MAX({",".join(ruling)}))', f"={found}"
 
 
-def _differs(now: str, as_run: str) -> str:
-    return f"ABS({now}-{as_run})>{TOLERANCE}*{as_run}"
-
-
 # ---------------------------------------------------------------- Items
 
 
-@dataclass(frozen=True, slots=True)
 class ItemFormulas:
-    """The formulas of a row of Items.
+    """The formulas of a row of Items: templates, in which a cell stands by the key of its column.
+
+    Names in capitals are words, and expressions that several formulas have.
 
     Parameters
     ----------
@@ -151,13 +149,32 @@ class ItemFormulas:
         The adopted formula, and the paper's.
     """
 
-    cells: Mapping[str, str]
-    floors: str
-    last: int
-    lowest: int
-    terms: Terms
-    formula: MethodInfo
-    paper: MethodInfo
+    def __init__(
+        self, cells: Mapping[str, str], floors: str, last: int, lowest: int, terms: Terms, formula: MethodInfo,
+        paper: MethodInfo,
+    ) -> None:  # fmt: skip
+        self._cells, self._floors, self._last, self._lowest = cells, floors, last, lowest
+        self._terms, self._formula, self._paper = terms, formula, paper
+        words = {
+            "YES": terms.yes, "NO": terms.no, "PARTLY": terms.partly, "EDITED": terms.edited, "CHECK": terms.check,
+            "AGAIN": terms.again, "LOW": terms.labels[0], "CANNOT_ROCK": terms.bases[CANNOT_ROCK],
+            "BY_FORMULA": terms.bases["formula"], "ANCHORED": ANCHORED,
+        }  # fmt: skip
+        self._known = {**cells, **{name: literal(word) for name, word in words.items()}}
+        self._known |= {
+            "MARK": self._fill('IF({held}={YES},{ANCHORED},"")'),
+            "START": self._fill("{rocks_from_run}*{breadth_to_height}*50/{centre_of_gravity}"),
+            "IS_SLENDER": live.is_slender(cells["breadth_to_height"], f"{cells['centre_of_gravity']}/100"),
+            # whether it depends on a bracket of known capacity, now or as run, if the piece counts as anchored
+            "BRACKET_DECIDES": self._fill(
+                "AND(OR({anchored}={YES},{anchored}={PARTLY}),"
+                'OR({bracket_capacity_kn}<>"",{bracket_capacity_kn_run}<>""))'
+            ),
+            "BRACKET_TESTS": ",".join(_differs(cells[key], cells[f"{key}_run"]) for key in BRACKET),
+        }
+
+    def _fill(self, template: str, **more: str) -> str:
+        return template.format_map({**self._known, **more})
 
     def of(self, basis: str, *, is_run: bool) -> dict[str, str]:
         """Return the formulas of a row whose class rests on one of `assess.results.BASES`, by keys of columns.
@@ -169,195 +186,185 @@ class ItemFormulas:
 
     def _of_formula(self) -> dict[str, str]:
         """Return the formulas of a row that follows its inputs, unless they may change whether its bracket holds."""
-        risk, own, again = self.cells[self.formula.key], *map(literal, (self.terms.bases["formula"], self.terms.again))
-        is_edited, stands = f"{self.cells['edited']}={literal(self.terms.edited)}", f"{self.cells['can_rock']}=0"
-        cannot, low = literal(self.terms.bases[CANNOT_ROCK]), f"{self._mark()}&{literal(self.terms.labels[0])}"
-        return {
-            "edited": f'IF({self._bracket_decides()},{self._edited(*self._bracket_edits())},"")',
-            # 1 while its sizes or its motion are no numbers
-            "can_rock": f"IFERROR(IF({self._rocks_at(self.cells['pfa_g'])},1,0),1)",
-            "basis": f"IF({is_edited},{again},IF({stands},{cannot},{own}))",
-            "class": f"IF({is_edited},{again},IF({stands},{low},{self.cells['class_formula']}))",
-            "order_formula": f'IF(OR({is_edited},{stands}),"",{self._order(risk, _rank(risk), risk)})',
+        risk = self._cells[self._formula.key]
+        templates = {
+            "edited": 'IF({BRACKET_DECIDES},{found},"")',
+            "can_rock": "IFERROR(IF({rocks},1,0),1)",  # 1 while its sizes or its motion are no numbers
+            "basis": "IF({edited}={EDITED},{AGAIN},IF({can_rock}=0,{CANNOT_ROCK},{BY_FORMULA}))",
+            "class": "IF({edited}={EDITED},{AGAIN},IF({can_rock}=0,{MARK}&{LOW},{class_formula}))",
+            "order_formula": 'IF(OR({edited}={EDITED},{can_rock}=0),"",{order})',
         }
-
-    def _rocks_at(self, pfa: str) -> str:
-        """Return whether the piece may rock at a PFA [g]; an error while its sizes are no numbers."""
-        return f"AND({pfa}>={self._start()},{self._is_slender()})"
-
-    def _start(self) -> str:
-        share, ratio, centre = (self.cells[key] for key in ("rocks_from_run", "breadth_to_height", "centre_of_gravity"))
-        return f"{share}*{ratio}*50/{centre}"
-
-    def _is_slender(self) -> str:
-        return live.is_slender(self.cells["breadth_to_height"], f"{self.cells['centre_of_gravity']}/100")
+        more = {
+            "found": self._edited(self._known["BRACKET_TESTS"]),
+            "rocks": self._rocks_at(self._cells["pfa_g"]),
+            "order": self._order(risk, _rank(risk), risk),
+        }
+        return {key: self._fill(template, **more) for key, template in templates.items()}
 
     def _of_run(self, basis: str) -> dict[str, str]:
         """Return the formulas of a row whose class holds while its inputs are as run."""
-        cells, rank, upper = self.cells, self.cells["rank"], self.cells["rank_upper"]
-        own, again = literal(self.terms.bases[basis]), literal(self.terms.again)
+        cells, mark, label = self._cells, self._known["MARK"], self._terms.label
+        rank, upper, again = cells["rank"], cells["rank_upper"], self._known["AGAIN"]
+
+        def while_as_run(value: str, edited: str = '""') -> str:
+            return f"IF(ISNUMBER({rank}),{value},{edited})"
+
         found = {
-            "edited": self._edited(f"AND({self._bracket_decides()},OR({','.join(self._bracket_edits())}))"),
-            "rank": self._rank_as_run(),
-            "rank_upper": self._while_as_run(f"MAX({rank},{_rank(cells['upper_end'])})"),
-            "basis": self._while_as_run(own, again),
-            "class": self._while_as_run(f"{self._mark()}&{self.terms.label(rank)}", again),
-            "class_upper": self._while_as_run(f"{self._mark()}&{self.terms.label(upper)}"),
-            "class_notes": self._while_as_run(self._notes(is_settled=basis != "unconfirmed")),
-            "rank_formula": self._while_as_run(rank if basis == CANNOT_ROCK else _rank(cells["formula_run"])),
+            "edited": self._edited(self._fill("AND({BRACKET_DECIDES},OR({BRACKET_TESTS}))")),
+            "rank": self._fill(
+                'IF({edited}={EDITED},"",MAX({of_chance},IF({fell}=1,{high},0)))',
+                of_chance=_rank(cells["behind"]), high=str(int(RiskClass.HIGH)),
+            ),
+            "rank_upper": while_as_run(f"MAX({rank},{_rank(cells['upper_end'])})"),
+            "basis": while_as_run(literal(self._terms.bases[basis]), again),
+            "class": while_as_run(f"{mark}&{label(rank)}", again),
+            "class_upper": while_as_run(f"{mark}&{label(upper)}"),
+            "class_notes": while_as_run(self._notes(is_settled=basis != "unconfirmed")),
+            "rank_formula": while_as_run(rank if basis == CANNOT_ROCK else _rank(cells["formula_run"])),
             f"order_{basis}": self._order(rank, upper, cells["chance_run"]),
-        }
+        }  # fmt: skip
         if basis == "simulated":
-            found |= {key: self._while_as_run(cells[f"{key}_run"]) for key in AT_RUN}
-            found["beside"] = self._while_as_run(f'IF({cells["beside_run"]}="","",{cells["beside_run"]})')
+            found |= {key: while_as_run(cells[f"{key}_run"]) for key in AT_RUN}
+            found["beside"] = while_as_run(self._fill('IF({beside_run}="","",{beside_run})'))
         return found
 
     def _of_any(self, *, is_run: bool) -> dict[str, str]:
-        cells, check = self.cells, literal(self.terms.check)
+        cells, check = self._cells, self._known["CHECK"]
         ratio, pfa = cells["breadth_to_height"], cells["pfa_g"]
-        breadth, height = cells["breadth_cm"], cells["height_cm"]
-        low = literal(self.terms.labels[0] + live.OUTSIDE)  # where FEMA P-58 has no value
-        classed, by_paper = (
-            f"IF(ISNUMBER({risk}),{live.risk_class(one, risk, ratio, pfa, LIMITS)},"
-            f'IF(AND({risk}="",{live.is_stocky(ratio)}),{low},{check}))'
-            for one in (self.formula, self.paper)
-            for risk in (cells[one.key],)
-        )
-        as_run = live.risk_class(self.formula, cells["formula_run"], ratio, cells["formula_pfa_run"], LIMITS)
-        methods = {
-            key: f"IF(AND(ISNUMBER({ratio}),ISNUMBER({pfa})),{formula},{check})"
-            for key, formula in live_formulas(cells).items()
+        low = literal(self._terms.labels[0] + live.OUTSIDE)  # where FEMA P-58 has no value
+
+        def classed(method: MethodInfo) -> str:
+            risk = cells[method.key]
+            known = live.risk_class(method, risk, ratio, pfa, LIMITS)
+            return f'IF(ISNUMBER({risk}),{known},IF(AND({risk}="",{live.is_stocky(ratio)}),{low},{check}))'
+
+        found = {
+            "axis": (cells["axis_run"], self._axis()),
+            "pfa_g": (self._peak_as_run("pfa"), self._peak("pfa")),
+            "pfv_cm_s": (self._peak_as_run("pfv"), self._peak("pfv")),
+            "class_formula": (
+                live.risk_class(self._formula, cells["formula_run"], ratio, cells["formula_pfa_run"], LIMITS),
+                classed(self._formula),
+            ),
         }
-        return methods | {
-            "breadth_to_height": f"IFERROR(IF(OR({breadth}<=0,{height}<=0),{check},{breadth}/{height}),{check})",
-            "axis": self._while_unedited(cells["axis_run"], self._axis()) if is_run else self._axis(),
-            "pfa_g": self._governing("pfa", is_run=is_run),
-            "pfv_cm_s": self._governing("pfv", is_run=is_run),
-            "class_formula": self._classed(self._while_unedited(as_run, classed) if is_run else classed),
-            "class_or": self._classed(by_paper),
-            "held": self._held(),
+        now = {
+            key: self._fill("IF({edited}={EDITED},{now},{as_run})", now=edited, as_run=as_run) if is_run else edited
+            for key, (as_run, edited) in found.items()
+        }
+        mark = "{MARK}&IF({can_rock}=0,{LOW},{found})"  # low where the piece cannot rock
+        return {
+            **{
+                key: f"IF(AND(ISNUMBER({ratio}),ISNUMBER({pfa})),{formula},{check})"
+                for key, formula in live_formulas(cells).items()
+            },
+            "breadth_to_height": self._fill(
+                "IFERROR(IF(OR({breadth_cm}<=0,{height_cm}<=0),{CHECK},{breadth_cm}/{height_cm}),{CHECK})"
+            ),
+            **now,
+            "class_formula": self._fill(mark, found=now["class_formula"]),
+            "class_or": self._fill(mark, found=classed(self._paper)),
+            "held": self._fill(
+                "IF(IF({anchored}={YES},{held_yes},IF({anchored}={PARTLY},{held_partly},0))=1,{YES},{NO})"
+            ),
         }
 
-    def _classed(self, found: str) -> str:
-        """Return a class by formula: low where the piece cannot rock."""
-        return f"{self._mark()}&IF({self.cells['can_rock']}=0,{literal(self.terms.labels[0])},{found})"
+    def _edited(self, *more: str) -> str:
+        """Return whether piece, floor, axis or its motion differ from those as run; `more` are further tests."""
+        cells = self._cells
+        tests = [
+            *(_differs(cells[key], cells[f"{key}_run"]) for key in SAME),
+            *(f"{cells[key]}<>{cells[f'{key}_run']}" for key in SAME_WORDS),
+            *(
+                self._fill('IF({axis_given}="{other}",FALSE,{found}={EDITED})', other=other,
+                           found=self._floor(f"edited_{own}"))
+                for own, other in ("XY", "YX")
+            ),
+            *more,
+        ]  # fmt: skip
+        return self._fill('IF(IFERROR(OR({tests}),TRUE),{EDITED},"")', tests=",".join(tests))
 
-    def _floor(self, key: str) -> str:
-        """Return the value in a column of Floors for the row's floor."""
-        area, names = (self._area(one, self.last) for one in (key, "floor"))
-        return f"INDEX({area},MATCH({self.cells['floor']},{names},0))"
+    def _order(self, known: str, rank: str, chance: str) -> str:
+        """Return what orders pieces by class and chance; nothing for anchored ones, or where `known` is no number."""
+        template = 'IF(AND({held}<>{YES},ISNUMBER({known})),{weight}*{rank_}+{chance_}-ROW()*1E-9,"")'
+        return self._fill(template, known=known, weight=str(CLASS_WEIGHT), rank_=rank, chance_=chance)
+
+    def _notes(self, *, is_settled: bool) -> str:
+        """Return what is to be said of a class that holds for the inputs as run."""
+        rank, upper, formula = (self._cells[key] for key in ("rank", "rank_upper", "rank_formula"))
+        could_be = sentence(", " + _("could be {risk}"), risk=self._terms.label(upper))
+        lowered = sentence(", " + _("lowered by simulation (formula: {risk})"), risk=self._terms.label(formula))
+        fell = literal(", " + _("as it overturns under the record itself"))
+        notes = [
+            (f"{upper}>{rank}", could_be),
+            *([(f"{formula}>{rank}", lowered)] if is_settled else []),
+            (self._fill("{fell}=1"), fell),
+            (self._fill('AND({held}={YES},{bracket_held}<>"")'), self._fill('", "&{bracket_held}')),
+        ]
+        texts = [] if is_settled else [self._fill('", "&{settle}')]
+        texts += [f'IF({test},{text},"")' for test, text in notes]
+        return f"MID({'&'.join(texts)},3,300)"
+
+    # ------------------------------------------------------------ the motion of the row's floor
 
     def _area(self, key: str, last: int) -> str:
         """Return the cells of a column of Floors."""
         letter = xl_col_to_name(FLOOR_AT[key])
-        return f"{self.floors}${letter}$2:${letter}${last}"
+        return f"{self._floors}${letter}$2:${letter}${last}"
+
+    def _floor(self, key: str) -> str:
+        """Return the value in a column of Floors for the row's floor."""
+        return f"INDEX({self._area(key, self._last)},MATCH({self._cells['floor']},{self._area('floor', self._last)},0))"
 
     def _axis(self) -> str:
         """Return the axis given, else that of the larger ruling peak; by velocity first one along which it can rock."""
-        given, ruling = self.cells["axis_given"], self.formula.ruled_by
+        ruling = self._formula.ruled_by
         x, y = (f"MAX({self._floor(f'{ruling}_top_{axis}')})" for axis in AXES)  # of a reference: a blank counts as 0
-        if ruling != "pfa":
+        if ruling != "pfa":  # 1E5 weighs more than any peak [cm/s]
             x, y = (
-                f"IF({fastest}>0,{ABOVE_ANY_PEAK}+{fastest},{peak})"
+                f"IF({fastest}>0,1E5+{fastest},{peak})"
                 for peak, fastest in zip((x, y), map(self._fastest, AXES), strict=True)
             )
-        return f'IF({given}<>"",{given},{live.worse_axis(x, y)})'
+        return self._fill('IF({axis_given}<>"",{axis_given},{worse})', worse=live.worse_axis(x, y))
+
+    def _rocks_at(self, pfa: str) -> str:
+        """Return whether the piece may rock at a PFA [g]; an error while its sizes are no numbers."""
+        return self._fill("AND({pfa}>={START},{IS_SLENDER})", pfa=pfa)
 
     def _fastest(self, axis: str) -> str:
         """Return the largest PFV of the motions along an axis that can rock the piece; 0 where none can."""
-        if self.lowest > self.last:
-            pfa, pfv, floors = (self._area(key, self.lowest) for key in (f"pfa_{axis}", f"pfv_{axis}", "floor"))
-            largest = f"SUMPRODUCT(MAX(({floors}={self.cells['floor']})*({pfa}>={self._start()})*{pfv}))"
-            return f"IFERROR(IF({self._is_slender()},{largest},0),0)"
+        if self._lowest > self._last:
+            largest = self._among(axis, "({pfa}>={START})*{pfv}")
+            return self._fill("IFERROR(IF({IS_SLENDER},{largest},0),0)", largest=largest)
         pfa, pfv = (self._floor(f"{peak}_top_{axis}") for peak in ("pfa", "pfv"))
         return f"IFERROR(IF({self._rocks_at(f'MAX({pfa})')},MAX({pfv}),0),0)"
+
+    def _among(self, axis: str, template: str, **more: str) -> str:
+        """Return the largest of an expression over the records of the row's floor."""
+        pfa, pfv, floors = (self._area(key, self._lowest) for key in (f"pfa_{axis}", f"pfv_{axis}", "floor"))
+        return self._fill(
+            "SUMPRODUCT(MAX(({floors}={floor})*" + template + "))", floors=floors, pfa=pfa, pfv=pfv, **more
+        )
 
     def _top(self, peak: str, axis: str) -> str:
         """Return the peak of the record along an axis that governs: by velocity, first of those that can rock it."""
         top = self._floor(f"{peak}_top_{axis}")
-        if self.formula.ruled_by == "pfa" or self.lowest == self.last:
+        if self._formula.ruled_by == "pfa" or self._lowest == self._last:
             return top
-        fastest, found = self._fastest(axis), self._fastest(axis)
-        if peak == "pfa":
-            pfa, pfv, floors = (self._area(key, self.lowest) for key in (f"pfa_{axis}", f"pfv_{axis}", "floor"))
-            found = f"SUMPRODUCT(MAX(({floors}={self.cells['floor']})*({pfv}={fastest})*{pfa}))"
+        fastest = self._fastest(axis)
+        found = fastest if peak == "pfv" else self._among(axis, "({pfv}={fastest})*{pfa}", fastest=fastest)
         return f"IF({fastest}>0,{found},{top})"
 
-    def _governing(self, peak: str, *, is_run: bool) -> str:
-        """Return the peak that governs along the row's axis: of the record as run while that holds, else by `_top`."""
-        floors = self._on_axis(*(self._top(peak, axis) for axis in AXES))
-        if not is_run:
-            return floors
-        areas = (self._area(f"{peak}_{axis}", self.lowest) for axis in AXES)
-        as_run = self._on_axis(*(f"INDEX({area},{self.cells['motion_run']})" for area in areas))
-        return self._while_unedited(as_run, floors)
+    def _peak(self, peak: str) -> str:
+        return self._on_axis(*(self._top(peak, axis) for axis in AXES))
+
+    def _peak_as_run(self, peak: str) -> str:
+        """Return the peak of the record that governed the run."""
+        areas = (self._area(f"{peak}_{axis}", self._lowest) for axis in AXES)
+        return self._on_axis(*(f"INDEX({area},{self._cells['motion_run']})" for area in areas))
 
     def _on_axis(self, x: str, y: str) -> str:
-        chosen = f'IF({self.cells["axis"]}="X",{x},{y})'
+        chosen = f'IF({self._cells["axis"]}="X",{x},{y})'
         return f'IF({chosen}="","",{chosen})'
-
-    def _held(self) -> str:
-        """Return whether the piece counts as anchored, by what its bracket does as run."""
-        cells, (yes, no, partly) = self.cells, map(literal, (self.terms.yes, self.terms.no, self.terms.partly))
-        word, if_partly = cells["anchored"], f"IF({cells['anchored']}={partly},{cells['held_partly']},0)"
-        return f"IF(IF({word}={yes},{cells['held_yes']},{if_partly})=1,{yes},{no})"
-
-    def _mark(self) -> str:
-        return f'IF({self.cells["held"]}={literal(self.terms.yes)},{literal(ANCHORED)},"")'
-
-    def _while_unedited(self, value: str, edited: str) -> str:
-        return f"IF({self.cells['edited']}={literal(self.terms.edited)},{edited},{value})"
-
-    def _bracket_decides(self) -> str:
-        """Return whether it depends on a bracket of known capacity, now or as run, if the piece counts as anchored."""
-        cells, capacity = self.cells, BRACKET[0]
-        words = (f"{cells['anchored']}={literal(word)}" for word in (self.terms.yes, self.terms.partly))
-        known = f'{cells[capacity]}<>"",{cells[f"{capacity}_run"]}<>""'
-        return f"AND(OR({','.join(words)}),OR({known}))"
-
-    def _bracket_edits(self) -> list[str]:
-        return [_differs(self.cells[key], self.cells[f"{key}_run"]) for key in BRACKET]
-
-    def _while_as_run(self, value: str, edited: str = '""') -> str:
-        return f"IF(ISNUMBER({self.cells['rank']}),{value},{edited})"
-
-    def _edited(self, *more: str) -> str:
-        """Return whether piece, floor, axis or its motion differ from those as run; `more` are further tests."""
-        cells, edited = self.cells, literal(self.terms.edited)
-        axis = cells["axis_given"]
-        tests = [
-            *(_differs(cells[key], cells[f"{key}_run"]) for key in SAME),
-            *(f"{cells[key]}<>{cells[f'{key}_run']}" for key in SAME_WORDS),
-            *(f'IF({axis}="{other}",FALSE,{self._floor(f"edited_{own}")}={edited})' for own, other in ("XY", "YX")),
-            *more,
-        ]
-        return f'IF(IFERROR(OR({",".join(tests)}),TRUE),{edited},"")'
-
-    def _rank_as_run(self) -> str:
-        cells = self.cells
-        at_least = f"IF({cells['fell']}=1,{int(RiskClass.HIGH)},0)"
-        edited = literal(self.terms.edited)
-        return f'IF({cells["edited"]}={edited},"",MAX({_rank(cells["behind"])},{at_least}))'
-
-    def _order(self, known: str, rank: str, chance: str) -> str:
-        """Return what orders pieces by class and chance; nothing for anchored ones, or where `known` is no number."""
-        free = f"AND({self.cells['held']}<>{literal(self.terms.yes)},ISNUMBER({known}))"
-        return f'IF({free},{CLASS_WEIGHT}*{rank}+{chance}-ROW()*{ROW_WEIGHT},"")'
-
-    def _notes(self, *, is_settled: bool) -> str:
-        """Return what is to be said of a class that holds for the inputs as run."""
-        rank, upper, formula = (self.cells[key] for key in ("rank", "rank_upper", "rank_formula"))
-        could_be = sentence(", " + _("could be {risk}"), risk=self.terms.label(upper))
-        lowered = sentence(", " + _("lowered by simulation (formula: {risk})"), risk=self.terms.label(formula))
-        fell = literal(", " + _("as it overturns under the record itself"))
-        notes = [(f"{upper}>{rank}", could_be), (f"{self.cells['fell']}=1", fell)]
-        if is_settled:
-            notes.insert(1, (f"{formula}>{rank}", lowered))
-        texts = [] if is_settled else [f"{literal(', ')}&{self.cells['settle']}"]
-        held = f'AND({self.cells["held"]}={literal(self.terms.yes)},{self.cells["bracket_held"]}<>"")'
-        notes.append((held, f"{literal(', ')}&{self.cells['bracket_held']}"))
-        texts += [f'IF({test},{text},"")' for test, text in notes]
-        return f"MID({'&'.join(texts)},3,300)"
 
 
 def live_formulas(cells: Mapping[str, str]) -> dict[str, str]:

@@ -6,7 +6,7 @@ The formulas of `item_formulas` compute the same from the cells.
 from assess.i18n import gettext as _
 from assess.report import words
 from assess.report.xlsx.item_formulas import ANCHORED, CLASS_WEIGHT
-from assess.results import CaseRow, ItemResult, Results
+from assess.results import CaseRow, ItemResult, MethodResult, Results
 from assess.risk import RiskClass, classify
 from assess.workbook.formulas import OUTSIDE, say_class
 from assess.workbook.schema import BUILDING
@@ -31,8 +31,8 @@ def say_inputs_that_settle(one: ItemResult) -> str:
 
 
 def say_unsettled(one: ItemResult) -> str:
-    """Return how to settle the class of an unconfirmed piece."""
-    return _("to settle it, {how}", how=say_inputs_that_settle(one))
+    """Return how to settle the class of an unconfirmed piece; "" of any other."""
+    return _("to settle it, {how}", how=say_inputs_that_settle(one)) if one.adopted.is_unconfirmed else ""
 
 
 def list_simulated(one: ItemResult, *, is_ideal: bool) -> tuple[float | None, ...]:
@@ -106,14 +106,16 @@ def _mark(one: ItemResult) -> str:
 
 def class_by_formula(one: ItemResult) -> str:
     """Return its class by the formula, marked where the formula was not checked."""
-    is_outside = one.adopted.can_rock and "extrapolated" in one.formula.flags
-    return _mark(one) + say_class(one.formula_class) + OUTSIDE * is_outside
+    return _mark(one) + say_class(one.formula_class) + _outside(one, one.formula)
 
 
 def class_by_paper(one: ItemResult) -> str:
     """Return its class by the paper's formula under the governing motion, marked where that was not checked."""
-    is_outside = one.adopted.can_rock and "extrapolated" in one.governing.methods[one.paper_key].flags
-    return _mark(one) + say_class(one.paper_class) + OUTSIDE * is_outside
+    return _mark(one) + say_class(one.paper_class) + _outside(one, one.governing.methods[one.paper_key])
+
+
+def _outside(one: ItemResult, found: MethodResult) -> str:
+    return OUTSIDE * (one.adopted.can_rock and "extrapolated" in found.flags)
 
 
 def class_in_force(one: ItemResult) -> str:
@@ -129,17 +131,15 @@ def upper_class(one: ItemResult) -> str:
 
 def class_notes(one: ItemResult) -> str:
     """Return what is to be said of the class."""
-    adopted = one.adopted
-    texts = [say_unsettled(one)] if adopted.is_unconfirmed else []
-    if (highest := words.find_highest(one)) > adopted.risk:
-        texts.append(words.could_be(say_class(highest)))
-    if adopted.lowered_from is not None:
-        texts.append(words.was_lowered(say_class(adopted.lowered_from)))
-    if is_as_run(one) and one.fell_in_record:
-        texts.append(_("as it overturns under the record itself"))
-    if bracket := say_bracket_held(one):
-        texts.append(bracket)
-    return ", ".join(texts)
+    adopted, highest = one.adopted, words.find_highest(one)
+    texts = [
+        say_unsettled(one),
+        words.could_be(say_class(highest)) if highest > adopted.risk else "",
+        "" if adopted.lowered_from is None else words.was_lowered(say_class(adopted.lowered_from)),
+        _("as it overturns under the record itself") if is_as_run(one) and one.fell_in_record else "",
+        say_bracket_held(one),
+    ]
+    return ", ".join(filter(None, texts))
 
 
 def say_bracket_held(one: ItemResult) -> str:

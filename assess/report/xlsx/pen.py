@@ -8,16 +8,13 @@ from typing import Any
 
 from assess.i18n import gettext as _
 from assess.progress import SILENT, Progress
-from assess.report import words
-from assess.report.say.ground import name_source
-from assess.report.say.simulation import say_scenario
 from assess.report.xlsx.item_formulas import Terms, build_terms
-from assess.results import Results
 from assess.risk import RiskClass
 from assess.route_results import RouteState
-from assess.settings import Settings
 from assess.table import Field
 
+HEAD = 1
+"""Rows above the data of Items and Floors: the headings alone."""
 LONGEST = 32_000
 """Characters of a text that are kept; a cell holds 32,767."""
 LINE = 15
@@ -92,13 +89,11 @@ def of_field(field: Field, **more: Any) -> Column:
 
 
 _WORD_ENDS = re.compile(r"\s+|(?<=-)")
-LOOKS_OF_TEXT = ("", "text")
-"""Looks of columns that may hold texts."""
 WIDEST = 30
 """Characters that a column is widened to at most."""
 
 
-def widen(columns: Sequence[Column], rows: Iterable[Any], looks: Sequence[str] = LOOKS_OF_TEXT) -> list[Column]:
+def widen(columns: Sequence[Column], rows: Iterable[Any], looks: Sequence[str] = ("", "text")) -> list[Column]:
     """Return columns of these `looks` at least as wide as the longest word in them, up to `WIDEST` characters."""
     wide = {at: one for at, one in enumerate(columns) if one.look in looks and not one.is_hidden}
     longest = dict.fromkeys(wide, 0)
@@ -131,15 +126,16 @@ class Pen:
         self._marked = {risk.symbol: style for risk, style in self.classes.items()} | states
 
     def format(self, **look: Any) -> Any:
-        """Return a format, the same one for the same look."""
-        name = repr(sorted(look.items()))
+        """Return a format, the same one for the same look; what is "" counts for nothing."""
+        own = {name: value for name, value in look.items() if value != ""}
+        name = repr(sorted(own.items()))
         if name not in self._formats:
-            self._formats[name] = self.book.add_format(look)
+            self._formats[name] = self.book.add_format(own)
         return self._formats[name]
 
     def style(self, name: str, code: str = "", **more: Any) -> Any:
         """Return the format of one of `LOOKS`, with a number format and what differs."""
-        return self.format(**LOOKS[name], **({"num_format": code} if code else {}), **more)
+        return self.format(**LOOKS[name], num_format=code, **more)
 
     def refer(self, sheet: str) -> str:
         """Return a sheet by its key as formulas write it before a cell."""
@@ -159,9 +155,9 @@ class Pen:
     def heads(self, page: Any, labels: Sequence[str], widths: Sequence[int], row: int = 0) -> None:
         """Write the heading row of a table, and set its columns' widths where it begins a sheet."""
         page.set_row(row, row_height(labels, widths))
-        for at, label in enumerate(labels):
+        for at, (label, width) in enumerate(zip(labels, widths, strict=False)):
             if row == 0:
-                page.set_column(at, at, widths[at])
+                page.set_column(at, at, width)
             self.put(page, row, at, label, self.style("head"))
 
     def listing(self, page: Any, columns: Sequence[Column], rows: Sequence[Any]) -> int:
@@ -206,11 +202,10 @@ class Pen:
 
     def colour(self, page: Any, area: str) -> None:
         """Colour the cells of an area by the symbol of the class that they begin with."""
+        rule = {"type": "text", "criteria": "begins with", "stop_if_true": True}
         for risk in reversed(RiskClass):
             form = self.format(bg_color=risk.fill, font_color=risk.ink)
-            rule = {"type": "text", "criteria": "begins with", "value": risk.symbol, "format": form,
-                    "stop_if_true": True}  # fmt: skip
-            page.conditional_format(area, rule)
+            page.conditional_format(area, {**rule, "value": risk.symbol, "format": form})
 
     def bar(self, page: Any, area: str) -> None:
         """Show chances as bars that are full at 1."""
@@ -229,11 +224,6 @@ def count_lines(value: Any, width: int, most: int = MOST_LINES) -> int:
     return min(most, max(1, math.ceil(len(value) * 1.1 / width))) if isinstance(value, str) else 1
 
 
-def with_unit(label: str, unit: str) -> str:
-    """Return a heading with its unit in brackets."""
-    return f"{label} [{unit}]"
-
-
 # ---------------------------------------------------------------- sheets
 
 
@@ -243,52 +233,19 @@ def refer(name: str) -> str:
 
 
 def name_sheets(titles: Mapping[str, str]) -> dict[str, str]:
-    """Return the names of sheets by their keys: of 31 characters at most, without those that Excel forbids, unique."""
+    """Return the names of sheets by their keys: of 31 characters at most, without those that Excel forbids, unique.
+
+    One that is taken, whatever its letter case, gets a number behind it.
+    """
     names: dict[str, str] = {}
     for key, title in titles.items():
         plain = re.sub(r"[\[\]:*?/\\]", " ", title).strip().strip("'")[:_LONGEST_NAME].strip() or key
-        names[key] = _unlike(plain, names.values())
+        taken, at, found = {one.casefold() for one in names.values()}, 1, plain
+        while found.casefold() in taken:
+            at += 1
+            found = f"{plain[: _LONGEST_NAME - len(f' {at}')]} {at}"
+        names[key] = found
     return names
-
-
-def _unlike(name: str, taken: Iterable[str]) -> str:
-    """Return a name with a number behind it where it is taken; letter case does not count."""
-    known, at, found = {one.casefold() for one in taken}, 1, name
-    while found.casefold() in known:
-        at += 1
-        found = f"{name[: _LONGEST_NAME - len(f' {at}')]} {at}"
-    return found
-
-
-def say_conditions(settings: Settings) -> list[str]:
-    """Return what is to be known of every number of the report: the factor on the motion, and what was adopted."""
-    texts = []
-    if settings.scale != 1:
-        texts.append(_("The motion of every floor is multiplied by {scale:g}.", scale=settings.scale))
-    if settings.ideal:
-        texts.append(
-            _("Chances are those if exactly this motion recurred and every piece were exactly as filled in: the "
-              "uncertainty of the earthquake and of the pieces is left out.")
-        )  # fmt: skip
-    return texts
-
-
-def _say_conditions_shortly(run: Results) -> str:
-    settings, texts = run.settings, []
-    if run.provenance.shaking:
-        texts.append(_("assumed shaking, {intensity}", intensity=run.provenance.shaking.name))
-    if run.provenance.site_ground:
-        texts.append(name_source(run.provenance.site_ground))
-    if settings.scale != 1:
-        texts.append(_("motion × {scale:g}", scale=settings.scale))
-    if settings.ideal:
-        texts.append(_("if exactly this motion recurred"))
-    return ", ".join(texts)
-
-
-def set_print(page: Any, title: str, sheet: str, run: Results) -> None:
-    """Set up the printed pages of a sheet: A4 across, fit to the width, with headers; a sheet may set more itself."""
-    set_page(page, words.cut(title, 80), sheet, _say_conditions_shortly(run), say_scenario(run).rstrip("."))
 
 
 def set_page(page: Any, title: str, sheet: str, conditions: str, footer: str) -> None:

@@ -1,10 +1,12 @@
 """The sheets on evacuation routes: Routes (segments, routes, floors), Route pieces (with steps), Route rooms.
 
-All of it is as run.
+All of it is as run. A table is named by the fields of its rows (`assess.fields.route_fields`), with the widths of
+their columns; one that stands below another has its widths. Some fields the sheet puts in words.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 from assess.fields import route_fields
@@ -25,27 +27,58 @@ from assess.route_results import (
     RouteState,
     RouteTables,
     SegmentRow,
-    WayRow,
 )
 from assess.workbook.formulas import say_class
 
 Read = Callable[[Any], Any]
 
+OUTLOOK: Mapping[str, int] = {
+    "blocked_probability": 11, "blocked_low": 11, "blocked_high": 11, "blocked_or_reduced_probability": 11,
+    "blocked_independent": 11, "blocked_correlated": 11, "blocked_if_unconfirmed_fall_probability": 13, "missing": 30,
+    "blocked_if_anchors_fail_probability": 11, "under_record": 13, "most_likely_piece": 14, "blocked_pieces": 8,
+    "blocked_unverified": 9, "blocked_is_joint": 30,
+}  # fmt: skip
+"""The chances of a segment or a route."""
+CHANCES = tuple(OUTLOOK)[:6]
+"""Blank where the state is not known: there is only the chance with unconfirmed pieces fallen, and what settles it."""
+SEGMENTS: Mapping[str, int] = {
+    "route": 16, "segment": 18, "floor": 10, "from_place": 18, "to_place": 18, "state": 26, **OUTLOOK,
+    "clear_width_used_m": 10, "required_width_used_m": 10, "standing_width_m": 11, "least_width_m": 10,
+    "occupants": 11, "needed_width_m": 10, "insufficient_for_occupants": 13,
+    "insufficient_after_falls_probability": 11, "room": 18, "other_rooms": 24, "flags": 60, "notes": 40,
+}  # fmt: skip
+FLOORS = (
+    "floor", "segments", "blocked_segments_expected", "unknown_segments", "routes", "blocked_routes_expected",
+    "unknown_routes", "rooms", "cut_off_rooms_expected", "unknown_rooms", "any_room_cut_off_probability",
+    "any_room_cut_off_low", "any_room_cut_off_high", "uncounted_pieces",
+)  # fmt: skip
+BESIDE: Mapping[str, int] = {
+    "falls_while_blocked": 14, "distance_m": 11, "reach_m": 10, "left_m": 11, "blocks_alone": 9, "by_plan": 14,
+    "flags": 60,
+}  # fmt: skip
+ROOMS: Mapping[str, int] = {
+    "room": 22, "floor": 8, "exits": 26, "state": 18, "decisive_segment": 24, "fixes": 30, "missing": 30,
+    "missing_after": 30, "loses_every_exit_probability": 11, "loses_every_exit_low": 9, "loses_every_exit_high": 9,
+    "loses_every_exit_independent": 12, "loses_every_exit_correlated": 10,
+    "loses_if_unconfirmed_fall_probability": 12, "loses_if_anchors_fail_probability": 9, "most_likely_piece": 14,
+    "loses_every_exit_is_joint": 30, "ways": 8,
+}  # fmt: skip
 
-def _of(row: type, *keys: str, **more: Any) -> list[Column]:
-    """Return the columns of fields of a row by their keys; `more` are parameters of `Column` that differ."""
-    return [of_field(route_fields(row)[key], **more) for key in keys]
+
+def _columns(row: type, chosen: Mapping[str, int] | Iterable[str], said: Mapping[str, Read]) -> list[Column]:
+    """Return the columns of fields of a row; `said` are what reads those that the sheet puts in words."""
+    fields, widths = route_fields(row), chosen if isinstance(chosen, Mapping) else dict.fromkeys(chosen, 0)
+    return [of_field(fields[key], width=width, read=said.get(key, fields[key].read)) for key, width in widths.items()]
 
 
-def _said(row: type, key: str, width: int, read: Read) -> Column:
-    """Return the column of a field that the sheet puts in words."""
-    return of_field(route_fields(row)[key], width=width, read=read, format="")
+def _if_known(row: type, keys: Iterable[str], is_known: Callable[[Any], bool]) -> dict[str, Read]:
+    """Return what reads numbers where they are known: a 0 would say more than is known."""
+    fields = route_fields(row)
+    return {key: partial(_read_if, is_known, fields[key].read) for key in keys}
 
 
-def _known(row: type, key: str, width: int, is_known: Callable[[Any], bool]) -> Column:
-    """Return the column of a number that is blank where it is not known."""
-    field = route_fields(row)[key]
-    return of_field(field, width=width, read=lambda one: field.read(one) if is_known(one) else None)
+def _read_if(holds: Callable[[Any], bool], read: Read, one: Any) -> Any:
+    return read(one) if holds(one) else None
 
 
 def _yes_or_no(holds: bool) -> str:
@@ -56,8 +89,23 @@ def _say_flags(flags: Sequence[str]) -> str:
     return "; ".join(_(FLAGS[flag]) for flag in flags)
 
 
-def _name_piece(one: Any) -> str:
-    return one.most_likely_piece.item if one.most_likely_piece else ""
+def _list_said(routes: RouteTables) -> dict[str, Read]:
+    """Return what reads the fields that routes and rooms have in common."""
+
+    def name_segment(one: RouteRow | RoomRow) -> str:
+        return "" if one.decisive_segment is None else _name_segments(routes, [one.decisive_segment])
+
+    return {
+        "decisive_segment": name_segment,
+        "fixes": lambda one: ", ".join(fix.item for fix in one.fixes),
+        "missing": lambda one: say.say_missing(one.missing),
+        "missing_after": lambda one: say.say_missing(one.missing_after),
+        "most_likely_piece": lambda one: one.most_likely_piece.item if one.most_likely_piece else "",
+    }
+
+
+def _name_segments(routes: RouteTables, places: Iterable[int]) -> str:
+    return ", ".join(f"{routes.segments[at].route}: {routes.segments[at].segment}" for at in places)
 
 
 # ---------------------------------------------------------------- Routes
@@ -66,18 +114,19 @@ def _name_piece(one: Any) -> str:
 def write_routes(pen: Pen, page: Any, content: Content) -> None:
     """Write every segment, every route and every floor with its chances."""
     routes = content.run.route_tables
-    columns = _segment_columns(routes)
+    columns = _list_segment_columns(routes)
     widths = [one.width for one in columns]
     if not content.run.has_routes:
-        message = Column(columns[0].label, columns[0].width, str)
-        rest = [Column(one.label, one.width, lambda _row: None) for one in columns[1:]]
+        message = replace(columns[0], read=str, format="")
+        rest = [replace(one, read=lambda _row: None, format="") for one in columns[1:]]
         pen.listing(page, [message, *rest], [_("The workbook names no routes.")])
         return
     row = pen.listing(page, columns, routes.segments)
     for letter in "GJ":
         pen.bar(page, f"{letter}2:{letter}{row}")
-    row = pen.below(page, row + 1, _("Routes"), _route_columns(routes), widths, routes.routes)
-    row = pen.below(page, row + 1, _("To be expected floor by floor"), _floor_columns(), widths, routes.floors)
+    row = pen.below(page, row + 1, _("Routes"), _list_route_columns(routes), widths, routes.routes)
+    floors = _columns(FloorRoutesRow, FLOORS, {})
+    row = pen.below(page, row + 1, _("To be expected floor by floor"), floors, widths, routes.floors)
     as_run = _("All of this is as run: it does not follow when a cell of another sheet is edited.")
     for at, text in enumerate((as_run, *say.list_cautions(routes)), row + 2):
         page.write_string(at, 0, text)
@@ -86,81 +135,49 @@ def write_routes(pen: Pen, page: Any, content: Content) -> None:
     page.fit_to_pages(2, 0)
 
 
-def _segment_columns(routes: RouteTables) -> list[Column]:
-    return [
-        *_of(SegmentRow, "route", width=16),
-        *_of(SegmentRow, "segment", width=18),
-        *_of(SegmentRow, "floor", width=10),
-        *_of(SegmentRow, "from_place", "to_place", width=18),
-        _said(SegmentRow, "state", 26, lambda one: say.say_segment_state(one, routes.risk)),
-        *_outlook(SegmentRow),
-        *_of(SegmentRow, "clear_width_used_m", "required_width_used_m", width=10),
-        *_of(SegmentRow, "standing_width_m", width=11),
-        *_of(SegmentRow, "least_width_m", width=10),
-        *_of(SegmentRow, "occupants", width=11),
-        *_of(SegmentRow, "needed_width_m", width=10),
-        _said(SegmentRow, "insufficient_for_occupants", 13, _say_insufficient),
-        *_of(SegmentRow, "insufficient_after_falls_probability", width=11),
-        *_of(SegmentRow, "room", width=18),
-        _said(SegmentRow, "other_rooms", 24, lambda one: ", ".join(other.item for other in one.other_rooms)),
-        _said(SegmentRow, "flags", 60, lambda one: _say_flags(one.flags)),
-        *_of(SegmentRow, "notes", width=40),
-    ]
-
-
-def _say_insufficient(one: SegmentRow) -> str:
-    return "" if one.needed_width_m is None else _yes_or_no(one.insufficient_for_occupants)
-
-
-def _outlook(row: type) -> list[Column]:
-    """Return the chances of a segment or a route; blank where it is not evaluated: a 0 would say more than is known.
-
-    Where it is not known, only the chance with unconfirmed pieces fallen is there, and what settles it.
-    """
+def _list_outlook(row: type, routes: RouteTables) -> dict[str, Read]:
+    """Return what reads the chances of a segment or a route; blank where it is not evaluated."""
 
     def of(read: Read) -> Read:
-        return lambda one: None if one.blocked is None else read(one)
+        return partial(_read_if, lambda one: one.blocked is not None, read)
 
-    names = ("blocked_probability", "blocked_low", "blocked_high", "blocked_or_reduced_probability",
-             "blocked_independent", "blocked_correlated")  # fmt: skip
+    said = _list_said(routes)
+    return said | {
+        **_if_known(row, CHANCES, lambda one: one.state != RouteState.NOT_KNOWN),
+        "under_record": of(lambda one: say.say_recorded(one) if one.under_record is not None else ""),
+        "most_likely_piece": of(said["most_likely_piece"]),
+        "blocked_is_joint": of(lambda one: say.say_basis(one.blocked)),
+    }
+
+
+def _list_segment_columns(routes: RouteTables) -> list[Column]:
+    said: dict[str, Read] = {
+        "state": lambda one: say.say_segment_state(one, routes.risk),
+        "insufficient_for_occupants": lambda one: (
+            "" if one.needed_width_m is None else _yes_or_no(one.insufficient_for_occupants)
+        ),
+        "other_rooms": lambda one: ", ".join(other.item for other in one.other_rooms),
+        "flags": lambda one: _say_flags(one.flags),
+    }
+    return _columns(SegmentRow, SEGMENTS, _list_outlook(SegmentRow, routes) | said)
+
+
+def _list_route_columns(routes: RouteTables) -> list[Column]:
+    fields = route_fields(RouteRow)
+    said = _list_outlook(RouteRow, routes) | {
+        key: partial(_join, key) for key in ("floors", "from_places", "to_places", "unevaluated_segments")
+    }
+    said["state"] = lambda one: say.say_route_state(one, routes.risk)
     return [
-        *(_known(row, name, 11, lambda one: one.state != RouteState.NOT_KNOWN) for name in names),
-        *_of(row, "blocked_if_unconfirmed_fall_probability", width=13),
-        _said(row, "missing", 30, lambda one: say.say_missing(one.missing)),
-        *_of(row, "blocked_if_anchors_fail_probability", width=11),
-        _said(row, "under_record", 13, of(lambda one: say.say_recorded(one) if one.under_record is not None else "")),
-        _said(row, "most_likely_piece", 14, of(_name_piece)),
-        *_of(row, "blocked_pieces", width=8),
-        *_of(row, "blocked_unverified", width=9),
-        _said(row, "blocked_is_joint", 30, of(lambda one: say.say_basis(one.blocked))),
-    ]
-
-
-def _route_columns(routes: RouteTables) -> list[Column]:
-    return [
-        *_of(RouteRow, "route"),
-        _said(RouteRow, "fixes", 0, _name_fixes),
-        _said(RouteRow, "floors", 0, lambda one: ", ".join(one.floors)),
-        _said(RouteRow, "from_places", 0, lambda one: ", ".join(one.from_places)),
-        _said(RouteRow, "to_places", 0, lambda one: ", ".join(one.to_places)),
-        _said(RouteRow, "state", 0, lambda one: say.say_route_state(one, routes.risk)),
-        *_outlook(RouteRow),
+        *_columns(RouteRow, ("route", "fixes", "floors", "from_places", "to_places", "state", *OUTLOOK), said),
         Column(_("Chance left then"), 0, lambda one: one.fixes[-1].left if one.fixes else None, CHANCE),
-        of_field(route_fields(RouteRow)["segment_indices"], read=lambda one: len(one.segment_indices), format=COUNT),
-        _said(RouteRow, "decisive_segment", 0, lambda one: _name_segment(routes, one.decisive_segment)),
-        _said(RouteRow, "unevaluated_segments", 0, lambda one: ", ".join(one.unevaluated_segments)),
-        _said(RouteRow, "missing_after", 0, lambda one: say.say_missing(one.missing_after)),
+        of_field(fields["segment_indices"], read=lambda one: len(one.segment_indices), format=COUNT),
+        *_columns(RouteRow, ("decisive_segment", "unevaluated_segments", "missing_after"), said),
     ]
 
 
-def _floor_columns() -> list[Column]:
-    return [
-        *_of(FloorRoutesRow, "floor", "segments", "blocked_segments_expected", "unknown_segments"),
-        *_of(FloorRoutesRow, "routes", "blocked_routes_expected", "unknown_routes"),
-        *_of(FloorRoutesRow, "rooms", "cut_off_rooms_expected", "unknown_rooms"),
-        *_of(FloorRoutesRow, "any_room_cut_off_probability", "any_room_cut_off_low", "any_room_cut_off_high", width=0),
-        *_of(FloorRoutesRow, "uncounted_pieces"),
-    ]
+def _join(name: str, one: RouteRow) -> str:
+    return ", ".join(getattr(one, name))
 
 
 # ---------------------------------------------------------------- Route pieces
@@ -195,23 +212,30 @@ def has_pieces(content: Content) -> bool:
 
 def write_route_pieces(pen: Pen, page: Any, content: Content) -> None:
     """Write the pieces beside every segment, and the steps of every route."""
-    routes, results, columns = content.run.route_tables, content.results, _beside_columns()
+    routes, results, columns = content.run.route_tables, content.results, _list_beside_columns()
     rows = [_Beside(one, near, results[near.item_index]) for one in routes.segments for near in one.pieces]
     below = pen.listing(page, columns, rows)
     page.repeat_columns(0, 3)
     if rows:
         pen.bar(page, f"H2:H{below}")
     title = _("What to anchor or move for each route, step by step")
-    widths = [one.width for one in columns]
-    pen.below(page, below + 1, title, _step_columns(), widths, list(_steps(routes, results)))
+    steps = [
+        *_columns(SegmentRow, ("route",), {"route": lambda row: row.route}),
+        Column(_("Step"), 0, lambda row: row.text if row.result else ""),
+        *_columns(SegmentRow, ("floor",), {"floor": lambda row: row.floor}),
+        *_list_piece_columns(),
+        Column(_("Chance blocked before"), 0, lambda row: row.before, CHANCE),
+        Column(_("Chance blocked after"), 0, lambda row: row.after, CHANCE),
+    ]
+    pen.below(page, below + 1, title, steps, [one.width for one in columns], list(_list_steps(routes, results)))
 
 
-def _piece_columns() -> list[Column]:
+def _list_piece_columns() -> list[Column]:
     def of(read: Callable[[ItemResult], Any]) -> Read:
         return lambda row: None if row.result is None else read(row.result)
 
     return [
-        _said(BesideRow, "item", 14, of(lambda one: one.item.item)),
+        *_columns(BesideRow, {"item": 14}, {"item": of(lambda one: one.item.item)}),
         Column(_("Description"), 30, _describe),
         Column(_("Pieces"), 8, of(lambda one: one.item.quantity), COUNT),
         Column(_("Class (as run)"), 34, of(_say_class)),
@@ -226,51 +250,37 @@ def _describe(row: _Beside | _Step) -> str:
 
 def _say_class(one: ItemResult) -> str:
     if one.is_anchored:
-        bracket = words.say_bracket(one)
-        return ANCHORED + "; ".join([words.risk_words(one), *([bracket] if bracket else [])])
+        return ANCHORED + "; ".join(filter(None, (words.risk_words(one), words.say_bracket(one))))
     return ", ".join([say_class(one.adopted.risk), *words.risk_notes(one)])
 
 
-def _beside_columns() -> list[Column]:
-    def near(key: str, width: int, **more: Any) -> Column:
-        field = route_fields(BesideRow)[key]
-        return of_field(field, **{"width": width, "read": lambda row: field.read(row.near), **more})
+def _list_beside_columns() -> list[Column]:
+    bases, fields = build_terms().bases, route_fields(BesideRow)
 
-    bases = build_terms().bases
+    def say_remarks(row: _Beside) -> str:
+        held = _("anchored: its chances are those without the anchor") if row.result.is_anchored else ""
+        return "; ".join(filter(None, (held, _say_flags(row.near.flags))))
+
+    of_segment: dict[str, Read] = {
+        "route": lambda row: row.segment.route,
+        "segment": lambda row: row.segment.segment,
+        "floor": lambda row: row.result.item.floor,
+    }
+    near: dict[str, Read] = {key: partial(lambda read, row: read(row.near), fields[key].read) for key in BESIDE} | {
+        "blocks_alone": lambda row: _yes_or_no(row.near.blocks_alone),
+        "by_plan": lambda row: _("plan") if row.near.by_plan else _("Edge distance"),
+        "flags": say_remarks,
+    }
     return [
-        _said(SegmentRow, "route", 16, lambda row: row.segment.route),
-        _said(SegmentRow, "segment", 18, lambda row: row.segment.segment),
-        _said(SegmentRow, "floor", 9, lambda row: row.result.item.floor),
-        *_piece_columns(),
+        *_columns(SegmentRow, {"route": 16, "segment": 18, "floor": 9}, of_segment),
+        *_list_piece_columns(),
         Column(_("Chance of overturning"), 11, lambda row: row.result.adopted.probability, CHANCE),
         Column(_("Basis"), 12, lambda row: bases[row.result.adopted.basis]),
-        near("falls_while_blocked", 14),
-        near("distance_m", 11),
-        near("reach_m", 10),
-        near("left_m", 11),
-        near("blocks_alone", 9, read=lambda row: _yes_or_no(row.near.blocks_alone)),
-        near("by_plan", 14, read=lambda row: _("plan") if row.near.by_plan else _("Edge distance")),
-        near("flags", 60, read=_say_remarks),
+        *_columns(BesideRow, BESIDE, near),
     ]
 
 
-def _say_remarks(row: _Beside) -> str:
-    held = _("anchored: its chances are those without the anchor") if row.result.is_anchored else ""
-    return "; ".join(filter(None, (held, _say_flags(row.near.flags))))
-
-
-def _step_columns() -> list[Column]:
-    return [
-        _said(SegmentRow, "route", 0, lambda row: row.route),
-        Column(_("Step"), 0, lambda row: row.text if row.result else ""),
-        _said(SegmentRow, "floor", 0, lambda row: row.floor),
-        *_piece_columns(),
-        Column(_("Chance blocked before"), 0, lambda row: row.before, CHANCE),
-        Column(_("Chance blocked after"), 0, lambda row: row.after, CHANCE),
-    ]
-
-
-def _steps(routes: RouteTables, results: Sequence[ItemResult]) -> Iterator[_Step]:
+def _list_steps(routes: RouteTables, results: Sequence[ItemResult]) -> Iterator[_Step]:
     """Yield every step of every route; then the routes that no step fixes."""
     for step in list_steps(routes):
         one = results[step.item_index]
@@ -286,71 +296,47 @@ def _steps(routes: RouteTables, results: Sequence[ItemResult]) -> Iterator[_Step
 
 def write_route_rooms(pen: Pen, page: Any, content: Content) -> None:
     """Write every room with its safest way out, and the next, which shares as few segments with it as possible."""
-    rooms = content.run.route_tables.rooms
-    below = pen.listing(page, _room_columns(content.run.route_tables), rooms)
+    routes = content.run.route_tables
+    below = pen.listing(page, _list_room_columns(routes), routes.rooms)
     pen.bar(page, f"I2:I{below}")
     page.freeze_panes(1, 1)
     page.repeat_columns(0)
 
 
-def _room_columns(routes: RouteTables) -> list[Column]:
-    return [
-        *_of(RoomRow, "room", width=22),
-        *_of(RoomRow, "floor", width=8),
-        _said(RoomRow, "exits", 26, _say_exits),
-        _said(RoomRow, "state", 18, say.say_room_state),
-        _said(RoomRow, "decisive_segment", 24, lambda one: _name_segment(routes, one.decisive_segment)),
-        _said(RoomRow, "fixes", 30, _name_fixes),
-        _said(RoomRow, "missing", 30, lambda one: say.say_missing(one.missing)),
-        _said(RoomRow, "missing_after", 30, lambda one: say.say_missing(one.missing_after)),
-        *(
-            _known(RoomRow, f"loses_every_exit_{part}", width, lambda one: one.is_known)
-            for part, width in (("probability", 11), ("low", 9), ("high", 9), ("independent", 12), ("correlated", 10))
-        ),
-        *_of(RoomRow, "loses_if_unconfirmed_fall_probability", width=12),
-        *_of(RoomRow, "loses_if_anchors_fail_probability", width=9),
-        _said(RoomRow, "most_likely_piece", 14, _name_piece),
-        _said(RoomRow, "loses_every_exit_is_joint", 30, lambda one: say.say_basis(one.loses_every_exit)),
-        of_field(route_fields(RoomRow)["ways"], width=8, read=lambda one: len(one.ways), format=COUNT),
-        *_way_columns(routes, 0, (_("Safest way: to"), _("Safest way: by"), _("Safest way: chance of a blockage"))),
-        *_way_columns(routes, 1, (_("Alternative: to"), _("Alternative: by"), _("Alternative: chance of a blockage"))),
-        Column(_("Alternative: shared with the safest way"), 40, lambda one: _name(routes, _shared(one))),
-        _said(RoomRow, "unevaluated_indices", 40, lambda one: _name(routes, one.unevaluated_indices)),
-    ]
+def _list_room_columns(routes: RouteTables) -> list[Column]:
+    name = partial(_name_segments, routes)
 
+    def say_exits(one: RoomRow) -> str:
+        exits = ", ".join(one.exits)
+        return _("{stairs} (stairs: beyond them nothing is known)", stairs=exits) if one.by_stairs else exits
 
-def _way_columns(routes: RouteTables, place: int, labels: tuple[str, str, str]) -> list[Column]:
-    def of(read: Callable[[WayRow], Any]) -> Read:
+    def find_shared(one: RoomRow) -> list[int]:
+        """Return the segments of the alternative that the safest way has, too."""
+        ways = [way.segment_indices for way in one.ways[:2]]
+        return [at for at in ways[1] if at in ways[0]] if len(ways) > 1 else []
+
+    def of_way(place: int, read: Read) -> Read:
         return lambda one: read(one.ways[place]) if len(one.ways) > place else None
 
-    def chance(way: WayRow) -> float | None:
-        return way.blocked.probability if way.is_known else None
-
-    return [
-        Column(labels[0], 16, of(lambda way: way.end)),
-        Column(labels[1], 60, of(lambda way: _name(routes, way.segment_indices))),
-        Column(labels[2], 11, of(chance), CHANCE),
-    ]
-
-
-def _name_fixes(one: RouteRow | RoomRow) -> str:
-    return ", ".join(fix.item for fix in one.fixes)
-
-
-def _name_segment(routes: RouteTables, at: int | None) -> str:
-    return "" if at is None else _name(routes, [at])
-
-
-def _shared(one: RoomRow) -> list[int]:
-    """Return the segments of the alternative that the safest way has, too."""
-    ways = [way.segment_indices for way in one.ways[:2]]
-    return [at for at in ways[1] if at in ways[0]] if len(ways) > 1 else []
-
-
-def _name(routes: RouteTables, segments: Iterable[int]) -> str:
-    return ", ".join(f"{routes.segments[at].route}: {routes.segments[at].segment}" for at in segments)
-
-
-def _say_exits(one: RoomRow) -> str:
-    exits = ", ".join(one.exits)
-    return _("{stairs} (stairs: beyond them nothing is known)", stairs=exits) if one.by_stairs else exits
+    known = _if_known(RoomRow, (key for key in ROOMS if key.startswith("loses_every")), lambda one: one.is_known)
+    said = _list_said(routes) | known | {
+        "exits": say_exits,
+        "state": say.say_room_state,
+        "loses_every_exit_is_joint": lambda one: say.say_basis(one.loses_every_exit),
+        "ways": lambda one: len(one.ways),
+        "unevaluated_indices": lambda one: name(one.unevaluated_indices),
+    }  # fmt: skip
+    ways = (
+        (_("Safest way: to"), _("Safest way: by"), _("Safest way: chance of a blockage")),
+        (_("Alternative: to"), _("Alternative: by"), _("Alternative: chance of a blockage")),
+    )
+    columns = _columns(RoomRow, ROOMS, said)
+    columns[-1] = replace(columns[-1], format=COUNT)
+    for place, (end, by, chance) in enumerate(ways):
+        columns += [
+            Column(end, 16, of_way(place, lambda way: way.end)),
+            Column(by, 60, of_way(place, lambda way: name(way.segment_indices))),
+            Column(chance, 11, of_way(place, lambda way: way.blocked.probability if way.is_known else None), CHANCE),
+        ]
+    shared = Column(_("Alternative: shared with the safest way"), 40, lambda one: name(find_shared(one)))
+    return [*columns, shared, *_columns(RoomRow, {"unevaluated_indices": 40}, said)]

@@ -1,11 +1,13 @@
 """The sheet Summary: counts by class and floor, and the pieces most likely to fall.
 
 All of it but the sentences on routes is live. What was simulated, what was not, and what is unconfirmed stand apart in
-every count, list and chart. `worst_pieces` writes the lists.
+every count, list and chart.
 """
 
+import heapq
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from operator import itemgetter
 from typing import Any
 
 from xlsxwriter.utility import xl_col_to_name
@@ -19,15 +21,31 @@ from assess.report.say.route import describe_at_risk
 from assess.report.say.simulation import INTERVAL, say_scenario
 from assess.report.summary import ROUTES
 from assess.report.xlsx import charts
-from assess.report.xlsx.item_formulas import literal, sentence
-from assess.report.xlsx.item_values import list_bases, say_inputs_that_settle
-from assess.report.xlsx.items_sheet import HEAD, item_areas
-from assess.report.xlsx.pen import LINE, Pen, count_lines, row_height, say_conditions
-from assess.report.xlsx.worst_pieces import CHANCES, LAST, WIDTHS, WorstList, find_worst
+from assess.report.xlsx.item_formulas import AT_RUN, literal, sentence
+from assess.report.xlsx.item_values import (
+    class_in_force,
+    list_bases,
+    list_simulated,
+    listed_chance,
+    order_number,
+    say_inputs_that_settle,
+    say_listed_class,
+)
+from assess.report.xlsx.items_sheet import item_areas, name_found
+from assess.report.xlsx.pen import CHANCE, HEAD, LINE, Pen, count_lines, row_height
 from assess.results import CANNOT_ROCK, ItemResult
 from assess.risk import RiskClass
 from assess.workbook.formulas import OUTSIDE
 
+WIDTHS = (34, 14, 14, 14, 14, 14, 14, 14, 44)
+"""Of the columns of the summary that are printed: of names, of numbers, and of classes."""
+LAST = len(WIDTHS) - 1
+LISTED = 10
+"""Pieces in a list."""
+PLACE, CHANCES = LAST + 1, LAST + 2
+"""Hidden columns: the row of the piece in Items, and its chance in the column of its class."""
+LONGEST = 80
+"""Characters of a name in a list."""
 CHART_ROWS = 15
 """Rows of the charts below the counts."""
 MOST_FLOORS = 12
@@ -52,19 +70,9 @@ class _Plan:
     lists: Mapping[str, int]
     tables: Mapping[str, int]
 
-    @property
-    def floors(self) -> int:
-        """Number of floors."""
-        return len(self.content.floors)
-
     def total(self, basis: str) -> int:
         """Row of the sums of a table by floor."""
-        return self.tables[basis] + 2 + self.floors
-
-    @property
-    def charts(self) -> int:
-        """Row of the charts by floor."""
-        return self.total(self.bases[-1]) + 2 if self.bases else self.top + 6
+        return self.tables[basis] + 2 + len(self.content.floors)
 
 
 def write_summary(pen: Pen, page: Any, content: Content) -> None:
@@ -74,8 +82,9 @@ def write_summary(pen: Pen, page: Any, content: Content) -> None:
     title = _("Furniture in earthquakes: {title}", title=words.cut(content.title, 100))
     page.write_string(0, 0, title, pen.style("title"))
     areas, bases = item_areas(pen, content), list_bases(content.run)
-    worst = {basis: find_worst(content.results, basis) for basis in bases}
-    top = 2 + len(_list_lines(pen, content, areas, bases))
+    worst = {basis: _find_worst(content.results, basis) for basis in bases}
+    lines = list(_list_lines(pen, content, areas, bases))
+    top = 2 + len(lines)
     row = first = top + 3 + len(bases) + len(_list_apart()) + CHART_ROWS
     lists, tables = {}, {}
     for basis, found in worst.items():
@@ -83,99 +92,67 @@ def write_summary(pen: Pen, page: Any, content: Content) -> None:
     for basis in bases:
         tables[basis], row = row, row + 4 + len(content.floors)
     plan = _Plan(pen, page, content, areas, bases, top, lists, tables)
-    _write_lines(plan)
+    for at, (text, formula) in enumerate(lines, 1):
+        page.merge_range(at, 0, at, LAST, "", pen.style("text"))
+        page.set_row(at, LINE * count_lines(text, sum(WIDTHS)))
+        if formula:
+            page.write_formula(at, 0, f"={formula}", pen.style("text"), text)
+        else:
+            pen.put(page, at, 0, text, pen.style("text"))
     _write_building(plan)
     for basis, found in worst.items():  # rows are written from the top: what is above the last one is left out
-        WorstList(pen, page, content.run, areas, basis, lists[basis]).write(found)
+        _write_worst(plan, basis, found)
     for basis in bases:
         _write_floors(plan, basis)
     _draw(plan, first - CHART_ROWS, worst)
-    _set_pages(plan)
-
-
-def _draw(plan: _Plan, row: int, worst: Mapping[str, Sequence[Any]]) -> None:
-    """Draw the charts: each shows what rests on one basis alone."""
-    pen, page = plan.pen, plan.page
-    if not plan.bases:
-        return
-    basis = plan.bases[0]
-    charts.add_classes(pen, page, (row, 0), plan.top, pen.terms.bases[basis])
-    if worst[basis]:
-        rows = (plan.lists[basis] + 2, plan.lists[basis] + 1 + len(worst[basis]))
-        charts.add_highest(pen, page, (row, 3), rows, (0, CHANCES), pen.terms.bases[basis])
-    for at, one in enumerate(plan.bases):
-        place, top = plan.charts + at * charts.count_rows(plan.floors), plan.tables[one] + 2
-        charts.add_floors(pen, page, (place, 0), (top, top + plan.floors - 1), pen.terms.bases[one])
-
-
-def _set_pages(plan: _Plan) -> None:
-    """Print on one page where there is room; else the tables by floor, and their charts, begin pages."""
-    page, is_many = plan.page, plan.floors > MOST_FLOORS
-    page.print_area(0, 0, plan.charts + len(plan.bases) * charts.count_rows(plan.floors), LAST)
-    is_short = not is_many and len(plan.bases) <= 1
-    page.fit_to_pages(1, 1 if is_short else 0)
-    if not is_short:
-        tables = list(plan.tables.values())
-        lists = list(plan.lists.values())[1:2]
-        page.set_h_pagebreaks([*lists, *(tables if is_many else tables[:1]), plan.charts - 1])
 
 
 # ---------------------------------------------------------------- sentences
 
 
-def _list_lines(pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequence[str]) -> list[tuple[str, str]]:
-    """Return the sentences below the title, each with its formula or ""."""
-    annual = content.annual.paragraphs[:1] if content.annual else ()
-    plain = (*content.cautions, *annual, *_say_routes(content))
-    return [*_lines(pen, content, areas, bases), *((text, "") for text in plain)]
-
-
-def _write_lines(plan: _Plan) -> None:
-    pen, page = plan.pen, plan.page
-    for row, (text, formula) in enumerate(_list_lines(pen, plan.content, plan.areas, plan.bases), 1):
-        page.merge_range(row, 0, row, LAST, "", pen.style("text"))
-        page.set_row(row, LINE * count_lines(text, sum(WIDTHS)))
-        if formula:
-            page.write_formula(row, 0, f"={formula}", pen.style("text"), text)
-        else:
-            pen.put(page, row, 0, text, pen.style("text"))
-
-
-def _lines(pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequence[str]) -> Iterator[tuple[str, str]]:
-    scenario, verified = content.run.building.scenario, content.verified
-    if scenario:
-        yield _("Scenario: {scenario}", scenario=words.cut(scenario, 300)), ""
-    if shaking := say_ground(content.run):
+def _list_lines(
+    pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequence[str]
+) -> Iterator[tuple[str, str]]:
+    """Yield the sentences below the title, each with its formula or ""."""
+    run, verified = content.run, content.verified
+    if run.building.scenario:
+        yield _("Scenario: {scenario}", scenario=words.cut(run.building.scenario, 300)), ""
+    if shaking := say_ground(run):
         yield shaking, ""
-    yield from ((text, "") for text in say_conditions(content.run.settings))
-    if not content.run.has_simulated:
+    if run.settings.scale != 1:
+        yield _("The motion of every floor is multiplied by {scale:g}.", scale=run.settings.scale), ""
+    if run.settings.ideal:
+        yield _("Chances are those if exactly this motion recurred and every piece were exactly as filled in: the "
+                "uncertainty of the earthquake and of the pieces is left out."), ""  # fmt: skip
+    if not run.has_simulated:
         status, meaning = verified.status
-        yield say_scenario(content.run), ""
+        yield say_scenario(run), ""
         yield f"{status}: {meaning}.", ""
     else:
-        yield f"{say_scenario(content.run)} {_(INTERVAL)[0].upper()}{_(INTERVAL)[1:]}.", ""
+        yield f"{say_scenario(run)} {_(INTERVAL)[0].upper()}{_(INTERVAL)[1:]}.", ""
         yield verified.sentence, ""
         if len(bases) > 1:
             yield _("What was simulated, what was not, and what is unconfirmed are counted apart."), ""
         yield from _follow(pen, content, areas, bases)
-    file, again = content.run.provenance.workbook, f"COUNTIF({areas['basis']},{literal(pen.terms.again)})"
+    file, again = run.provenance.workbook, f"COUNTIF({areas['basis']},{literal(pen.terms.again)})"
     text = _("Rows to be run again, as an input was edited: {n}. They are in no count by class, list or chart. To "
              "count them, make the same changes in {file} and run it again; a report cannot be run.")  # fmt: skip
     yield text.format(n=0, file=file), sentence(text, n=again, file=literal(file))
     yield _("Counts and chances follow the sheets Floors, Items and Assumptions when those are edited."), ""
+    annual = content.annual.paragraphs[:1] if content.annual else ()
+    yield from ((one, "") for one in (*content.cautions, *annual, *_say_routes(content)))
 
 
 def _follow(pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequence[str]) -> Iterator[tuple[str, str]]:
     """Yield the sentences with numbers that follow an edit."""
-    free = f"({areas['held']}<>{literal(pen.terms.yes)})"
     unconfirmed = literal(pen.terms.bases["unconfirmed"])
     if "unconfirmed" in bases:
         own = [one for one in content.results if one.adopted.is_unconfirmed]
         ways = "; ".join(dict.fromkeys(map(say_inputs_that_settle, own)))
         text = _("Unconfirmed pieces: {n}; to settle them: {ways}.")
         n = sum(one.item.quantity for one in own if not one.is_anchored)
-        is_own = f"({areas['basis']}={unconfirmed})"
-        counted = f"SUMPRODUCT({is_own}*{free},{areas['quantity']})"
+        free = f"({areas['held']}<>{literal(pen.terms.yes)})"
+        counted = f"SUMPRODUCT(({areas['basis']}={unconfirmed})*{free},{areas['quantity']})"
         yield text.format(n=n, ways=ways), sentence(text, n=counted, ways=literal(ways))
     rank = areas["rank"]
     is_lowered = f'({rank}<>"")*({rank}<{areas["rank_formula"]})'
@@ -198,6 +175,101 @@ def _say_routes(content: Content) -> Iterator[str]:
             more,
         )
     yield _("The text on routes is as run: it does not follow when a cell is edited.")
+
+
+# ---------------------------------------------------------------- the pieces most likely to fall
+
+Found = Sequence[tuple[int, ItemResult]]
+"""Pieces with their places in Items, 1 for the first."""
+
+
+def _find_worst(results: Sequence[ItemResult], basis: str) -> Found:
+    """Return the pieces of a basis of highest class and chance."""
+    own = ((row, one) for row, one in enumerate(results, HEAD) if one.adopted.basis == basis)
+    numbers = ((order_number(one, row), row, one) for row, one in own)
+    known = ((number, row, one) for number, row, one in numbers if number is not None)
+    return [(row, one) for _number, row, one in heapq.nlargest(LISTED, known, key=itemgetter(0))]
+
+
+def _write_worst(plan: _Plan, basis: str, found: Found) -> None:
+    """Write the list of a basis."""
+    pen, page, row, is_ideal = plan.pen, plan.page, plan.lists[basis], plan.content.run.settings.ideal
+    is_simulated = basis == "simulated"
+    title = _("The pieces most likely to fall: {basis}", basis=pen.terms.bases[basis])
+    page.write_string(row, 0, title, pen.style("heading"))
+    chances = name_found(is_ideal=is_ideal) if is_simulated else (_("Chance by formula"), "", "", "")
+    heads = _("Item"), _("Floor"), _("Room"), _("Pieces"), *chances, _("Class")
+    pen.heads(page, heads, WIDTHS, row + 1)
+    text, live, chance = pen.style("text"), pen.style("live"), pen.style("plain", CHANCE)
+    looks = (text, text, text, live, *(chance,) * len(AT_RUN), text)
+    areas, order = plan.areas, plan.areas[f"order_{basis}"]
+    for number, (place, one) in enumerate(found, 1):
+        at, cell = row + 1 + number, f"${xl_col_to_name(PLACE)}{row + 2 + number}"
+        known = list_simulated(one, is_ideal=is_ideal) if is_simulated else (listed_chance(one), None, None, None)
+        kind = one.item.description or one.item.type
+        name = (one.item.item + (f": {kind}" if kind else ""))[:LONGEST]
+        values = (name, one.item.floor, one.item.room, one.item.quantity, *known, say_listed_class(one))
+        page.set_row(at, row_height(values, WIDTHS))
+        page.write_formula(at, PLACE, f'=IFERROR(MATCH(LARGE({order},{number}),{order},0),"")', None, place)
+        formulas = _list_formulas(areas, cell, basis, plan.content.run.formula.key)
+        for column, (formula, value, look) in enumerate(zip(formulas, values, looks, strict=True)):
+            page.write_formula(at, column, f'=IF({cell}="","",{formula})', look, "" if value is None else value)
+        for risk, label in zip(RiskClass, pen.terms.labels, strict=True):
+            is_it = f"LEFT(INDEX({areas['class']},{cell}),{len(label)})={literal(label)}"
+            own = listed_chance(one) if class_in_force(one).startswith(label) else ""
+            formula = f'=IF({cell}="","",IF({is_it},$E{at + 1},""))'
+            page.write_formula(at, CHANCES + risk, formula, None, own)
+    if found:
+        pen.colour(page, f"I{row + 3}:I{row + 2 + len(found)}")
+        pen.bar(page, f"E{row + 3}:E{row + 2 + len(found)}")
+    page.set_column(PLACE, CHANCES + len(RiskClass) - 1, 10, None, {"hidden": True})
+
+
+def _list_formulas(areas: Mapping[str, str], cell: str, basis: str, formula: str) -> list[str]:
+    """Return the formulas of a row of a list; `cell` holds the place of its piece, `formula` is the adopted one."""
+
+    def of(key: str) -> str:
+        return f"INDEX({areas[key]},{cell})"
+
+    text = f'IF({of("description")}<>"",": "&{of("description")},IF({of("type")}<>"",": "&{of("type")},""))'
+    chance = of("chance_run" if basis == "unconfirmed" else formula)
+    found = [of(key) for key in AT_RUN] if basis == "simulated" else [chance, *['""'] * 3]
+    notes = of("class_notes")
+    return [
+        f"LEFT({of('item')}&{text},{LONGEST})",
+        of("floor"),
+        f'{of("room")}&""',
+        of("quantity"),
+        *found,
+        f'{of("class")}&IF({notes}="","",", "&{notes})',
+    ]
+
+
+# ---------------------------------------------------------------- charts and pages
+
+
+def _draw(plan: _Plan, row: int, worst: Mapping[str, Found]) -> None:
+    """Draw the charts, each of what rests on one basis alone, and set up the printed pages.
+
+    The sheet is printed on one page where there is room; else the tables by floor, and their charts, begin pages.
+    """
+    pen, page, floors, tables = plan.pen, plan.page, len(plan.content.floors), list(plan.tables.values())
+    first = plan.total(plan.bases[-1]) + 2 if plan.bases else plan.top + 6
+    for at, basis in enumerate(plan.bases):
+        named, found = pen.terms.bases[basis], worst[basis]
+        if at == 0:
+            charts.add_classes(pen, page, (row, 0), plan.top, named)
+        if at == 0 and found:
+            rows = (plan.lists[basis] + 2, plan.lists[basis] + 1 + len(found))
+            charts.add_highest(pen, page, (row, 3), rows, (0, CHANCES), named)
+        top = tables[at] + 2
+        charts.add_floors(pen, page, (first + at * charts.count_rows(floors), 0), (top, top + floors - 1), named)
+    page.print_area(0, 0, first + len(plan.bases) * charts.count_rows(floors), LAST)
+    is_many = floors > MOST_FLOORS
+    is_short = not is_many and len(plan.bases) <= 1
+    page.fit_to_pages(1, 1 if is_short else 0)
+    if not is_short:
+        page.set_h_pagebreaks([*list(plan.lists.values())[1:2], *(tables if is_many else tables[:1]), first - 1])
 
 
 # ---------------------------------------------------------------- counts
@@ -274,27 +346,22 @@ def _write_heads(plan: _Plan, row: int, label: str, more: Sequence[str]) -> None
 
 def _count(plan: _Plan, basis: str, number: int, row: int) -> list[str]:
     """Return the formulas that count the pieces of a floor, the `number`-th, in the row `row` of its table."""
-    areas, terms, quantity = plan.areas, plan.pen.terms, plan.areas["quantity"]
+    areas, terms, quantity, letter = plan.areas, plan.pen.terms, plan.areas["quantity"], xl_col_to_name(SUM)
     on_floor = f"({areas['floor']}={plan.pen.refer('Floors')}$A${HEAD + number})"  # SUMIFS would read names as criteria
     anchored = f"({areas['held']}={literal(terms.yes)})"
     bases = (basis, CANNOT_ROCK) if basis == plan.content.run.main_basis else (basis,)
     rests = "+".join(f"({areas['basis']}={literal(terms.bases[one])})" for one in bases)
-    free = f"{on_floor}*(1-{anchored})*({rests})"
     formulas = []
     for label in terms.labels:
         classed = f"({areas['class']}={literal(label)})"
         if basis == "formula":
             classed = f"({classed}+({areas['class']}={literal(label + OUTSIDE)}))"
-        formulas.append(f"=SUMPRODUCT({free}*{classed},{quantity})")
+        formulas.append(f"=SUMPRODUCT({on_floor}*(1-{anchored})*({rests})*{classed},{quantity})")
     formulas.append(f"=SUM(B{row}:{xl_col_to_name(SUM - 1)}{row})")
-    return [*formulas, *_count_others(plan, on_floor, anchored, number, row)] if basis == plan.bases[0] else formulas
-
-
-def _count_others(plan: _Plan, on_floor: str, anchored: str, number: int, row: int) -> list[str]:
-    """Return the formulas that count what has no class on a floor, and all pieces."""
-    areas, letter = plan.areas, xl_col_to_name(SUM)
-    again = f"({areas['basis']}={literal(plan.pen.terms.again)})"
-    each = [f"{on_floor}*{again}", f"{on_floor}*(1-{again})*{anchored}"]
-    sums = [f"{letter}{plan.tables[basis] + 2 + number}" for basis in plan.bases]
-    own = [f"{xl_col_to_name(SUM + at)}{row}" for at in range(1, 1 + len(each))]
-    return [*(f"=SUMPRODUCT({one},{areas['quantity']})" for one in each), f"={'+'.join(sums + own)}"]
+    if basis != plan.bases[0]:
+        return formulas
+    again = f"({areas['basis']}={literal(terms.again)})"  # what has no class on a floor, and all pieces
+    apart = [f"{on_floor}*{again}", f"{on_floor}*(1-{again})*{anchored}"]
+    sums = [f"{letter}{plan.tables[one] + 2 + number}" for one in plan.bases]
+    own = [f"{xl_col_to_name(SUM + at)}{row}" for at in range(1, 1 + len(apart))]
+    return [*formulas, *(f"=SUMPRODUCT({one},{quantity})" for one in apart), f"={'+'.join(sums + own)}"]

@@ -16,6 +16,7 @@ from assess.report.say import work as say_work
 from assess.report.say.work import Work
 from assess.report.xlsx.pen import COUNT, LINE, Column, Pen, count_lines, of_field, row_height, widen
 from assess.schedule_results import Schedule, ScheduleRow, WorkRow
+from assess.table import Field
 
 BOX = "☐"
 """To be ticked on paper."""
@@ -43,33 +44,53 @@ def write_work(pen: Pen, page: Any, content: Content) -> None:
     page.data_validation(1, at["done"], len(works), at["done"], {"validate": "list", "source": [BOX, DONE]})
     page.autofilter(0, 0, len(works), len(columns) - 1)
     for row, work in enumerate(works, 1):
-        _write_row(pen, page, row, columns, work, at)
+        values = [one.read(work) for one in columns]
+        page.set_row(row, row_height(values, widths))
+        for place, (column, value) in enumerate(zip(columns, values, strict=True)):
+            style = pen.style("text", column.format, bottom=4, align=column.align)
+            if column.key == "cost":
+                pieces, unit = (xl_rowcol_to_cell(row, at[name]) for name in ("pieces", "unit_cost"))
+                formula = f'=IF({unit}="","",{pieces}*{unit})'
+                page.write_formula(row, place, formula, style, "" if value is None else value)
+            else:
+                pen.put(page, row, place, value, style)
     _write_sums(pen, page, works, at)
-    below = _write_lines(pen, page, len(works) + 3, schedule, widths)
-    _write_changes(pen, page, below + 1, schedule)
-
-
-def _write_row(pen: Pen, page: Any, row: int, columns: Sequence[Column], work: Work, at: Mapping[str, int]) -> None:
-    values = [one.read(work) for one in columns]
-    page.set_row(row, row_height(values, [one.width for one in columns]))
-    for place, (column, value) in enumerate(zip(columns, values, strict=True)):
-        looks = {"bottom": 4, "align": column.align} if column.align else {"bottom": 4}
-        style = pen.style("text", column.format, **looks)
-        if column.key == "cost":
-            pieces, unit = (xl_rowcol_to_cell(row, at[name]) for name in ("pieces", "unit_cost"))
-            page.write_formula(row, place, f'=IF({unit}="","",{pieces}*{unit})', style, "" if value is None else value)
-        else:
-            pen.put(page, row, place, value, style)
+    texts = [
+        _("This list is as run: it does not follow what is edited in Items and Floors."),
+        *say_work.say_effect_of_all(schedule),
+        say_work.say_order(),
+        say_work.say_checks(),
+        say_work.say_disagreement(),
+        *say_work.list_marks(schedule),
+    ]
+    for row, text in enumerate(texts, len(works) + 3):
+        page.merge_range(row, 0, row, len(widths) - 1, "", pen.style("text"))
+        page.set_row(row, LINE * count_lines(text, sum(widths)))
+        pen.put(page, row, 0, text, pen.style("text"))
+    _write_changes(pen, page, row + 2, schedule)
 
 
 def _list_columns(schedule: Schedule) -> list[Column]:
-    own = {name: _of_work(name) for name in schedule_fields(WorkRow)}
+    def of_work(field: Field) -> Column:
+        code = MONEY if field.key in ("unit_cost", "cost") else field.format
+        return of_field(field, key=field.key, read=lambda one: field.read(one.row), format=code)
+
+    def of_entry(name: str, width: int, *, only_first: bool = False, align: str = "") -> Column:
+        """Return a column of the whole entry, which stands with the most urgent part of it alone if `only_first`."""
+        field = schedule_fields(ScheduleRow)[name]
+
+        def read(one: Work) -> Any:
+            return field.read(one.entry.row) if one.is_first or not only_first else None
+
+        return of_field(field, key=name, width=width, read=read, align=align)
+
+    own = {name: of_work(field) for name, field in schedule_fields(WorkRow).items()}
     screening = say_work.say_screening()
     has_code = any(work.tension_code_kn is not None for row in schedule.rows for work in row.works)
     forces = [own[name] for name in FORCES if name != "tension_code_kn" or has_code]
     return [
         Column(_("Done"), 6, lambda _one: BOX, key="done", align="center"),
-        _of_entry("place", 5, align="center"),
+        of_entry("place", 5, align="center"),
         replace(own["floor"], width=6),
         replace(own["room"], width=12),
         replace(own["pieces"], align="center"),
@@ -81,28 +102,12 @@ def _list_columns(schedule: Schedule) -> list[Column]:
         replace(own["fixings"], align="center", read=lambda one: say_work.say_fixings(one.row)),
         own["unit_cost"],
         own["cost"],
-        _of_entry("falls_avoided", 8, only_first=True),
-        _of_entry("falls_left", 8, only_first=True),
+        of_entry("falls_avoided", 8, only_first=True),
+        of_entry("falls_left", 8, only_first=True),
         Column(_("Remarks on the forces"), 26, lambda one: "; ".join(one.remarks), key="remarks"),
         Column(_("Photo"), 10, _name_photos),
         Column(_("Notes"), 18, lambda _one: ""),
     ]
-
-
-def _of_work(name: str) -> Column:
-    field = schedule_fields(WorkRow)[name]
-    code = MONEY if name in ("unit_cost", "cost") else field.format
-    return of_field(field, key=name, read=lambda one: field.read(one.row), format=code)
-
-
-def _of_entry(name: str, width: int, *, only_first: bool = False, align: str = "") -> Column:
-    """Return a column of the whole entry, which stands with the most urgent part of it alone if `only_first`."""
-    field = schedule_fields(ScheduleRow)[name]
-
-    def read(one: Work) -> Any:
-        return field.read(one.entry.row) if one.is_first or not only_first else None
-
-    return of_field(field, key=name, width=width, read=read, align=align)
 
 
 def _name_photos(work: Work) -> str:
@@ -121,23 +126,6 @@ def _write_sums(pen: Pen, page: Any, works: Sequence[Work], at: Mapping[str, int
     costs = [work.row.cost for work in works if work.row.cost is not None]
     formula, known = f'=IF(COUNT({cost})=0,"",SUM({cost}))', sum(costs) if costs else ""
     page.write_formula(row, at["cost"], formula, pen.style("total", MONEY), known)
-
-
-def _write_lines(pen: Pen, page: Any, row: int, schedule: Schedule, widths: Sequence[int]) -> int:
-    """Write the sentences below the list, and return the row below them."""
-    texts = [
-        _("This list is as run: it does not follow what is edited in Items and Floors."),
-        *say_work.say_effect_of_all(schedule),
-        say_work.say_order(),
-        say_work.say_checks(),
-        say_work.say_disagreement(),
-        *say_work.list_marks(schedule),
-    ]
-    for at, text in enumerate(texts, row):
-        page.merge_range(at, 0, at, len(widths) - 1, "", pen.style("text"))
-        page.set_row(at, LINE * count_lines(text, sum(widths)))
-        pen.put(page, at, 0, text, pen.style("text"))
-    return row + len(texts)
 
 
 def _write_changes(pen: Pen, page: Any, row: int, schedule: Schedule) -> None:

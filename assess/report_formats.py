@@ -1,0 +1,122 @@
+"""The formats of a run's reports: what the command, the page and `assess` write.
+
+They are known without loading what writes them.
+"""
+
+import importlib.util
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from assess.errors import InputError
+from assess.extras import say_install
+from assess.i18n import fill
+
+if TYPE_CHECKING:
+    from assess.report.job import Job
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Format:
+    """A format of reports.
+
+    Parameters
+    ----------
+    key, file : str
+        What it is called, and the name of its file.
+    write : callable
+        Writes the file; it imports what it needs when it is called.
+    is_default : bool
+        Whether it is written where no format is named.
+    edition : {"client", "annex"}, optional
+        Of a PDF, which is begun before all others and written last, as it carries results.json.
+    needs : mapping of str to str
+        Packages beyond those of every report, by the modules that they bring, and `extra` which brings them.
+    """
+
+    key: str
+    file: str
+    write: Callable[["Job", Path], None]
+    is_default: bool = True
+    edition: Literal["client", "annex"] | None = None
+    needs: Mapping[str, str] = field(default_factory=dict)
+    extra: str = ""
+
+    @property
+    def missing(self) -> list[str]:
+        """The packages that are not installed."""
+        return [package for module, package in self.needs.items() if importlib.util.find_spec(module) is None]
+
+    def check(self) -> None:
+        """Raise InputError, with what to install, if a package is missing."""
+        if missing := self.missing:
+            text = fill("the format {format} needs {packages}, which is not installed. {how}", format=self.key,
+                        packages=", ".join(missing), how=say_install(self.extra))  # fmt: skip
+            raise InputError(text)
+
+
+def _write_pdf(job: "Job", path: Path) -> None:
+    from assess.report.pages.pdf import finish_pdf
+
+    finish_pdf(job.layouts[path.name], job.results, path, job.options, job.progress, data=job.data)
+
+
+def _write_xlsx(job: "Job", path: Path) -> None:
+    from assess.report.xlsx import write_xlsx
+
+    write_xlsx(job.content, path, job.progress)
+
+
+def _write_html(job: "Job", path: Path) -> None:
+    from assess.report.pages.html import write_html
+
+    write_html(job.content, path, job.options, job.progress)
+
+
+def _write_json(job: "Job", _path: Path) -> None:
+    job.write_data()
+
+
+def _write_csv(job: "Job", path: Path) -> None:
+    from assess.report.data import write_csv
+
+    write_csv(job.results, path, job.progress)
+
+
+def _write_word(job: "Job", path: Path) -> None:
+    from assess.report.word import write_word
+
+    write_word(job.content, path, job.options, job.progress)
+
+
+def _write_npz(job: "Job", path: Path) -> None:
+    from assess.report.data import write_npz
+
+    write_npz(job.results, path, job.progress)
+
+
+def _write_parquet(job: "Job", path: Path) -> None:
+    from assess.report.parquet_file import write_parquet
+
+    write_parquet(job.results, path, job.progress)
+
+
+_WORD, _PARQUET = {"docx": "python-docx", "pypdfium2": "pypdfium2"}, {"duckdb": "duckdb"}
+_ALL = (
+    Format(key="pdf", file="report.pdf", write=_write_pdf, edition="client"),
+    Format(key="annex", file="annex.pdf", write=_write_pdf, edition="annex", is_default=False),
+    Format(key="xlsx", file="report.xlsx", write=_write_xlsx),
+    Format(key="html", file="report.html", write=_write_html),
+    Format(key="json", file="results.json", write=_write_json),
+    Format(key="csv", file="items.csv", write=_write_csv),
+    Format(key="docx", file="report.docx", write=_write_word, is_default=False, needs=_WORD, extra="word"),
+    Format(key="npz", file="outcomes.npz", write=_write_npz, is_default=False),
+    Format(key="parquet", file="items.parquet", write=_write_parquet, is_default=False, needs=_PARQUET,
+           extra="parquet"),
+)  # fmt: skip
+FORMATS: Mapping[str, Format] = {one.key: one for one in _ALL}
+FILES: Mapping[str, str] = {one.key: one.file for one in FORMATS.values()}
+DEFAULT = tuple(one.key for one in FORMATS.values() if one.is_default)
+ALL = "all"
+"""In place of formats: every one, of those that need more packages where these are installed."""
