@@ -310,7 +310,7 @@ def test_the_workings_are_hidden_and_stand_last(report):
     book = openpyxl.load_workbook(report.path)
     assert {sheet.oddHeader.center.text for sheet in book} == {None}, "no condition to be named"
     sheet = book["Items"]
-    first = report.places["Breadth as run [cm]"]
+    first = report.places["Breadth [cm] (as run)"]
     assert sheet.column_dimensions[openpyxl.utils.get_column_letter(first)].hidden
     assert first > report.places["Notes"]
     assert sheet.auto_filter.ref.endswith(f"{openpyxl.utils.get_column_letter(max(report.places.values()))}21")
