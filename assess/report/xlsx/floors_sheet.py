@@ -48,7 +48,8 @@ def list_lines(results: Results) -> list[MotionLine]:
         return sorted(motions, key=lambda one: one is not largest)
 
     floors = order_floors(results.floor_rows)
-    own, below = [], []
+    own: list[MotionLine] = []
+    below: list[MotionLine] = []
     for floor in floors:
         motions = {axis: sort(results.motions_of(floor.floor, axis)) for axis in AXES}
         first = len(floors) + len(below)
@@ -103,7 +104,7 @@ def write_floors(pen: Pen, page: Any, content: Content) -> None:
     has_brackets = any(one.anchor.bracket_capacity_kn is not None for one in run.item_rows)
     first = "pfa_run_X" if run.has_simulated or has_brackets else "edited_X"
     page.set_column(FLOOR_AT[first], len(FLOOR_KEYS) - 1, 10, None, {"hidden": True})
-    tops = {axis: FLOOR_AT[f"pfa_top_{axis}"] for axis in AXES}
+    tops: dict[str, int] = {axis: FLOOR_AT[f"pfa_top_{axis}"] for axis in AXES}
     charts.add_motion(pen, page, (HEAD + len(lines) + 1, 0), (HEAD, HEAD + rows - 1), tops)
 
 

@@ -300,9 +300,9 @@ def _dress(pen: Pen, page: Any, columns: Sequence[Column], last: int) -> None:
         page.data_validation(areas[key], rule)
     page.repeat_rows(0)
     page.repeat_columns(0)
-    at = {column.key: place for place, column in enumerate(columns)}
-    is_short = columns[at["class_notes"]].is_hidden  # else on two pages across: the simulation has columns
-    page.print_area(0, 0, last - 1, at["basis" if is_short else "class_notes"])
+    places = {column.key: place for place, column in enumerate(columns)}
+    is_short = columns[places["class_notes"]].is_hidden  # else on two pages across: the simulation has columns
+    page.print_area(0, 0, last - 1, places["basis" if is_short else "class_notes"])
     page.fit_to_pages(1 if is_short else 2, 0)
 
 
