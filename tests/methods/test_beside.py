@@ -1,6 +1,7 @@
 """Beside a simulated chance: slip, and falls away from a wall; what they are, and that they change nothing."""
 
 import dataclasses
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,6 +46,17 @@ def test_slip_is_newmarks_under_the_draws_of_the_run(settings):
     assert found["slip_median_cm"][0] > 0.5, "a case that slides"
 
 
+def test_slip_of_pieces_that_slide_depends_on_friction_alone():
+    batch = cases(breadth=[0.9, 1.4, 2.6], height=[1.8, 0.7, 0.8], friction=0.2, slides_under=0)
+    found = evaluate(batch).detail["slip_84_cm"]
+    assert found[0] == found[1] == found[2] > 0, "the last is too stocky to rock"
+
+
+def test_slip_is_found_for_those_that_ask_alone():
+    found = evaluate(cases(friction=0.2, slides_under=[0, -1, -1]))
+    assert np.isnan(found.detail["slip_median_cm"]).tolist() == [False, True, True]
+
+
 def test_an_ensemble_under_which_pieces_slide_alone_makes_no_joint():
     found = evaluate(cases(friction=0.2, ensemble=-1, slides_under=0))
     assert not found.joints
@@ -84,6 +96,12 @@ def test_the_strongest_draw_tells_which_may_slide():
     assert not may_slide(cases(), SETTINGS).any(), "no friction is given"
 
 
+def test_flags_and_words():
+    found = evaluate(cases(breadth=0.4, pfa=0.6 * GRAVITY, friction=[0.2, 0.22, math.nan], centre=[0.5, 0.6, 0.6]))
+    assert found.detail["sliding_branch"].tolist() == ["slide", "slide and rock", ""]
+    assert found.flags["shenton_extended"].tolist() == [False, True, False]
+
+
 # --- a wall at the back ---
 
 
@@ -108,6 +126,11 @@ def test_the_one_sided_chance_is_that_of_the_planar_body_under_the_draws(certain
     assert found == [*expected, max(expected)]
     assert max(expected) > 0
     assert expected[0] != expected[1]
+
+
+def test_without_a_wall_or_motions_there_is_none():
+    found = evaluate(cases(wall=[0, 1, 1], ensemble=[0, 0, -1])).detail["one_sided"]
+    assert np.isnan(found).tolist() == [True, False, True]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

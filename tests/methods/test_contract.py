@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from assess.i18n import placeholders
 from assess.methods import FACTS, Cases, Method, Outcome, adopted_formula, all_methods, paper_formula, simulation
+from assess.rocking.draws import MOTION, PEAK
 from assess.settings import Settings
 from assess.units import GRAVITY
 from tests.methods.ensembles import MadeUp
@@ -90,6 +91,12 @@ def assert_no_less(method: Method, milder: Cases, harsher: Cases) -> None:
     assert np.all(after.value[pairs] >= before.value[pairs] - 1e-12)
 
 
+def test_order_of_reports():
+    orders = [method.order for method in all_methods()]
+    assert orders == sorted(set(orders))
+    assert all_methods()[0] is adopted_formula()
+
+
 class TestRoles:
     def test_the_adopted_formula_serves_the_workbook_and_the_choice_of_pieces(self):
         formula = adopted_formula()
@@ -118,6 +125,11 @@ class TestDescription:
         assert method.predicts.endswith(".")
         assert method.assumptions
         assert str(method.reference).endswith(".")
+
+    def test_texts_are_plain_lines(self, method):
+        for text in (*method.equations, *method.assumptions, *method.departures, *method.flags.values()):
+            assert text == text.strip()
+            assert "\n" not in text
 
     def test_needs_are_fields_of_cases(self, method):
         assert method.needs
@@ -208,6 +220,10 @@ class TestBatch:
             one = slice(index, index + 1)
             assert_same(evaluate(method, take(cases, one)), together, one)
 
+    def test_an_empty_batch(self, method):
+        outcome = evaluate(method, take(random_batch(), slice(0)))
+        assert all(values.shape == (0,) for values in arrays_of(outcome).values())
+
 
 @METHODS
 class TestUnknown:
@@ -254,3 +270,18 @@ class TestMonotone:
         cases = Cases.of(breadth=breadth, height=1.0, pfa=pfa, pfv=pfa / (2 * np.pi * 0.9))
         assert_no_less(method, cases, change(cases, pfa=cases.pfa * 1.01, pfv=cases.pfv * 1.01))
         assert_no_less(method, cases, change(cases, breadth=cases.breadth * 0.995))
+
+
+class TestCasesOf:
+    def test_numbers_and_arrays_come_to_one_length(self):
+        cases = Cases.of(breadth=0.4, height=[1.8, 2.0], pfa=3.0)
+        assert cases.breadth.tolist() == [0.4, 0.4]
+        assert np.isnan(cases.pfv).tolist() == [True, True]
+        assert cases.dispersion.tolist() == [MOTION, MOTION]
+        assert cases.peak.tolist() == [PEAK, PEAK]
+        np.testing.assert_allclose(cases.breadth_to_height, [0.4 / 1.8, 0.2])
+
+    def test_what_was_given_is_copied(self):
+        height = np.array([1.8, 2.0])
+        Cases.of(breadth=0.4, height=height).height[0] = 0.0
+        assert height[0] == 1.8

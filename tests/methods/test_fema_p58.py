@@ -30,6 +30,14 @@ def test_lognormal_about_the_median():
     assert raised(outcome) == set()
 
 
+def test_no_shaking_no_risk():
+    assert evaluate(pfv=0.0).value[0] == 0
+
+
+def test_acceleration_does_not_enter():
+    assert evaluate(pfv=0.5, pfa=0.0).value[0] == evaluate(pfv=0.5, pfa=20.0).value[0]
+
+
 def test_unknown_velocity():
     outcome = evaluate(pfa=3.0)
     assert math.isnan(outcome.value[0])
@@ -50,3 +58,15 @@ def test_a_stocky_piece_does_not_rock():
 def test_outside_the_published_medians(breadth_to_height, outside):
     outcome = evaluate(breadth=breadth_to_height * 1.7, height=1.7, pfv=0.5)
     assert outcome.flags["extrapolated"][0] == outside
+
+
+def test_the_median_grows_with_breadth_and_with_size():
+    breadth_to_height = np.linspace(0.02, 1.4, 500)
+    assert np.all(np.diff(median_pfv(breadth_to_height, np.ones(500))) > 0)
+    height = np.linspace(0.2, 3.0, 100)
+    assert np.all(np.diff(median_pfv(0.25 * height, height)) > 0)
+
+
+def test_it_says_that_the_closed_form_is_inferred():
+    assert "inferred" in METHOD.departures[0]
+    assert "nine" in METHOD.departures[0]

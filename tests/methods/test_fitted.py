@@ -3,7 +3,9 @@
 import contextlib
 import dataclasses
 import math
+import os
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from hypothesis import settings as examples
 from hypothesis import strategies as st
 
 from assess.errors import InputError
+from assess.i18n import load_catalogue, speaking
 from assess.methods import Cases, FittedOn, Method, Range, proposed_or
 from assess.methods.fitted import QUANTITIES, Fitted, Polynomial, Probit, parse_model, read_model, write_model
 from assess.settings import Settings
@@ -102,6 +105,10 @@ class TestFile:
         with pytest.raises(InputError, match="the model: key is 'surface', expected fitted_ and then small letters"):
             write_model(dataclasses.replace(SURFACE, key="surface"))
 
+    def test_numpy_numbers_are_written_as_numbers(self):
+        formula = Probit(*(np.float64(one) for one in (-1.2, 1.8, 0.9)))
+        assert parse_model(write_model(dataclasses.replace(PROBIT, formula=formula)), "m") == PROBIT
+
     @pytest.mark.parametrize(
         ("old", "new", "told"),
         [
@@ -175,6 +182,14 @@ class TestFile:
         with pytest.raises(InputError, match=r"binary\.toml: the file is not a UTF-8 text"):
             read_model(binary)
 
+    @pytest.mark.skipif(os.name == "nt", reason="a device has no path there")
+    def test_a_device_is_no_file(self):
+        with pytest.raises(InputError, match=re.escape(f"{os.devnull}: {NO_FILE}")):
+            read_model(Path(os.devnull))
+
+    def test_a_range_may_begin_at_0(self, tmp_path):
+        assert read_model(spoilt(tmp_path, "pfa_g = [0.1, 0.9]", "pfa_g = [0, 0.9]")).valid["pfa"].low == 0
+
     @examples(deadline=None, max_examples=300)
     @given(data=st.data())
     @pytest.mark.slow
@@ -197,6 +212,7 @@ class TestMethod:
         tests = {name: getattr(one(), name) for one in classes for name in dir(one) if name.startswith("test_")}
         for name in PUBLISHED:
             del tests[name]
+        assert len(tests) >= 16
         for test in tests.values():
             test(method)
 
@@ -209,6 +225,11 @@ class TestMethod:
             r"; a constant, the mean chance of the other buildings, has 0\.432\. For a building .* than a constant, .*",
             str(method.reference),
         )
+
+    def test_a_long_list_of_data_is_cut_in_the_title_only(self, model):
+        method = of(dataclasses.replace(model, fitted=dataclasses.replace(model.fitted, data="a" * 100)))
+        assert method.title == f"{model.title} (fitted on {'a' * 39}…)"
+        assert "a" * 100 in method.reference.remark
 
     @pytest.mark.parametrize(
         ("error", "told"),
@@ -223,6 +244,12 @@ class TestMethod:
         method = of(dataclasses.replace(model, fitted=FittedOn(data=ON, error=error, spread=0.05, constant=0.4)))
         assert told in method.assumptions[0]
         assert method.reference.remark.endswith(f"has 0.400. {method.assumptions[0]}")
+
+    def test_the_ranges_of_its_data_are_shown_to_three_digits(self, model):
+        ratio = Range(0.0312345, 0.25, "s")
+        shown = of(dataclasses.replace(model, ranges={**model.ranges, "pfv_over_pfa_s": ratio})).valid
+        assert shown["PFV/PFA"] == Range(0.0312, 0.25, "s")
+        assert list(shown) == ["breadth_to_height", "pfa", "height", "pfv", "PFV/PFA"]
 
     def test_extrapolated_outside_any_range(self, model):
         inside = {"breadth": 0.45, "height": 1.5, "pfa": 0.4 * GRAVITY, "pfv": 0.5}
@@ -240,6 +267,10 @@ class TestMethod:
             "pfv": [0.04, 1.5],
         }
         assert not evaluate(model, **ends).flags["extrapolated"].any()
+
+    def test_both_ends_of_the_ratio_of_the_peaks_belong_to_it(self, model):
+        pfv = np.array([0.03, 0.25]) * 0.4 * GRAVITY
+        assert not evaluate(model, breadth=0.45, height=1.5, pfa=0.4 * GRAVITY, pfv=pfv).flags["extrapolated"].any()
 
 
 class TestValues:
@@ -286,3 +317,12 @@ class TestValues:
         found = evaluate(dataclasses.replace(SURFACE, formula=wild), breadth=[0.0, 1e-300, 0.05], height=3.0, pfa=50.0)
         assert not np.isinf(found.detail["raw"]).any()
         assert not (found.value > 1).any()
+
+    def test_equations_are_written_in_the_language_of_the_report(self):
+        from assess.i18n import gettext
+
+        assert of(SURFACE).equations[0] == "R = a + b/(B/H) + c·PFA + d/(B/H)² + e·PFA² + f·PFA/(B/H), PFA in cm/s²"
+        assert of(SURFACE).equations[1] == "a = -0.97758451; b = 0.30856415; c = 0.0032112873"
+        with speaking(load_catalogue("it")):
+            assert gettext(of(SURFACE).equations[1]) == "a = -0,97758451; b = 0,30856415; c = 0,0032112873"
+            assert gettext(of(SURFACE).title) == "Surface (8) (adattato a 3 buildings)"

@@ -17,7 +17,7 @@ from assess.pipeline.run import compute
 from assess.report.data import SCHEMA
 from assess.settings import Settings
 from tests.cli.calling import run
-from tests.methods.test_fitted import ON, PROBIT, SURFACE, k, of, saved, spoilt
+from tests.methods.test_fitted import NO_FILE, ON, PROBIT, SURFACE, k, of, saved, spoilt
 from tests.workbooks import UNVERIFIED, write
 
 pytestmark = pytest.mark.slow
@@ -76,11 +76,20 @@ class TestRun:
         assert "PFV 4 to 150 cm/s, PFV/PFA 0.03 to 0.25 s.</p>" in page
         check_workbook(out / "report.xlsx", [f"{one.title} (fitted on 3 buildings)" for one in (odd, PROBIT)])
 
+    def test_without_one_nothing_is_said_of_them(self, book, tmp_path):
+        assert run_cli(book, "--out", str(tmp_path / "out"), "--formats", "json").exit_code == 0
+        assert "fitted" not in (tmp_path / "out" / "results.json").read_text(encoding="utf-8")
+
     def test_a_broken_file_writes_nothing(self, book, tmp_path):
         broken = spoilt(tmp_path, repr(k.b), "nan")
         done = run_cli(book, "--out", str(tmp_path / "out"), "--method", str(broken))
         assert done.exit_code == 2
         assert f"error  {broken}: polynomial.terms[1] is nan, expected a number of at most 1e+30." in done.stderr
+        assert not (tmp_path / "out").exists()
+
+    def test_a_folder_is_told(self, book, tmp_path):
+        done = run_cli(book, "--out", str(tmp_path / "out"), "--method", str(tmp_path))
+        assert (done.exit_code, f"error  {tmp_path}: {NO_FILE}" in done.stderr) == (2, True)
         assert not (tmp_path / "out").exists()
 
     def test_too_many_are_told(self, book, tmp_path):

@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from assess.arrays import FloatArray
 from assess.errors import CancelledError
 from assess.methods import Cases, Outcome
-from assess.methods.housner_monte_carlo import BATCH, evaluate
-from assess.methods.simulate import LOOKS, LOOKS_Z
+from assess.methods.housner_monte_carlo import BATCH, METHOD, evaluate
+from assess.methods.simulate import LOOKS, LOOKS_Z, interval_width
 from assess.motion.target_fit import Fit, Spectra
 from assess.progress import SILENT, Progress, Report
 from assess.risk import classify_all, wilson_interval
@@ -23,6 +23,9 @@ from assess.settings import Settings
 from tests.methods.ensembles import STEP, MadeUp, make_motion
 
 AUTO = Settings(runs="auto")
+LEVELS = {"thin": 3.0, "usual": 6.0, "stout": 12.0}
+"""Amplitudes [m/s2] of a long push under which only pieces up to that stoutness overturn."""
+SIZES = {"thin": (0.3, 1.8), "usual": (0.8, 1.8), "stout": (1.5, 1.8)}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -111,6 +114,20 @@ def test_the_risk_is_the_share_of_motions_that_overturn_it() -> None:
     np.testing.assert_array_equal(outcome.detail["high"], high)
 
 
+def test_pushes_overturn_pieces_up_to_their_stoutness() -> None:
+    """What the tests of the looks rest on."""
+    breadth, height = np.array(list(SIZES.values())).T
+    cases = _cases(0, Pushes((0.0, *LEVELS.values())), breadth=breadth, height=height)
+    assert evaluate(cases, Settings(runs=4)).value.tolist() == [0.75, 0.5, 0.25]
+
+
+def test_restitution_is_used() -> None:
+    cases = _grid(1)
+    lively = dataclasses.replace(cases, restitution=np.full(cases.breadth.size, 0.99))
+    one, other = (evaluate(which, Settings(runs=60)) for which in (cases, lively))
+    assert (one.joints[0].rotation != other.joints[0].rotation).any()
+
+
 def test_the_record_itself_is_integrated_too() -> None:
     ensemble = MadeUp(0, has_record=True)
     assert ensemble.record is not None
@@ -121,6 +138,18 @@ def test_the_record_itself_is_integrated_too() -> None:
     np.testing.assert_array_equal(outcome.detail["record_overturned"], found.overturned[:, 0])
     np.testing.assert_array_equal(outcome.detail["record_rotation"], found.rotation[:, 0])
     np.testing.assert_array_equal(outcome.flags["fell_in_record"], found.overturned[:, 0])
+
+
+def test_a_piece_may_fall_in_the_record_alone() -> None:
+    outcome = evaluate(_cases(0, Pushes((0.0,), record=(12 * _push(), STEP))), Settings(runs=30))
+    assert (outcome.value[0], outcome.detail["record_overturned"][0]) == (0.0, 1.0)
+    assert outcome.flags["fell_in_record"][0]
+
+
+def test_without_a_record_nothing_is_known_of_it() -> None:
+    outcome = evaluate(_cases(0, MadeUp(0)), Settings(runs=3))
+    assert np.isnan([outcome.detail["record_overturned"][0], outcome.detail["record_rotation"][0]]).all()
+    assert not outcome.flags["fell_in_record"].any()
 
 
 def test_flags_and_pieces_without_motions_or_too_stocky() -> None:
@@ -223,6 +252,13 @@ def test_batches_go_on_with_the_draws() -> None:
     assert 0 < found.overturned.sum() < 40
 
 
+def test_a_centre_of_gravity_is_used() -> None:
+    outcomes = [evaluate(_cases(0, Pushes((1.7,)), centre=centre), Settings(runs=3)) for centre in (0.4, 0.6)]
+    assert [one.value[0] for one in outcomes] == [0.0, 1.0]
+    high = _cases([0, 0], Pushes((2.2,)), breadth=[1.5, 1.5], height=[1.0, 1.0], centre=[0.5, 0.7])
+    assert evaluate(high, Settings(runs=3)).flags["does_not_rock"].tolist() == [True, False]
+
+
 # --- motion by motion ---
 
 
@@ -241,6 +277,29 @@ def test_joints_hold_what_each_piece_did_under_each_motion() -> None:
         for (shown, step), motion in zip(joint.examples, motions[:3], strict=True):
             np.testing.assert_array_equal(shown, motion.astype(np.float32))
             assert step == STEP
+
+
+def test_of_fewer_than_three_motions_all_are_shown() -> None:
+    (joint,) = evaluate(_cases(0, MadeUp(0)), Settings(runs=2)).joints
+    assert len(joint.examples) == 2
+
+
+def test_the_spectra_kept_are_those_of_motions_that_were_run() -> None:
+    periods = np.array([0.5, 1.0])
+    known = Spectra(periods=periods, ordinates=np.ones((100, 2), dtype=np.float32), target=periods)
+    for runs, kept in ((2, 2), (100, 100), (120, 100)):
+        (joint,) = evaluate(_cases(0, MadeUp(0, spectra=known)), Settings(runs=runs)).joints
+        assert joint.spectra is not None
+        assert (len(joint.spectra.ordinates), joint.spectra.target is periods) == (kept, True)
+    (joint,) = evaluate(_cases(0, MadeUp(0)), Settings(runs=2)).joints
+    assert joint.spectra is None
+
+
+def test_many_motions_are_made_in_batches() -> None:
+    ensemble = Pushes((0.0, 3.0))
+    outcome = evaluate(_cases(0, ensemble), Settings(runs=2 * BATCH + 1))
+    assert ensemble.asked == [(0, BATCH), (BATCH, BATCH), (2 * BATCH, 1), (0, 3)]
+    assert outcome.detail["overturned"][0] == BATCH
 
 
 def test_batches_of_several_time_steps_are_put_together() -> None:
@@ -299,6 +358,24 @@ def test_auto_ends_undecided_after_5000() -> None:
     assert set(LOOKS) <= set(ends.tolist())
 
 
+def test_under_auto_pieces_leave_as_they_are_decided() -> None:
+    breadth, height = np.array(list(SIZES.values())).T
+    ensemble = Pushes((LEVELS["thin"], LEVELS["thin"], LEVELS["usual"], LEVELS["usual"], LEVELS["usual"]))
+    outcome = evaluate(_cases(0, ensemble, breadth=breadth, height=height), AUTO)
+    (joint,) = outcome.joints
+    assert outcome.value.tolist() == [1.0, 0.6, 0.0]
+    assert joint.runs.tolist() == outcome.detail["runs"].tolist() == [125, 250, 250]
+    assert joint.fell.shape == joint.rotation.shape == (3, 250)
+    assert not joint.fell[0, 125:].any()
+    assert not joint.rotation[0, 125:].any()
+    assert joint.fell.sum(axis=1).tolist() == outcome.detail["overturned"].tolist() == [125, 150, 0]
+
+
+def test_the_width_of_intervals() -> None:
+    assert interval_width(AUTO) == 2.64
+    assert interval_width(Settings(runs=100)) == pytest.approx(1.96, abs=1e-4)
+
+
 # --- threads, errors, progress ---
 
 
@@ -309,6 +386,19 @@ def test_threads_change_nothing(ensembles: int, settings: Settings) -> None:
     expected = evaluate(_grid(ensembles), settings)
     for threads in (2, 3, 4):
         _assert_equal(evaluate(_grid(ensembles), settings, threads=threads), expected)
+
+
+def test_threads_are_shared_out_among_ensembles() -> None:
+    for threads, ensembles, each in ((1, 3, 1), (4, 1, 4), (4, 2, 2), (4, 3, 1), (2, 3, 1)):
+        cases = _grid(ensembles)
+        evaluate(cases, Settings(runs=2), threads=threads)
+        assert [one.opened for one in cases.ensembles] == [[each]] * ensembles  # type: ignore[attr-defined]
+
+
+def test_equal_pieces_do_the_same() -> None:
+    cases = _grid(1)
+    (joint,) = evaluate(cases, Settings(runs=30)).joints
+    np.testing.assert_array_equal(joint.rotation[-4:], joint.rotation[:4])
 
 
 @pytest.mark.parametrize("threads", [1, 3])
@@ -348,3 +438,13 @@ def test_it_stops_between_batches(threads: int) -> None:
     ensembles = Pushes((0.0,)), Pushes((12.0,))
     with pytest.raises(CancelledError), progress.stage("verification", "", 2) as stage:
         evaluate(_cases([0, 1], *ensembles), Settings(runs=10 * BATCH), threads=threads, stage=stage)
+
+
+def test_its_description_tells_what_it_does() -> None:
+    text = " ".join((*METHOD.assumptions, *METHOD.departures))
+    for look in LOOKS:
+        assert f"{look:,}" in text
+    assert f"z = {LOOKS_Z}" in text
+    assert f"N is {Settings().runs} by default" in text
+    ends: NDArray[np.float64] = wilson_interval(0, 100)[1]
+    assert f"{float(ends):.3f}" in text

@@ -35,6 +35,12 @@ def raised(outcome: Outcome) -> set[str]:
 
 
 class TestBranches:
+    def test_slow_motion_goes_by_acceleration(self):
+        outcome = evaluate(**at_frequency(0.5, math.exp(0.2)))
+        assert outcome.detail["branch"][0] == "pfa"
+        assert outcome.value[0] == pytest.approx(0.841344746)  # Φ(0.2/0.2)
+        assert raised(outcome) == set()
+
     def test_fast_motion_goes_by_velocity(self):
         outcome = evaluate(pfa=10.0, pfv=MEDIAN_PFV * math.exp(-0.5))
         assert outcome.detail["branch"][0] == "pfv"
@@ -43,6 +49,20 @@ class TestBranches:
     def test_the_median_overturns_half(self):
         assert evaluate(pfa=MEDIAN_PFA, pfv=100.0).value[0] == pytest.approx(0.5)
         assert evaluate(pfa=100.0, pfv=MEDIAN_PFV).value[0] == pytest.approx(0.5)
+
+    def test_detail(self):
+        detail = evaluate(pfa=3.0, pfv=0.5).detail
+        assert detail["median_pfa_g"][0] == pytest.approx(MEDIAN_PFA / GRAVITY)
+        assert detail["median_pfv_cm_s"][0] == pytest.approx(MEDIAN_PFV * 100)
+        assert detail["floor_frequency_hz"][0] == pytest.approx(3.0 / (2 * math.pi * 0.5))
+        assert detail["boundary_frequency_hz"][0] == pytest.approx(BOUNDARY)
+
+    @pytest.mark.parametrize("unknown", ["breadth", "height", "pfa"])
+    def test_unknown_input_raises_no_flag(self, unknown):
+        outcome = evaluate(**{"pfa": 3.0, "friction": 0.1, unknown: math.nan})
+        assert math.isnan(outcome.value[0])
+        assert outcome.detail["branch"][0] == ""
+        assert raised(outcome) == set()
 
 
 class TestJump:
@@ -108,6 +128,12 @@ class TestSettings:
         for motion in (at_frequency(0.5, 1.2), at_frequency(2.0, 1.2), {"pfa": 1.2 * MEDIAN_PFA}):
             assert evaluate(half, **motion).value == pytest.approx(0.5 * evaluate(**motion).value)
 
+    def test_the_words_name_the_defaults(self):
+        words = " ".join(METHOD.assumptions)
+        assert f"ζ_A = {Settings().zeta_acceleration:.2f} unless" in words
+        assert f"ζ_V = {Settings().zeta_velocity:g} unless" in words
+        assert f"α is {Settings().slide_coefficient:g} unless" in words
+
     @pytest.mark.parametrize(
         ("friction", "slides"),
         [(math.nan, False), (0.5, False), (0.303, False), (0.301, True), (0.299, True), (0.1, True)],
@@ -125,3 +151,7 @@ class TestSettings:
 )
 def test_normal_cdf(x, probability):
     assert normal_cdf(np.array([x]))[0] == pytest.approx(probability, rel=1e-12)
+
+
+def test_normal_cdf_keeps_nan():
+    assert np.isnan(normal_cdf(np.array([math.nan]))[0])

@@ -29,6 +29,15 @@ def raised(outcome: Outcome) -> set[str]:
     return {name for name, flag in outcome.flags.items() if flag[0]}
 
 
+@pytest.fixture(scope="module")
+def grid():
+    """Every tenth of a per cent of B/H 0.02..2 by PFA 0..3 g; rows are B/H."""
+    breadth_to_height, pfa_g = np.linspace(0.02, 2.0, 991), np.linspace(0.0, 3.0, 601)
+    rows, columns = np.meshgrid(breadth_to_height, pfa_g, indexing="ij")
+    outcome = evaluate(rows.ravel(), columns.ravel())
+    return {"value": outcome.value.reshape(rows.shape), "raw": outcome.detail["raw"].reshape(rows.shape)}
+
+
 class TestAsPrinted:
     def test_coefficients_in_the_words_are_those_computed_with(self):
         text = " ".join(METHOD.equations)
@@ -46,6 +55,11 @@ class TestAsPrinted:
     def test_one_value_by_hand(self):
         # B/H 0.25, PFA 400: -0.97758451 + 1.2342566 + 1.28451492 - 0.297447376 - 0.31056 - 0.162442752
         assert _eq9(np.array([0.25]), np.array([400.0]))[0] == pytest.approx(0.770736882, abs=1e-9)
+
+    def test_raw_and_value_agree_where_nothing_departs(self):
+        outcome = evaluate(0.25, 0.4)
+        assert outcome.value[0] == outcome.detail["raw"][0]
+        assert raised(outcome) == set()
 
 
 class TestKnownWeaknesses:
@@ -76,6 +90,9 @@ class TestKnownWeaknesses:
         assert np.all(np.diff(raw[: raw.argmax()]) > 0)
         assert turning_breadth_to_height(np.array([pfa_g * GAL_PER_G]))[0] == pytest.approx(largest_at, abs=0.003)
 
+    def test_raw_of_a_very_thin_piece_falls_to_nothing(self):
+        assert evaluate(0.06, [0.0, 0.1, 0.3, 0.6]).detail["raw"].max() < 0
+
     @pytest.mark.parametrize(("breadth_to_height", "risk"), [(0.20, 0.10), (0.14, 0.28)])
     def test_some_risk_with_no_shaking_at_all(self, breadth_to_height, risk):
         outcome = evaluate(breadth_to_height, 0.0)
@@ -86,8 +103,14 @@ class TestKnownWeaknesses:
         breadth_to_height = np.array([0.14, 0.2, 0.3, 0.39])
         assert np.all(evaluate(breadth_to_height, 0.99 * breadth_to_height).value > 0.45)
 
+    def test_a_stocky_piece_is_never_very_high(self):
+        assert evaluate(0.56, np.linspace(0, 5, 200)).value.max() < 0.7
+
 
 class TestDepartures:
+    def test_never_below_the_printed_formula_within_its_bounds(self, grid):
+        assert np.all(grid["value"] >= np.clip(grid["raw"], 0, 1) - 1e-12)
+
     def test_the_cap_hides_behind_the_clip(self):
         # between B/H*(640 cm/s2) and B/H*(656 cm/s2) the value still rises with B/H, but above 1
         B_H = np.linspace(turning_breadth_to_height(np.array([THIN_PFA_CAP]))[0], 0.155, 200)
@@ -116,6 +139,12 @@ class TestDepartures:
             pfa=np.array([0.9, 0.9, 0.1, 0.1, 0.9]) * GRAVITY,
         )
         assert not METHOD.evaluate(cases, Settings()).flags["extrapolated"].any()
+
+    @pytest.mark.parametrize(
+        ("breadth_to_height", "pfa_g"), [(0.1399, 0.5), (0.3901, 0.5), (0.3, 0.0999), (0.3, 0.901)]
+    )
+    def test_just_outside_is_extrapolated(self, breadth_to_height, pfa_g):
+        assert evaluate(breadth_to_height, pfa_g).flags["extrapolated"][0]
 
     def test_held_at_the_peak(self):
         value = evaluate(0.3, [0.7546, 0.9, 3.0]).value

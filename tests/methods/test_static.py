@@ -1,5 +1,7 @@
 """Static criterion: rocking starts where PFA exceeds g B/H."""
 
+import math
+
 import pytest
 from numpy.typing import ArrayLike
 
@@ -22,3 +24,13 @@ def test_threshold():
 def test_it_must_be_exceeded():
     pfa = [0.2499 * GRAVITY, 0.25 * GRAVITY, 0.2501 * GRAVITY]
     assert evaluate(breadth=0.5, height=2.0, pfa=pfa).value.tolist() == [0, 0, 1]
+
+
+def test_the_threshold_is_known_where_the_motion_is_not():
+    outcome = evaluate(breadth=0.5, height=2.0)
+    assert math.isnan(outcome.value[0])
+    assert outcome.detail["threshold_pfa_g"][0] == pytest.approx(0.25)
+
+
+def test_words():
+    assert METHOD.words == ("rocking can start", "rocking cannot start")

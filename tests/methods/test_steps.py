@@ -102,6 +102,30 @@ def test_terms_of_equation_9_add_up() -> None:
     assert last(steps, "OR_9") == pytest.approx(sum(terms) - 0.97758451, abs=3e-4)
 
 
+def test_departures_are_shown_with_their_numbers() -> None:
+    thin = steps_of(B=16, H=200, PFA=0.2, PFV=20)["proposed_or"]
+    assert any(step.startswith("B/H lies below B/H*") for step in thin)
+    assert last(thin, "B/H*") == pytest.approx(0.1288, abs=2e-4)
+    strong = steps_of(B=60, H=200, PFA=1.5, PFV=20)["proposed_or"]
+    assert any(step.startswith("PFA lies above PFA*") for step in strong)
+    assert last(strong, "PFA*") == pytest.approx(740.06, abs=0.5)
+    assert last(strong, "OR_9") < last(strong, "OR = ")
+    assert steps_of(B=200, H=60, PFA=0.05, PFV=5)["proposed_or"][-1].endswith("the result is below 0 and is set to 0.")
+    assert steps_of(B=28, H=200, PFA=0.7, PFV=5)["proposed_or"][-1].endswith("the result is above 1 and is set to 1.")
+
+
+def test_kaneko_hayashi_names_its_branch() -> None:
+    velocity = steps_of(B=40, H=200, PFA=0.4, PFV=20)["kaneko_hayashi"]
+    assert "F_f is above F_b: the second line of equation (5) applies, that of the velocity." in velocity
+    assert last(velocity, "F_f") > last(velocity, "F_b")
+    acceleration = steps_of(B=40, H=200, PFA=0.2, PFV=60)["kaneko_hayashi"]
+    assert "F_f is not above F_b: the first line of equation (5) applies, that of the acceleration." in acceleration
+    bound = steps_of(B=40, H=200, PFA=0.2, PFV=math.nan)
+    assert "PFV is unknown: the largest risk that any PFV could give is taken." in bound["kaneko_hayashi"]
+    assert "PFV is unknown, but need not be known." in steps_of(B=40, H=60, PFA=0.2, PFV=math.nan)["ishiyama"]
+    assert "fema_p58" not in bound
+
+
 def test_settings_and_restitution_are_those_of_the_run() -> None:
     settings = Settings(runs=20, slide_coefficient=0.5, zeta_acceleration=0.3)
     steps = steps_of(settings, B=40, H=200, PFA=0.3, PFV=60, eta=0.9)
@@ -114,6 +138,23 @@ def test_settings_and_restitution_are_those_of_the_run() -> None:
     assert last(simulated, "R_low") == pytest.approx(float(low), abs=6e-5)
     assert last(simulated, "R_high") == pytest.approx(float(high), abs=6e-5)
     assert simulated[-1].startswith("Under the recorded motion itself it ")
+
+
+def test_of_drawn_motions_nothing_is_said_of_one_that_recurs() -> None:
+    ideal = "If exactly this motion recurred"
+    drawn, recorded = (steps_of(B=40, H=200, PFA=0.3, PFV=60, assumed=one)[simulation().key] for one in (True, False))
+    assert any(step.startswith(ideal) for step in recorded)
+    assert not any(step.startswith(ideal) for step in drawn)
+    assert len(drawn) < len(recorded)
+
+
+def test_without_a_record_nothing_is_said_of_one() -> None:
+    method, one = next(pair for pair in examples(B=40, H=200, PFA=0.3, PFV=60) if pair[0].role == "simulation")
+    assert method.steps is not None
+    for unknown in (math.nan, None):
+        detail = {**one.detail, "record_overturned": unknown}
+        steps = method.steps(Example(**{name: getattr(one, name) for name in one.__slots__} | {"detail": detail}))
+        assert not any("recorded motion" in step for step in steps)
 
 
 def test_numbers_are_written_as_the_language_does() -> None:

@@ -9,7 +9,7 @@ import pytest
 from assess.errors import RecordError
 from assess.motion.formats import _archive, read_records
 from assess.motion.record import Record
-from tests.motion.writers import EAST, NORTH, THREE, at2, csmip_v2, zipped
+from tests.motion.writers import EAST, NORTH, THREE, at2, csmip_v1, csmip_v2, zipped
 
 RECORDS = Path(__file__).parents[2] / "samples" / "records"
 README = {"README.txt": b"Please acknowledge."}
@@ -31,6 +31,11 @@ def test_members(tmp_path: Path) -> None:
     assert (records[3].acceleration == alone.acceleration).all()
 
 
+def test_raw_and_corrected_side_by_side(tmp_path: Path) -> None:
+    records = read_set(tmp_path, zipped({"C.V1": csmip_v1(EAST), "C.V2": csmip_v2(EAST)}))
+    assert [record.corrected for record in records] == [False, True]
+
+
 @pytest.mark.parametrize("method", [zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED])
 def test_archives_in_archives(tmp_path: Path, method: int) -> None:
     data = zipped({"r.V2": csmip_v2(NORTH)}, method)
@@ -40,6 +45,12 @@ def test_archives_in_archives(tmp_path: Path, method: int) -> None:
     assert record.file == "set.zip/in2.zip/in1.zip/r.V2"
     with pytest.raises(RecordError, match=r"in1\.zip: the zip archives are nested more than 3 deep: unpack them"):
         read_set(tmp_path, zipped({"in3.zip": data}, method))
+
+
+def test_velocities_are_left_out(tmp_path: Path) -> None:
+    members = {name: (RECORDS / f"1103.HN2.NP.RE_{name}.smc").read_bytes() for name in ("a", "v")}
+    (record,) = read_set(tmp_path, zipped(members))
+    assert (record.file, record.format) == ("set.zip/a", "USGS SMC")
 
 
 def test_a_damaged_member_does_not_lose_the_others(tmp_path: Path) -> None:
@@ -132,6 +143,11 @@ def test_a_member_that_unpacks_to_too_much() -> None:
     data = zipped({"zeros": bytes(50_000_000)})
     message = r"zeros unpacks to more than 200 times its size, which no record does\. Get the archive again"
     assert peak_memory(data, message) < 5_000_000
+
+
+def test_a_bomb_in_an_inner_archive() -> None:
+    inner = zipped({"zeros": bytes(50_000_000)})
+    assert peak_memory(zipped({"in.zip": inner, **README}), r"unpacks to more than 200 times") < 5_000_000
 
 
 def test_a_member_that_lies_about_its_size() -> None:

@@ -49,6 +49,14 @@ def test_pfa_is_met_exactly_and_pfv_nearly() -> None:
     assert np.abs(off(motions, 3.0, 1.0)[:, 0]).max() < 1e-6, "also where PFV cannot be met"
 
 
+@pytest.mark.parametrize("free", [np.nan, 0.0])
+def test_without_a_pfv_a_motion_is_but_scaled(free: float) -> None:
+    before = make_motions()
+    motions = before.copy()
+    meet_peaks(motions, split(motions), STEP, np.full(40, 3.0), np.full(40, free))
+    np.testing.assert_allclose(motions, 3.0 * before / np.abs(before).max(axis=1, keepdims=True), rtol=1e-5, atol=1e-6)
+
+
 @pytest.mark.parametrize("pfv", [0.2, 0.32, 0.5])
 def test_two_factors_bring_the_medians_to_peaks(pfv: float) -> None:
     motions = make_motions()

@@ -116,6 +116,13 @@ def test_draws_depend_on_neither_number_nor_order_nor_threads() -> None:
         assert not np.array_equal(open_(target(), beams).realise(0, 5, 1, SILENT), every[:5])
 
 
+def test_two_floors_of_one_height_move_alike() -> None:
+    one, other = (realise(target(0.7), 0, 20) for _ in range(2))
+    np.testing.assert_array_equal(one, other)
+    twice = realise(FloorTarget(place=0.7, pfa=8.0, pfv=1.0, meets="medians", factor=2.0), 0, 20)
+    np.testing.assert_allclose(twice, 2 * one, rtol=1e-3, atol=1e-3)
+
+
 # --- between floors of which PFA is known ---
 
 ANCHORS = ((0.4, 5.0), (0.8, 9.0))
@@ -139,6 +146,20 @@ def test_the_factor_in_height_is_straight_between_known_floors_and_down_to_the_g
 
 
 # --- what is kept ---
+
+
+@pytest.mark.slow
+def test_no_more_is_kept_than_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = realise(target())
+
+    one = beam_motions.KEPT.nbytes // (DRAWS // GROUP)
+    assert 0 < one <= beam_motions.KEPT.most
+    for kept in (3 * one, one - 1):
+        beam_motions.KEPT.forget()
+        monkeypatch.setattr(beam_motions.KEPT, "most", kept)
+        np.testing.assert_array_equal(realise(target(), threads=2), whole)
+        assert beam_motions.KEPT.nbytes == kept // one * one
+    assert not beam_motions.KEPT._busy
 
 
 def test_modes_are_made_once_for_all_floors_and_threads() -> None:

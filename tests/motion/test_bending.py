@@ -7,9 +7,11 @@ from assess.motion.calibrate import MOST_SHARPENED
 from assess.motion.recipe import (
     MOST_BENT,
     TAPER,
+    bend_rows,
     bend_to,
     build_taper,
     lift_rows,
+    measure_rows,
     shape_rows,
 )
 from assess.motion.record import FloatArray
@@ -36,6 +38,12 @@ def test_the_taper_grows_in_a_second_and_fades_in_one() -> None:
     assert (np.diff(taper[:201]) > 0).all()
 
 
+def test_on_a_grid_shorter_than_both_it_stays_below_one() -> None:
+    taper, slope = build_taper(Grid(0.005, 201))
+    assert taper.max() == pytest.approx(0.25)
+    np.testing.assert_allclose(np.gradient(taper, 0.005)[1:-1], slope[1:-1], atol=1e-2)
+
+
 # --- how much is bent ---
 
 PEAKS = np.array([0.7, 0.9, 1.1, 1.5])
@@ -49,6 +57,18 @@ def bent(values: FloatArray, bend: float) -> FloatArray:
 def test_the_mean_of_peaks_becomes_what_is_wanted(wanted: float) -> None:
     bend = bend_to(PEAKS, wanted, 5.0)
     assert wanted * bent(PEAKS / wanted, bend).mean() == pytest.approx(wanted, rel=1e-12)
+
+
+def test_within_its_share_a_mean_is_left() -> None:
+    assert bend_to(PEAKS, PEAKS.mean() / 0.97, 1.0, 0.95, 0.98) == 0.0
+    bend = bend_to(PEAKS, PEAKS.mean() / 0.9, 1.0, 0.95, 0.98)
+    wanted = PEAKS.mean() / 0.9
+    assert wanted * bent(PEAKS / wanted, bend).mean() == pytest.approx(0.95 * wanted)
+
+
+def test_it_is_limited() -> None:
+    assert bend_to(PEAKS, 10.0, 0.4) == 0.4
+    assert bend_to(PEAKS, 0.1, 0.4) == MOST_BENT
 
 
 # --- motions that are bent ---
@@ -85,6 +105,14 @@ def test_velocity_is_bent_by_the_rule(bend: float) -> None:
     assert peaks[1] == pytest.approx(np.abs(motion).max(), rel=1e-6)
 
 
+@pytest.mark.parametrize("bend", [MOST_BENT, 0.7, MOST_SHARPENED])
+def test_acceleration_is_bent_by_the_rule(bend: float) -> None:
+    motions = np.linspace(-10, 10, 1001).astype(np.float32)[None].repeat(2, axis=0)
+    expected = 5.0 * bent(motions.astype(np.float64) / 5.0, bend)
+    bend_rows(motions, 5.0, bend)
+    np.testing.assert_allclose(motions, expected, atol=1e-5)
+
+
 # --- lifted peaks ---
 
 
@@ -109,3 +137,16 @@ def test_nothing_drifts(name: str) -> None:
     assert abs(final_velocity(motions[0].astype(np.float64))) > 0.1
     lift_rows(motions, 1.1)
     assert abs(final_velocity(motions[0].astype(np.float64))) < 1e-5
+
+
+def test_a_silent_motion_stays_silent() -> None:
+    motions = np.zeros((1, 100), np.float32)
+    lift_rows(motions, 1.2)
+    np.testing.assert_array_equal(motions, 0.0)
+
+
+def test_peaks_and_final_velocity_are_measured() -> None:
+    """By hand: velocities 0, 1, 2, 1.5, 1 times the step."""
+    peaks = np.empty((1, 3))
+    measure_rows(np.array([[0.0, 2.0, 0.0, -1.0, 0.0]], np.float32), 0.01, peaks)
+    np.testing.assert_allclose(peaks, [[2.0, 0.01 * 2.0, 0.01 * 1.0]], rtol=1e-6)

@@ -3,6 +3,7 @@
 import struct
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -123,6 +124,21 @@ def test_blocks_are_joined_without_a_seam(monkeypatch: pytest.MonkeyPatch) -> No
             assert (one.acceleration == whole.acceleration).all()
             with pytest.raises(RecordError, match=r"line 505: '1x' is not a number"):
                 parse_records(f"{text}{end}9.99,1x".encode(), "a.csv")
+
+
+def test_no_more_than_a_block_is_taken_apart_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    sizes, real = [], plain_csv._read_block
+
+    def measured(block: bytes, *more: Any) -> list[float]:
+        sizes.append(len(block))
+        return real(block, *more)
+
+    monkeypatch.setattr(plain_csv, "BLOCK", 1000)
+    monkeypatch.setattr(plain_csv, "_read_block", measured)
+    text = "time [s],a [g]\n" + "\n".join(f"{row / 100:.2f},{row % 7}" for row in range(5000))
+    parse_records(text.encode(), "a.csv")
+    assert max(sizes) <= 1000
+    assert len(sizes) >= len(text) // 1000
 
 
 def test_a_row_that_is_wrong_in_an_even_block_is_named() -> None:

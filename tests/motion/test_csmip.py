@@ -1,6 +1,7 @@
 """CSMIP volumes 1 and 2: what their headers say, and what is said of damaged ones."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +9,8 @@ import pytest
 from assess.errors import RecordError
 from assess.motion.formats import csmip
 from assess.motion.record import Record
-from tests.motion.writers import EAST, NORTH, Signal
+from assess.units import GRAVITY
+from tests.motion.writers import EAST, NORTH, THREE, Signal, wave
 from tests.motion.writers import csmip_v1 as write_v1
 from tests.motion.writers import csmip_v1_pairs as write_pairs
 from tests.motion.writers import csmip_v2 as write_v2
@@ -43,6 +45,13 @@ def test_text(data: bytes) -> None:
     assert (record.station, record.event) == ("TOWN HALL (14403)", "MADE-UP EARTHQUAKE")
     assert record.start == "01/17/94, 12:31:04.1 UTC"
     assert (record.azimuth_deg, record.vertical, record.notes) == (90.0, False, ())
+
+
+def test_text_that_says_little() -> None:
+    bare = changed(changed(V1, b"CHAN  1:  90 DEG", b"CHANNEL"), b"TRIGGER TIME", b"            ")
+    record = read_one(changed(bare, b"STATION NO. 14403", b"STATION          "))
+    assert (record.channel, record.location, record.azimuth_deg, record.vertical) == ("1", "", None, None)
+    assert (record.station, record.start) == ("TOWN HALL", "JANUARY 17, 1994 04:31 PST")
 
 
 def test_the_recorder_s_number_where_the_building_s_is_not_given() -> None:
@@ -84,6 +93,12 @@ def test_columns_are_those_of_the_format_in_the_title() -> None:
     assert record.acceleration == pytest.approx(EAST.acceleration, abs=1e-6)
 
 
+def test_old_and_new_line_ends() -> None:
+    unix = read_one(V2.replace(b"\r\n", b"\n"))
+    assert (unix.acceleration == read_one(V2).acceleration).all()
+    assert (read_one(V2.replace(b"\r\n", b"\r")).acceleration == unix.acceleration).all()
+
+
 def test_a_dead_channel_does_not_lose_the_others() -> None:
     for read, write in ((csmip.VOLUME_1.read, write_v1), (csmip.VOLUME_2.read, write_v2)):
         records = read(write(EAST, DEAD, NORTH), "made")
@@ -92,6 +107,13 @@ def test_a_dead_channel_does_not_lose_the_others() -> None:
             assert record.notes == (
                 "channel 2 of the file is left out: every sample is 0 m/s2: the channel holds no motion",
             )
+
+
+def test_a_channel_that_is_cut_off_does_not_lose_the_others() -> None:
+    whole = write_v2(*THREE)
+    records = csmip.VOLUME_2.read(whole[: whole.rindex(b"POINTS OF ACCEL") + 1000], "made")
+    assert [record.channel for record in records] == ["11", "12"]
+    assert re.search(r"channel 3 .*cut short: it has \d+ of the 400 data values", records[0].notes[0])
 
 
 def test_nothing_is_left() -> None:
@@ -157,3 +179,8 @@ def test_a_peak_that_is_not_the_header_s_is_noted() -> None:
     record = read_one(changed(V2, b"PEAK ACCELERATION =   138", b"PEAK ACCELERATION =   238"))
     assert record.notes == ("the header prints a peak of 238.2 cm/s2, the data have 138.2 cm/s2",)
     assert read_one(changed(V1, b"Max", b"Mix")).header_pfa is None
+
+
+def test_units() -> None:
+    large = replace(EAST, acceleration=wave(peak=GRAVITY))
+    assert read_one(write_v1(large)).file_pfa == pytest.approx(np.abs(large.acceleration).max(), abs=1e-5)

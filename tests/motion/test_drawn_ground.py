@@ -105,3 +105,9 @@ def test_buildings_are_drawn_about_what_is_known() -> None:
     assert (places.min(), places.max()) == pytest.approx((0.25, 1.0), abs=0.01)
     assert estimate_period(16.0) == pytest.approx(1.4 * 0.3904, abs=1e-3)
     assert estimate_period(None) is None
+
+
+def test_a_long_period_has_time_to_come_to_rest() -> None:
+    assert GRID.duration == pytest.approx(37.3)
+    assert build_beam_grid(4.0) == GRID
+    assert build_beam_grid(6.0).duration == pytest.approx(GRID.duration + 8.0)

@@ -30,6 +30,14 @@ def test_the_ground_moves_as_it_does(place: float) -> None:
         assert find_medians(period, 1e-6, structure, ratio) == pytest.approx((1.0, 1.0), abs=1e-4)
 
 
+def test_its_entries_come_out() -> None:
+    table = read_table()
+    periods, places = (*PERIODS, None), (*PLACES, None)
+    for structure, period, place, ratio in EVERY:
+        own = table[structure][periods.index(period), RATIOS.index(ratio), places.index(place)]
+        assert find_medians(period, place, structure, ratio) == pytest.approx(tuple(own), rel=1e-9)
+
+
 def test_it_is_whole_and_its_numbers_are_those_of_floors() -> None:
     table = read_table()
     assert {one.shape for one in table.values()} == {(len(PERIODS) + 1, len(RATIOS), len(PLACES) + 1, 2)}
@@ -66,6 +74,12 @@ def test_beyond_them_the_nearest_holds(beyond: float, edge: float) -> None:
     assert is_within(None, RATIO)
     for period, ratio in ((0.05, RATIO), (7.0, RATIO), (1.0, 0.5), (None, 0.01)):
         assert not is_within(period, ratio)
+
+
+def test_structures_that_are_as_another() -> None:
+    assert find_medians(1.0, 0.5, "timber", RATIO) == find_medians(1.0, 0.5, "frame", RATIO)
+    assert find_medians(1.0, 0.5, "masonry", RATIO) == find_medians(1.0, 0.5, "dual", RATIO)
+    assert find_medians(1.0, 0.5, "walls", RATIO) != find_medians(1.0, 0.5, "frame", RATIO)
 
 
 @pytest.mark.parametrize("structure", STRUCTURES)

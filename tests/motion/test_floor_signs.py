@@ -45,6 +45,13 @@ def test_the_reference_is_the_floor_of_the_largest_peak():
     assert (find_signs(floors * [[0.1], [1], [2]], STEP) == find_signs(floors, STEP)).all()
 
 
+def test_floors_that_move_alike_and_one_alone_have_no_other_sign():
+    noise = np.random.default_rng(1).normal(size=8000)
+    assert (find_signs(np.array([noise, 0.5 * noise]), STEP) == 1).all()
+    assert (find_signs(noise[None], STEP) == 1).all()
+    assert (find_signs(np.array([noise, -0.5 * noise]), STEP) == [[1], [-1]]).all()
+
+
 def test_what_is_a_quarter_of_a_cycle_apart_is_not_coherent():
     late = FADE * np.cos(2 * np.pi * 0.8 * TIMES)
     floors = np.array([wave(0.8), -0.9 * late])
@@ -113,6 +120,20 @@ def test_turned_phases_give_common_noise_the_signs_of_the_records():
     assert clear.sum() >= 4
     assert (np.sign(found) == signs)[clear].all()
     assert (np.abs(found[clear]) > 0.4).all()
+
+
+def test_turning_keeps_amplitudes_and_is_the_sign_at_centres():
+    signs = np.array([1, -1, -1, 1, 1, -1, 1, 1, 1])
+    assert turn_phases(octaves(), signs) == pytest.approx(signs)
+    assert np.abs(turn_phases(np.linspace(0, 100, 5001), signs)) == pytest.approx(1)
+    assert turn_phases(np.linspace(0, 100, 5001), np.ones(9, dtype=int)) == pytest.approx(1)
+
+
+def test_floors_that_both_turn_keep_their_relation():
+    """One of 1, -1, -1, 1 and one of 1, 1, 1, -1: against each other from the second octave on, also in between."""
+    frequencies = np.geomspace(0.2, 1.6, 50)
+    one, other = (turn_phases(frequencies, [*signs, *[signs[-1]] * 5]) for signs in ((1, -1, -1, 1), (1, 1, 1, -1)))
+    assert one[frequencies > 0.2] * other[frequencies > 0.2].conj() == pytest.approx(-1)
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from assess.errors import CancelledError
+from assess.motion import noise
 from assess.motion.generate import CALIBRATED, Generator, build_generator
 from assess.motion.record import FloatArray, Motion
 from assess.motion.rows import GROUP
@@ -16,6 +17,7 @@ from assess.motion.spectrum import response_spectrum
 from assess.motion.target import Target, build_grid, matched_to, recorded_target
 from assess.motion.target_fit import Fit
 from assess.progress import Progress
+from assess.units import GRAVITY
 from tests.motion.motions import GROUND, ROOF, TWELFTH, cut, make_motion, read_motion
 from tests.stopping import StopsAt
 
@@ -107,6 +109,17 @@ def test_ensembles_match_their_record(name: str) -> None:
     assert further.pfa_ratio == pytest.approx(1, abs=0.05)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("seed", "axis"), [(2, "X"), (1, "Y"), pytest.param(123456789, "Y", marks=pytest.mark.long)])
+def test_so_they_do_with_other_draws(seed: int, axis: str) -> None:
+    generator = build(cut(TWELFTH, 0, 15), seed=seed, axis=axis)
+    figures = measure(generator.target, generator.realise())
+    assert figures.worst_deviation < 0.10
+    assert figures.mean_deviation < 0.03
+    assert figures.pfa_ratio == pytest.approx(1, abs=0.05)
+    assert figures.pfv_ratio == pytest.approx(1, abs=0.15)
+
+
 def test_realisations_beyond_those_calibrated_match_too() -> None:
     """Fifty others have a mean of their own: its standard error alone is 3 %."""
     generator = build(cut(TWELFTH, 0, 15))
@@ -138,6 +151,32 @@ def test_a_realisation_is_the_same_to_the_bit() -> None:
     for first, count in [(0, CALIBRATED), (5, 1), (3, 2), (41, 1), (CALIBRATED - 2, 5), (1, 146), (120, 20), (139, 3)]:
         np.testing.assert_array_equal(afresh.realise(first, count), everything[first : first + count])
         np.testing.assert_array_equal(generator.realise(first, count), everything[first : first + count])
+
+
+def test_it_does_not_depend_on_what_was_made_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The noise that is kept is that which would be drawn."""
+    first = build(SHORT).realise(0, 2)
+    build(cut("d", 8, 13), seed=7)
+    monkeypatch.setattr(noise.KEPT, "most", 0)
+    np.testing.assert_array_equal(build(SHORT).realise(0, 2), first)
+
+
+def test_what_is_handed_out_may_be_changed() -> None:
+    generator = build(SHORT)
+    first = generator.realise(0, 2)
+    kept = first.copy()
+    first[:] = 0.0
+    np.testing.assert_array_equal(generator.realise(0, 2), kept)
+
+
+def test_the_target_and_the_motion_are_left_alone() -> None:
+    grid = build_grid([SHORT])
+    target = recorded_target(SHORT, grid)
+    pseudo, acceleration, envelopes = target.pseudo.copy(), SHORT.acceleration.copy(), target.envelopes.values.copy()
+    build_generator(target, grid, seed=1, axis="X")
+    np.testing.assert_array_equal(target.pseudo, pseudo)
+    np.testing.assert_array_equal(SHORT.acceleration, acceleration)
+    np.testing.assert_array_equal(target.envelopes.values, envelopes)
 
 
 @pytest.mark.slow
@@ -209,6 +248,28 @@ def test_a_spike_has_its_pfa_and_motions_that_are_stronger_than_it() -> None:
     assert 1.0 < figures.pfv_ratio < 1.6
     assert 0.1 < figures.mean_deviation < 0.5
     check_fit(generator.fit, figures)
+
+
+def test_a_faint_record_is_matched_as_a_strong_one_is() -> None:
+    motion = cut(TWELFTH, 0, 15)
+    strong, faint = (build(make_motion(motion.acceleration * by, STEP)) for by in (1.0, 1e-4 * GRAVITY / motion.pfa))
+    assert faint.target.pfa == pytest.approx(1e-4 * GRAVITY)
+    assert strong.fit is not None
+    assert faint.fit is not None
+    for name in ("mean_deviation", "pfa_ratio", "pfv_ratio", "pfa_scatter", "spectrum_scatter"):
+        assert getattr(faint.fit, name) == pytest.approx(getattr(strong.fit, name), rel=1e-3)
+
+
+@pytest.mark.slow
+def test_two_minutes_are_matched() -> None:
+    motion = make_motion(np.tile(read_motion("a").acceleration, 3)[:24_001], STEP)
+    generator = build(motion)
+    figures = measure(generator.target, generator.realise())
+    assert figures.mean_deviation < 0.03
+    assert figures.worst_deviation < 0.12
+    assert figures.pfa_ratio == pytest.approx(1, abs=0.05)
+    assert figures.pfv_ratio == pytest.approx(1, abs=0.15)
+    assert figures.drift < 1e-5
 
 
 @pytest.mark.parametrize("threads", [1, 2])

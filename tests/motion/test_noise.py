@@ -3,13 +3,16 @@
 import numpy as np
 import pytest
 
-from assess.motion.noise import draw_noise, find_rates
+from assess.motion import noise
+from assess.motion.kept import Kept
+from assess.motion.noise import draw_bands, draw_noise, find_rates
 from assess.motion.record import FloatArray
 from assess.motion.rows import GROUP
 from assess.motion.target import STRETCH, Envelopes, Grid, octaves
 from assess.progress import SILENT
 
 STEP = 0.005
+GRID = Grid(STEP, 2000)
 FLAT = Envelopes(octaves(), np.ones((9, 2000)), 5.0)
 
 
@@ -18,6 +21,11 @@ def draw(envelopes: Envelopes, *, seed: int = 1, axis: str = "X", groups: int = 
     made = [draw_noise(envelopes, grid, seed=seed, axis=axis, group=group, progress=SILENT) for group in range(groups)]
     assert made[0].shape == (GROUP, find_rates(grid).frequencies.size)
     return np.concatenate([np.fft.irfft(one, find_rates(grid).length, axis=1) for one in made])
+
+
+@pytest.fixture
+def nothing_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(noise, "KEPT", Kept(noise.KEPT.most))
 
 
 # --- rates ---
@@ -43,10 +51,29 @@ def test_it_is_white_in_the_samples_and_of_one_level() -> None:
     np.testing.assert_allclose(coarse / coarse.mean(), 1.0, atol=0.2)
 
 
+def test_axes_and_seeds_and_numbers_differ() -> None:
+    rows = np.concatenate([draw(FLAT)[:3], draw(FLAT, axis="Y")[:3], draw(FLAT, seed=2)[:3]])
+    assert np.abs(np.corrcoef(rows) - np.eye(9)).max() < 0.1
+
+
+def test_no_axis_but_x_and_y() -> None:
+    with pytest.raises(KeyError):
+        draw(FLAT, axis="Z")
+
+
 def test_floors_share_their_phases() -> None:
     """Octaves or one envelope for all: where both are flat the noise is one."""
     one = Envelopes(np.array([0.1]), np.ones((1, 2000)), 5.0)
     np.testing.assert_array_equal(draw(one), draw(FLAT))
+
+
+def test_an_envelope_shapes_the_noise() -> None:
+    values = np.interp(np.arange(2000) * STEP, [0.0, 5.0, 8.0, 10.0], [0.0, 1.0, 1.0, 0.0])
+    made = draw(Envelopes(np.array([0.1]), values[None], 5.0), groups=2)[:, :2000]
+    level = np.sqrt((made**2).mean(axis=0))
+    near = [level[round(seconds / STEP) - 40 : round(seconds / STEP) + 40].mean() for seconds in (0.3, 4.5, 9.5)]
+    assert near[0] < 0.2 * near[1]
+    assert near[2] < near[1]
 
 
 def test_each_octave_is_under_its_own_envelope() -> None:
@@ -91,3 +118,26 @@ def test_given_stretches_take_the_place_of_drawn_ones() -> None:
 
 
 # --- what is kept ---
+
+
+@pytest.mark.usefixtures("nothing_kept")
+def test_noise_is_drawn_once_for_all_floors() -> None:
+    first = draw_bands(GRID, 1, "X", 0, SILENT)
+    assert draw_bands(GRID, 1, "X", 0, SILENT) is first
+    other = draw_bands(GRID, 1, "X", 1, SILENT)
+    assert other is not first
+    assert draw_bands(GRID, 1, "Y", 0, SILENT) is not first
+    assert draw_bands(Grid(STEP, 2001), 1, "X", 0, SILENT) is not first
+
+
+@pytest.mark.usefixtures("nothing_kept")
+def test_what_is_kept_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    first = draw_bands(GRID, 1, "X", 0, SILENT)
+    monkeypatch.setattr(noise.KEPT, "most", 2 * first.nbytes)
+    for group in (1, 2, 3):
+        draw_bands(GRID, 1, "X", group, SILENT)
+        assert noise.KEPT.nbytes <= 2 * first.nbytes
+    again = draw_bands(GRID, 1, "X", 0, SILENT)
+    assert again is not first
+    for one, other in zip(again.octaves, first.octaves, strict=True):
+        np.testing.assert_array_equal(one, other)

@@ -3,6 +3,7 @@
 import math
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from threading import Event
 
@@ -19,7 +20,9 @@ from assess.motion.record import (
     FloatArray,
     Record,
     build_series,
+    resample,
     treat,
+    treatment,
 )
 from assess.progress import Progress
 
@@ -60,6 +63,15 @@ def read_market(letter: str) -> Record:
     return record
 
 
+def filter_by_fourier(values: FloatArray, time_step: float) -> FloatArray:
+    """Both passes of the analogue filter at once: |H|^2 = 1 / (1 + (fc/f)^4), with no phase."""
+    count = values.size + 2 * round(200 / time_step)
+    frequency = np.fft.rfftfreq(count, time_step)
+    gain = np.zeros_like(frequency)
+    gain[1:] = 1 / (1 + (CORNER / frequency[1:]) ** 4)
+    return np.asarray(np.fft.irfft(np.fft.rfft(values - values.mean(), count) * gain, count))
+
+
 @pytest.mark.parametrize("letter", LETTERS)
 def test_market_street_as_its_header_says(letter: str) -> None:
     record = read_market(letter)
@@ -79,6 +91,18 @@ def test_market_street_as_its_header_says(letter: str) -> None:
     assert "42n" in record.station or letter not in "abc"
 
 
+@pytest.mark.parametrize("letter", LETTERS)
+def test_market_street_against_an_independent_filter(letter: str) -> None:
+    record = read_market(letter)
+    motion = treat(record)
+    filtered = filter_by_fourier(record.acceleration, record.time_step)
+    assert motion.pfa == pytest.approx(np.abs(filtered[: record.acceleration.size]).max(), rel=1e-3)
+    around = np.roll(filtered, 20_000)  # the part before the first sample stands at the end
+    velocity = np.cumsum(around) * record.time_step
+    own = velocity[20_000 : 20_000 + record.acceleration.size]
+    assert motion.pfv == pytest.approx(np.abs(own).max(), rel=5e-3)
+
+
 # After a band-pass of 0.1 to 25 Hz, made elsewhere [cm/s2, cm/s]; here nothing is cut off at 25 Hz.
 @pytest.mark.parametrize(("letter", "pfa", "pfv"), [("a", 214, 40.9), ("h", 217, 39.4), ("k", 131, 23.3)])
 def test_market_street_against_others(letter: str, pfa: float, pfv: float) -> None:
@@ -94,6 +118,13 @@ def test_a_corrected_record_is_used_as_it_is() -> None:
         np.testing.assert_array_equal(motion.acceleration, before)
         assert motion.pfa == record.file_pfa
         assert motion.velocity[0] == 0
+
+
+def test_treatment_leaves_the_record_alone() -> None:
+    record = make_record(0.3 + sine(1, 10))
+    before = record.acceleration.copy()
+    assert treat(record).acceleration.size == before.size == treat(record).velocity.size
+    np.testing.assert_array_equal(record.acceleration, before)
 
 
 def test_no_phase_is_shifted() -> None:
@@ -123,6 +154,11 @@ def test_peak_velocity_of_a_sine(frequency: float) -> None:
     assert np.abs(filtered[10_000:30_000]).max() == pytest.approx(1 / (2 * np.pi * frequency), rel=2e-3)
 
 
+def test_an_offset_changes_nothing() -> None:
+    plain, offset = (treat(make_record(sine(1, 40) + shift)) for shift in (0.0, 0.5))
+    np.testing.assert_allclose(plain.acceleration, offset.acceleration, atol=1e-12)
+
+
 def test_drift_is_removed() -> None:
     shaking = sine(1, 60) * np.hanning(6000)
     drifting = make_record(shaking + np.linspace(-0.05, 0.05, 6000))
@@ -130,11 +166,30 @@ def test_drift_is_removed() -> None:
     assert treat(drifting).pfv == pytest.approx(treat(make_record(shaking)).pfv, rel=0.2)
 
 
+def test_without_filter_the_mean_is_still_removed() -> None:
+    values = 0.5 + sine(1, 10)
+    np.testing.assert_allclose(treat(make_record(values), "none").acceleration, values - values.mean())
+
+
 def test_velocity_and_displacement_are_those_of_the_provider() -> None:
     """The files of the same channel print peaks of 2.30 cm/s and 0.182 cm."""
     motion = treat(read_records(RECORDS / "1103.HN2.NP.RE_a.smc")[0])
     assert motion.pfv * 100 == pytest.approx(2.2956, rel=0.002)
     assert motion.pfd * 100 == pytest.approx(0.18171, rel=0.03)
+
+
+def test_treatment_in_words() -> None:
+    record = make_record(sine(1, 10))
+    assert (
+        "high-pass at 0.1 Hz without phase shift (order 2 forward and again backward: order 4 in effect"
+        in treatment(record)
+    )
+    assert treatment(record, "none") == "Uncorrected: mean removed, not filtered."
+    assert treatment(replace(record, corrected=True)) == "Corrected by its provider: used as it is in the file."
+
+
+def test_resampling_follows_straight_lines() -> None:
+    np.testing.assert_allclose(resample(np.array([1.0, 1.3, 1.4]), np.array([0.0, 3.0, 2.0]), 0.1), [0, 1, 2, 3, 2])
 
 
 def test_even_times_keep_every_sample() -> None:

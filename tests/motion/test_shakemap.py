@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from assess.errors import InputError
-from assess.motion.shakemap import parse_shakemap, read_shakemap
+from assess.motion.shakemap import name_uncertainty, parse_shakemap, read_shakemap
 from assess.units import GRAVITY
-from tests.motion.grids import BAY, EPICENTRE, MARKET_STREET, build_grid
+from tests.motion.grids import BAY, EPICENTRE, LATITUDES, MARKET_STREET, build_grid
 
 PGA = (10.0, 20.0, 10.0, 20.0, 40.0, 80.0)
 PLAIN = {"PGA": ("pctg", PGA)}
@@ -75,6 +75,11 @@ def test_between_points_the_logarithm_is_interpolated():
     assert _at(build_grid(PLAIN), 37.0, -121.5).pga == pytest.approx(0.8 * GRAVITY), "a corner of the map"
 
 
+def test_rows_may_run_south_to_north_and_east_to_west():
+    turned = build_grid({"PGA": ("pctg", PGA[::-1])}, LATITUDES[::-1], (-121.5, -122.0))
+    assert _at(turned, 37.3, -121.9).pga == pytest.approx(_at(build_grid(PLAIN), 37.3, -121.9).pga, rel=1e-12)
+
+
 @pytest.mark.parametrize("longitudes", [(179.5, -180.0, -179.5), (179.5, 180.0, 180.5), (-180.5, -180.0, -179.5)])
 def test_a_map_across_the_date_line(longitudes):
     data = build_grid({"PGA": ("%g", (10, 20, 40, 10, 20, 40))}, (1.0, 0.0), longitudes)
@@ -121,6 +126,12 @@ def test_it_is_larger_for_small_earthquakes(magnitude, sigma):
     assert site.dispersion == pytest.approx(sigma, abs=5e-4)
 
 
+def test_sigma_is_interpolated_linearly():
+    assert _at(build_grid(PLAIN | {"STDPGA": ("ln(pctg)", (0.1, 0.3) * 3)}), 37.5, -121.75).dispersion == pytest.approx(
+        0.2
+    )
+
+
 @pytest.mark.parametrize(
     ("fields", "beside", "found"),
     [
@@ -137,6 +148,13 @@ def test_where_the_map_has_pgv_its_sigma_rules(fields, beside, found):
     grid = build_grid({name: ("", (value,) * 6) for name, value in beside.items()}) if beside else None
     site = _at(data, uncertainty=grid, uncertainty_name="uncertainty.xml")
     assert (site.measure, site.dispersion, site.dispersion_source) == ("PGV", *found)
+
+
+def test_assumed_sigma_and_share_are_those_of_pgv_where_the_map_has_it():
+    """Boore et al. (2014): tau 0.346 and phi 0.552 from magnitude 5.5 on."""
+    site = _at(build_grid(PLAIN | {"PGV": ("cms", (20.0,) * 6)}))
+    assert site.dispersion == pytest.approx(0.651, abs=5e-4)
+    assert site.shared == pytest.approx(0.346**2 / (0.346**2 + 0.552**2))
 
 
 @pytest.mark.parametrize(("measures", "shared"), [(("PGA", "PGV"), 0.2), (("PGA",), 0.5)])
@@ -200,6 +218,11 @@ def test_a_file_beside_that_is_cut_off_is_named_with_its_folder_and_the_way_out(
         read_shakemap(tmp_path / "grid.xml")
 
 
+def test_names_of_the_file_beside():
+    assert name_uncertainty("grid.xml") == ("uncertainty.xml",)
+    assert name_uncertainty("ev1_grid.xml") == ("ev1_uncertainty.xml", "uncertainty.xml")
+
+
 @pytest.mark.parametrize(
     ("status", "text"), [("AUTOMATIC", "nobody had reviewed it"), ("CANCELLED", "has withdrawn it")]
 )
@@ -261,6 +284,15 @@ def test_no_number_is_refused_only_next_to_a_building():
     site = found.at(38.0, -121.7)
     assert np.isfinite(site.pga)
     assert site.cautions == ("1 point of the ShakeMap's grid holds no value (NaN); it is not next to the building",)
+
+
+def test_a_scatter_that_is_no_number_is_assumed():
+    found = parse_shakemap(build_grid(PLAIN | {"STDPGA": ("", ("nan",) * 6)}), "grid.xml").at(37.5, -121.7)
+    assert found.dispersion > 0.5
+    assert str(found.dispersion_source).startswith("assumed, as the map has none at this place")
+    assert found.cautions == (
+        "the ShakeMap holds no value (NaN) of STDPGA next to the building: it is taken as not known there",
+    )
 
 
 def test_points_without_a_value_are_next_to_some_buildings_only():

@@ -67,6 +67,14 @@ def test_the_order_in_which_floors_come_changes_nothing() -> None:
     np.testing.assert_array_equal(late[1], early[0])
 
 
+def test_what_is_handed_out_may_be_changed() -> None:
+    kept = share().realise(0, 130)
+    share().realise(0, 130)[:] = 0.0
+    share().spectra.ordinates[:] = 0.0
+    np.testing.assert_array_equal(share().realise(0, 130), kept)
+    assert share().spectra.ordinates.all()
+
+
 @pytest.mark.slow
 def test_targets_axes_seeds_and_signs_that_differ_at_all_share_nothing(nothing_kept: list[int]) -> None:
     first = share().realise(0, 2)

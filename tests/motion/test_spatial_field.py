@@ -1,6 +1,8 @@
 """A field of normal numbers over the earth: as correlated as published, and each place's own whatever else is drawn."""
 
 import math
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -37,6 +39,14 @@ def test_numbers_of_two_places_are_correlated_by_their_distance(distance, range_
     assert np.corrcoef(one, other)[0, 1] == pytest.approx(wanted, abs=4 * error)
 
 
+def test_correlation_is_alike_in_every_direction():
+    latitude, longitude = BAY
+    north = (latitude + math.degrees(2 * math.asin(10 / 2 / EARTH)), longitude)
+    here = draw_field(1, 0, DRAWS, *BAY)
+    found = [np.corrcoef(here, draw_field(1, 0, DRAWS, *there))[0, 1] for there in (north, east_of(BAY, 10))]
+    assert found[0] == pytest.approx(found[1], abs=0.03)
+
+
 def test_numbers_of_a_place_are_about_normal():
     found = draw_field(1, 0, DRAWS, *BAY)
     assert found.mean() == pytest.approx(0, abs=4 / math.sqrt(DRAWS))
@@ -46,6 +56,12 @@ def test_numbers_of_a_place_are_about_normal():
     assert (standard**4).mean() - 3 == pytest.approx(-1.5 / WAVES, abs=4 * math.sqrt(24 / DRAWS))
 
 
+def test_draws_are_independent_of_each_other():
+    found = draw_field(1, 0, DRAWS, *BAY)
+    for lag in (1, 64, 256):
+        assert np.corrcoef(found[lag:], found[:-lag])[0, 1] == pytest.approx(0, abs=4 / math.sqrt(DRAWS))
+
+
 def test_a_number_is_that_of_its_seed_draw_and_place_whatever_else_is_drawn():
     every = draw_field(1, 0, 700, *BAY)
     draw_field(1, 0, 700, 10.0, 20.0)
@@ -53,6 +69,13 @@ def test_a_number_is_that_of_its_seed_draw_and_place_whatever_else_is_drawn():
         assert np.array_equal(draw_field(1, first, count, *BAY), every[first : first + count])
     assert not np.array_equal(draw_field(2, 0, 700, *BAY), every)
     assert not np.array_equal(draw_field(1, 0, 700, 37.80, -122.40), every)
+
+
+def test_a_number_is_the_same_in_another_process():
+    call = "draw_field(1, 300, 5, 37.79, -122.4).tobytes().hex()"
+    code = f"from assess.motion.spatial_field import draw_field; print({call})"
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.strip()
+    assert found == draw_field(1, 300, 5, *BAY).tobytes().hex()
 
 
 def test_the_date_line_and_the_poles_are_places_like_others():

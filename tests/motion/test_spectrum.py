@@ -8,8 +8,9 @@ from eqsig import sdof
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from assess.motion.record import FloatArray
 from assess.motion.rows import run_rows
-from assess.motion.spectrum import build_periods, response_spectrum
+from assess.motion.spectrum import build_periods, oscillator_step, response_spectrum
 from assess.progress import SILENT
 from tests.motion.motions import GROUND, ROOF, TWELFTH, read_motion
 
@@ -68,6 +69,73 @@ def test_a_sudden_constant_acceleration(damping: float) -> None:
     np.testing.assert_allclose(spectrum.absolute, np.abs(2.0 * (1 - decay * wave)).max(axis=0), rtol=1e-10)
 
 
+def response_to_cosine(
+    forcing: float, period: float, damping: float, times: FloatArray, images: FloatArray, weights: FloatArray
+) -> tuple[float, float]:
+    """Return peak pseudo and absolute acceleration at `times` under the sum of weights cos(images t), from rest.
+
+    At the samples each image is the cosine of circular frequency `forcing`.
+    """
+    omega = 2 * math.pi / period
+    damped = omega * math.sqrt(1 - damping**2)
+    steady = -weights / (omega**2 - images**2 + 2j * damping * omega * images)
+    u, v = steady.sum(), (1j * images * steady).sum()
+    cosine = -u.real
+    sine = (-v.real + damping * omega * cosine) / damped
+    decay, turn = np.exp(-damping * omega * times), np.exp(1j * forcing * times)
+    c, s = np.cos(damped * times), np.sin(damped * times)
+    displacement = (u * turn).real + decay * (cosine * c + sine * s)
+    slope = (sine * damped - damping * omega * cosine) * c - (cosine * damped + damping * omega * sine) * s
+    velocity = (v * turn).real + decay * slope
+    total = omega**2 * displacement + 2 * damping * omega * velocity
+    return omega**2 * float(np.abs(displacement).max()), float(np.abs(total).max())
+
+
+@pytest.mark.parametrize("damping", [0.05, 0.2])
+@pytest.mark.parametrize("step", [0.02, 0.005])
+def test_a_cosine_on_straight_lines(step: float, damping: float) -> None:
+    """Straight lines between samples are the cosine and its images about the sampling frequency, times sinc squared."""
+    forcing, times = 2 * np.pi * 1.7, np.arange(2000) * step
+    images = forcing + 2 * np.pi / step * np.arange(-2000, 2001)
+    weights = np.sinc(images * step / (2 * np.pi)) ** 2
+    periods = np.array([0.05, 0.3, 1 / 1.7, 2.0])
+    spectrum = response_spectrum(np.cos(forcing * times), step, periods, damping=damping)
+    exact = np.array([response_to_cosine(forcing, period, damping, times, images, weights) for period in periods])
+    np.testing.assert_allclose(np.transpose([spectrum.pseudo, spectrum.absolute]), exact, rtol=1e-6)
+
+
+def test_a_cosine_of_fine_steps() -> None:
+    """With 4,000 steps a cycle, straight lines take off (w dt)^2/12, 2e-7."""
+    step, forcing = 0.00025, 2 * np.pi
+    times = np.arange(80_000) * step
+    periods = np.array([0.4, 1.0, 3.0])
+    spectrum = response_spectrum(np.cos(forcing * times), step, periods)
+    exact = [
+        response_to_cosine(forcing, period, 0.05, times, np.array([forcing]), np.array([1.0])) for period in periods
+    ]
+    np.testing.assert_allclose(np.transpose([spectrum.pseudo, spectrum.absolute]), exact, rtol=1e-6)
+
+
+def test_resonance_nears_its_limit() -> None:
+    """PSA = PFA/(2 damping) after many cycles."""
+    sine = np.sin(2 * np.pi * np.arange(0, 60, 0.001))
+    assert response_spectrum(sine, 0.001, np.array([1.0])).pseudo[0] == pytest.approx(10, rel=1e-3)
+
+
+@pytest.mark.parametrize("damping", [0.02, 0.05, 0.5])
+def test_free_vibration(damping: float) -> None:
+    step, period, steps = 0.01, 0.7, 137
+    r = oscillator_step(np.array([period]), step, damping)[:4, 0].reshape(2, 2)
+    u, v = np.linalg.matrix_power(r, steps) @ [0.3, -1.1]
+    omega, time = 2 * np.pi / period, steps * step
+    damped = omega * math.sqrt(1 - damping**2)
+    sine = (-1.1 + damping * omega * 0.3) / damped
+    decay, c, s = math.exp(-damping * omega * time), math.cos(damped * time), math.sin(damped * time)
+    assert u == pytest.approx(decay * (0.3 * c + sine * s), rel=1e-10)
+    slope = (sine * damped - damping * omega * 0.3) * c - (0.3 * damped + damping * omega * sine) * s
+    assert v == pytest.approx(decay * slope, rel=1e-10)
+
+
 def test_after_a_kick_it_swings_as_duhamel_says() -> None:
     """The first sample alone is a falling ramp of one step; then the ground is at rest."""
     step, damping, periods = 0.01, 0.05, np.array([0.08, 0.3, 1.0])
@@ -108,6 +176,18 @@ def test_a_soft_oscillator_stays_where_it_is(seed: int) -> None:
     assert spectrum.absolute[0] < 2e-3
 
 
+def test_finer_steps_along_the_same_lines_change_nothing() -> None:
+    """What rounding takes from the coefficients where a step is a small part of a period does not tell."""
+    coarse = np.random.default_rng(1).standard_normal(1000)
+    motions = [np.interp(np.arange(999 * fine + 1) / fine, np.arange(1000), coarse) for fine in (20, 400)]
+    periods = np.array([1.0, 3.0, 10.0])
+    fine, finer = (
+        response_spectrum(motion, 0.02 / number, periods).pseudo
+        for motion, number in zip(motions, (20, 400), strict=True)
+    )
+    np.testing.assert_allclose(fine, finer, rtol=1e-5)
+
+
 # --- arrays ---
 
 
@@ -125,6 +205,27 @@ def test_threads_change_nothing() -> None:
     np.testing.assert_array_equal(alone.absolute, shared.absolute)
 
 
+def test_one_period_is_as_among_many() -> None:
+    """Vector lanes may round otherwise, in the last digits."""
+    alone = [response_spectrum(NOISE[0], 0.01, PERIODS[[place]]).pseudo[0] for place in range(PERIODS.size)]
+    np.testing.assert_allclose(alone, response_spectrum(NOISE[0], 0.01, PERIODS).pseudo, rtol=1e-12)
+
+
+def test_lists_and_integers_and_strides_are_taken() -> None:
+    values = [0, 3, -1, 2, 0, 1]
+    expected = response_spectrum(np.array(values, dtype=float), 0.1, np.array([0.5])).pseudo
+    for given_as in (values, np.array(values), np.repeat(values, 2)[::2], np.array(values, dtype=np.float32)):
+        np.testing.assert_array_equal(response_spectrum(given_as, 0.1, [0.5]).pseudo, expected)
+
+
+def test_inputs_are_left_alone() -> None:
+    motions, periods = NOISE.copy(), PERIODS.copy()
+    spectrum = response_spectrum(motions, 0.01, periods)
+    np.testing.assert_array_equal(motions, NOISE)
+    np.testing.assert_array_equal(periods, PERIODS)
+    assert not np.shares_memory(spectrum.pseudo, motions)
+
+
 @settings(max_examples=50, deadline=None)
 @given(factor=st.floats(1e-6, 1e6), seed=st.integers(0, 1000), damping=st.floats(0.005, 0.95))
 def test_it_scales_and_has_no_sign(factor: float, seed: int, damping: float) -> None:
@@ -134,6 +235,25 @@ def test_it_scales_and_has_no_sign(factor: float, seed: int, damping: float) -> 
     )  # fmt: skip
     np.testing.assert_allclose(scaled.pseudo, factor * plain.pseudo, rtol=1e-9)
     np.testing.assert_allclose(scaled.absolute, factor * plain.absolute, rtol=1e-9)
+
+
+def test_zeros_after_the_motion_only_let_it_ring_on() -> None:
+    longer = np.pad(NOISE, ((0, 0), (0, 300)))
+    assert (response_spectrum(longer, 0.01, PERIODS).pseudo >= response_spectrum(NOISE, 0.01, PERIODS).pseudo).all()
+
+
+def test_zeros_before_the_motion_change_nothing() -> None:
+    later = np.pad(NOISE, ((0, 0), (50, 0)))
+    later[:, 50] = 0.0
+    still = later[:, 50:]
+    ours = response_spectrum(later, 0.01, PERIODS), response_spectrum(still, 0.01, PERIODS)
+    np.testing.assert_allclose(ours[0].pseudo, ours[1].pseudo, rtol=1e-10)
+
+
+def test_periods_are_even_in_their_logarithm() -> None:
+    periods = build_periods(0.1, 10.0, 5)
+    np.testing.assert_allclose(periods, [0.1, 10**-0.5, 1.0, 10**0.5, 10.0])
+    assert build_periods().size == 120
 
 
 def test_every_row_is_worked_once_and_an_error_in_a_thread_is_raised() -> None:

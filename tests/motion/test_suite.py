@@ -1,5 +1,7 @@
 """A folder of one's own records in place of generated motions."""
 
+import dataclasses
+import hashlib
 import shutil
 from pathlib import Path
 
@@ -8,7 +10,7 @@ import pytest
 
 from assess.errors import RecordError
 from assess.motion.spectrum import pseudo_acceleration
-from assess.motion.suite import read_suite
+from assess.motion.suite import MOST_SPECTRA, read_suite
 from assess.units import GRAVITY
 from tests.motion.motions import MARKET, read_motion
 from tests.shaking import write_record
@@ -33,6 +35,11 @@ def test_motions_are_treated_and_in_the_order_of_steps_and_names(tmp_path: Path)
     shutil.copy(MARKET / "891018_1.cra-1.0210a.smc", tmp_path / "x.smc")
     (motion,) = [motion for name, motion in read_suite(tmp_path).motions if name == "x.smc"]
     np.testing.assert_array_equal(motion.acceleration, read_motion("a").acceleration)
+
+
+def test_files_are_hashed(tmp_path: Path) -> None:
+    path = write_record(tmp_path / "a.csv", WAVE)
+    assert read_suite(tmp_path).files == {"a.csv": hashlib.sha256(path.read_bytes()).hexdigest()}
 
 
 def test_vertical_channels_are_left_out_and_named(tmp_path: Path) -> None:
@@ -119,3 +126,11 @@ def test_spectra_of_motions_of_several_steps(tmp_path: Path) -> None:
         expected = pseudo_acceleration(motion, step, spectra.periods)
         np.testing.assert_allclose(own, expected, rtol=1e-6)
         np.testing.assert_allclose(to_peak, expected * 3.0 / np.abs(motion).max(), rtol=1e-6)
+
+
+def test_spectra_of_the_first_hundred_only(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        write_record(tmp_path / f"{name}.csv", 0.2 * WAVE)
+    suite = read_suite(tmp_path)
+    many = dataclasses.replace(suite, motions=suite.motions * 60)
+    assert len(many.scaled_spectra(1.0).ordinates) == MOST_SPECTRA == 100

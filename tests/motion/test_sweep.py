@@ -44,6 +44,15 @@ def test_peaks_come_when_they_do_with_their_sign(place: int) -> None:
     assert exact(motion[: when[0, 0] - 2 * about], period)[0] < whole
 
 
+def test_each_motion_and_each_period_is_found_on_its_own() -> None:
+    motions = single(np.stack([read_motion("a").acceleration[:3000], read_motion("b").acceleration[:3000]]))
+    both, alone = Sweep.of(PERIODS, STEP, 3000), Sweep.of(PERIODS[[33]], STEP, 3000)
+    peaks, when = both.peaks(motions)
+    np.testing.assert_array_equal(both.peaks(motions[1:])[0], peaks[1:])
+    np.testing.assert_array_equal(both.peaks(motions[1:])[1], when[1:])
+    np.testing.assert_allclose(alone.peaks(motions)[0], peaks[:, [33]], rtol=1e-6)
+
+
 def test_the_last_peak_may_come_after_shaking() -> None:
     """A pulse, and free vibration after it."""
     motion = np.zeros(4001)
@@ -54,6 +63,18 @@ def test_the_last_peak_may_come_after_shaking() -> None:
     )
 
 
+def test_silence_has_no_peaks() -> None:
+    peaks, _ = Sweep.of(PERIODS, STEP, 500).peaks(np.zeros((2, 500), np.float32))
+    np.testing.assert_array_equal(peaks, 0.0)
+
+
+@pytest.mark.parametrize("count", [2, 3, 4, 5, 41, 402])
+def test_short_motions_are_no_trouble(count: int) -> None:
+    peaks, when = Sweep.of(PERIODS, STEP, count).peaks(np.ones((2, count), np.float32))
+    assert np.isfinite(peaks).all()
+    assert ((when >= 0) & (when < max(count, 2))).all()
+
+
 def test_halving_keeps_long_waves_and_takes_off_the_shortest() -> None:
     times = np.arange(4001)
     wave, fastest = np.sin(2 * np.pi * times / 80), (-1.0) ** times
@@ -62,3 +83,11 @@ def test_halving_keeps_long_waves_and_takes_off_the_shortest() -> None:
     gain = 1 + (2 * np.pi / 80) ** 2 / 4  # straight lines between half as many samples take as much off again
     np.testing.assert_allclose(half[0, 1:-1], gain * wave[::2][1:-1], atol=1e-4)
     np.testing.assert_allclose(half[1, 1:-1], 0.0, atol=1e-6)
+
+
+def test_short_motions_are_not_halved() -> None:
+    """There the ends count: two seconds keep all their samples."""
+    motion = read_motion("a").acceleration[2000:2401]
+    np.testing.assert_allclose(Sweep.of(PERIODS, STEP, 401).spectra(single(motion))[0], exact(motion), rtol=6e-3)
+    assert Sweep.of(PERIODS, STEP, 401).depths.max() == 0
+    assert Sweep.of(PERIODS, STEP, 12_000).depths.max() == 3

@@ -15,7 +15,7 @@ from assess.motion.target import (
     put_on_grid,
     recorded_target,
 )
-from tests.motion.motions import cut, make_motion
+from tests.motion.motions import cut, make_motion, read_motion
 
 # --- grid ---
 
@@ -29,6 +29,17 @@ def test_a_grid_is_as_long_as_the_longest_record() -> None:
     assert build_grid(motions[2:]) == Grid(0.005, 1001)
 
 
+def test_a_step_that_does_not_divide_adds_a_sample() -> None:
+    assert build_grid([make_motion(np.sin(np.arange(101)), 1 / 300)]) == Grid(0.005, 68)
+
+
+def test_it_is_as_long_as_drawn_motions_where_there_are_any() -> None:
+    short = [make_motion(np.sin(np.arange(1001)), 0.01)]
+    assert build_grid(short, at_least=Grid(0.005, 7001)) == Grid(0.005, 7001)
+    assert build_grid(short, at_least=Grid(0.005, 101)) == Grid(0.005, 2001)
+    assert build_grid([], at_least=Grid(0.005, 7001)) == Grid(0.005, 7001)
+
+
 def test_a_motion_is_put_on_the_grid_along_straight_lines() -> None:
     motion = make_motion(np.array([0.0, 2.0, 4.0, 1.0, 0.0, -2.0, 0.0, 1.0, 1.0, 3.0]), 0.01)
     on = put_on_grid(motion, Grid(0.005, 25))
@@ -36,6 +47,11 @@ def test_a_motion_is_put_on_the_grid_along_straight_lines() -> None:
     assert on[18] == 3.0
     np.testing.assert_array_equal(on[19:], 0.0)
     assert on.size == 25
+
+
+def test_a_motion_on_the_grid_is_kept_to_the_bit() -> None:
+    motion = read_motion("a")
+    np.testing.assert_allclose(put_on_grid(motion, build_grid([motion])), motion.acceleration, atol=1e-12)
 
 
 # --- targets ---

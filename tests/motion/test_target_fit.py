@@ -1,11 +1,13 @@
 """Figures of a fit, by hand on two tiny motions."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from assess.motion.spectrum import pseudo_acceleration, response_spectrum
 from assess.motion.target import Envelopes, Target
-from assess.motion.target_fit import measure_match
+from assess.motion.target_fit import measure_match, velocities
 
 STEP = 0.005
 MOTIONS = np.array([[0.0, 2.0, 0.0, -1.0, 0.0, 0.0], [0.0, -1.0, 4.0, 0.0, -3.0, 0.0]])
@@ -21,6 +23,11 @@ TARGET = Target(
     acceleration=np.array([0.0, 0.0, 3.0, 0.0, -2.0, 0.0]),
 )
 WANTED = response_spectrum(TARGET.acceleration, STEP, BETWEEN).pseudo
+
+
+def test_velocities_by_hand() -> None:
+    expected = np.array([[0, 1, 2, 1.5, 1, 1], [0, -0.5, 1, 3, 1.5, 0]]) * 2 * STEP / 2
+    np.testing.assert_allclose(velocities(MOTIONS, STEP), expected, atol=1e-15)
 
 
 def test_peaks_and_their_scatter() -> None:
@@ -45,6 +52,20 @@ def test_the_spectrum_is_judged_between_its_periods() -> None:
     assert fit.spectrum_scatter == pytest.approx((np.abs(first - second) / (first + second)).mean(), rel=1e-5)
 
 
+def test_motions_that_are_their_own_target_fit() -> None:
+    motion = np.random.default_rng(1).standard_normal(800)
+    own = response_spectrum(motion, STEP, PERIODS).pseudo
+    target = replace(TARGET, pseudo=own, pfa=float(np.abs(motion).max()), acceleration=motion)
+    fit, _ = measure_match(target, np.array([motion, motion]), STEP)
+    assert (fit.mean_deviation, fit.worst_deviation) == pytest.approx((0.0, 0.0), abs=0.03)
+    assert fit.spectrum_scatter == 0.0
+    assert (fit.pfa_ratio, fit.pfa_scatter) == pytest.approx((1.0, 0.0), abs=1e-6)
+
+
+def test_threads_change_nothing() -> None:
+    assert measure_match(TARGET, MOTIONS, STEP)[0] == measure_match(TARGET, MOTIONS, STEP, threads=3)[0]
+
+
 def test_the_spectra_are_those_that_were_measured() -> None:
     _, spectra = measure_match(TARGET, MOTIONS, STEP)
     np.testing.assert_allclose(spectra.periods, BETWEEN, rtol=1e-12)
@@ -53,3 +74,10 @@ def test_the_spectra_are_those_that_were_measured() -> None:
         np.testing.assert_allclose(ordinates, pseudo_acceleration(motion, STEP, BETWEEN), rtol=1e-5)
     assert spectra.target is not None
     np.testing.assert_allclose(spectra.target, WANTED, rtol=1e-12)
+
+
+def test_the_spectra_of_the_first_motions() -> None:
+    spectra = measure_match(TARGET, MOTIONS, STEP)[1]
+    assert [len(spectra.first(count).ordinates) for count in (1, 2, 9)] == [1, 2, 2]
+    np.testing.assert_array_equal(spectra.first(1).ordinates, spectra.ordinates[:1])
+    assert spectra.first(1).target is spectra.target

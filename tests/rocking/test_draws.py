@@ -77,6 +77,16 @@ def test_sizes_by_a_scan_scatter_more_and_the_rest_alike():
     np.testing.assert_array_equal(drawn.centre, usual.centre)
 
 
+def test_no_draw_depends_on_which_others_were_scanned():
+    breadth, height, centre, restitution = (np.repeat(one, 3) for one in RACK)
+    bodies = (breadth, height, centre, restitution, [7, 8, 9])
+    mixed = draw_bodies(*bodies, seed=1, first=0, count=50, scanned=np.array([False, True, False]))
+    plain = draw_bodies(*bodies, seed=1, first=0, count=50)
+    for one, other in zip(arrays(mixed), arrays(plain), strict=True):
+        np.testing.assert_array_equal(one[[0, 2]], other[[0, 2]])
+    assert not np.array_equal(mixed.breadth[1], plain.breadth[1])
+
+
 def test_a_scanned_piece_is_taken_not_to_start_at_as_low_a_motion_as_its_draws_ask_for():
     """Its slenderest draw against the slenderest of another: by that much earlier may it start."""
 
@@ -95,11 +105,30 @@ def test_restitution_scatters_about_that_of_the_drawn_body():
     assert 0.99 < draw().restitution.max() < 1
 
 
+def test_a_given_restitution_is_the_mean():
+    drawn = draw(restitution=np.array([0.8]))
+    assert drawn.restitution.mean() == pytest.approx(0.8, abs=0.002)
+    assert drawn.restitution.std() == pytest.approx(RESTITUTION, rel=0.03)
+
+
 @pytest.mark.parametrize("given", [0.0, 1.0])
 def test_a_restitution_stays_between_0_and_1(given):
     drawn = draw(restitution=np.array([given]))
     assert 0 < drawn.restitution.min() <= drawn.restitution.max() < 1
     assert np.abs(drawn.restitution - given).max() <= CUT * RESTITUTION
+
+
+def test_the_parts_of_a_piece_are_independent():
+    drawn = draw(breadth=np.array([0.90]))
+    own = block.restitution(drawn.breadth[0], drawn.height[0], drawn.centre[0])
+    parts = [*(one[0] for one in arrays(drawn)[:3]), drawn.restitution[0] - own, draw_earthquakes(1, 0, COUNT)]
+    assert np.abs(np.corrcoef(parts) - np.eye(5)).max() < 4 / math.sqrt(COUNT)
+
+
+def test_a_stocky_body_has_hardly_any_restitution_left():
+    drawn = draw(breadth=np.array([1.40]), height=np.array([1.0]))
+    assert (drawn.restitution > 0).all()
+    assert np.median(drawn.restitution) < 0.1
 
 
 # --- what a draw depends on ---
@@ -172,6 +201,11 @@ MANY = 16_384
 """Draws whose waves are all kept at once."""
 
 
+def test_without_a_place_or_scenarios_a_building_takes_the_common_number():
+    assert np.array_equal(Earthquakes().draw(1, 0, 300), draw_earthquakes(1, 0, 300))
+    assert np.array_equal(Earthquakes(shared=0.1).draw(1, 0, 300), draw_earthquakes(1, 0, 300))
+
+
 @pytest.mark.parametrize(("measure", "tau", "phi"), [("PGA", 0.348, 0.495), ("PGV", 0.346, 0.552)])
 def test_the_share_of_the_variance_that_places_have_in_common_is_that_of_boore_2014(measure, tau, phi):
     assert SCATTERS[measure].shared == pytest.approx(tau**2 / (tau**2 + phi**2))
@@ -216,3 +250,7 @@ def test_scenarios_carry_their_share_of_the_variance_and_the_rest_is_drawn():
     scenario = np.resize(given, MANY)
     assert np.corrcoef(found, scenario)[0, 1] == pytest.approx(math.sqrt(0.6), abs=0.02)
     assert found.std() == pytest.approx(1, abs=0.05)
+
+
+def test_a_scenario_beyond_three_standard_deviations_is_cut():
+    assert Earthquakes(given=(5.0, -4.0), given_share=1.0).draw(1, 0, 2).tolist() == [CUT, -CUT]

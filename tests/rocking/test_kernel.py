@@ -162,6 +162,18 @@ def test_nothing_is_lost_without_restitution_over_100_half_cycles(
     assert one.state[kernel.PEAK] == pytest.approx(0.6 * alpha, rel=1e-6)
 
 
+@pytest.mark.parametrize("p_dt", [0.1, 0.03])
+def test_energy_is_constant_between_impacts(p_dt: float) -> None:
+    one, checked = Free(0.3, p_dt, 0.9, 0.25), 0
+    while one.impacts < 20:
+        energy, impacts = one.energy, one.impacts
+        one.step()
+        if one.impacts == impacts:
+            assert one.energy == pytest.approx(energy, rel=1e-7)
+            checked += 1
+    assert checked > 100
+
+
 @pytest.mark.parametrize("ratio", [0.01, 0.3, 0.7, 0.95, 0.999])
 @pytest.mark.parametrize("alpha", [0.05, 0.2, 0.5, 0.9])
 def test_a_quarter_period_is_that_of_the_quadrature(alpha: float, ratio: float) -> None:
@@ -169,6 +181,10 @@ def test_a_quarter_period_is_that_of_the_quadrature(alpha: float, ratio: float) 
     while not one.impacts:
         one.step()
     assert one.time * 0.03 == pytest.approx(quarter_period(alpha, ratio * alpha), rel=1e-7)
+
+
+def test_the_quadrature_is_housners_formula_for_slender_blocks() -> None:
+    assert quarter_period(0.001, 0.0004) == pytest.approx(math.acosh(1 / 0.6), rel=1e-6)
 
 
 def test_chatter_ends_after_as_many_impacts_as_the_formula_says() -> None:
@@ -275,6 +291,22 @@ def test_a_start_lies_where_the_ramp_meets_the_threshold(ramp: float, sign: int)
     assert state[kernel.PHI + 3] == state[kernel.VELOCITY + 3] == 0
 
 
+def test_a_start_between_samples_is_that_at_a_sample_of_the_same_motion() -> None:
+    coarse = np.array([0, 0, 3.0, 3, 3, -2, -2, 0, 0])
+    fine = np.interp(np.arange(25) / 3, np.arange(9), coarse)  # from 0 to 3: the threshold is the first new sample
+    one, other = rock(coarse, 0.06, 1.0, 4.0), rock(fine, 0.02, 1.0, 4.0)
+    assert one.rotation[0, 0] == pytest.approx(other.rotation[0, 0], rel=1e-6) != 0
+
+
+@pytest.mark.parametrize("first", [1.05, 1.2, 2.0])
+def test_a_hop_from_rest_may_end_within_its_first_step(first: float) -> None:
+    """A motion that begins above the threshold and swings to its other side within a step."""
+    values = np.array([first, -5, -5, -5, 5, 5, 5, 0, 0, 0])
+    one, other = rock(values, 0.01), refer(values, 0.01)
+    assert one.rotation[0, 0] == pytest.approx(other.rotation, rel=5e-3)
+    assert one.impacts[0, 0] == 2
+
+
 @given(seed=st.integers(0, 10_000), sign=st.sampled_from([-1, 1]), samples=st.sampled_from([25, 600]))
 @settings(max_examples=100, deadline=None)
 def test_no_block_moves_up_to_its_threshold(seed: int, sign: int, samples: int) -> None:
@@ -286,6 +318,13 @@ def test_no_block_moves_up_to_its_threshold(seed: int, sign: int, samples: int) 
     assert np.array_equal(outcome[0, 0], [-1, -1, -1])  # never taken up
     kernel.rock(blocks, motion * 1.0001, 0, 1, outcome, NO_TRACE)
     assert outcome[0, 0, kernel.ROTATION] > 0
+
+
+def test_what_never_moves_has_no_rotation_and_no_impacts() -> None:
+    found = rock(np.vstack([0.999 * noise(1), 2 * noise(1)]), 0.01)
+    assert (found.rotation[0, 0], found.impacts[0, 0], found.overturned[0, 0]) == (0, 0, False)
+    assert math.isnan(found.fall_time[0, 0])
+    assert found.rotation[0, 1] > 0 < found.impacts[0, 1]
 
 
 # --- rest, and starting again ---
@@ -304,6 +343,17 @@ def test_a_second_pulse_overturns_what_the_first_left_at_rest() -> None:
     assert found.impacts[0, 0] == alone.impacts[0, 0]
 
 
+def test_a_block_at_rest_takes_no_steps() -> None:
+    blocks = np.array([[[math.atan(0.25), 1e-3, 0.9, 0.25, 1.0]]])
+    pulse = np.full(6, 0.4)
+
+    def steps(rest: int) -> int:
+        motion = np.concatenate([pulse, np.zeros(rest), pulse, np.zeros(1002)])[None]
+        return kernel.rock(blocks, motion, 0, 1, np.zeros((1, 1, 3)), NO_TRACE)
+
+    assert steps(1000) == steps(100_000) > 0
+
+
 def test_no_pause_of_a_motion_hides_its_next_peak() -> None:
     """A block at rest skips 32 samples at once where it may: a peak at any place is met."""
     blocks, outcome = np.array([[[math.atan(0.25), 1e-3, 0.9, 0.25, 1.0]]]), np.zeros((1, 1, 3))
@@ -316,6 +366,20 @@ def test_no_pause_of_a_motion_hides_its_next_peak() -> None:
 
 
 # --- overturning ---
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("time_step", [0.005, 0.02])
+def test_overturning_at_once(sign: int, time_step: float) -> None:
+    values = np.full(round(2 / time_step), 3.0 * sign)
+    found, expected = rock(values, time_step), refer(values, time_step)
+    assert expected.overturned
+    assert found.overturned[0, 0]
+    assert found.impacts[0, 0] == 0
+    assert found.rotation[0, 0] == pytest.approx(math.pi / 2 / math.atan(0.25))
+    assert found.fall_time[0, 0] == pytest.approx(expected.time, abs=0.01 * time_step)
+    _, trace = trace_of(values, 0.02, math.atan(0.25))
+    assert np.all(np.sign(trace[1:, 1]) == -sign)  # the base is pushed one way, the block falls the other
 
 
 @pytest.mark.parametrize("sign", [1, -1])
@@ -373,6 +437,38 @@ def test_an_impact_after_the_end_decides(pull: int, falls: bool) -> None:
     assert found.fall_time[0, 0] == pytest.approx(expected.time, abs=1e-4, nan_ok=True)
     _, trace = trace_of(values, one.p * 0.01, one.alpha, one.eta)
     assert trace[np.argmax(trace[:, 2] > 0), 0] > values.size
+
+
+def test_a_block_beyond_its_critical_angle_at_the_end_may_still_come_back() -> None:
+    values = np.concatenate([np.full(26, 3.0), np.full(36, -2.0)])
+    found, expected = rock(values, 0.01), refer(values, 0.01)
+    assert not expected.overturned
+    assert not found.overturned[0, 0]
+    assert found.rotation[0, 0] == pytest.approx(expected.rotation, rel=1e-6)
+    assert found.rotation[0, 0] > 1.2
+    one = of_sizes(0.4, 1.6)
+    _, trace = trace_of(values, one.p * 0.01, one.alpha, one.eta)
+    assert abs(trace[np.searchsorted(trace[:, 0], values.size), 1]) > 1.1 * one.alpha
+
+
+@pytest.mark.parametrize("pull", range(14))
+def test_the_largest_rotation_may_come_after_the_end(pull: int) -> None:
+    """Pushed, then pulled back until it turns over its other edge, before or after the end."""
+    values = np.concatenate([np.full(10, 2.0), np.full(pull, -4.0)])
+    found, expected = rock(values, 0.01), refer(values, 0.01)
+    assert expected.overturned == found.overturned[0, 0] == (pull > 9)
+    assert found.rotation[0, 0] == pytest.approx(expected.rotation, rel=1e-6)
+    assert found.impacts[0, 0] == expected.impacts
+    assert found.fall_time[0, 0] == pytest.approx(expected.time, abs=1e-4, nan_ok=True)
+
+
+@pytest.mark.parametrize("time_step", [0.005, 0.01, 0.02])
+@pytest.mark.parametrize(("times", "length"), [(3, 0.3), (4, 0.3), (2, 0.5), (3, 0.24)])
+def test_fall_time_after_the_end(times: float, length: float, time_step: float) -> None:
+    values = np.full(round(length / time_step), times)
+    found, expected = rock(values, time_step), refer(values, time_step)
+    assert expected.time > length
+    assert found.fall_time[0, 0] == pytest.approx(expected.time, abs=0.01 * time_step)
 
 
 # --- the trace ---
@@ -452,6 +548,19 @@ def test_neither_order_nor_company_changes_a_bit(found: Rocking, seed: int) -> N
     assert alike(own, pick(found, blocks, motions))
 
 
+def test_a_pair_alone_does_as_among_many(found: Rocking) -> None:
+    for at in range(0, 480, 7):
+        b, m = at // 12, at % 12
+        own = rock_blocks(BREADTHS[b], HEIGHTS[b], MOTIONS[m : m + 1], 0.01)
+        assert alike(own, pick(found, np.array([b]), np.array([m])))
+
+
+def test_equal_blocks_do_the_same(found: Rocking) -> None:
+    blocks = np.repeat([5, 11, 5, 30], 3)
+    own = rock_blocks(BREADTHS[blocks], HEIGHTS[blocks], MOTIONS, 0.01)
+    assert alike(own, pick(found, blocks, EVERY[1]))
+
+
 def test_restitution_is_housners_unless_given(found: Rocking) -> None:
     eta = block.restitution(BREADTHS, HEIGHTS)
     assert alike(found, rock_blocks(BREADTHS, HEIGHTS, MOTIONS, 0.01, restitution=eta))
@@ -500,6 +609,14 @@ def test_long_steps_are_divided_on_the_straight_lines_between_samples() -> None:
     np.testing.assert_allclose(one.fall_time, other.fall_time, rtol=1e-6)
 
 
+def test_each_block_has_its_own_division() -> None:
+    heights, motions = np.array([0.1, 2.0, 0.4]), noise(3, 4, 200, 0.05) * GRAVITY
+    together = rock_blocks(0.3 * heights, heights, motions, 0.05)
+    for at, height in enumerate(heights):
+        alone = rock_blocks(0.3 * height, height, motions, 0.05)
+        assert alike(alone, pick(together, np.array([at]), np.arange(4)))
+
+
 # --- bodies that change with the motion ---
 
 
@@ -517,6 +634,11 @@ def test_a_block_that_changes_with_the_motion_is_that_block_under_each() -> None
         assert found.overturned[m, k] == one.overturned[0, 0]
         assert found.rotation[m, k] == pytest.approx(one.rotation[0, 0], rel=1e-6, abs=1e-9)
     assert 0 < found.overturned.sum() < found.overturned.size
+
+
+def test_a_higher_centre_of_gravity_falls_under_more_motions() -> None:
+    shares = [rock_blocks(0.4, 1.6, MOTIONS, 0.01, centre=centre).overturned.mean() for centre in (0.35, 0.5, 0.65)]
+    assert shares[0] < shares[1] < shares[2]
 
 
 # --- what is refused ---
@@ -537,6 +659,17 @@ def test_a_centre_of_gravity_outside_the_block_is_refused(centre: float) -> None
         rock_blocks(0.4, 1, MOTIONS, 0.01, centre=centre)
 
 
+@pytest.mark.parametrize("scale", [-1, math.nan, math.inf])
+def test_a_scale_that_cannot_be(scale: float) -> None:
+    with pytest.raises(ValueError, match="scale must be finite, and 0 or above"):
+        rock_blocks(0.4, 1, MOTIONS, 0.01, scale=scale)
+
+
+def test_sizes_by_motion_are_one_a_motion() -> None:
+    with pytest.raises(ValueError, match=r"blocks have 2 sizes each, expected 1 or \d+"):
+        rock_blocks([[0.4, 0.5]], 1, MOTIONS, 0.01)
+
+
 def test_stocky_blocks_are_refused() -> None:
     with pytest.raises(ValueError, match=r"a block with B/H of 1\.5 does not rock: expected below 1\.41"):
         rock_blocks([0.4, 1.5], [1, 1], MOTIONS, 0.01)
@@ -554,6 +687,12 @@ def test_restitutions_that_cannot_be(restitution: object) -> None:
 def test_motions_that_cannot_be(motions: Array) -> None:
     with pytest.raises(ValueError, match=r"motions have shape \(.*, expected \(k, n\) finite samples with n of 2"):
         rock_blocks(0.4, 1, motions, 0.01)
+
+
+@pytest.mark.parametrize("time_step", [0.0, -0.01, math.nan, math.inf])
+def test_time_steps_that_cannot_be(time_step: float) -> None:
+    with pytest.raises(ValueError, match=f"time_step is {time_step} s, expected above 0"):
+        rock_blocks(0.4, 1, MOTIONS, time_step)
 
 
 # --- El Centro 1940, against two other programs ---

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.stats import binomtest
 
 from assess.rocking.ensemble import rock_blocks
 from assess.units import GRAVITY
@@ -12,6 +13,7 @@ ROWS = read_table()
 OVER = np.array([row["overturned"] == "1" for row in ROWS])
 ROBUST = np.array([row["robust"] == "1" for row in ROWS])
 ROTATION = np.array([float(row["max_rotation_ratio"]) for row in ROWS])
+TIMES = np.array([float(row["times_threshold"]) for row in ROWS])
 
 
 def sizes(row: dict[str, str]) -> tuple[float, float]:
@@ -48,6 +50,13 @@ def test_the_table_is_of_the_pairs_that_are_drawn():
     assert TABLE.stat().st_size < 500_000
 
 
+def test_the_table_is_worth_comparing():
+    assert 0.05 < OVER.mean() < 0.95
+    assert ROBUST.mean() > 0.5
+    assert ((ROTATION > 0.1) & ~OVER).sum() > 200
+    assert len({row["record"] for row in ROWS}) >= 20
+
+
 @pytest.mark.parametrize("count", [pytest.param(8, marks=pytest.mark.slow), pytest.param(25, marks=pytest.mark.long)])
 def test_the_table_is_what_the_reference_says(count):
     """Pairs of few impacts, which take it the least time and do not hang on rounding."""
@@ -80,9 +89,24 @@ def test_as_many_overturn(found):
     assert abs(found[0].mean() - OVER.mean()) <= 0.005
 
 
+def test_disagreements_go_to_both_sides(found):
+    more, fewer = int((found[0] & ~OVER).sum()), int((~found[0] & OVER).sum())
+    assert more + fewer == 0 or binomtest(more, more + fewer).pvalue > 0.05
+
+
 def test_rotations_of_robust_pairs_agree(found):
     both = ROBUST & ~OVER & ~found[0] & (ROTATION < 1) & ((ROTATION > 0) | (found[1] > 0))
     assert both.sum() > 500
     error = np.abs(found[1][both] / ROTATION[both] - 1)
     assert np.median(error) <= 1e-6
     assert np.quantile(error, 0.9) <= 1e-4
+
+
+def test_below_the_threshold_nothing_moves(found):
+    below = TIMES < 1
+    assert below.sum() > 100
+    assert not found[0][below].any()
+    assert not found[1][below].any()
+    assert not found[2][below].any()
+    assert not ROTATION[below].any()
+    assert found[1][TIMES > 1].all()

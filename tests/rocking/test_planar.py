@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from assess.errors import CancelledError
 from assess.motion.formats import read_records
 from assess.motion.record import treat
 from assess.rocking import planar_kernel as kernel
@@ -15,6 +16,7 @@ from assess.rocking.ensemble import rock_blocks
 from assess.rocking.planar import Body, follow_body, rock_bodies, wall_restitution
 from assess.rocking.response import follow_block
 from assess.units import GRAVITY as G
+from tests.stopping import StopsAt
 
 RECORD = Path(__file__).parents[2] / "samples" / "records" / "0165a_u.smc"
 
@@ -44,11 +46,25 @@ def test_bodies_whose_centre_of_gravity_is_not_in_the_middle(centre, alpha, p, e
     assert math.tan(body.critical_angle) == pytest.approx(threshold, abs=5.1e-5)
 
 
+def test_a_rectangle_is_housner_s_block():
+    alpha = math.atan(0.4 / 1.8)
+    body = Body.rectangular(0.4, 1.8)
+    assert float(body.frequency_parameter) == pytest.approx(math.sqrt(3 * G / (2 * math.hypot(0.4, 1.8))), rel=1e-14)
+    assert float(body.restitution) == pytest.approx(1 - 1.5 * math.sin(alpha) ** 2, rel=1e-14)
+    assert float(Body.rectangular(0.4, 1.8, restitution=0.8).restitution) == 0.8
+
+
 @pytest.mark.parametrize(("ratio", "e"), [(0.15, -0.4367), (0.2222, -0.3709), (0.30, -0.2887), (0.40, -0.1844)])
 def test_sorrentino_2011_restitution(ratio, e):
     alpha = math.atan(ratio)
     assert wall_restitution(alpha, 1 - 1.5 * math.sin(alpha) ** 2) == pytest.approx(e, abs=5.1e-5)
     assert float(Body.rectangular(ratio * 1.8, 1.8).rebound) == pytest.approx(-e, abs=5.1e-5)
+
+
+def test_stocky_bodies_do_not_rebound():
+    """From B/H 1/sqrt 2 on, cos2(alpha) is below 2/3."""
+    assert float(Body.rectangular(0.70, 1.0).rebound) > 0
+    assert float(Body.rectangular(0.71, 1.0).rebound) == 0
 
 
 @pytest.mark.parametrize(
@@ -85,6 +101,37 @@ def test_it_agrees_with_the_kernel(motion):
         np.testing.assert_allclose(one.fall_time, many.fall_time, rtol=1e-5)
         fell += int(one.overturned[0, 0])
     assert 20 < fell < 130
+
+
+def test_coarse_steps_are_divided(motion):
+    """A small body under the same straight lines, given by all or by every tenth of their points."""
+    coarse = motion.acceleration[::10] * 1.8
+    at = np.arange((coarse.size - 1) * 10 + 1) / 10
+    fine = np.interp(at, np.arange(coarse.size), coarse)
+    # The fall to zero takes one step: let both have it done at the same place.
+    coarse, fine = np.append(coarse, 0.0), np.append(fine, coarse[-1] * (1 - np.arange(1, 11) / 10))
+    body, step = Body.rectangular([[0.03]], [[0.1]]), 10 * motion.time_step
+    one, other = rock_bodies(body, coarse[None], step), rock_bodies(body, fine[None], motion.time_step)
+    assert one.rotation[0, 0] == pytest.approx(other.rotation[0, 0], rel=1e-6)
+    assert abs(one.impacts[0, 0] - other.impacts[0, 0]) <= 2
+    assert one.impacts[0, 0] > 10
+
+
+def test_many_do_as_each_alone(motion):
+    body = Body.rectangular(np.array([[0.3], [0.45]]), 1.8, restitution=np.array([0.95, 0.9, 0.85]))
+    values = motion.acceleration[None] * np.array([[1.5], [2.0], [2.5]])
+    scale = np.array([1.0, 1.1, 1.2])
+    many = rock_bodies(body, values, motion.time_step, vertical=values / 3, away=1, scale=scale, threads=2)
+    assert many.overturned.shape == (2, 3)
+    for row in range(2):
+        for at in range(3):
+            own = Body.rectangular([[0.3], [0.45]][row], 1.8, restitution=(0.95, 0.9, 0.85)[at])
+            alone = rock_bodies(
+                own, scale[at] * values[at : at + 1], motion.time_step, vertical=scale[at] * values[at : at + 1] / 3,
+                away=1,
+            )  # fmt: skip
+            assert alone.rotation[0, 0] == pytest.approx(many.rotation[row, at], rel=1e-9)
+            assert alone.overturned[0, 0] == many.overturned[row, at]
 
 
 def test_the_path_is_that_of_the_kernel(motion):
@@ -128,6 +175,22 @@ def test_constant_vertical_acceleration_moves_the_limit_of_a_half_sine(up, limit
     assert falls(limit + 0.0003)
 
 
+def test_constant_vertical_acceleration_is_other_gravity(motion):
+    """(1 + v) sin + h cos = (1 + v) [sin + h/(1 + v) cos]: the same body with p2 (1 + v) under a_h / (1 + v)."""
+    values, v = np.append(motion.acceleration * 2.2, np.zeros(8000)), 0.25
+    usual = Body.rectangular(0.4, 1.8)
+    other = Body(
+        critical_angle=usual.critical_angle, frequency_parameter=usual.frequency_parameter * math.sqrt(1 + v),
+        restitution=usual.restitution, rebound=usual.rebound,
+    )  # fmt: skip
+    for away in (0, 1, -1):
+        one = follow_body(usual, values, motion.time_step, vertical=np.full(values.size, v * G), away=away)
+        two = follow_body(other, values / (1 + v), motion.time_step, away=away)
+        assert one.overturned == two.overturned
+        assert one.rotation == pytest.approx(two.rotation, rel=1e-6)
+        assert one.rotation > 0.005
+
+
 def test_a_body_lifts_where_the_floor_falls_away():
     values, up = np.full((1, 200), 0.2 * G), np.zeros((1, 200))
     body = Body.rectangular([[0.4]], [[1.8]])
@@ -168,6 +231,13 @@ def test_beside_a_wall_a_body_turns_to_one_side_only(motion):
     mirrored = follow_body(body, -values, motion.time_step, away=-1)
     np.testing.assert_array_equal(mirrored.theta, -right.theta)
     np.testing.assert_array_equal(mirrored.times, right.times)
+
+
+def test_pushed_against_the_wall_a_body_stands():
+    body, push = Body.rectangular([[0.4]], [[1.8]]), np.full((1, 300), 1.0 * G)
+    assert rock_bodies(body, push, 0.01, away=1).rotation[0, 0] == 0
+    assert rock_bodies(body, push, 0.01, away=-1).overturned[0, 0]
+    assert rock_bodies(body, -push, 0.01, away=1).overturned[0, 0]
 
 
 # --- scipy, with both motions ---
@@ -275,3 +345,8 @@ def test_it_agrees_with_scipy(motion, seed, away):
 def test_motions_that_cannot_be_used(change, message):
     with pytest.raises(ValueError, match=message):
         rock_bodies(Body.rectangular(0.4, 1.8), **{"motions": np.ones((1, 5)), "time_step": 0.01, **change})
+
+
+def test_it_can_be_cancelled():
+    with pytest.raises(CancelledError):
+        rock_bodies(Body.rectangular(0.4, 1.8), np.ones((5, 10)), 0.01, progress=StopsAt(3))

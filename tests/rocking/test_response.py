@@ -61,6 +61,20 @@ def test_the_verdict_is_that_of_many_blocks_to_the_bit(motions):
     assert 50 < fell < 350
 
 
+def test_among_many_blocks_a_block_does_the_same(motions):
+    motion = motions[0]
+    heights = np.linspace(0.3, 2.0, 40)
+    values = motion.acceleration * 2.5
+    many = rock_blocks(0.25 * heights, heights, values[np.newaxis], motion.time_step)
+    for at, height in enumerate(heights):
+        one = follow_block(0.25 * height, height, values, motion.time_step)
+        assert (one.overturned, one.rotation, one.impacts) == (
+            many.overturned[at, 0],
+            many.rotation[at, 0],
+            many.impacts[at, 0],
+        )
+
+
 def test_the_path_runs_forwards_from_rest_and_holds_every_impact(motions):
     for breadth, height, values, step, eta in draw(motions, 400, 2):
         one = follow_block(breadth, height, values, step, restitution=eta)
@@ -124,6 +138,32 @@ def test_a_block_at_rest_is_drawn_at_rest():
     assert rocking[0] == pytest.approx(rocking[1], rel=1e-9)
 
 
+def test_a_block_that_never_starts():
+    one = follow_block(0.9, 1.8, np.sin(np.arange(500) / 10), STEP)
+    assert (one.overturned, one.rotation, one.impacts, one.impact_times.size) == (False, 0, 0, 0)
+    np.testing.assert_array_equal(one.times, [0, 499 * STEP])
+    np.testing.assert_array_equal(one.theta, 0)
+
+
+def test_a_block_that_falls_after_the_end_of_the_motion():
+    values = np.zeros(200)
+    values[20:] = 0.3 * GRAVITY
+    one, many = both(0.4, 1.8, values, STEP)
+    longer, _ = both(0.4, 1.8, np.append(values, np.zeros(2000)), STEP)
+    assert one.overturned
+    assert one.fall_time == many.fall_time[0, 0] == pytest.approx(longer.fall_time, rel=1e-12)
+    assert one.fall_time > 200 * STEP
+    assert (np.diff(one.times) > 0).all()
+    assert one.theta[-1] == -math.pi / 2
+
+
+def test_a_motion_that_starts_above_the_threshold():
+    one = follow_block(0.4, 1.8, np.append(np.full(40, -0.3 * GRAVITY), np.zeros(800)), STEP)
+    assert (one.times[0], one.theta[0]) == (0, 0)
+    assert one.theta[1] > 0
+    assert one.times[1] == STEP
+
+
 def test_long_steps_are_divided():
     """A small block under a coarse motion: the path has points between the samples."""
     values = 0.6 * GRAVITY * np.sin(np.arange(60) * 0.5)
@@ -142,6 +182,14 @@ def test_a_path_that_is_too_long_is_cut(monkeypatch, motions):
     assert 100 < one.times.size < 110
     np.testing.assert_array_equal(one.times, whole.times[: one.times.size])
     np.testing.assert_array_equal(one.theta, whole.theta[: one.times.size])
+
+
+def test_what_the_block_is():
+    one = follow_block(0.4, 1.8, np.sin(np.arange(500) / 10), STEP)
+    assert one.critical_angle == pytest.approx(math.atan(0.4 / 1.8))
+    assert one.frequency_parameter == pytest.approx(math.sqrt(3 * GRAVITY / (2 * math.hypot(0.4, 1.8))))
+    assert one.restitution == pytest.approx(1 - 1.5 * math.sin(math.atan(0.4 / 1.8)) ** 2)
+    assert follow_block(0.4, 1.8, np.ones(5), STEP, restitution=0.9).restitution == 0.9
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,8 @@
 """How a body starts to move, and how far it slides: published limits, closed forms, and scipy's integrator."""
 
 import math
+import subprocess
+import sys
 from itertools import pairwise
 from pathlib import Path
 
@@ -8,10 +10,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from assess.errors import CancelledError
 from assess.motion.formats import read_records
 from assess.motion.record import treat
-from assess.rocking.sliding import UNKNOWN, Branch, branch, critical_friction, peak_slip
+from assess.results import BRANCHES
+from assess.rocking.sliding import UNKNOWN, Branch, branch, critical_friction, is_outside_shenton, peak_slip
 from assess.units import GRAVITY as G
+from tests.stopping import StopsAt
 
 RECORD = Path(__file__).parents[2] / "samples" / "records" / "0165a_u.smc"
 
@@ -39,6 +44,14 @@ def test_shenton_1996_as_printed():
     gamma, a = H / B, B / H * np.linspace(1.0, 9.0, 19)
     printed = (a * (4 + gamma**2) + 3 * gamma) / (1 + 4 * gamma**2 + 3 * a * gamma)
     np.testing.assert_allclose(critical_friction(B, H, a * G), printed, rtol=1e-13)
+
+
+def test_critical_friction_at_uplift_and_far_above():
+    ratio = np.array([0.1, 0.2222, 0.4, 0.9])
+    np.testing.assert_allclose(critical_friction(ratio, 1.0, ratio * G), ratio, rtol=1e-12)
+    limit = (4 + ratio**-2) / (3 / ratio)
+    np.testing.assert_allclose(critical_friction(ratio, 1.0, 1e12 * G), limit, rtol=1e-9)
+    assert np.isnan(critical_friction(ratio, 1.0, 0.99 * ratio * G)).all()
 
 
 @pytest.mark.parametrize("centre", [0.3, 0.5, 0.62])
@@ -90,6 +103,22 @@ def test_branches_at_their_limits():
     assert branch(0.4, 1.8, 0.1, 0.1 * G) == Branch.REST
     assert branch(0.4, 1.8, critical_friction(0.4, 1.8, 0.6 * G), 0.6 * G) == Branch.ROCK
     assert branch(0.4, 1.8, ratio, 0.6 * G) == Branch.SLIDE_AND_ROCK
+
+
+def test_branches_of_many_bodies_and_their_words():
+    found = branch([0.4, 0.4, 0.9], 1.8, [0.1, 0.5, 0.3], 0.4 * G)
+    assert [Branch(one).word for one in found] == ["slide", "rock", "slide"]
+    assert Branch.REST.word == "rest"
+    assert Branch.SLIDE_AND_ROCK.word == "slide and rock"
+    assert found.shape == (3,)
+
+
+def test_a_high_centre_of_gravity_rocks_earlier():
+    assert branch(0.4, 1.8, 0.4, 0.2 * G) == Branch.REST
+    assert branch(0.4, 1.8, 0.4, 0.2 * G, centre=0.6) == Branch.ROCK
+    assert branch(0.4, 1.8, 0.2, 0.3 * G) == Branch.SLIDE
+    assert branch(0.4, 1.8, 0.2, 0.3 * G, centre=0.6) == Branch.SLIDE_AND_ROCK
+    np.testing.assert_array_equal(is_outside_shenton([0.5, 0.45, 0.6, 0.5 + 1e-12]), [False, True, True, False])
 
 
 # --- how far it slides ---
@@ -149,6 +178,15 @@ def test_newmark_1965_rectangular_pulse(sign):
     assert peak_slip(mu, pulse, step)[0, 0] == pytest.approx(exact, rel=1e-5)
 
 
+def test_a_body_that_stops_within_the_motion():
+    """The same pulse followed by rest of one second: it stops after 0.5 s, and where it stopped is the peak."""
+    step, A, mu, t1 = 1e-4, 0.5, 0.2, 0.2
+    pulse = np.zeros((1, 12_000))
+    pulse[0, : round(t1 / step)] = A * G
+    assert peak_slip(mu, pulse, step)[0, 0] == pytest.approx(0.1471, rel=1e-3)
+    assert peak_slip(mu, pulse, step)[0, 0] == pytest.approx(peak_slip(mu, pulse[:, :2000], step)[0, 0], rel=1e-12)
+
+
 def test_a_triangular_pulse_in_closed_form():
     """From mu g on, a rises evenly to a peak and falls to zero within one step: three samples, all of it exact."""
     mu, A, step = 0.2, 0.6, 0.3
@@ -171,6 +209,38 @@ def test_newmark_1965_by_scipy(friction, seed):
     motion = rng.normal(0, 0.2 * G, 60)
     found = peak_slip(friction, motion[None], 0.05)[0, 0]
     assert found == pytest.approx(reference_slip(friction, motion, 0.05), rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.slow
+def test_newmark_1965_by_scipy_under_a_record():
+    motion = treat(read_records(RECORD)[0])
+    strong = slice(400, 1400)
+    values = motion.acceleration[strong]
+    found = peak_slip([0.1, 0.2], values[None], motion.time_step)[:, 0]
+    assert found[0] > found[1] > 1e-4
+    for one, friction in zip(found, (0.1, 0.2), strict=True):
+        assert one == pytest.approx(reference_slip(friction, values, motion.time_step), rel=1e-6)
+
+
+def test_slip_is_none_below_friction():
+    motion = 0.3 * G * np.sin(2 * np.pi * np.arange(2001) * 0.005)[None]
+    assert peak_slip(0.3001, motion, 0.005)[0, 0] == 0
+    assert peak_slip(0.29, motion, 0.005)[0, 0] > 0
+
+
+def test_with_hardly_any_friction_the_body_stays_behind():
+    """One period of a sine of 1 s moves the ground by A / 2 pi, and leaves it at rest."""
+    motion = 0.3 * G * np.sin(2 * np.pi * np.arange(2001) * 0.0005)[None]
+    assert peak_slip(1e-7, motion, 0.0005)[0, 0] == pytest.approx(0.3 * G / (2 * np.pi), rel=1e-5)
+
+
+def test_slip_scales_with_the_motion_and_friction():
+    motion = treat(read_records(RECORD)[0])
+    values = motion.acceleration[None]
+    usual = peak_slip(0.1, values, motion.time_step)
+    np.testing.assert_allclose(peak_slip(0.2, values, motion.time_step, scale=2.0), 2 * usual, rtol=1e-9)
+    np.testing.assert_allclose(peak_slip(0.2, 2 * values, motion.time_step), 2 * usual, rtol=1e-9)
+    np.testing.assert_allclose(peak_slip(0.1, -values, motion.time_step), usual, rtol=1e-12)
 
 
 def test_slips_of_many_do_not_depend_on_each_other():
@@ -201,3 +271,18 @@ def test_what_cannot_slide(change, message):
     given = {"friction": 0.2, "motions": np.zeros((1, 5)), "time_step": 0.01, **change}
     with pytest.raises(ValueError, match=message):
         peak_slip(**given)
+
+
+def test_sliding_can_be_cancelled():
+    with pytest.raises(CancelledError):
+        peak_slip(0.1, np.ones((5, 10)), 0.01, progress=StopsAt(3))
+
+
+def test_how_it_starts_needs_no_compiler():
+    code = "import sys, assess.rocking.sliding; print([one for one in ('numba', 'scipy') if one in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_results_name_the_same_branches():
+    assert tuple(one.word for one in Branch) == BRANCHES

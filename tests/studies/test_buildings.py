@@ -19,7 +19,7 @@ from assess.motion.generate import build_generator
 from assess.motion.target import build_grid, recorded_target
 from assess.rocking.draws import draw_bodies, draw_earthquakes
 from assess.rocking.ensemble import rock_blocks
-from assess.studies.buildings import Trials, all_buildings, build_blocks, rock_building
+from assess.studies.buildings import Trials, all_buildings, build_blocks, find_levels, rock_building
 from assess.studies.study import Options
 from assess.studies.study_files import PARTS, load_or_compute
 from assess.units import GRAVITY
@@ -95,6 +95,18 @@ def test_channels_hang_along_the_axes_that_their_files_say(buildings):
             assert abs(abs(lines["X"].pop() - lines["Y"].pop()) - 90) <= 1
 
 
+@pytest.mark.slow
+def test_channels_of_a_floor_are_moved_by_one_factor(buildings):
+    for building in buildings:
+        levels = find_levels(building)
+        for channel in building.channels:
+            own = [one for one in building.channels if one.level == channel.level]
+            factors = {round(levels[one][-1] * GRAVITY / one.read().pfa, 9) for one in own}
+            assert len(factors) == 1
+            assert max(levels[one][-1] for one in own) == pytest.approx(0.7)
+    assert np.ptp([levels[one][0] for one in building.channels]) == 0
+
+
 # ---------------------------------------------------------------- what is found
 
 
@@ -142,6 +154,14 @@ def test_threads_and_a_part_that_was_cut_off_change_nothing(buildings, kept, cop
 
 
 # ---------------------------------------------------------------- what is loaded
+
+
+def test_a_part_is_loaded(buildings, kept, copied):
+    folder, _ = copied
+    before = look(folder)
+    (again,) = rock(buildings[2], options(folder, jobs=2))
+    assert_same(again, kept[1])
+    assert look(folder) == before
 
 
 def _make_other_part(part: Path) -> bytes:

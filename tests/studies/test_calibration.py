@@ -79,6 +79,13 @@ def test_error_knows_that_cases_of_a_group_are_not_independent():
     assert find_error(np.repeat(values, 10), np.arange(60)) < 0.4 * one
 
 
+def test_error_of_unequal_groups_by_hand():
+    """Three groups: means without each are 1.5/3, 2/3 and 0.5/2 of the sums 1, 0.5, 1 of 1, 1 and 2 values."""
+    values, groups = np.array([1.0, 0.5, 0.25, 0.75]), np.array([0, 1, 2, 2])
+    without = np.array([1.5 / 3, 2 / 3, 1.5 / 2])
+    assert find_error(values, groups) == pytest.approx(math.sqrt(2 / 3 * np.sum((without - without.mean()) ** 2)))
+
+
 def test_error_of_one_group_and_of_what_never_or_always_happened_is_unknown():
     assert math.isnan(find_error(np.array([0.1, 0.2]), np.array([3, 3])))
     alone = find_score(outcomes([0.1, 0.9], [0, 1], floor=[0, 1], source=[0, 0]))
@@ -89,6 +96,24 @@ def test_error_of_one_group_and_of_what_never_or_always_happened_is_unknown():
         assert math.isnan(found.error)
         assert math.isnan(found.error_by_source)
         assert not found.is_clear
+
+
+def test_error_is_the_scatter_of_the_mean():
+    """Drawn often, with values that are alike within groups, the mean scatters as the error says, within 10 %."""
+    rng = np.random.default_rng(5)
+    groups = np.repeat(np.arange(30), rng.integers(3, 20, 30))
+    drawn = [rng.normal(size=30)[groups] + 0.5 * rng.normal(size=groups.size) for _ in range(500)]
+    scatter = np.std([values.mean() for values in drawn])
+    assert np.mean([find_error(values, groups) for values in drawn]) == pytest.approx(scatter, rel=0.1)
+
+
+def test_difference_beyond_twice_the_larger_error_is_clear():
+    found = find_score(outcomes([0.1, 1.0, 0.8], [0, 0, 1]))
+    assert found is not None
+    score = replace(found, difference=0.2, error=0.1, error_by_source=0.1)
+    assert not replace(score, error_by_source=0.101).is_clear
+    assert replace(score, error=0.09, error_by_source=0.02).is_clear
+    assert not replace(score, error=math.nan, error_by_source=math.nan).is_clear
 
 
 # ---------------------------------------------------------------- chances that are known
@@ -112,6 +137,26 @@ def test_right_chances_are_found_right():
     assert set(found.classes) == set(RiskClass)
     for one in found.classes.values():
         assert abs(one.difference) < (3 * one.error if one.fallen else 0.03)
+
+
+def test_wrong_chances_are_found_wrong():
+    """Chances of 0.2 that come true in half of the cases."""
+    tried = make_tried(list_beams(), lambda _, shape: np.full(shape, 0.5), 9)
+    wrong = calibrate([replace(one, fallen=np.full(SHAPE, 20)) for one in tried])
+    assert wrong.whole.difference == pytest.approx(-0.3, abs=0.03)
+    assert wrong.whole.is_clear
+    assert list(wrong.classes) == [RiskClass.MEDIUM]
+
+
+def test_cases_are_of_their_floor_and_of_its_site_and_axis():
+    tried = make_tried(list_recorded(), lambda _, shape: np.full(shape, 0.5), 1)
+    found = Outcomes.of(tried)
+    assert found.floor.tolist() == np.repeat(np.arange(21), 96).tolist()
+    sources = [{tried[floor].floor.source for floor in found.floor[found.source == one]} for one in range(5)]
+    assert sources == [
+        {"575 Market Street, Y"}, {"575 Market Street, X"}, {"Great Western Savings, X"},
+        {"Great Western Savings, Y"}, {"LACPW headquarters, X"},
+    ]  # fmt: skip
 
 
 # ---------------------------------------------------------------- the floor motions

@@ -53,6 +53,16 @@ def test_order_two():
     assert off[1] / off[2] == pytest.approx(4, rel=0.05)
 
 
+def test_path_within_a_step():
+    found = step_evenly(0.05)
+    assert found.sol(found.t) == pytest.approx(found.y, abs=1e-14)
+    times = np.linspace(0, 2, 201)
+    assert found.sol(times) == pytest.approx(swing_exactly(times), abs=2e-3)
+    assert found.sol(0.3).shape == (2,)
+    given_jacobian = step_evenly(0.05, lambda _t, _y: np.array([[0.0, 1.0], [-1.0, 0.0]]))
+    assert given_jacobian.y == pytest.approx(found.y, abs=1e-8)
+
+
 @settings(deadline=None, max_examples=30)
 @given(st.floats(-7, -2), st.floats(0.2, 5.0))
 @pytest.mark.slow
@@ -83,3 +93,25 @@ def test_van_der_pol():
     stiff = solve_ivp(rates, (0, 2000), [2.0, 0.0], method=Ode23s, rtol=1e-4, atol=1e-6)
     assert stiff.y[0, -1] == pytest.approx(1.70617, abs=2e-3)  # by Radau at rtol 1e-8
     assert stiff.t.size < 2000
+
+
+def test_backwards_and_events():
+    back = solve_ivp(swing, (2, 0), swing_exactly(2.0), method=Ode23s, rtol=1e-6, atol=1e-8)
+    assert back.y[:, -1] == pytest.approx([1, 0], abs=1e-4)
+    fall = solve_ivp(
+        lambda _t, y: [y[1], -2.0], (0, 9), [0.0, 3.0], method=Ode23s, events=lambda _t, y: y[0], first_step=0.1
+    )
+    assert fall.t_events[0][-1] == pytest.approx(3.0, abs=1e-9)  # a parabola is followed exactly
+
+
+def test_bad_options():
+    for options, says in (({"rtol": 0}, "above 0"), ({"atol": -1}, "above 0"), ({"first_step": 0}, "above 0"),
+                          ({"order": 3}, "no option order")):  # fmt: skip
+        with pytest.raises(ValueError, match=says):
+            Ode23s(swing, 0.0, np.array([1.0, 0.0]), 1.0, **options)
+
+
+def test_a_solution_that_ends_is_reported():
+    found = solve_ivp(lambda _t, y: y**2, (0, 2), [1.0], method=Ode23s)  # 1 / (1 - t)
+    assert not found.success
+    assert found.t[-1] == pytest.approx(1.0, abs=0.01)

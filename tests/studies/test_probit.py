@@ -12,7 +12,7 @@ from scipy.stats import norm
 from assess.errors import InputError
 from assess.methods import Cases
 from assess.methods.fitted import Probit, find_groups
-from assess.studies.fit.fits import Counts, design, fit_probit, loss
+from assess.studies.fit.fits import Counts, design, find_left_out, fit_probit, fit_without, loss
 from assess.units import GRAVITY
 
 RUNS = 100
@@ -37,6 +37,14 @@ def test_groups_worked_by_hand():
     A, V = find_groups(breadth=np.array([0.3]), height=np.array([0.4]), pfa=np.array([GRAVITY]), pfv=np.array([1.0]))
     assert A[0] == pytest.approx(4 / 3)
     assert V[0] == pytest.approx(math.sqrt(3 * GRAVITY) / (0.75 * GRAVITY))
+
+
+def test_groups_have_no_dimension():
+    # lengths and times scaled so that g stays: sizes by s, velocities by root s, accelerations by 1
+    s = 3.7
+    one = {name: np.array([value]) for name, value in (("breadth", 0.3), ("height", 1.8), ("pfa", 3.0), ("pfv", 0.4))}
+    other = {"breadth": one["breadth"] * s, "height": one["height"] * s, "pfa": one["pfa"], "pfv": one["pfv"] * s**0.5}
+    np.testing.assert_allclose(find_groups(**one), find_groups(**other))
 
 
 def errors(probit, columns, runs):
@@ -69,6 +77,22 @@ def test_it_is_the_best_there_is_and_without_pfv_the_best_in_pfa_alone():
     assert more > least
 
 
+@settings(deadline=None, max_examples=60)
+@given(st.tuples(st.floats(-3, 3), st.floats(0, 5), st.floats(0, 5)))
+def test_gradient_is_that_of_finite_differences(b):
+    columns, b = design(GIVEN), np.array(b)
+    _, gradient = loss(b, columns, GIVEN.fallen, GIVEN.runs)
+    for at, step in enumerate(1e-6 * np.eye(3)):
+        ends = [loss(b + sign * step, columns, GIVEN.fallen, GIVEN.runs)[0] for sign in (1, -1)]
+        assert gradient[at] == pytest.approx((ends[0] - ends[1]) / 2e-6, rel=1e-5, abs=0.05)
+
+
+def test_a_slope_is_never_negative():
+    found = fit_probit(counts(Probit(-1.0, -0.8, 2.0)))
+    assert found.b1 == 0
+    assert found.b2 > 0
+
+
 @settings(deadline=None, max_examples=100)
 @given(
     probit=st.builds(Probit, st.floats(-10, 10), st.floats(0, 10), st.floats(0, 10)),
@@ -86,6 +110,27 @@ def test_bounded_and_monotone(probit, height, ratio, pfa, pfv, factor, larger):
     assert chance(v=factor) >= start - 1e-12
     assert chance(thin=factor) >= start - 1e-12
     assert chance(size=larger) <= start + 1e-12
+
+
+def test_nothing_falls_where_nothing_moves_and_an_unknown_velocity_stays_unknown():
+    cases = Cases.of(breadth=0.3, height=1.8, pfa=[0.0, 3.0, 3.0], pfv=[0.4, 0.0, np.nan])
+    np.testing.assert_array_equal(Probit(5.0, 0.0, 0.0).evaluate(cases), [0.0, 0.0, np.nan])
+
+
+def test_left_out_errors_are_small_for_its_own_kind_and_large_for_another_building():
+    group = np.repeat([0, 1, 2], GIVEN.fallen.size // 3)
+    alike = find_left_out(GIVEN, group, fit_without(GIVEN, group))
+    assert alike.error < 0.06  # the scatter of a share of 100: at most 0.05
+    other = dataclasses.replace(GIVEN, fallen=np.where(group == 2, GIVEN.runs - GIVEN.fallen, GIVEN.fallen))
+    assert find_left_out(other, group, fit_without(other, group)).error > 3 * alike.error
+
+
+def test_a_fit_without_a_group_is_that_to_the_others():
+    group = np.repeat(["a", "b", "c"], GIVEN.fallen.size // 3)
+    names = [one.name for one in dataclasses.fields(GIVEN)]
+    for one, probit in zip("abc", fit_without(GIVEN, group), strict=True):
+        others = Counts(**{name: getattr(GIVEN, name)[group != one] for name in names})
+        assert probit == fit_probit(others)
 
 
 def test_counts_that_cannot_be_fitted_are_reported():

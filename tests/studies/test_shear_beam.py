@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.signal import StateSpace, lsim
 
-from assess.studies.calibration.floor_motions import DAMPING, HIGHEST, shake_beam
+from assess.studies.calibration.floor_motions import DAMPING, HIGHEST, count_modes, find_shares, shake_beam
 
 STEP = 0.005
 TIMES = np.arange(2001) * STEP
@@ -54,6 +54,30 @@ def test_it_is_a_chain_of_many_masses(ground, place):
         expected = expected + weight * lsim(system, ground, TIMES)[1]
     found = shake_beam(ground, STEP, 1.0, place)
     assert np.abs(found - expected).max() < 0.02 * np.abs(expected).max()
+
+
+def test_at_its_foot_and_where_it_is_rigid_it_is_the_ground(ground):
+    assert shake_beam(ground, STEP, 2.0, 0.0) == pytest.approx(ground)
+    assert np.abs(shake_beam(ground, STEP, 0.01, 1.0) - ground).max() < 0.02 * np.abs(ground).max()
+
+
+def test_resonance_is_that_of_one_mode():
+    """A long sine at T1: the first mode answers 1/(2 zeta) times as strongly, next to which the others are small."""
+    times = np.arange(12001) * STEP
+    floor = shake_beam(np.sin(2 * np.pi * times), STEP, 1.0, 1.0)
+    steady = np.abs(floor[-2000:]).max()
+    assert steady == pytest.approx(4 / np.pi / (2 * DAMPING), rel=0.05)
+
+
+def test_shares_of_all_modes_are_one():
+    assert find_shares(100_000, 1.0).sum() == pytest.approx(1, abs=1e-5)
+    assert find_shares(100_000, 0.5).sum() == pytest.approx(1, abs=1e-5)
+    assert find_shares(3, 0.0) == pytest.approx(0)
+
+
+def test_modes_are_counted_up_to_the_highest_frequency():
+    """Mode n has the frequency (2n - 1)/T1, up to 25 Hz."""
+    assert [count_modes(period) for period in (0.01, 0.5, 1.0, 4.0)] == [1, 6, 13, 50]
 
 
 def test_what_is_no_floor_of_a_beam_is_refused(ground):

@@ -2,18 +2,21 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from assess.studies.solver import STUDY, pulses
+from assess.studies.solver import STUDY, follow_near, pulses, sample, tabulate_histories
 from assess.studies.solver.pulses import (
     ALPHA,
     ETA,
     EXACT,
     KERNEL,
+    LOOSE,
+    NEAR,
     ODE23S,
     RK45,
     SIDE,
@@ -21,6 +24,7 @@ from assess.studies.solver.pulses import (
     Case,
     Limit,
     P,
+    Response,
     Solver,
     find_limit,
     follow,
@@ -112,6 +116,13 @@ def test_the_same_verdicts_as_the_reference_of_the_kernel(amplitude, is_linear):
     check_verdict(amplitude, is_linear)
 
 
+@pytest.mark.long
+@settings(deadline=None, max_examples=30)
+@given(st.floats(1.02, 9.0), st.booleans())
+def test_many_of_the_same_verdicts(amplitude, is_linear):
+    check_verdict(amplitude, is_linear)
+
+
 @pytest.mark.parametrize("case", [LINEAR, NONLINEAR], ids=["linear", "nonlinear"])
 def test_a_block_starts_where_the_sine_passes_its_threshold(case):
     start = case.start(3.0, 0.0)
@@ -139,6 +150,31 @@ def test_free_motion_of_the_linear_equation():
             assert left + right == pytest.approx(2 * math.cosh(P * h) * here, abs=1e-9)
             checked += 1
     assert checked > 200
+
+
+def test_paths_agree_between_solvers():
+    limit = LIMITS[4]
+    paths = [sample(follow(limit.case, 5.0, one, until=5.4)) for one in (KERNEL, TIGHT, EXACT)]
+    assert np.isnan(paths[2]).any()
+    for one in paths[:2]:
+        assert one == pytest.approx(paths[2], abs=2e-3, nan_ok=True)
+    assert np.isnan(sample(Response(overturned=True))[1:]).all()
+
+
+def test_histories_tell_the_pulse_and_stop_at_the_fall():
+    limit = LIMITS[0]
+    table = tabulate_histories([limit], follow_near([limit], Options(out=Path("unused"))))
+    rows = list(table.rows)
+    assert all(len(row) == len(table.columns) for row in rows)
+    assert max(float(str(row[4])) for row in rows) == pytest.approx((limit.listed + NEAR) * ALPHA, rel=0.02)
+    assert rows[0][5:] == (0.0, 0.0, 0.0)
+    assert rows[-1][5] is None or abs(float(str(rows[-1][5]))) < math.pi / 2 / ALPHA
+
+
+def test_a_loose_solver_moves_a_limit():
+    found = find_limit(LIMITS[0], LOOSE[0])
+    assert not abs(found.limit - LIMITS[0].listed) < 0.1
+    assert not found.above.overturned
 
 
 def test_limits_that_are_not_found_are_counted():

@@ -1,6 +1,7 @@
 """Study `table1`: up the paper's buildings, and under a folder of records."""
 
 import csv
+import math
 import os
 from functools import cache
 from pathlib import Path
@@ -19,11 +20,12 @@ from assess.studies import run_study
 from assess.studies.studied_methods import SHORT_TITLES, evaluate_formulas
 from assess.studies.study import Options
 from assess.studies.table1 import STUDY, climb_buildings, count_classes
-from assess.studies.table1.records_folder import evaluate_folder, read_folder
-from assess.studies.table1.tower import climb, read_stations
+from assess.studies.table1.records_folder import evaluate_folder, quote, read_folder
+from assess.studies.table1.tower import climb, climb_all, read_stations
 from assess.units import GRAVITY
 
 SAMPLES = Path(__file__).parents[2] / "samples"
+MARKET = Path(__file__).parents[2] / "inventories" / "records" / "575-market"
 STATIONS = {one.number: one for one in read_stations()}
 
 
@@ -76,6 +78,25 @@ def test_the_roof_shakes_most_and_every_floor_faster_than_the_one_below(station)
         assert np.all(np.diff([one.pfv for one in floors]) > 0)
 
 
+@given(st.floats(0.2, 1.2), st.floats(0.5, 2.5))
+def test_no_roof_is_safer_than_the_storey_below(breadth, height):
+    one = climb_all([STATIONS["002"]], [STATIONS["002"].period], options(breadth=breadth, height=height))
+    storeys = STATIONS["002"].storeys
+    for key in SHORT_TITLES:
+        pairs = zip(one.levels, one.values[key].tolist(), strict=True)
+        below = max(value for level, value in pairs if level.number == storeys)
+        roof = one.find_worst(key)["002"]
+        assert roof >= below or math.isnan(roof)
+
+
+def test_every_floor_in_both_directions_is_counted_in_one_class():
+    known = [one for one in STATIONS.values() if one.pga]
+    assert len(climbs().usual.levels) == sum(2 * (one.storeys + 1) for one in known)
+    for climbed in (climbs().usual, climbs().longer):
+        for key in SHORT_TITLES:
+            assert sum(count_classes(climbed.find_worst(key)).values()) == 49
+
+
 def test_what_the_page_says_of_the_papers_three():
     """Its worst three are among the worst five here; by Kaneko-Hayashi none is very high."""
     for key in ("proposed_or", "kaneko_hayashi"):
@@ -107,6 +128,14 @@ def test_the_files(tmp_path):
     assert (roof["proposed_or_class"], roof["static_class"]) == ("very high", "rocking can start")
     assert not (tmp_path / "table1-records.csv").exists()
     assert len((tmp_path / "table1.svg").read_bytes()) < 120_000
+
+
+@pytest.mark.parametrize(
+    ("breadth", "shown"),
+    [(1.0, "(B/H 1.00, outside the range in which OR is checked, 0.14 to 0.39)"), (0.39, "(B/H 0.39) on")],
+)
+def test_a_piece_outside_the_checked_range_is_reported(breadth, shown):
+    assert shown in STUDY.run(options(breadth=breadth, height=1.0)).page[0]
 
 
 # ---------------------------------------------------------------- a folder of records
@@ -196,3 +225,8 @@ def test_names_stand_on_the_page_as_they_are(tmp_path):
     assert "Left out, with the full reasons in `table1-records-left-out.csv`: ``\\udcff|`d.txt`` (" in page
     with (tmp_path / "out" / "table1-records.csv").open(encoding="utf-8", newline="") as file:
         assert [row["record"] for row in csv.DictReader(file)] == ["a`b|c.smc"]
+
+
+def test_names_are_quoted():
+    for name, shown in (("a", "`a`"), ("a`b", "``a`b``"), ("`a``b", "``` `a``b ```"), ("a\nb", "`a b`")):
+        assert quote(name) == shown

@@ -9,9 +9,9 @@ from assess.methods import Cases, proposed_or
 from assess.settings import Settings
 from assess.studies.agreement import by_building, find_agreement, pool
 from assess.studies.buildings import FIRST_TOGETHER, LEVELS, RECORDED, TOGETHER
-from assess.studies.studied_methods import FORMULAS, PRINTED
+from assess.studies.studied_methods import FORMULAS, INTEGRATION, PRINTED
 from assess.studies.study import Options, read_facts, render_block
-from assess.studies.table2 import ALL, SUBSETS, collect, compare
+from assess.studies.table2 import ALL, NOTHING, SUBSETS, collect, compare
 from assess.units import GRAVITY
 from tests.studies.made_up import make_compared
 
@@ -88,6 +88,21 @@ def test_what_cannot_rock_is_found(compared):
     assert compared.at_rest.above_by_integration == 0  # what falls is thin, and PFA is 0.5 g there
 
 
+def test_the_yardstick_says_that_nothing_falls(judged, compared):
+    """Half as many fall of the uncertain motions and pieces that are made up."""
+    for name, own in by_building(judged).items():
+        fallen = np.concatenate([one.trials.fallen[: len(LEVELS)].ravel() for one in own])
+        one = compared.agreements[name, ALL, NOTHING]
+        assert one.bias == pytest.approx(-fallen.mean() / 100)
+        assert one.rms == pytest.approx(np.mean((fallen / 100) ** 2) ** 0.5)
+        assert one.class_too_low == np.mean(fallen > 0)
+        said, halved = pool(own, "proposed_or", uncertain=True)
+        assert (halved == fallen // 2).all()
+        assert halved.any()
+        assert compared.uncertain[name, "proposed_or"] == find_agreement(said, fallen // 2, 100)
+        assert compared.uncertain[name, NOTHING].bias == pytest.approx(-np.mean(fallen // 2) / 100)
+
+
 def test_pairs_are_those_of_one_floor(compared):
     along, across = ([one for one in compared.pairs if one.is_along == is_along] for is_along in (True, False))
     market, berkeley = 1 + 1 + 1, 1 + 1 + 1 + 3 + 1  # g h, d e, a b; basement X and Y, 4th, roof X and Y
@@ -106,6 +121,15 @@ def test_channels_of_a_floor_are_scaled_by_one_factor(judged):
         strongest = max(other.trials.pfa[FIRST_TOGETHER] for other in floor)
         assert strongest == pytest.approx(TOGETHER[0] * GRAVITY)
         assert one.factors[RECORDED] == pytest.approx(1)
+
+
+def test_channels_of_a_pair_are_as_far_apart_as_their_chances():
+    """Where a chance is a tenth of PFA [m/s2], they are a tenth of the difference of their PFA apart."""
+    judged = make_compared(lambda b, _h, pfa, _v: pfa / 10 + 0 * b, OPTIONS)
+    own = {(one.building.name, one.trials.channel.name): one.trials.pfa[FIRST_TOGETHER:] for one in judged}
+    for one in compare(judged).pairs:
+        first, second = (own[one.building, name][TOGETHER.index(one.pfa)] for name in one.names)
+        assert one.apart[INTEGRATION] == pytest.approx(abs(first - second) / 10)
 
 
 def split_tables(lines):

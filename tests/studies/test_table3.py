@@ -63,6 +63,14 @@ def test_the_printed_values_are_ours():
     assert other == {GRAVITY: [("AL1", "mean")], 9.81: []}
 
 
+def test_medians_by_hand():
+    found = judged()
+    # AL1: g B/H = 0.32 g; exp(lambda_A) = 0.32 (1 + 0.32) = 0.4224 g, whether PFV is unknown or not.
+    assert found[START].medians[0] == pytest.approx(0.32, abs=1e-9)
+    assert found[BRANCH].medians[0] == pytest.approx(0.4224, abs=1e-9)
+    np.testing.assert_allclose(found[BOUND].medians, found[BRANCH].medians, rtol=1e-9)
+
+
 def test_or_reaches_one_half_where_equation_9_does():
     k = COEFFICIENTS
     for block, median, used in zip(BLOCKS, judged()[PRINTED].medians, judged()[USED].medians, strict=True):
@@ -84,6 +92,11 @@ def test_a_median_is_where_the_chance_is_one_half(ratio):
         assert below < 0.5 <= above
 
 
+def test_a_chance_that_stays_low_has_no_median():
+    assert math.isnan(find_median(lambda ratio, pfa: np.zeros_like(pfa), 0.3))
+    assert find_median(lambda ratio, pfa: np.ones_like(pfa), 0.3) == 0
+
+
 def test_medians_of_the_methods():
     found = judged()
     off = {name: abs(one.bias) for name, one in found.items()}
@@ -91,6 +104,12 @@ def test_medians_of_the_methods():
     assert math.exp(found[USED].bias) == pytest.approx(0.64, abs=0.005)
     assert math.exp(found[BRANCH].bias) == pytest.approx(0.92, abs=0.005)
     assert np.all(found[USED].medians < found[START].medians)
+
+
+def test_bias_and_scatter_by_hand():
+    off = [math.log(one.ratio * (1 + one.ratio) / one.pga["mean"]) for one in BLOCKS]
+    assert judged()[BRANCH].bias == pytest.approx(sum(off) / 9)
+    assert judged()[BRANCH].scatter == pytest.approx(math.sqrt(sum((one - sum(off) / 9) ** 2 for one in off) / 9))
 
 
 def test_the_boundary_frequency_by_hand():
