@@ -36,16 +36,8 @@ SizesFrom = Literal["model", "scan"]
 class Storey:
     """A storey that holds something.
 
-    Attributes
-    ----------
-    key : str
-        Its GlobalId; "" where the model has no storeys, and this one stands for all of it.
-    name : str
-        As the model has it.
-    elevation : float
-        Height of its floor above the building's zero [m].
-    level : float
-        Z of its floor [m].
+    `key`: its GlobalId; "" where the model has no storeys, and this one stands for all of it. `name`: as the model has
+    it. `elevation`: height of its floor above the building's zero [m]. `level`: z of its floor [m].
     """
 
     key: str
@@ -105,33 +97,16 @@ class Stair:
 class Piece:
     """A piece of furniture.
 
-    Attributes
-    ----------
-    key : str
-        Its GlobalId.
-    storey, space : str
-        Keys of its storey and its room, "" if it lies in none.
-    ifc_class, name, type : str
-        Its class, name and type as the model has them; `type` is "" where it has none.
-    x, y : float
-        Centre of its plan [m].
-    breadth, width, height : float
-        Shorter and longer side of its plan, and height [m].
-    angle_deg : float
-        Direction of `breadth`, in [-90, 90).
-    support_breadth, support_width : float
-        Distance between its outermost points at the floor along `breadth` and along `width` [m].
-    bottom : float
-        Height of its lowest point above the floor of its room, or of its storey [m].
-    is_fitted : bool
-        Whether its name tells of kitchen or fitted furniture, which is usually fixed.
-    support_reach : float, optional
-        Least distance from the middle of its plan to an edge of its base, the convex hull of its points at the floor
-        [m]: 0 where the middle lies beside the base, None where the shape of the base is not known.
-    support_angle_deg : float
-        Direction from the middle to that edge, in [-90, 90).
-    support_across : float
-        Extent of its plan across that direction [m].
+    `key`: its GlobalId. `storey`, `space`: keys of its storey and its room, "" if it lies in none. `ifc_class`, `name`,
+    `type`: its class, name and type as the model has them; `type` is "" where it has none. `x`, `y`: centre of its plan
+    [m]. `breadth`, `width`, `height`: shorter and longer side of its plan, and height [m]. `angle_deg`: direction of
+    `breadth`, in [-90, 90). `support_breadth`, `support_width`: distance between its outermost points at the floor
+    along `breadth` and along `width` [m]. `bottom`: height of its lowest point above the floor of its room, or of its
+    storey [m]. `is_fitted`: whether its name tells of kitchen or fitted furniture, which is usually fixed.
+    `support_reach`: least distance from the middle of its plan to an edge of its base, the convex hull of its points at
+    the floor [m]: 0 where the middle lies beside the base, None where the shape of the base is not known.
+    `support_angle_deg`: direction from the middle to that edge, in [-90, 90). `support_across`: extent of its plan
+    across that direction [m].
     """
 
     key: str
@@ -159,16 +134,8 @@ class Piece:
 class Skipped:
     """Elements of one type that were left out for one reason.
 
-    Attributes
-    ----------
-    type : str
-        Type, or class, as the file names it.
-    count : int
-        How many pieces.
-    reason : Text
-        Why.
-    is_furniture : bool
-        Whether they may be furniture that should be assessed; False where the file says that they are fixed.
+    `type`: Type, or class, as the file names it. `count`: how many pieces. `reason`: Why. `is_furniture`: whether they
+    may be furniture that should be assessed; False where the file says that they are fixed.
     """
 
     type: str
@@ -192,30 +159,13 @@ def count_skipped(each: Iterable[tuple[str, Text, bool]]) -> tuple[Skipped, ...]
 class BuildingModel:
     """A building model.
 
-    Attributes
-    ----------
-    source : str
-        Name of its file.
-    schema : str
-        IFC2X3, IFC4, IFC4X3.
-    sizes_from : str
-        Where the sizes of all pieces come from: of a "scan" they are less certain.
-    name, address : str
-        Of the building, "" if it has none.
-    storeys : tuple of Storey
-        From the lowest to the highest.
-    spaces, doors, stairs, pieces : tuple
-        What they hold.
-    walls, windows : mapping of str to tuple of Area
-        By the storey's key, cut at 1.2 m above its floor: walls with columns and curtain walls, and windows.
-    skipped : tuple of Skipped
-        What was not taken, and why.
-    azimuth_deg, latitude, longitude : float, optional
-        Compass direction of X, and the site [deg], where the model tells them.
-    shift : Point
-        What was taken off X and Y [m]: 0 unless the model stands far from its origin.
-    warnings, remarks : tuple of Text
-        What may distort results, and what else a user should know.
+    `source`: name of its file. `schema`: IFC2X3, IFC4, IFC4X3. `sizes_from`: where the sizes of all pieces come from:
+    of a "scan" they are less certain. `name`, `address`: of the building, "" if it has none. `storeys`: from the lowest
+    to the highest. `spaces`, `doors`, `stairs`, `pieces`: what they hold. `walls`, `windows`: by the storey's key, cut
+    at 1.2 m above its floor: walls with columns and curtain walls, and windows. `skipped`: what was not taken, and why.
+    `azimuth_deg`, `latitude`, `longitude`: compass direction of X, and the site [deg], where the model tells them.
+    `shift`: what was taken off X and Y [m]: 0 unless the model stands far from its origin. `warnings`, `remarks`: what
+    may distort results, and what else a user should know.
     """
 
     source: str

@@ -103,7 +103,6 @@ def read_sheets(source: Path | bytes, name: str, progress: Progress = SILENT) ->
 
 
 def _say_what_to_leave_out(problem: Problem) -> Problem:
-    """Return a problem with a fix for handover files in place of that for an inventory that is too large."""
     if "assess new" not in problem.fix:
         return problem
     fix = fill("Delete the sheets Attribute, Document and Coordinate in a copy of it, and import that.")

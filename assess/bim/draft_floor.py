@@ -28,22 +28,10 @@ FAR = 2.0
 class Link:
     """What joins two rooms, or leads out of one: a door, an opening without a door, or the end of a stair.
 
-    Attributes
-    ----------
-    name : str
-        Its key among all nodes of a draft.
-    at : Point
-        Its centre.
-    normal : Point
-        Direction of the normal of its wall, of length 1; (0, 0) for a stair, which is reached from any side.
-    width : float
-        Its width in the plan [m].
-    clear : float
-        Width that is taken to be clear [m]; 0 where nothing is known of it.
-    spaces : tuple of str
-        Keys of the spaces that it joins.
-    overall : float
-        Width of a door: the smaller of what the model states and its opening [m]; 0 where it is no door.
+    `name`: its key among all nodes of a draft. `at`: its centre. `normal`: direction of the normal of its wall, of
+    length 1; (0, 0) for a stair, which is reached from any side. `width`: its width in the plan [m]. `clear`: Width
+    that is taken to be clear [m]; 0 where nothing is known of it. `spaces`: keys of the spaces that it joins.
+    `overall`: Width of a door: the smaller of what the model states and its opening [m]; 0 where it is no door.
     """
 
     name: str

@@ -100,14 +100,7 @@ class Ways:
 def find_ways(room: Room, own: str, place: Point) -> Ways:
     """Return the ways inside a room.
 
-    Parameters
-    ----------
-    room : Room
-        The room, with its links.
-    own : str
-        Name of the node of the room's own place.
-    place : Point
-        Where that is.
+    `room`: the room, with its links. `own`: name of the node of the room's own place. `place`: where that is.
     """
     ends = {own: place} | {link.name: link.at for link in room.links}
     ways = Ways(room, ends, {}, [])
@@ -123,7 +116,6 @@ def find_ways(room: Room, own: str, place: Point) -> Ways:
 
 
 def _walk(ways: Ways, distance: float, floor: BaseGeometry, cost: float) -> None:
-    """Join the ends of a room over a floor, at a distance from its edge."""
     room = ways.room
     inner = floor.buffer(-distance, join_style="mitre")
     passages = [room.passage(link, distance) for link in room.links]

@@ -211,16 +211,9 @@ def measure_gap(plan: FloorPlan, space: str, ends: tuple[Point, Point], links: I
 
     It is None where nothing stands on one of its sides up to `BESIDE`.
 
-    Parameters
-    ----------
-    plan : FloorPlan
-        The storey: its walls and windows bound a segment, and what is outside all rooms. Furniture does not.
-    space : str
-        Key of the space in which the segment lies.
-    ends : tuple of Point
-        Both ends of the segment [m].
-    links : iterable of Link
-        The doors, openings and stairs at its ends: in these no wall is met.
+    `plan`: the storey: its walls and windows bound a segment, and what is outside all rooms. Furniture does not.
+    `space`: Key of the space in which the segment lies. `ends`: both ends of the segment [m]. `links`: the doors,
+    openings and stairs at its ends: in these no wall is met.
     """
     line = shapely.LineString(ends)
     wide = line.buffer(BESIDE, cap_style="flat")
@@ -280,15 +273,9 @@ def set_widths(links: Sequence[Link], between_walls: float | None, gap: float | 
 class DraftRoutes:
     """Drafted routes.
 
-    Attributes
-    ----------
-    places, routes : sequence of mapping
-        Rows of Places, those alone that the segments add to rooms, doors and stairs; and of Routes: by field of
-        `assess.workbook.schema`, in metres, in the language in use.
-    unreached : tuple of str
-        Names of the rooms from which no way leads to an exit or a stair.
-    remarks : tuple of Text
-        What was assumed, and what is to be checked.
+    `places`, `routes`: rows of Places, those alone that the segments add to rooms, doors and stairs; and of Routes: by
+    field of `assess.workbook.schema`, in metres, in the language in use. `unreached`: names of the rooms from which no
+    way leads to an exit or a stair. `remarks`: what was assumed, and what is to be checked.
     """
 
     places: Rows = ()

@@ -12,7 +12,7 @@ axes of the model.
 import itertools
 import math
 import statistics
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -64,7 +64,7 @@ def find_shift(pairs: Sequence[Pair]) -> Point | None:
 
     Whole metres; None where no position is known, or where those of workbook and model do not agree.
     """
-    known = [(one.place, middle) for one, element in pairs if one.place and (middle := element.middle)]
+    known = [(one.place, find_middle(element.box)) for one, element in pairs if one.place and element.box]
     if not known:
         return None
     x, y = (round(statistics.median(model[axis] - book[axis] for book, model in known)) for axis in (0, 1))
@@ -99,17 +99,6 @@ def find_doors(
     return list(found.values())
 
 
-def find_centre(elements: Iterable[ModelElement]) -> Point:
-    """Return the middle of the elements whose place is known, (0, 0) where there is none."""
-    middles = [one.middle for one in elements if one.middle is not None]
-    if not middles:
-        return 0.0, 0.0
-    return statistics.fmean(one[0] for one in middles), statistics.fmean(one[1] for one in middles)
-
-
-# ---------------------------------------------------------------- the camera
-
-
 @dataclass(frozen=True, slots=True)
 class Camera:
     """A perspective camera: its point, the direction in which it looks, and what is up in it, both of length 1."""
@@ -120,18 +109,10 @@ class Camera:
 
 
 def find_camera(pairs: Sequence[Pair], doors: Sequence[ModelDoor], centre: Point) -> Camera | None:
-    """Return a camera that sees all of some pieces from above, from the side to which the first may fall.
+    """Return a camera that sees all of some pieces, the most urgent first, from the side to which that may fall.
 
-    None where no place is known.
-
-    Parameters
-    ----------
-    pairs : sequence of Pair
-        The pieces with their elements, the most urgent first.
-    doors : sequence of ModelDoor
-        The doors that are seen as well, if they are not too far away.
-    centre : Point
-        From there a piece is seen whose back is not known, nor the room that it stands in.
+    None where no place is known. Doors are seen as well, if they are not too far away. From `centre` a piece is seen
+    whose back is not known, nor the room that it stands in.
     """
     placed = [(piece, one, one.box) for piece, one in pairs if one.box is not None]
     if not placed:
@@ -242,7 +223,6 @@ def _scale(vectors: FloatArray) -> FloatArray:
 
 
 def _find_axes(forward: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return what is right and what is up in cameras that stand upright."""
     x, y, _z = forward.T
     flat = np.hypot(x, y)
     right = np.stack([y, -x, np.zeros_like(x)], axis=1) / np.maximum(flat, STEEPEST)[:, None]
@@ -251,7 +231,6 @@ def _find_axes(forward: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _project(ways: FloatArray, forward: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return how far corners are along the direction of each camera, and how far off it over that, right and up."""
     depth, *off = (np.einsum("cna,ca->cn", ways, axis) for axis in (forward, *_find_axes(forward)))
     least = np.maximum(depth, NEAREST / 2)
     return depth, off[0] / least, off[1] / least

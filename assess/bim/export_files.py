@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from assess.bim.export_camera import Pair
-from assess.bim.export_model import PROPERTY_SET, read_elements
+from assess.bim.export_model import PROPERTY_SET, ModelPart, read_elements
 from assess.bim.export_properties import add_properties
 from assess.bim.export_results import ExportPiece, ExportRun, list_items
 from assess.bim.export_topics import Topics, list_entries, write_topics
@@ -19,22 +19,11 @@ from assess.progress import Progress
 
 @dataclass(frozen=True, slots=True)
 class Export:
-    """What came out of an export.
+    """The model with a property set on each of `written` pieces, and what to fix as topics; None if not asked for.
 
-    Attributes
-    ----------
-    model : bytes, optional
-        The model with a property set on each piece; None where that was not asked for.
-    topics : Topics, optional
-        What to fix; None where that was not asked for.
-    written : int
-        Elements of the model that are pieces.
-    without_id, missing : tuple of str
-        Names of the pieces that have no Source ID, or one that nothing in the model has: nothing is written for them.
-    refused : mapping of str to tuple of str
-        Names of the pieces whose Source ID is that of something else, by its class: nothing is written for them.
-    repeated : tuple of str
-        Names of the pieces that share their Source ID with another piece: the worse is written.
+    For some pieces, here by their names, nothing is written: those without a Source ID, those `missing` in the model,
+    and those that are something else there, by its class (`refused`). Of those that share a Source ID (`repeated`) the
+    worse is written.
     """
 
     model: bytes | None
@@ -54,13 +43,10 @@ class Export:
 def build_export(
     found: ExportRun, model: Path, progress: Progress, *, with_properties: bool, with_topics: bool
 ) -> Export:
-    """Bring results back to a building model.
+    """Bring results back to a building model: as property sets in a copy of it, as topics, or both.
 
-    `with_properties` and `with_topics`: whether the model with property sets is made, and whether topics are.
     Raises ModelError if the model cannot be read, ifcopenshell is not installed, no piece is in the model, or a piece
     has such a property set already.
-
-    Returns what is to be written, and what could not be.
     """
     check_installed()
     check_model(model, model.name)
@@ -80,41 +66,42 @@ def build_export(
         for key, own in sharing.items()
         if key in elements
     ]
-    if part.refused and not worst:
+    _check_pairs(found, model, part, worst, with_properties=with_properties)
+    changed = None
+    if with_properties:
+        try:
+            with open_input(model) as file:
+                changed = add_properties(file.read(), model.name, part, found, worst)
+        except OSError as error:
+            raise unreadable(model.name, error) from None
+
+    def list_names(keys: Iterable[str]) -> tuple[str, ...]:
+        return tuple(one.past.item for key in keys for one in sharing[key])
+
+    refused: dict[str, list[str]] = {}
+    for key, name in part.refused.items():
+        refused.setdefault(name, []).append(key)
+    return Export(
+        model=changed,
+        topics=write_topics(model.name, part, found, pairs) if with_topics else None,
+        written=len(worst),
+        without_id=tuple(one.past.item for one in found.pieces if not one.source_id),
+        missing=list_names(key for key in sharing if key not in elements and key not in part.refused),
+        refused={name: list_names(own) for name, own in refused.items()},
+        repeated=list_names(key for key, own in sharing.items() if key in elements and len(own) > 1),
+    )
+
+
+def _check_pairs(
+    found: ExportRun, model: Path, part: ModelPart, pairs: Sequence[Pair], *, with_properties: bool
+) -> None:
+    if not pairs and part.refused:
         key, name = next(iter(part.refused.items()))
         raise ModelError(
             fill("None of the Source IDs in {results} is that of furniture in {model}: {id} is an {name}. Fill in "
                  "Source ID in Items with the GlobalIds of furniture.",
                  results=found.run.path, model=model.name, id=key, name=name)
         )  # fmt: skip
-    _check_pairs(found, model, worst, with_properties=with_properties)
-    changed = None
-    if with_properties:
-        try:
-            with open_input(model) as file:
-                data = file.read()
-        except OSError as error:
-            raise unreadable(model.name, error) from None
-        changed = add_properties(data, model.name, part, found, worst)
-    return Export(
-        model=changed,
-        topics=write_topics(model.name, part, found, pairs) if with_topics else None,
-        written=len(worst),
-        without_id=tuple(one.past.item for one in found.pieces if not one.source_id),
-        missing=_list_names(own for key, own in sharing.items() if key not in elements and key not in part.refused),
-        refused={
-            name: _list_names(sharing[key] for key, other in part.refused.items() if other == name)
-            for name in dict.fromkeys(part.refused.values())
-        },
-        repeated=_list_names(own for key, own in sharing.items() if key in elements and len(own) > 1),
-    )
-
-
-def _list_names(groups: Iterable[Sequence[ExportPiece]]) -> tuple[str, ...]:
-    return tuple(one.past.item for own in groups for one in own)
-
-
-def _check_pairs(found: ExportRun, model: Path, pairs: Sequence[Pair], *, with_properties: bool) -> None:
     if not pairs:
         raise ModelError(
             fill("None of the Source IDs in {results} is that of an element of {model}. Name the model that the "

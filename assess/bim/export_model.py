@@ -1,7 +1,8 @@
 """What an export needs to know of a building model, as plain data; call `read_elements` in a process of its own."""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -22,21 +23,10 @@ Box = tuple[Place, Place]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModelElement:
-    """An element of the model.
+    """An element: its GlobalId, name and number in the file, and that of the OwnerHistory for what is added, or 0.
 
-    Attributes
-    ----------
-    key, name : str
-        Its GlobalId and its name.
-    number : int
-        Its number in the file.
-    owner : int
-        That of the OwnerHistory for what is added to it, 0 for none.
-    has_set : bool
-        Whether it has a property set `PROPERTY_SET` already.
-    box, room : Box, optional
-        Corners of the box around it, and around the room that it stands in, in the axes of the model [m]; None where
-        there is none, or that was not asked for.
+    `box` and `room` are corners of the boxes around it and around its room, in the axes of the model [m]; None where
+    there is none, or that was not asked for.
     """
 
     key: str
@@ -46,11 +36,6 @@ class ModelElement:
     has_set: bool
     box: Box | None = None
     room: Box | None = None
-
-    @property
-    def middle(self) -> Place | None:
-        """The middle of its box."""
-        return None if self.box is None else find_middle(self.box)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +76,10 @@ def read_elements(path: Path, name: str, keys: Sequence[str], placed: Sequence[s
 def _understand(model: Any, name: str, keys: Sequence[str], placed: Sequence[str] | None) -> ModelPart:
     from ifcopenshell.util.element import get_psets
 
-    known = {key: one for key in keys if (one := _find(model, key)) is not None}
+    known: dict[str, Any] = {}
+    for key in keys:
+        with suppress(RuntimeError):  # nothing has it
+            known[key] = model.by_guid(key)
     found = {
         key: one
         for key, one in known.items()
@@ -108,10 +96,16 @@ def _understand(model: Any, name: str, keys: Sequence[str], placed: Sequence[str
     elements = []
     for key, one in found.items():
         has_set = PROPERTY_SET in get_psets(one, psets_only=True, should_inherit=False)
-        box = boxes.get(one.id())
-        room = None if box is None else _find_room(find_middle(box), rooms.values())
+        box, owner, room = boxes.get(one.id()), one.OwnerHistory, None
+        if box is not None:
+            around = [room for room in rooms.values() if _holds(room, find_middle(box))]
+            room = min(
+                around, key=lambda box: math.prod(high - low for low, high in zip(*box, strict=True)), default=None
+            )
+        if not owner and model.schema == "IFC2X3":  # which demands one
+            owner = next(iter(model.by_type("IfcOwnerHistory")), None)
         elements.append(
-            ModelElement(key=key, name=str(one.Name or ""), number=one.id(), owner=_find_owner(model, one),
+            ModelElement(key=key, name=str(one.Name or ""), number=one.id(), owner=owner.id() if owner else 0,
                          has_set=has_set, box=box, room=room)
         )  # fmt: skip
     projects = model.by_type("IfcProject")
@@ -124,24 +118,8 @@ def _understand(model: Any, name: str, keys: Sequence[str], placed: Sequence[str
     )
 
 
-def _find(model: Any, key: str) -> Any:
-    try:
-        return model.by_guid(key)
-    except RuntimeError:
-        return None
-
-
-def _find_owner(model: Any, one: Any) -> int:
-    """Return the number of the OwnerHistory for what is added to an element; IFC2X3 demands one."""
-    if one.OwnerHistory:
-        return int(one.OwnerHistory.id())
-    others = model.by_type("IfcOwnerHistory") if model.schema == "IFC2X3" else ()
-    return int(others[0].id()) if others else 0
-
-
-def _find_room(point: Place, rooms: Iterable[Box]) -> Box | None:
-    around = [(low, high) for low, high in rooms if all(low[at] <= point[at] <= high[at] for at in range(3))]
-    return min(around, key=lambda box: math.prod(box[1][at] - box[0][at] for at in range(3)), default=None)
+def _holds(box: Box, point: Place) -> bool:
+    return all(low <= at <= high for low, at, high in zip(box[0], point, box[1], strict=True))
 
 
 def find_middle(box: Box) -> Place:

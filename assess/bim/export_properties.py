@@ -13,16 +13,15 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 
 from assess.bim.export_camera import Pair
-from assess.bim.export_model import PROPERTY_SET, ModelElement, ModelPart
+from assess.bim.export_model import PROPERTY_SET, ModelPart
 from assess.bim.export_results import ExportPiece, ExportRun
-from assess.bim.export_words import BASES, describe, say_class, say_program, say_report, say_scenario
+from assess.bim.export_words import BASES, describe, list_routes, say_class, say_program, say_report, say_scenario
 from assess.details import DETAILS
 from assess.errors import ModelError
 from assess.i18n import fill
 from assess.i18n import gettext as _
 from assess.plain_text import plain_line
 from assess.report import words
-from assess.schedule_results import ScheduleRow, WorkRow
 
 LONGEST_LABEL = 255
 """Characters of an IfcLabel."""
@@ -39,6 +38,8 @@ def add_properties(data: bytes, name: str, part: ModelPart, found: ExportRun, pi
     `pieces`: the pieces with their elements: of several with one Source ID, the worst.
     Raises ModelError if the file does not end as an IFC file does.
     """
+    what = write_text(_("Chance that the piece overturns in the earthquake named in Scenario, not per year. Forces are "
+                        "for screening, not design."))  # fmt: skip
     lines: list[str] = []
     counts = Counter(one.source_id for one in found.pieces)
     for piece, element in pieces:
@@ -48,22 +49,18 @@ def add_properties(data: bytes, name: str, part: ModelPart, found: ExportRun, pi
             several = _("{n:,} pieces with this Source ID, the worst", n=alike)
             own = _("2 pieces with this Source ID, the worse") if alike == 2 else several
             properties.append(("Of", write_label(own)))
-        lines += _write_set(properties, element, part.last_number + len(lines) + 1)
+        first = part.last_number + len(lines) + 1
+        last = first + len(properties)
+        owner = f"#{element.owner}" if element.owner else "$"
+        for number, (key, value) in enumerate(properties, first):
+            lines.append(f"#{number}=IFCPROPERTYSINGLEVALUE({write_text(key)},$,{value},$);")
+        values = ",".join(f"#{number}" for number in range(first, last))
+        set_key, relation_key = (make_global_id(kind, element.key) for kind in ("property set", "relation"))
+        lines += [
+            f"#{last}=IFCPROPERTYSET('{set_key}',{owner},{write_text(PROPERTY_SET)},{what},({values}));",
+            f"#{last + 1}=IFCRELDEFINESBYPROPERTIES('{relation_key}',{owner},$,$,(#{element.number}),#{last});",
+        ]
     return append_lines(data, lines, name)
-
-
-def _write_set(properties: Sequence[tuple[str, str]], element: ModelElement, first: int) -> Iterator[str]:
-    """Yield the properties of an element, their set, and its relation to the element, numbered from `first`."""
-    owner = f"#{element.owner}" if element.owner else "$"
-    for number, (key, value) in enumerate(properties, first):
-        yield f"#{number}=IFCPROPERTYSINGLEVALUE({write_text(key)},$,{value},$);"
-    last = first + len(properties)
-    own = ",".join(f"#{number}" for number in range(first, last))
-    set_key, relation_key = (make_global_id(kind, element.key) for kind in ("property set", "relation"))
-    what = write_text(_("Chance that the piece overturns in the earthquake named in Scenario, not per year. Forces are "
-                        "for screening, not design."))  # fmt: skip
-    yield f"#{last}=IFCPROPERTYSET('{set_key}',{owner},{write_text(PROPERTY_SET)},{what},({own}));"
-    yield f"#{last + 1}=IFCRELDEFINESBYPROPERTIES('{relation_key}',{owner},$,$,(#{element.number}),#{last});"
 
 
 def _list_properties(found: ExportRun, one: ExportPiece) -> Iterator[tuple[str, str]]:
@@ -91,25 +88,22 @@ def _list_properties(found: ExportRun, one: ExportPiece) -> Iterator[tuple[str, 
             yield key, write_real(value)
     if one.pfa_source:
         yield "PFASource", write_label(one.pfa_source)
-    if past.item in found.routes:
-        yield "MayBlockRoutes", write_long_text(", ".join(found.routes[past.item]))
+    if routes := list_routes(found, [past.item]):
+        yield "MayBlockRoutes", write_long_text(", ".join(routes))
     if one.importance:
         yield "Importance", write_label(_(one.importance))
     if past.item in found.works:
-        yield from _list_fixing(*found.works[past.item])
+        entry, work = found.works[past.item]
+        yield "FixOrder", f"IFCINTEGER({entry.place})"
+        yield "FixingDetail", write_label(_(DETAILS[work.detail].title))
+        forces = {
+            "FixingTension": work.tension_kn, "FixingTension84": work.tension_high_kn,
+            "FixingTensionCode": work.tension_code_kn, "BaseShear": work.shear_kn,
+        }  # fmt: skip
+        yield from ((f"{key}_kN", write_real(force)) for key, force in forces.items() if force is not None)
     yield "Scenario", write_long_text(say_scenario(run))
     yield "AssessedBy", write_label(say_program(run))
     yield "Report", write_long_text(say_report(run))
-
-
-def _list_fixing(entry: ScheduleRow, work: WorkRow) -> Iterator[tuple[str, str]]:
-    yield "FixOrder", f"IFCINTEGER({entry.place})"
-    yield "FixingDetail", write_label(_(DETAILS[work.detail].title))
-    yield "FixingTension_kN", write_real(work.tension_kn)
-    yield "FixingTension84_kN", write_real(work.tension_high_kn)
-    if work.tension_code_kn is not None:
-        yield "FixingTensionCode_kN", write_real(work.tension_code_kn)
-    yield "BaseShear_kN", write_real(work.shear_kn)
 
 
 # ---------------------------------------------------------------- STEP
@@ -130,7 +124,9 @@ def make_global_id(kind: str, *keys: str) -> str:
 def write_text(text: str) -> str:
     r"""Return a text on one line in quotes: ' and \ doubled, what is not printable ASCII as \X2\ or \X4\."""
     found = []
-    for kind, signs in groupby(plain_line(text), key=_find_kind):
+    for kind, signs in groupby(
+        plain_line(text), key=lambda one: 0 if " " <= one <= "~" else 2 if one <= "\uffff" else 4
+    ):
         part = "".join(signs)
         if kind:
             digits = "".join(f"{ord(sign):0{2 * kind}X}" for sign in part)
@@ -138,12 +134,6 @@ def write_text(text: str) -> str:
         else:
             found.append(part.replace("\\", "\\\\").replace("'", "''"))
     return f"'{''.join(found)}'"
-
-
-def _find_kind(sign: str) -> int:
-    if " " <= sign <= "~":
-        return 0
-    return 2 if ord(sign) <= 0xFFFF else 4
 
 
 def write_label(text: str) -> str:

@@ -16,8 +16,10 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from xml.etree import ElementTree
 
-from assess.bim.export_camera import FIELD_OF_VIEW, Camera, Pair, find_camera, find_centre, find_doors, find_shift
-from assess.bim.export_model import ModelDoor, ModelPart
+import numpy as np
+
+from assess.bim.export_camera import FIELD_OF_VIEW, Camera, Pair, find_camera, find_doors, find_shift
+from assess.bim.export_model import ModelDoor, ModelPart, find_middle
 from assess.bim.export_properties import make_uuid
 from assess.bim.export_results import ExportRun, list_items
 from assess.bim.export_words import list_importance, list_lines, list_routes, say_program, say_title
@@ -75,7 +77,9 @@ def write_topics(name: str, part: ModelPart, found: ExportRun, pairs: Sequence[P
     """
     by_item = {piece.past.item: (piece, element) for piece, element in pairs}
     entries = list_entries(found, by_item)
-    shift, centre = find_shift(pairs), find_centre({element.key: element for _piece, element in pairs}.values())
+    middles = [find_middle(box) for box in {one.key: one.box for _piece, one in pairs}.values() if box is not None]
+    x, y, _z = np.mean(middles, axis=0).tolist() if middles else (0.0, 0.0, 0.0)
+    shift = find_shift(pairs)
     files: dict[str, bytes] = {"bcf.version": VERSION.encode()}
     counts = Counter(element.key for _piece, element in pairs)
     with_door = 0
@@ -85,7 +89,7 @@ def write_topics(name: str, part: ModelPart, found: ExportRun, pairs: Sequence[P
         with_door += bool(doors)
         # of pieces that share an element the names tell the topics apart
         names = (one.key if counts[one.key] == 1 else f"{one.key} {piece.past.item}" for piece, one in own)
-        topic = _Topic(str(make_uuid("topic", *sorted(names))), entry, own, doors, find_camera(own, doors, centre))
+        topic = _Topic(str(make_uuid("topic", *sorted(names))), entry, own, doors, find_camera(own, doors, (x, y)))
         files |= _write_topic(name, part, found, topic)
     all_placed = sum(any(item in by_item for item in list_items(one)) for one in found.entries)
     return Topics(
@@ -195,7 +199,6 @@ def _dump(root: _Element) -> bytes:
 
 
 def _pack(files: Mapping[str, bytes]) -> bytes:
-    """Return a zip file of files by their names; of the same files always the same bytes."""
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, data in files.items():

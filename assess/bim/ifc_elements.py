@@ -164,7 +164,6 @@ def list_shapes(model: Any, elements: Sequence[Element], *, with_openings: bool 
 
 
 def _iterate(model: Any, settings: Any, elements: Sequence[Element]) -> Iterator[tuple[int, Shape]]:
-    """Yield the shapes of elements; those of one kind are worked out once. RuntimeError at one that is damaged."""
     import ifcopenshell.geom
 
     iterator = ifcopenshell.geom.iterator(settings, model, THREADS, include=list(elements))

@@ -132,6 +132,5 @@ def _set_clearances_aside(model: Any) -> None:
 
 
 def _find_damage(name: str, error: Exception) -> ModelError:
-    """Return what is said of a model that the library cannot make sense of."""
     first = str(error).strip().split("\n")[0][:120].rstrip(".")
     return ModelError(fill("{name} is damaged: {why}. Export it again.", name=name, why=first or type(error).__name__))

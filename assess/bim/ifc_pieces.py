@@ -198,13 +198,9 @@ class _Shaped:
 def find_shift(bottoms: Sequence[float], stated: float) -> float:
     """Return by what height nearly all pieces of a storey stand above its floor, 0 where they do not [m].
 
-    Parameters
-    ----------
-    bottoms : sequence of float
-        Heights of the lowest points of its pieces above its floor [m].
-    stated : float
-        How much higher the floor is by the Elevation that the model states [m]: where that is the height, one piece
-        tells it. At heights of `_HUNG` furniture may hang on walls.
+    `bottoms`: heights of the lowest points of its pieces above its floor [m]. `stated`: how much higher the floor is by
+    the Elevation that the model states [m]: where that is the height, one piece tells it. At heights of `_HUNG`
+    furniture may hang on walls.
     """
     height = float(np.median(bottoms)) if bottoms else 0.0
     alike = sum(abs(one - height) <= _ALIKE for one in bottoms)

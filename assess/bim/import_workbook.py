@@ -45,20 +45,10 @@ ENDING = "-import.txt"
 class ImportedBuilding:
     """What a file tells of a building: rows by field of `assess.workbook.schema`, in the units of SI headers.
 
-    Attributes
-    ----------
-    source : str
-        Name of the file.
-    building : mapping
-        Fields of the sheet Building.
-    floors, items, places, routes, types : sequence of mapping
-        Rows of Floors, Items, Places, Routes, and types that join the Catalogue, in place of those of their name there.
-    skipped : tuple of Skipped
-        What was left out.
-    warnings, remarks : tuple of Text
-        What may distort the results until it is corrected, and what else is worth checking.
-    files : mapping of str to bytes
-        Files beside the workbook that it names, such as plans.
+    `source`: name of the file. `building`: fields of the sheet Building. `floors`, `items`, `places`, `routes`,
+    `types`: rows of Floors, Items, Places, Routes, and types that join the Catalogue, in place of those of their name
+    there. `skipped`: what was left out. `warnings`, `remarks`: what may distort the results until it is corrected, and
+    what else is worth checking. `files`: files beside the workbook that it names, such as plans.
     """
 
     source: str

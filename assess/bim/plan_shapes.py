@@ -45,14 +45,8 @@ NOTHING = Polygon()
 class Shape:
     """Triangles of an element.
 
-    Attributes
-    ----------
-    points : (n, 3) array
-        Corners in the axes of the model [m].
-    triangles : (m, 3) array of int
-        Indices of the corners of each triangle.
-    axes : (3, 3) array
-        Its own axes as columns, in those of the model.
+    `points`: corners in the axes of the model [m]. `triangles`: Indices of the corners of each triangle. `axes`: its
+    own axes as columns, in those of the model.
     """
 
     points: FloatArray

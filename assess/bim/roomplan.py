@@ -107,7 +107,6 @@ def read_roomplan(data: bytes, name: str) -> BuildingModel:
 
 
 def _list_storeys(scan: Scan) -> tuple[Storey, ...]:
-    """Return the storeys that hold something, from the lowest; the lowest is taken to be at 0 m."""
     every = (*scan.objects, *scan.walls, *scan.floors, *scan.doors)
     levels = {story: _find_level(scan, story) for story in sorted({one.story for one in every})}
     ground = min(levels.values(), default=0.0)
@@ -120,7 +119,6 @@ def _list_storeys(scan: Scan) -> tuple[Storey, ...]:
 def _find_pieces(
     scan: Scan, rooms: Sequence[Space], levels: Mapping[int, float]
 ) -> tuple[list[Piece], Counter[str], tuple[Skipped, ...]]:
-    """Return the pieces, how many were recognised with low confidence by category, and what was left out."""
     pieces, unsure, skipped = list[Piece](), Counter[str](), list[tuple[str, Text, bool]]()
     kinds, search = {one.key: one.kind for one in scan.objects}, SpaceSearch(rooms)
     for one in scan.objects:
@@ -222,7 +220,6 @@ def _turn_by(angle_deg: float) -> FloatArray:
 
 
 def _is_upright(one: Scanned) -> bool:
-    """Return whether the second of its own axes is vertical."""
     return bool(abs(one.axes[2, 1]) >= UPRIGHT)
 
 
@@ -242,7 +239,6 @@ def _height_of(floor: Scanned) -> float:
 
 
 def _draw_walls(scan: Scan, story: int) -> tuple[Area, ...]:
-    """Return the walls of a storey with gaps at its doors, windows and openings; those of cylinders are left out."""
     walls = [_lay(one, WALL) for one in scan.walls if one.story == story and _is_upright(one) and not one.is_curved]
     holes = [
         _lay(one, 3 * WALL)
@@ -253,7 +249,6 @@ def _draw_walls(scan: Scan, story: int) -> tuple[Area, ...]:
 
 
 def _draw_windows(scan: Scan, story: int) -> tuple[Area, ...]:
-    """Return the windows of a storey."""
     return merge(_lay(one, WALL) for one in scan.windows if one.story == story and _is_upright(one))
 
 

@@ -47,26 +47,12 @@ _UPWARDS = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 class Scanned:
     """One element: an object, or a wall, door, window, opening or floor.
 
-    Attributes
-    ----------
-    place, key : str
-        Where it stands in the file, such as ``objects[3]``, and its identifier, "" without one.
-    kind, confidence : str
-        Its category and how sure the phone was of it, as the file names them.
-    parent : str
-        Identifier of the element that it belongs to, "" if it belongs to none.
-    sizes : tuple of float
-        Along its own axes: width, height, depth [m]; those of surfaces may be 0.
-    axes : (3, 3) array
-        Its own axes as columns, the second one upwards for all that stands.
-    origin : (3,) array
-        Its centre [m].
-    corners : (n, 3) array
-        Corners of its outline [m]; none where the file gives none.
-    story : int
-        Number of its storey.
-    is_curved : bool
-        Whether it is a part of a cylinder.
+    `place`, `key`: where it stands in the file, such as ``objects[3]``, and its identifier, "" without one. `kind`,
+    `confidence`: its category and how sure the phone was of it, as the file names them. `parent`: identifier of the
+    element that it belongs to, "" if it belongs to none. `sizes`: along its own axes: width, height, depth [m]; those
+    of surfaces may be 0. `axes`: its own axes as columns, the second one upwards for all that stands. `origin`: its
+    centre [m]. `corners`: corners of its outline [m]; none where the file gives none. `story`: number of its storey.
+    `is_curved`: whether it is a part of a cylinder.
     """
 
     place: str

@@ -423,7 +423,6 @@ def _list_stairs(boxes: Sequence[_Box], storeys: Sequence[Storey]) -> Iterator[S
 
 
 def _join_groups(boxes: Sequence[_Box]) -> list[_Box]:
-    """Return the boxes, with one in place of the parts of a group that stand on each other."""
     groups: dict[tuple[str, str], list[int]] = {}
     for at, one in enumerate(boxes):
         if one.element.group is not None and one.why_left_out() in (None, NOT_ON_FLOOR) and not one.is_opening:

@@ -30,22 +30,12 @@ RENAMED = fill("it seems to have been renamed")
 class Change:
     """One thing that an update did, or deliberately did not do.
 
-    Attributes
-    ----------
-    kind : str
-        "changed": the cell got another value. "added": the row is new. "missing": the model no longer has what the row
-        was imported from; the row stays. "kept": the model has another value, and the workbook's stays. "left_out":
-        what the model has was not written.
-    sheet, cell : str
-        As the workbook calls the sheet, and the address; of a row that of its name. `cell` is "" where there is none.
-    item : str
-        Name of the piece, floor, place or type; "" for a line of Building.
-    label : str
-        Header of the column as the workbook has it, with its unit; "" for a row.
-    was, now : float, str, bool or None
-        What the cell held, and what it holds now; of "kept" what the model has. Numbers are in the header's unit.
-    reason : Text
-        Why something was kept or left out, where that does not go without saying.
+    Of `kind` "changed" the cell got another value. "added": the row is new. "missing": the model no longer has what the
+    row was imported from; the row stays. "kept": the model has another value (`now`), and the workbook's stays.
+    "left_out": what the model has was not written.
+
+    `sheet` and `label` are as the workbook calls them, `cell` is the address, of a row that of its name; "" where there
+    is none. `item` is the name of the row, "" in Building. Numbers are in the unit of the header.
     """
 
     kind: Kind
@@ -98,25 +88,16 @@ _DIGITS = 9
 
 @dataclass(slots=True)
 class SheetUpdate:
-    """One sheet of a workbook while it is updated.
+    """One sheet of a workbook while it is updated; of one that the workbook lacks the table is empty.
 
-    Attributes
-    ----------
-    table : Table
-        As it was read.
-    cells : HeldCells
-        Its cells; they stay as they were.
-    changes : list of Change
-        Where all that happens is noted; sheets share one.
-    totals : sequence of int
-        Rows that are totals rows of tables.
-    values : dict of str to value
-        What is to be written, by address.
+    All that happens is noted in `changes`, and why rows could not be added in `problems`: sheets share these. `totals`
+    are the rows that are totals rows of tables, `values` what is to be written, by address.
     """
 
     table: Table
     cells: HeldCells
     changes: list[Change]
+    problems: list[Problem]
     totals: Sequence[int] = ()
     values: dict[str, Value] = field(default_factory=dict)
 
@@ -129,7 +110,6 @@ class SheetUpdate:
         return self.table.cell(name, row.number)
 
     def _place(self, name: str, row: Row) -> Place:
-        """Return row and column of a cell."""
         at = self.table.places[name]
         return (at, 1) if self.table.sheet.layout == "form" else (row.number, at)
 
@@ -140,7 +120,20 @@ class SheetUpdate:
 
     def _to_cell(self, name: str, wanted: Any) -> Value:
         """Return what a cell has to hold for a value in the unit of SI headers; None where nothing can be written."""
-        return _to_cell(self.table.sheet.column(name), self.table.units.get(name, ""), wanted)
+        column, unit = self.table.sheet.column(name), self.table.units.get(name, "")
+        if isinstance(wanted, bool):
+            return self._to_cell(name, YES if wanted else NO)
+        if column.kind == "outline" and unit != column.unit:
+            try:
+                corners = parse_outline(str(wanted), 1.0)
+            except OutlineError:
+                return None
+            return "; ".join(f"{_convert(column, unit, x):.10g} {_convert(column, unit, y):.10g}" for x, y in corners)
+        if not isinstance(wanted, str):
+            return _convert(column, unit, wanted)
+        if wanted in column.choices:
+            return say_choices(column.choices, column.language)[column.choices.index(wanted)]
+        return wanted
 
     def replace(self, row: Row, name: str, wanted: Any) -> None:
         """Set a cell that the model owns, unless it holds the same but for rounding; nothing never clears a cell."""
@@ -184,9 +177,10 @@ class SheetUpdate:
         return ""
 
     def _note(self, kind: Kind, row: Row, name: str, wanted: Any, reason: Text | str = "") -> None:
-        raw, unit, label = self._raw(name, row), self.table.units.get(name), self.table.label(name)
-        was = float(raw) if isinstance(raw, Percent) else raw
-        if was is UNSAVED:
+        was, unit, label = self._raw(name, row), self.table.units.get(name), self.table.label(name)
+        if isinstance(was, Percent):
+            was = float(was)
+        elif was is UNSAVED:
             was = None
         elif not isinstance(was, bool | int | float | str | None):
             was = read_text(was)
@@ -197,7 +191,6 @@ class SheetUpdate:
         )  # fmt: skip
 
     def _name_of(self, row: Row) -> str:
-        """Return the name of a row, that in the first column of its table; "" for a form."""
         is_form = self.table.sheet.layout == "form"
         return "" if is_form else str(row.get(self.table.sheet.columns[0].name) or "")
 
@@ -209,7 +202,7 @@ class SheetUpdate:
     def note_columns(self, names: Iterable[str], rows: Iterable[Mapping[str, Any]]) -> None:
         """Note the fields of a model's rows that have no column here."""
         filled = {name for row in rows for name, value in row.items() if value not in (None, "")}
-        for name in names:
+        for name in names if self.table.found else ():
             if name in filled and not self.can_hold(name):
                 why = fill("the sheet has no such column")
                 if name in self.table.blind:
@@ -219,28 +212,36 @@ class SheetUpdate:
 
     # ------------------------------------------------------------ new rows
 
-    def add_rows(self, rows: Rows) -> Problem | None:
-        """Fill in new rows after the last one that is filled; formulas that are prepared there stay.
+    def add(self, rows: Rows) -> bool:
+        """Fill in new rows after the last one that is filled, and return whether it is certain that they belong there.
 
-        Returns why no row was added, where it is not certain that they belong there: a warning.
+        Formulas that are prepared there stay. Rows that are not added are listed as left out, and the problem says why.
         """
-        last = self._find_last()
+        if not rows:
+            return True
+        last, why = self._find_last(), fill("the workbook lacks the sheet")
         total = next((row for row in sorted(self.totals) if last < row <= last + len(rows)), None)
-        why = self._find_hindrance(last, len(rows))
-        if not why and total is not None:
-            why = fill("row {row} is the totals row of a table", row=str(total))
-        if not why:
-            for number, row in enumerate(rows, last + 1):
-                self._write_row(number, row)
-            return None
-        message = nfill(
-            "{n:,} new row of the model was not added: {why}.", "{n:,} new rows of the model were not added: {why}.",
-            len(rows), why=why,
-        )  # fmt: skip
-        fix = fill("Move what stands below the last complete row of this sheet elsewhere, then import again.")
-        if total is not None:
-            fix = fill("Turn the totals row of the table off (Table Design), import again, and turn it on.")
-        return Problem("warning", self.cells.title, self.cells.address(last, 0) if last else "", message, fix)
+        if self.table.found:
+            why = self._find_hindrance(last, len(rows))
+            if not why and total is not None:
+                why = fill("row {row} is the totals row of a table", row=str(total))
+            if not why:
+                for number, row in enumerate(rows, last + 1):
+                    self._write_row(number, row)
+                return True
+            message = nfill(
+                "{n:,} new row of the model was not added: {why}.",
+                "{n:,} new rows of the model were not added: {why}.", len(rows), why=why,
+            )  # fmt: skip
+            fix = fill("Move what stands below the last complete row of this sheet elsewhere, then import again.")
+            if total is not None:
+                fix = fill("Turn the totals row of the table off (Table Design), import again, and turn it on.")
+            cell = self.cells.address(last, 0) if last else ""
+            self.problems.append(Problem("warning", self.cells.title, cell, message, fix))
+        for row in rows:
+            reason = "" if self.table.found else why
+            self.changes.append(Change("left_out", self.cells.title, "", str(next(iter(row.values()))), reason=reason))
+        return False
 
     def _write_row(self, number: int, row: Mapping[str, Any]) -> None:
         for name, wanted in row.items():
@@ -285,74 +286,23 @@ class SheetUpdate:
         return ""
 
 
-@dataclass(slots=True)
-class BookUpdate:
-    """A workbook while it is updated.
-
-    Attributes
-    ----------
-    sheets : mapping of str to SheetUpdate
-        Those that it has, by their English names.
-    changes : list of Change
-        All that was done, and not done.
-    problems : list of Problem
-        Why rows could not be added.
-    """
-
-    sheets: Mapping[str, SheetUpdate]
-    changes: list[Change]
-    problems: list[Problem] = field(default_factory=list)
-
-    def add(self, sheet: str, rows: Rows) -> bool:
-        """Add rows to a sheet, and return whether there was room for them; else each is listed as left out."""
-        if not rows:
-            return True
-        update = self.sheets.get(sheet)
-        problem = update.add_rows(rows) if update else None
-        if update and problem is None:
-            return True
-        self.problems += [problem] if problem else []
-        title, why = (update.cells.title, "") if update else (sheet, fill("the workbook lacks the sheet"))
-        for row in rows:
-            self.changes.append(Change("left_out", title, "", str(next(iter(row.values()))), reason=why))
-        return False
-
-
-# ---------------------------------------------------------------- values
-
-
-def _to_cell(column: Column, unit: str, wanted: Any) -> Value:
-    if isinstance(wanted, bool):
-        wanted = YES if wanted else NO
-    if column.kind == "outline":
-        return _write_outline(column, unit, str(wanted))
-    if isinstance(wanted, str):
-        if wanted in column.choices:
-            return say_choices(column.choices, column.language)[column.choices.index(wanted)]
-        return str(wanted)
-    return _convert(column, unit, wanted)
-
-
 def _convert(column: Column, unit: str, number: float) -> float:
     if not column.quantity or unit == column.unit:
         return number
     return round(number * column.factor / QUANTITIES[column.quantity][unit], DECIMALS.get(unit, _DIGITS))
 
 
-def _write_outline(column: Column, unit: str, text: str) -> str | None:
-    if unit == column.unit:
-        return text
-    try:
-        corners = parse_outline(text, 1.0)
-    except OutlineError:
-        return None
-    return "; ".join(f"{_convert(column, unit, x):.10g} {_convert(column, unit, y):.10g}" for x, y in corners)
-
-
 def _is_same(column: Column, read: Any, wanted: Any) -> bool:
     """Tell whether a value as it was read, in SI, is that of the model but for rounding and spelling."""
     if column.kind == "outline":
-        return _is_same_outline(column, read, str(wanted))
+        try:
+            corners = parse_outline(str(wanted), column.factor)
+        except OutlineError:
+            return False
+        close = TOLERANCE["length"]
+        return len(corners) == len(read) and all(
+            abs(x - u) <= close and abs(y - v) <= close for (x, y), (u, v) in zip(corners, read, strict=True)
+        )
     if isinstance(wanted, str):
         return key(str(read)) == key(wanted)
     difference = abs(float(read) - wanted * column.factor)
@@ -360,18 +310,6 @@ def _is_same(column: Column, read: Any, wanted: Any) -> bool:
         period = HALF_TURN if column.name == "angle_deg" else TURN
         difference = min(difference % period, -difference % period)
     return bool(difference <= TOLERANCE.get(column.quantity, 1e-9 * abs(wanted * column.factor)))
-
-
-def _is_same_outline(column: Column, read: Any, wanted: str) -> bool:
-    try:
-        corners = parse_outline(wanted, column.factor)
-    except OutlineError:
-        return False
-    close = TOLERANCE["length"]
-    return len(corners) == len(read) and all(
-        abs(one[0] - other[0]) <= close and abs(one[1] - other[1]) <= close
-        for one, other in zip(corners, read, strict=True)
-    )
 
 
 def _is_inside(place: Place, area: tuple[int, int, int, int]) -> bool:

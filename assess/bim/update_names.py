@@ -38,11 +38,9 @@ _NUMBER = re.compile(r"(?: \(\d+\))+$")
 def match_floors(model: Levels, workbook: Levels, pairs: Iterable[tuple[str, str]]) -> dict[str, str]:
     """Return the floor of the workbook that each floor of a model is; those of the model alone are left out.
 
-    `model` and `workbook`: the floors, with their elevations [m].
-    `pairs`: the floors, in the model and in the workbook, of every piece that both have.
+    `model` and `workbook`: the floors, with their elevations [m]. `pairs`: the floors, in the model and in the
+    workbook, of every piece that both have.
 
-    Notes
-    -----
     A floor has kept its name where no floor of the workbook has more of its pieces than that of the same name. Else it
     is the one that has more than half of them, unless another has kept that name, or the elevations say that the
     pieces, not the names, have moved. Floors without pieces are found by their names and elevations.
@@ -94,8 +92,6 @@ def match_rooms(trios: Iterable[tuple[str, str, str]], known: Collection[str]) -
     `trios`: of every piece that both have: its floor as names are compared, its room in the model and in the workbook.
     `known`: all rooms of the model, as names are compared: a piece in another one of these was moved.
 
-    Notes
-    -----
     A room was renamed where more than half of its pieces are in one room that the model does not know, and none in a
     room of its own name.
     """

@@ -5,7 +5,7 @@ it. Only such files are replaced, and only plans that Floors names in the end ar
 """
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from itertools import chain, count
 from pathlib import Path
 from typing import Any
@@ -27,30 +27,18 @@ Files = Path | Mapping[str, bytes] | None
 
 
 class PlanUpdate:
-    """The plans of one update.
+    """The plans of one update: `files` are those to write.
 
-    `files`: the plans to write.
-
-    Parameters
-    ----------
-    sheet : SheetUpdate, optional
-        Floors of the workbook.
-    imported : ImportedBuilding
-        The model, with its plans.
-    sources : collection of str
-        File names that the model had when the workbook was imported from it.
-    beside : Path or mapping of str to bytes, optional
-        The folder of the workbook, or the files beside it.
+    `sheet` is Floors of the workbook, `sources` are file names that the model had when the workbook was imported from
+    it, and `beside` is the folder of the workbook, or the files beside it.
     """
 
-    def __init__(
-        self, sheet: SheetUpdate | None, imported: ImportedBuilding, sources: Collection[str], beside: Files
-    ) -> None:
+    def __init__(self, sheet: SheetUpdate, imported: ImportedBuilding, sources: Collection[str], beside: Files) -> None:
         self.files: dict[str, bytes] = {}
         self._sheet, self._imported, self._beside = sheet, imported, beside
         self._sources = {imported.source, *sources}
         self._wanted = {key(name) for name in imported.files}
-        self._named = {key(row.get("plan")) for row in sheet.table.with_all("plan")} if sheet else set()
+        self._named = {key(row.get("plan")) for row in sheet.table.with_all("plan")}
         self._taken = set(self._named)
 
     def release(self, pairs: Iterable[tuple[Mapping[str, Any], Row]]) -> None:
@@ -60,13 +48,12 @@ class PlanUpdate:
             for model, row in pairs
             if model.get("plan") and row.get("plan") and self._is_imported(model, row)
         }
-        kept = self._sheet.table.with_all("plan") if self._sheet else ()
-        self._taken = {key(row.get("plan")) for row in kept if row.number not in rows}
+        self._taken = {key(row.get("plan")) for row in self._sheet.table.with_all("plan") if row.number not in rows}
 
     def name_new(self, model: Mapping[str, Any]) -> dict[str, Any]:
         """Return the row of a new floor with the name under which its plan is written."""
         data = self._imported.files.get(model.get("plan", ""))
-        if data is None or self._sheet is None or not self._sheet.can_hold("plan"):
+        if data is None or not self._sheet.can_hold("plan"):
             return dict(model)
         name = self._find_name(model["plan"], data, (model["plan"],))
         self._give(name, data)
@@ -74,7 +61,7 @@ class PlanUpdate:
 
     def update(self, model: Mapping[str, Any], row: Row) -> None:
         """Update the plan of a floor that both have, unless it is one of people."""
-        if self._sheet is None or not model.get("plan"):
+        if not model.get("plan"):
             return
         sheet, own = self._sheet, row.get("plan")
         if own is not None and not self._is_imported(model, row):
@@ -82,18 +69,17 @@ class PlanUpdate:
                 sheet.note_row("kept", row, fill("{name} is not a plan of the import", name=own))
             sheet.keep(row, "plan", model["plan"], fill("it is not a plan of the import"))
             return
-        data = self._imported.files.get(model["plan"])
-        name = model["plan"] if data is None else self._find_name(model["plan"], data, _list_first(own, model["plan"]))
+        name, data = model["plan"], self._imported.files.get(model["plan"])
+        if data is not None:
+            # that of today first, where it is the one that is wanted but for its number
+            is_same = own is not None and key(_NUMBER.sub("", own)) in (key(name), key(_NUMBER.sub("", name)))
+            name = self._find_name(name, data, (own, name) if own is not None and is_same else (name,))
         for field in PLAN:
             sheet.replace(row, field, name if field == "plan" else model.get(field))
-        if data is not None and self._holds(row, name):
-            self._give(name, data)
-
-    def _holds(self, row: Row, name: str) -> bool:
-        """Tell whether Floors names a plan now: its cell may be one that is not set."""
-        if self._sheet is None or not self._sheet.can_hold("plan"):
-            return False
-        return key(str(self._sheet.values.get(self._sheet.address("plan", row), row.get("plan")))) == key(name)
+        if data is not None and sheet.can_hold("plan"):
+            held = sheet.values.get(sheet.address("plan", row), row.get("plan"))  # the cell may be one that is not set
+            if key(str(held)) == key(name):
+                self._give(name, data)
 
     def _give(self, name: str, data: bytes) -> None:
         self._taken.add(key(name))
@@ -102,17 +88,14 @@ class PlanUpdate:
 
     def _find_name(self, wanted: str, data: bytes, first: Iterable[str]) -> str:
         """Return the first name under which a plan can be written: no file of users has it, and no other plan."""
-        others = self._wanted - {key(wanted)}
-        numbered = (f"{wanted.removesuffix('.svg')}-{number}.svg" for number in count(2))
-        return next(
-            one
-            for one in chain(first, numbered)
-            if key(one) not in self._taken and key(one) not in others and self._is_free(one, data)
-        )
+        others = self._taken | self._wanted - {key(wanted)}
 
-    def _is_free(self, name: str, data: bytes) -> bool:
-        there = self._read(name)
-        return there is None or there == data or (key(name) in self._named and is_drawn(there))
+        def is_free(name: str) -> bool:
+            there = self._read(name)
+            return there is None or there == data or (key(name) in self._named and is_drawn(there))
+
+        numbered = (f"{wanted.removesuffix('.svg')}-{number}.svg" for number in count(2))
+        return next(one for one in chain(first, numbered) if key(one) not in others and is_free(one))
 
     def _is_imported(self, model: Mapping[str, Any], row: Row) -> bool:
         """Tell whether the plan of a floor is one that an import wrote: of this model, or of an earlier name of it."""
@@ -134,10 +117,3 @@ class PlanUpdate:
             return path.read_bytes()
         except OSError:
             return b""
-
-
-def _list_first(own: str | None, wanted: str) -> Iterator[str]:
-    """Yield the names that come first: that of today where it is the one that is wanted but for its number."""
-    if own is not None and key(_NUMBER.sub("", own)) in (key(wanted), key(_NUMBER.sub("", wanted))):
-        yield own
-    yield wanted

@@ -20,7 +20,7 @@ from typing import Any, TypeVar
 
 from assess.bim.building_model import Point
 from assess.bim.import_workbook import ImportedBuilding, list_rows, name_apart
-from assess.bim.update_cells import RENAMED, TOLERANCE, BookUpdate, Change, Rows, SheetUpdate, describe
+from assess.bim.update_cells import RENAMED, TOLERANCE, Change, Rows, SheetUpdate, describe
 from assess.bim.update_names import Named, Pair, find_offset, match_alike, match_floors, match_rooms, move_rows
 from assess.bim.update_plans import PLAN, Files, PlanUpdate
 from assess.errors import InputError, Problem, WorkbookError
@@ -29,6 +29,7 @@ from assess.model import MEASURED
 from assess.pipeline.corrected import find_results
 from assess.progress import SILENT, Progress
 from assess.workbook.catalogue import read_catalogue
+from assess.workbook.held import HeldCells
 from assess.workbook.names import key
 from assess.workbook.parse import Row, Table
 from assess.workbook.patch import find_totals, patch_workbook
@@ -53,20 +54,11 @@ _Row = TypeVar("_Row", Row, Mapping[str, Any])
 
 @dataclass(frozen=True, slots=True)
 class Updated:
-    """A workbook after an update.
+    """A workbook after an update: the very bytes from before where no cell was to change.
 
-    Attributes
-    ----------
-    data : bytes
-        The workbook; the very bytes from before where no cell was to change.
-    changes : tuple of Change
-        All that was done, and all that was not: see `assess.bim.update_cells.Change`.
-    problems : tuple of Problem
-        Why new rows could not be added, as warnings.
-    moved : Point
-        What was added to all positions of the model, so that they have the origin of the workbook [m].
-    plans : mapping of str to bytes
-        Plans to write beside the workbook: those that Floors names, under names that no file of users has.
+    `changes` is all that was done, and all that was not; `problems` is why new rows could not be added. `moved` was
+    added to all positions of the model, so that they have the origin of the workbook [m]. `plans` are to be written
+    beside the workbook: those that Floors names, under names that no file of users has.
     """
 
     data: bytes
@@ -82,54 +74,30 @@ class Updated:
 
 
 def update_workbook(
-    data: bytes,
-    imported: ImportedBuilding,
-    name: str,
-    progress: Progress = SILENT,
-    *,
-    records: Files = None,
+    data: bytes, imported: ImportedBuilding, name: str, progress: Progress = SILENT, *, records: Files = None
 ) -> Updated:
-    """Bring a workbook up to date with the building model that it was imported from.
+    """Bring a workbook up to date with the building model that it was imported from: a second time changes nothing.
 
-    Parameters
-    ----------
-    data : bytes
-        The .xlsx or .xlsm, as people have filled it in: in any language, units and order of columns.
-    imported : ImportedBuilding
-        What the model tells now; pieces without a Source ID are not used.
-    name : str
-        How messages call the workbook.
-    progress : Progress
-        Checked while it works.
-    records : Path or mapping of str to bytes, optional
-        The folder of the workbook, or the files beside it: the stored results of its live formulas may rest on these,
-        and plans replace none of them but earlier plans.
+    `data`: the workbook as people have filled it in, in any language, units and order of columns; messages call it
+    `name`. `imported`: what the model tells now; pieces without a Source ID are not used. `records`: the folder of the
+    workbook, or the files beside it: stored results of live formulas may rest on these, and plans replace none of them
+    but earlier plans.
 
-    Returns
-    -------
-    Updated
-        Importing the same model again changes nothing more.
-
-    Raises
-    ------
-    InputError
-        If the model has no furniture, or the workbook has no Source ID of it.
-    WorkbookError
-        If the workbook cannot be opened, or something in it cannot be changed with certainty.
+    Raises InputError if the model has no furniture, or the workbook has no Source ID of it; WorkbookError if the
+    workbook cannot be opened, or something in it cannot be changed with certainty.
     """
     held = hold_sheets(data, name, progress)
-    tables, problems = parse_held(held)
-    changes: list[Change] = []
-    sheets = {
-        one: SheetUpdate(tables[one], cells, changes, find_totals(data, cells.title, name))
-        for one, cells in held.cells.items()
-    }
-    items = tables["Items"]
-    if not items.rows and any(one.severity == "error" and one.sheet == items.sheet.name for one in problems):
-        raise WorkbookError(problems, held.language)
-    book = BookUpdate(sheets, changes)
-    building = _BuildingUpdate(imported, name, book, records)
-    building.run()
+    tables, found = parse_held(held)
+    if not tables["Items"].rows and any(
+        one.severity == "error" and one.sheet == tables["Items"].sheet.name for one in found
+    ):
+        raise WorkbookError(found, held.language)
+    changes, problems = list[Change](), list[Problem]()
+    sheets = {one: SheetUpdate(table, HeldCells(one, {}), changes, problems) for one, table in tables.items()}
+    for one, cells in held.cells.items():
+        sheets[one] = replace(sheets[one], cells=cells, totals=find_totals(data, cells.title, name))
+    update = _Update(imported, name, sheets, records)
+    update.run()
     written = {sheet: one for sheet, one in sheets.items() if one.values}
     if written:
         patches = {one.cells.title: one.values for one in written.values()}
@@ -137,80 +105,252 @@ def update_workbook(
         if not written.keys() <= _IDLE:
             inventory = read_inventory(data, records=records, strict=False, progress=progress)
             data = patch_workbook(data, {}, find_results(data, inventory), name=name, progress=progress).data
-    return Updated(data, tuple(changes), tuple(book.problems), building.moved, building.plans.files)
+    return Updated(data, tuple(changes), tuple(problems), update.moved, update.plans.files)
 
 
-# ---------------------------------------------------------------- types
+class _Update:
+    """One update: it works out everything that is to be written.
 
-
-@dataclass(slots=True)
-class _TypeUpdate:
-    """The types of a model in a workbook.
-
-    Attributes
-    ----------
-    book : BookUpdate
-        The workbook.
-    rows : sequence of mapping
-        The types of the model.
-    names : dict of str to str
-        What the Catalogue calls a type of the model, or will call it, by its name as names are compared.
-    renamed : dict of str to str
-        Likewise what Items calls it, where that is another type.
+    `floors` and `rooms` are the names of the workbook by those of the model, as names are compared; of rooms with the
+    floor before. `types` is what Items calls a type of the model.
     """
 
-    book: BookUpdate
-    rows: Rows
-    names: dict[str, str] = field(default_factory=dict)
-    renamed: dict[str, str] = field(default_factory=dict)
-    _own: Sequence[Row] = ()
-    _found: Mapping[int, int] = field(default_factory=dict)
+    def __init__(self, imported: ImportedBuilding, name: str, sheets: Mapping[str, SheetUpdate], beside: Files) -> None:
+        self.imported, self.name, self.sheets, self.items = imported, name, sheets, sheets["Items"]
+        rows = list_rows(imported)
+        self.pairs, self.new = self._match_items(rows["Items"])
+        self.moved = find_offset(self.pairs)
+        self.rows = move_rows(rows, self.moved)
+        self.pairs, self.new = self._match_items(self.rows["Items"])
+        self.kinds = self.rows["Catalogue"][: len(imported.types)]
+        self.floors: dict[str, str] = {}
+        self.rooms: dict[tuple[str, str], str] = {}
+        self.types: dict[str, str] = {}
+        sources = set(_list_sources(sheets["Catalogue"].table, Path(imported.source).suffix))
+        self.plans = PlanUpdate(sheets["Floors"], imported, sources, beside)
 
-    def match(self, pairs: Iterable[tuple[str, str]]) -> None:
-        """Find out which types are which.
+    def run(self) -> None:
+        """Update every sheet; floors first, as what is new stands on them."""
+        items = self.rows["Items"]
+        self._note_duplicates()
+        own_floors = _by_floor(self.sheets["Floors"].table)
+        found = match_floors(
+            {key(row["floor"]): row.get("elevation") for row in self.rows["Floors"]},
+            {one: row.get("elevation") for one, row in own_floors.items()},
+            ((key(one["floor"]), key(row.get("floor"))) for one, row in self.pairs if row.get("floor")),
+        )
+        self.floors = {one: own_floors[name].get("floor") for one, name in found.items()}
+        stayed = [
+            (one, row) for one, row in self.pairs if key(self._find_floor(one["floor"])) == key(row.get("floor") or "")
+        ]
+        known = {key(row["room"]) for row in items if row.get("room")}
+        known |= {key(row["place"]) for row in self.rows["Places"]}
+        self.rooms = match_rooms(
+            (
+                (key(row.get("floor")), one["room"], row.get("room"))
+                for one, row in stayed
+                if one.get("room") and row.get("room")
+            ),
+            known,
+        )
+        matched, names, renamed = self._match_types()
+        self._update_building()
+        self._update_floors(own_floors)
+        self.items.note_columns(("room", *SIZES, *POSITION), items)
+        self._note_renamed(stayed, renamed)
+        for model, row in self.pairs:
+            self._update_item(model, row)
+        self._add_items()
+        ids = _by_id(items)
+        for one, rows in _by_id(self.items.table.rows).items():
+            for row in rows if one not in ids else ():
+                self.items.note_row("missing", row)
+        self._update_places()
+        self._update_types(matched, names)
 
-        `pairs`: the types, in the model and in the workbook, of every piece that both have.
+    # ------------------------------------------------------------ who is who
+
+    def _match_items(self, items: Rows) -> tuple[list[Pair], list[Mapping[str, Any]]]:
+        """Return the pieces that both have (InputError if none), and those of the model that the workbook lacks."""
+        table = self.items.table
+        values = {"name": self.name, "source": self.imported.source, "label": table.label("source_id")}
+        if not items:
+            raise InputError(fill("{source} holds no furniture that can be imported; {name} stays as it is.", **values))
+        own, model = _by_id(table.rows), _by_id(items)
+        if not own.keys() & model.keys():
+            if "source_id" not in table.places:
+                raise InputError(
+                    fill("{name} has no column {label} in Items, by which its rows are found again in {source}. "
+                         "Import into a new workbook under another name.", **values)
+                )  # fmt: skip
+            raise InputError(
+                fill("{name} does not seem to be a workbook of {source}: it has no {label} of that model. Name the "
+                     "workbook that was imported from it, or import into a new one under another name.", **values)
+            )  # fmt: skip
+        pairs = [(rows[0], own[one][0]) for one, rows in model.items() if len(rows) == 1 == len(own.get(one, ()))]
+        return pairs, [row for one, rows in model.items() if one not in own for row in rows]
+
+    def _note_duplicates(self) -> None:
+        """List a Source ID of several rows, or of several pieces: which is which cannot be told."""
+        model = _by_id(self.rows["Items"])
+        for one, rows in _by_id(self.items.table.rows).items():
+            if len(rows) > 1 and one in model:
+                cells = ", ".join(self.items.address("source_id", row) for row in rows)
+                why = fill("its Source ID stands in several rows ({cells})", cells=cells)
+                self.items.note_row("kept", rows[0], why)
+            elif len(model.get(one, ())) > 1:
+                why = fill("the model has {n} pieces of its Source ID", n=len(model[one]))
+                self.items.note_row("kept", rows[0], why)
+
+    def _match_types(self) -> tuple[dict[int, Row], dict[str, str], dict[str, str]]:
+        """Find out what the workbook calls the types of the model.
+
+        Returns their rows of the Catalogue, by their places; what the Catalogue calls a type, or will call it, by its
+        name as names are compared; and what Items calls it, where that is another type.
         """
-        sheet = self.book.sheets.get("Catalogue")
-        self._own = sheet.table.with_all("type") if sheet else ()
-        own = [Named(row.get("type"), tuple(row.get(name) for name in SIZES)) for row in self._own]
-        model = [Named(row["type"], _find_sizes(row)) for row in self.rows]
-        self._found = match_alike(model, own, _are_same)
-        taken = [one.name for one in own]
-        new = [one for at, one in enumerate(model) if at not in self._found]
-        added = iter(name_apart((one.name for one in new), taken))
-        for at, kind in enumerate(model):
-            self.names[key(kind.name)] = own[self._found[at]].name if at in self._found else next(added)
-        known = {*self.names, *map(key, self.names.values())}
-        found = match_rooms((("", one, other) for one, other in pairs), known)
-        sizes = {key(one.name): one.content for one in model}
-        for (_, one), other in found.items():
-            if self._is_of_people(other, sizes.get(one, ())):
-                self.renamed[one] = other
+        catalogue = self.sheets["Catalogue"].table.with_all("type")
+        own = [Named(row.get("type"), tuple(row.get(name) for name in SIZES)) for row in catalogue]
+        model = [Named(row["type"], _find_sizes(row)) for row in self.kinds]
+        found = match_alike(model, own, _are_same)
+        new = [one for at, one in enumerate(model) if at not in found]
+        added = iter(name_apart((one.name for one in new), [one.name for one in own]))
+        names = {key(kind.name): own[found[at]].name if at in found else next(added) for at, kind in enumerate(model)}
+        sizes, rows = (
+            {key(one.name): one.content for one in model},
+            {key(row.get("type")): row for row in reversed(catalogue)},
+        )
+        renamed = {}
+        pairs = (("", one["type"], row.get("type")) for one, row in self.pairs if one.get("type") and row.get("type"))
+        for (_, one), other in match_rooms(pairs, {*names, *map(key, names.values())}).items():
+            row = rows.get(key(other))
+            # people chose it, rather than the model that gave its pieces another type before
+            if row is None or _is_built_in(row) or _are_same(sizes.get(one, ()), [row.get(name) for name in SIZES]):
+                renamed[one] = other
+        self.types = names | renamed
+        return {at: catalogue[other] for at, other in found.items()}, names, renamed
 
-    def find(self, name: str) -> str:
-        """Return what Items calls a type of the model."""
-        return self.renamed.get(key(name)) or self.names.get(key(name), name)
+    def _find_floor(self, name: str) -> str:
+        return self.floors.get(key(name), name)
 
-    def update(self) -> None:
+    def _find_room(self, floor: str, room: str) -> str:
+        return self.rooms.get((key(floor), key(room)), room)
+
+    def _find_type(self, name: str) -> str:
+        return self.types.get(key(name), name)
+
+    def _note_renamed(self, pairs: Sequence[Pair], types: Mapping[str, str]) -> None:
+        rooms, types = dict(self.rooms), dict(types)
+        for model, row in pairs:
+            room, kind = (key(row.get("floor")), key(model.get("room") or "")), key(model.get("type") or "")
+            if room in rooms and key(rooms[room]) == key(row.get("room") or ""):
+                self.items.keep(row, "room", model["room"], RENAMED)
+                del rooms[room]
+            if kind in types and key(types[kind]) == key(row.get("type") or ""):
+                self.items.keep(row, "type", model["type"], RENAMED)
+                del types[kind]
+
+    # ------------------------------------------------------------ the sheets
+
+    def _update_building(self) -> None:
+        sheet = self.sheets["Building"]
+        for row in sheet.table.rows:
+            for name in SITE:
+                sheet.fill_blank(row, name, self.imported.building.get(name))
+
+    def _update_floors(self, own: Mapping[str, Row]) -> None:
+        """Update the floors that both have, and add those of the model alone; WorkbookError if they cannot be added."""
+        sheet, uses = self.sheets["Floors"], Counter(map(key, self.floors.values()))
+        pairs = [(one, row) for one in self.rows["Floors"] if (row := own.get(key(self._find_floor(one["floor"]))))]
+        updated = [(model, row) for model, row in pairs if uses[key(row.get("floor"))] == 1]
+        self.plans.release(updated)
+        new = [row for row in self.rows["Floors"] if key(row["floor"]) not in self.floors]
+        if not sheet.add([self.plans.name_new(row) for row in new]):
+            faults = [replace(one, severity="error") for one in sheet.problems]
+            raise WorkbookError(faults or [Problem("error", "Floors", "", fill("the sheet is missing."))])
+        sheet.note_columns(PLAN, self.rows["Floors"])
+        for model, row in pairs:
+            sheet.keep(row, "floor", model["floor"], RENAMED)
+            if (model, row) in updated:
+                sheet.fill_blank(row, "elevation", model.get("elevation"))
+                self.plans.update(model, row)
+
+    def _update_places(self) -> None:
+        """Move the places that both have, and add those of the model alone: rooms, doors, stairs and exits.
+
+        They have no identifier. Points that drafted routes pass have no kind. They do not follow: their names are
+        numbers of one draft, by which another draft calls other points, and routes are drafted into new workbooks only.
+        """
+        sheet = self.sheets["Places"]
+        own = sheet.table.with_all("place")
+        named = {key(row.get("place")) for row in own}
+        model = [{**row, "floor": self._find_floor(row["floor"])} for row in self.rows["Places"] if row.get("kind")]
+        for row in model:
+            renamed = self._find_room(row["floor"], row["place"])
+            row["place"] = renamed if key(renamed) in named else row["place"]
+        found = match_alike(
+            [Named(row["place"], (key(row["floor"]), row.get("x"), row.get("y"))) for row in model],
+            [Named(row.get("place"), (key(row.get("floor") or ""), row.get("x"), row.get("y"))) for row in own],
+            _is_near,
+            by_content=True,
+        )
+        sheet.note_columns(PLACE, model)
+        for at, other in found.items():
+            line, new = own[other], model[at]
+            if key(line.get("floor") or "") != key(new["floor"]):
+                sheet.keep(line, "floor", new["floor"])
+                continue
+            sheet.keep(line, "place", new["place"], RENAMED)
+            for name in PLACE:
+                sheet.replace(line, name, new.get(name))
+        added = [row for at, row in enumerate(model) if at not in found]
+        names = name_apart((row["place"] for row in added), [str(row.get("place")) for row in own])
+        sheet.add([{**row, "place": name} for name, row in zip(names, added, strict=True)])
+
+    def _update_types(self, matched: Mapping[int, Row], names: Mapping[str, str]) -> None:
         """Update the sizes of the types that both have, and add those of the model alone."""
-        sheet = self.book.sheets.get("Catalogue")
-        for at, other in self._found.items():
-            row, model = self._own[other], self.rows[at]
+        sheet = self.sheets["Catalogue"]
+        for at, row in matched.items():
             for name in SIZES:
-                if sheet is None:
-                    continue
                 if _is_built_in(row):
-                    sheet.keep(row, name, model.get(name), fill("the type comes with the program"))
+                    sheet.keep(row, name, self.kinds[at].get(name), fill("the type comes with the program"))
                 else:
-                    sheet.replace(row, name, model.get(name))
-        new = [row for at, row in enumerate(self.rows) if at not in self._found]
-        self.book.add("Catalogue", [{**row, "type": self.names[key(row["type"])]} for row in new])
+                    sheet.replace(row, name, self.kinds[at].get(name))
+        new = [row for at, row in enumerate(self.kinds) if at not in matched]
+        sheet.add([{**row, "type": names[key(row["type"])]} for row in new])
 
-    def _is_of_people(self, name: str, sizes: Sequence[float | None]) -> bool:
-        """Tell whether people chose a type for pieces of a model, rather than the model that gave it another before."""
-        row = next((row for row in self._own if key(row.get("type")) == key(name)), None)
-        return row is None or _is_built_in(row) or _are_same(sizes, [row.get(one) for one in SIZES])
+    def _update_item(self, model: Mapping[str, Any], row: Row) -> None:
+        sheet, floor = self.items, self._find_floor(model["floor"])
+        sheet.replace(row, "floor", floor)
+        sheet.replace(row, "room", self._find_room(floor, model.get("room") or ""))
+        origin, has_sizes = model.get("sizes_from"), any(row.get(name) is not None for name in SIZES)
+        # blank is measured; but a workbook of a handover file, which tells of no origin, is blank and follows the file
+        unsaid = MEASURED if origin and has_sizes and sheet.can_hold("sizes_from") else None
+        is_measured = (row.get("sizes_from") or unsaid) == MEASURED != origin
+        for name in SIZES:
+            if is_measured:
+                sheet.keep(row, name, model.get(name), fill("it was measured"))
+            else:
+                sheet.replace(row, name, model.get(name))
+        if not is_measured:
+            sheet.replace(row, "sizes_from", origin)
+        number = row.get("quantity") or 1
+        for name in POSITION:
+            if number == 1:
+                sheet.replace(row, name, model.get(name))
+            elif name == "x":
+                sheet.keep(row, name, model.get(name), fill("the row stands for {n} pieces", n=number))
+        if row.get("type"):
+            sheet.keep(row, "type", self._find_type(model.get("type") or ""))
+
+    def _add_items(self) -> None:
+        taken = [str(row.get("item")) for row in self.items.table.with_all("item")]
+        names = name_apart((row["item"] for row in self.new), taken)
+        found = []
+        for name, row in zip(names, self.new, strict=True):
+            floor = self._find_floor(row["floor"])
+            room, kind = self._find_room(floor, row.get("room") or ""), self._find_type(row.get("type") or "")
+            found.append({**row, "item": name, "floor": floor, "room": room, "type": kind})
+        self.items.add(found)
 
 
 def _find_sizes(row: Mapping[str, Any]) -> tuple[float | None, ...]:
@@ -236,227 +376,6 @@ def _list_built_in() -> frozenset[tuple[str, str]]:
     return frozenset(found)
 
 
-# ---------------------------------------------------------------- the building
-
-
-class _BuildingUpdate:
-    """One update: it works out everything that is to be written."""
-
-    def __init__(self, imported: ImportedBuilding, name: str, book: BookUpdate, beside: Files) -> None:
-        self.imported, self.name, self.book = imported, name, book
-        self.items = book.sheets["Items"]
-        rows = list_rows(imported)
-        self.moved = find_offset(_pair(self.items.table.rows, rows["Items"]))
-        self.rows = move_rows(rows, self.moved)
-        self.types = _TypeUpdate(book, self.rows["Catalogue"][: len(imported.types)])
-        self.floors: dict[str, str] = {}
-        self.rooms: dict[tuple[str, str], str] = {}
-        sources = set(_list_sources(book, Path(imported.source).suffix))
-        self.plans = PlanUpdate(book.sheets.get("Floors"), imported, sources, beside)
-
-    def run(self) -> None:
-        """Update every sheet; floors first, as what is new stands on them."""
-        pairs, new = self._match_items()
-        self._match_floors(pairs)
-        stayed = [
-            (one, row) for one, row in pairs if key(self._find_floor(one["floor"])) == key(row.get("floor") or "")
-        ]
-        self._match_rooms(stayed)
-        self.types.match((one["type"], row.get("type")) for one, row in pairs if one.get("type") and row.get("type"))
-        self._update_building()
-        self._update_floors()
-        self.items.note_columns(("room", *SIZES, *POSITION), self.rows["Items"])
-        self._note_renamed(stayed)
-        for model, row in pairs:
-            self._update_item(model, row)
-        self.book.add("Items", self._name_new(new))
-        known = _by_id(self.rows["Items"])
-        for one, rows in _by_id(self.items.table.rows).items():
-            for row in rows if one not in known else ():
-                self.items.note_row("missing", row)
-        self._update_places()
-        self.types.update()
-
-    # ------------------------------------------------------------ who is who
-
-    def _match_items(self) -> tuple[list[Pair], list[Mapping[str, Any]]]:
-        """Return the pieces that both have (InputError if none), and those of the model that the workbook lacks."""
-        if not self.rows["Items"]:
-            message = fill("{source} holds no furniture that can be imported; {name} stays as it is.",
-                           source=self.imported.source, name=self.name)  # fmt: skip
-            raise InputError(message)
-        own, model = _by_id(self.items.table.rows), _by_id(self.rows["Items"])
-        if not own.keys() & model.keys():
-            raise self._no_match()
-        for one in (one for one in own if one in model):
-            self._note_duplicates(own[one], model[one])
-        pairs = list(_pair(self.items.table.rows, self.rows["Items"]))
-        return pairs, [row for one, rows in model.items() if one not in own for row in rows]
-
-    def _no_match(self) -> InputError:
-        values = {"name": self.name, "source": self.imported.source, "label": self.items.table.label("source_id")}
-        if "source_id" not in self.items.table.places:
-            return InputError(
-                fill("{name} has no column {label} in Items, by which its rows are found again in {source}. "
-                     "Import into a new workbook under another name.", **values)
-            )  # fmt: skip
-        return InputError(
-            fill("{name} does not seem to be a workbook of {source}: it has no {label} of that model. Name the "
-                 "workbook that was imported from it, or import into a new one under another name.", **values)
-        )  # fmt: skip
-
-    def _note_duplicates(self, rows: Sequence[Row], models: Sequence[Mapping[str, Any]]) -> None:
-        """List a Source ID of several rows, or of several pieces: which is which cannot be told."""
-        if len(rows) > 1:
-            cells = ", ".join(self.items.address("source_id", row) for row in rows)
-            self.items.note_row("kept", rows[0], fill("its Source ID stands in several rows ({cells})", cells=cells))
-        elif len(models) > 1:
-            why = fill("the model has {n} pieces of its Source ID", n=len(models))
-            self.items.note_row("kept", rows[0], why)
-
-    def _match_floors(self, pairs: Sequence[Pair]) -> None:
-        own = _by_floor(self.book.sheets["Floors"].table) if "Floors" in self.book.sheets else {}
-        found = match_floors(
-            {key(row["floor"]): row.get("elevation") for row in self.rows["Floors"]},
-            {one: row.get("elevation") for one, row in own.items()},
-            ((key(one["floor"]), key(row.get("floor"))) for one, row in pairs if row.get("floor")),
-        )
-        self.floors = {one: own[name].get("floor") for one, name in found.items()}
-
-    def _match_rooms(self, stayed: Sequence[Pair]) -> None:
-        known = {key(row["room"]) for row in self.rows["Items"] if row.get("room")}
-        known |= {key(row["place"]) for row in self.rows["Places"]}
-        trios = (
-            (key(row.get("floor")), one["room"], row.get("room"))
-            for one, row in stayed
-            if one.get("room") and row.get("room")
-        )
-        self.rooms = match_rooms(trios, known)
-
-    def _find_floor(self, name: str) -> str:
-        return self.floors.get(key(name), name)
-
-    def _find_room(self, floor: str, room: str) -> str:
-        return self.rooms.get((key(floor), key(room)), room)
-
-    def _note_renamed(self, pairs: Sequence[Pair]) -> None:
-        rooms, types = dict(self.rooms), dict(self.types.renamed)
-        for model, row in pairs:
-            room, kind = (key(row.get("floor")), key(model.get("room") or "")), key(model.get("type") or "")
-            if room in rooms and key(rooms[room]) == key(row.get("room") or ""):
-                self.items.keep(row, "room", model["room"], RENAMED)
-                del rooms[room]
-            if kind in types and key(types[kind]) == key(row.get("type") or ""):
-                self.items.keep(row, "type", model["type"], RENAMED)
-                del types[kind]
-
-    # ------------------------------------------------------------ the building and its floors
-
-    def _update_building(self) -> None:
-        sheet = self.book.sheets.get("Building")
-        if sheet is None:
-            return
-        for row in sheet.table.rows:
-            for name in SITE:
-                sheet.fill_blank(row, name, self.imported.building.get(name))
-
-    def _update_floors(self) -> None:
-        """Update the floors that both have, and add those of the model alone; WorkbookError if they cannot be added."""
-        sheet = self.book.sheets.get("Floors")
-        own, uses = _by_floor(sheet.table) if sheet else {}, Counter(map(key, self.floors.values()))
-        pairs = [(one, row) for one in self.rows["Floors"] if (row := own.get(key(self._find_floor(one["floor"]))))]
-        updated = [(model, row) for model, row in pairs if uses[key(row.get("floor"))] == 1]
-        self.plans.release(updated)
-        new = [row for row in self.rows["Floors"] if key(row["floor"]) not in self.floors]
-        if not self.book.add("Floors", [self.plans.name_new(row) for row in new]):
-            faults = [replace(one, severity="error") for one in self.book.problems]
-            raise WorkbookError(faults or [Problem("error", "Floors", "", fill("the sheet is missing."))])
-        if sheet is None:
-            return
-        sheet.note_columns(PLAN, self.rows["Floors"])
-        for model, row in pairs:
-            sheet.keep(row, "floor", model["floor"], RENAMED)
-            if (model, row) in updated:
-                sheet.fill_blank(row, "elevation", model.get("elevation"))
-                self.plans.update(model, row)
-
-    # ------------------------------------------------------------ places
-
-    def _update_places(self) -> None:
-        """Move the places that both have, and add those of the model alone: rooms, doors, stairs and exits.
-
-        They have no identifier. Points that drafted routes pass have no kind. They do not follow: their names are
-        numbers of one draft, by which another draft calls other points, and routes are drafted into new workbooks only.
-        """
-        sheet = self.book.sheets.get("Places")
-        own = sheet.table.with_all("place") if sheet else []
-        named = {key(row.get("place")) for row in own}
-        model = [{**row, "floor": self._find_floor(row["floor"])} for row in self.rows["Places"] if row.get("kind")]
-        for row in model:
-            renamed = self._find_room(row["floor"], row["place"])
-            row["place"] = renamed if key(renamed) in named else row["place"]
-        found = match_alike(
-            [Named(row["place"], (key(row["floor"]), row.get("x"), row.get("y"))) for row in model],
-            [Named(row.get("place"), (key(row.get("floor") or ""), row.get("x"), row.get("y"))) for row in own],
-            _is_near,
-            by_content=True,
-        )
-        if sheet:
-            sheet.note_columns(PLACE, model)
-            for at, other in found.items():
-                line, new = own[other], model[at]
-                if key(line.get("floor") or "") != key(new["floor"]):
-                    sheet.keep(line, "floor", new["floor"])
-                    continue
-                sheet.keep(line, "place", new["place"], RENAMED)
-                for name in PLACE:
-                    sheet.replace(line, name, new.get(name))
-        added = [row for at, row in enumerate(model) if at not in found]
-        names = name_apart((row["place"] for row in added), [str(row.get("place")) for row in own])
-        self.book.add("Places", [{**row, "place": name} for name, row in zip(names, added, strict=True)])
-
-    # ------------------------------------------------------------ pieces
-
-    def _update_item(self, model: Mapping[str, Any], row: Row) -> None:
-        sheet = self.items
-        floor = self._find_floor(model["floor"])
-        sheet.replace(row, "floor", floor)
-        sheet.replace(row, "room", self._find_room(floor, model.get("room") or ""))
-        self._update_sizes(model, row)
-        number = row.get("quantity") or 1
-        for name in POSITION:
-            if number == 1:
-                sheet.replace(row, name, model.get(name))
-            elif name == "x":
-                sheet.keep(row, name, model.get(name), fill("the row stands for {n} pieces", n=number))
-        if row.get("type"):
-            sheet.keep(row, "type", self.types.find(model.get("type") or ""))
-
-    def _update_sizes(self, model: Mapping[str, Any], row: Row) -> None:
-        sheet, origin = self.items, model.get("sizes_from")
-        has_sizes = any(row.get(name) is not None for name in SIZES)
-        # blank is measured; but a workbook of a handover file, which tells of no origin, is blank and follows the file
-        unsaid = MEASURED if origin and has_sizes and sheet.can_hold("sizes_from") else None
-        is_measured = (row.get("sizes_from") or unsaid) == MEASURED != origin
-        for name in SIZES:
-            if is_measured:
-                sheet.keep(row, name, model.get(name), fill("it was measured"))
-            else:
-                sheet.replace(row, name, model.get(name))
-        if not is_measured:
-            sheet.replace(row, "sizes_from", origin)
-
-    def _name_new(self, new: Rows) -> list[dict[str, Any]]:
-        taken = [str(row.get("item")) for row in self.items.table.with_all("item")]
-        names = name_apart((row["item"] for row in new), taken)
-        found = []
-        for name, row in zip(names, new, strict=True):
-            floor = self._find_floor(row["floor"])
-            room, kind = self._find_room(floor, row.get("room") or ""), self.types.find(row.get("type") or "")
-            found.append({**row, "item": name, "floor": floor, "room": room, "type": kind})
-        return found
-
-
 def _by_id(rows: Iterable[_Row]) -> dict[str, list[_Row]]:
     found: dict[str, list[_Row]] = {}
     for row in rows:
@@ -465,17 +384,9 @@ def _by_id(rows: Iterable[_Row]) -> dict[str, list[_Row]]:
     return found
 
 
-def _pair(own: Iterable[Row], model: Iterable[Mapping[str, Any]]) -> Iterator[Pair]:
-    known = _by_id(own)
-    for one, rows in _by_id(model).items():
-        if len(rows) == 1 == len(known.get(one, ())):
-            yield rows[0], known[one][0]
-
-
-def _list_sources(book: BookUpdate, suffix: str) -> Iterator[str]:
+def _list_sources(catalogue: Table, suffix: str) -> Iterator[str]:
     """Yield what may be the name of a model that types came from: the ends of sources such as "shapes in A 1.ifc"."""
-    rows = book.sheets["Catalogue"].table.with_all("source") if "Catalogue" in book.sheets else ()
-    for text in {row.get("source") for row in rows}:
+    for text in {row.get("source") for row in catalogue.with_all("source")}:
         words = text.split(" ") if suffix and text.endswith(suffix) else ()
         yield from (" ".join(words[at:]) for at in range(len(words)))
 

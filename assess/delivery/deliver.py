@@ -56,31 +56,13 @@ def deliver(
 ) -> list[str]:
     """Bring what is in the folder `NEW` of a stage to a folder, which is made if missing.
 
-    Parameters
-    ----------
-    stage : Path
-        From `stage_for`.
-    folder : Path
-        Where to.
-    find_old : callable
-        Returns the names of the files in the folder that are an earlier run's, which are replaced or removed; whatever
-        it raises leaves all as it was. Called while the folder is locked.
-    data : str
-        Name of the file that lists the others; it is among the new ones.
-    progress : Progress
-        Checked while another run is waited for.
+    `stage`: from `stage_for`. `folder`: where to. `find_old`: returns the names of the files in the folder that are an
+    earlier run's, which are replaced or removed; whatever it raises leaves all as it was. Called while the folder is
+    locked. `data`: name of the file that lists the others; it is among the new ones.
 
-    Returns
-    -------
-    list of str
-        Names of the files that were removed and not replaced.
+    Returns names of the files that were removed and not replaced.
 
-    Raises
-    ------
-    OSError
-        If a file cannot be moved; all is as it was.
-    OutputError
-        If another run writes to the folder.
+    Raises OSError if a file cannot be moved; all is as it was. OutputError if another run writes to the folder.
     """
     flush_folder(stage / NEW)
     target = folder.resolve()
@@ -156,7 +138,6 @@ def _taken_back(stage: Path, target: Path, names: Sequence[str]) -> Iterator[Non
 
 
 def _bring(path: Path, to: Path) -> None:
-    """Move a file of a stage to its place."""
     if to.is_dir():
         raise IsADirectoryError(0, fill("it is a folder"), str(to))
     path.replace(to)
@@ -180,12 +161,8 @@ def explain_fault(folder: Path, error: OSError, files: Collection[str]) -> Outpu
 def save(files: Mapping[Path, bytes]) -> None:
     """Write files, whole or none of them; a folder below one that exists is made if missing.
 
-    Raises
-    ------
-    OSError
-        If one cannot be written; all is as it was. `filename` names it, or its folder.
-    OutputError
-        If another run writes to a folder.
+    Raises OSError if one cannot be written; all is as it was. `filename` names it, or its folder. OutputError if
+    another run writes to a folder.
     """
     made: list[Path] = []
     try:
@@ -219,7 +196,6 @@ def saving(path: Path) -> Iterator[Path]:
 
 
 def _place(stages: Mapping[Path, Path], stack: ExitStack) -> None:
-    """Bring the files of stages to their folders."""
     if sum(1 for stage in stages.values() for _ in (stage / NEW).iterdir()) > 1:
         for folder in sorted(stages):
             stack.enter_context(locked(folder))

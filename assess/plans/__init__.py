@@ -21,16 +21,9 @@ MOST_FILE = 10 * 2**20
 class Drawing:
     """What is kept of a plan's file.
 
-    Parameters
-    ----------
-    content : bytes
-        A grey JPEG; or, if `is_lines`, points of lines as `assess.plans.linework.pack` keeps them.
-    aspect : float
-        Height over width [-].
-    width : float, optional
-        Width [m] where the file tells its units.
-    left_out : tuple of str
-        What of the file is not drawn, in words.
+    `content`: a grey JPEG; or, if `is_lines`, points of lines as `assess.plans.linework.pack` keeps them. `aspect`:
+    height over width [-]. `width`: Width [m] where the file tells its units. `left_out`: what of the file is not drawn,
+    in words.
     """
 
     content: bytes

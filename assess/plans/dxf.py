@@ -155,7 +155,6 @@ class _Reader:
 
 
 def _outline(entity: Any) -> Iterator[list[tuple[float, float]]]:
-    """Yield the lines of an entity, seen from above; nothing of one that is no curve (a mesh)."""
     from ezdxf.path import make_path
 
     try:

@@ -59,14 +59,7 @@ def pack(lines: Sequence[Line], box: Box, *, is_down: bool) -> tuple[bytes, floa
 
     Raises PictureError if nothing is left, or too much.
 
-    Parameters
-    ----------
-    lines : sequence of sequence of (float, float)
-        In the drawing's units.
-    box : (4,) floats
-        The frame of the drawing.
-    is_down : bool
-        Whether Y points downwards.
+    `lines`: In the drawing's units. `box`: the frame of the drawing. `is_down`: whether Y points downwards.
     """
     left, low, right, high = box
     wide, tall = right - left, high - low

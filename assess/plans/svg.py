@@ -385,7 +385,6 @@ class PathReader:
         self.here = self.begun
 
     def _bend(self, controls: list[Point], end: Point) -> list[Point]:
-        """Return points of a Bézier curve from here, by its two control points, or its one (quadratic)."""
         if len(controls) == 1:
             (one,) = controls
             controls = [(at[0] + 2 / 3 * (one[0] - at[0]), at[1] + 2 / 3 * (one[1] - at[1])) for at in (self.here, end)]

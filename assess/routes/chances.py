@@ -283,7 +283,6 @@ def _draw(key: tuple[int, int], weight: FloatArray, seed: int) -> NDArray[np.int
 
 @lru_cache(maxsize=8192)
 def _levels(seed: int, name: int, is_joint: int) -> FloatArray:
-    """Return the levels, from 0 to 1, that decide the draws of a row, or of the simulated pieces."""
     return (np.random.default_rng([seed, name, is_joint]).permutation(DRAWS) + 0.5) / DRAWS
 
 

@@ -48,29 +48,13 @@ def evaluate_routes(
 ) -> RouteTables:
     """Evaluate the routes of an inventory.
 
-    Parameters
-    ----------
-    inventory : Inventory
-        The building.
-    obstructions : sequence of Obstructions
-        Its segments, from `assess.routes.obstructions.find_obstructions`.
-    falls : Falls
-        How its pieces fall.
-    settings : Settings
-        The chosen risk, the seed of draws where combinations of pieces are too many, and the runs, which decide the
-        width of intervals.
-    progress : Progress, optional
-        Receives the stage "routes".
+    `inventory`: the building. `obstructions`: its segments, from `assess.routes.obstructions.find_obstructions`.
+    `falls`: how its pieces fall. `settings`: the chosen risk, the seed of draws where combinations of pieces are too
+    many, and the runs, which decide the width of intervals.
 
-    Returns
-    -------
-    RouteTables
-        Empty where the inventory has no routes.
+    Empty where the inventory has no routes.
 
-    Raises
-    ------
-    CancelledError
-        If `progress` is cancelled.
+    Raises CancelledError if `progress` is cancelled.
     """
     if not obstructions:
         return RouteTables(risk=settings.route_risk)
@@ -241,10 +225,7 @@ def find_joint_draws(
     If all anchors hold. A route has none where one of the pieces that reach it was not simulated, is not confirmed, or
     was simulated in another number of draws.
 
-    Raises
-    ------
-    CancelledError
-        If `progress` is cancelled.
+    Raises CancelledError if `progress` is cancelled.
     """
     z = interval_width(settings)
     scene = Scene(inventory, tuple(obstructions), falls, settings.route_risk, settings.seed, z, progress)

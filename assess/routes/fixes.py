@@ -31,20 +31,8 @@ def find_fixes(
     upper end of the chance is to be under `risk`, or no draw left in which the route is blocked. What turns out not to
     be needed is left out again.
 
-    Parameters
-    ----------
-    couplings : Couplings
-        How the pieces that reach the route fall together.
-    lanes : mapping of int to Obstructions
-        The segments of the route by their number.
-    is_blocked : callable
-        See `IsBlocked`.
-    risk : float
-        The chosen risk [-].
-    z : float
-        Half width of intervals [-].
-    progress : Progress, optional
-        Checked for a cancel.
+    `couplings`: how the pieces that reach the route fall together. `lanes`: the segments of the route by their number.
+    `is_blocked`: see `IsBlocked`. `risk`: the chosen risk [-]. `z`: half width of intervals [-].
     """
     trial = _Trial(couplings, lanes, is_blocked, z, progress)
     if trial.chance(Fixed(trial.involved(Fixed()))) >= risk:

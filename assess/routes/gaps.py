@@ -89,14 +89,8 @@ class Gaps:
     def narrower(self, fallen: Mapping[Key, int], every: int, width: float) -> int:
         """Return the set of the draws in which less than a width [m] is left: some chain has narrower gaps alone.
 
-        Parameters
-        ----------
-        fallen : mapping of key to int
-            For each piece the set of the draws in which it falls; others stand.
-        every : int
-            The set of all draws, which is returned where the segment itself is narrower.
-        width : float
-            Width [m].
+        `fallen`: For each piece the set of the draws in which it falls; others stand. `every`: the set of all draws,
+        which is returned where the segment itself is narrower. `width`: Width [m].
         """
         if self.clear < width:
             return every

@@ -33,16 +33,8 @@ def turn(item: Item) -> float:
 def rectangle(at: Point, angle: float, along: tuple[float, float], across: float) -> Corners:
     """Return the corners of a rectangle, anticlockwise.
 
-    Parameters
-    ----------
-    at : (2,) floats
-        Centre of the piece [m].
-    angle : float
-        Direction of Breadth, anticlockwise from X [deg].
-    along : (2,) floats
-        Where it begins and ends along Breadth, from the centre [m].
-    across : float
-        Its width across Breadth [m], half of it on each side.
+    `at`: centre of the piece [m]. `angle`: direction of Breadth, anticlockwise from X [deg]. `along`: where it begins
+    and ends along Breadth, from the centre [m]. `across`: its width across Breadth [m], half of it on each side.
     """
     cos, sin = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     (x, y), (near, far), half = at, along, across / 2

@@ -21,14 +21,8 @@ from assess.routes.obstructions import Obstructions, is_walled_off
 def find_missing(one: Obstructions, inventory: Inventory, left_out: Collection[int]) -> tuple[MissingRow, ...]:
     """Return what is missing of a segment; nothing where it is too narrow with nothing fallen.
 
-    Parameters
-    ----------
-    one : Obstructions
-        The segment with the pieces that reach it.
-    inventory : Inventory
-        The building.
-    left_out : collection of int
-        The pieces, by their index, that may fall and of which it is not known whether they reach it.
+    `one`: the segment with the pieces that reach it. `inventory`: the building. `left_out`: the pieces, by their index,
+    that may fall and of which it is not known whether they reach it.
     """
     if one.is_blocked_standing:
         return ()
@@ -70,7 +64,6 @@ def list_left_out(one: Obstructions, inventory: Inventory, falls: Falls) -> Iter
 
 
 def _could_fall(falls: Falls, at: int) -> bool:
-    """Tell whether a piece may fall, or did under the recorded motion, and is not anchored."""
     is_free = not (falls.anchored[at] or falls.stands[at])
     return is_free and bool(falls.high[at] > 0 or falls.in_record[at] == 1)
 

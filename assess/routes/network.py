@@ -143,7 +143,6 @@ def _find_route_parts(
 
 
 def _find_tops(segments: Sequence[Segment], stairs: Collection[str]) -> set[str]:
-    """Return the stairs from which a flight of a route goes on, and those from which a segment leads to them."""
     found = {one.start for one in segments if not one.floor and one.end in stairs and one.start != one.end}
     while more := {one.start for one in segments if one.end in found and one.start in stairs} - found:
         found |= more
@@ -187,7 +186,6 @@ def find_rooms(
 
 
 def _below(part: Part, room: str, heights: Mapping[str, float]) -> Part:
-    """Leave out what lies above a room and above all ways out."""
     ends = [heights[place] for place in (room, *part.targets) if place in heights]
     roof = max(ends, default=math.inf)
     edges = (edge for edge in part.edges if all(heights.get(place, roof) <= roof for place in edge[:2]))

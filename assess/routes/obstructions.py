@@ -191,7 +191,6 @@ def _beside(index: int, item: Item, covered: Coverage, clear: float, required: f
 
 
 def _find_named(inventory: Inventory) -> dict[int, list[int]]:
-    """Return for each segment the pieces that name it, or its route alone, on its floor."""
     by_route: dict[str, list[int]] = {}
     for at, segment in enumerate(inventory.routes):
         by_route.setdefault(segment.route, []).append(at)
@@ -205,7 +204,6 @@ def _find_named(inventory: Inventory) -> dict[int, list[int]]:
 
 
 def _find_near(inventory: Inventory, shapes: Mapping[int, Shape], bands: Mapping[int, Band]) -> dict[int, list[int]]:
-    """Return for each band the placed pieces of its floor that lie near enough to cover some of it."""
     if not shapes:
         return {}
     from shapely import STRtree

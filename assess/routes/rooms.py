@@ -67,7 +67,6 @@ def find_missing_after(
 
 
 def _may_lack(scene: Scene, segments: Collection[int], fixes: Sequence[RouteFixRow]) -> bool:
-    """Tell whether there is anything to fix and anything missing; fixes count unconfirmed pieces already."""
     return bool(fixes) and any(scene.missing(at) for at in segments)
 
 
@@ -137,7 +136,6 @@ def _lose(scene: Scene, part: Part, room: str, draws: Draws) -> tuple[int, int, 
 def _list_missing_after(
     scene: Scene, place: Place, part: Part, ways: Sequence[WayRow], fixes: Sequence[RouteFixRow]
 ) -> tuple[MissingRow, ...]:
-    """Return what is to be filled in for a room once its fixes are done."""
     if not (fixes and part.by_stairs) and not _may_lack(scene, part.segments, fixes):
         return ()
     held = scene.with_held(fix.item_index for fix in fixes)
@@ -316,7 +314,6 @@ def _list_names(inventory: Inventory) -> dict[str, Collection[str]]:
 
 
 def _find_inside(rooms: Sequence[Place], items: Sequence[Item]) -> set[int]:
-    """Return the rooms (indices) in whose outline a piece stands."""
     outlined = [at for at, one in enumerate(rooms) if one.outline]
     placed = [(one.floor, (one.x, one.y)) for one in items if one.x is not None and one.y is not None]
     if not outlined or not placed:
