@@ -36,8 +36,8 @@ SizesFrom = Literal["model", "scan"]
 class Storey:
     """A storey that holds something.
 
-    `key`: its GlobalId; "" where the model has no storeys, and this one stands for all of it. `name`: as the model has
-    it. `elevation`: height of its floor above the building's zero [m]. `level`: z of its floor [m].
+    `key` is its GlobalId; "" where the model has no storeys, and this one stands for all of it. `elevation` is the
+    height of its floor above the building's zero, `level` its Z in the model [m].
     """
 
     key: str
@@ -95,18 +95,17 @@ class Stair:
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """A piece of furniture.
+    """A piece of furniture: `x`, `y` are the centre of its plan, its height is from its lowest point [m].
 
-    `key`: its GlobalId. `storey`, `space`: keys of its storey and its room, "" if it lies in none. `ifc_class`, `name`,
-    `type`: its class, name and type as the model has them; `type` is "" where it has none. `x`, `y`: centre of its plan
-    [m]. `breadth`, `width`, `height`: shorter and longer side of its plan, and height [m]. `angle_deg`: direction of
-    `breadth`, in [-90, 90). `support_breadth`, `support_width`: distance between its outermost points at the floor
-    along `breadth` and along `width` [m]. `bottom`: height of its lowest point above the floor of its room, or of its
-    storey [m]. `is_fitted`: whether its name tells of kitchen or fitted furniture, which is usually fixed.
-    `support_reach`: least distance from the middle of its plan to an edge of its base, the convex hull of its points at
-    the floor [m]: 0 where the middle lies beside the base, None where the shape of the base is not known.
-    `support_angle_deg`: direction from the middle to that edge, in [-90, 90). `support_across`: extent of its plan
-    across that direction [m].
+    * `breadth`, `width`: shorter and longer side of its plan [m]; `angle_deg` is the direction of the first.
+    * `support_breadth`, `support_width`: distance between its outermost points at the floor along either side [m].
+    * `bottom`: height of its lowest point above the floor of its room, or of its storey [m].
+    * `is_fitted`: whether its name tells of kitchen or fitted furniture, which is usually fixed.
+    * `support_reach`: least distance from the middle of its plan to an edge of its base, the convex hull of its points
+      at the floor [m]: 0 where the middle lies beside the base, None where the shape of the base is not known.
+    * `support_angle_deg`, `support_across`: direction to that edge, and extent of its plan across that direction [m].
+
+    `space` and `type` are "" where it has none; angles lie in [-90, 90).
     """
 
     key: str
@@ -132,16 +131,20 @@ class Piece:
 
 @dataclass(frozen=True, slots=True)
 class Skipped:
-    """Elements of one type that were left out for one reason.
+    """Elements of one type, or class, as the file names it, that were left out for one reason.
 
-    `type`: Type, or class, as the file names it. `count`: how many pieces. `reason`: Why. `is_furniture`: whether they
-    may be furniture that should be assessed; False where the file says that they are fixed.
+    `is_furniture` is False where the file says that they are fixed: all others may be furniture to be assessed.
     """
 
     type: str
     count: int
     reason: Text
     is_furniture: bool = True
+
+
+def half_turn(angle_deg: float) -> float:
+    """Return a direction of a side, whose two ends are alike, in [-90, 90) [deg]."""
+    return (angle_deg + 90) % 180 - 90
 
 
 def name_skipped(ifc_class: str, kind: str) -> str:
@@ -157,15 +160,12 @@ def count_skipped(each: Iterable[tuple[str, Text, bool]]) -> tuple[Skipped, ...]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BuildingModel:
-    """A building model.
+    """A building model: the name of its file, the schema of that, and what it tells; "" or None where it does not.
 
-    `source`: name of its file. `schema`: IFC2X3, IFC4, IFC4X3. `sizes_from`: where the sizes of all pieces come from:
-    of a "scan" they are less certain. `name`, `address`: of the building, "" if it has none. `storeys`: from the lowest
-    to the highest. `spaces`, `doors`, `stairs`, `pieces`: what they hold. `walls`, `windows`: by the storey's key, cut
-    at 1.2 m above its floor: walls with columns and curtain walls, and windows. `skipped`: what was not taken, and why.
-    `azimuth_deg`, `latitude`, `longitude`: compass direction of X, and the site [deg], where the model tells them.
-    `shift`: what was taken off X and Y [m]: 0 unless the model stands far from its origin. `warnings`, `remarks`: what
-    may distort results, and what else a user should know.
+    Storeys stand from the lowest to the highest. Walls, with columns and curtain walls, and windows are cut at 1.2 m
+    above the floor, by the storey's key. `sizes_from` tells where the sizes of all pieces come from: of a "scan" they
+    are less certain. `azimuth_deg` is the compass direction of X. `shift` was taken off X and Y [m]: 0 unless the model
+    stands far from its origin. `warnings` may distort results, `remarks` are what else a user should know.
     """
 
     source: str

@@ -16,10 +16,12 @@ floors alone.
 
 import math
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from assess.bim.building_model import count_skipped
 from assess.bim.cobie_sheets import CobieSheet, Row, is_cobie, read_sheets, say
@@ -47,6 +49,7 @@ NO_STOREYS = frozenset({"site", "roof", "foundation"})
 MOVEABLE, FIXED = frozenset({"moveable", "movable", "mobile"}), frozenset({"fixed"})
 """AssetType as COBie 2.4 writes it, and as files have it."""
 SIZES = ("NominalLength", "NominalWidth", "NominalHeight")
+_Found = TypeVar("_Found")
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d{1,3})?", re.ASCII)
 
 
@@ -68,18 +71,24 @@ def read_cobie(source: Path | bytes, name: str, progress: Progress = SILENT) -> 
     facility = sheets["Facility"]
     unit = _find_unit(facility)
     _check_unit(facility, sheets["Type"], unit)
-    floors, faults = _read_floors(sheets["Floor"], unit)
-    found = _Sorted(_read_types(sheets["Type"], unit), _read_spaces(sheets["Space"], floors))
+    faults: list[Text] = []
+    floors = _by_name(sheets["Floor"], partial(_read_floor, sheets["Floor"], unit, faults))
+    types = _by_name(sheets["Type"], lambda kind, _, row: _read_type(kind, row, unit))
+    spaces = _by_name(sheets["Space"], lambda room, _, row: (room, floors.get(key(say(row.get("FloorName"))))))
+    found = _Sorted(types, spaces)
     for _, row in sheets["Component"].rows:
         found.take(row)
-    rows, building, doubts = _list_floors(floors, {row["floor"] for _, row in found.pieces})
+    rows, height, doubts = _list_floors(floors, {row["floor"] for _, row in found.pieces})
+    own = facility.rows[0][1] if facility.rows else {}
+    building = {"building": say(own.get("Name")), "address": say(own.get("SiteName")),
+                "use": _CODE.sub("", say(own.get("Category")))}  # fmt: skip
     origin = fill("COBie file {name}, sheet Type: nominal sizes", name=name)
     names = name_apart(row["item"] for _, row in found.pieces)
     return ImportedBuilding(
         source=name,
-        building=_describe_building(facility) | building,
+        building={name: text for name, text in building.items() if text} | height,
         floors=rows,
-        items=[{**row, "item": own} for own, (_, row) in zip(names, found.pieces, strict=True)],
+        items=[{**row, "item": own_name} for own_name, (_, row) in zip(names, found.pieces, strict=True)],
         types=[
             {"type": kind.name, **kind.sizes_cm(), "source": origin}
             for kind in dict.fromkeys(kind for kind, _ in found.pieces)
@@ -90,11 +99,14 @@ def read_cobie(source: Path | bytes, name: str, progress: Progress = SILENT) -> 
     )
 
 
-def _describe_building(sheet: CobieSheet) -> dict[str, Any]:
-    row = sheet.rows[0][1] if sheet.rows else {}
-    use = _CODE.sub("", say(row.get("Category")))
-    texts = {"building": say(row.get("Name")), "address": say(row.get("SiteName")), "use": use}
-    return {name: text for name, text in texts.items() if text}
+def _by_name(sheet: CobieSheet, read: Callable[[str, int, Row], _Found]) -> dict[str, _Found]:
+    """Return what is read of the rows of a sheet, by their names as names are compared; of two alike the first."""
+    found: dict[str, _Found] = {}
+    for number, row in sheet.rows:
+        name = say(row.get("Name"))
+        if name and key(name) not in found:
+            found[key(name)] = read(name, number, row)
+    return found
 
 
 def _list_remarks(facility: CobieSheet, found: "_Sorted") -> Iterator[Text]:
@@ -136,29 +148,16 @@ class CobieFloor:
     height: float | None = None
 
 
-def _read_floors(sheet: CobieSheet, unit: str) -> tuple[dict[str, CobieFloor], list[Text]]:
-    """Return the floors by their names as names are compared, of two alike the first, and warnings."""
-    found: dict[str, CobieFloor] = {}
-    remarks: list[Text] = []
-    for number, row in sheet.rows:
-        name = say(row.get("Name"))
-        if name and key(name) not in found:
-            cell = f"{sheet.name}!{sheet.letters['Elevation']}{number}"
-            found[key(name)] = _read_floor(name, row, unit, cell, remarks)
-    return found, remarks
-
-
-def _read_floor(name: str, row: Row, unit: str, cell: str, remarks: list[Text]) -> CobieFloor:
+def _read_floor(sheet: CobieSheet, unit: str, faults: list[Text], name: str, number: int, row: Row) -> CobieFloor:
     elevation = height = None
     try:
         if row.get("Elevation") is not None:
             elevation = _read_length(FLOORS.column("elevation"), "Elevation", row["Elevation"], unit)
     except CellError as error:
-        remarks.append(fill("{cell}: {message} It was left blank.", cell=cell, message=error.message))
-    try:
+        cell = f"{sheet.name}!{sheet.letters['Elevation']}{number}"
+        faults.append(fill("{cell}: {message} It was left blank.", cell=cell, message=error.message))
+    with suppress(CellError):  # only the height of the building rests on it, and that may stay blank
         height = _read_length(BUILDING.column("height"), "Height", row.get("Height"), unit)
-    except CellError:  # only the height of the building rests on it, and that may stay blank
-        height = None
     texts = say(row.get("Description")), say(row.get("Category"))
     return CobieFloor(name, *texts, elevation=elevation, height=height)
 
@@ -180,17 +179,13 @@ def _list_floors(
     tops = [one.elevation for one in floors.values() if one.category.casefold() == "roof" and one.elevation is not None]
     tops += [elevation + floor.height for floor, elevation in known if floor.height is not None]
     top, highest = max(tops, default=0.0), max((elevation for _, elevation in known), default=0.0)
-    height = {"height": round(top, 3)} if top > max(highest, LOWEST_ROOF) else {}
-    return [_list_floor(floor) for floor in kept], height, warnings
-
-
-def _list_floor(floor: CobieFloor) -> dict[str, Any]:
-    row: dict[str, Any] = {"floor": floor.name}
-    if floor.description and key(floor.description) != key(floor.name):
-        row["name"] = floor.description
-    if floor.elevation is not None:
-        row["elevation"] = round(floor.elevation, 3)
-    return row
+    rows = []
+    for floor in kept:
+        title = floor.description if key(floor.description) != key(floor.name) else ""
+        elevation = None if floor.elevation is None else round(floor.elevation, 3)
+        row = {"floor": floor.name, "name": title, "elevation": elevation}
+        rows.append({name: value for name, value in row.items() if value not in ("", None)})
+    return rows, {"height": round(top, 3)} if top > max(highest, LOWEST_ROOF) else {}, warnings
 
 
 # ---------------------------------------------------------------- types and their sizes
@@ -260,16 +255,6 @@ def _check_unit(facility: CobieSheet, types: CobieSheet, unit: str) -> None:
     raise WorkbookError([Problem("error", facility.name, f"{facility.letters['LinearUnits']}{line}", message, fix)])
 
 
-def _read_types(sheet: CobieSheet, unit: str) -> dict[str, CobieType]:
-    """Return the types by their names as names are compared; of two alike the first."""
-    found: dict[str, CobieType] = {}
-    for _, row in sheet.rows:
-        name = say(row.get("Name"))
-        if name:
-            found.setdefault(key(name), _read_type(name, row, unit))
-    return found
-
-
 def _read_type(name: str, row: Mapping[str, Any], unit: str) -> CobieType:
     kind = CobieType(name)
     asset = say(row.get("AssetType"))
@@ -280,7 +265,8 @@ def _read_type(name: str, row: Mapping[str, Any], unit: str) -> CobieType:
         if asset:
             reason = fill("AssetType is {value}, expected Fixed or Moveable", value=shorten(asset))
         return replace(kind, reason=reason)
-    missing = [column for column in SIZES if _is_missing(row.get(column))]
+    # 0 is what programs write of a size that they do not know
+    missing = [one for one in SIZES if row.get(one) in (None, UNSAVED) or _read_number(row.get(one)) == 0]
     if missing:
         return replace(kind, reason=fill("no {columns}", columns=", ".join(missing)))
     try:
@@ -313,11 +299,6 @@ def _read_number(value: object) -> float | None:
     return number if math.isfinite(number) else None
 
 
-def _is_missing(value: object) -> bool:
-    """Tell whether a size is blank or 0, as programs write one that they do not know."""
-    return value is None or value is UNSAVED or _read_number(value) == 0
-
-
 # ---------------------------------------------------------------- components and their spaces
 
 
@@ -338,12 +319,10 @@ class _Sorted:
         """Sort one component in."""
         named, space = say(row.get("TypeName")), say(row.get("Space"))
         kind = self.types.get(key(named))
-        if kind is None:
+        if kind is None or kind.reason is not None:
             reason = fill("not in the sheet Type") if named else fill("TypeName is blank")
-            self.skipped.append((named or "-", reason, True))
-            return
-        if kind.reason is not None:
-            self.skipped.append((kind.name, kind.reason, kind.is_furniture))
+            left = (named or "-", reason, True) if kind is None else (kind.name, kind.reason or "", kind.is_furniture)
+            self.skipped.append(left)
             return
         room, floor = self._find_space(space)
         if floor is None:
@@ -367,13 +346,3 @@ class _Sorted:
                 self.with_several_spaces += 1
                 return room, floor
         return "", None
-
-
-def _read_spaces(sheet: CobieSheet, floors: Mapping[str, CobieFloor]) -> dict[str, tuple[str, CobieFloor | None]]:
-    """Return name and floor of each space, by its name as names are compared; of two alike the first."""
-    found: dict[str, tuple[str, CobieFloor | None]] = {}
-    for _, row in sheet.rows:
-        name = say(row.get("Name"))
-        if name:
-            found.setdefault(key(name), (name, floors.get(key(say(row.get("FloorName"))))))
-    return found

@@ -9,7 +9,7 @@ import io
 import re
 import zipfile
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -74,17 +74,12 @@ def is_cobie(source: Path | bytes) -> bool:
     Its sheets Type, Component and Space are there, and it is no inventory workbook. Only the list of sheets is read.
     """
     try:
-        return is_cobie_list(_list_sheets(source))
+        with zipfile.ZipFile(io.BytesIO(source) if isinstance(source, bytes) else source) as archive:
+            is_small = archive.getinfo(WORKBOOK).file_size <= _MAX_LIST
+            names = _SHEET.findall(archive.read(WORKBOOK)) if is_small else []
     except DAMAGE:
         return False
-
-
-def _list_sheets(source: Path | bytes) -> list[str]:
-    """Return the names of the sheets, without opening the rest; raises one of `DAMAGE`."""
-    with zipfile.ZipFile(io.BytesIO(source) if isinstance(source, bytes) else source) as archive:
-        if archive.getinfo(WORKBOOK).file_size > _MAX_LIST:
-            return []
-        return [found.decode("utf-8", "replace") for found in _SHEET.findall(archive.read(WORKBOOK))]
+    return is_cobie_list([name.decode("utf-8", "replace") for name in names])
 
 
 def read_sheets(source: Path | bytes, name: str, progress: Progress = SILENT) -> dict[str, CobieSheet]:
@@ -96,17 +91,11 @@ def read_sheets(source: Path | bytes, name: str, progress: Progress = SILENT) ->
     data = source if isinstance(source, bytes) else read_file(source)
     try:
         with Book(data, name, progress) as book:
-            own = _find_sheets(book, name)
-            return {sheet: _read_sheet(book, sheet, own[sheet]) for sheet in COLUMNS}
-    except WorkbookError as error:
-        raise WorkbookError([_say_what_to_leave_out(one) for one in error.problems]) from None
-
-
-def _say_what_to_leave_out(problem: Problem) -> Problem:
-    if "assess new" not in problem.fix:
-        return problem
-    fix = fill("Delete the sheets Attribute, Document and Coordinate in a copy of it, and import that.")
-    return Problem(problem.severity, problem.sheet, problem.cell, problem.message, fix)
+            return {sheet: _read_sheet(book, sheet, own) for sheet, own in _find_sheets(book, name).items()}
+    except WorkbookError as error:  # the fix of an inventory that is too large is none for a handover file
+        fix = fill("Delete the sheets Attribute, Document and Coordinate in a copy of it, and import that.")
+        problems = [replace(one, fix=fix) if "assess new" in one.fix else one for one in error.problems]
+        raise WorkbookError(problems) from None
 
 
 def _find_sheets(book: Book, name: str) -> dict[str, str]:
@@ -144,7 +133,12 @@ def _read_sheet(book: Book, sheet: str, own: str) -> CobieSheet:
         elif number >= HEADER_ROWS:
             break
     if not columns:
-        raise _no_header(sheet, own, set(best.values()))
+        missing = ", ".join(column for column in COLUMNS[sheet] if column not in best.values())
+        message = fill("the header row lacks {columns}.", columns=missing)
+        if not best:
+            message = fill("the sheet has no header row with {columns}.", columns=missing)
+        fix = fill("Name the columns as COBie 2.4 does, in one of the first {most} rows.", most=HEADER_ROWS)
+        raise WorkbookError([Problem("error", own, "", message, fix)])
     return CobieSheet(own, {column: column_letters(at) for at, column in columns.items()}, tuple(rows))
 
 
@@ -169,12 +163,3 @@ def say(value: object) -> str:
     """Return a cell as a text; "" for one that is blank, an error or a formula without a saved value."""
     text = "" if value is None or value is UNSAVED else read_text(value)
     return "" if text in ERRORS else " ".join(text.split())
-
-
-def _no_header(sheet: str, own: str, found: set[str]) -> WorkbookError:
-    missing = [column for column in COLUMNS[sheet] if column not in found]
-    message = fill("the header row lacks {columns}.", columns=", ".join(missing))
-    if not found:
-        message = fill("the sheet has no header row with {columns}.", columns=", ".join(missing))
-    fix = fill("Name the columns as COBie 2.4 does, in one of the first {most} rows.", most=HEADER_ROWS)
-    return WorkbookError([Problem("error", own, "", message, fix)])

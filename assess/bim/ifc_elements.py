@@ -136,7 +136,7 @@ def tell_apart(elements: Iterable[Element]) -> dict[int, str]:
 
 
 def list_shapes(model: Any, elements: Sequence[Element], *, with_openings: bool = False) -> Iterator[tuple[int, Shape]]:
-    """Yield the shape of each element that has one, by its number in the file.
+    """Yield the shape of each element that has one, by its number in the file; those of one kind are made once.
 
     `with_openings`: whether openings are cut out, which takes most of the time: needed for walls alone.
     """
@@ -149,10 +149,15 @@ def list_shapes(model: Any, elements: Sequence[Element], *, with_openings: bool 
     settings.set("disable-opening-subtractions", not with_openings)
     done: set[int] = set()
     try:
-        for number, shape in _iterate(model, settings, drawn):
-            if number not in done:  # a damaged reference makes two of one element
-                done.add(number)
-                yield number, shape
+        iterator = ifcopenshell.geom.iterator(settings, model, THREADS, include=drawn)
+        goes_on = bool(iterator.initialize())
+        while goes_on:
+            one = iterator.get()
+            shape = _to_shape(one)
+            if shape is not None and one.id not in done:  # a damaged reference makes two of one element
+                done.add(one.id)
+                yield one.id, shape
+            goes_on = bool(iterator.next())
     except RuntimeError:  # one of the elements is damaged: the others one by one, which takes longer
         for element in (one for one in drawn if one.id() not in done):
             try:
@@ -163,31 +168,17 @@ def list_shapes(model: Any, elements: Sequence[Element], *, with_openings: bool 
                 yield element.id(), found
 
 
-def _iterate(model: Any, settings: Any, elements: Sequence[Element]) -> Iterator[tuple[int, Shape]]:
-    import ifcopenshell.geom
-
-    iterator = ifcopenshell.geom.iterator(settings, model, THREADS, include=list(elements))
-    goes_on = bool(iterator.initialize())
-    while goes_on:
-        one = iterator.get()
-        shape = _to_shape(one)
-        if shape is not None:
-            yield one.id, shape
-        goes_on = bool(iterator.next())
-
-
 def _to_shape(found: Any) -> Shape | None:
+    def is_near(values: FloatArray) -> bool:
+        return bool((np.abs(values) <= FARTHEST).all())
+
     points = np.array(found.geometry.verts, float).reshape(-1, 3)
     triangles = np.array(found.geometry.faces, np.int64).reshape(-1, 3)
     matrix = np.array(found.transformation.matrix, float).reshape(4, 4).T  # column-major
-    if not 0 < len(triangles) <= MOST_TRIANGLES or not (_is_near(points) and _is_near(matrix)):
+    if not 0 < len(triangles) <= MOST_TRIANGLES or not (is_near(points) and is_near(matrix)):
         return None
     placed = points @ matrix[:3, :3].T + matrix[:3, 3]
-    return Shape(placed, triangles, matrix[:3, :3]) if _is_near(placed) else None
-
-
-def _is_near(values: FloatArray) -> bool:
-    return bool((np.abs(values) <= FARTHEST).all())
+    return Shape(placed, triangles, matrix[:3, :3]) if is_near(placed) else None
 
 
 def join_parts(model: Any, elements: Sequence[Element], *, with_openings: bool = False) -> Iterator[tuple[int, Shape]]:

@@ -43,8 +43,7 @@ def check_model(path: Path, name: str) -> None:
             end = file.read()
     except OSError as error:
         raise unreadable(name, error) from None
-    why = _find_fault(size, start, end)
-    if why is not None:
+    if why := _find_fault(size, start, end):
         raise unreadable(name, why)
 
 
@@ -70,9 +69,7 @@ def _find_fault(size: int, start: bytes, end: bytes) -> Text | None:
         return fill("it is cut off: its last line, {last}, is missing. Copy or export it again", last=LAST.decode())
     found = _SCHEMA.search(start)
     schema = found[1].decode("ascii", "replace") if found else "-"
-    if not schema.upper().startswith(SCHEMAS):
-        return _say_schema(schema)
-    return None
+    return None if schema.upper().startswith(SCHEMAS) else _say_schema(schema)
 
 
 def _say_schema(schema: str) -> Text:

@@ -169,18 +169,10 @@ def list_storeys(model: Any, unit: float) -> tuple[list[Storey], list[Text]]:
     if len(found) > 1 and len(levels) == 1:  # none is placed: what is in them is
         found = [(replace(storey, level=storey.level if own is None else own), own) for storey, own in found]
     found.sort(key=lambda pair: (pair[0].level, pair[0].name))
-    return _count_from_zero(found)
-
-
-def _count_from_zero(found: Sequence[tuple[Storey, float | None]]) -> tuple[list[Storey], list[Text]]:
-    """Return storeys with their elevations, of which each may state its own [m], and warnings."""
     datum = next((own - storey.level for storey, own in found if own is not None), 0.0)
     kept = [replace(storey, elevation=storey.level + datum) for storey, _ in found]
-    odd = [
-        storey.name
-        for storey, (_, own) in zip(kept, found, strict=True)
-        if own is not None and abs(own - storey.elevation) > SAME
-    ]
+    pairs = zip(kept, (own for _, own in found), strict=True)
+    odd = [storey.name for storey, own in pairs if own is not None and abs(own - storey.elevation) > SAME]
     if not odd:
         return kept, []
     text = fill("Elevation in the model differs from where these storeys are placed, which was taken: {names}. Check "
@@ -197,13 +189,11 @@ def list_spaces(model: Any, storeys: Collection[str]) -> Iterator[Space]:
     keys = tell_apart(spaces.values())
     shapes = dict(list_shapes(model, list(spaces.values())))
     for number, one in spaces.items():
-        storey = _find_known(one, storeys)
-        shape = shapes.get(number)
-        area = find_base(shape) if shape is not None and storey is not None else None
-        if shape is None or storey is None or area is None:
-            continue
-        name, title = say(one.Name), say(one.LongName)
-        yield Space(keys[number], storey, name or title, "" if title == name else title, area, shape.bottom, shape.top)
+        storey, shape = _find_known(one, storeys), shapes.get(number)
+        if shape is not None and storey is not None and (area := find_base(shape)) is not None:
+            name, title = say(one.Name), say(one.LongName)
+            title = "" if title == name else title
+            yield Space(keys[number], storey, name or title, title, area, shape.bottom, shape.top)
 
 
 def _find_known(element: Element, storeys: Collection[str]) -> str | None:
@@ -276,8 +266,7 @@ Plans = dict[str, tuple[Area, ...]]
 def cut_walls(model: Any, storeys: Sequence[Storey]) -> tuple[Plans, Plans]:
     """Return what stands and what is glazed at 1.2 m above the floor of each storey."""
     elements = {one.id(): one for one in list_elements(model, (*WALLS, "IfcWindow"))}
-    walls: dict[str, list[Polygon]] = {}
-    windows: dict[str, list[Polygon]] = {}
+    walls, windows = dict[str, list[Polygon]](), dict[str, list[Polygon]]()
     cuts = {
         number: [cut(shape, storey.level + CUT) for storey in storeys]
         for number, shape in list_shapes(model, list(elements.values()), with_openings=True)

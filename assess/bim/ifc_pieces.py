@@ -77,10 +77,17 @@ def find_pieces(
     Raises ModelError if `also` names a class that the schema of the model does not have, or there are over
     `MOST_PIECES` pieces.
     """
+    from ifcopenshell.util.element import get_type
+
     _check_classes(model, also)
     wanted = {one.id() for one in list_elements(model, (*FURNITURE, *also))}
     every = list_outer(list_elements(model, (*FURNITURE, *OTHERS, *also)))
-    elements = {one.id(): one for one in every if one.id() in wanted or _is_appliance(one)}
+
+    def is_appliance(one: Element) -> bool:
+        kind = get_type(one) if one.is_a("IfcDistributionElement") else None
+        return kind is not None and kind.is_a() in APPLIANCES
+
+    elements = {one.id(): one for one in every if one.id() in wanted or is_appliance(one)}
     if len(elements) > MOST_PIECES:
         raise ModelError(
             fill("The model holds {n:,} pieces of furniture, more than {most:,}. Export fewer storeys.",
@@ -198,16 +205,14 @@ class _Shaped:
 def find_shift(bottoms: Sequence[float], stated: float) -> float:
     """Return by what height nearly all pieces of a storey stand above its floor, 0 where they do not [m].
 
-    `bottoms`: heights of the lowest points of its pieces above its floor [m]. `stated`: how much higher the floor is by
-    the Elevation that the model states [m]: where that is the height, one piece tells it. At heights of `_HUNG`
-    furniture may hang on walls.
+    `bottoms`: heights of the lowest points of its pieces. `stated`: how much higher the floor is by the Elevation of
+    the model: where that is the height, one piece tells it. At heights of `_HUNG` furniture may hang on walls.
     """
     height = float(np.median(bottoms)) if bottoms else 0.0
-    alike = sum(abs(one - height) <= _ALIKE for one in bottoms)
-    is_stated = abs(height - stated) <= _ALIKE
+    nearly_all = sum(abs(one - height) <= _ALIKE for one in bottoms) >= _NEARLY_ALL * len(bottoms)
     is_clear = len(bottoms) >= _FEWEST and not _HUNG[0] <= height <= _HUNG[1]
-    nearly_all = alike >= _NEARLY_ALL * len(bottoms)
-    return height if abs(height) > ON_FLOOR and nearly_all and (is_stated or is_clear) else 0.0
+    is_told = nearly_all and (is_clear or abs(height - stated) <= _ALIKE)
+    return height if abs(height) > ON_FLOOR and is_told else 0.0
 
 
 def _check_classes(model: Any, classes: Sequence[str]) -> None:
@@ -224,15 +229,6 @@ def _check_classes(model: Any, classes: Sequence[str]) -> None:
                 fill("{name} is not a class of {schema}. Classes have names such as {example}.", name=name[:60],
                      schema=model.schema_identifier, example="IfcBuildingElementProxy")
             )  # fmt: skip
-
-
-def _is_appliance(element: Element) -> bool:
-    from ifcopenshell.util.element import get_type
-
-    if not element.is_a("IfcDistributionElement"):
-        return False
-    kind = get_type(element)
-    return kind is not None and kind.is_a() in APPLIANCES
 
 
 def name_type(element: Element) -> str:

@@ -5,7 +5,7 @@ The workbook is that of `assess new`, filled in. Motions of the floors are not k
 
 import hashlib
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePath
 from typing import Any
@@ -45,10 +45,8 @@ ENDING = "-import.txt"
 class ImportedBuilding:
     """What a file tells of a building: rows by field of `assess.workbook.schema`, in the units of SI headers.
 
-    `source`: name of the file. `building`: fields of the sheet Building. `floors`, `items`, `places`, `routes`,
-    `types`: rows of Floors, Items, Places, Routes, and types that join the Catalogue, in place of those of their name
-    there. `skipped`: what was left out. `warnings`, `remarks`: what may distort the results until it is corrected, and
-    what else is worth checking. `files`: files beside the workbook that it names, such as plans.
+    `types` join the Catalogue, in place of those of their name there. `warnings` may distort the results until it is
+    corrected, `remarks` are what else is worth checking. `files` stand beside the workbook, which names them: plans.
     """
 
     source: str
@@ -94,17 +92,14 @@ def list_rows(imported: ImportedBuilding) -> dict[str, Rows]:
         "Routes": imported.routes,
         "Catalogue": [*imported.types, *(row for row in read_catalogue() if key(row["type"]) not in own)],
     }
-    return {  # the Room of a segment lists the names of rooms
-        name: [_cut_texts(row, _LONG | {"room"} if name == "Routes" else _LONG) for row in sheet]
-        for name, sheet in rows.items()
-    }
 
+    def cut(sheet: str, name: str, value: Any) -> Any:
+        is_long = name in _LONG or (sheet, name) == ("Routes", "room")  # which lists the names of rooms
+        return clean(value)[0][: LONGEST_CELL if is_long else LONGEST_NAME] if isinstance(value, str) else value
 
-def _cut_texts(row: Mapping[str, Any], long: Collection[str]) -> dict[str, Any]:
-    """Return a row with its names cut to `LONGEST_NAME`, and `long` texts to what a spreadsheet takes in a cell."""
     return {
-        name: clean(value)[0][: LONGEST_CELL if name in long else LONGEST_NAME] if isinstance(value, str) else value
-        for name, value in row.items()
+        sheet: [{name: cut(sheet, name, value) for name, value in row.items()} for row in some]
+        for sheet, some in rows.items()
     }
 
 
@@ -132,20 +127,19 @@ def note_datum(known: Sequence[tuple[str, float]]) -> list[Text]:
     """Return what has to be checked of the floors' names and elevations [m], from the lowest."""
     if not known or NEAR_GROUND[0] <= known[0][1] <= NEAR_GROUND[1]:
         return []
-    if known[0][1] > NEAR_GROUND[1]:
+    below = [name for name, elevation in known if elevation < NEAR_GROUND[0]]
+    if below:
+        text = fill(
+            "Below the ground by their elevation, so that they shake as the ground does: {floors}. Correct Elevation "
+            "in Floors if the file does not count from the ground.", floors=", ".join(below),
+        )  # fmt: skip
+    else:
         text = fill(
             "The lowest floor, {floor}, is at {elevation:g} m in the file. If it lies at the ground, subtract that "
             "from every Elevation in Floors and from Height in Building: else it shakes as the top of a taller "
             "building.",
             floor=known[0][0], elevation=round(known[0][1], 3),
         )  # fmt: skip
-        return [text]
-    below = [name for name, elevation in known if elevation < NEAR_GROUND[0]]
-    text = fill(
-        "Below the ground by their elevation, so that they shake as the ground does: {floors}. Correct Elevation in "
-        "Floors if the file does not count from the ground.",
-        floors=", ".join(below),
-    )
     return [text]
 
 

@@ -1,11 +1,12 @@
 """Building models far from their origin brought near it, without what lies far from the rest of the building."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import chain
 from statistics import median
 from typing import Any
 
-from assess.bim.building_model import BuildingModel, Door, Piece, Point, Stair, count_skipped, name_skipped
+from assess.bim.building_model import Area, BuildingModel, Door, Piece, Point, Stair, count_skipped, name_skipped
 from assess.i18n import fill
 
 FARTHEST = 10_000.0
@@ -18,35 +19,52 @@ FAR = fill("more than {reach:g} km from the middle of the building", reach=REACH
 
 
 def bring_near(model: BuildingModel) -> BuildingModel:
-    """Return a model whose positions lie near the origin: a workbook holds them to 100 km only, and plans to 5 km."""
-    near = _leave_out_far(model)
+    """Return a model whose positions lie near the origin: a workbook holds them to 100 km only, and plans to 5 km.
+
+    What lies far from most of it is left out: elements forgotten at the origin, damaged positions.
+    """
+    points = list(_list_points(model))
+    if not points:
+        return model
+    near = _leave_out_far(model, *(median(one[axis] for one in points) for axis in (0, 1)))
     points = list(_list_points(near))
     if not points or max(max(abs(x), abs(y)) for x, y in points) <= FARTHEST:
         return near
-    shift = (ROUND * (min(x for x, _ in points) // ROUND), ROUND * (min(y for _, y in points) // ROUND))
+    x, y = (ROUND * (min(one[axis] for one in points) // ROUND) for axis in (0, 1))
+
+    def move(some: Any) -> Any:
+        return tuple(replace(one, x=one.x - x, y=one.y - y) for one in some)
+
+    def move_area(area: Area) -> Area:
+        return tuple(tuple((round(u - x, 3), round(v - y, 3)) for u, v in ring) for ring in area)
+
+    def move_plans(plans: Mapping[str, Sequence[Area]]) -> dict[str, tuple[Area, ...]]:
+        return {key: tuple(map(move_area, areas)) for key, areas in plans.items()}
+
     text = fill("The model stands far from its origin: {x:,.0f} m were taken off every X, and {y:,.0f} m off every Y.",
-                x=shift[0], y=shift[1])  # fmt: skip
-    return replace(_move(near, (-shift[0], -shift[1])), shift=shift, remarks=(*near.remarks, text))
+                x=x, y=y)  # fmt: skip
+    return replace(
+        near, pieces=move(near.pieces), doors=move(near.doors), stairs=move(near.stairs),
+        spaces=tuple(replace(one, area=move_area(one.area)) for one in near.spaces),
+        walls=move_plans(near.walls), windows=move_plans(near.windows), shift=(x, y), remarks=(*near.remarks, text),
+    )  # fmt: skip
 
 
 def _list_points(model: BuildingModel) -> Iterator[Point]:
     placed: Sequence[Piece | Door | Stair] = (*model.pieces, *model.doors, *model.stairs)
     yield from ((one.x, one.y) for one in placed)
-    for area in (*(one.area for one in model.spaces), *(area for areas in model.walls.values() for area in areas)):
+    for area in (*(one.area for one in model.spaces), *chain.from_iterable(model.walls.values())):
         yield from area[0]
 
 
-def _leave_out_far(model: BuildingModel) -> BuildingModel:
-    """Return a model without what lies far from most of it: elements forgotten at the origin, damaged positions."""
-    points = list(_list_points(model))
-    if not points:
-        return model
-    x, y = (median(one[axis] for one in points) for axis in (0, 1))
-
+def _leave_out_far(model: BuildingModel, x: float, y: float) -> BuildingModel:
     def is_near(*some: Point) -> bool:
         return all(abs(one - x) <= REACH and abs(other - y) <= REACH for one, other in some)
 
-    def keep_areas(plans: Any) -> Any:
+    def keep(some: Any) -> Any:
+        return tuple(one for one in some if is_near((one.x, one.y)))
+
+    def keep_areas(plans: Mapping[str, Sequence[Area]]) -> dict[str, tuple[Area, ...]]:
         return {key: tuple(one for one in areas if is_near(*one[0])) for key, areas in plans.items()}
 
     spaces = tuple(one for one in model.spaces if is_near(*one.area[0]))
@@ -60,8 +78,8 @@ def _leave_out_far(model: BuildingModel) -> BuildingModel:
     near = replace(
         model,
         spaces=spaces,
-        doors=tuple(one for one in model.doors if is_near((one.x, one.y))),
-        stairs=tuple(one for one in model.stairs if is_near((one.x, one.y))),
+        doors=keep(model.doors),
+        stairs=keep(model.stairs),
         pieces=tuple(pieces),
         walls=keep_areas(model.walls),
         windows=keep_areas(model.windows),
@@ -78,20 +96,3 @@ def _leave_out_far(model: BuildingModel) -> BuildingModel:
 def _count(model: BuildingModel) -> int:
     areas = sum(map(len, (*model.walls.values(), *model.windows.values())))
     return len(model.spaces) + len(model.doors) + len(model.stairs) + areas
-
-
-def _move(model: BuildingModel, by: Point) -> BuildingModel:
-    def move_area(area: Any) -> Any:
-        return tuple(tuple((round(x + by[0], 3), round(y + by[1], 3)) for x, y in ring) for ring in area)
-
-    def move_all(some: Any) -> Any:
-        return tuple(replace(one, x=one.x + by[0], y=one.y + by[1]) for one in some)
-
-    def move_plans(plans: Any) -> Any:
-        return {key: tuple(map(move_area, areas)) for key, areas in plans.items()}
-
-    return replace(
-        model, pieces=move_all(model.pieces), doors=move_all(model.doors), stairs=move_all(model.stairs),
-        spaces=tuple(replace(one, area=move_area(one.area)) for one in model.spaces),
-        walls=move_plans(model.walls), windows=move_plans(model.windows),
-    )  # fmt: skip

@@ -15,7 +15,18 @@ from typing import Any, Literal
 
 import numpy as np
 
-from assess.bim.building_model import LONGEST_NAME, Area, BuildingModel, Door, Piece, Skipped, Space, Stair, Storey
+from assess.bim.building_model import (
+    LONGEST_NAME,
+    Area,
+    BuildingModel,
+    Door,
+    Piece,
+    Skipped,
+    Space,
+    Stair,
+    Storey,
+    half_turn,
+)
 from assess.bim.door_sides import REACH, find_kinds, find_sides
 from assess.bim.draft_floor import find_room_points
 from assess.bim.floor_drawing import Drawn, draw_storey, name_plans
@@ -59,10 +70,40 @@ FITTED = fill("fitted furniture, usually fixed: look at it, and fill in Anchored
 def list_building(model: BuildingModel, routes: Drafts = "none") -> ImportedBuilding:
     """Return what a model tells of a building as rows, plans, and what was left out.
 
-    `model`: from `assess.bim.ifc_model` and its like.
     `routes`: whether evacuation routes are drafted from the rooms to the exits.
     """
-    return _Building(model).build(routes)
+    own = _Building(model)
+    drawn = {one.key: plan for one in own.storeys if (plan := draw_storey(model, one)) is not None}
+    files = dict(zip(drawn, name_plans(model.source, (own.floors[key] for key in drawn)), strict=True))
+    found = dict.fromkeys(one.type_key for one in own.pieces)
+    types = dict(zip(found, name_apart(one[0] for one in found), strict=True))
+    source = gettext("shapes in {name}", name=model.source)
+    values = {
+        "building": model.name, "address": model.address, "latitude": model.latitude, "longitude": model.longitude,
+        "azimuth_deg": model.azimuth_deg, "height": own.find_height(),
+    }  # fmt: skip
+    places, drafted, remarks = list[Mapping[str, Any]](), list[Mapping[str, Any]](), list[Text]()
+    if routes != "none":
+        from assess.bim.draft_routes import draft_routes
+
+        draft = draft_routes(model, {**own.places, **own.floors})
+        places, drafted, remarks = [*draft.places], [*draft.routes], [*draft.remarks]
+    return ImportedBuilding(
+        source=model.source,
+        building={name: value for name, value in values.items() if value not in (None, "")},
+        floors=[own.list_floor(one, drawn.get(one.key), files) for one in own.storeys],
+        items=list(own.list_items(types)),
+        places=[*own.list_places(), *places],
+        routes=drafted,
+        types=[
+            {"type": name, "breadth": breadth, "width": width, "height": height, "source": source}
+            for (_, breadth, width, height), name in types.items()
+        ],
+        skipped=(*model.skipped, *own.outside),
+        warnings=(*model.warnings, *own.warn(), *remarks),
+        remarks=(*model.remarks, *own.remark()),
+        files={files[key]: plan.svg for key, plan in drawn.items()},
+    )
 
 
 class _Building:
@@ -85,51 +126,9 @@ class _Building:
         self.sides = find_sides(model)
         self.kinds = find_kinds(model, self.sides)
         self.places = self._name_places()
-        self.pieces, self.outside = _sort_by_size(self._sort_pieces())
-
-    def build(self, routes: Drafts) -> ImportedBuilding:
-        """Return the rows."""
-        model = self.model
-        drawn = {one.key: plan for one in self.storeys if (plan := draw_storey(model, one)) is not None}
-        files = dict(zip(drawn, name_plans(model.source, (self.floors[key] for key in drawn)), strict=True))
-        found = dict.fromkeys(one.type_key for one in self.pieces)
-        types = dict(zip(found, name_apart(one[0] for one in found), strict=True))
-        source = gettext("shapes in {name}", name=model.source)
-        values = {
-            "building": model.name, "address": model.address, "latitude": model.latitude, "longitude": model.longitude,
-            "azimuth_deg": model.azimuth_deg, "height": _find_height(model, self.storeys),
-        }  # fmt: skip
-        draft = None
-        if routes != "none":
-            from assess.bim.draft_routes import draft_routes
-
-            draft = draft_routes(model, {**self.places, **self.floors})
-        return ImportedBuilding(
-            source=model.source,
-            building={name: value for name, value in values.items() if value not in (None, "")},
-            floors=[self._list_floor(one, drawn.get(one.key), files) for one in self.storeys],
-            items=list(self._list_items(types)),
-            places=[*self._list_spaces(), *self._list_points(), *(draft.places if draft else ())],
-            routes=draft.routes if draft else (),
-            types=[
-                {"type": name, "breadth": breadth, "width": width, "height": height, "source": source}
-                for (_, breadth, width, height), name in types.items()
-            ],
-            skipped=(*model.skipped, *self.outside),
-            warnings=(
-                *model.warnings,
-                *self._note_elevations(),
-                *_warn_of_supports(self.pieces),
-                *(draft.remarks if draft else ()),
-            ),
-            remarks=(*model.remarks, *_note(self)),
-            files={files[key]: plan.svg for key, plan in drawn.items()},
-        )
-
-    # ------------------------------------------------------------ names and order
+        self.pieces, self.outside = self._size_pieces()
 
     def _name_places(self) -> dict[str, str]:
-        """Return the names of rooms, doors and ends of stairs: of `floors` alone."""
         counts = Counter(key(one.name) for one in self.spaces)
         short = {
             one.key: one.name
@@ -150,15 +149,25 @@ class _Building:
             named.append((f"{stair.key} {stair.end}", text))
         return dict(zip((key for key, _ in named), name_apart(name for _, name in named), strict=True))
 
-    def _sort_pieces(self) -> list[Piece]:
-        """Return pieces by storey, room and type, as people look for them; those in no room last."""
+    def _size_pieces(self) -> "tuple[list[Sized], list[Skipped]]":
+        """Return the pieces by storey, room and type, as people look for them, and those that a workbook cannot take.
+
+        Those in no room come last.
+        """
         order = {one.key: at for at, one in enumerate(self.storeys)}
 
         def place(one: Piece) -> tuple[Any, ...]:
             room = not one.space, natural_key(self.places.get(one.space, ""))
             return order[one.storey], *room, natural_key(one.type), one.x, one.y
 
-        return sorted(self.model.pieces, key=place)
+        kept, counts = list[Sized](), Counter[tuple[str, Text]]()
+        for one in map(find_sizes, sorted(self.model.pieces, key=place)):
+            if all(LOW <= size <= HIGH for size in one.sizes.values()):
+                kept.append(one)
+            else:
+                outside = fill("a size outside {low:g} to {high:g} cm", low=LOW, high=HIGH)
+                counts[one.piece.type[:LONGEST_NAME], BESIDE_BASE if one.piece.support_reach == 0 else outside] += 1
+        return kept, [Skipped(kind, number, reason) for (kind, reason), number in counts.items()]
 
     def _name_items(self) -> list[str]:
         """Return names such as ``A203-02``: the room, or else the floor, and a number in it."""
@@ -176,27 +185,39 @@ class _Building:
 
     # ------------------------------------------------------------ rows
 
-    def _list_floor(self, storey: Storey, plan: Drawn | None, files: Mapping[str, str]) -> Row:
+    def find_height(self) -> float | None:
+        """Return the height of the highest storey or ceiling; None if not above all floors, or above `TALLEST`."""
+        datum = {one.key: one.elevation - one.level for one in self.model.storeys}
+        tops = [one.elevation for one in self.model.storeys]
+        tops += [one.top + datum[one.storey] for one in self.model.spaces if one.storey in datum]
+        highest = max((one.elevation for one in self.storeys), default=0.0)
+        top = max(tops, default=0.0)
+        return round(top, 2) if max(highest, LOWEST_ROOF) < top <= TALLEST else None
+
+    def list_floor(self, storey: Storey, plan: Drawn | None, files: Mapping[str, str]) -> Row:
+        """Return the row of a storey."""
         row: Row = {"floor": self.floors[storey.key]}
-        if _is_known(storey):
+        if LOWEST <= storey.elevation <= HIGHEST:
             row["elevation"] = round(storey.elevation, 3) + 0.0
         if plan is not None:
             row |= {"plan": files[storey.key], "plan_left": plan.left, "plan_bottom": plan.bottom,
                     "plan_width": plan.width}  # fmt: skip
         return row
 
-    def _list_items(self, types: Mapping[Any, str]) -> Iterator[Row]:
+    def list_items(self, types: Mapping[Any, str]) -> Iterator[Row]:
+        """Yield the rows of the pieces."""
         for name, one in zip(self._name_items(), self.pieces, strict=True):
             piece = one.piece
             row = {
                 "item": name, "floor": self.floors[piece.storey], "room": self.places.get(piece.space, ""),
                 "description": piece.type, "type": types[one.type_key], **one.sizes, "x": round(piece.x, 3),
                 "y": round(piece.y, 3), "angle_deg": one.angle_deg, "anchored": "unknown" if piece.is_fitted else "",
-                "source_id": piece.key, "sizes_from": self.model.sizes_from, "notes": "; ".join(_list_notes(one)),
+                "source_id": piece.key, "sizes_from": self.model.sizes_from, "notes": "; ".join(one.list_notes()),
             }  # fmt: skip
             yield {field: value for field, value in row.items() if value != ""}
 
-    def _list_spaces(self) -> Iterator[Row]:
+    def list_places(self) -> Iterator[Row]:
+        """Yield the rows of rooms, doors and ends of stairs."""
         points, search = find_room_points(self.model), SpaceSearch(self.model.spaces)
         held = (search.find(one.storey, (one.x, one.y), REACH) for one in self.model.stairs)
         with_stair = {own[0].key for own in held if own}
@@ -207,29 +228,62 @@ class _Building:
             row = {"place": self.places[one.key], "floor": self.floors[one.storey], "x": x, "y": y, "kind": kind}
             outline = _write_outline(one.area)
             yield row | ({"outline": outline} if outline else {})
-
-    def _list_points(self) -> Iterator[Row]:
-        for door in self.doors:
-            kind = "exit" if self.kinds[door.key] == "exit" else "door"
-            yield self._list_point(door, door.key, kind)
-        for stair in self.stairs:
-            yield self._list_point(stair, f"{stair.key} {stair.end}", "stair")
-
-    def _list_point(self, one: Door | Stair, key: str, kind: str) -> Row:
-        row = {"place": self.places[key], "floor": self.floors[one.storey], "kind": kind}
-        return row | {"x": round(one.x, 3), "y": round(one.y, 3)}
+        ends: list[tuple[Door | Stair, str, str]] = [
+            *((one, one.key, "exit" if self.kinds[one.key] == "exit" else "door") for one in self.doors),
+            *((one, f"{one.key} {one.end}", "stair") for one in self.stairs),
+        ]
+        for end, name, kind in ends:
+            row = {"place": self.places[name], "floor": self.floors[end.storey], "kind": kind}
+            yield row | {"x": round(end.x, 3), "y": round(end.y, 3)}
 
     # ------------------------------------------------------------ what is to be checked
 
-    def _note_elevations(self) -> list[Text]:
-        odd = [self.floors[one.key] for one in self.storeys if not _is_known(one)]
-        notes = note_datum([(self.floors[one.key], one.elevation) for one in self.storeys if _is_known(one)])
+    def warn(self) -> Iterator[Text]:
+        """Yield what may distort results: odd elevations, and supports off the middle."""
+        known = [(self.floors[one.key], one.elevation) for one in self.storeys if LOWEST <= one.elevation <= HIGHEST]
+        yield from note_datum(known)
+        odd = [name for name in self.floors.values() if name not in dict(known)]
         if odd:
-            notes.append(
-                fill("Elevation is blank for {floors}: in the model it is outside {low:g} to {high:g} m. Fill in the "
-                     "height above the ground.", floors=", ".join(odd[:20]), low=LOWEST, high=HIGHEST)
+            yield fill("Elevation is blank for {floors}: in the model it is outside {low:g} to {high:g} m. Fill in the "
+                       "height above the ground.", floors=", ".join(odd[:20]), low=LOWEST, high=HIGHEST)  # fmt: skip
+        off = sum(one.is_off_middle for one in self.pieces)
+        if off:
+            yield nfill(
+                "{n:,} piece stands off the middle of its supports, and tips to one side sooner than its Breadth says. "
+                "Type the Breadth in its Notes to be on the safe side.",
+                "{n:,} pieces stand off the middle of their supports, and tip to one side sooner than their Breadth "
+                "says. Type the Breadth in their Notes to be on the safe side.", off,
             )  # fmt: skip
-        return notes
+
+    def remark(self) -> Iterator[Text]:
+        """Yield what else a user should know."""
+        model = self.model
+        fitted = sum(one.piece.is_fitted for one in self.pieces)
+        if fitted:
+            yield nfill(
+                "{n:,} piece is fitted furniture by its name: usually fixed, free-standing until Anchored says yes.",
+                "{n:,} pieces are fitted furniture by their names: usually fixed, free-standing until Anchored says "
+                "yes.", fitted,
+            )  # fmt: skip
+        inset = sum(one.is_inset for one in self.pieces)
+        if inset:
+            yield nfill(
+                "{n:,} piece stands on supports inside its body: Breadth is between these, and Notes give the body.",
+                "{n:,} pieces stand on supports inside their bodies: Breadth is between these, and Notes give the "
+                "bodies.", inset,
+            )  # fmt: skip
+        if model.doors:
+            out = sum(kind == "exit" for kind in self.kinds.values())
+            yield fill("Doors that lead out of the ground storey (a room on one side only): {n:,} of {all:,}.", n=out,
+                       all=len(model.doors))  # fmt: skip
+        if model.latitude is not None:
+            yield fill("Latitude and Longitude are those of the model, {latitude:g} and {longitude:g}: check them, as "
+                       "programs fill in a default town.",
+                       latitude=model.latitude, longitude=model.longitude)  # fmt: skip
+        empty = [one.name for one in model.storeys if one not in self.storeys]
+        if empty:
+            names = ", ".join(empty[:20])
+            yield fill("Storeys without furniture, rooms and doors were left out: {names}.", names=names)
 
 
 # ---------------------------------------------------------------- sizes
@@ -269,6 +323,25 @@ class Sized:
         """Return the sizes by field [cm]."""
         return {"breadth": self.breadth, "width": self.width, "height": self.height}
 
+    def list_notes(self) -> Iterator[str]:
+        """Yield what is to be noted of it."""
+        piece = self.piece
+        if self.is_inset:
+            breadth, width, height = (CENTIMETRES * size for size in (piece.breadth, piece.width, piece.height))
+            body = gettext("body {breadth:.1f} x {width:.1f} x {height:.1f} cm, {support:g} cm between the outer "
+                           "supports", breadth=breadth, width=width, height=height, support=self.supports)  # fmt: skip
+            if self.is_oblique:
+                body = gettext("{body}: Breadth is twice the distance from the middle to the nearest edge between them",
+                               body=body)  # fmt: skip
+            elif self.is_off_middle:
+                body = gettext("{body}, which are off the middle: to one side it tips as with a Breadth of {safe:g} cm",
+                               body=body, safe=self.safe)  # fmt: skip
+            yield body
+        if piece.is_fitted:
+            yield gettext(FITTED)
+        if piece.name and piece.name != piece.type:
+            yield gettext("in the model: {name}", name=piece.name)
+
 
 def find_sizes(piece: Piece) -> Sized:
     """Return the sizes with which a piece rocks.
@@ -281,79 +354,20 @@ def find_sizes(piece: Piece) -> Sized:
     breadth, width, angle = along, piece.width, piece.angle_deg
     if across < along - SAME:
         breadth, width, angle = across, piece.breadth, piece.angle_deg + 90
-    supports = breadth
-    reach = piece.support_reach
+    supports, reach = breadth, piece.support_reach
     safe = breadth if reach is None or 2 * reach >= breadth - SAME else 2 * reach
     is_oblique = safe < breadth and (ALONG <= (piece.support_angle_deg - piece.angle_deg) % 90 <= 90 - ALONG)
     if is_oblique or safe == 0:
         breadth, width, angle = safe, piece.support_across, piece.support_angle_deg
-    sizes = (breadth, width, piece.height, supports, safe)
-    breadth_cm, width_cm, height_cm, supports_cm, safe_cm = (round(CENTIMETRES * one, 1) for one in sizes)
+    sizes = (round(CENTIMETRES * one, 1) for one in (breadth, width, piece.height, supports, safe))
+    breadth_cm, width_cm, height_cm, supports_cm, safe_cm = sizes
     return Sized(
-        piece,
-        breadth_cm,
-        width_cm,
-        height_cm,
-        angle_deg=round((angle + 90) % 180 - 90, 1),
-        is_inset=breadth < piece.breadth - SAME,
-        supports=supports_cm,
-        safe=safe_cm,
-        is_oblique=is_oblique,
-    )
-
-
-def _sort_by_size(pieces: Sequence[Piece]) -> tuple[list[Sized], list[Skipped]]:
-    sized = [find_sizes(one) for one in pieces]
-    fits = [all(LOW <= size <= HIGH for size in one.sizes.values()) for one in sized]
-    outside = fill("a size outside {low:g} to {high:g} cm", low=LOW, high=HIGH)
-    counts = Counter(
-        (one.piece.type[:LONGEST_NAME], BESIDE_BASE if one.piece.support_reach == 0 else outside)
-        for one, is_inside in zip(sized, fits, strict=True)
-        if not is_inside
-    )
-    kept = [one for one, is_inside in zip(sized, fits, strict=True) if is_inside]
-    return kept, [Skipped(kind, number, reason) for (kind, reason), number in counts.items()]
+        piece, breadth_cm, width_cm, height_cm, angle_deg=round(half_turn(angle), 1), supports=supports_cm,
+        is_inset=breadth < piece.breadth - SAME, safe=safe_cm, is_oblique=is_oblique,
+    )  # fmt: skip
 
 
 # ---------------------------------------------------------------- values of rows
-
-
-def _find_height(model: BuildingModel, storeys: Sequence[Storey]) -> float | None:
-    """Return the height of the roof: the highest storey or ceiling; None if not above all floors or above `TALLEST`."""
-    datum = {one.key: one.elevation - one.level for one in model.storeys}
-    tops = [one.elevation for one in model.storeys]
-    tops += [one.top + datum[one.storey] for one in model.spaces if one.storey in datum]
-    highest = max((one.elevation for one in storeys), default=0.0)
-    top = max(tops, default=0.0)
-    return round(top, 2) if max(highest, LOWEST_ROOF) < top <= TALLEST else None
-
-
-def _is_known(storey: Storey) -> bool:
-    return LOWEST <= storey.elevation <= HIGHEST
-
-
-def _list_notes(one: Sized) -> Iterator[str]:
-    piece = one.piece
-    if one.is_inset:
-        yield _note_supports(one)
-    if piece.is_fitted:
-        yield gettext(FITTED)
-    if piece.name and piece.name != piece.type:
-        yield gettext("in the model: {name}", name=piece.name)
-
-
-def _note_supports(one: Sized) -> str:
-    sizes = (one.piece.breadth, one.piece.width, one.piece.height)
-    breadth, width, height = (CENTIMETRES * size for size in sizes)
-    body = gettext("body {breadth:.1f} x {width:.1f} x {height:.1f} cm, {support:g} cm between the outer supports",
-                   breadth=breadth, width=width, height=height, support=one.supports)  # fmt: skip
-    if one.is_oblique:
-        return gettext("{body}: Breadth is twice the distance from the middle to the nearest edge between them",
-                       body=body)  # fmt: skip
-    if one.is_off_middle:
-        return gettext("{body}, which are off the middle: to one side it tips as with a Breadth of {safe:g} cm",
-                       body=body, safe=one.safe)  # fmt: skip
-    return body
 
 
 def find_kind(space: Space, doors: int = 0, *, holds_stair: bool = False) -> Literal["room", "corridor", "stair"]:
@@ -378,53 +392,15 @@ def _is_slender(area: Area) -> bool:
 
 
 def _write_outline(area: Area) -> str:
+    """Return the outline of a room, as coarse as a cell asks for; "" where a workbook would not take it."""
     polygon, coarse = to_polygon(area), 0.0
     corners = list(polygon.exterior.coords)[:-1]
     while len(corners) > MOST:
         coarse = 2 * coarse or 0.01
         corners = list(polygon.exterior.simplify(coarse).coords)[:-1]
-    text = "; ".join(f"{x:g} {y:g}" for x, y in ((round(x, 3), round(y, 3)) for x, y in corners))
+    text = "; ".join(f"{round(x, 3):g} {round(y, 3):g}" for x, y in corners)
     try:
         parse_outline(text, 1.0)
     except OutlineError:
         return ""
     return text
-
-
-def _warn_of_supports(pieces: Sequence[Sized]) -> Iterator[Text]:
-    off = sum(one.is_off_middle for one in pieces)
-    if off:
-        yield nfill(
-            "{n:,} piece stands off the middle of its supports, and tips to one side sooner than its Breadth says. "
-            "Type the Breadth in its Notes to be on the safe side.",
-            "{n:,} pieces stand off the middle of their supports, and tip to one side sooner than their Breadth says. "
-            "Type the Breadth in their Notes to be on the safe side.", off,
-        )  # fmt: skip
-
-
-def _note(own: _Building) -> Iterator[Text]:
-    model = own.model
-    fitted = sum(one.piece.is_fitted for one in own.pieces)
-    if fitted:
-        yield nfill(
-            "{n:,} piece is fitted furniture by its name: usually fixed, free-standing until Anchored says yes.",
-            "{n:,} pieces are fitted furniture by their names: usually fixed, free-standing until Anchored says yes.",
-            fitted,
-        )  # fmt: skip
-    inset = sum(one.is_inset for one in own.pieces)
-    if inset:
-        yield nfill(
-            "{n:,} piece stands on supports inside its body: Breadth is between these, and Notes give the body.",
-            "{n:,} pieces stand on supports inside their bodies: Breadth is between these, and Notes give the bodies.",
-            inset,
-        )  # fmt: skip
-    if model.doors:
-        out = sum(kind == "exit" for kind in own.kinds.values())
-        yield fill("Doors that lead out of the ground storey (a room on one side only): {n:,} of {all:,}.", n=out,
-                   all=len(model.doors))  # fmt: skip
-    if model.latitude is not None:
-        yield fill("Latitude and Longitude are those of the model, {latitude:g} and {longitude:g}: check them, as "
-                   "programs fill in a default town.", latitude=model.latitude, longitude=model.longitude)  # fmt: skip
-    empty = [one.name for one in model.storeys if one not in own.storeys]
-    if empty:
-        yield fill("Storeys without furniture, rooms and doors were left out: {names}.", names=", ".join(empty[:20]))

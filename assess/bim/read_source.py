@@ -22,8 +22,6 @@ from assess.progress import SILENT, Progress
 
 Reader = Callable[[Path, str, Sequence[str]], BuildingModel]
 """Reads a file, by its path, its name and further classes of furniture."""
-KINDS = (".ifc", ".json", ".sh3d", ".xlsx", ".xlsm")
-"""Ends of names of files that are imported."""
 _ZIP = b"PK\x03\x04"
 _BRACES = (b"{", b"[")
 _LOOKED_AT = 4096
@@ -47,19 +45,33 @@ def read_source(
     try:
         with open_input(path) as file:
             start = file.read(_LOOKED_AT)
-        return keep_record(_read(path, name, start, progress, routes, also), path)
+        read = _choose(path, name, start)
+        if read is not None:
+            found = run_apart(name, progress, build, read, path.resolve(), name, routes, tuple(also), spoken().code)
+        elif routes != "none":
+            raise ModelError(fill("{name} holds no positions, so that no routes can be drafted from it.", name=name))
+        else:
+            found = progress.wait_for(lambda: read_cobie(path, name, progress))
+        return keep_record(found, path)
     except OSError as error:
         raise unreadable(name, error) from None
 
 
-def _read(
-    path: Path, name: str, start: bytes, progress: Progress, routes: Drafts, also: Sequence[str]
-) -> ImportedBuilding:
-    text = start.removeprefix(b"\xef\xbb\xbf").lstrip()
+def _choose(path: Path, name: str, start: bytes) -> Reader | None:
+    """Return the reader of a model, None for a COBie file."""
     if start.startswith(_ZIP):
-        return _read_packed(path, name, progress, routes)
-    if text.startswith(_BRACES):
-        return _build_apart(read_scan, path, name, progress, routes)
+        try:
+            with zipfile.ZipFile(path) as archive:
+                parts = archive.namelist()
+        except (OSError, zipfile.BadZipFile, NotImplementedError, ValueError):
+            raise ModelError(
+                fill("{name} is damaged: it cannot be unpacked. Copy or save it again.", name=name)
+            ) from None
+        if any(part.lower().endswith((".ifc", ".ifcxml")) for part in parts):
+            check_model(path, name)
+        return read_home if HOME in parts or OLD_HOME in parts else None
+    if start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(_BRACES):
+        return read_scan
     if not is_model(start) and path.suffix.lower() not in (".ifc", ""):
         raise ModelError(
             fill("{name} is of a kind that is not imported: name an IFC model (.ifc), a RoomPlan scan (.json), a Sweet "
@@ -67,13 +79,7 @@ def _read(
         )  # fmt: skip
     check_model(path, name)
     check_installed()
-    return _build_apart(read_model, path, name, progress, routes, also)
-
-
-def _build_apart(
-    read: Reader, path: Path, name: str, progress: Progress, routes: Drafts, also: Sequence[str] = ()
-) -> ImportedBuilding:
-    return run_apart(name, progress, build, read, path.resolve(), name, routes, tuple(also), spoken().code)
+    return read_model
 
 
 def build(read: Reader, path: Path, name: str, routes: Drafts, also: Sequence[str], language: str) -> ImportedBuilding:
@@ -90,18 +96,3 @@ def read_scan(path: Path, name: str, _also: Sequence[str]) -> BuildingModel:
 def read_home(path: Path, name: str, _also: Sequence[str]) -> BuildingModel:
     """Read a home of Sweet Home 3D; errors as of `assess.bim.sweet_home.read_sweet_home`."""
     return read_sweet_home(read_input(path, MOST_OF_HOME), name)
-
-
-def _read_packed(path: Path, name: str, progress: Progress, routes: Drafts) -> ImportedBuilding:
-    try:
-        with zipfile.ZipFile(path) as archive:
-            parts = archive.namelist()
-    except (OSError, zipfile.BadZipFile, NotImplementedError, ValueError):
-        raise ModelError(fill("{name} is damaged: it cannot be unpacked. Copy or save it again.", name=name)) from None
-    if any(part.lower().endswith((".ifc", ".ifcxml")) for part in parts):
-        check_model(path, name)
-    if HOME in parts or OLD_HOME in parts:
-        return _build_apart(read_home, path, name, progress, routes)
-    if routes != "none":
-        raise ModelError(fill("{name} holds no positions, so that no routes can be drafted from it.", name=name))
-    return progress.wait_for(lambda: read_cobie(path, name, progress))

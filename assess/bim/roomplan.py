@@ -31,6 +31,7 @@ from assess.bim.building_model import (
     Stair,
     Storey,
     count_skipped,
+    half_turn,
     name_skipped,
 )
 from assess.bim.plan_shapes import SpaceSearch, find_valid, list_polygons, merge, to_area
@@ -50,8 +51,6 @@ FITTED = ("oven", "dishwasher")
 LOW = "low"
 WALL = 0.1
 """Thickness with which walls are drawn: a scan knows their faces alone [m]."""
-UPRIGHT = 0.999
-"""Least Z of the vertical axis of what stands upright [-]: within 2.6 degrees."""
 JOINS = 0.15
 """Gap at a corner across which two walls are joined to close a room [m]."""
 
@@ -83,12 +82,18 @@ def read_roomplan(data: bytes, name: str) -> BuildingModel:
     ``objects[3]``.
     """
     scan = parse_scan(data, name)
-    scan = scan.turned(_turn_by(-_find_turn(scan.walls)))
+    scan = scan.turned(_find_turn(scan.walls))
     storeys = _list_storeys(scan)
     levels = {int(one.key): one.level for one in storeys}
     rooms = _find_rooms(scan, levels)
     pieces, unsure, skipped = _find_pieces(scan, rooms, levels)
     doors = tuple(_list_doors(scan, levels))
+    warnings = [EXPERIMENTAL, SCANNED_SIZES, UNKNOWN_AXES, *([EXITS] if doors else [])]
+    if scan.separate:
+        warnings.append(
+            fill("The {n:,} rooms were scanned one by one and not merged: whether they lie where they are in the "
+                 "building is not known. Merge them in the app that scanned them, or check the plan.", n=scan.separate)
+        )  # fmt: skip
     return BuildingModel(
         source=name,
         schema=SCHEMA,
@@ -99,14 +104,18 @@ def read_roomplan(data: bytes, name: str) -> BuildingModel:
         stairs=tuple(_list_stairs(scan, levels)),
         pieces=tuple(pieces),
         walls={str(story): _draw_walls(scan, story) for story in levels},
-        windows={str(story): _draw_windows(scan, story) for story in levels},
+        windows={
+            str(story): merge(_lay(one, WALL) for one in scan.windows if one.story == story and one.is_upright)
+            for story in levels
+        },
         skipped=skipped,
-        warnings=(EXPERIMENTAL, SCANNED_SIZES, UNKNOWN_AXES, *((EXITS,) if doors else ()), *_warn_of_rooms(scan)),
+        warnings=tuple(warnings),
         remarks=tuple(_remark(scan, unsure)),
     )
 
 
 def _list_storeys(scan: Scan) -> tuple[Storey, ...]:
+    """Return the storeys that hold something, from the lowest, which is taken to be at 0 m."""
     every = (*scan.objects, *scan.walls, *scan.floors, *scan.doors)
     levels = {story: _find_level(scan, story) for story in sorted({one.story for one in every})}
     ground = min(levels.values(), default=0.0)
@@ -119,39 +128,38 @@ def _list_storeys(scan: Scan) -> tuple[Storey, ...]:
 def _find_pieces(
     scan: Scan, rooms: Sequence[Space], levels: Mapping[int, float]
 ) -> tuple[list[Piece], Counter[str], tuple[Skipped, ...]]:
+    """Return the pieces, how many were recognised with low confidence by category, and what was left out."""
     pieces, unsure, skipped = list[Piece](), Counter[str](), list[tuple[str, Text, bool]]()
     kinds, search = {one.key: one.kind for one in scan.objects}, SpaceSearch(rooms)
     for one in scan.objects:
-        held = search.find(str(one.story), (float(one.origin[0]), float(one.origin[1])))
-        room = held[0] if held else None
+        x, y, _z = one.origin.tolist()
+        room = next(iter(search.find(str(one.story), (x, y))), None)
         kind = say_word(one.kind) or gettext("Object")
-        left = name_skipped(SCHEMA, kind)
         bottom = one.bottom - (room.bottom if room else levels[one.story])
+        left: tuple[Text, bool] | None = None
         if one.kind in (*FIXED, STAIRS):
-            skipped.append((left, IS_FIXED, False))
+            left = IS_FIXED, False
         elif one.kind in BUILT_IN and kinds.get(one.parent) == "storage":
-            skipped.append((left, IS_BUILT_IN, False))
-        elif not _is_upright(one):
-            skipped.append((left, IS_TILTED, True))
+            left = IS_BUILT_IN, False
+        elif not one.is_upright:
+            left = IS_TILTED, True
         elif bottom > ON_FLOOR:
-            skipped.append((left, NOT_ON_FLOOR, True))
-        else:
-            pieces.append(_to_piece(one, kind, room, bottom))
-            unsure[kind] += one.confidence == LOW
+            left = NOT_ON_FLOOR, True
+        if left is not None:
+            skipped.append((name_skipped(SCHEMA, kind), *left))
+            continue
+        width, height, depth = one.sizes
+        short, long = sorted((width, depth))
+        pieces.append(
+            Piece(
+                key=one.key, storey=str(one.story), space=room.key if room else "", ifc_class=SCHEMA, name=kind,
+                type=kind, x=x, y=y, breadth=short, width=long, height=height,
+                angle_deg=half_turn(one.direction(0 if width <= depth else 2)), support_breadth=short,
+                support_width=long, bottom=bottom, is_fitted=one.kind in FITTED,
+            )
+        )  # fmt: skip
+        unsure[kind] += one.confidence == LOW
     return pieces, unsure, count_skipped(skipped)
-
-
-def _to_piece(one: Scanned, kind: str, room: Space | None, bottom: float) -> Piece:
-    width, height, depth = one.sizes
-    axis = 0 if width <= depth else 2
-    short, long = min(width, depth), max(width, depth)
-    angle = math.degrees(math.atan2(one.axes[1, axis], one.axes[0, axis]))
-    return Piece(
-        key=one.key, storey=str(one.story), space=room.key if room else "", ifc_class=SCHEMA,
-        name=kind, type=kind, x=float(one.origin[0]), y=float(one.origin[1]), breadth=short, width=long, height=height,
-        angle_deg=(angle + 90) % 180 - 90, support_breadth=short, support_width=long, bottom=bottom,
-        is_fitted=one.kind in FITTED,
-    )  # fmt: skip
 
 
 def _list_doors(scan: Scan, levels: Mapping[int, float]) -> Iterator[Door]:
@@ -159,12 +167,11 @@ def _list_doors(scan: Scan, levels: Mapping[int, float]) -> Iterator[Door]:
     named = ((gettext("Door"), scan.doors), (gettext("Opening"), scan.openings))
     for name, one in ((name, one) for name, several in named for one in several):
         is_passable = one.bottom - levels.get(one.story, one.bottom) <= SILL
-        if one.key not in taken and _is_upright(one) and is_passable and one.sizes[0] > 0:
+        if one.key not in taken and one.is_upright and is_passable and one.sizes[0] > 0:
             taken.add(one.key)
-            normal = math.degrees(math.atan2(one.axes[1, 2], one.axes[0, 2]))
             yield Door(
                 key=one.key, storey=str(one.story), name=name, x=float(one.origin[0]), y=float(one.origin[1]),
-                normal_deg=normal, width=one.sizes[0], thickness=one.sizes[2],
+                normal_deg=one.direction(2), width=one.sizes[0], thickness=one.sizes[2],
                 overall=one.sizes[0] if one in scan.doors else 0.0,
             )  # fmt: skip
 
@@ -176,15 +183,6 @@ def _list_stairs(scan: Scan, levels: Mapping[int, float]) -> Iterator[Stair]:
             yield Stair(one.key, str(one.story), say_word(one.kind), "foot", x, y)
             above = [story for story, level in levels.items() if abs(level - top) <= NEAR_STOREY and story != one.story]
             yield from (Stair(one.key, str(story), say_word(one.kind), "head", x, y) for story in above[:1])
-
-
-def _warn_of_rooms(scan: Scan) -> Iterator[Text]:
-    if scan.separate:
-        yield fill(
-            "The {n:,} rooms were scanned one by one and not merged: whether they lie where they are in the building "
-            "is not known. Merge them in the app that scanned them, or check the plan.",
-            n=scan.separate,
-        )
 
 
 def _remark(scan: Scan, unsure: Counter[str]) -> Iterator[Text]:
@@ -206,21 +204,15 @@ def _remark(scan: Scan, unsure: Counter[str]) -> Iterator[Text]:
 # ---------------------------------------------------------------- the plan
 
 
-def _find_turn(walls: Sequence[Scanned]) -> float:
-    """Return the direction in which the walls run, within 45 degrees of X [deg]: the mean of all, by their lengths."""
-    ways = [(wall.sizes[0], math.atan2(wall.axes[1, 0], wall.axes[0, 0])) for wall in walls if _is_upright(wall)]
+def _find_turn(walls: Sequence[Scanned]) -> FloatArray:
+    """Return the matrix (3, 3) that turns a plan so that the walls run along X and Y.
+
+    Their direction is the mean of all, by their lengths, within 45 degrees of X.
+    """
+    ways = [(wall.sizes[0], math.radians(wall.direction(0))) for wall in walls if wall.is_upright]
     x, y = (sum(length * way(4 * angle) for length, angle in ways) for way in (math.cos, math.sin))
-    return math.degrees(math.atan2(y, x)) / 4 if math.hypot(x, y) > 0 else 0.0
-
-
-def _turn_by(angle_deg: float) -> FloatArray:
-    """Return the matrix that turns a plan about the origin, anticlockwise, (3, 3)."""
-    turn = math.radians(angle_deg)
+    turn = -math.atan2(y, x) / 4 if math.hypot(x, y) > 0 else 0.0
     return np.array([[math.cos(turn), -math.sin(turn), 0.0], [math.sin(turn), math.cos(turn), 0.0], [0.0, 0.0, 1.0]])
-
-
-def _is_upright(one: Scanned) -> bool:
-    return bool(abs(one.axes[2, 1]) >= UPRIGHT)
 
 
 def _find_level(scan: Scan, story: int) -> float:
@@ -228,7 +220,7 @@ def _find_level(scan: Scan, story: int) -> float:
     floors = [_height_of(one) for one in scan.floors if one.story == story]
     if floors:
         return median(floors)
-    walls = [one.bottom for one in scan.walls if one.story == story and _is_upright(one)]
+    walls = [one.bottom for one in scan.walls if one.story == story and one.is_upright]
     if walls:
         return median(walls)
     return min((one.bottom for one in scan.objects if one.story == story), default=0.0)
@@ -239,17 +231,11 @@ def _height_of(floor: Scanned) -> float:
 
 
 def _draw_walls(scan: Scan, story: int) -> tuple[Area, ...]:
-    walls = [_lay(one, WALL) for one in scan.walls if one.story == story and _is_upright(one) and not one.is_curved]
-    holes = [
-        _lay(one, 3 * WALL)
-        for one in (*scan.doors, *scan.windows, *scan.openings)
-        if one.story == story and _is_upright(one)
-    ]
+    """Return the walls of a storey with gaps at its doors, windows and openings; those of cylinders are left out."""
+    walls = [_lay(one, WALL) for one in scan.walls if one.story == story and one.is_upright and not one.is_curved]
+    openings = (*scan.doors, *scan.windows, *scan.openings)
+    holes = [_lay(one, 3 * WALL) for one in openings if one.story == story and one.is_upright]
     return merge(list_polygons(shapely.union_all(walls).difference(shapely.union_all(holes))))
-
-
-def _draw_windows(scan: Scan, story: int) -> tuple[Area, ...]:
-    return merge(_lay(one, WALL) for one in scan.windows if one.story == story and _is_upright(one))
 
 
 def _lay(one: Scanned, least: float) -> Polygon:
@@ -283,25 +269,23 @@ def _find_rooms(scan: Scan, stories: Iterable[int]) -> list[Space]:
 def _list_floors(scan: Scan, story: int) -> Iterator[tuple[str, Polygon, float]]:
     for one in scan.floors:
         if one.story == story:
-            corners = one.corners if len(one.corners) >= 3 else _corners_of(one)
+            corners = one.corners
+            if len(corners) < 3:
+                width, height, depth = (size / 2 for size in one.sizes)
+                is_flat = height <= depth
+                around = _around(width, depth if is_flat else height)
+                local = np.array([(x, 0.0, y) if is_flat else (x, y, 0.0) for x, y in around])
+                corners = one.origin + local @ one.axes.T
             polygon = find_valid(Polygon(corners[:, :2]))
             if polygon.area >= SMALLEST_ROOM:
                 yield one.key, polygon, _height_of(one)
-
-
-def _corners_of(floor: Scanned) -> FloatArray:
-    width, height, depth = (size / 2 for size in floor.sizes)
-    is_flat = height <= depth
-    local = np.array([(x, 0.0, y) if is_flat else (x, y, 0.0) for x, y in _around(width, depth if is_flat else height)])
-    corners: FloatArray = floor.origin + local @ floor.axes.T
-    return corners
 
 
 def _close_walls(scan: Scan, story: int) -> Iterator[tuple[str, Polygon, float]]:
     """Yield the areas that the walls of a storey close, each lengthened by `JOINS` so that they meet at corners."""
     level, lines = _find_level(scan, story), []
     for one in scan.walls:
-        if one.story == story and _is_upright(one) and not one.is_curved:
+        if one.story == story and one.is_upright and not one.is_curved:
             reach = (one.sizes[0] / 2 + JOINS) * one.axes[:2, 0]
             lines.append(LineString([one.origin[:2] - reach, one.origin[:2] + reach]))
     rings = list(list_polygons(shapely.polygonize([shapely.union_all(lines)]))) if lines else []

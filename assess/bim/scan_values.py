@@ -7,6 +7,7 @@ points upwards; here Z does, and plan X and Y are x and -z.
 """
 
 import json
+import math
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -34,6 +35,8 @@ FARTHEST, LARGEST = 10_000.0, 1_000.0
 """Distance of an element from the origin, and its size, beyond which something is wrong [m]."""
 RIGID = 0.02
 """How far the axes of an element may be from perpendicular ones of length 1 [-]."""
+UPRIGHT = 0.999
+"""Least Z of the vertical axis of what stands upright [-]: within 2.6 degrees."""
 LONGEST_WORD = 60
 """Characters that are kept of a category or label."""
 LISTS = ("objects", "walls", "doors", "windows", "openings", "floors")
@@ -47,15 +50,12 @@ _UPWARDS = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 class Scanned:
     """One element: an object, or a wall, door, window, opening or floor.
 
-    `place`, `key`: where it stands in the file, such as ``objects[3]``, and its identifier, "" without one. `kind`,
-    `confidence`: its category and how sure the phone was of it, as the file names them. `parent`: identifier of the
-    element that it belongs to, "" if it belongs to none. `sizes`: along its own axes: width, height, depth [m]; those
-    of surfaces may be 0. `axes`: its own axes as columns, the second one upwards for all that stands. `origin`: its
-    centre [m]. `corners`: corners of its outline [m]; none where the file gives none. `story`: number of its storey.
-    `is_curved`: whether it is a part of a cylinder.
+    `key` is its identifier, its place in the file without one; `parent` that of the element that it belongs to, "" if
+    it belongs to none. `kind` and `confidence` are its category and how sure the phone was of it, as the file names
+    them. `sizes` are width, height and depth along its own axes [m], 0 for some of surfaces. `axes` (3, 3) are these
+    axes as columns, the second one upwards for all that stands; `corners` (n, 3) are those of its outline [m].
     """
 
-    place: str
     key: str
     kind: str
     confidence: str
@@ -71,6 +71,15 @@ class Scanned:
     def bottom(self) -> float:
         """Z of its lower edge if it stands upright [m]."""
         return float(self.origin[2]) - self.sizes[1] / 2
+
+    @property
+    def is_upright(self) -> bool:
+        """Whether the second of its own axes is vertical."""
+        return bool(abs(self.axes[2, 1]) >= UPRIGHT)
+
+    def direction(self, axis: int) -> float:
+        """Return the direction of one of its axes in plan [deg]."""
+        return math.degrees(math.atan2(self.axes[1, axis], self.axes[0, axis]))
 
     def turned(self, turn: FloatArray) -> "Scanned":
         """Return it turned about the origin by a matrix, (3, 3)."""
@@ -117,7 +126,12 @@ def parse_scan(data: bytes, name: str) -> Scan:
     Raises ModelError if it is no scan, damaged, or beyond a limit; the message names the place in the file.
     """
     document = _load(data, name)
-    rooms = _list_rooms(document, name)
+    rooms = document.get("rooms") or []
+    if not isinstance(rooms, list) or not all(
+        isinstance(one, dict) and any(isinstance(one.get(kind), list) for kind in LISTS) for one in rooms
+    ):
+        raise _no_scan(name)
+    rooms = [(f"rooms[{at}].", one) for at, one in enumerate(rooms)]
     is_whole = any(document.get(one) for one in LISTS)
     parts = [("", document)] if is_whole or not rooms else rooms
     reader = _Reader(name)
@@ -126,20 +140,16 @@ def parse_scan(data: bytes, name: str) -> Scan:
     return Scan(**lists, labels=labels, separate=len(parts) if parts is rooms and len(rooms) > 1 else 0)
 
 
-# ---------------------------------------------------------------- the document
-
-
 def _load(data: bytes, name: str) -> dict[str, Any]:
+    fault = None
     if len(data) > MOST_BYTES:
-        raise ModelError(
-            fill("{name} is larger than {most} MB, the most that is read of a scan. Scan fewer rooms at a time.",
-                 name=name, most=MOST_BYTES // 2**20)
-        )  # fmt: skip
-    if sum(map(data.count, (b",", b"[", b"{"))) > MOST_VALUES:
-        raise ModelError(
-            fill("{name} holds more than {most:,} values, the most that is read of a scan. Scan fewer rooms at a time.",
-                 name=name, most=MOST_VALUES)
-        )  # fmt: skip
+        fault = fill("{name} is larger than {most} MB, the most that is read of a scan. Scan fewer rooms at a time.",
+                     name=name, most=MOST_BYTES // 2**20)  # fmt: skip
+    elif sum(map(data.count, (b",", b"[", b"{"))) > MOST_VALUES:
+        fault = fill("{name} holds more than {most:,} values, the most that is read of a scan. Scan fewer rooms at a "
+                     "time.", name=name, most=MOST_VALUES)  # fmt: skip
+    if fault is not None:
+        raise ModelError(fault)
     try:
         found = json.loads(data)
     except json.JSONDecodeError as error:
@@ -160,15 +170,6 @@ def _no_scan(name: str) -> ModelError:
         fill("{name} is not a scan of RoomPlan: it has none of the lists {lists}. Export the CapturedRoom or "
              "CapturedStructure as JSON.", name=name, lists=", ".join((*LISTS, "rooms")))
     )  # fmt: skip
-
-
-def _list_rooms(document: Mapping[str, Any], name: str) -> list[tuple[str, Mapping[str, Any]]]:
-    rooms = document.get("rooms") or []
-    if not isinstance(rooms, list) or not all(
-        isinstance(one, dict) and any(isinstance(one.get(kind), list) for kind in LISTS) for one in rooms
-    ):
-        raise _no_scan(name)
-    return [(f"rooms[{at}].", one) for at, one in enumerate(rooms)]
 
 
 # ---------------------------------------------------------------- elements
@@ -209,31 +210,28 @@ class _Reader:
 
     def _read_one(self, data: Mapping[str, Any], place: str, kind: str, story: int) -> Scanned:
         axes, origin = self._read_transform(data.get("transform"), f"{place}.transform")
-        corners = self._read_corners(data.get("polygonCorners"), f"{place}.polygonCorners")
+        corners = data.get("polygonCorners") or []
+        if not isinstance(corners, list) or not all(_is_point(one) for one in corners):
+            expected = fill("expected points of three numbers, none beyond {most:,.0f} m.", most=FARTHEST)
+            raise self._fault(f"{place}.polygonCorners", expected)
+        key, is_object = _text(data.get("identifier")), kind == "objects"
+        if is_object and (not key or key in self.known):
+            why = fill("{other} has the same one.", other=self.known[key]) if key else fill("it is missing.")
+            raise self._fault(f"{place}.identifier", why)
+        if is_object:
+            self.known[key] = place
         return Scanned(
-            place=place,
-            key=self._read_key(data, place, is_object=kind == "objects"),
+            key=key or place,
             kind=read_word(data.get("category")),
             confidence=read_word(data.get("confidence")),
             parent=_text(data.get("parentIdentifier")),
-            sizes=self._read_sizes(data.get("dimensions"), f"{place}.dimensions", is_object=kind == "objects"),
+            sizes=self._read_sizes(data.get("dimensions"), f"{place}.dimensions", is_object=is_object),
             axes=axes,
             origin=origin,
-            corners=origin + corners @ axes.T,
+            corners=origin + np.array(corners, dtype=np.float64).reshape(-1, 3) @ axes.T,
             story=_whole(data.get("story"), story),
             is_curved=bool(data.get("curve")),
         )
-
-    def _read_key(self, data: Mapping[str, Any], place: str, *, is_object: bool) -> str:
-        found = _text(data.get("identifier"))
-        if not is_object:
-            return found or place
-        if not found:
-            raise self._fault(f"{place}.identifier", fill("it is missing."))
-        if found in self.known:
-            raise self._fault(f"{place}.identifier", fill("{other} has the same one.", other=self.known[found]))
-        self.known[found] = place
-        return found
 
     def _read_sizes(self, found: object, place: str, *, is_object: bool) -> tuple[float, float, float]:
         if not isinstance(found, list) or len(found) != 3 or not all(_is_number(one, LARGEST) for one in found):
@@ -259,16 +257,6 @@ class _Reader:
             raise self._fault(place, fill("it does not hold a rotation and a position, by columns."))
         return _UPWARDS @ axes, _UPWARDS @ matrix[:3, 3]
 
-    def _read_corners(self, found: object, place: str) -> FloatArray:
-        """Return the corners of an outline in the axes of its element, (n, 3)."""
-        if not found:
-            return np.empty((0, 3))
-        if not isinstance(found, list) or not all(_is_point(one) for one in found):
-            raise self._fault(
-                place, fill("expected points of three numbers, none beyond {most:,.0f} m.", most=FARTHEST)
-            )
-        return np.array(found, dtype=np.float64)
-
     def read_labels(self, parts: Sequence[tuple[str, Mapping[str, Any]]]) -> Iterator[Label]:
         """Yield what the parts of storeys are used for, of the document and its rooms."""
         for start, part in parts:
@@ -283,9 +271,6 @@ class _Reader:
 
     def _fault(self, place: str, fault: Text) -> ModelError:
         return ModelError(fill("{name}, {place}: {fault} {fix}", name=self.name, place=place, fault=fault, fix=_AGAIN))
-
-
-# ---------------------------------------------------------------- values
 
 
 def _is_number(value: object, most: float) -> bool:

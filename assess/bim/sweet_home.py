@@ -35,6 +35,7 @@ from assess.bim.building_model import (
     Stair,
     Storey,
     count_skipped,
+    half_turn,
     name_skipped,
 )
 from assess.bim.plan_shapes import (
@@ -99,44 +100,40 @@ def read_sweet_home(data: bytes, name: str) -> BuildingModel:
 
 
 def _unpack(data: bytes, name: str) -> bytes:
+    too_large = ModelError(
+        fill("{name} is too large: at most {file} MB are read, and {home} MB of the Home.xml in it. Save fewer "
+             "levels.", name=name, file=MOST_BYTES // 2**20, home=MOST_HOME // 2**20)
+    )  # fmt: skip
     if len(data) > MOST_BYTES:
-        raise _too_large(name)
+        raise too_large
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             parts = archive.namelist()
+            if HOME not in parts and OLD_HOME in parts:
+                raise ModelError(
+                    fill("{name} was saved by an old version of Sweet Home 3D: it lacks Home.xml. Open it with version "
+                         "5.3 or newer, and save it again.", name=name)
+                )  # fmt: skip
             if HOME not in parts:
-                raise _no_home(name, is_old=OLD_HOME in parts)
+                raise _no_home(name)
             with archive.open(HOME) as part:
                 found = part.read(MOST_HOME + 1)
     except (zipfile.BadZipFile, zipfile.LargeZipFile, OSError, EOFError, ValueError, RuntimeError, zlib.error):
         raise _damaged(name) from None
     if len(found) > MOST_HOME:
-        raise _too_large(name)
+        raise too_large
     return found
 
 
-def _too_large(name: str) -> ModelError:
-    return ModelError(
-        fill("{name} is too large: at most {file} MB are read, and {home} MB of the Home.xml in it. Save fewer "
-             "levels.", name=name, file=MOST_BYTES // 2**20, home=MOST_HOME // 2**20)
-    )  # fmt: skip
-
-
-def _no_home(name: str, *, is_old: bool) -> ModelError:
-    if is_old:
-        return ModelError(
-            fill("{name} was saved by an old version of Sweet Home 3D: it lacks Home.xml. Open it with version 5.3 or "
-                 "newer, and save it again.", name=name)
-        )  # fmt: skip
+def _no_home(name: str) -> ModelError:
     return ModelError(fill("{name} is not a file of Sweet Home 3D: it lacks Home.xml.", name=name))
 
 
 def _damaged(name: str) -> ModelError:
     return ModelError(
-        fill(
-            "{name} is damaged: its Home.xml cannot be read. Open it with Sweet Home 3D, and save it again.", name=name
-        )
-    )
+        fill("{name} is damaged: its Home.xml cannot be read. Open it with Sweet Home 3D, and save it again.",
+             name=name)
+    )  # fmt: skip
 
 
 # ---------------------------------------------------------------- the home as it stands in the file
@@ -172,7 +169,7 @@ class _Home:
         except (expat.ExpatError, ValueError, LookupError):  # an encoding that is not known
             raise _damaged(self.name) from None
         if self.root != "home":
-            raise _no_home(self.name, is_old=False)
+            raise _no_home(self.name)
 
     def _refuse(self, *_: object) -> None:
         raise _damaged(self.name)
@@ -239,7 +236,14 @@ class _Home:
         drawn = [one for one in boxes if not one.is_hidden]
         passages = [one for one in drawn if one.is_opening]
         doors = [one for one in passages if one.bottom <= SILL]
-        pieces = tuple(self._list_pieces([one for one in boxes if not one.is_opening], spaces))
+        pieces, search = list[Piece](), SpaceSearch(spaces)
+        for one in (one for one in boxes if not one.is_opening):
+            reason = one.why_left_out()
+            if reason is None:
+                rooms = search.find(one.storey, (one.x, one.y))
+                pieces.append(one.to_piece(rooms[0].key if rooms else ""))
+            else:
+                self.skipped.append((name_skipped(SCHEMA, one.name), reason, reason is not IS_STAIR))
         north = self.number(self.compass, "northDirection", 0.0) if self.compass else 0.0
         return BuildingModel(
             source=self.name,
@@ -248,10 +252,10 @@ class _Home:
             spaces=spaces,
             doors=tuple(one.to_door() for one in doors),
             stairs=tuple(_list_stairs(drawn, storeys)),
-            pieces=pieces,
+            pieces=tuple(pieces),
             walls={one.key: self._draw_walls(one.key, passages) for one in storeys},
             windows={
-                one.key: merge(box.polygon for box in passages if box.storey == one.key and box not in doors)
+                one.key: merge(box.plan() for box in passages if box.storey == one.key and box not in doors)
                 for one in storeys
             },
             skipped=count_skipped(self.skipped),
@@ -261,12 +265,9 @@ class _Home:
         )
 
     def _list_storeys(self) -> tuple[Storey, ...]:
-        found = []
-        for one in self.levels:
-            height = self.metres(one, "elevation")
-            found.append(Storey(one.values.get("id", one.place), one.name or one.place, height, height))
-        single = Storey("", gettext("Storey {n}", n=0), 0.0, 0.0)
-        return tuple(sorted(found, key=lambda one: one.level)) or (single,)
+        levels = ((one, self.metres(one, "elevation")) for one in self.levels)
+        found = [Storey(one.values.get("id", one.place), one.name or one.place, z, z) for one, z in levels]
+        return tuple(sorted(found, key=lambda one: one.level)) or (Storey("", gettext("Storey {n}", n=0), 0.0, 0.0),)
 
     def _storey_of(self, element: _Element, storeys: Sequence[Storey]) -> Storey:
         own = element.values.get("level")
@@ -283,11 +284,9 @@ class _Home:
                 yield Space(key, storey.key, name, "", to_area(polygon), storey.level, storey.level)
 
     def _box(self, one: _Element, storeys: Sequence[Storey]) -> "_Box":
-        is_tilted = any(abs(self.number(one, name, 0.0)) > math.radians(2.6) for name in ("pitch", "roll"))
         angle = -self.number(one, "angle", 0.0)  # clockwise in the file
         return _Box(
             element=one,
-            key=one.values.get("id", ""),
             storey=self._storey_of(one, storeys).key,
             name=one.name or one.tag,
             x=self.metres(one, "x"),
@@ -297,18 +296,8 @@ class _Home:
             depth=self.metres(one, "depth"),
             height=self.metres(one, "height"),
             bottom=self.metres(one, "elevation", 0.0),
-            is_tilted=is_tilted,
+            is_tilted=any(abs(self.number(one, name, 0.0)) > math.radians(2.6) for name in ("pitch", "roll")),
         )
-
-    def _list_pieces(self, boxes: Sequence["_Box"], spaces: Sequence[Space]) -> Iterator[Piece]:
-        search = SpaceSearch(spaces)
-        for one in boxes:
-            reason = one.why_left_out()
-            if reason is None:
-                rooms = search.find(one.storey, (one.x, one.y))
-                yield one.to_piece(rooms[0].key if rooms else "")
-            else:
-                self.skipped.append((name_skipped(SCHEMA, one.name), reason, reason is not IS_STAIR))
 
     def _draw_walls(self, storey: str, passages: Sequence["_Box"]) -> tuple[Area, ...]:
         own = [one for one in self.walls if self.levels == [] or one.values.get("level", storey) == storey]
@@ -322,7 +311,7 @@ class _Home:
             for one in straight
         ]  # fmt: skip
         thick = [self.metres(one, "thickness") for one in straight]
-        holes = [one.widened(median(thick) if thick else 0.0) for one in passages if one.storey == storey]
+        holes = [one.plan(median(thick) if thick else 0.0) for one in passages if one.storey == storey]
         return merge(list_polygons(shapely.union_all(bands).difference(shapely.union_all(holes))))
 
 
@@ -337,7 +326,6 @@ class _Box:
     """
 
     element: _Element
-    key: str
     storey: str
     name: str
     x: float
@@ -349,6 +337,11 @@ class _Box:
     bottom: float
     is_tilted: bool
     feet: tuple[float, float] | None = None
+
+    @property
+    def key(self) -> str:
+        """Its identifier in the file, "" without one."""
+        return self.element.values.get("id", "")
 
     @property
     def is_hidden(self) -> bool:
@@ -365,12 +358,7 @@ class _Box:
         """Whether it cuts a hole into the floor above."""
         return "staircaseCutOutShape" in self.element.values
 
-    @property
-    def polygon(self) -> Polygon:
-        """Its plan."""
-        return self.widened(0.0)
-
-    def widened(self, least: float) -> Polygon:
+    def plan(self, least: float = 0.0) -> Polygon:
         """Return its plan, a little deeper than `least` and than itself where that is not 0."""
         u, v = self.width / 2, max(self.depth, 1.5 * least) / 2
         along = math.cos(self.angle), math.sin(self.angle)
@@ -389,7 +377,7 @@ class _Box:
     @property
     def bounds(self) -> tuple[float, ...]:
         """Least and largest X, Y and Z, as `join_stacked` takes them; storeys lie far from each other."""
-        left, low, right, high = self.polygon.bounds
+        left, low, right, high = self.plan().bounds
         return left, low, self.bottom, right, high, self.bottom + self.height
 
     def to_piece(self, space: str) -> Piece:
@@ -399,7 +387,7 @@ class _Box:
         angle = math.degrees(self.angle) + (0 if self.width <= self.depth else 90)
         return Piece(
             key=self.key, storey=self.storey, space=space, ifc_class=SCHEMA, name=self.name, type=self.name,
-            x=self.x, y=self.y, breadth=short, width=long, height=self.height, angle_deg=(angle + 90) % 180 - 90,
+            x=self.x, y=self.y, breadth=short, width=long, height=self.height, angle_deg=half_turn(angle),
             support_breadth=feet[0], support_width=feet[1], bottom=self.bottom,
             is_fitted=self.element.values.get("movable") == "false",
         )  # fmt: skip
@@ -445,7 +433,7 @@ def _join_boxes(boxes: Sequence[_Box], name: str) -> _Box:
     first = boxes[0]
     c, s = math.cos(first.angle), math.sin(first.angle)
     turn = np.array([[c, -s], [s, c]])
-    turned = [(np.array(one.polygon.exterior.coords) - (first.x, first.y)) @ turn for one in boxes]
+    turned = [(np.array(one.plan().exterior.coords) - (first.x, first.y)) @ turn for one in boxes]
     points = np.concatenate(turned)
     feet = np.ptp(
         np.concatenate([own for own, one in zip(turned, boxes, strict=True) if one.bottom <= ON_FLOOR]), axis=0
@@ -460,8 +448,7 @@ def _join_boxes(boxes: Sequence[_Box], name: str) -> _Box:
 
 def _note_stacked(boxes: Sequence[_Box]) -> Iterator[Text]:
     for storey in dict.fromkeys(one.storey for one in boxes):
-        own = [one for one in boxes if one.storey == storey and not one.is_opening]
-        taken = [one for one in own if one.why_left_out() is None]
-        left = [one for one in own if one.why_left_out() == NOT_ON_FLOOR]
+        own = [(one, one.why_left_out()) for one in boxes if one.storey == storey and not one.is_opening]
+        taken, left = ([one for one, reason in own if reason == why] for why in (None, NOT_ON_FLOOR))
         lists = (np.array([one.bounds for one in each]) for each in (taken, left))
         yield from note_stacked([one.name for one in taken], *lists)
