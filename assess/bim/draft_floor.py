@@ -1,16 +1,14 @@
 """The plan of one storey for the drafting of routes: rooms, walls, furniture, and what joins rooms."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
-import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from assess.bim.building_model import ON_FLOOR, BuildingModel, Door, Point, Space, Storey
+from assess.bim.building_model import ON_FLOOR, BuildingModel, Door, Point, Space, Stair, Storey
 from assess.bim.door_sides import Sides
 from assess.bim.plan_shapes import box_at, direction_of, find_largest, list_polygons, place_at, to_polygon
 
@@ -22,16 +20,27 @@ NARROWEST = 0.2
 """Least half width of a passage in which ways may run [m]."""
 FAR = 2.0
 """A stair end is joined to rooms up to this far away [m]."""
+DOOR_LESS = 0.1
+"""What frame and leaf take of the overall width of a door, assumed [m]."""
+SAME = 0.005
+"""Difference up to which two widths are the same [m]."""
+TOLERANCE = 0.1
+"""To this the middle of the free floor is found [m]; in large rooms to a share of their extent."""
+EXTENT_SHARE = 200
+MIDWAY = 0.1
+"""A point that is this near to the middle between two walls is moved there [m]."""
+APART = 0.3
+"""The place of a room is at least this far from doors and stairs, where there is room [m]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Link:
     """What joins two rooms, or leads out of one: a door, an opening without a door, or the end of a stair.
 
-    `name`: its key among all nodes of a draft. `at`: its centre. `normal`: direction of the normal of its wall, of
-    length 1; (0, 0) for a stair, which is reached from any side. `width`: its width in the plan [m]. `clear`: Width
-    that is taken to be clear [m]; 0 where nothing is known of it. `spaces`: keys of the spaces that it joins.
-    `overall`: Width of a door: the smaller of what the model states and its opening [m]; 0 where it is no door.
+    `name` is its key among all nodes of a draft, `at` its centre, `normal` the direction of the normal of its wall;
+    (0, 0) for a stair, which is reached from any side. `width` is that in the plan, `clear` is taken to be clear, 0
+    where nothing is known of it, and `overall` is the smaller of the stated width of a door and its opening [m], 0
+    where it is no door. `spaces` are the keys of the spaces that it joins.
     """
 
     name: str
@@ -69,12 +78,9 @@ class FloorPlan:
     def _piece_tree(self) -> shapely.STRtree:
         return shapely.STRtree(self.footprints)
 
-    def polygon(self, space: str) -> shapely.Polygon:
-        """Return the plan of a space by its key."""
-        return self._by_key[space]
-
     @cached_property
-    def _by_key(self) -> dict[str, shapely.Polygon]:
+    def by_key(self) -> dict[str, shapely.Polygon]:
+        """Return the plans of the spaces by their keys."""
         return {space.key: polygon for space, polygon in zip(self.spaces, self.polygons, strict=True)}
 
     def solids_near(self, shape: BaseGeometry) -> BaseGeometry:
@@ -92,12 +98,8 @@ class FloorPlan:
 
     def hides(self, line: BaseGeometry, space: str, within: float) -> bool:
         """Tell whether furniture of a space is within some distance [m] of a line, with a wall between."""
-        near = self._piece_tree.query(line, predicate="dwithin", distance=within).tolist()
-        ways = [
-            shapely.shortest_line(line, self.footprints[at])
-            for at in near
-            if self.polygon(space).intersects(self.footprints[at])
-        ]
+        near = (self.footprints[at] for at in self._piece_tree.query(line, predicate="dwithin", distance=within))
+        ways = [shapely.shortest_line(line, one) for one in near if self.by_key[space].intersects(one)]
         return any(self.solids_near(way).intersection(way).length > 0 for way in ways)
 
 
@@ -117,15 +119,6 @@ def build_plan(model: BuildingModel, storey: Storey) -> FloorPlan:
             if piece.storey == storey.key and piece.bottom <= ON_FLOOR and piece.height > LOW
         ),
     )
-
-
-# ---------------------------------------------------------------- doors and stairs
-
-
-DOOR_LESS = 0.1
-"""What frame and leaf take of the overall width of a door, assumed [m]."""
-SAME = 0.005
-"""Difference up to which two widths are the same [m]."""
 
 
 def link_door(door: Door, sides: Sides) -> Link:
@@ -218,15 +211,6 @@ def _widest(area: BaseGeometry, otherwise: BaseGeometry) -> BaseGeometry:
 # ---------------------------------------------------------------- where rooms stand on the plan
 
 
-TOLERANCE = 0.1
-"""To this the middle of the free floor is found [m]; in large rooms to a share of their extent."""
-EXTENT_SHARE = 200
-MIDWAY = 0.1
-"""A point that is this near to the middle between two walls is moved there [m]."""
-APART = 0.3
-"""The place of a room is at least this far from doors and stairs, where there is room [m]."""
-
-
 def find_room_points(model: BuildingModel) -> dict[str, Point]:
     """Return the position of the place of each space, by its key: the middle of its widest free floor [m].
 
@@ -244,9 +228,8 @@ def find_room_points(model: BuildingModel) -> dict[str, Point]:
 
 def place_rooms(model: BuildingModel, plan: FloorPlan, rooms: Mapping[str, Room]) -> dict[str, Point]:
     """Return the same for the rooms of one storey."""
-    own = [(door.x, door.y) for door in model.doors if door.storey == plan.storey.key]
-    own += [(stair.x, stair.y) for stair in model.stairs if stair.storey == plan.storey.key]
-    taken = shapely.MultiPoint(own)
+    ends: tuple[Door | Stair, ...] = (*model.doors, *model.stairs)
+    taken = shapely.MultiPoint([(one.x, one.y) for one in ends if one.storey == plan.storey.key])
     return {key: _find_middle(room.free, taken) for key, room in rooms.items()}
 
 
@@ -262,26 +245,13 @@ def _find_middle(area: BaseGeometry, taken: BaseGeometry) -> Point:
         middle = polylabel(polygon, max(min(TOLERANCE, polygon.area / extent / 4), extent / EXTENT_SHARE))
     except shapely.errors.ShapelyError:
         middle = polygon.representative_point()
-    x, y = _centre(polygon, middle)
+    x, y = middle.x, middle.y
+    wall = shapely.shortest_line(middle, polygon.boundary)
+    if wall.length >= MIDWAY:  # nearly midway between two walls is exactly there, so that it is in line with others
+        near_by = wall.length
+        u, v = ((one - other) / near_by for one, other in zip((x, y), wall.coords[1], strict=True))
+        ray = shapely.LineString([(x, y), (x + 2 * near_by * u, y + 2 * near_by * v)])
+        far = middle.distance(ray & polygon.boundary)
+        move = (far - near_by) / 2 if near_by < far < near_by + 2 * MIDWAY else 0.0
+        x, y = x + move * u, y + move * v
     return round(x, 2), round(y, 2)
-
-
-def _centre(polygon: shapely.Polygon, middle: shapely.Point) -> Point:
-    """Move a point that is nearly midway between two walls to exactly there, so that it is in line with others."""
-    (x, y), wall = (middle.x, middle.y), shapely.shortest_line(middle, polygon.boundary)
-    near = wall.length
-    if near < MIDWAY:
-        return x, y
-    u, v = ((one - other) / near for one, other in zip((x, y), wall.coords[1], strict=True))
-    far = middle.distance(shapely.LineString([(x, y), (x + 2 * near * u, y + 2 * near * v)]) & polygon.boundary)
-    move = (far - near) / 2 if near < far < near + 2 * MIDWAY else 0.0
-    return x + move * u, y + move * v
-
-
-def see(area: BaseGeometry, pairs: Sequence[tuple[Point, Point]]) -> list[bool]:
-    """Tell of each pair of points whether the straight line between them lies in an area."""
-    if not pairs:
-        return []
-    shapely.prepare(area)
-    lines: Any = shapely.linestrings(np.array(pairs))
-    return [bool(one) for one in shapely.covers(area, lines)]

@@ -11,6 +11,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise, product
+from typing import Any
 
 import networkx as nx
 import numpy as np
@@ -18,7 +19,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from assess.bim.building_model import Point
-from assess.bim.draft_floor import Room, see
+from assess.bim.draft_floor import Room
 from assess.bim.plan_shapes import NARROWEST, find_largest, find_width, list_rings
 
 TRIES = ((0.48, True, 1.0), (0.35, True, 1.5), (0.2, False, 3.0), (0.05, False, 5.0))
@@ -85,7 +86,9 @@ class Ways:
     def join(self, pairs: Sequence[tuple[str, str]], area: BaseGeometry, cost: float) -> None:
         """Join nodes that see each other in an area."""
         places = [(self.at(one), self.at(other)) for one, other in pairs]
-        for (one, other), (start, end), seen in zip(pairs, places, see(area, places), strict=True):
+        shapely.prepare(area)
+        lines: Any = shapely.linestrings(np.array(places)) if places else []
+        for (one, other), (start, end), seen in zip(pairs, places, shapely.covers(area, lines), strict=True):
             length = math.dist(start, end)
             if seen and length >= SHORTEST:
                 self.found.append(Way(one, other, cost * length + BEND))
@@ -98,10 +101,7 @@ class Ways:
 
 
 def find_ways(room: Room, own: str, place: Point) -> Ways:
-    """Return the ways inside a room.
-
-    `room`: the room, with its links. `own`: name of the node of the room's own place. `place`: where that is.
-    """
+    """Return the ways inside a room with its links; `own` is the name of the node of the room's own place."""
     ends = {own: place} | {link.name: link.at for link in room.links}
     ways = Ways(room, ends, {}, [])
     factor = 1.0
@@ -188,6 +188,12 @@ class Axis:
         return math.dist(self.start, self.end)
 
     @property
+    def direction(self) -> Point:
+        """Its direction, of length 1."""
+        (x, y), (u, v) = self.start, self.end
+        return (u - x) / self.length, (v - y) / self.length
+
+    @property
     def inset(self) -> float:
         """How far from its ends ways along it begin [m]."""
         return min(INSET, self.length / 3)
@@ -202,12 +208,6 @@ class Axis:
         """Return the point so far along it [m]."""
         (x, y), (u, v) = self.start, self.direction
         return x + along * u, y + along * v
-
-    @property
-    def direction(self) -> Point:
-        """Its direction, of length 1."""
-        (x, y), (u, v) = self.start, self.end
-        return (u - x) / self.length, (v - y) / self.length
 
 
 def is_corridor(room: Room) -> bool:

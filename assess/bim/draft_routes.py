@@ -207,19 +207,16 @@ def _grow(graph: "nx.Graph[str]", ends: Sequence[str], without: Collection[str])
 
 
 def measure_gap(plan: FloorPlan, space: str, ends: tuple[Point, Point], links: Iterable[Link]) -> float | None:
-    """Return the least distance between what stands to the left and to the right of a segment [m].
+    """Return the least distance between what stands to the left and to the right of a segment in a space [m].
 
-    It is None where nothing stands on one of its sides up to `BESIDE`.
-
-    `plan`: the storey: its walls and windows bound a segment, and what is outside all rooms. Furniture does not.
-    `space`: Key of the space in which the segment lies. `ends`: both ends of the segment [m]. `links`: the doors,
-    openings and stairs at its ends: in these no wall is met.
+    Walls and windows bound it, and what is outside all rooms; furniture does not, nor is a wall met in the links at its
+    ends. It is None where nothing stands on one of its sides up to `BESIDE`.
     """
     line = shapely.LineString(ends)
     wide = line.buffer(BESIDE, cap_style="flat")
     rooms = shapely.union_all([plan.polygons[at] for at in sorted(plan.tree.query(wide))])
     solids = plan.solids_near(wide)
-    floor = plan.polygon(space).difference(solids)
+    floor = plan.by_key[space].difference(solids)
     passages = []
     for link in links:
         at = shapely.Point(link.at)
@@ -271,11 +268,10 @@ def set_widths(links: Sequence[Link], between_walls: float | None, gap: float | 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DraftRoutes:
-    """Drafted routes.
+    """Drafted routes as rows of Places, those alone that the segments add to rooms, doors and stairs, and of Routes.
 
-    `places`, `routes`: rows of Places, those alone that the segments add to rooms, doors and stairs; and of Routes: by
-    field of `assess.workbook.schema`, in metres, in the language in use. `unreached`: names of the rooms from which no
-    way leads to an exit or a stair. `remarks`: what was assumed, and what is to be checked.
+    `unreached` are the names of the rooms from which no way leads to an exit or a stair; `remarks` tell what was
+    assumed, and what is to be checked.
     """
 
     places: Rows = ()
@@ -300,8 +296,8 @@ def draft_routes(model: BuildingModel, names: Mapping[str, str]) -> DraftRoutes:
     lost = tuple(
         names[space.key] for space in model.spaces if space.key in names and network.rooms.get(space.key) not in steps
     )
-    remarks = _note_draft(model, network, routes, lost) if routes else _note_none(model, network)
-    return DraftRoutes(places=sheet.places, routes=routes, unreached=lost, remarks=tuple(remarks))
+    remarks = tuple(_note_draft(model, network, routes, lost))
+    return DraftRoutes(places=sheet.places, routes=routes, unreached=lost, remarks=remarks)
 
 
 @dataclass(slots=True)
@@ -334,17 +330,13 @@ class _Sheet:
 
         routes = set[str]()
         for target in sorted(of_target, key=place):
-            route = self._name_route(target, routes)
+            to = gettext("To {place}", place=self._name(target))
+            route, numbers = mark_draft(to), count(2)
+            while key(route) in routes:  # two long names that are alike where they are cut
+                route = mark_draft(f"{to[:SHORT]} {next(numbers)}")
+            routes.add(key(route))
             for number, step in enumerate(of_target[target], start=1):
                 yield {"route": route, "segment": str(number), **self._describe(step)}
-
-    def _name_route(self, target: str, routes: set[str]) -> str:
-        to = gettext("To {place}", place=self._name(target))
-        name, number = mark_draft(to), count(2)
-        while key(name) in routes:  # two long names that are alike where they are cut
-            name = mark_draft(f"{to[:SHORT]} {next(number)}")
-        routes.add(key(name))
-        return name
 
     def _name(self, node: str) -> str:
         own = self.network.nodes[node]
@@ -364,8 +356,7 @@ class _Sheet:
         return self._named[node]
 
     def _floor(self, storey: str) -> str:
-        own = {one.key: one.name for one in self.model.storeys}
-        return self.names.get(storey) or own[storey]
+        return self.names.get(storey) or next(one.name for one in self.model.storeys if one.key == storey)
 
     def _describe(self, step: Step) -> dict[str, Any]:
         ends = self.network.nodes[step.start], self.network.nodes[step.end]
@@ -395,66 +386,54 @@ class _Sheet:
 
 
 def _note_draft(model: BuildingModel, network: Network, routes: Rows, lost: Sequence[str]) -> Iterator[Text]:
-    yield nfill(
-        "{n} evacuation route was drafted from the rooms and doors of the model: walk it, correct it, and take "
-        "'{mark}' off its name.",
-        "{n} evacuation routes were drafted from the rooms and doors of the model: walk them, correct them, and take "
-        "'{mark}' off their names.",
-        len({row["route"] for row in routes}),
-        mark=DRAFT,
-    )
-    yield from _note_exits(model)
+    if routes:
+        yield nfill(
+            "{n} evacuation route was drafted from the rooms and doors of the model: walk it, correct it, and take "
+            "'{mark}' off its name.",
+            "{n} evacuation routes were drafted from the rooms and doors of the model: walk them, correct them, and "
+            "take '{mark}' off their names.",
+            len({row["route"] for row in routes}), mark=DRAFT,
+        )  # fmt: skip
+    elif not network.rooms:
+        yield fill("No evacuation routes were drafted: the model has no rooms.")
+        return
+    elif not model.doors and not model.stairs:
+        yield fill("No evacuation routes were drafted: the model has no doors and no stairs.")
+        return
+    else:
+        yield fill("No evacuation routes were drafted: no way leads from a room to a door with a room on one side "
+                   "only, or to a stair.")  # fmt: skip
+    ground = find_ground(model)
+    if ground is not None:
+        yield fill("{storey} is taken as the ground storey: doors there with a room on one side only count as exits.",
+                   storey=ground.name)  # fmt: skip
+    others = sum(kind == "outside" for kind in find_kinds(model).values())
+    if others:
+        yield nfill(
+            "{n} door of other storeys has a room on one side only: it does not count as an exit.",
+            "{n} doors of other storeys have a room on one side only: they do not count as exits.", others,
+        )  # fmt: skip
+    if routes:
+        yield from _note_rows(network, routes, lost)
+
+
+def _note_rows(network: Network, routes: Rows, lost: Sequence[str]) -> Iterator[Text]:
     doors = sum("required_width" in row for row in routes)
     if doors:
         yield nfill(
             "{n} drafted segment at a door or in a passage is narrower than {default:g} m: its Required width is its "
             "Clear width. Fill in the width that must stay free.",
             "{n} drafted segments at doors or in passages are narrower than {default:g} m: their Required width is "
-            "their Clear width. Fill in the width that must stay free.",
-            doors,
-            default=DEFAULT_WIDTH,
-        )
+            "their Clear width. Fill in the width that must stay free.", doors, default=DEFAULT_WIDTH,
+        )  # fmt: skip
     blind = [plan.storey.name for plan in network.plans.values() if len(plan.spaces) > 1 and not plan.solids]
     if blind:
         yield fill(
             "No walls on {storeys}: openings without doors, of {least:g} m and more, are not found there.",
             storeys=", ".join(blind[:MOST_NAMED]), least=NARROWEST_OPENING,
         )  # fmt: skip
-    yield from _note_lost(lost)
-
-
-def _note_exits(model: BuildingModel) -> Iterator[Text]:
-    ground = find_ground(model)
-    if ground is not None:
-        yield fill(
-            "{storey} is taken as the ground storey: doors there with a room on one side only count as exits.",
-            storey=ground.name,
-        )
-    others = sum(kind == "outside" for kind in find_kinds(model).values())
-    if others:
-        yield nfill(
-            "{n} door of other storeys has a room on one side only: it does not count as an exit.",
-            "{n} doors of other storeys have a room on one side only: they do not count as exits.",
-            others,
-        )
-
-
-def _note_lost(lost: Sequence[str]) -> Iterator[Text]:
     if lost:
         yield nfill(
             "No way out of {n} room was found in the model: {names}.",
-            "No way out of {n} rooms was found in the model: {names}.",
-            len(lost),
-            names=name_some(lost, MOST_NAMED),
-        )
-
-
-def _note_none(model: BuildingModel, network: Network) -> Iterator[Text]:
-    if not network.rooms:
-        yield fill("No evacuation routes were drafted: the model has no rooms.")
-    elif not model.doors and not model.stairs:
-        yield fill("No evacuation routes were drafted: the model has no doors and no stairs.")
-    else:
-        yield fill("No evacuation routes were drafted: no way leads from a room to a door with a room on one side "
-                   "only, or to a stair.")  # fmt: skip
-        yield from _note_exits(model)
+            "No way out of {n} rooms was found in the model: {names}.", len(lost), names=name_some(lost, MOST_NAMED),
+        )  # fmt: skip

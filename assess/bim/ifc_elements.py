@@ -181,7 +181,7 @@ def _to_shape(found: Any) -> Shape | None:
     return Shape(placed, triangles, matrix[:3, :3]) if is_near(placed) else None
 
 
-def join_parts(model: Any, elements: Sequence[Element], *, with_openings: bool = False) -> Iterator[tuple[int, Shape]]:
+def join_parts(model: Any, elements: Sequence[Element]) -> Iterator[tuple[int, Shape]]:
     """Yield the shape of each element with all of its parts, by its number; none of one without any shape.
 
     A part that several elements name belongs to the first. What consists of one part is not kept: a building may hold
@@ -195,7 +195,7 @@ def join_parts(model: Any, elements: Sequence[Element], *, with_openings: bool =
             parts.setdefault(part.id(), part)
     counts = Counter(owners[number] for number, part in parts.items() if part.Representation)
     kept: dict[int, dict[int, Shape]] = {}
-    for number, shape in list_shapes(model, list(parts.values()), with_openings=with_openings):
+    for number, shape in list_shapes(model, list(parts.values())):
         owner = owners[number]
         if counts[owner] == 1:
             yield owner, shape

@@ -13,7 +13,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely import MultiPoint, Polygon
 
-from assess.bim.building_model import Area, Point, Space, name_some
+from assess.bim.building_model import Area, Point, Space, half_turn, name_some
 from assess.i18n import Text, nfill
 
 FloatArray = NDArray[np.float64]
@@ -147,7 +147,7 @@ def _find_base_edge(plan: FloatArray, feet: FloatArray, rectangle: Rectangle) ->
     along = np.abs(normals @ np.array(direction_of(rectangle.angle_deg)))
     near = np.flatnonzero(far < far.min() + NEAREST)
     x, y = normals[near[along[near].argmax()]].tolist()
-    angle = (math.degrees(math.atan2(y, x)) + 90) % 180 - 90
+    angle = half_turn(math.degrees(math.atan2(y, x)))
     return max(float(far.min()), 0.0), angle, float(np.ptp(plan @ np.array([-y, x])))
 
 
@@ -166,7 +166,7 @@ def _order(centre: FloatArray, x: FloatArray, along: float, across: float) -> Re
     angle = math.degrees(math.atan2(x[1], x[0]))
     if along > across:
         along, across, angle = across, along, angle + 90
-    return Rectangle(float(centre[0]), float(centre[1]), along, across, (angle + 90) % 180 - 90)
+    return Rectangle(float(centre[0]), float(centre[1]), along, across, half_turn(angle))
 
 
 def find_rectangle(points: FloatArray) -> Rectangle | None:
