@@ -319,10 +319,12 @@ class _Sorted:
         """Sort one component in."""
         named, space = say(row.get("TypeName")), say(row.get("Space"))
         kind = self.types.get(key(named))
-        if kind is None or kind.reason is not None:
+        if kind is None:
             reason = fill("not in the sheet Type") if named else fill("TypeName is blank")
-            left = (named or "-", reason, True) if kind is None else (kind.name, kind.reason or "", kind.is_furniture)
-            self.skipped.append(left)
+            self.skipped.append((named or "-", reason, True))
+            return
+        if kind.reason is not None:
+            self.skipped.append((kind.name, kind.reason, kind.is_furniture))
             return
         room, floor = self._find_space(space)
         if floor is None:

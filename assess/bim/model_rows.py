@@ -232,8 +232,8 @@ class _Building:
             *((one, one.key, "exit" if self.kinds[one.key] == "exit" else "door") for one in self.doors),
             *((one, f"{one.key} {one.end}", "stair") for one in self.stairs),
         ]
-        for end, name, kind in ends:
-            row = {"place": self.places[name], "floor": self.floors[end.storey], "kind": kind}
+        for end, name, what in ends:
+            row = {"place": self.places[name], "floor": self.floors[end.storey], "kind": what}
             yield row | {"x": round(end.x, 3), "y": round(end.y, 3)}
 
     # ------------------------------------------------------------ what is to be checked

@@ -219,7 +219,8 @@ class SheetUpdate:
         """
         if not rows:
             return True
-        last, why = self._find_last(), fill("the workbook lacks the sheet")
+        last = self._find_last()
+        why: Text | str = fill("the workbook lacks the sheet")
         total = next((row for row in sorted(self.totals) if last < row <= last + len(rows)), None)
         if self.table.found:
             why = self._find_hindrance(last, len(rows))
