@@ -143,15 +143,16 @@ def _is_file(path: Path, sha256: str) -> bool:
 
 def describe_comparison(found: "Comparison") -> Iterator[str]:
     """Yield what stands in the way of a comparison, what gets worse, and the counts before and after."""
-    from assess.compare.comparison_view import View
+    from assess.compare.comparison_document import View
+    from assess.report.blocks import Cell, plain_words
 
     view = View(found)
     yield from view.list_warnings()
     yield view.headline
     yield from (f"  {text}" for text in (*view.list_worse(), *view.list_others()))
-    for line in (*view.list_counts(), *view.list_route_counts()):
-        before, after, change = line.texts
-        yield f"{line.label}: {before} -> {after}  {change}"
+    for row in (*view.list_counts(), *view.list_route_counts()):
+        label, before, after, change = (plain_words(one.words if isinstance(one, Cell) else one) for one in row.cells)
+        yield f"{label}: {before} -> {after}  {change}"
     if view.conditions:
         yield f"{view.conditions}."
     yield view.footer

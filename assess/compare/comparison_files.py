@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from assess.compare.changes import Comparison, PieceChange, StateChange, Total, count_states
-from assess.compare.comparison_view import View
+from assess.compare.comparison_document import View
 from assess.compare.past_run import PastChance, PastPiece, PastRun
 from assess.compare.read_results import COMPARISON
 from assess.delivery.deliver import Written, deliver, explain_fault, stage_for
@@ -141,7 +141,7 @@ def _write_all(
                 listed.update({FILES["pdf"]: None} if "pdf" in formats else {})
                 write_data()
             elif name == "pdf":
-                from assess.compare.comparison_pages import write_print
+                from assess.compare.comparison_document import write_print
                 from assess.report.pages.pdf_seal import seal
 
                 try:
@@ -160,7 +160,7 @@ def _write_all(
 
                     write_tables(view, path, progress)
                 else:
-                    from assess.compare.comparison_pages import render_comparison
+                    from assess.compare.comparison_document import render_comparison
 
                     path.write_text(render_comparison(view, options, progress=progress), encoding="utf-8")
                 listed[path.name] = find_digest(path)

@@ -6,13 +6,14 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from assess.compare import comparison_view as say
+from assess.compare import comparison_document as say
 from assess.compare.changes import StateChange
-from assess.compare.comparison_view import CountLine, View
+from assess.compare.comparison_document import View
 from assess.compare.past_run import PastChance
 from assess.i18n import gettext as _
 from assess.progress import SILENT, Progress
 from assess.report import words
+from assess.report.blocks import Cell, Table, plain_words
 from assess.report.provenance import report_time
 from assess.report.xlsx.pen import CHANCE, COUNT, Column, Pen, name_sheets, set_page
 from assess.route_results import RouteState
@@ -44,28 +45,24 @@ def write_tables(view: View, path: Path, progress: Progress = SILENT) -> None:
 
 
 def _write_sheets(book: Any, view: View, progress: Progress) -> None:
+    found = view.found
     sheets: dict[str, Callable[[Pen, Any], object]] = {
         _("Summary"): partial(_write_summary, view),
-        _("Moved classes"): partial(_write_matrix, view),
-        _("Items"): lambda pen, page: pen.listing(page, _list_item_columns(), view.found.pieces),
+        _("Moved classes"): partial(_write_moves, view),
+        _("Items"): lambda pen, page: pen.listing(page, _list_item_columns(), found.pieces),
     }
-    if view.found.routes:
-        own = [Column(_("Route"), 20, lambda one: one.row.name)]
-        sheets[_("Routes")] = partial(_write_states, own, view.found.routes)
-    if view.found.rooms:
-        own = [Column(_("Room"), 20, lambda one: one.row.name), Column(_("Floor"), 8, lambda one: one.row.floor)]
-        sheets[_("Rooms")] = partial(_write_states, own, view.found.rooms)
+    column = partial(Column, width=20, read=lambda one: one.row.name)
+    if found.routes:
+        sheets[_("Routes")] = partial(_write_states, [column(_("Route"))], found.routes)
+    if found.rooms:
+        own = [column(_("Room")), Column(_("Floor"), 8, lambda one: one.row.floor)]
+        sheets[_("Rooms")] = partial(_write_states, own, found.rooms)
     sheets[_("The two runs")] = partial(_write_facts, view)
     pen = Pen(book, name_sheets({title: title for title in sheets}), progress)
     pages = [book.add_worksheet(name) for name in pen.sheets.values()]
+    title, conditions = words.cut(view.title, LONGEST_HEAD // 2), words.cut(view.conditions, LONGEST_HEAD)
     for page, name, write in zip(pages, pen.sheets.values(), sheets.values(), strict=True):
-        set_page(
-            page,
-            words.cut(view.title, LONGEST_HEAD // 2),
-            name,
-            words.cut(view.conditions, LONGEST_HEAD),
-            words.cut(view.footer, 2 * LONGEST_HEAD),
-        )
+        set_page(page, title, name, conditions, words.cut(view.footer, 2 * LONGEST_HEAD))
         write(pen, page)
 
 
@@ -73,55 +70,40 @@ def _write_summary(view: View, pen: Pen, page: Any) -> None:
     page.set_column(0, 0, 52)
     page.set_column(1, 2, 12)
     page.set_column(3, 3, 34)
-    pen.put(page, 0, 0, view.title, pen.style("title"))
     texts = [
+        (view.title, "title"),
         *((text, "warning") for text in (view.conditions, *view.list_warnings())),
         (view.headline, "heading"),
         *((text, "plain") for text in (*view.list_worse(), *view.list_others(), view.footer)),
     ]
-    row = 1
-    for text, look in texts:
-        if text:
-            pen.put(page, row, 0, text, pen.style(look))
-            row += 1
-    for title, lines in ((_("Pieces"), view.list_counts()), (_("Evacuation routes"), view.list_route_counts())):
-        if lines:
-            row = _write_counts(pen, page, row + 1, title, lines)
+    texts = [one for one in texts if one[0]]
+    for row, (text, look) in enumerate(texts):
+        pen.put(page, row, 0, text, pen.style(look))
+    below = len(texts)
+    for table in view.tabulate_counts():
+        for at, column in enumerate(table.columns):
+            pen.put(page, below + 1, at, column.heading, pen.style("head"))
+        below = _write_rows(pen, page, below + 2, table)
 
 
-def _write_counts(pen: Pen, page: Any, row: int, title: str, lines: Sequence[CountLine]) -> int:
-    for at, label in enumerate((title, _("BEFORE"), _("AFTER"), _("Change"))):
-        pen.put(page, row, at, label, pen.style("head"))
-    for at, line in enumerate(lines, row + 1):
-        form = pen.style("plain", COUNT if line.is_count else "#,##0.00")
-        tone = pen.style("plain", **_TONES.get(line.tone, {}))
-        pen.put(page, at, 0, line.label, pen.style("plain"))
-        pen.put(page, at, 1, line.total.before, form)
-        pen.put(page, at, 2, line.total.after, form)
-        pen.put(page, at, 3, line.texts[2], tone)
-    return row + 1 + len(lines)
-
-
-def _write_matrix(view: View, pen: Pen, page: Any) -> None:
-    matrix = view.build_matrix()
-    labels = [
-        _("BEFORE ↓ AFTER →"),
-        *(say.label_standing(one) if one else _("not in AFTER") for one in matrix.columns),
-        _("all"),
-    ]
+def _write_moves(view: View, pen: Pen, page: Any) -> None:
+    table = view.tabulate_moves()
+    labels = [plain_words(one.heading) for one in table.columns]
     pen.heads(page, labels, [24, *(14 for _label in labels[1:])])
-    for at, row in enumerate(matrix.rows, 1):
-        label = say.label_standing(row.standing) if row.standing else _("not in BEFORE")
-        pen.put(page, at, 0, label, pen.style("plain"))
-        for column, (count, tone) in enumerate(zip(row.counts, row.tones, strict=True), 1):
-            look = _TONES.get(tone, {}) if count or tone == "same" else {}
-            pen.put(page, at, column, count, pen.style("plain", COUNT, **look))
-        pen.put(page, at, len(labels) - 1, row.total, pen.style("total", COUNT))
-    below = len(matrix.rows) + 1
-    for column, value in enumerate((_("all"), *matrix.totals, sum(matrix.totals))):
-        pen.put(page, below, column, value, pen.style("total", COUNT))
-    note = _("Rows: class in BEFORE ({before}). Columns: class in AFTER ({after}).", **view.bases)
-    pen.put(page, below + 1, 0, note, pen.style("plain"))
+    below = _write_rows(pen, page, 1, table)
+    pen.put(page, below, 0, view.say_moves(), pen.style("plain"))
+
+
+def _write_rows(pen: Pen, page: Any, top: int, table: Table) -> int:
+    """Write the rows of a table, its numbers as what they are sorted by, and return the row below it."""
+    for number, row in enumerate(table.groups[0], top):
+        for at, one in enumerate(row.cells):
+            cell = one if isinstance(one, Cell) else Cell(one)
+            value = plain_words(cell.words) if cell.sort is None else cell.sort
+            form = "" if isinstance(value, str) else COUNT if isinstance(value, int) else "#,##0.00"
+            look = _TONES.get(row.kind if cell.kind == "change" else cell.kind, {})
+            pen.put(page, number, at, value, pen.style("total" if row.kind == "total" else "plain", form, **look))
+    return top + len(table.groups[0])
 
 
 def _list_item_columns() -> list[Column]:

@@ -33,6 +33,7 @@ _TOP = ("building", "floors", "items", "routes")
 _MISSING = object()
 _MOST = 1e15
 """Size of a number that is shown as it is."""
+Record = Mapping[str, Any]
 _Row = TypeVar("_Row")
 
 
@@ -53,7 +54,7 @@ def read_run(path: Path) -> past.PastRun:
     return read_record(path)[0]
 
 
-def read_record(path: Path) -> tuple[past.PastRun, Mapping[str, Any], "Reader"]:
+def read_record(path: Path) -> tuple[past.PastRun, Record, "Reader"]:
     """Read the results of a run, and return its record as well, with what reads further values of it."""
     file = path / DATA if path.is_dir() else path
     data, written = _load(path, file)
@@ -86,7 +87,7 @@ def _explain_missing(path: Path, file: Path) -> str:
     return fill("{path} does not exist: name a {name}, or the folder that holds it.", path=path, name=DATA)
 
 
-def _parse(file: Path, data: bytes) -> Mapping[str, Any]:
+def _parse(file: Path, data: bytes) -> Record:
     """Return the record, which is that of a run by this major version of the schema."""
     text = ""
     try:
@@ -157,7 +158,7 @@ class Reader:
     def __init__(self, file: Path) -> None:
         self.file = file
 
-    def run(self, record: Mapping[str, Any], sha256: str, written: datetime.datetime) -> past.PastRun:
+    def run(self, record: Record, sha256: str, written: datetime.datetime) -> past.PastRun:
         """Return the run."""
         items, origin = self.rows(record, "items", ""), self.part(record, "assess", "")
         routes = self.part(record, "routes", "")
@@ -190,7 +191,7 @@ class Reader:
             unjoined_rooms=self.list_texts(routes, "unjoined_rooms", "routes"),
         )
 
-    def is_simulated(self, record: Mapping[str, Any], items: Sequence[Mapping[str, Any]]) -> bool:
+    def is_simulated(self, record: Record, items: Sequence[Record]) -> bool:
         """Whether the run simulated any piece."""
         demands = (
             demand
@@ -199,7 +200,7 @@ class Reader:
         )
         return any(one.get("ensemble") for one in demands) or any(one.get("verification") for one in items)
 
-    def piece(self, row: Mapping[str, Any], place: str) -> past.PastPiece:
+    def piece(self, row: Record, place: str) -> past.PastPiece:
         """Return a piece."""
         adopted, anchor = self.part(row, "adopted", place), row.get("anchor")
         inside = f"{place}.adopted"
@@ -217,10 +218,10 @@ class Reader:
             inputs=_read_inputs(row),
         )
 
-    def states(self, routes: Mapping[str, Any], name: str, kind: str, chance: str) -> tuple[past.PastState, ...]:
+    def states(self, routes: Record, name: str, kind: str, chance: str) -> tuple[past.PastState, ...]:
         """Return the routes or the rooms; `chance` is the name of their chance, which may be null or absent."""
 
-        def read(row: Mapping[str, Any], place: str) -> past.PastState:
+        def read(row: Record, place: str) -> past.PastState:
             return past.PastState(
                 name=self.text(row, kind, place),
                 floor=self.text(row, "floor", place) if kind == "room" else "",
@@ -233,7 +234,7 @@ class Reader:
         rows = self.rows(routes, name, "routes")
         return self.unique(rows, f"routes.{name}", read, lambda one: (key(one.floor), key(one.name)))
 
-    def site_ground(self, origin: Mapping[str, Any]) -> str:
+    def site_ground(self, origin: Record) -> str:
         """Return file, PGA and hash of a ShakeMap or of scenarios; "" where the motion rests on none."""
         if origin.get("site_ground") is None:  # as in files before version 5.1 of the schema
             return ""
@@ -241,7 +242,7 @@ class Reader:
         file, sha256 = (self.text(found, name, place) for name in ("file", "sha256"))
         return f"{file}, {self.number(found, 'pga_g', place):.3f} g, SHA-256 {sha256[:16]}"
 
-    def chance(self, row: Mapping[str, Any], place: str) -> past.PastChance:
+    def chance(self, row: Record, place: str) -> past.PastChance:
         """Return a chance with its interval."""
         ends = (self.share(row, name, place) if row.get(name) is not None else None for name in ("low", "high"))
         return past.PastChance(self.share(row, "probability", place), *ends)
@@ -250,7 +251,7 @@ class Reader:
 
     def unique(
         self,
-        rows: Sequence[Mapping[str, Any]],
+        rows: Sequence[Record],
         place: str,
         read: Callable[[Any, str], _Row],
         name: Callable[[_Row], Any],
@@ -267,9 +268,7 @@ class Reader:
             found[name(one)] = one
         return tuple(found.values())
 
-    def get(
-        self, row: Mapping[str, Any], name: str, place: str, expected: Text, is_right: Callable[[Any], bool]
-    ) -> Any:
+    def get(self, row: Record, name: str, place: str, expected: Text, is_right: Callable[[Any], bool]) -> Any:
         """Return a value."""
         value = row.get(name, _MISSING)
         if value is _MISSING or not is_right(value):
@@ -284,36 +283,36 @@ class Reader:
             )
         return value
 
-    def part(self, row: Mapping[str, Any], name: str, place: str) -> dict[str, Any]:
+    def part(self, row: Record, name: str, place: str) -> dict[str, Any]:
         """Return an object."""
         return dict(self.get(row, name, place, fill("an object"), lambda value: isinstance(value, dict)))
 
-    def rows(self, row: Mapping[str, Any], name: str, place: str) -> list[Mapping[str, Any]]:
+    def rows(self, row: Record, name: str, place: str) -> list[Record]:
         """Return a list of objects."""
         return list(self.get(row, name, place, fill("a list of objects"), lambda value: _is_list(value, dict)))
 
-    def text(self, row: Mapping[str, Any], name: str, place: str) -> str:
+    def text(self, row: Record, name: str, place: str) -> str:
         """Return a text on one line, safe to show."""
         return plain_line(self.get(row, name, place, fill("a text"), lambda value: isinstance(value, str)))
 
-    def texts(self, row: Mapping[str, Any], name: str, place: str) -> dict[str, str]:
+    def texts(self, row: Record, name: str, place: str) -> dict[str, str]:
         """Return an object of texts."""
         found = self.part(row, name, place)
         return {plain_line(one): self.text(found, one, f"{place}.{name}") for one in found}
 
-    def list_texts(self, row: Mapping[str, Any], name: str, place: str) -> tuple[str, ...]:
+    def list_texts(self, row: Record, name: str, place: str) -> tuple[str, ...]:
         """Return a list of texts, each on one line; none where an earlier version did not write it."""
         if name not in row:
             return ()
         found = self.get(row, name, place, fill("a list of texts"), lambda value: _is_list(value, str))
         return tuple(plain_line(one) for one in found)
 
-    def choice(self, row: Mapping[str, Any], name: str, place: str, choices: Sequence[str]) -> str:
+    def choice(self, row: Record, name: str, place: str, choices: Sequence[str]) -> str:
         """Return one of some words."""
         expected = fill("one of: {names}", names=", ".join(choices))
         return str(self.get(row, name, place, expected, lambda value: value in choices))
 
-    def count(self, row: Mapping[str, Any], name: str, place: str) -> int:
+    def count(self, row: Record, name: str, place: str) -> int:
         """Return a whole number from 0."""
 
         def is_right(value: Any) -> bool:
@@ -321,16 +320,16 @@ class Reader:
 
         return int(self.get(row, name, place, fill("a whole number, 0 or above"), is_right))
 
-    def number(self, row: Mapping[str, Any], name: str, place: str) -> float:
+    def number(self, row: Record, name: str, place: str) -> float:
         """Return a number from 0."""
         return float(self.get(row, name, place, fill("a number, 0 or above"), _is_number))
 
-    def share(self, row: Mapping[str, Any], name: str, place: str) -> float:
+    def share(self, row: Record, name: str, place: str) -> float:
         """Return a number from 0 to 1."""
         expected = fill("a number from 0 to 1")
         return float(self.get(row, name, place, expected, lambda value: _is_number(value) and value <= 1))
 
-    def plainly(self, row: Mapping[str, Any], name: str, place: str) -> dict[str, Any]:
+    def plainly(self, row: Record, name: str, place: str) -> dict[str, Any]:
         """Return an object of values that are shown as they are; a list becomes a tuple of texts."""
         return {
             plain_line(key): tuple(plain_line(str(one)) for one in value) if isinstance(value, list) else _plain(value)
@@ -338,12 +337,12 @@ class Reader:
         }
 
 
-def _read_shaking(origin: Mapping[str, Any]) -> str:
+def _read_shaking(origin: Record) -> str:
     found = origin.get("shaking")
     return plain_line(str(found.get("name", ""))) if isinstance(found, dict) else ""
 
 
-def _read_inputs(row: Mapping[str, Any]) -> dict[str, Any]:
+def _read_inputs(row: Record) -> dict[str, Any]:
     """Return the inputs of a piece; no height of its bracket where that is assumed."""
     found = unnest(row, past.INPUTS.values())
     anchor = row.get("anchor")

@@ -1,6 +1,5 @@
 """results.json of unknown origin: what is read, and the error that each fault gives."""
 
-import json
 from pathlib import Path
 
 import pytest
@@ -9,7 +8,7 @@ from assess.compare.read_results import read_run
 from assess.errors import InputError
 from assess.report.results_schema import VERSION
 from tests.compare.past import change, item, write_run
-from tests.workbooks import ITEMS, UNVERIFIED
+from tests.workbooks import UNVERIFIED
 
 MAJOR = int(VERSION.partition(".")[0])
 
@@ -17,17 +16,6 @@ MAJOR = int(VERSION.partition(".")[0])
 @pytest.fixture(scope="module")
 def source(tmp_path_factory):
     return write_run(tmp_path_factory.mktemp("read") / "a", UNVERIFIED)
-
-
-def test_a_run_is_read_back(source):
-    run = read_run(source)
-    assert run == read_run(source / "results.json")
-    assert [one.item for one in run.pieces] == [one["item"] for one in ITEMS]
-    assert [run.standing(one) for one in run.pieces] == ["very high", "medium", "high", "anchored", "very high"]
-    assert (run.name, run.main_basis) == ("Town hall", "formula")
-    assert (run.settings["scale"], run.settings["anchor"]) == (1.0, "")
-    record = json.loads((source / "results.json").read_text(encoding="utf-8"))
-    assert [one.chance.probability for one in run.pieces] == [one["adopted"]["probability"] for one in record["items"]]
 
 
 def test_a_later_minor_version_is_read_whatever_is_new_in_it(source, tmp_path):
@@ -81,12 +69,12 @@ def test_a_folder_without_results_is_named(tmp_path):
         read_run(tmp_path)
 
 
-@pytest.mark.parametrize("share", [0.1, 0.5, 0.9, 0.999])
-def test_a_file_that_is_cut_off_is_named(source, tmp_path, share):
+def test_a_file_that_is_cut_off_is_named(source, tmp_path):
     whole = (source / "results.json").read_bytes().rstrip()
-    (tmp_path / "results.json").write_bytes(whole[: int(share * len(whole))])
-    with pytest.raises(InputError, match="is truncated"):
-        read_run(tmp_path)
+    for share in (0.1, 0.999):
+        (tmp_path / "results.json").write_bytes(whole[: int(share * len(whole))])
+        with pytest.raises(InputError, match="is truncated"):
+            read_run(tmp_path)
 
 
 def _set(*path):

@@ -1,0 +1,760 @@
+"""A comparison as a document of blocks, what gets worse first; Excel and terminal take their words from it."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from assess.compare.changes import (
+    ABSENT,
+    BETTER,
+    ONE_SIDED,
+    SEVERITY,
+    WORSE,
+    Comparison,
+    Direction,
+    PieceChange,
+    StateChange,
+    Total,
+    count_states,
+)
+from assess.compare.past_run import ANCHORED, BY_FORMULA, CLASSES, INPUTS, UNCONFIRMED, PastChance, PastRun, PastState
+from assess.i18n import Text, fill, nfill, ngettext, number
+from assess.i18n import gettext as _
+from assess.progress import SILENT, Progress
+from assess.report import words
+from assess.report.blocks import (
+    BREAK,
+    DASH,
+    Block,
+    Box,
+    Bullets,
+    Cell,
+    Column,
+    Document,
+    Heading,
+    Paragraph,
+    Row,
+    Runs,
+    Section,
+    Span,
+    Table,
+    Tile,
+    Tiles,
+    Title,
+    Words,
+    head,
+    list_columns,
+    more,
+    note,
+    strong,
+    table,
+)
+from assess.report.pages.html import render_document
+from assess.report.pages.pdf import attach, print_page
+from assess.report.provenance import say_date
+from assess.report.report_options import ReportOptions
+from assess.report.results_schema import building_key
+from assess.results import CANNOT_ROCK
+from assess.risk import RiskClass
+from assess.route_results import RouteState
+from assess.version import __version__
+from assess.workbook.schema import BUILDING
+
+NAMED, NAMED_VALUES = 6, 5
+"""Items, routes and rooms that a sentence names, and values that a line of the two runs lists."""
+LONGEST_VALUE, LONGEST_FACT = 60, 80
+"""Characters of a value from a run, and of a line of the two runs, that a table shows."""
+MOST_ROWS, MOST_PRINTED, MOST_STATES = 5000, 300, 300
+"""Rows of pieces on a screen and on paper, and rows of routes and of rooms; the Excel file has all."""
+
+SETTINGS: Mapping[str, Text] = {
+    "scenario": fill("Source of the floor motion"),
+    "verify": fill("Pieces simulated"),
+    "runs": fill("Draws of each floor and axis"),
+    "seed": fill("Random seed"),
+    "scale": fill("Factor on the motion of every floor"),
+    "ideal": fill("Exactly this motion and these pieces"),
+    "scale_motions": fill("Own motions scaled to each floor's PFA"),
+    "city": fill("Earthquakes drawn by the building's place"),
+    "zeta_acceleration": fill("Kaneko and Hayashi: dispersion of PFA"),
+    "zeta_velocity": fill("Kaneko and Hayashi: dispersion of PFV"),
+    "slide_coefficient": fill("Ishiyama: sliding coefficient"),
+    "ductility_reduction": fill("Reduction of forces for ductility"),
+    "anchor": fill("Taken as anchored and holding"),
+    "anchor_resonance": fill("Anchors: resonance factor"),
+    "anchor_strength": fill("Anchors: strength factor"),
+    "anchor_importance": fill("Anchors: importance factor"),
+    "route_risk": fill("Limit on the chance that a route is blocked"),
+}
+"""Settings by name; of later versions' others the name is shown."""
+ALWAYS = ("scale", "anchor")
+"""Settings that are shown even where both runs have the same."""
+_KINDS: Mapping[Direction, tuple[Text, Text, str]] = {
+    Direction.WORSE: (fill("worse"), fill("higher class, or no longer anchored"), "worse"),
+    Direction.RISES: (fill("higher chance"), fill("in the same class"), "worse"),
+    Direction.BETTER: (fill("better"), fill("lower class, or anchored"), "better"),
+    Direction.FALLS: (fill("lower chance"), fill("in the same class"), "better"),
+    Direction.SAME: (fill("unchanged"), fill("or within the sampling interval"), ""),
+    Direction.UNCLEAR: (fill("not comparable"), fill("chances on different bases"), "unclear"),
+    Direction.ADDED: (fill("only in AFTER"), fill("new items, or a larger quantity"), "unclear"),
+    Direction.REMOVED: (fill("only in BEFORE"), fill("items removed, or a smaller quantity"), "unclear"),
+}
+"""Name, what its tile counts, and tone of each direction, in the order of the tiles."""
+_STANDINGS: Mapping[str, tuple[Text, str, str]] = {
+    UNCONFIRMED: (fill("unconfirmed"), words.UNCONFIRMED, "apart-unconfirmed"),
+    BY_FORMULA: (fill("by formula only"), words.BY_FORMULA, "apart-formula"),
+    ANCHORED: (fill("anchored"), words.ANCHORED, "anchored"),
+}
+"""Word, symbol and style of what stands outside the classes."""
+_BASES: Mapping[str, Text] = {
+    "simulated": fill("simulated"),
+    "formula": fill("by formula"),
+    "unconfirmed": fill("unconfirmed"),
+    CANNOT_ROCK: fill("cannot rock"),
+}
+_PIECES: Mapping[Direction, Text] = {
+    Direction.WORSE: nfill("{n:,} piece goes to a higher class or is no longer anchored: {names}.",
+                           "{n:,} pieces go to a higher class or are no longer anchored: {names}.", 0, names=""),
+    Direction.RISES: nfill("{n:,} piece has a higher chance of overturning in the same class: {names}.",
+                           "{n:,} pieces have a higher chance of overturning in the same class: {names}.", 0, names=""),
+    Direction.ADDED: nfill("{n:,} piece is only in AFTER: {names}.",
+                           "{n:,} pieces are only in AFTER: {names}.", 0, names=""),
+    Direction.REMOVED: nfill("{n:,} piece is only in BEFORE: {names}.",
+                             "{n:,} pieces are only in BEFORE: {names}.", 0, names=""),
+    Direction.UNCLEAR: nfill("{n:,} piece cannot be compared, as its chances rest on different bases: {names}.",
+                             "{n:,} pieces cannot be compared, as their chances rest on different bases: {names}.",
+                             0, names=""),
+}  # fmt: skip
+"""What a number of pieces, with their names, is said to do; likewise routes and rooms, worse and unclear."""
+_ROUTES = (
+    nfill("{n:,} route gets worse: {names}.", "{n:,} routes get worse: {names}.", 0, names=""),
+    nfill("{n:,} route cannot be compared: {names}.", "{n:,} routes cannot be compared: {names}.", 0, names=""),
+)
+_ROOMS = (
+    nfill("The best way from {n:,} room to the street gets worse: {names}.",
+          "The best ways from {n:,} rooms to the street get worse: {names}.", 0, names=""),
+    nfill("{n:,} room cannot be compared: {names}.", "{n:,} rooms cannot be compared: {names}.", 0, names=""),
+)  # fmt: skip
+_UNJOINED = nfill(
+    "In {run}, {n:,} room is joined to no exit or stair, so that its way out is not known: {names}.",
+    "In {run}, {n:,} rooms are joined to no exit or stair, so that their way out is not known: {names}.",
+    0, run="", names="",
+)  # fmt: skip
+_UNJOINED_IN_BOTH = nfill(
+    "In both runs, {n:,} room is joined to no exit or stair, so that its way out is not known: {names}.",
+    "In both runs, {n:,} rooms are joined to no exit or stair, so that their way out is not known: {names}.",
+    0, names="",
+)  # fmt: skip
+
+
+# ---------------------------------------------------------------- words
+
+
+def name_direction(direction: Direction) -> str:
+    """Return a direction in words."""
+    return _(_KINDS[direction][0])
+
+
+def find_tone(direction: Direction) -> str:
+    """Return "worse", "better", "unclear" or "same"."""
+    return _KINDS[direction][2] or "same"
+
+
+def name_basis(basis: str) -> str:
+    """Return what a chance rests on."""
+    return _(_BASES[basis])
+
+
+def name_state(state: str) -> str:
+    """Return the standing of a piece or the state of a route or room in words; a dash where the run lacks it."""
+    if state == ABSENT:
+        return DASH
+    return _(_STANDINGS[state][0] if state in _STANDINGS else state)
+
+
+def label_standing(standing: str) -> str:
+    """Return the standing of a piece with its symbol."""
+    if standing in CLASSES:
+        return words.risk_label(CLASSES[standing])
+    return f"{_STANDINGS[standing][1]} {name_state(standing)}" if standing in _STANDINGS else name_state(standing)
+
+
+def _mark_standing(standing: str) -> Span:
+    style = words.class_name(CLASSES[standing]) if standing in CLASSES else _STANDINGS[standing][2]
+    return Span(label_standing(standing), f"badge {style}")
+
+
+def _say_chance(chance: PastChance) -> str:
+    return words.say_chance(chance.probability, chance.low, chance.high)
+
+
+def say_inputs(change: PieceChange) -> list[str]:
+    """Return what differs in the inputs of a piece: ``Height: 180 → 200 cm``."""
+    texts = []
+    for name, (before, after) in change.inputs.items():
+        field = INPUTS[name]
+        values = _("{before} → {after}", before=_say_value(before), after=_say_value(after))
+        texts.append(_("{label}: {value}", label=_(field.label), value=f"{values} {field.unit}".rstrip()))
+    return texts
+
+
+def _say_value(value: Any) -> str:
+    if value is None or value in ("", ()):
+        return DASH
+    if isinstance(value, bool):
+        return _("yes") if value else _("no")
+    if isinstance(value, int | float):
+        return number(value, ".6g")
+    if isinstance(value, tuple):
+        return words.name_first([words.cut(one, 30) for one in value], NAMED_VALUES)
+    return words.cut(_(str(value)), LONGEST_VALUE)
+
+
+def say_anchor(value: Any) -> str:
+    """Return the setting of what is taken as anchored, ``A1,A2`` or ``first:3``, in words."""
+    if first := re.fullmatch(r"first:(\d{1,9})", str(value)):
+        return ngettext("the first entry of what to fix", "the first {n:,} entries of what to fix", int(first[1]))
+    return _say_value(tuple(value.split(",")) if isinstance(value, str) and value else value)
+
+
+def _list_conditions(run: PastRun) -> Iterator[str]:
+    """Yield what sets a run apart from the workbook as it is: a factor, pieces taken as anchored, nothing varied."""
+    if run.shaking:
+        yield _("assumed shaking, {intensity}", intensity=words.cut(_(run.shaking), 40))
+    if run.settings.get("scale", 1) != 1:
+        yield _("motion × {scale}", scale=_say_value(run.settings.get("scale")))
+    if run.settings.get("anchor"):
+        yield _("taken as anchored: {items}", items=say_anchor(run.settings.get("anchor")))
+    if run.settings.get("ideal"):
+        yield _("if exactly this motion recurred")
+
+
+def _name_all(sentence: Text, names: Sequence[str], n: int | None = None, mark: str = ", ", **values: str) -> str:
+    """Return a sentence on things with the first of their names; "" without any."""
+    if not names:
+        return ""
+    listed, n = words.name_first(names, NAMED, mark), len(names) if n is None else n
+    return ngettext(sentence.template, sentence.many, n, names=listed, **values)
+
+
+def _name_states(rows: Sequence[StateChange], directions: Sequence[Direction], sentence: Text) -> str:
+    """Return the sentence for the routes or rooms that go in some directions, with states or chances."""
+    names = []
+    for one in (one for one in rows if one.direction in directions):
+        name, (before, after) = words.cut(one.row.name, 30), map(name_state, one.states)
+        if one.states[0] == one.states[1]:
+            chances = [words.percent(run.chance.probability) for run in one.sides if run and run.chance]
+            before, after = (chances[0], chances[-1]) if chances else ("", "")
+        names.append(_("{name} ({before} → {after})", name=name, before=before, after=after) if before else name)
+    return _name_all(sentence, names, mark="; ")
+
+
+def _say_sum(value: float) -> str:
+    return number(value, ",d" if isinstance(value, int) else ",.2f")
+
+
+def _count_line(
+    label: str, total: Total, *, is_worse_up: bool = False, is_worse_down: bool = False, style: str = ""
+) -> Row:
+    """Return a count or sum of both runs; it is worse where it goes up or down as said, better the other way.
+
+    A count is shown whole, an expected number with two decimals; less than half of that is no change.
+    """
+    difference, tone = total.after - total.before, ""
+    is_seen = total.is_comparable and abs(difference) >= (0.5 if isinstance(total.before, int) else 0.005)
+    if is_seen and not total.is_within and (is_worse_up or is_worse_down):
+        tone = "worse" if (difference > 0) == is_worse_up else "better"
+    change = _say_sum(0 * total.before) if total.is_comparable else _("not comparable")
+    if is_seen:
+        change = f"{'+' if difference > 0 else '−'}{_say_sum(abs(difference))}"
+        change = _("{change} (within the sampling interval)", change=change) if total.is_within else change
+    sides = (Cell(_say_sum(value), sort=value) for value in (total.before, total.after))
+    return Row((head(Span(label, style) if style else label), *sides, Cell(change, "change")), tone)
+
+
+class Fact(NamedTuple):
+    """One line about the two runs; `differs` is whether they differ in it."""
+
+    label: str
+    before: str
+    after: str
+    differs: bool
+
+
+class View:
+    """What a comparison says in the language in use."""
+
+    def __init__(self, comparison: Comparison) -> None:
+        self.found = comparison
+        self.before, self.after = comparison.before, comparison.after
+        self.title = words.cut(self.after.name or self.before.name or self.after.workbook, 120)
+        self.bases = {"before": name_basis(self.before.main_basis), "after": name_basis(self.after.main_basis)}
+
+    @property
+    def conditions(self) -> str:
+        """What sets the runs apart from their workbooks as they are, for every page; "" where nothing does."""
+        sides = ((_("BEFORE"), self.before), (_("AFTER"), self.after))
+        texts = [f"{name}: {found}" for name, run in sides if (found := ", ".join(_list_conditions(run)))]
+        return "; ".join(texts)
+
+    @property
+    def footer(self) -> str:
+        """What stands at the foot of every page."""
+        return _(
+            "Chance of overturning in the scenario of each run, not per year. BEFORE {before}, AFTER {after}.",
+            **self.bases,
+        )
+
+    def list_warnings(self) -> Iterator[str]:
+        """Yield what stands in the way of a comparison."""
+        found = self.found
+        if not found.has_same_code:
+            yield _(
+                "The two runs were computed by different code of assess: what differs between them may come from the "
+                "program, not from the furniture."
+            )
+        if not found.has_same_basis:
+            yield _(
+                "The two runs rest on different bases: BEFORE is {before}, AFTER is {after}. Their chances, classes "
+                "and sums are shown next to each other, but are neither compared nor added up. Run both in the "
+                "same way to compare them.",
+                **self.bases,
+            )
+        if found.is_other_building:
+            yield _(
+                "The two runs name different buildings: {before} and {after}. Pieces are matched by their names alone.",
+                before=words.cut(self.before.name, 60),
+                after=words.cut(self.after.name, 60),
+            )
+        if bool(self.before.settings.get("ideal")) != bool(self.after.settings.get("ideal")):
+            yield _(
+                "One run gives the chance if exactly its motion recurred, the other run includes the uncertainty of "
+                "the earthquake and of the pieces: their chances differ for that reason alone."
+            )
+        if abs(self.before.route_risk - self.after.route_risk) > 1e-9 and (found.routes or found.rooms):
+            yield _(
+                "The limit on the chance that a route is blocked differs: {before} and {after}. Every state is by "
+                "the limit of its own run.",
+                before=words.percent(self.before.route_risk),
+                after=words.percent(self.after.route_risk),
+            )
+
+    # ------------------------------------------------------------ what gets worse
+
+    @property
+    def tone(self) -> str:
+        """What the first lines are: "worse", "unclear", "better" or "same"."""
+        there = {one.direction for rows in (self.found.pieces, self.found.routes, self.found.rooms) for one in rows}
+        if there & {*WORSE}:
+            return "worse"
+        is_joined_alike = {*self.before.unjoined_rooms} == {*self.after.unjoined_rooms}
+        if is_joined_alike and not there & {Direction.UNCLEAR, *ONE_SIDED}:
+            return "better" if there & {*BETTER} else "same"
+        return "unclear"
+
+    @property
+    def headline(self) -> str:
+        """What changed, in one sentence."""
+        if self.found.is_same_file:
+            return _("Nothing changed: BEFORE and AFTER are the same results.")
+        better, tone = self._count_rows(*BETTER), self.tone
+        if tone == "worse":
+            worse = self._count_rows(*WORSE)
+            return _("Worse: {worse}. Better: {better}.", worse=worse, better=better or _("nothing"))
+        if tone == "same":
+            return _("Nothing changed beyond the sampling interval.")
+        first = _("Nothing gets worse.") if tone == "better" else _("Nothing gets worse as far as it can be compared.")
+        return " ".join((first, _("Better: {better}.", better=better))) if better else first
+
+    def _count_rows(self, *directions: Direction) -> str:
+        """Return how many pieces, routes and rooms go in some directions: ``3 of 7 pieces, 1 of 2 routes``."""
+        found, texts = self.found, []
+        if some := found.count(*directions):
+            every = found.count(*Direction)
+            texts.append(ngettext("{some:,} of {n:,} piece", "{some:,} of {n:,} pieces", every, some=some))
+        if some := sum(one.direction in directions for one in found.routes):
+            n = len(found.routes)
+            texts.append(ngettext("{some:,} of {n:,} route", "{some:,} of {n:,} routes", n, some=some))
+        if some := sum(one.direction in directions for one in found.rooms):
+            n = len(found.rooms)
+            texts.append(ngettext("{some:,} of {n:,} room", "{some:,} of {n:,} rooms", n, some=some))
+        return ", ".join(texts)
+
+    def list_worse(self) -> list[str]:
+        """Return what gets worse, a sentence each."""
+        texts = [
+            *map(self._name_pieces, WORSE),
+            _name_states(self.found.routes, WORSE, _ROUTES[0]),
+            _name_states(self.found.rooms, WORSE, _ROOMS[0]),
+        ]
+        return [text for text in texts if text]
+
+    def list_others(self) -> list[str]:
+        """Return what else is to be known at once: what is in one run alone, cannot be compared, or is not joined."""
+        texts = [*map(self._name_pieces, ONE_SIDED)]
+        if self.found.has_same_basis:
+            texts += [
+                self._name_pieces(Direction.UNCLEAR),
+                _name_states(self.found.routes, (Direction.UNCLEAR,), _ROUTES[1]),
+                _name_states(self.found.rooms, (Direction.UNCLEAR,), _ROOMS[1]),
+            ]
+        was, now = ([words.cut(one, 30) for one in run.unjoined_rooms] for run in (self.before, self.after))
+        if self.before.unjoined_rooms == self.after.unjoined_rooms:
+            texts.append(_name_all(_UNJOINED_IN_BOTH, now))
+        else:
+            texts += [_name_all(_UNJOINED, was, run=_("BEFORE")), _name_all(_UNJOINED, now, run=_("AFTER"))]
+        return [text for text in texts if text]
+
+    def _name_pieces(self, direction: Direction) -> str:
+        changes, names = self.found.list_counted(direction), []
+        for one, count in changes:
+            name = words.cut(one.row.item, 30)
+            names.append(f"{name} (×{words.NO_BREAK}{number(count, ',d')})" if count > 1 else name)
+        text = _name_all(_PIECES[direction], names, sum(count for _, count in changes))
+        within = 0 if direction in ONE_SIDED else sum(count for one, count in changes if one.is_within)
+        if not within:
+            return text
+        said = ngettext("For {n:,} of them the difference lies within the sampling interval.",
+                        "For {n:,} of them the difference lies within the sampling interval.", within)  # fmt: skip
+        return f"{text} {said}"
+
+    # ------------------------------------------------------------ counts
+
+    def list_counts(self) -> list[Row]:
+        """Return the pieces by class, those that stand apart, and the expected falls."""
+        found = self.found
+        is_fair = not found.count(Direction.UNCLEAR, *ONE_SIDED)  # else a count changes for other reasons as well
+        lines = [
+            _count_line(
+                label_standing(one),
+                found.count_standing(one),
+                is_worse_up=is_fair and CLASSES.get(one, RiskClass.LOW) >= RiskClass.HIGH,
+                is_worse_down=is_fair and CLASSES.get(one) == RiskClass.LOW,
+                style=_mark_standing(one).kind,
+            )
+            for one in found.standings()
+        ]
+        every = [sum(piece.quantity for piece in run.pieces) for run in (self.before, self.after)]
+        lines.append(_count_line(_("all pieces"), Total(every[0], every[1], is_comparable=True)))
+        lines.append(_count_line(_("expected falls"), found.falls, is_worse_up=is_fair))
+        if both := found.falls_of_both:
+            label = _("expected falls of the pieces counted in both runs")
+            lines.append(_count_line(label, both, is_worse_up=True))
+        return lines
+
+    def list_route_counts(self) -> list[Row]:
+        """Return the routes and rooms by state, the expected numbers blocked or cut off, and the rooms not joined."""
+        found, was, now, lines = self.found, self.before, self.after, list[Row]()
+        for label, changes, rows, other_rows, expected, sums in (
+            (fill("routes: {state}", state=""), found.routes, was.routes, now.routes,
+             _("expected blocked routes"), (was.blocked_routes, now.blocked_routes)),
+            (fill("rooms: {state}", state=""), found.rooms, was.rooms, now.rooms,
+             _("expected rooms that lose every exit"), (was.cut_off_rooms, now.cut_off_rooms)),
+        ):  # fmt: skip
+            for state, sides in count_states(rows, other_rows).items():
+                total, rank = Total(*sides, found.has_same_basis), SEVERITY.get(state, -1)
+                text = _(label.template, state=name_state(state))
+                lines.append(_count_line(text, total, is_worse_up=rank > 0, is_worse_down=rank == 0))
+            if changes:
+                lines.append(_count_line(expected, Total(*sums, found.has_same_basis), is_worse_up=True))
+        for line, before, after in (
+            (_("left out of these averages: routes not known"), was.unknown_routes, now.unknown_routes),
+            (_("left out of these averages: rooms not known"), was.unknown_rooms, now.unknown_rooms),
+            (_("rooms joined to no exit or stair"), len(was.unjoined_rooms), len(now.unjoined_rooms)),
+        ):
+            lines += [_count_line(line, Total(before, after, is_comparable=True))] if before or after else []
+        return lines
+
+    def tabulate_counts(self) -> list[Table]:
+        """Return the counts of pieces, and those of routes and rooms where there are any."""
+        heads = ((_("BEFORE"), "w15", "num"), (_("AFTER"), "w15", "num"), (_("Change"), "w30", "num"))
+        parts = ((_("Pieces"), self.list_counts()), (_("Evacuation routes"), self.list_route_counts()))
+        return [
+            table(list_columns((label, ""), *heads), rows, "compared counts", is_cards=False)
+            for label, rows in parts
+            if rows
+        ]
+
+    def tabulate_moves(self) -> Table:
+        """Return the pieces by standing before and after; those of one run alone have a row and column of their own."""
+        moves, standings = self.found.moves, self.found.standings()
+        rows = [*standings, ABSENT] if any(was == ABSENT for was, _now in moves) else standings
+        columns = [*standings, ABSENT] if any(now == ABSENT for _was, now in moves) else standings
+
+        def cell(pieces: int, tone: str = "") -> Cell:
+            return Cell(_say_sum(pieces) if pieces else DASH, tone if pieces or tone == "same" else "", sort=pieces)
+
+        lines = []
+        for was in rows:
+            counts = [moves.get((was, now), 0) for now in columns]
+            cells = [cell(count, self._tone_of(was, now)) for count, now in zip(counts, columns, strict=True)]
+            lines.append(Row((head(_mark_standing(was) if was else _("not in BEFORE")), *cells, cell(sum(counts)))))
+        totals = [sum(moves.get((was, now), 0) for was in rows) for now in columns]
+        lines.append(Row((head(_("all")), *map(cell, (*totals, sum(totals)))), "total"))
+        heads = [label_standing(one) if one else _("not in AFTER") for one in columns]
+        shown = [Column(_("BEFORE ↓ AFTER →")), *(Column(one, is_number=True) for one in (*heads, _("all")))]
+        return table(shown, lines, "matrix", is_cards=False)
+
+    def say_moves(self) -> str:
+        """Return what the rows and columns of that table are."""
+        return _("Rows: class in BEFORE ({before}). Columns: class in AFTER ({after}).", **self.bases)
+
+    def _tone_of(self, was: str, now: str) -> str:
+        if was == now:
+            return "same"
+        if ANCHORED in (was, now) and ABSENT not in (was, now):
+            return "worse" if was == ANCHORED else "better"
+        if not self.found.has_same_basis or not {was, now} <= {*CLASSES}:
+            return ""
+        return "worse" if CLASSES[now] > CLASSES[was] else "better"
+
+    # ------------------------------------------------------------ the two runs
+
+    def list_facts(self) -> list[Fact]:
+        """Return what the two runs are, and the settings, uncertainties, motions, lines and versions that differ."""
+        before, after = self.before, self.after
+        uncertainty = {"motion": _("Motion uncertainty"), "piece": _("Piece uncertainty")}
+        lines = {building_key(column): _(column.label) for column in BUILDING.columns}
+        motions = _say_motions(before, after), _say_motions(after, before)
+        return [
+            *self._list_origins(),
+            *_list_settings(before.settings, after.settings),
+            *_list_differing(before.uncertainty, after.uncertainty, uncertainty),
+            *_list_differing({"": before.shaking}, {"": after.shaking}, {"": _("Assumed shaking")}),
+            *_list_differing({"": before.site_ground}, {"": after.site_ground}, {"": _("Ground motion")}),
+            *([Fact(_("Recorded motions"), *motions, differs=True)] if before.motions != after.motions else []),
+            *_list_differing(before.building, after.building, lines, left_out=("building", "report_date")),
+            *_list_differing(before.platform, after.platform, {}),
+        ]
+
+    def _list_origins(self) -> Iterator[Fact]:
+        was, now = map(_describe_run, (self.before, self.after))
+        for label, text in was.items():
+            before, after = (words.cut(one, LONGEST_FACT) or DASH for one in (text, now[label]))
+            yield Fact(label, before, after, differs=before != after)
+
+
+def _describe_run(run: PastRun) -> dict[str, str]:
+    return {
+        _("Results"): "/".join(run.path.absolute().parts[-2:]),
+        _("Building"): run.name,
+        _("Workbook"): run.workbook,
+        _("SHA-256 of the workbook"): run.workbook_sha256,
+        _("Date of the report"): say_date(str(run.building.get("report_date") or "")),
+        _("Results written (UTC)"): f"{run.written:%Y-%m-%d %H:%M}",
+        _("Classes rest on"): name_basis(run.main_basis),
+        _("Version of assess"): _("{version}, schema {schema}", version=run.version, schema=run.schema),
+        _("SHA-256 of the program's code"): run.code,
+    }
+
+
+def _list_settings(before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[Fact]:
+    for name in dict.fromkeys((*SETTINGS, *sorted({*before, *after}))):
+        was, now = before.get(name), after.get(name)
+        if was != now or name in ALWAYS:
+            show = say_anchor if name == "anchor" else _say_value
+            yield Fact(_(SETTINGS[name]) if name in SETTINGS else name, show(was), show(now), differs=was != now)
+
+
+def _say_motions(run: PastRun, other: PastRun) -> str:
+    own = [name for name, digest in run.motions.items() if other.motions.get(name) != digest]
+    if not own:
+        return ngettext("{n:,} file", "{n:,} files", len(run.motions))
+    return ngettext("{n:,} file; differs: {names}", "{n:,} files; differ: {names}", len(run.motions),
+                    names=words.name_first(own, 3))  # fmt: skip
+
+
+def _list_differing(
+    before: Mapping[str, Any], after: Mapping[str, Any], names: Mapping[str, str], left_out: Sequence[str] = ()
+) -> Iterator[Fact]:
+    for name in dict.fromkeys((*before, *after)):
+        was, now = before.get(name), after.get(name)
+        if was != now and name not in left_out:
+            yield Fact(names.get(name, name), _say_value(was), _say_value(now), differs=True)
+
+
+# ---------------------------------------------------------------- the document
+
+
+def write_print(view: View, path: Path, data: Path, options: ReportOptions, progress: Progress = SILENT) -> None:
+    """Write compare.pdf, which carries the file `data`; raises what `assess.report.pages.pdf.write_pdf` does."""
+    html = render_comparison(view, options, for_print=True, progress=progress)
+    files = [attach(data.name, "Data", _("The comparison, for other programs"), data.read_bytes())]
+    print_page(html, path, files, options, progress)
+
+
+def render_comparison(
+    view: View, options: ReportOptions, *, for_print: bool = False, progress: Progress = SILENT
+) -> str:
+    """Return the page in the language in use (see `ReportOptions.spoken`)."""
+    document = progress.wait_for(lambda: _build_document(view, MOST_PRINTED if for_print else MOST_ROWS))
+    return render_document(document, options, "compare.css", for_print=for_print, progress=progress)
+
+
+def _build_document(view: View, most_rows: int) -> Document:
+    authors = [str(view.after.building.get(name) or "") for name in ("prepared_by", "organisation")]
+    about = _("Overturning of furniture in an earthquake: two runs compared")
+    title = Title(view.title, words.cut(view.title, 60), view.footer, words.cut(view.conditions, 150))
+    sections = [
+        Section(list(_say_worse(view)), "", "worse", _("What gets worse")),
+        Section(list(_count(view)), "run-on", "counts", _("Counts before and after")),
+        Section(list(_list_moves(view)), "run-on", "moved", _("Pieces by class, before and after")),
+        Section(list(_list_pieces(view, most_rows)), "", "changes", _("Pieces that changed")),
+    ]
+    if view.found.routes or view.found.rooms:
+        blocks = [
+            *_list_states(view.found.routes, _("Route"), _("No route changed.")),
+            Heading(_("Rooms that changed")),
+            *_list_states(view.found.rooms, _("Room"), _("No room changed."), with_floor=True),
+        ]
+        sections.append(Section(blocks, "run-on", "routes", _("Evacuation routes that changed")))
+    sections.append(Section(list(_list_runs(view)), "run-on", "runs", _("The two runs")))
+    return Document(
+        title=_("Furniture in earthquakes, before and after: {building}", building=words.cut(view.title, 80)),
+        cover=[Paragraph(about, "kind"), title],
+        sections=sections,
+        author=", ".join(filter(None, authors)),
+        description=about,
+        conditions=view.conditions,
+        kind="comparison",
+    )
+
+
+def _say_worse(view: View) -> Iterator[Block]:
+    yield from (Paragraph(text, "caution") for text in view.list_warnings())
+    worse, others = view.list_worse(), view.list_others()
+    verdict: list[Block] = [Paragraph(strong(view.headline), "lead"), *([Bullets(worse)] if worse else [])]
+    yield Box(verdict, f"verdict {view.tone}")
+    if others:
+        yield Bullets(others)
+    counts = {one: view.found.count(one) for one in _KINDS}
+    yield Tiles(
+        [
+            Tile(tone if counts[one] else "", _(label), _say_sum(counts[one]), _(about))
+            for one, (label, about, tone) in _KINDS.items()
+            if counts[one] or tone in ("worse", "better")
+        ]
+    )
+    yield Paragraph(
+        _(
+            "The tiles count pieces. Pieces are matched by the name of their item. A difference within the sampling "
+            "interval cannot be told from chance at 95 % (Newcombe 1998, method 10, draws of both runs taken as "
+            "independent). Percentages without a range come from the formula only."
+        ),
+        "small",
+    )
+
+
+def _count(view: View) -> Iterator[Block]:
+    pieces, *routes = view.tabulate_counts()
+    yield pieces
+    yield Paragraph(
+        _(
+            "Expected falls are sums over the free-standing pieces that have a class in their run: BEFORE {before}, "
+            "AFTER {after}. Unconfirmed pieces and pieces by formula only are not in them. For the interval of a sum "
+            "the pieces are taken as fully correlated.",
+            **view.bases,
+        ),
+        "small",
+    )
+    yield routes[0] if routes else Paragraph(_("Neither run has evacuation routes."))
+
+
+def _list_moves(view: View) -> Iterator[Block]:
+    if not view.found.pieces:
+        yield Paragraph(_("There are no pieces."))
+        return
+    yield Box([view.tabulate_moves()], "scroll", label=_("Pieces by class, before and after"))
+    tones = (
+        _("Dark cells: a higher class or no longer anchored; light blue cells: a lower class or anchored.")
+        if view.found.has_same_basis
+        else _("The bases differ, so no change of class is marked as better or worse.")
+    )
+    yield Paragraph(f"{view.say_moves()} {tones}", "small")
+
+
+def _mark_change(one: PieceChange | StateChange) -> Words:
+    text = name_direction(one.direction)
+    if one.is_within and one.direction != Direction.SAME:
+        text = _("{change} (within the sampling interval)", change=text)
+    return Span(text, f"change {find_tone(one.direction)}")
+
+
+def _say_more(left: int) -> str:
+    return ngettext("{n:,} more is in the Excel file.", "{n:,} more are in the Excel file.", left)
+
+
+def _list_pieces(view: View, most: int) -> Iterator[Block]:
+    changed = [one for one in view.found.pieces if one.direction != Direction.SAME or one.inputs]
+    if not changed:
+        yield Paragraph(_("No piece changed."))
+        return
+    unchanged = len(view.found.pieces) - len(changed)
+    lines = [
+        ngettext("{n:,} row changed.", "{n:,} rows changed; the changes for the worse come first.", len(changed)),
+        ngettext("{n:,} row did not change.", "{n:,} rows did not change.", unchanged) if unchanged else "",
+    ]
+    yield Paragraph(" ".join(filter(None, lines)))
+    columns = list_columns(
+        (_("Item"), "w14"), (_("Change"), "w18"), (_("Place"), "w9"), (_("Pieces"), "w7", "num"), (_("BEFORE"), "w18"),
+        (_("AFTER"), "w18"), (_("Input that differs"), ""),
+    )  # fmt: skip
+    yield table(columns, map(_show_piece, changed[:most]), "compared cards changed", is_named=True)
+    yield from more(len(changed) - most, _say_more)
+
+
+def _show_piece(one: PieceChange) -> Row:
+    piece, sides = one.row, list[Words]()
+    name: Runs = [words.cut(piece.item, 40)]
+    if piece.description:
+        name += [BREAK, note(words.cut(piece.description, 40))]
+    place = ", ".join(filter(None, (words.cut(piece.floor, 20), words.cut(piece.room, 30))))
+    for side, state in zip(one.sides, one.states, strict=True):
+        chance = _say_chance(side.chance) if side else ""
+        chance = _("free-standing: {chance}", chance=chance) if side and side.is_held else chance
+        sides.append([_mark_standing(state), BREAK, note(chance)] if side else DASH)
+    inputs = "; ".join(say_inputs(one) or [DASH])
+    return Row((head(name), _mark_change(one), place, _say_sum(one.pieces), *sides, inputs), find_tone(one.direction))
+
+
+def _list_states(rows: Sequence[StateChange], label: str, none: str, *, with_floor: bool = False) -> Iterator[Block]:
+    changed = [one for one in rows if one.direction != Direction.SAME]
+    if not changed:
+        yield Paragraph(none)
+        return
+    columns = list_columns(
+        (label, "w20"), (_("Change"), "w20"), *([(_("Floor"), "w10")] if with_floor else []), (_("BEFORE"), ""),
+        (_("AFTER"), ""),
+    )  # fmt: skip
+    shown = []
+    for one in changed[:MOST_STATES]:
+        floor = [words.cut(one.row.floor, 20)] if with_floor else []
+        cells = (head(words.cut(one.row.name, 60)), _mark_change(one), *floor, *map(_show_state, one.sides))
+        shown.append(Row(cells, find_tone(one.direction)))
+    yield table(columns, shown, "compared cards", is_named=True)
+    yield from more(len(changed) - MOST_STATES, _say_more)
+
+
+def _show_state(side: PastState | None) -> Words:
+    if side is None or side.chance is None or side.state == RouteState.NOT_KNOWN:
+        return name_state(side.state if side else ABSENT)
+    return [name_state(side.state), BREAK, note(_say_chance(side.chance))]
+
+
+def _list_runs(view: View) -> Iterator[Block]:
+    rows = []
+    for fact in view.list_facts():
+        mark: Runs = [" ", Span(_("differs"), "change unclear")] if fact.differs else []
+        cells = (head([fact.label, *mark]), Cell(fact.before, "hash"), Cell(fact.after, "hash"))
+        rows.append(Row(cells, "differs" if fact.differs else ""))
+    columns = list_columns((_("What"), "w30"), (_("BEFORE"), ""), (_("AFTER"), ""))
+    yield table(columns, rows, "compared facts-of-two", is_cards=False)
+    yield Paragraph(
+        _(
+            "Settings and lines of the workbook that are not named are the same in both runs. Made with assess "
+            "{version}.",
+            version=__version__,
+        ),
+        "small",
+    )
