@@ -26,24 +26,10 @@ _INK = "#3a4045"
 
 @dataclass(frozen=True, slots=True)
 class Sign:
-    """How a building is marked.
+    """How a building is marked: `key` in styles and filters, `symbol` in texts, that of the reports.
 
-    Parameters
-    ----------
-    key : str
-        Its name in styles and filters.
-    symbol : str
-        The sign in texts, that of the reports.
-    fill : str
-        Colour of the mark.
-    path : str
-        Outline of the mark round its centre, as an SVG path [px].
-    severity : int
-        What is drawn last lies on top: the worst.
-    is_open : bool
-        Whether the mark is strokes alone.
-    is_dashed : bool
-        Whether its outline is dashed: it stands outside the classes.
+    `path` is its outline round its centre, as an SVG path [px]; the highest `severity` is drawn last and lies on top.
+    One that `is_open` is strokes alone, the outline of one that `is_dashed` stands outside the classes.
     """
 
     key: str
@@ -53,6 +39,11 @@ class Sign:
     severity: int
     is_open: bool = False
     is_dashed: bool = False
+
+    @property
+    def ink(self) -> str:
+        """Colour of its outline, or of its strokes."""
+        return self.fill if self.is_open else INK
 
 
 _SHAPES = {
@@ -133,8 +124,13 @@ def say_sign(sign: Sign) -> str:
     for risk in RiskClass:
         if sign.key == class_name(risk):
             return risk_word(risk)
-        if sign.key == _BANDS[risk]:
-            return _say_band(risk)
+        if sign.key == _BANDS[risk]:  # the band of the share that has the limits of the class
+            low, high = (number(100 * limit, "g") for limit in (0.0, *LIMITS, 1.0)[risk : risk + 2])
+            if risk == min(RiskClass):
+                return _("below {high} % of its pieces expected to fall", high=high)
+            if risk == max(RiskClass):
+                return _("{low} % or more of its pieces expected to fall", low=low)
+            return _("{low} to {high} % of its pieces expected to fall", low=low, high=high)
     for state in RouteState:
         if sign.key == state.replace(" ", "-"):
             return name_state(state)
@@ -146,18 +142,3 @@ def say_sign(sign: Sign) -> str:
         "by-formula": _("by formula only"),
         "unconfirmed": _("unconfirmed"),
     }[sign.key]
-
-
-def _say_band(risk: RiskClass) -> str:
-    """Return the band of the share that has the limits of a class."""
-    limits = [number(100 * limit, "g") for limit in LIMITS]
-    if risk == min(RiskClass):
-        return _("below {high} % of its pieces expected to fall", high=limits[risk])
-    if risk == max(RiskClass):
-        return _("{low} % or more of its pieces expected to fall", low=limits[risk - 1])
-    return _("{low} to {high} % of its pieces expected to fall", low=limits[risk - 1], high=limits[risk])
-
-
-def ink_of(sign: Sign) -> str:
-    """Return the colour of the outline of a mark, or of its strokes."""
-    return sign.fill if sign.is_open else INK

@@ -43,20 +43,9 @@ _WRITING = ".writing-"
 class Part:
     """What was found of one building.
 
-    Parameters
-    ----------
-    path : str
-        The building, as in the tables.
-    key : str
-        By what it was computed.
-    status : str
-        One of `assess.portfolio.table_schemas.STATUSES`.
-    tables : mapping of str to lists of rows
-        Rows of buildings, pieces, routes and problems, in the order of the columns of `TABLES`.
-    draws : mapping of str to lists of whole numbers
-        By the column of the table draws; empty where nothing was simulated in common draws.
-    files : mapping of str to str
-        Files that the workbook names, relative to its folder, with their SHA-256.
+    `key` says by what it was computed, `status` is one of `table_schemas.STATUSES`. `tables` are rows in the order of
+    the columns of `TABLES`; `draws`, by columns of the table draws, are empty where nothing was simulated in common
+    draws; `files` that the workbook names, relative to its folder, have their SHA-256.
     """
 
     path: str
@@ -76,19 +65,7 @@ class Part:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Task:
-    """One building to assess.
-
-    Parameters
-    ----------
-    source : Source
-        The building.
-    settings : Settings
-        Of the run; `city` is set.
-    ground : GroundField, optional
-        The ground motion; it pickles as its file and hash, and is read once a process.
-    out : Path
-        The folder of the results.
-    """
+    """One building to assess into the folder `out`; its ground motion pickles as file and hash, read once a process."""
 
     source: Source
     settings: Settings
@@ -98,18 +75,9 @@ class Task:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Summary:
-    """What a task tells of its building; the rest is in its part.
+    """What a task tells of its building: the rest is in its part, which is here only where it could not be written.
 
-    Parameters
-    ----------
-    path, key, status : str
-        As in the part.
-    is_kept : bool
-        Whether the part of an earlier run was there.
-    part : Part, optional
-        The part itself where it could not be written.
-    content : str
-        SHA-256 [hex] of its workbook; "" where there is none, or it could not be read.
+    `is_kept` is whether that of an earlier run was there, `content` the SHA-256 [hex] of its workbook, "" without one.
     """
 
     path: str
@@ -125,7 +93,10 @@ def run_task(task: Task) -> Summary:
     source = task.source
     data = _read_workbook(source)
     content = None if data is None else hashlib.sha256(data).hexdigest()
-    key, lost = _find_key(task, content), None
+    ground = None if task.ground is None else (type(task.ground).__name__, task.ground.file, task.ground.sha256)
+    row = None if source.index is None else asdict(replace(source.index, line=0))  # a row may move in the index
+    key = find_key(source.path, source.kind, content, row, task.settings.as_record(), ground, find_code())
+    lost = None
     part = read_part(task.out, key)
     is_kept = is_done(part, None if source.file is None else source.file.parent)
     if part is None or not is_kept:
@@ -136,13 +107,8 @@ def run_task(task: Task) -> Summary:
             why = error.strerror or str(error)
             fault = fill("what was found could not be written to {folder}: {why}.", folder=task.out, why=why)
             fix = fill("Make room there and run the same command again: the other buildings are kept.")
-            part = lost = skip(source, key, fault, fix)
+            part = lost = _skip(source, key, fault, fix)
     return Summary(path=part.path, key=key, status=part.status, is_kept=is_kept, part=lost, content=content or "")
-
-
-def skip(source: Source, key: str, fault: str, fix: str = "") -> Part:
-    """Return the part of a building that is not assessed, with the reason and how to fix it."""
-    return _skip(source, key, [Problem("error", "", "", fault, fix)])
 
 
 def give_up(task: Task) -> Summary:
@@ -151,11 +117,13 @@ def give_up(task: Task) -> Summary:
         "every process that assessed it was ended by the system: its workbook may need more memory than there is."
     )
     fix = fill("Assess it by itself with `assess run`, on a machine with more memory.")
-    return Summary(path=task.source.path, key="", status="skipped", part=skip(task.source, "", fault, fix))
+    return Summary(path=task.source.path, key="", status="skipped", part=_skip(task.source, "", fault, fix))
 
 
-def _skip(source: Source, key: str, problems: Sequence[Problem]) -> Part:
-    return Part(path=source.path, key=key, status="skipped", tables=build_skipped(source, problems))
+def _skip(source: Source, key: str, fault: str, fix: str = "", problems: Sequence[Problem] = ()) -> Part:
+    """Return the part of a building that is not assessed, with the reason and how to fix it, or with its problems."""
+    tables = build_skipped(source, problems or [Problem("error", "", "", fault, fix)])
+    return Part(path=source.path, key=key, status="skipped", tables=tables)
 
 
 def _read_workbook(source: Source) -> bytes | None:
@@ -170,13 +138,6 @@ def _read_workbook(source: Source) -> bytes | None:
         return None
 
 
-def _find_key(task: Task, content: str | None) -> str:
-    source = task.source
-    ground = None if task.ground is None else (type(task.ground).__name__, task.ground.file, task.ground.sha256)
-    row = None if source.index is None else asdict(replace(source.index, line=0))  # a row may move in the index
-    return find_key(source.path, source.kind, content, row, task.settings.as_record(), ground, find_code())
-
-
 # ---------------------------------------------------------------- a building
 
 
@@ -184,22 +145,22 @@ def _assess_surely(task: Task, key: str, data: bytes | None) -> Part:
     """Return the part of a building, skipped with the reason if anything is wrong with it."""
     source = task.source
     if source.refused:
-        return skip(source, key, source.refused, source.fix)
+        return _skip(source, key, source.refused, source.fix)
     try:
         return _assess(task, key, data)
     except WorkbookError as error:
-        return _skip(source, key, error.problems)
+        return _skip(source, key, "", problems=error.problems)
     except AssessError as error:
-        return skip(source, key, error.message)
+        return _skip(source, key, error.message)
     except MemoryError:
         fault = fill("the memory of this machine does not suffice for it.")
-        return skip(source, key, fault, fill("Run fewer jobs at once."))
+        return _skip(source, key, fault, fill("Run fewer jobs at once."))
     except Exception as error:  # whatever is wrong with one building, the others are assessed
         trace = find_place(Path(), key).with_suffix(".txt")
         with suppress(OSError):
             _write_whole(task.out / trace, traceback.format_exc().encode("utf-8", "backslashreplace"))
         fault = fill("it cannot be assessed: an unforeseen error ({kind}) in this program.", kind=type(error).__name__)
-        return skip(source, key, fault, fill("Please report it, with the file {file}.", file=f"{trace}"))
+        return _skip(source, key, fault, fill("Please report it, with the file {file}.", file=f"{trace}"))
 
 
 def _assess(task: Task, key: str, data: bytes | None) -> Part:

@@ -9,11 +9,18 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
+from typing import Any, cast
 
+import numpy as np
+
+from assess.errors import InputError
 from assess.i18n import gettext as _
 from assess.i18n import number
+from assess.motion.site_ground import GroundField
 from assess.portfolio.background import Background, Place
-from assess.portfolio.building_signs import Sign, ink_of
+from assess.portfolio.building_signs import Sign
+from assess.portfolio.city import City
+from assess.units import GRAVITY
 
 EARTH = 6371.0
 """Mean radius of the Earth [km]."""
@@ -29,6 +36,10 @@ _STEPS = (1, 2, 5)
 _DEGREES = (10.0, 5.0, 2.0, 1.0, 0.5, 0.25, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001)
 FINE = 0.4
 """Detail of the background that is drawn [px]."""
+LEVELS = (0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0)
+"""PGA of the lines [g]."""
+STEPS = 48
+"""Points along each side of the map at which the ground is asked: about the grid of a ShakeMap for a city."""
 _EDGE = "#5d6b75"
 _THIN = 'stroke="#c3ccd3" stroke-width="0.7" fill="none"'
 _SMALL = 'class="degree" fill="#454b51" font-size="11"'
@@ -119,18 +130,8 @@ def draw_map(
 ) -> str:
     """Return the map as an SVG element; "" where no building has a place.
 
-    Parameters
-    ----------
-    points : sequence of MapPoint
-        The worst are drawn last, so that they lie on top.
-    background : Background, optional
-        What lies behind them.
-    title : str
-        What the picture shows: its text alternative.
-    isolines : sequence of Isoline
-        Lines of equal shaking.
-    is_live : bool
-        Whether the page's script zooms it: marks then carry their place and number.
+    The worst of the points are drawn last, so that they lie on top; `title` is the text alternative; `is_live` tells
+    whether the page's script zooms it, for which marks carry their place and number.
     """
     if not points:
         return ""
@@ -253,10 +254,10 @@ def draw_sign(sign: Sign) -> str:
     if sign.is_open:
         return (
             f'<path d="{sign.path}" fill="none" stroke="#ffffff" stroke-width="6"/>'
-            f'<path d="{sign.path}" fill="none" stroke="{ink_of(sign)}" stroke-width="3"/>'
+            f'<path d="{sign.path}" fill="none" stroke="{sign.ink}" stroke-width="3"/>'
         )
     dash = ' stroke-dasharray="2.5 1.8"' if sign.is_dashed else ""
-    return f'<path d="{sign.path}" fill="{sign.fill}" stroke="{ink_of(sign)}" stroke-width="1.2"{dash}/>'
+    return f'<path d="{sign.path}" fill="{sign.fill}" stroke="{sign.ink}" stroke-width="1.2"{dash}/>'
 
 
 # ---------------------------------------------------------------- scale and north
@@ -288,4 +289,35 @@ def _draw_north(frame: Frame) -> str:
         f'<g class="north"><rect x="{x - 16:g}" y="8" width="32" height="48" fill="#ffffff" fill-opacity="0.85"/>'
         f'<path d="M{x:g} 12L{x + 8:g} 34L{x:g} 29L{x - 8:g} 34Z" fill="#1c1c1c"/>'
         f'<text x="{x:g}" y="51" text-anchor="middle" font-weight="bold" fill="#1c1c1c">{said}</text></g>'
+    )
+
+
+# ---------------------------------------------------------------- lines of equal PGA
+
+
+def list_isolines(city: City, ground: GroundField | None) -> tuple[Isoline, ...]:
+    """Return lines of equal PGA over the map of a city, where a ShakeMap covers it; none without one."""
+    placed = city.buildings[["longitude", "latitude"]].dropna().astype("float64")
+    if ground is None or city.ground is None or city.ground.kind != "shakemap" or placed.empty:
+        return ()
+    from contourpy import contour_generator
+
+    frame = build_frame([(longitude, latitude) for longitude, latitude in placed.to_numpy().tolist()])
+    across, down = frame.per_degree
+    longitudes = frame.west + np.linspace(0, frame.wide / across, STEPS)
+    latitudes = frame.north - np.linspace(0, frame.high / down, STEPS)
+
+    def find_pga(latitude: float, longitude: float) -> float:
+        try:
+            return ground.at(latitude, (longitude + 180) % 360 - 180).pga / GRAVITY
+        except InputError:  # it is not known there
+            return math.nan
+
+    values = [[find_pga(float(latitude), float(longitude)) for longitude in longitudes] for latitude in latitudes]
+    lines = contour_generator(longitudes, latitudes, np.ma.masked_invalid(np.array(values)))
+    return tuple(
+        Isoline(_("{pga} g", pga=number(level, "g")), tuple((float(x), float(y)) for x, y in line))
+        for level in LEVELS
+        for line in cast(list[Any], lines.lines(level))
+        if len(line) > 1
     )

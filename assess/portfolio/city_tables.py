@@ -68,44 +68,31 @@ def write_tables(parts: Iterable[Part], folder: Path | None) -> "dict[str, pd.Da
     OutputError
         If a file cannot be written.
     """
-    writers = {name: _TableWriter(name, folder) for name in TABLES}
+    import pandas as pd
+
+    rows: dict[str, list[Sequence[Any]]] = {name: [] for name in TABLES}
+    frames: dict[str, list[pd.DataFrame]] = {name: [] for name in TABLES}
+
+    def find_path(name: str, number: int) -> Path:
+        return Path(folder or "", f"{name}-{number:04}.parquet")
+
+    def flush(name: str) -> None:
+        block, rows[name] = rows[name][:ROWS], rows[name][ROWS:]
+        frames[name].append(build_frame(name, block))
+        if folder is not None:
+            _write_file(name, frames[name][-1], find_path(name, len(frames[name])))
+
     for part in parts:
-        for name, writer in writers.items():
-            writer.add(part.rows(name))
-    return {name: writer.close() for name, writer in writers.items()}
-
-
-class _TableWriter:
-    """Writes a table block by block, and keeps it as frames, which take less than rows."""
-
-    def __init__(self, name: str, folder: Path | None) -> None:
-        self._name, self._folder = name, folder
-        self._rows: list[Sequence[Any]] = []
-        self._frames: list[pd.DataFrame] = []
-
-    def add(self, rows: Iterable[Sequence[Any]]) -> None:
-        self._rows.extend(rows)
-        while len(self._rows) >= ROWS:
-            self._flush()
-
-    def close(self) -> "pd.DataFrame":
-        """Write what is left; return the whole table."""
-        import pandas as pd
-
-        if self._rows or not self._frames:
-            self._flush()
-        if self._folder is not None and len(self._frames) == 1:
-            self._find_path(1).rename(self._folder / f"{self._name}.parquet")
-        return self._frames[0] if len(self._frames) == 1 else pd.concat(self._frames, ignore_index=True)
-
-    def _find_path(self, number: int) -> Path:
-        return Path(self._folder or "", f"{self._name}-{number:04}.parquet")
-
-    def _flush(self) -> None:
-        block, self._rows = self._rows[:ROWS], self._rows[ROWS:]
-        self._frames.append(build_frame(self._name, block))
-        if self._folder is not None:
-            _write_file(self._name, self._frames[-1], self._find_path(len(self._frames)))
+        for name in TABLES:
+            rows[name] += part.rows(name)
+            while len(rows[name]) >= ROWS:
+                flush(name)
+    for name in TABLES:
+        if rows[name] or not frames[name]:
+            flush(name)
+        if folder is not None and len(frames[name]) == 1:
+            find_path(name, 1).rename(folder / f"{name}.parquet")
+    return {name: own[0] if len(own) == 1 else pd.concat(own, ignore_index=True) for name, own in frames.items()}
 
 
 def _write_file(name: str, frame: "pd.DataFrame", path: Path) -> None:
@@ -141,19 +128,9 @@ def find_files(folder: Path, name: str) -> list[Path]:
 
 
 def read_table(folder: str | Path, name: str) -> "pd.DataFrame":
-    """Return a table of a portfolio: "buildings", "pieces", "routes", "problems" or "draws".
+    """Return a table of a portfolio, one of `TABLES`, from the folder of its results.
 
-    Parameters
-    ----------
-    folder : str or Path
-        The folder of its results.
-    name : str
-        One of `TABLES`.
-
-    Raises
-    ------
-    InputError
-        If there is no such table, it cannot be read, or DuckDB is not installed.
+    Raises InputError if there is no such table, it cannot be read, or DuckDB is not installed.
     """
     if name not in TABLES:
         raise InputError(

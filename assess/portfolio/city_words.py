@@ -1,18 +1,36 @@
-"""What the page, the summary and the ranking of a city say in words: sums with their ranges, rows, what is left out."""
+"""What the outputs of a city say in words: sums with their ranges, rows, what is left out, how numbers were made."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from pathlib import PurePath
 
 from assess.hazard import FAR
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
+from assess.methods import adopted_formula
 from assess.motion.ground_scenarios import FAR_CAUTION
-from assess.portfolio.city import City, Group, Row
+from assess.motion.spatial_field import SCATTERS, Measure
+from assess.plain_text import plain_text
+from assess.portfolio.city import PEOPLE_RULE, City, Group, Row
 from assess.portfolio.city_spread import Spread
 from assess.report import words
+from assess.report.provenance import say_reference
 from assess.report.say.route import say_state
-from assess.risk import RiskClass
-from assess.route_results import RouteState
+from assess.risk import LIMITS, RiskClass
+from assess.route_results import BLOCKED_FROM, RouteState
+from assess.version import __version__
 
+REFERENCES = (
+    "Jayaram N, Baker JW (2009). Correlation model for spatially distributed ground-motion intensities. Earthquake "
+    "Engineering and Structural Dynamics 38(15):1687-1708. doi:10.1002/eqe.922",
+    "Boore DM, Stewart JP, Seyhan E, Atkinson GM (2014). NGA-West2 equations for predicting PGA, PGV, and 5% damped "
+    "PSA for shallow crustal earthquakes. Earthquake Spectra 30(3):1057-1085. doi:10.1193/070113EQS184M",
+)
+"""Sources of the draws of an earthquake that differ from place to place; named where anything was drawn."""
+P58 = (
+    "FEMA (2018). Seismic performance assessment of buildings, FEMA P-58, second edition, volume 1: normative "
+    "quantities of components by occupancy. Federal Emergency Management Agency"
+)
+"""Source of assumed inventories."""
 _CLASSES = {risk.word: risk for risk in RiskClass}
 
 
@@ -30,18 +48,9 @@ def say_whole(value: float | None) -> str:
     return words.DASH if value is None else number(value, ",.0f")
 
 
-def say_range(low: float | None, high: float | None) -> str:
-    """Return a range of whole numbers, ``120 to 340``; a dash where nothing was drawn."""
-    if low is None or high is None:
-        return words.DASH
-    return _("{low} to {high}", low=number(low, ",.0f"), high=number(high, ",.0f"))
-
-
-def say_interval(low: float | None, high: float | None) -> str:
-    """Return a range of expected numbers, ``12.0 to 34.5``; a dash where it is not known."""
-    if low is None or high is None:
-        return words.DASH
-    return _("{low} to {high}", low=say_number(low), high=say_number(high))
+def say_range(low: float | None, high: float | None, say: Callable[[float], str] = say_whole) -> str:
+    """Return a range of numbers, ``120 to 340``; a dash where nothing was drawn."""
+    return words.DASH if low is None or high is None else _("{low} to {high}", low=say(low), high=say(high))
 
 
 def name_inventory(inventory: str | None) -> str:
@@ -208,12 +217,8 @@ def say_nothing(group: Group) -> str:
 # ---------------------------------------------------------------- what is not in it
 
 
-def list_cautions(city: City) -> list[str]:
-    """Return what a reader has to know before the numbers: what is left out, and what is in none of them."""
-    return list(_list_cautions(city))
-
-
-def _list_cautions(city: City) -> Iterator[str]:
+def list_cautions(city: City) -> Iterator[str]:
+    """Yield what a reader has to know before the numbers: what is left out, and what is in none of them."""
     if city.is_made_up:
         yield _("All buildings are made up: their places, furniture, routes, people and costs are random numbers.")
     yield from list_ground_cautions(city)
@@ -273,33 +278,7 @@ def list_copies(city: City) -> Iterator[str]:
                        copies)  # fmt: skip
 
 
-# ---------------------------------------------------------------- tables
-
-
-def list_total_heads() -> list[str]:
-    """Return the headings of the table of groups."""
-    classes = [words.risk_label(risk) for risk in RiskClass]
-    return [_("Buildings by inventory and basis"), _("Buildings"), _("Pieces"), *classes,
-            _("unconfirmed or by formula only"), _("anchored"),
-            _("Expected falls"), _("5 to 95 % of draws"), _("People on blocked routes"),
-            _("People on routes of known state"), _("5 to 95 % of draws"),
-            _("People on routes of unknown state")]  # fmt: skip
-
-
-def list_total_rows(city: City) -> list[list[str]]:
-    """Return the table of groups; there is no line of all, as groups are never added up."""
-    return [
-        [
-            name_group(group), say_whole(group.buildings), say_whole(group.pieces),
-            *(say_whole(group.by_class[risk]) for risk in RiskClass), say_whole(group.unconfirmed + group.by_formula),
-            say_whole(group.anchored), say_number(group.falls.expected), say_range(group.falls.low, group.falls.high),
-            say_number(group.people.expected) if group.people_known else words.DASH,
-            say_whole(group.people_known) if group.people_known else words.DASH,
-            say_range(group.people.low, group.people.high) if group.people_known else words.DASH,
-            say_whole(group.people_not_known),
-        ]
-        for group in city.groups
-    ]  # fmt: skip
+# ---------------------------------------------------------------- rows
 
 
 def say_place(row: Row) -> str:
@@ -307,9 +286,6 @@ def say_place(row: Row) -> str:
     if row["latitude"] is None or row["longitude"] is None:
         return words.DASH
     return f"{number(row['latitude'], '.5f')}, {number(row['longitude'], '.5f')}"
-
-
-# ---------------------------------------------------------------- rows
 
 
 def label_piece(row: Row, basis: str | None) -> str:
@@ -349,11 +325,6 @@ def say_probability(row: Row) -> str:
 def say_size(row: Row) -> str:
     """Return breadth, width and height [cm], a dash for what is not known."""
     return " × ".join(words.in_cm(row[name]) for name in ("breadth_cm", "width_cm", "height_cm"))
-
-
-def say_kind(row: Row) -> str:
-    """Return what a piece is: its description, else its type."""
-    return str(row["description"] or row["type"] or "")
 
 
 def label_state(state: str | None) -> str:
@@ -415,3 +386,117 @@ def mark_own_motions(text: str, row: Row) -> str:
 def name_skipped(building: str | None, path: str) -> str:
     """Return the name of a building that was skipped, with its file where this differs; else its file alone."""
     return path if not building or building == path else f"{building} ({path})"
+
+
+def explain_skipped(city: City, path: str) -> str:
+    """Return the first problem of a building that could not be assessed, with how to fix it; "" where none is known."""
+    problems = city.problems_of.get(path)
+    if not problems:
+        return ""
+    first = problems[0]
+    place = "!".join(one for one in (first["sheet"], first["cell"]) if one)
+    said = " ".join(first[name] for name in ("message", "fix") if first[name])
+    file = f"{plain_text(PurePath(path).name)} "
+    said = f"it {said.removeprefix(file)}" if said.startswith(file) else said  # the path stands before it
+    return f"{place}: {said}" if place else said[:1].upper() + said[1:]
+
+
+# ---------------------------------------------------------------- how the numbers were made
+
+
+def list_basis(city: City) -> list[tuple[str, str]]:
+    """Return what the numbers rest on, as label and value: the ground motion, then the settings of the run."""
+    settings, found = city.settings, list_facts(city)
+    if city.ground is not None:
+        found.append((_("SHA-256 of {file}", file=city.ground.file), city.ground.sha256))
+    simulated = {"all": _("all pieces"), "high": _("pieces of high risk, doubtful, or on routes"), "none": _("none")}
+    found.append((_("Simulated"), simulated[settings.verify]))
+    if settings.verify != "none":
+        found.append((_("Draws, seed"), f"{say_whole(int(settings.runs))}, {settings.seed}"))
+    if settings.scenario:
+        found.append((_("Motion of the floors"), settings.scenario))
+    if settings.class_by:
+        found.append((_("Class by"), _(settings.class_by)))
+    if settings.scale != 1:
+        found.append((_("Factor on all motions"), number(settings.scale, "g")))
+    found.append((_("Limit on the chance that a route is blocked"), words.percent(settings.route_risk)))
+    found.append((_("Program"), f"assess {__version__}"))
+    return found
+
+
+def list_method(city: City) -> Iterator[str]:
+    """Yield how the numbers were made, in short paragraphs."""
+    yield _("Every percentage and every expected number is for this scenario, not per year. Classes by the chance of "
+            "overturning: low below {low}, medium below {medium}, high below {high}, very high above.",
+            low=_share(LIMITS[0]), medium=_share(LIMITS[1]), high=_share(LIMITS[2]))  # fmt: skip
+    group = next((group for group in city.groups if group.falls.draws), None)
+    if group is not None:
+        drawn = group.falls
+        yield _say_draws(city, drawn)
+        alone, together = say_range(drawn.independent_low, drawn.independent_high), say_range(drawn.low, drawn.high)
+        if group.buildings > 1 and alone != together:
+            yield _("If every building had an earthquake of its own, the range would be {alone} in place of {together}"
+                    ": that is not so, and the difference shows why ranges of buildings must not be added up.",
+                    alone=alone, together=together)  # fmt: skip
+        yield _("The expected number itself is known within the sampling interval, by the number of draws alone "
+                "(95 %): {interval}.",
+                interval=say_range(drawn.sampling_low, drawn.sampling_high, say_number))  # fmt: skip
+    drawn_motions = city.buildings["motion_uncertainty"].dropna().astype("float64")
+    if city.ground is not None and not drawn_motions.empty:
+        low, high = (number(float(end), ".2f") for end in (drawn_motions.min(), drawn_motions.max()))
+        yield _("The standard deviation of ln amplitude that is drawn is √(β² + σ²): β the Motion uncertainty of the "
+                "workbook, 0 where that is blank, σ that of the ground motion at the building. It is {low} to {high}.",
+                low=low, high=high)  # fmt: skip
+    if any(sum(group.routes.values()) for group in city.groups):
+        yield _("A route is open where the upper end of its chance of being blocked is below {limit} and every piece "
+                "that matters is known, doubtful below {blocked}, blocked from {blocked} on, and not known where "
+                "something missing could change its state.",
+                limit=words.percent(city.settings.route_risk), blocked=_share(BLOCKED_FROM))  # fmt: skip
+        if any(group.occupants for group in city.groups):
+            yield _(PEOPLE_RULE)
+    if any(group.basis == "formula" for group in city.groups):
+        formula = adopted_formula(city.settings.class_by)
+        yield _("Results by formula only are chances by {formula}, under the median of the ground motion; nothing was "
+                "simulated, so that no range is given.", formula=_(formula.title))  # fmt: skip
+    if any(group.inventory == "assumed" for group in city.groups):
+        yield _("Assumed inventories: pieces by use and floor area from the normative quantities of FEMA P-58; low, "
+                "median and high are its 10, 50 and 90 % quantities. No piece of them has been seen.")  # fmt: skip
+
+
+def _say_draws(city: City, drawn: Spread) -> str:
+    """Return what the draws of a city have in common."""
+    ends = _("The range from 5 to 95 % of the draws is that of the sum over buildings, draw by draw.")
+    if city.settings.ideal:
+        start = _("Each of the {draws:,} draws is one motion of each floor, without the uncertainty of the earthquake.",
+                  draws=drawn.draws)  # fmt: skip
+    elif city.ground is not None and city.ground.is_known:
+        start = _("The motion of the ground is taken as known. Each of the {draws:,} draws varies the buildings' own "
+                  "motions alone.", draws=drawn.draws)  # fmt: skip
+    elif city.ground is not None and city.ground.kind == "scenarios":
+        start = _("Each of the {draws:,} draws takes one of the computed scenarios, the same for all buildings. The "
+                  "uncertainty of the buildings' own motions is drawn besides.", draws=drawn.draws)  # fmt: skip
+    else:
+        start = _("Each of the {draws:,} draws is one earthquake for all buildings.", draws=drawn.draws)
+    if city.settings.ideal:
+        return f"{start} {ends}"
+    measure: Measure = "PGV" if city.buildings["ground_pgv_cm_s"].notna().any() else "PGA"
+    places = _(
+        "Of the variance of ln {measure} that is drawn, {shared} is common to all buildings (Boore et al. 2014) unless "
+        "the ShakeMap gives that share itself; the rest differs from place to place, with the correlation "
+        "exp(-3 h / {range:g} km) at the distance h (Jayaram and Baker 2009).",
+        measure=measure, shared=_share(SCATTERS[measure].shared), range=SCATTERS[measure].range_km,
+    )  # fmt: skip
+    return f"{start} {places} {ends}"
+
+
+def _share(value: float) -> str:
+    return f"{number(100 * value, '.0f')} %"
+
+
+def list_references(city: City) -> list[str]:
+    """Return the publications that the numbers rest on."""
+    drawn = any(group.falls.draws for group in city.groups) and not city.settings.ideal
+    by_formula = any(group.basis == "formula" or group.by_formula for group in city.groups)
+    assumed = any(group.inventory == "assumed" for group in city.groups)
+    formula = say_reference(adopted_formula(city.settings.class_by).reference)
+    return [*((formula,) if by_formula else ()), *(REFERENCES if drawn else ()), *((P58,) if assumed else ())]

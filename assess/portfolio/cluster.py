@@ -1,9 +1,9 @@
 """Tasks on the workers of a dask scheduler, on one machine or many that share the folders.
 
 Before any work every worker is asked for its versions, its threads, and whether it sees the folder of the results and
-the workbooks. Each batch asks again, as workers may come later. A worker that dies is the business of dask: its batch
-is given to another one; a batch that keeps killing workers is done building by building, and the one that kills alone
-is skipped. Whoever can reach a scheduler can run code on its workers: it belongs in a trusted network.
+the workbooks. Each task asks again, as workers may come later. A worker that dies is the business of dask: its task is
+given to another one, and skipped where it keeps killing them. Whoever can reach a scheduler can run code on its
+workers: it belongs in a trusted network.
 """
 
 import asyncio
@@ -31,10 +31,8 @@ from assess.version import __version__, find_code
 if TYPE_CHECKING:
     from distributed import Client, Future
 
-BATCH = 16
-"""Buildings of one dask task where nothing is simulated; else one."""
-WINDOW = 2
-"""Batches that are handed to the scheduler at once, a worker."""
+WINDOW = 8
+"""Tasks that are handed to the scheduler at once, a worker."""
 CONNECTING, JOINING = 10.0, 30.0
 """Times [s] that the scheduler, and its first worker, are waited for."""
 _ASKED_EVERY = 0.5
@@ -53,20 +51,6 @@ class Site:
     probe: Path
     token: str
     seen: tuple[Path, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Batch:
-    """Some tasks that are one task of dask; `attempt` counts how often they were handed over."""
-
-    tasks: tuple[Task, ...]
-    attempt: int = 0
-
-    @property
-    def key(self) -> str:
-        """A name that no other batch of this run, and of another one on the scheduler, has."""
-        text = "\n".join([str(self.tasks[0].out), *(one.source.path for one in self.tasks)])
-        return f"assess-{hashlib.sha256(text.encode()).hexdigest()[:20]}-{self.attempt}-{os.getpid()}"
 
 
 def list_versions() -> dict[str, str]:
@@ -103,21 +87,8 @@ def check_cluster(scheduler: str) -> None:
         ) from None
 
 
-def run_on_cluster(
-    tasks: Sequence[Task], scheduler: str, *, is_simulated: bool, progress: Progress = SILENT
-) -> Iterator[Summary]:
-    """Yield the summaries of tasks as they are done, in no order.
-
-    Parameters
-    ----------
-    tasks : sequence of Task
-        What to do; their paths have to be the same on every machine.
-    scheduler : str
-        Its address, ``tcp://10.0.0.5:8786``.
-    is_simulated : bool
-        Whether a task takes seconds, so that each is handed over by itself.
-    progress : Progress
-        Checked for a cancel.
+def run_on_cluster(tasks: Sequence[Task], scheduler: str, progress: Progress = SILENT) -> Iterator[Summary]:
+    """Yield the summaries of tasks as workers get them done, in no order; the paths are the same on every machine.
 
     Raises
     ------
@@ -130,12 +101,10 @@ def run_on_cluster(
         If the work was cancelled; parts that are written stay.
     """
     check_cluster(scheduler)
-    size = 1 if is_simulated else BATCH
-    batches = deque(Batch(tuple(tasks[at : at + size])) for at in range(0, len(tasks), size))
     with _connect(scheduler, progress) as client, _probe(tasks) as site:
         _wait_for_worker(client, scheduler, progress)
         check_workers(client, site)
-        yield from _hand_over(client, site, batches, scheduler, progress)
+        yield from _hand_over(client, site, tasks, scheduler, progress)
 
 
 @contextmanager
@@ -162,7 +131,19 @@ def _connect(scheduler: str, progress: Progress) -> Iterator["Client"]:
 
 async def _ask(scheduler: str, progress: Progress) -> Any:
     """Return what is answered at the address to the question who is there; raises what comes instead."""
-    asking = asyncio.ensure_future(_ask_identity(scheduler))
+
+    async def ask() -> Any:
+        from distributed.comm import connect
+        from distributed.security import Security
+
+        comm = await connect(scheduler, timeout=CONNECTING / 2, **Security().get_connection_args("client"))
+        try:
+            await comm.write({"op": "identity", "reply": True})
+            return await comm.read()
+        finally:
+            comm.abort()
+
+    asking = asyncio.ensure_future(ask())
     try:
         async with asyncio.timeout(CONNECTING):
             while not asking.done():
@@ -173,18 +154,6 @@ async def _ask(scheduler: str, progress: Progress) -> Any:
         asking.cancel()
 
 
-async def _ask_identity(scheduler: str) -> Any:
-    from distributed.comm import connect
-    from distributed.security import Security
-
-    comm = await connect(scheduler, timeout=CONNECTING / 2, **Security().get_connection_args("client"))
-    try:
-        await comm.write({"op": "identity", "reply": True})
-        return await comm.read()
-    finally:
-        comm.abort()
-
-
 def _explain_silence(scheduler: str, error: Exception) -> InputError:
     """Return an error that says that nobody is at the address, or something that is not a scheduler."""
     # a TypeError: there is no certificate; an ImportError: no package for the protocol
@@ -193,14 +162,16 @@ def _explain_silence(scheduler: str, error: Exception) -> InputError:
         while inner is not None and not (isinstance(inner, OSError) and inner.strerror):
             inner = getattr(inner, "real_error", None) or inner.__cause__  # what the system refused, which dask wraps
         why = plain_line(str(getattr(inner, "strerror", None) or error)).strip() or type(error).__name__
-        text = fill("scheduler {address} cannot be reached: {why}. Is it running?", address=scheduler, why=why)
-    else:
-        text = fill(
+        return InputError(
+            fill("scheduler {address} cannot be reached: {why}. Is it running?", address=scheduler, why=why)
+        )
+    return InputError(
+        fill(
             "scheduler {address}: what is there does not answer as a dask scheduler of this version. Check host and "
             "port: a scheduler prints its address when it starts.",
             address=scheduler,
         )
-    return InputError(text)
+    )
 
 
 def _wait_for_worker(client: "Client", scheduler: str, progress: Progress) -> None:
@@ -297,71 +268,61 @@ class WorkerUnfitError(Exception):
     """A worker that came later cannot do the work."""
 
 
-def run_batch(site: Site, tasks: Sequence[Task]) -> list[Summary]:
-    """Do tasks on a worker, if it can.
-
-    Raises
-    ------
-    WorkerUnfitError
-        If it has other versions, or does not see the folders.
-    """
+def run_checked(site: Site, task: Task) -> Summary:
+    """Do a task on a worker, if it can; raises WorkerUnfitError if it has other versions, or lacks the folders."""
     answer = answer_probe(site)
     if fault := _judge(answer, site):
         raise WorkerUnfitError(f"{platform.node()}: {fault}")
     with suppress(OSError):
         (site.probe.parent / answer["name"]).unlink()
-    return [run_task(one) for one in tasks]
-
-
-# ---------------------------------------------------------------- the work
+    return run_task(task)
 
 
 def _hand_over(
-    client: "Client", site: Site, batches: "deque[Batch]", scheduler: str, progress: Progress
+    client: "Client", site: Site, tasks: Sequence[Task], scheduler: str, progress: Progress
 ) -> Iterator[Summary]:
-    """Keep a window of batches with the scheduler, and yield what comes back; OutputError if the scheduler is gone."""
+    """Keep a window of tasks with the scheduler, and yield what comes back; OutputError if the scheduler is gone."""
     lost = OutputError(
         fill(
             "the scheduler {address} is gone. What is done is kept: start it and run the same command again.",
             address=scheduler,
         )
     )
-    running: dict[Future, Batch] = {}
+    left, running = deque(tasks), dict["Future", Task]()
     try:
-        while batches or running:
+        while left or running:
             try:
                 most = WINDOW * max(1, len(client.nthreads()))
             except (OSError, TimeoutError):
                 raise lost from None
-            while batches and len(running) < most:
-                batch = batches.popleft()
-                future = client.submit(run_batch, site, batch.tasks, key=batch.key, pure=False, retries=_RETRIES)
-                running[future] = batch
+            while left and len(running) < most:
+                task = left.popleft()
+                name = hashlib.sha256(f"{task.out}\n{task.source.path}".encode()).hexdigest()
+                key = f"assess-{name[:20]}-{os.getpid()}"  # no other run on the scheduler has it
+                running[client.submit(run_checked, site, task, key=key, pure=False, retries=_RETRIES)] = task
             while not (done := [future for future in running if future.status != "pending"]):
                 progress.check()
                 if client.status != "running":
                     raise lost
                 time.sleep(_ASKED_EVERY / 10)
             for future in done:
-                batch = running.pop(future)
                 if future.status in ("cancelled", "lost"):
                     raise lost
-                error = future.exception() if future.status == "error" else None
-                yield from future.result() if error is None else _give_up(error, batch, batches)
+                yield _take_answer(future, running.pop(future))
     finally:
         with suppress(Exception):  # a scheduler that is gone
             client.cancel(list(running), force=True)
 
 
-def _give_up(error: BaseException, batch: Batch, batches: "deque[Batch]") -> list[Summary]:
-    """Hand a batch that killed its workers over again, building by building; skip a building that did so alone."""
+def _take_answer(future: "Future", task: Task) -> Summary:
     from distributed import KilledWorker
 
-    if isinstance(error, KilledWorker) and len(batch.tasks) > 1:
-        batches.extendleft(Batch((one,), batch.attempt + 1) for one in reversed(batch.tasks))
-        return []
+    error = future.exception() if future.status == "error" else None
     if isinstance(error, KilledWorker):
-        return [give_up(batch.tasks[0])]
+        return give_up(task)
     if isinstance(error, WorkerUnfitError):
         raise InputError(fill("a worker that joined later cannot do the work: {why}", why=error)) from None
-    raise OutputError(fill("a worker failed: {why}", why=f"{type(error).__name__}: {str(error)[:300]}")) from error
+    if error is not None:
+        raise OutputError(fill("a worker failed: {why}", why=f"{type(error).__name__}: {str(error)[:300]}")) from error
+    summary: Summary = future.result()
+    return summary

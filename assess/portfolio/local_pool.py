@@ -1,8 +1,8 @@
 """Tasks on processes of this machine, each of which may die without harm to the others.
 
-A process that dies is replaced, and its building tried again by the new one; a building under which `MOST_DEATHS`
-processes have died is skipped with that reason. Each process works on one building at a time, so that it is known which
-one it died of. They are started as commands, not by `multiprocessing`, which would run the script of the user again.
+Each process works on one building at a time, so that it is known which one it died of: that is tried again by another
+process, and skipped with the reason once `MOST_DEATHS` have died of it. They are started as commands, not by
+`multiprocessing`, which would run the script of the user again.
 """
 
 import os
@@ -11,145 +11,124 @@ import queue
 import subprocess
 import sys
 import threading
-from collections import deque
 from collections.abc import Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
-from assess.errors import OutputError
+from assess.errors import CancelledError, OutputError
 from assess.i18n import fill
 from assess.portfolio.building_task import Summary, Task, give_up
-from assess.portfolio.local_worker import ALONE, READY, receive, send
 from assess.progress import SILENT, Progress
 
 MOST_DEATHS = 3
 """Processes that may die of one building before it is skipped."""
 MOST_STARTS = 3
 """Processes in a row that may end before they are ready: then none can be started here."""
+ALONE = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+"""Variables by which libraries take no more than one thread."""
 _ASKED_EVERY = 0.1
 """Time [s] after which it is looked whether the work is to stop."""
-Worker = subprocess.Popen[bytes]
+Process = subprocess.Popen[bytes]
 
 
 def run_local(tasks: Sequence[Task], jobs: int, progress: Progress = SILENT) -> Iterator[Summary]:
-    """Yield the summaries of tasks as they are done, in no order.
-
-    Parameters
-    ----------
-    tasks : sequence of Task
-        What to do.
-    jobs : int
-        Processes.
-    progress : Progress
-        Checked for a cancel, which ends the processes at once.
+    """Yield the summaries of tasks as `jobs` processes get them done, in no order.
 
     Raises
     ------
     CancelledError
-        If the work was cancelled; parts that are written stay.
+        If the work was cancelled, which ends the processes at once; parts that are written stay.
     OutputError
         If no process can be started.
     """
-    pool = _Pool(tasks)
-    threads = [threading.Thread(target=pool.work, daemon=True) for _ in range(min(jobs, len(tasks)))]
-    for one in threads:
-        one.start()
+    processes, done = _Processes(), queue.SimpleQueue[Future[Summary]]()
+    threads = ThreadPoolExecutor(min(jobs, len(tasks)))
     try:
-        for _ in tasks:
-            yield pool.take_answer(progress)
+        for task in tasks:
+            threads.submit(processes.run, task).add_done_callback(done.put)
+        for _task in tasks:
+            future = None
+            while future is None:
+                progress.check()
+                with suppress(queue.Empty):
+                    future = done.get(timeout=_ASKED_EVERY)
+            yield future.result()
     finally:
-        pool.close()
-        for one in threads:
-            one.join()
+        processes.kill()
+        threads.shutdown(cancel_futures=True)
+        processes.close()
 
 
-class _Pool:
-    """The tasks that are left, and the processes that work on them, one a thread."""
+class _Processes:
+    """Processes that are started as they are needed, and used again."""
 
-    def __init__(self, tasks: Sequence[Task]) -> None:
-        self._left = deque((task, 0) for task in tasks)
-        self._answers: queue.SimpleQueue[Summary | Exception] = queue.SimpleQueue()
-        self._workers: set[Worker] = set()
-        self._lock, self._is_closed, self._failed_starts = threading.Lock(), False, 0
+    def __init__(self) -> None:
+        self._idle: list[Process] = []
+        self._all: set[Process] = set()
+        self._lock, self._is_closed = threading.Lock(), False
 
-    def take_answer(self, progress: Progress) -> Summary:
-        """Return the next summary; raise what kept a thread from working."""
-        while True:
-            progress.check()
-            with suppress(queue.Empty):
-                found = self._answers.get(timeout=_ASKED_EVERY)
-                if isinstance(found, Exception):
-                    raise found
-                return found
-
-    def close(self) -> None:
-        """End the processes, whatever they are doing."""
-        with self._lock:
-            self._is_closed = True
-            self._left.clear()
-            for one in self._workers:
-                one.kill()
-
-    def work(self) -> None:
-        """Have one process after another do tasks, until none is left."""
-        try:
-            while worker := self._start():
-                try:
-                    if self._is_ready(worker):
-                        self._serve(worker)
-                finally:
-                    self._end(worker)
-        except Exception as error:  # raised in the thread that waits
-            self._answers.put(error)
-
-    def _start(self) -> Worker | None:
-        """Return a new process; None where nothing is left to do."""
-        with self._lock:
-            if self._is_closed or not self._left:
-                return None
-            worker = _start_process()
-            self._workers.add(worker)
-            return worker
-
-    def _end(self, worker: Worker) -> None:
-        with self._lock:
-            self._workers.discard(worker)
-        worker.kill()
-        for stream in filter(None, (worker.stdin, worker.stdout)):
-            with suppress(OSError):
-                stream.close()
-        worker.wait()
-
-    def _is_ready(self, worker: Worker) -> bool:
-        """Wait for the first message of a process; return whether it came. OutputError if many end without it."""
-        if worker.stdout is not None and receive(worker.stdout) == READY:
-            self._failed_starts = 0
-            return True
-        self._failed_starts += 1
-        if self._failed_starts >= MOST_STARTS and not self._is_closed:
-            raise OutputError(fill("processes end as soon as they are started (exit status {how}).", how=worker.wait()))
-        return False
-
-    def _serve(self, worker: Worker) -> None:
-        """Hand tasks to a process until none is left, or it dies."""
-        while True:
+    def run(self, task: Task) -> Summary:
+        """Have a process do a task, another one where it dies; raises what kept it from doing any."""
+        for _attempt in range(MOST_DEATHS):
+            process = self._take()
             try:
-                task, deaths = self._left.popleft()
-            except IndexError:  # nothing is left
-                return
-            answer = _ask(worker, task)
+                assert process.stdin is not None  # noqa: S101 - it is a pipe
+                pickle.dump(pickle.dumps(task), process.stdin)
+                process.stdin.flush()
+                answer: Summary | Exception = _receive(process)
+            except (OSError, EOFError, pickle.UnpicklingError):  # it died
+                self._end(process)
+                continue
+            self._idle.append(process)
             if isinstance(answer, Exception):
                 raise answer
-            if answer is None:  # it died
-                if deaths + 1 >= MOST_DEATHS:
-                    self._answers.put(give_up(task))
-                elif not self._is_closed:
-                    self._left.appendleft((task, deaths + 1))
-                return
-            self._answers.put(answer)
+            return answer
+        return give_up(task)
+
+    def kill(self) -> None:
+        """End the processes, whatever they are doing, and start no others."""
+        with self._lock:
+            self._is_closed = True
+            for one in self._all:
+                one.kill()
+
+    def close(self) -> None:
+        """Free what the processes that are left have taken."""
+        for one in list(self._all):
+            self._end(one)
+
+    def _take(self) -> Process:
+        status = None
+        for _attempt in range(MOST_STARTS):
+            with self._lock:
+                if self._is_closed:
+                    raise CancelledError
+                if self._idle:
+                    return self._idle.pop()
+                process = _start()
+                self._all.add(process)
+            with suppress(EOFError, OSError):
+                _receive(process)  # that it is ready
+                return process
+            with suppress(subprocess.TimeoutExpired):
+                process.wait(1)
+            status = self._end(process)
+        raise OutputError(fill("processes end as soon as they are started (exit status {how}).", how=status))
+
+    def _end(self, process: Process) -> int:
+        """End a process, unless it did so itself, and return its exit status."""
+        with self._lock:
+            self._all.discard(process)
+        process.kill()
+        for stream in filter(None, (process.stdin, process.stdout)):
+            with suppress(OSError):  # what it does not read any more
+                stream.close()
+        return process.wait()
 
 
-def _start_process() -> Worker:
+def _start() -> Process:
     """Return a new process; Ctrl-C in the terminal does not reach it, as the process that started it ends it."""
     package = str(Path(__file__).parents[2])
     path = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH"))))
@@ -163,12 +142,6 @@ def _start_process() -> Worker:
     )
 
 
-def _ask(worker: Worker, task: Task) -> Summary | Exception | None:
-    """Have a process do a task; None if it dies, an error if it cannot do any."""
-    assert worker.stdin is not None and worker.stdout is not None  # noqa: S101, PT018 - both are pipes
-    try:
-        send(worker.stdin, pickle.dumps(task))
-        data = receive(worker.stdout)
-    except OSError:
-        return None
-    return None if data is None else pickle.loads(data)  # noqa: S301 - of our own process
+def _receive(process: Process) -> Any:
+    assert process.stdout is not None  # noqa: S101 - it is a pipe
+    return pickle.load(process.stdout)  # noqa: S301 - of our own process

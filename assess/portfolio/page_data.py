@@ -174,7 +174,7 @@ def _say_falls(row: Row) -> str:
 
 def _say_assumed(row: Row) -> str:
     is_assumed = row["inventory"] == "assumed"
-    return say.say_interval(row["falls_low_inventory"], row["falls_high_inventory"]) if is_assumed else ""
+    return say.say_range(row["falls_low_inventory"], row["falls_high_inventory"], say.say_number) if is_assumed else ""
 
 
 def _say_cost(row: Row) -> str:
@@ -210,8 +210,8 @@ def _order(row: Row) -> tuple[float, float, int]:
 def _read_piece(basis: str | None, row: Row) -> list[str]:
     place = "" if row["work_place"] is None else say.say_whole(row["work_place"])
     return [
-        row["item"] or "", row["floor"] or "", row["room"] or "", say.say_kind(row), say.say_size(row),
-        say.say_whole(row["quantity"]), say.label_piece(row, basis), say.say_probability(row), place,
+        row["item"] or "", row["floor"] or "", row["room"] or "", row["description"] or row["type"] or "",
+        say.say_size(row), say.say_whole(row["quantity"]), say.label_piece(row, basis), say.say_probability(row), place,
         row["detail"] or "",
     ]  # fmt: skip
 

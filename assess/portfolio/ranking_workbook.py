@@ -11,7 +11,6 @@ from assess.delivery.folders import private_folder
 from assess.environment import find_source_date
 from assess.i18n import fill
 from assess.i18n import gettext as _
-from assess.portfolio import city_method as made
 from assess.portfolio import city_words as say
 from assess.portfolio.building_signs import find_share, say_sign, sign_of_class
 from assess.portfolio.city import BUILDING_RULE, TYPE_RULE, City, Group, Row
@@ -212,7 +211,7 @@ def _list_pieces(city: City) -> Listing:
         Column(_("Item"), 12, of_piece("item")),
         Column(_("Floor"), 8, of_piece("floor")),
         Column(_("Room"), 16, of_piece("room")),
-        Column(_("What"), 26, lambda one: say.say_kind(one[1])),
+        Column(_("What"), 26, lambda one: one[1]["description"] or one[1]["type"]),
         Column(_("Size [cm]"), 16, lambda one: say.say_size(one[1])),
         Column(_("Pieces"), 8, of_piece("quantity"), COUNT),
         Column(_("Class"), 18, lambda one: say.label_piece(one[1], one[0]["basis"])),
@@ -273,8 +272,8 @@ def _list_notes(city: City) -> Listing:
         "second ones; {most:,} rows at most, all are in the table pieces.", most=MOST_PIECES,
     )  # fmt: skip
     texts = [
-        _(BUILDING_RULE), _(TYPE_RULE), rule, *(f"{label}: {value}" for label, value in made.list_basis(city)),
-        *made.list_method(city), *made.list_references(city), words.marks(),
+        _(BUILDING_RULE), _(TYPE_RULE), rule, *(f"{label}: {value}" for label, value in say.list_basis(city)),
+        *say.list_method(city), *say.list_references(city), words.marks(),
     ]  # fmt: skip
     return [Column(_("Note"), 140, str)], texts
 

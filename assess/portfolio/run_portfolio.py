@@ -9,7 +9,7 @@ import time
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
-from pathlib import Path, PurePath
+from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +19,7 @@ from assess.delivery.folders import NEW, FolderLock
 from assess.errors import InputError, OutputError, PdfUnavailableError, Problem
 from assess.i18n import fill
 from assess.motion.site_ground import GroundField
-from assess.plain_text import plain_line, plain_text
+from assess.plain_text import plain_line
 from assess.portfolio.building_rows import list_problems, to_row
 from assess.portfolio.building_task import ENDING, FOLDER, Part, Summary, Task, read_part, sweep_parts
 from assess.portfolio.sources import Source, find_sources
@@ -47,20 +47,10 @@ _KEY = re.compile(r"[0-9a-f]{64}")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PortfolioResult:
-    """What a portfolio gave.
+    """What a portfolio gave: the folder, what was written to it, and the city.
 
-    Parameters
-    ----------
-    folder : Path
-        Of the results.
-    files, removed : tuple of Path
-        What was written, and what of an earlier run was not replaced.
-    kept : int
-        Buildings whose part of an earlier run was there.
-    skipped : tuple of pairs of str
-        Buildings that could not be assessed, with the reason.
-    city : City
-        The tables, and what the run rests on.
+    `removed` are files of an earlier run that were not replaced; `kept` counts buildings whose part of an earlier run
+    was there; `skipped` are those that could not be assessed, with the reason.
     """
 
     folder: Path
@@ -160,12 +150,14 @@ def run_portfolio(
         summaries = _assess_all(job, jobs or count_processors(), scheduler)
         files, removed, city = _write_output(job, summaries)
         _remove_unused(out, {one.key for one in summaries.values()})
+    from assess.portfolio.city_words import explain_skipped
+
     return PortfolioResult(
         folder=out,
         files=files,
         removed=removed,
         kept=sum(one.is_kept for one in summaries.values()),
-        skipped=tuple(_list_skipped(city)),
+        skipped=tuple((row["path"], explain_skipped(city, row["path"])) for row in city.skipped),
         city=city,
     )
 
@@ -259,8 +251,7 @@ def _assess_all(job: _Job, jobs: int, scheduler: str | None) -> dict[str, Summar
     else:
         from assess.portfolio.cluster import run_on_cluster
 
-        is_simulated = job.settings.verify != "none"
-        summaries = run_on_cluster(tasks, scheduler, is_simulated=is_simulated, progress=job.progress)
+        summaries = run_on_cluster(tasks, scheduler, job.progress)
     found: dict[str, Summary] = {}
     start, total, kept, skipped = time.monotonic(), len(tasks), 0, 0
 
@@ -317,31 +308,31 @@ def _build_city(job: _Job, summaries: Mapping[str, Summary], folder: Path) -> "C
     from assess.portfolio.city import City
     from assess.portfolio.city_tables import write_tables
 
-    alike = find_alike(job.sources, summaries)
-    parts = (
-        _note_alike(_find_part(job.out, summaries[one.path]), alike.get(one.path))
-        for one in job.progress.checked(job.sources)
-    )
-    frames = write_tables(parts, folder if "parquet" in job.formats else None)
+    frames = write_tables(_list_parts(job, summaries), folder if "parquet" in job.formats else None)
     return City(**frames, settings=job.settings, ground=_describe_ground(job.ground, frames["buildings"]))
 
 
-def find_alike(sources: Sequence[Source], summaries: Mapping[str, Summary]) -> dict[str, str]:
-    """Return the buildings whose workbook has the same bytes as that of an earlier one, with the path of the first."""
+def _list_parts(job: _Job, summaries: Mapping[str, Summary]) -> Iterator[Part]:
+    """Yield the parts in the order of paths; one whose workbook is a copy of an earlier one notes that."""
     first: dict[str, str] = {}
-    found = {}
-    for path, summary in ((one.path, summaries[one.path]) for one in sources):
-        if summary.content and summary.status == "assessed":
-            same = first.setdefault(summary.content, path)
-            if same != path:
-                found[path] = same
-    return found
+    for source in job.progress.checked(job.sources):
+        summary = summaries[source.path]
+        part = summary.part or read_part(job.out, summary.key)
+        if part is None:
+            raise OutputError(
+                fill(
+                    "{folder}: what was found of {path} is gone, or damaged. Run the same command again.",
+                    folder=plain_line(str(job.out / FOLDER)),
+                    path=plain_line(summary.path),
+                )
+            )
+        is_counted = summary.content and summary.status == "assessed"
+        same = first.setdefault(summary.content, part.path) if is_counted else part.path
+        yield part if same == part.path else _note_alike(part, same)
 
 
-def _note_alike(part: Part, first: str | None) -> Part:
-    """Return a part with a note where its workbook is a copy; what is kept on the disk has none."""
-    if first is None:
-        return part
+def _note_alike(part: Part, first: str) -> Part:
+    """Return a part with a note that its workbook is a copy; what is kept on the disk has none."""
     fault = fill("its workbook has the same content as {path}: it counts as a building of its own.",
                  path=plain_line(first))  # fmt: skip
     fix = fill("Remove one of them if they are the same building.")
@@ -349,19 +340,6 @@ def _note_alike(part: Part, first: str | None) -> Part:
     at = [field.key for field in TABLES["buildings"]].index("same_as")
     rows = [[*row[:at], first, *row[at + 1 :]] for row in part.rows("buildings")]
     return replace(part, tables={**part.tables, "buildings": rows, "problems": [*part.rows("problems"), *notes]})
-
-
-def _find_part(out: Path, summary: Summary) -> Part:
-    part = summary.part or read_part(out, summary.key)
-    if part is None:
-        raise OutputError(
-            fill(
-                "{folder}: what was found of {path} is gone, or damaged. Run the same command again.",
-                folder=plain_line(str(out / FOLDER)),
-                path=plain_line(summary.path),
-            )
-        )
-    return part
 
 
 def _write_reports(job: _Job, city: "City", folder: Path) -> PdfUnavailableError | None:
@@ -375,7 +353,7 @@ def _write_reports(job: _Job, city: "City", folder: Path) -> PdfUnavailableError
         write_through(folder / FILES["xlsx"], render_ranking(city, options=job.options, progress=job.progress))
     if not {"html", "pdf"} & set(job.formats):
         return None
-    from assess.portfolio.city_isolines import list_isolines
+    from assess.portfolio.city_map import list_isolines
     from assess.portfolio.city_page import render_page, render_summary
 
     common: dict[str, Any] = {"options": job.options, "progress": job.progress,
@@ -414,21 +392,6 @@ def _describe_ground(ground: GroundField | None, buildings: Any) -> "RunGround |
         cautions=tuple(cautions),
         is_known=bool(sites) and not any(one.dispersion for one in sites),
     )
-
-
-def _list_skipped(city: "City") -> Iterator[tuple[str, str]]:
-    """Yield the buildings that were skipped, each with its first problem and how to fix it."""
-    for building in city.skipped:
-        path, problems = building["path"], city.problems_of.get(building["path"])
-        if problems:
-            first = problems[0]
-            place = "!".join(one for one in (first["sheet"], first["cell"]) if one)
-            said = " ".join(first[name] for name in ("message", "fix") if first[name])
-            file = f"{plain_text(PurePath(path).name)} "
-            said = f"it {said.removeprefix(file)}" if said.startswith(file) else said  # the path stands before it
-            yield path, f"{place}: {said}" if place else said[:1].upper() + said[1:]
-        else:
-            yield path, ""
 
 
 def _describe_run(job: _Job, city: "City", folder: Path, names: Sequence[str]) -> bytes:

@@ -80,7 +80,7 @@
     for (const key of [...signs[mode].keys()].reverse()) {
       svg.querySelector(".marks").append(...marks.filter((mark) => buildings[Number(mark.dataset.at)][mode] === key));
     }
-    for (const other of MODES) byId(`legend-${other}`).hidden = other !== mode;
+    for (const other of MODES) byId(`legend-${other}`).classList.toggle("chosen", other === mode);
   };
 
   const startMap = () => {

@@ -75,19 +75,6 @@ def test_the_data_hold_every_building_in_the_order_of_the_ranking(data, view):
     assert places == sorted(places)
 
 
-def test_the_map_shows_the_share_first_and_every_view_has_its_legend(html, data):
-    part = html[html.index('<section id="map">') : html.index('<section id="ranking">')]
-    assert re.findall(r'<option value="(\w+)">', part) == ["share", "kind", "state"]
-    legends = re.findall(r'<div id="legend-(\w+)"( hidden)?>(.*?)</div>', part, re.DOTALL)
-    assert [one[:2] for one in legends] == [("share", ""), ("kind", " hidden"), ("state", " hidden")]
-    assert "30 to 70 % of its pieces expected to fall: " in legends[0][2]
-    assert "by the highest class that any of its pieces has" in legends[1][2]
-    for mode, _hidden, text in legends:
-        keys = [one[mode] for one in data["buildings"]]
-        counted = re.findall(r'data-key="([^"]+)".*?: ([\d,]+)</li>', text)
-        assert {key: int(count) for key, count in counted} == {key: keys.count(key) for key in keys}
-
-
 def test_the_command_quotes_the_path_and_is_given_for_assessed_workbooks_alone(view):
     inventories = view.buildings["inventory"].mask(view.buildings["path"] == view.buildings["path"].iloc[1], "handover")
     shown = replace(view, buildings=view.buildings.assign(inventory=inventories))

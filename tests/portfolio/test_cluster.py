@@ -22,7 +22,7 @@ from assess.portfolio.cluster import (
     check_cluster,
     check_workers,
     list_versions,
-    run_batch,
+    run_checked,
     run_on_cluster,
 )
 from assess.portfolio.run_portfolio import run_portfolio
@@ -99,7 +99,6 @@ def _run(tmp_path, out, scheduler=None, settings=FORMULAS):
 
 @pytest.mark.parametrize("settings", [FORMULAS, pytest.param(Settings(verify="all", runs=10), marks=pytest.mark.long)])
 def test_three_workers_give_the_bytes_of_one_process(tmp_path, address, monkeypatch, settings):
-    monkeypatch.setattr(cluster, "BATCH", 1)
     write_city(tmp_path / "city", [40.0, 41.0] * 3)
     (tmp_path / "city" / "bad.xlsx").write_bytes(b"no workbook")
     found = _run(tmp_path, "cluster", address, settings)
@@ -123,11 +122,10 @@ def test_a_worker_that_dies_changes_no_byte_and_a_building_that_kills_workers_is
 
 
 def test_a_client_that_is_killed_is_followed_by_one_that_goes_on(tmp_path, address, monkeypatch):
-    monkeypatch.setattr(cluster, "BATCH", 4)
     write_city(tmp_path / "city", [40.0] * 8 + [HOLDS])
     (tmp_path / "hold").touch()
     code = (
-        "from pathlib import Path\nfrom tests.portfolio import test_cluster as t\nt.cluster.BATCH = 4\n"
+        "from pathlib import Path\nfrom tests.portfolio import test_cluster as t\n"
         f"t._run(Path({str(tmp_path)!r}), 'out', {address!r})"
     )
     parts = tmp_path / "out" / FOLDER
@@ -141,7 +139,6 @@ def test_a_client_that_is_killed_is_followed_by_one_that_goes_on(tmp_path, addre
 
 
 def test_a_scheduler_that_dies_is_told_and_what_is_done_is_kept(tmp_path, monkeypatch):
-    monkeypatch.setattr(cluster, "BATCH", 4)
     write_city(tmp_path / "city", [40.0] * 8 + [HOLDS])
     (tmp_path / "hold").touch()
     with _scheduler() as (process, own), _workers(own, 1, *ALONE):
@@ -150,7 +147,7 @@ def test_a_scheduler_that_dies_is_told_and_what_is_done_is_kept(tmp_path, monkey
             for one in find_sources(tmp_path / "city")
         ]
         (tmp_path / "out" / FOLDER).mkdir(parents=True)
-        summaries = run_on_cluster(tasks, own, is_simulated=False)
+        summaries = run_on_cluster(tasks, own)
         done = [next(summaries)]
         process.kill()
         with pytest.raises(OutputError, match=r"the scheduler .* is gone\. What is done is kept"):
@@ -314,8 +311,8 @@ def test_a_worker_that_sees_another_folder_or_not_the_workbooks_is_refused(site,
 def test_a_worker_that_joins_later_is_asked_as_well(site, tmp_path):
     (source,) = find_sources(write_city(tmp_path / "city", [40.0]))
     task = Task(source=source, settings=replace(FORMULAS, city=True), ground=StagedGround(tmp_path), out=tmp_path)
-    assert [one.status for one in run_batch(site, [task])] == ["assessed"]
+    assert run_checked(site, task).status == "assessed"
     assert [path.name for path in tmp_path.glob("probe*")] == ["probe"]
     other = replace(site, versions={"assess": "0.0.1"})
     with pytest.raises(WorkerUnfitError, match=r"other versions: assess .* there, 0\.0\.1 here"):
-        run_batch(other, [task])
+        run_checked(other, task)

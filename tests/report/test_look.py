@@ -106,7 +106,7 @@ def test_a_fault_in_a_template_writes_nothing(assessment, tmp_path):
     [
         ("covers.html.j2", r"replaces no standard template. Did you mean cover.html"),
         ("sections/limits.html.j2", "is no longer a template. Choose and order the sections in page.html.j2"),
-        (".hidden", "holds no template: expected some of city.html.j2, city_summary.html.j2, cover"),
+        (".hidden", "holds no template: expected some of city.html.j2, cover"),
     ],
 )
 def test_a_folder_without_templates_is_told(tmp_path, name, told):

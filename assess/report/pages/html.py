@@ -2,9 +2,10 @@
 
 import base64
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from markupsafe import Markup
 
@@ -133,9 +134,14 @@ def render_document(
     for_print: bool = False,
     script: str = "",
     filters: Sequence[tuple[str, str]] = (),
+    template: str = "page.html.j2",
+    more: Mapping[str, Any] | None = None,
     progress: Progress = SILENT,
 ) -> str:
-    """Return a document as HTML with `styles` besides those of every page; raises what `render` does."""
+    """Return a document as HTML with `styles` besides those of every page; raises what `render` does.
+
+    A `template` of its own shows the `Page`, and `more` by name.
+    """
     writer = HtmlWriter(for_print=for_print)
 
     def as_html(text: str) -> Markup:
@@ -157,7 +163,7 @@ def render_document(
         filters=filters,
         outlines=as_html(writer.outlines()),
     )
-    return render_template("page.html.j2", options, {"page": page}, progress)
+    return render_template(template, options, {"page": page, **(more or {})}, progress)
 
 
 def list_missing_figures(content: Content) -> list[Problem]:
