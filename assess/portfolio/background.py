@@ -28,17 +28,7 @@ _NO_DRAWING = ("Point", "MultiPoint")
 
 @dataclass(frozen=True, slots=True)
 class Background:
-    """What lies behind the points of a map.
-
-    Parameters
-    ----------
-    file : str
-        Name of its file.
-    areas : tuple of tuple of rings
-        Polygons: each its outline, then its holes; a ring is a tuple of longitudes and latitudes [deg].
-    lines : tuple of lines
-        Each a tuple of longitudes and latitudes [deg].
-    """
+    """What lies behind the points of a map: polygons, each its outline, then its holes, and lines."""
 
     file: str
     areas: tuple[tuple[tuple[Place, ...], ...], ...] = ()
@@ -46,13 +36,10 @@ class Background:
 
 
 def read_background(path: Path) -> Background:
-    """Read a GeoJSON file with Polygon, MultiPolygon, LineString or MultiLineString; points are left out.
+    """Read a GeoJSON file with polygons or lines; points are left out.
 
-    Raises
-    ------
-    InputError
-        If it cannot be read, is not GeoJSON, is too large, or a coordinate is not longitude and latitude: the message
-        names the place in the file.
+    Raises InputError if it cannot be read, is not GeoJSON, is too large, or a coordinate is not longitude and latitude:
+    the message names the place in the file.
     """
     try:
         found = _parse(path)

@@ -30,23 +30,14 @@ ROUGH = 0.01
 
 
 def read_building(source: Source, data: bytes | None, ground: GroundField | None) -> tuple[Origin, Inventory]:
-    """Return where the pieces of a building come from, and its inventory.
-
-    Parameters
-    ----------
-    source : Source
-        The building.
-    data : bytes, optional
-        Its file, where it could be read.
-    ground : GroundField, optional
-        The ground motion of the run.
+    """Return where the pieces of a building come from, and its inventory; `data` is its file, where it can be read.
 
     Raises
     ------
     WorkbookError
         If its workbook or its COBie file cannot be used.
     InputError
-        If no inventory can be assumed, or its place lies outside the ground motion.
+        If no inventory can be assumed, or its place lies outside the ground motion of the run.
     """
     if source.kind == "assumed" and source.index is not None:
         assumed = build_assumed(source.index)

@@ -1,7 +1,7 @@
 """What a run found of one building, as rows of the tables of a portfolio."""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -34,16 +34,10 @@ MOST_BLOCKERS = 20
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Origin:
-    """Where the pieces of a building come from.
+    """Where the pieces of a building come from, one of `INVENTORIES`.
 
-    Parameters
-    ----------
-    inventory : str
-        One of `assess.portfolio.table_schemas.INVENTORIES`.
-    low, high : mapping of str to int
-        10 % and 90 % quantities of an assumed inventory, by item.
-    left_out : int, optional
-        Components of a handover file that may be furniture and were left out.
+    `low` and `high` are the 10 % and 90 % quantities of an assumed inventory by item, `left_out` the components of a
+    handover file that may be furniture and were left out.
     """
 
     inventory: str
@@ -56,12 +50,12 @@ def build_tables(
     source: Source, origin: Origin, inventory: Inventory, results: Results, sums: DrawSums
 ) -> dict[str, list[list[Any]]]:
     """Return the rows of the tables buildings, pieces, routes and problems."""
-    return _to_rows(
-        [_describe_building(source, origin, inventory, results, sums)],
-        list_problems(source.path, results.problem_rows),
-        _list_pieces(source.path, origin, results),
-        _list_routes(source.path, results),
-    )
+    return {
+        "buildings": [to_row("buildings", _describe_building(source, origin, inventory, results, sums))],
+        "pieces": [to_row("pieces", one) for one in _list_pieces(source.path, origin, results)],
+        "routes": [to_row("routes", one) for one in _list_routes(source.path, results)],
+        "problems": list_problems(source.path, results.problem_rows),
+    }
 
 
 def build_skipped(source: Source, problems: Sequence[Problem]) -> dict[str, list[list[Any]]]:
@@ -75,17 +69,8 @@ def build_skipped(source: Source, problems: Sequence[Problem]) -> dict[str, list
     if source.index is not None:
         use = spell_use(source.index.use)
         record |= {"index": source.index, "site": source.index.as_building(), "use": use}
-    return _to_rows([record], list_problems(source.path, problems))
-
-
-def _to_rows(
-    buildings: Iterable[Record],
-    problems: Iterable[Record],
-    pieces: Iterable[Record] = (),
-    routes: Iterable[Record] = (),
-) -> dict[str, list[list[Any]]]:
-    records = {"buildings": buildings, "pieces": pieces, "routes": routes, "problems": problems}
-    return {name: [to_row(name, record) for record in rows] for name, rows in records.items()}
+    rows = {"buildings": [to_row("buildings", record)], "problems": list_problems(source.path, problems)}
+    return {name: rows.get(name, []) for name in ("buildings", "pieces", "routes", "problems")}
 
 
 def spell_use(text: str) -> str:
@@ -236,14 +221,13 @@ def _list_blockers(tables: RouteTables, route: RouteRow) -> list[str]:
     return [item for _chance, item in sorted(able)[:MOST_BLOCKERS]]
 
 
-def list_problems(path: str, problems: Sequence[Problem]) -> Iterator[Record]:
-    """Yield the problems of a building, those of one habit as one, errors first."""
+def list_problems(path: str, problems: Sequence[Problem]) -> list[list[Any]]:
+    """Return the problems of a building as rows, those of one habit as one, errors first."""
     from assess.workbook.habits import group_problems
 
     order = {"error": 0, "warning": 1, "note": 2}
     shown = sorted(group_problems(problems), key=lambda one: order[one.severity])
-    more = []
     if (left := len(shown) - MOST_PROBLEMS) > 0:
         text = fill("and {left:,} more problems; `assess check` lists them all.", left=left)
-        more.append(Problem("note", "", "", text))
-    yield from ({"path": path, "one": one} for one in (*shown[:MOST_PROBLEMS], *more))
+        shown[MOST_PROBLEMS:] = [Problem("note", "", "", text)]
+    return [to_row("problems", {"path": path, "one": one}) for one in shown]

@@ -5,6 +5,7 @@ assumed inventories, and simulated and formula results, are never in one sum. Ea
 is summed draw by draw (`assess.portfolio.city_spread`).
 """
 
+import math
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -46,10 +47,7 @@ known; earthquakes in which every building has the ground motion of its own work
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunGround:
-    """The ground motion of the run: its kind, the name and hash of its file, and what a reader has to know of it.
-
-    Facts and cautions are those that hold for all buildings; `is_known` tells that it has no scatter at any of them.
-    """
+    """The ground motion of the run, with what holds for all buildings; `is_known`: it has no scatter at any of them."""
 
     kind: Literal["shakemap", "scenarios"]
     file: str
@@ -72,39 +70,14 @@ class FirstType(NamedTuple):
 class Group:
     """Buildings whose pieces come from one kind of inventory, and whose numbers rest on one basis.
 
-    Numbers with the name of a column of the table buildings are the sums of that column.
-
-    Parameters
-    ----------
-    inventory, basis : str
-        One of `GROUPS`.
-    buildings : int
-        How many.
-    by_class : mapping of RiskClass to int
-        Free-standing pieces of the basis.
-    range_over : str
-        What differs from draw to draw, one of `RangeOver`: not every range is one over earthquakes.
-    falls : Spread
-        Number of pieces that fall, of those in the classes.
-    falls_low_inventory, falls_high_inventory : float, optional
-        Expected falls with all 10 % and all 90 % quantities of assumed inventories, as if all buildings had few or
-        many pieces together; None for others.
-    people : Spread
-        Number of people whose route is blocked, by `PEOPLE_RULE`.
-    people_not_known : int
-        People on routes whose state is not known: they are in no other number.
-    routes : mapping of RouteState to int
-        Routes by state.
-    cost : float, optional
-        Sum of the known costs; None where there are none.
-    unplaced : int
-        Buildings without latitude and longitude: their draws are fully correlated with one another.
-    own_motions : int
-        Buildings of which floors keep a record or a PFA of their own: these are not of this earthquake.
-    first_buildings : tuple of Row
-        What to start with, by `BUILDING_RULE`; buildings of which nothing is expected are left out.
-    first_types : tuple of FirstType
-        Likewise, by `TYPE_RULE`.
+    Numbers with the name of a column of the table buildings are the sums of that column; a cost is None where none is
+    known. `by_class` counts free-standing pieces of the basis; `range_over` tells what differs from draw to draw: not
+    every range is one over earthquakes. `falls` and `people` are those of pieces in the classes, and of routes whose
+    state is known, by `PEOPLE_RULE`. `falls_low_inventory` and `falls_high_inventory` are expected with all 10 % and
+    all 90 % quantities of assumed inventories, as if all buildings had few or many pieces together. `unplaced` counts
+    buildings without latitude and longitude, whose draws are fully correlated with one another; `own_motions` those of
+    which floors keep a record or a PFA of their own: these are not of this earthquake. What to start with is in the
+    order of `BUILDING_RULE` and `TYPE_RULE`, without what is never expected to fail.
     """
 
     inventory: str
@@ -195,30 +168,27 @@ class City:
     def groups(self) -> tuple[Group, ...]:
         """The sums over the buildings that were assessed, in the order of `GROUPS`.
 
-        Raises
-        ------
-        ValueError
-            If the table draws does not hold the same draws for all buildings of a group.
+        Raises ValueError if the table draws does not hold the same draws for all buildings of a group.
         """
-        rows = self.buildings[self.buildings["status"] == "assessed"]
-        found = []
-        for inventory, basis in GROUPS:
-            own = rows[(rows["inventory"] == inventory) & (rows["basis"] == basis)]
-            if not own.empty:
-                found.append(self._build_group(own, inventory, basis))
-        return tuple(found)
+        assessed = [row for row in self.ranked if row["status"] == "assessed"]
+        own = {pair: [row for row in assessed if (row["inventory"], row["basis"]) == pair] for pair in GROUPS}
+        return tuple(self._build_group(rows, *pair) for pair, rows in own.items() if rows)
 
-    def _build_group(self, rows: pd.DataFrame, inventory: str, basis: str) -> Group:
-        draws, routes, pieces = (
-            table[table["path"].isin(rows["path"])] for table in (self.draws, self.routes, self.pieces)
-        )
-        unknown = (routes["state"] == RouteState.NOT_KNOWN.value) | routes["probability"].isna()
-        not_known, occupants = _count(routes[unknown], "occupants"), _count(rows, "occupants")
-        by_class = {risk: _count(rows, column) for risk, column in CLASS_COLUMNS.items()}
-        falls = build_spread(draws, "falls", _sum(rows, "expected_falls"), sum(by_class.values()))
+    def _build_group(self, rows: list[Row], inventory: str, basis: str) -> Group:
+        paths = [row["path"] for row in rows]
+        draws, pieces = (table[table["path"].isin(paths)] for table in (self.draws, self.pieces))
+
+        def add(column: str) -> float:
+            return math.fsum(row[column] or 0.0 for row in rows)
+
+        def add_known(column: str) -> float | None:
+            return add(column) if any(row[column] is not None for row in rows) else None
+
+        by_class = {risk: round(add(column)) for risk, column in CLASS_COLUMNS.items()}
+        falls = build_spread(draws, "falls", add("expected_falls"), sum(by_class.values()))
         if falls.draws:
             falls = replace(falls, apart=0.0)  # pieces alike have one chance, and draws of their own
-        ranked = [row for row in self.ranked if (row["inventory"], row["basis"]) == (inventory, basis)]
+        known = round(add("occupants") - add("people_not_known"))
         return Group(
             inventory=inventory,
             basis=basis,
@@ -226,19 +196,17 @@ class City:
             by_class=by_class,
             range_over=self._range_over,
             falls=falls,
-            falls_low_inventory=_sum_known(rows, "falls_low_inventory"),
-            falls_high_inventory=_sum_known(rows, "falls_high_inventory"),
-            falls_avoided=_sum(rows, "falls_avoided"),
-            people=build_spread(draws, "people_blocked", _sum(rows, "people_blocked"), occupants - not_known),
-            occupants=occupants,
-            people_not_known=not_known,
-            routes={state: _count(rows, column) for state, column in STATE_COLUMNS.items()},
-            cost=_sum_known(rows, "cost"),
-            unplaced=int((~_flags(rows, "is_placed")).sum()),
-            own_motions=int((_numbers(rows, "own_motions") > 0).sum()),
-            first_buildings=tuple([row for row in ranked if row["people_blocked"] or row["expected_falls"]][:FIRST]),
+            falls_low_inventory=add_known("falls_low_inventory"),
+            falls_high_inventory=add_known("falls_high_inventory"),
+            falls_avoided=add("falls_avoided"),
+            people=build_spread(draws, "people_blocked", add("people_blocked"), known),
+            routes={state: round(add(column)) for state, column in STATE_COLUMNS.items()},
+            cost=add_known("cost"),
+            unplaced=sum(not row["is_placed"] for row in rows),
+            own_motions=sum(bool(row["own_motions"]) for row in rows),
+            first_buildings=tuple([row for row in rows if row["people_blocked"] or row["expected_falls"]][:FIRST]),
             first_types=_list_types(pieces, basis),
-            **{name: _count(rows, name) for name in _ADDED},
+            **{name: round(add(name)) for name in _ADDED},
         )
 
     @property
@@ -288,7 +256,10 @@ def _rank(row: Row) -> tuple[Any, ...]:
     return row["status"] != "assessed", -round(people), -round(falls, 6), row["path"]
 
 
-_ADDED = ("pieces", "unconfirmed", "by_formula", "cannot_rock", "anchored", "left_out", "works", "works_without_cost")
+_ADDED = (
+    "pieces", "unconfirmed", "by_formula", "cannot_rock", "anchored", "left_out", "works", "works_without_cost",
+    "occupants", "people_not_known",
+)  # fmt: skip
 """Fields of a group that are plain sums of a column of the same name."""
 
 
@@ -297,26 +268,9 @@ def _numbers(rows: pd.DataFrame, column: str) -> "pd.Series[float]":
     return pd.to_numeric(rows[column]).astype("Float64").fillna(0.0).astype("float64")
 
 
-def _flags(rows: pd.DataFrame, column: str) -> "pd.Series[bool]":
-    return rows[column].astype("boolean").fillna(False).astype("bool")
-
-
-def _sum(rows: pd.DataFrame, column: str) -> float:
-    return float(_numbers(rows, column).sum())
-
-
-def _sum_known(rows: pd.DataFrame, column: str) -> float | None:
-    """Return the sum of what is known; None where nothing is."""
-    return _sum(rows, column) if rows[column].notna().any() else None
-
-
-def _count(rows: pd.DataFrame, column: str) -> int:
-    return round(_sum(rows, column))
-
-
 def _list_types(pieces: pd.DataFrame, basis: str) -> tuple[FirstType, ...]:
     """Return the types to start with, by `TYPE_RULE`, of pieces in the classes; those that never fall are left out."""
-    counted = pieces[pieces["basis"].isin([basis, CANNOT_ROCK]) & ~_flags(pieces, "is_held")]
+    counted = pieces[pieces["basis"].isin([basis, CANNOT_ROCK]) & ~pieces["is_held"].astype("boolean").fillna(False)]
     names = counted["type"].astype(object).where(counted["type"].notna(), "")
     quantity = _numbers(counted, "quantity")
     kinds = list(map(_name_type, names, _numbers(counted, "breadth_cm"), _numbers(counted, "height_cm")))

@@ -150,7 +150,7 @@ def _build_document(
     """Return the document in the language in use; the page's template puts its controls behind sections by their id."""
     kind, title, ground = ("" if is_live else "run-on"), say.say_title(city), say.say_ground(city)
     about = _("Overturning of furniture in an earthquake: many buildings")
-    status = f"{_('In this scenario, not per year.')} {words.cut(ground, 120)}"
+    status = " ".join((_("In this scenario, not per year."), words.cut(ground, 120)))
     facts = "; ".join(f"{label}: {value}" for label, value in say.list_facts(city)[:3])
     cautions: list[Block] = [Paragraph(text, "caution") for text in say.list_cautions(city)]
     groups: list[Block] = [*map(_show_group, city.groups)]
@@ -196,9 +196,9 @@ def _show_group(group: Group) -> Box:
         for risk, count in group.by_class.items()
     ]
     if apart:
-        name = f"{words.UNCONFIRMED} {words.BY_FORMULA} {_('not counted')}"
+        name = " ".join((words.UNCONFIRMED, words.BY_FORMULA, _("not counted")))
         tiles.append(Tile("apart-formula", name, say.say_whole(apart), _("unconfirmed or by formula only")))
-    name = f"{words.ANCHORED} {_('anchored')}"
+    name = " ".join((words.ANCHORED, _("anchored")))
     tiles.append(Tile("anchored", name, say.say_whole(group.anchored), _("not classified")))
     first, *lines = say.list_group_lines(group)
     blocks: list[Block] = [Heading(say.name_group(group)), Paragraph(first, "lead"), Tiles(tiles), Bullets(lines)]

@@ -21,24 +21,14 @@ FEW = 10
 """Draws with anything in them below which the normal distribution of a mean is not relied on."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Spread:
-    """A sum over buildings.
+    """A sum over buildings; where nothing was drawn there are no draws and no ranges.
 
-    Parameters
-    ----------
-    expected : float
-        Its expected value.
-    apart : float
-        The part of it that is in no draw, of formulas and of routes without joint outcomes: the ranges leave it out.
-    draws : int
-        Draws of an earthquake; 0 where there are none, and no ranges.
-    low, high : float, optional
-        What 5 and 95 % of the draws do not exceed: the range over earthquakes.
-    sampling_low, sampling_high : float, optional
-        95 % interval of the expected value without `apart`, by the number of draws alone.
-    independent_low, independent_high : float, optional
-        The range over earthquakes if buildings were independent of each other, which they are not.
+    `apart` is the part of what is expected that is in no draw, of formulas and of routes without joint outcomes: the
+    ranges leave it out. `low` and `high` are what 5 and 95 % of the draws do not exceed: the range over earthquakes;
+    those that are `independent` would be it if buildings were independent of each other, which they are not. `sampling`
+    is the 95 % interval of the expected value without `apart`, by the number of draws alone.
     """
 
     expected: float
@@ -55,21 +45,8 @@ class Spread:
 def build_spread(draws: pd.DataFrame, column: str, expected: float, most: float) -> Spread:
     """Return the spread of a column of the table draws, summed over the buildings in it.
 
-    Parameters
-    ----------
-    draws : DataFrame
-        Rows of the table draws.
-    column : str
-        What to sum.
-    expected : float
-        Expected value over all buildings, those without draws too.
-    most : float
-        What the sum cannot exceed: all pieces, or all people.
-
-    Raises
-    ------
-    ValueError
-        If a building lacks draws that another one has.
+    `expected` is that of all buildings, those without draws too; `most` is what the sum cannot exceed: all pieces, or
+    all people. Raises ValueError if a building lacks draws that another one has.
     """
     if draws.empty:
         return Spread(expected=expected, apart=expected)
@@ -81,30 +58,14 @@ def build_spread(draws: pd.DataFrame, column: str, expected: float, most: float)
     if numbers is None or (firsts != runs * np.arange(paths.size)).any() or (numbers != numbers[0]).any():
         raise ValueError("the table draws does not hold the same draws for all buildings")
     every = values.reshape(-1, runs)
-    total, shuffled = every.sum(axis=0), _shuffle(every, paths.tolist())
-    low, high = find_ends(total)
-    sampling_low, sampling_high = find_sampling(total, most)
-    alone_low, alone_high = find_ends(shuffled)
+    total = every.sum(axis=0)
+    shuffled = np.zeros(runs)  # the draws of each building in an order of its own
+    for path, own in zip(paths.tolist(), every, strict=True):
+        shuffled += np.random.default_rng(name_number(path)).permutation(own)
     apart = expected - float(total.mean())
-    return Spread(
-        expected=expected,
-        apart=0.0 if abs(apart) <= 1e-9 * max(1.0, abs(expected)) else apart,  # without the rounding of a sum
-        draws=runs,
-        low=low,
-        high=high,
-        sampling_low=sampling_low,
-        sampling_high=sampling_high,
-        independent_low=alone_low,
-        independent_high=alone_high,
-    )
-
-
-def _shuffle(every: FloatArray, paths: list[str]) -> FloatArray:
-    """Return the sum with the draws of each building (b, runs) in an order of its own, (runs,)."""
-    total = np.zeros(every.shape[1])
-    for path, own in zip(paths, every, strict=True):
-        total += np.random.default_rng(name_number(path)).permutation(own)
-    return total
+    ends = (*find_ends(total), *find_sampling(total, most), *find_ends(shuffled))
+    is_rounding = abs(apart) <= 1e-9 * max(1.0, abs(expected))
+    return Spread(expected, 0.0 if is_rounding else apart, runs, *ends)
 
 
 def find_sampling(total: FloatArray, most: float) -> tuple[float, float]:

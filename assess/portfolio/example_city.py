@@ -6,9 +6,11 @@ that are the same on every machine.
 
 import csv
 import shutil
+import tomllib
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from importlib.resources import files
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -32,49 +34,8 @@ BUILDINGS, UNSURVEYED = 220, 8
 """Buildings of the city, and those of them that stand in the index alone, without a survey."""
 SEED = 19891017
 SCENARIO = "Loma Prieta, 17 October 1989, by the ShakeMap of the U.S. Geological Survey. The building is made up."
-_TEXT = """# A made-up city under a real earthquake
-
-{buildings} buildings around San Francisco Bay. **The ground motion is real**: `grid.xml` is the ShakeMap of the U.S.
-Geological Survey for the Loma Prieta earthquake of 17 October 1989. **The buildings are made up**: their places, sizes,
-furniture, routes, occupants and costs are drawn at random and describe no building that exists.
-
-* `index.csv`: every building, with its floor area; {unsurveyed} of them have no workbook: their furniture is assumed.
-* the folders: a workbook a building. It says nothing of the shaking, which comes from the ShakeMap.
-* `coast.geojson`: the coastline of the map, from Natural Earth (public domain).
-
-`assess portfolio` takes `index.csv` as its source and `grid.xml` as the ShakeMap. With the folder as its source it
-reads the workbooks alone, and leaves out the buildings that have none.
-"""
-
-
-@dataclass(frozen=True, slots=True)
-class _Town:
-    name: str
-    latitude: float
-    longitude: float
-    share: int
-    spread: float
-    """How far its buildings lie from the centre, as a standard deviation [deg of latitude]."""
-
-
-TOWNS = (
-    _Town("San Francisco", 37.765, -122.435, 26, 0.018), _Town("Oakland", 37.804, -122.250, 16, 0.016),
-    _Town("Berkeley", 37.871, -122.273, 8, 0.010), _Town("San Jose", 37.335, -121.890, 22, 0.028),
-    _Town("Palo Alto", 37.440, -122.150, 6, 0.010), _Town("Hayward", 37.668, -122.080, 6, 0.012),
-    _Town("Richmond", 37.942, -122.342, 5, 0.010), _Town("Fremont", 37.545, -121.985, 7, 0.015),
-    _Town("San Mateo", 37.556, -122.320, 6, 0.010), _Town("Santa Clara", 37.354, -121.955, 5, 0.010),
-    _Town("San Rafael", 37.975, -122.535, 4, 0.010), _Town("Walnut Creek", 37.906, -122.062, 4, 0.010),
-    _Town("Redwood City", 37.480, -122.235, 4, 0.008), _Town("Los Gatos", 37.232, -121.965, 4, 0.008),
-    _Town("Concord", 37.978, -122.030, 4, 0.010), _Town("Daly City", 37.685, -122.465, 3, 0.007),
-)  # fmt: skip
-"""Towns with the coordinates of a place in their middle, and how the buildings are spread over them."""
-_USES = (("Office", 30), ("School", 25), ("Hospital", 8), ("Library", 9), ("Home", 28))
-_STOREYS: Mapping[str, tuple[int, int]] = {
-    "Office": (2, 12), "School": (1, 3), "Hospital": (3, 9), "Library": (1, 4), "Home": (1, 6),
-}  # fmt: skip
-_STOREY_HEIGHT = {"Home": 2.9}
-_ANCHORED = (("no", 70), ("unknown", 14), ("yes", 12), ("partly", 4))
-_COSTS = (("L-bracket to studs", 90), ("base angle", 140))
+DRAWN: Mapping[str, Any] = tomllib.loads(files("assess.portfolio").joinpath("example_city.toml").read_text("utf-8"))
+"""What the buildings and their furniture are drawn from."""
 GRID_STEP, ACROSS = 2.4, 12
 """Distance between pieces on a plan [m], and pieces in a row of it."""
 OFFSHORE = 0.004
@@ -98,19 +59,10 @@ class Building:
 
 
 def write_example_city(folder: Path, buildings: int = BUILDINGS) -> bool:
-    """Write workbooks, index.csv, the ShakeMap grid.xml, coast.geojson and README.md; the same bytes every time.
+    """Write workbooks, index.csv, the ShakeMap grid.xml, coast.geojson and README.md, whole or not at all.
 
-    Parameters
-    ----------
-    folder : Path
-        Where to, whole or not at all; its parents are made where they are missing.
-    buildings : int
-        How many, of which a few have no workbook.
-
-    Returns
-    -------
-    bool
-        Whether it was written; False where the folder holds exactly this city already.
+    They have the same bytes every time; a few of the `buildings` have no workbook. Returns whether it was written:
+    False where the folder holds exactly this city already.
 
     Raises
     ------
@@ -160,7 +112,7 @@ def _write_city(folder: Path, city: list[Building]) -> None:
     _write_index(folder / INDEX, city)
     for name in (GRID, COAST):
         shutil.copyfile(resources.city_file(name), folder / name)
-    text = _TEXT.format(buildings=len(city), unsurveyed=sum(not one.path for one in city))
+    text = DRAWN["readme"].format(buildings=len(city), unsurveyed=sum(not one.path for one in city))
     (folder / README).write_text(text, encoding="utf-8", newline="\n")
 
 
@@ -179,20 +131,21 @@ def _make_building(number: int, land: Any) -> Building:
 
     draw = Random(SEED + number)  # noqa: S311 - an example, no secret
     is_surveyed = number % (BUILDINGS // UNSURVEYED) != 0
-    town = _choose(draw, [(one, one.share) for one in TOWNS])
-    use = _choose(draw, _USES if is_surveyed else (("office", 2), ("healthcare", 1)))
-    low, high = _STOREYS.get(use, (2, 5))
+    town, latitude_of, longitude_of, _share, spread = _choose(draw, [(one, one[3]) for one in DRAWN["towns"]])
+    uses = [(use, one["share"]) for use, one in DRAWN["uses"].items()]
+    use = _choose(draw, uses if is_surveyed else DRAWN["unsurveyed"])
+    kind = DRAWN["uses"].get(use, {"storeys": (2, 5), "storey_height": 3.8, "storey_area": 300})
+    low, high = kind["storeys"]
     storeys = low + int((high - low + 1) * draw.random() ** 1.8)
     for _attempt in range(200):
-        latitude = town.latitude + town.spread * _bell(draw)
-        longitude = town.longitude + town.spread * 1.26 * _bell(draw)
+        latitude, longitude = latitude_of + spread * _bell(draw), longitude_of + spread * 1.26 * _bell(draw)
         if land.contains(shapely.Point(longitude, latitude)):
             break
-    name = f"{use.capitalize()} {number:03}, {town.name} {MADE_UP}"
-    path = f"{town.name.lower().replace(' ', '-')}/{use.lower()}-{number:03}.xlsx" if is_surveyed else ""
-    height = round(storeys * (_STOREY_HEIGHT.get(use, 3.8) + 0.4 * draw.random()), 1)
-    area = storeys * (120 if use == "Home" else 300) * (1 + int(4 * draw.random()))
-    return Building(number, path, name, town.name, round(latitude, 5), round(longitude, 5), use, storeys, height, area)
+    name = f"{use.capitalize()} {number:03}, {town} {MADE_UP}"
+    path = f"{town.lower().replace(' ', '-')}/{use.lower()}-{number:03}.xlsx" if is_surveyed else ""
+    height = round(storeys * (kind["storey_height"] + 0.4 * draw.random()), 1)
+    area = storeys * kind["storey_area"] * (1 + int(4 * draw.random()))
+    return Building(number, path, name, town, round(latitude, 5), round(longitude, 5), use, storeys, height, area)
 
 
 def _choose(draw: Random, weighted: Any) -> Any:
@@ -239,14 +192,17 @@ def _fill_workbook(one: Building) -> Content:
         {"floor": str(at), "name": f"Storey {at}", "elevation": round((at - 1) * rise, 2)} for at in furnished
     ]  # fmt: skip
     items = [*_list_pieces(one, furnished, draw), *_list_corridor(one, corridors, draw)]
+    use = DRAWN["uses"][one.use]
+    named = {name for _room, types in use["rooms"] for name in types} | set(use["corridor"])
     rows = {
         "Building": [building], "Floors": floors, "Items": list(_place(items)) if is_drawn else items,
-        CATALOGUE.name: _list_types(one.use),
+        CATALOGUE.name: [row for row in read_catalogue("si") if row["type"] in named],
     }  # fmt: skip
     if has_routes:
         rows["Places"] = [place for floor in corridors for place in _list_places(floor)] if is_drawn else []
         rows["Routes"] = [_make_segment(one, floor, draw, is_drawn=is_drawn) for floor in corridors]
-    costs = [{"detail": detail, "unit_cost": cost, "source": "made-up price"} for detail, cost in _COSTS]
+    prices = DRAWN["costs"].items()
+    costs = [{"detail": detail, "unit_cost": cost, "source": "made-up price"} for detail, cost in prices]
     return Content({**rows, **({"Costs": costs} if has_costs else {})})
 
 
@@ -274,12 +230,6 @@ def _list_places(floor: int) -> list[dict[str, Any]]:
     ]
 
 
-def _list_types(use: str) -> list[dict[str, Any]]:
-    known = {one["type"]: one for one in read_catalogue("si")}
-    named = {name for _room, types in ROOMS[use] for name in types} | set(CORRIDOR[use])
-    return [row for name, row in known.items() if name in named]
-
-
 def _choose_floors(one: Building, draw: Random) -> tuple[int, ...]:
     """Return the storeys that have been surveyed: four at most, the top one among them."""
     if one.storeys <= 4:
@@ -290,18 +240,18 @@ def _choose_floors(one: Building, draw: Random) -> tuple[int, ...]:
 
 def _list_pieces(one: Building, floors: tuple[int, ...], draw: Random) -> Iterator[dict[str, Any]]:
     """Yield rows of Items until the pieces are as many as were drawn: 12 to 36."""
-    left, number = 12 + int(25 * draw.random()), 0
+    left, number, rooms = 12 + int(25 * draw.random()), 0, DRAWN["uses"][one.use]["rooms"]
     while left > 0:
         number += 1
         floor = floors[int(len(floors) * draw.random())]
-        room, types = ROOMS[one.use][int(len(ROOMS[one.use]) * draw.random())]
-        quantity = min(left, _choose(draw, ((1, 55), (2, 25), (3, 12), (6, 8))))
+        room, types = rooms[int(len(rooms) * draw.random())]
+        quantity = min(left, _choose(draw, DRAWN["quantities"]))
         left -= quantity
         yield {
             "item": f"{floor}-{number:02}", "floor": str(floor), "room": room,
             "type": types[int(len(types) * draw.random())], "quantity": quantity,
-            "anchored": _choose(draw, _ANCHORED),
-            "importance": _choose(draw, (("property", 70), ("life safety", 18), ("function", 12))),
+            "anchored": _choose(draw, DRAWN["anchored"]),
+            "importance": _choose(draw, DRAWN["importance"]),
         }  # fmt: skip
 
 
@@ -311,73 +261,19 @@ def _list_corridor(one: Building, floors: tuple[int, ...], draw: Random) -> Iter
         if draw.random() < 0.6:
             yield {
                 "item": f"{floor}-R1", "floor": str(floor), "room": "Corridor",
-                "type": CORRIDOR[one.use][int(3 * draw.random())], "quantity": 1,
-                "axis": "X" if draw.random() < 0.5 else "Y", "anchored": _choose(draw, _ANCHORED),
+                "type": DRAWN["uses"][one.use]["corridor"][int(3 * draw.random())], "quantity": 1,
+                "axis": "X" if draw.random() < 0.5 else "Y", "anchored": _choose(draw, DRAWN["anchored"]),
                 "route": f"Way out, storey {floor}", "segment": "corridor",
                 "edge_distance": round(0.6 * draw.random(), 2), "importance": "life safety",
             }  # fmt: skip
 
 
 def _make_segment(one: Building, floor: int, draw: Random, *, is_drawn: bool) -> dict[str, Any]:
-    wide = 1.4 if one.use == "Home" else 2.0
-    people = {"Home": 4, "School": 60, "Hospital": 30}.get(one.use, 25)
+    use = DRAWN["uses"][one.use]
     ends = {"start": f"Corridor end {floor}", "end": f"{'Exit' if floor == 1 else 'Stair'} {floor}", "room": "Corridor"}
     return {
         "route": f"Way out, storey {floor}", "segment": "corridor", "floor": str(floor),
-        "clear_width": round(wide + 0.8 * draw.random(), 2), "occupants": 1 + int(people * (0.5 + draw.random())),
+        "clear_width": round(use["clear_width"] + 0.8 * draw.random(), 2),
+        "occupants": 1 + int(use["people"] * (0.5 + draw.random())),
         **(ends if is_drawn else {}),
     }  # fmt: skip
-
-
-Room = tuple[str, tuple[str, ...]]
-"""A room and the types of furniture, of the built-in catalogue, that stand in it."""
-
-ROOMS: Mapping[str, tuple[Room, ...]] = {
-    "Office": (
-        ("Open office", ("Bookcase tall", "Storage cabinet steel", "Lateral file 5 drawers", "Roller-shutter cabinet",
-                         "Desk", "Partition screen", "Coat stand")),
-        ("Archive", ("Steel shelving", "Vertical file 5 drawers", "Storage cabinet steel", "Plan chest")),
-        ("Server closet", ("Server rack 42U", "Network cabinet 42U")),
-        ("Kitchen", ("Refrigerator bottom freezer", "Kitchen cabinet tall", "Water dispenser")),
-        ("Meeting room", ("Conference table", "Television on a stand", "Whiteboard on castors")),
-    ),
-    "School": (
-        ("Classroom", ("Bookcase tall", "Storage cabinet steel", "Tray cabinet", "Pupil's desk",
-                       "Whiteboard on castors", "Piano upright")),
-        ("Science room", ("Chemical shelving", "Glassware cabinet", "Safety cabinet narrow", "Fume cupboard")),
-        ("School library", ("Library shelving single-faced", "Library shelving double-faced low",
-                            "Book trolley on castors")),
-        ("Teachers' room", ("Storage cabinet steel", "Photocopier", "Coat stand", "Vertical file 5 drawers")),
-    ),
-    "Hospital": (
-        ("Ward", ("Patient wardrobe", "Bedside locker on castors", "Hospital bed on castors",
-                  "IV stand on castors", "Patient monitor on castors")),
-        ("Pharmacy", ("Medicine cabinet", "Pharmacy drawer cabinet", "Refrigerator medicine")),
-        ("Laboratory", ("Incubator floor-standing", "Freezer upright", "Wire shelving", "Gas cylinder rack")),
-        ("Treatment room", ("Instrument cabinet glass", "Crash cart on castors", "Medication cart on castors")),
-    ),
-    "Library": (
-        ("Reading room", ("Library shelving single-faced", "Periodical display rack", "Study carrel",
-                          "Display stand revolving")),
-        ("Stacks", ("Library shelving double-faced", "Library shelving single-faced", "Steel shelving")),
-        ("Desk of loans", ("Reception counter", "Book trolley on castors", "Card index cabinet",
-                           "Self-service terminal")),
-    ),
-    "Home": (
-        ("Living room", ("Bookcase tall", "Display cabinet glass", "Wall unit", "Television on a cabinet",
-                         "Sideboard")),
-        ("Bedroom", ("Wardrobe", "Wardrobe 2 doors", "Chest of drawers tall", "Bookcase tall narrow")),
-        ("Kitchen", ("Refrigerator bottom freezer", "Kitchen cabinet tall", "Microwave stand", "Cupboard")),
-        ("Hall", ("Shoe cabinet", "Coat stand")),
-    ),
-}  # fmt: skip
-"""Rooms by use, as the list Use of the workbook names them."""
-
-CORRIDOR: Mapping[str, tuple[str, ...]] = {
-    "Office": ("Storage cabinet steel", "Bookcase tall", "Vending machine drinks"),
-    "School": ("Locker bank 3 columns", "Display board on feet", "Locker 2 doors"),
-    "Hospital": ("Linen trolley on castors", "Vending machine drinks", "Storage cabinet steel"),
-    "Library": ("Display stand revolving", "Library shelving single-faced", "Vending machine drinks"),
-    "Home": ("Shoe cabinet", "Bookcase tall narrow", "Display cabinet glass"),
-}
-"""What stands beside the way out, by use: types whose width is known."""

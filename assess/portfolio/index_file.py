@@ -41,22 +41,10 @@ _LARGEST_AREA = 10_000_000.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IndexRow:
-    """One row of an index; "" and None where it is blank.
+    """One row of an index, on a line of the file; "" and None where it is blank.
 
-    Parameters
-    ----------
-    line : int
-        Its line in the file.
-    path : str
-        The workbook, relative to the folder of the index; "" for a building without a survey.
-    building, use : str
-        Its name and its use.
-    latitude, longitude : float, optional
-        [deg], north and east positive.
-    storeys : int, optional
-        Above ground.
-    height_m, floor_area_m2, ground_pga_g : float, optional
-        Height above the ground, gross floor area, PGA of the ground.
+    `path` is the workbook, relative to the folder of the index, "" for a building without a survey; degrees are north
+    and east positive, storeys above ground, and the PGA that of the ground.
     """
 
     line: int = 0
@@ -87,11 +75,8 @@ def read_index(file: Path) -> tuple[IndexRow, ...]:
     with # are comments. Numbers are read as those of a workbook: with a decimal point or comma and separators between
     thousands, refused where both readings can be meant. A row stands on one line.
 
-    Raises
-    ------
-    InputError
-        If it cannot be read, has another column than `COLUMNS`, a cell cannot be used, or a path or the name of a
-        building without one stands there twice; the message names the file and the line.
+    Raises InputError if it cannot be read, has another column than `COLUMNS`, a cell cannot be used, or a path or the
+    name of a building without one stands there twice; the message names the file and the line.
     """
     try:
         return tuple(_read_rows(_split(_read_text(file))))
@@ -248,21 +233,17 @@ def _list_repeated(rows: Sequence[IndexRow]) -> Iterator[Text]:
             paths.setdefault(tidy_path(row.path), []).append(row.line)
         elif row.building:
             names.setdefault(row.building, []).append(row.line)
-    for found in (paths, names):
-        for name, lines in found.items():
-            if len(lines) < 2:
-                continue
-            first, last = lines[:-1], str(lines[-1])
-            if len(lines) > MOST_LINES:
-                first, last = lines[:MOST_LINES], fill("{n:,} more", n=len(lines) - MOST_LINES)
-            values = {"lines": ", ".join(map(str, first)), "last": last, "name": plain_line(name[:80])}
-            if found is paths:
-                yield fill("lines {lines} and {last} list the same workbook, {name}: keep one of them.", **values)
-            else:
-                yield fill(
-                    "lines {lines} and {last} list the same building without a workbook, {name}: keep one of them.",
-                    **values,
-                )
+    same = fill(
+        "lines {lines} and {last} list the same workbook, {name}: keep one of them.", lines="", last="", name=""
+    )
+    bare = fill("lines {lines} and {last} list the same building without a workbook, {name}: keep one of them.",
+                lines="", last="", name="")  # fmt: skip
+    for text, name, lines in [*((same, *one) for one in paths.items()), *((bare, *one) for one in names.items())]:
+        if len(lines) > 1:
+            many = len(lines) > MOST_LINES
+            last = fill("{n:,} more", n=len(lines) - MOST_LINES) if many else str(lines[-1])
+            listed = ", ".join(map(str, lines[:MOST_LINES] if many else lines[:-1]))
+            yield fill(text.template, lines=listed, last=last, name=plain_line(name[:80]))
     for name in (one for one in names if one in paths):
         yield fill("line {line}: {name!r} is also the path of a workbook.", line=names[name][0], name=name[:80])
 

@@ -20,7 +20,7 @@ from assess.errors import InputError, OutputError, PdfUnavailableError, Problem
 from assess.i18n import fill
 from assess.motion.site_ground import GroundField
 from assess.plain_text import plain_line
-from assess.portfolio.building_rows import list_problems, to_row
+from assess.portfolio.building_rows import list_problems
 from assess.portfolio.building_task import ENDING, FOLDER, Part, Summary, Task, read_part, sweep_parts
 from assess.portfolio.sources import Source, find_sources
 from assess.portfolio.table_schemas import STATUSES, TABLES
@@ -336,7 +336,7 @@ def _note_alike(part: Part, first: str) -> Part:
     fault = fill("its workbook has the same content as {path}: it counts as a building of its own.",
                  path=plain_line(first))  # fmt: skip
     fix = fill("Remove one of them if they are the same building.")
-    notes = [to_row("problems", one) for one in list_problems(part.path, [Problem("note", "", "", fault, fix)])]
+    notes = list_problems(part.path, [Problem("note", "", "", fault, fix)])
     at = [field.key for field in TABLES["buildings"]].index("same_as")
     rows = [[*row[:at], first, *row[at + 1 :]] for row in part.rows("buildings")]
     return replace(part, tables={**part.tables, "buildings": rows, "problems": [*part.rows("problems"), *notes]})

@@ -28,20 +28,10 @@ OURS = {"report.xlsx": "results.json", "ranking.xlsx": "portfolio.json", "compar
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Source:
-    """One building.
+    """One building; `refused` is why it cannot be used, "" if it can, and `fix` what to do about it.
 
-    Parameters
-    ----------
-    path : str
-        What tables call it, unique: its workbook, relative to the folder, with /; or the name of a row of the index.
-    kind : "workbook" or "assumed"
-        Whether it has a workbook (also one of COBie), or its pieces are assumed by use and floor area.
-    file : Path, optional
-        The workbook.
-    index : IndexRow, optional
-        Its row of the index.
-    refused, fix : Text
-        Why it cannot be used, and what to do about it; "" if it can.
+    `path` is what tables call it, unique: its workbook (also one of COBie), relative to the folder, with /; or the name
+    of a row of the index without one, whose pieces are assumed by use and floor area.
     """
 
     path: str
@@ -53,45 +43,36 @@ class Source:
 
 
 def find_sources(source: Path, out: Path | None = None) -> tuple[Source, ...]:
-    """Return the buildings of a folder, searched with the folders in it, or of an index, in the order of their paths.
+    """Return the buildings of a folder, searched with the folders in it, or of an index (.csv), in the order of paths.
 
-    Left out of a folder are hidden files and folders, lock files (~$), the folder `out` and results of `assess`;
-    workbooks in other formats, such as .xls, are refused. Links to workbooks inside the folder count; links that lead
-    out of it, and links to folders, are refused.
-
-    Parameters
-    ----------
-    source : Path
-        A folder, or an index (.csv).
-    out : Path, optional
-        Where results are written.
+    Left out of a folder are hidden files and folders, lock files (~$), the folder `out` of the results and results of
+    `assess`; workbooks in other formats, such as .xls, are refused. Links to workbooks inside the folder count; links
+    that lead out of it, and links to folders, are refused.
 
     Raises
     ------
     InputError
         If there is no such folder or index, the index cannot be used, or there is no building in it.
     """
-    root = _resolve(source)
+    root, shown = _resolve(source), plain_line(str(source))
     if root.is_dir():
         found = _search(root, None if out is None else _resolve(out))
     elif source.suffix.lower() in ENDINGS:
         raise InputError(
             fill(
                 "{path} is a workbook: name the folder that holds it, or assess it by itself with `assess run`.",
-                path=plain_line(str(source)),
+                path=shown,
             )
         )
     elif root.exists():
         found = (_take_row(row, root.parent) for row in read_index(root))
     else:
-        raise InputError(fill("{path} is neither a folder nor an index (.csv).", path=plain_line(str(source))))
+        raise InputError(fill("{path} is neither a folder nor an index (.csv).", path=shown))
     listed = list(islice(found, MOST_BUILDINGS + 1))
     if len(listed) > MOST_BUILDINGS:
         raise InputError(fill("there are more than {most:,} buildings. Split the folder.", most=MOST_BUILDINGS))
     if not listed:
-        raise InputError(
-            fill("{path}: there is no workbook (.xlsx or .xlsm) in this folder.", path=plain_line(str(source)))
-        )
+        raise InputError(fill("{path}: there is no workbook (.xlsx or .xlsm) in this folder.", path=shown))
     return tuple(sorted(listed, key=lambda one: one.path))
 
 
@@ -131,12 +112,12 @@ def _take_entry(entry: "os.DirEntry[str]", path: Path, root: Path, names: set[st
         fix = fill("Save it as .xlsx (Excel Workbook) and remove this file.")
         return Source(path=name, refused=_refuse_format(lower), fix=fix)
     if entry.is_symlink() and path.is_dir():
-        what = fill("it is a link to a folder, which is not searched.")
-        return Source(path=name, refused=what, fix=fill("Copy the folder here."))
+        fault = fill("it is a link to a folder, which is not searched.")
+        return Source(path=name, refused=fault, fix=fill("Copy the folder here."))
     if not lower.endswith(ENDINGS) or OURS.get(entry.name) in names:
         return None
-    fault, what_to_do = _judge(path, root)
-    return Source(path=name, file=path, refused=fault, fix=what_to_do)
+    refused, hint = _judge(path, root)
+    return Source(path=name, file=path, refused=refused, fix=hint)
 
 
 def _take_row(row: IndexRow, root: Path) -> Source:
@@ -144,11 +125,10 @@ def _take_row(row: IndexRow, root: Path) -> Source:
     if not row.path:
         return Source(path=row.building, kind="assumed", index=row)
     name = tidy_path(row.path)
-    fault, fix = _judge_text(name)
-    if fault:
-        return Source(path=name, index=row, refused=fault, fix=fix)
-    fault, fix = _judge(root / name, root)
-    return Source(path=name, file=root / name, index=row, refused=fault, fix=fix)
+    if unusable := _judge_text(name):  # before the file system sees it
+        return Source(path=name, index=row, refused=unusable[0], fix=unusable[1])
+    refused, fix = _judge(root / name, root)
+    return Source(path=name, file=root / name, index=row, refused=refused, fix=fix)
 
 
 def _name(path: Path, root: Path) -> str:
@@ -161,18 +141,17 @@ def _refuse_format(name: str) -> Text:
     return fill("workbooks ending in {ending} are not read.", ending=Path(name).suffix)
 
 
-def _judge_text(name: str) -> tuple[Text | str, Text | str]:
-    """Return why a path of an index is refused before the file system sees it, and what to do; "" if it is not."""
+def _judge_text(name: str) -> tuple[Text, Text] | None:
+    """Return why a path of an index is refused, and what to do; None if it is not."""
     lower = name.lower()
     if name.startswith("/") or name[1:2] == ":" or ".." in name.split("/") or "\0" in name:
-        fault = fill("the path leads out of the folder of the index.")
-        return fault, fill("Write it relative to that folder.")
+        return fill("the path leads out of the folder of the index."), fill("Write it relative to that folder.")
     if lower.endswith(OTHER_ENDINGS):
         return _refuse_format(lower), fill("Save it as .xlsx (Excel Workbook) and name that file.")
     if not lower.endswith(ENDINGS):
         fault = fill("it is not a workbook: its name has to end in .xlsx or .xlsm.")
         return fault, fill("Correct the path in the index.")
-    return "", ""
+    return None
 
 
 def _judge(path: Path, root: Path) -> tuple[Text | str, Text | str]:

@@ -216,19 +216,14 @@ BUILDING = {"path": "a.xlsx", "building": "Home (made up)", "own_motions": 1}
 
 
 @pytest.mark.parametrize(
-    ("states", "said"),
+    ("unknown", "said"),
     [
-        (("blocked", "not known"), "6.0 expected, of 20; 30 more on routes that are not known."),
-        (("not known", "not known"), "not known; 50 on routes that are not known."),
+        (30, "6.0 expected, of 20; 30 more on routes that are not known."),
+        (50, "not known; 50 on routes that are not known."),
     ],
 )
-def test_the_terminal_tells_what_is_not_known_of_people_and_motions(states, said):
-    routes = [
-        {"path": "a.xlsx", "route": name, "state": state, "probability": None if state == "not known" else 0.3,
-         "occupants": people}
-        for name, state, people in zip("AB", states, (20, 30), strict=True)
-    ]  # fmt: skip
-    city = view([BUILDING], routes=routes)
+def test_the_terminal_tells_what_is_not_known_of_people_and_motions(unknown, said):
+    city = view([BUILDING | {"people_not_known": unknown}])
     result = PortfolioResult(folder=Path("out"), files=(), removed=(), kept=0, skipped=(), city=city)
     lines = [line.strip() for line in describe_city(result, Settings())]
     assert f"People whose route is blocked: {said}" in lines

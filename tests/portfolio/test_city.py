@@ -13,13 +13,13 @@ BUILDING = {
     "medium": 3, "high": 1, "very_high": 0, "unconfirmed": 1, "by_formula": 0, "anchored": 1, "expected_falls": 1.0,
     "is_placed": True, "own_motions": 0, "works": 2, "works_without_cost": 1, "cost": 150.0, "falls_avoided": 0.75,
     "routes": 2, "routes_open": 1, "routes_doubtful": 0, "routes_blocked": 0, "routes_not_known": 1, "occupants": 50,
-    "people_blocked": 6.0, "warnings": 3,
+    "people_blocked": 6.0, "people_not_known": 0, "warnings": 3,
 }  # fmt: skip
 PIECE = {"inventory": "surveyed", "basis": "simulated", "is_held": False, "quantity": 2, "probability": 0.25,
          "breadth_cm": 38.0, "height_cm": 195.0}  # fmt: skip
 
 
-def view(buildings, pieces=(), routes=(), draws=None):
+def view(buildings, pieces=(), draws=None):
     """Return a city of these rows; `draws` are falls and blocked people of each path."""
     rows = [
         {"path": path, "draw": k, "falls": falls, "people_blocked": people, "routes_blocked": 0}
@@ -29,7 +29,7 @@ def view(buildings, pieces=(), routes=(), draws=None):
     return City(
         buildings=frame("buildings", [BUILDING | one for one in buildings]),
         pieces=frame("pieces", [PIECE | one for one in pieces]),
-        routes=frame("routes", routes),
+        routes=frame("routes", []),
         problems=frame("problems", []),
         draws=frame("draws", rows),
         settings=Settings(city=True),
@@ -42,7 +42,7 @@ DRAWS = [(0, 0), (0, 0), (1, 10), (3, 10)]
 @pytest.fixture(scope="module")
 def sums():
     buildings = [
-        {"path": "a.xlsx"},
+        {"path": "a.xlsx", "people_not_known": 30},
         {"path": "b.xlsx", "is_placed": False, "cost": None, "works_without_cost": 2},
         {"path": "formula.xlsx", "basis": "formula", "draws": 0, "expected_falls": 40.0, "own_motions": 2},
         {"path": "cobie.xlsx", "inventory": "handover", "basis": "formula", "draws": 0, "expected_falls": 7.0},
@@ -50,12 +50,8 @@ def sums():
          "falls_low_inventory": 5.0, "falls_high_inventory": 60.0, "people_blocked": None, "occupants": None},
         {"path": "bad.xlsx", "status": "skipped", "inventory": None, "basis": None, "pieces": None},
     ]  # fmt: skip
-    routes = [
-        {"path": "a.xlsx", "route": "A", "state": "open", "probability": 0.01, "occupants": 20},
-        {"path": "a.xlsx", "route": "B", "state": "not known", "probability": None, "occupants": 30},
-    ]
     draws = {"a.xlsx": DRAWS, "b.xlsx": DRAWS, "assumed": [(10, 0), (20, 0), (20, 0), (30, 0)]}
-    return view(buildings, routes=routes, draws=draws)
+    return view(buildings, draws=draws)
 
 
 def find(sums, inventory, basis):

@@ -7,7 +7,7 @@ import pytest
 from assess.motion.ground_scenarios import read_scenarios
 from assess.portfolio import city_words as say
 from assess.portfolio.city import RunGround
-from assess.portfolio.city_method import list_method, list_references
+from assess.portfolio.city_words import list_method, list_references
 from assess.portfolio.run_portfolio import run_portfolio
 from assess.settings import Settings
 from tests.portfolio.staged import write_city
@@ -31,7 +31,7 @@ def _method(city):
 def test_a_city_says_in_its_title_and_before_its_numbers_what_it_is():
     city = view([{"path": "a", "building": "Home (made up)"}], draws={"a": DRAWS})
     assert say.say_title(city) == "Furniture in an earthquake: 1 made-up building"
-    assert say.list_cautions(city)[0].startswith("All buildings are made up")
+    assert next(say.list_cautions(city)).startswith("All buildings are made up")
     real = view([{"path": "a", "building": "Home"}], draws={"a": DRAWS})
     assert say.say_title(real) == "Furniture in an earthquake: 1 building"
     assert not any("made up" in text for text in say.list_cautions(real))
