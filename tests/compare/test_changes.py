@@ -45,7 +45,7 @@ def test_a_run_against_itself_is_unchanged(source, routed, tmp_path):
     for path in (source, routed, write_routed_run(tmp_path / "more", UNVERIFIED, Places=[*PLACES, cellar])):
         run = read_run(path)
         found = compare(run, run)
-        assert {one.direction for one in (*found.pieces, *found.routes, *found.rooms)} == {Direction.SAME}
+        assert {one.direction for rows in (found.pieces, found.routes, found.rooms) for one in rows} == {Direction.SAME}
         assert View(found).headline == "Nothing changed: BEFORE and AFTER are the same results."
         assert (View(found).list_worse(), View(found).tone) == ([], "same")
         assert all(was == now for was, now in found.moves)
