@@ -27,7 +27,6 @@ Association International: double-faced library shelving of 21 in by 7.5 ft, boo
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -76,31 +75,27 @@ UNKNOWN = "paper"
 """What a piece of no known type is taken to be full of."""
 
 
-@dataclass(frozen=True, slots=True)
-class Weight:
-    """The weight of a piece with its contents [N], where it comes from, and whether any part of it is assumed.
+class Weight(NamedTuple):
+    """The weight of a piece with its contents [N]: "given", of its "type", or an "estimate", and the same in words.
 
-    `source` is "given", "type" or "estimate"; `words` say it. `is_per_metre`: whether it is that of one metre of the
-    piece's width, as its own is not known.
+    `is_per_metre`: whether it is that of one metre of the piece's width, as its own is not known.
     """
 
     value: float
     source: str
     words: Text
-    is_assumed: bool
     is_per_metre: bool = False
 
 
 def find_weight(item: Item, language: str = "en") -> Weight:
     """Return the weight of a piece with its contents; `language` is that of the workbook, in which it names types."""
     if item.weight is not None:
-        is_type = "weight" in item.assumed
-        words = _FROM_TYPE if is_type else _GIVEN
-        return Weight(item.weight * GRAVITY, "type" if is_type else "given", words, is_assumed=False)
+        source, words = ("type", _FROM_TYPE) if "weight" in item.assumed else ("given", _GIVEN)
+        return Weight(item.weight * GRAVITY, source, words)
     contents = find_contents(item.type, language)
-    density, words = DENSITIES[contents or UNKNOWN].value, _describe_estimate(contents)
-    volume = item.breadth * (item.width or WIDTH) * item.height
-    return Weight(density * volume * GRAVITY, "estimate", words, is_assumed=True, is_per_metre=item.width is None)
+    density, volume = DENSITIES[contents or UNKNOWN].value, item.breadth * (item.width or WIDTH) * item.height
+    words = _describe_estimate(contents)
+    return Weight(density * volume * GRAVITY, "estimate", words, is_per_metre=item.width is None)
 
 
 _FROM_TYPE, _GIVEN = fill("as its Type in the Catalogue has it"), fill("as the workbook gives it")
@@ -124,96 +119,54 @@ UPWARD = 0.2
 """Vertical acceleration of the code over S_DS [-]."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Anchors:
-    """What the brackets of n pieces have to carry [N], and whether they do.
+def build_anchors(
+    inventory: Inventory, cases: "Cases", governing: NDArray[np.intp], settings: Settings
+) -> list[AnchorRow]:
+    """Return what the brackets of all pieces have to carry under the motion that governs each, and whether they do."""
+    items, weights = inventory.items, [find_weight(one, inventory.language) for one in inventory.items]
+    piece, capacity = _list_pieces(items, weights), _list_numbers([one.bracket_capacity for one in items])
+    pfa, spread = cases.pfa[governing], find_spread(cases)[governing]
+    low, middle, high = (find_tension(**piece, acceleration=k) for k in _scatter(pfa, spread))
+    code, upward = _find_code(inventory, settings)
+    by_code = find_tension(**piece, acceleration=code, vertical=upward)
+    weight, body = piece["weight"], {name: one for name, one in piece.items() if name != "breadth"}
+    is_per_metre = np.array([one.is_per_metre for one in weights], dtype=np.bool_)
 
-    * `weights`: with contents.
-    * `height` (n,): of the bracket above the floor [m].
-    * `is_height_assumed` (n,): where the workbook does not give it.
-    * `capacity` (n,): tension that the bracket carries [N]; NaN where it is not known.
-    * `tension`, `tension_low`, `tension_high`, `tension_without_weight`, `shear` (n,): at the bracket, for PFA and for
-      its 16 % and 84 %; without the help of the weight; and at the base, for PFA, in whichever direction [N].
-    * `needed_friction` (n,): coefficient of friction below which the base slides at PFA [-].
-    * `tension_code`, `shear_code` (n,): the same for the code's F_p [N]; NaN where it is not known.
-    * `held` (n,): where a piece counts as anchored.
-    """
+    def holds(tension: FloatArray) -> list[bool | None]:
+        can = tension <= capacity
+        is_open = np.isnan(tension) | np.isnan(capacity) | (is_per_metre & (tension > 0) & can)
+        return [None if unknown else found for unknown, found in zip(is_open.tolist(), can.tolist(), strict=True)]
 
-    weights: Sequence[Weight]
-    height: FloatArray
-    is_height_assumed: BoolArray
-    capacity: FloatArray
-    tension: FloatArray
-    tension_low: FloatArray
-    tension_high: FloatArray
-    tension_without_weight: FloatArray
-    shear: FloatArray
-    needed_friction: FloatArray
-    tension_code: FloatArray
-    shear_code: FloatArray
-    held: BoolArray
-
-    def describe(self) -> list[AnchorRow]:
-        """Return the rows of all pieces."""
-        is_per_metre = np.array([one.is_per_metre for one in self.weights], dtype=np.bool_)
-
-        def holds(tension: FloatArray) -> list[bool | None]:
-            can = tension <= self.capacity
-            is_open = np.isnan(tension) | np.isnan(self.capacity) | (is_per_metre & (tension > 0) & can)
-            return [None if unknown else found for unknown, found in zip(is_open.tolist(), can.tolist(), strict=True)]
-
-        columns: dict[str, list[Any]] = {
-            "weight_kn": [to_edge(one.value, FORCE["kN"]) for one in self.weights],
-            "weight_source": [one.source for one in self.weights],
-            "weight_words": [one.words for one in self.weights],
-            "is_per_metre": is_per_metre.tolist(),
-            "bracket_height_cm": [to_edge(one, LENGTH["cm"]) for one in self.height.tolist()],
-            "is_height_assumed": self.is_height_assumed.tolist(),
-            "bracket_capacity_kn": _in_kn(self.capacity),
-            "tension_kn": _in_kn(self.tension),
-            "tension_low_kn": _in_kn(self.tension_low),
-            "tension_high_kn": _in_kn(self.tension_high),
-            "tension_without_weight_kn": _in_kn(self.tension_without_weight),
-            "shear_kn": _in_kn(self.shear),
-            "needed_friction": self.needed_friction.tolist(),
-            "tension_code_kn": _in_kn(self.tension_code),
-            "shear_code_kn": _in_kn(self.shear_code),
-            "holds": holds(self.tension),
-            "holds_high": holds(self.tension_high),
-            "holds_code": holds(self.tension_code),
-        }
-        return [AnchorRow(**dict(zip(columns, row, strict=True))) for row in zip(*columns.values(), strict=True)]
+    columns: dict[str, list[Any]] = {
+        "weight_kn": [to_edge(one.value, FORCE["kN"]) for one in weights],
+        "weight_source": [one.source for one in weights],
+        "weight_words": [one.words for one in weights],
+        "is_per_metre": is_per_metre.tolist(),
+        "bracket_height_cm": [to_edge(one, LENGTH["cm"]) for one in piece["height"].tolist()],
+        "is_height_assumed": [one.bracket_height is None for one in items],
+        "bracket_capacity_kn": _in_kn(capacity),
+        "tension_kn": _in_kn(middle),
+        "tension_low_kn": _in_kn(low),
+        "tension_high_kn": _in_kn(high),
+        "tension_without_weight_kn": _in_kn(find_tension_without_weight(**body, acceleration=pfa / GRAVITY)),
+        "shear_kn": _in_kn(np.abs(pfa / GRAVITY * weight - middle)),
+        "needed_friction": find_needed_friction(weight=weight, acceleration=pfa / GRAVITY, tension=middle).tolist(),
+        "tension_code_kn": _in_kn(by_code),
+        "shear_code_kn": _in_kn(np.abs(code * weight - by_code)),
+        "holds": holds(middle),
+        "holds_high": holds(high),
+        "holds_code": holds(by_code),
+    }
+    return [AnchorRow(**dict(zip(columns, row, strict=True))) for row in zip(*columns.values(), strict=True)]
 
 
 def _in_kn(forces: FloatArray) -> list[float | None]:
     return [None if force != force else to_edge(force, FORCE["kN"]) for force in forces.tolist()]
 
 
-def find_anchors(inventory: Inventory, cases: "Cases", governing: NDArray[np.intp], settings: Settings) -> Anchors:
-    """Return what the brackets of all pieces have to carry under the motion that governs each."""
-    items, weights = inventory.items, [find_weight(one, inventory.language) for one in inventory.items]
-    piece = _list_pieces(items, weights)
-    pfa, capacity = cases.pfa[governing], _list_numbers([one.bracket_capacity for one in items])
-    spread = np.hypot(cases.dispersion, np.where(cases.peak == PEAK, 0.0, cases.peak))[governing]
-    low, middle, high = (find_tension(**piece, acceleration=k) for k in _scatter(pfa, spread))
-    code, upward = _find_code(inventory, settings)
-    tension_code = find_tension(**piece, acceleration=code, vertical=upward)
-    weight, body = piece["weight"], {name: one for name, one in piece.items() if name != "breadth"}
-    return Anchors(
-        weights=weights,
-        height=piece["height"],
-        is_height_assumed=np.array([one.bracket_height is None for one in items], dtype=np.bool_),
-        capacity=capacity,
-        tension=middle,
-        tension_low=low,
-        tension_high=high,
-        tension_without_weight=find_tension_without_weight(**body, acceleration=pfa / GRAVITY),
-        shear=np.abs(pfa / GRAVITY * weight - middle),
-        needed_friction=find_needed_friction(weight=weight, acceleration=pfa / GRAVITY, tension=middle),
-        tension_code=tension_code,
-        shear_code=np.abs(code * weight - tension_code),
-        held=find_held(inventory, pfa, spread),
-    )
+def find_spread(cases: "Cases") -> FloatArray:
+    """Return the dispersion of ln PFA of each case, (n,) [-]: of the earthquake and of the peak of its motion."""
+    return np.asarray(np.hypot(cases.dispersion, np.where(cases.peak == PEAK, 0.0, cases.peak)))
 
 
 def find_held(inventory: Inventory, pfa: FloatArray, dispersion: FloatArray) -> BoolArray:

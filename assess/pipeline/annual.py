@@ -12,7 +12,7 @@ What is not simulated has no annual chance. Under motions that may be too weak, 
 """
 
 import math
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -25,23 +25,22 @@ from assess.arrays import BoolArray, FloatArray
 from assess.fragility import fit_fragility
 from assess.hazard import HazardCurve
 from assess.i18n import Text, fill, nfill
-from assess.methods import Cases
 from assess.methods.simulate import interval_width
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.floor_demand import Demand
 from assess.pipeline.known_ground import Ground, find_ground
-from assess.pipeline.levels import RockedLevels, find_falls, rock_levels
+from assess.pipeline.levels import RockedLevels, Sweep
 from assess.pipeline.verify import MOST_PAIRS
 from assess.progress import Progress
-from assess.rates import AnnualRate, evaluate_rate, integrate_table, list_remarks
+from assess.rates import evaluate_rate, integrate_table, list_remarks
 from assess.risk import NORMAL_95
 from assess.rocking.draws import CUT, MOTION
-from assess.routes.chances import Couplings, Draws, Falls, find_chances, to_array
+from assess.routes.chances import Couplings, Draws, find_chances, to_array
 from assess.routes.network import build_course
 from assess.routes.rooms import list_rooms
 from assess.routes.scene import Scene
 from assess.routes.widths import kinds_of
-from assess.settings import AUTO, RUNS, Settings
+from assess.settings import AUTO, RUNS
 from assess.units import GRAVITY, ROUNDING
 
 STEP = 1.25
@@ -93,14 +92,6 @@ class Integral:
         at_points = [integrate_table(self.curve, self.points, one).rate for one in np.eye(self.points.size)]
         return np.asarray(np.array(at_points) @ self.average)
 
-    @property
-    def never(self) -> AnnualRow:
-        """The annual row of what cannot happen."""
-        return AnnualRow(
-            rate=0.0, low=None, high=None, chance_a_year=0.0, chance_in_50_years=0.0, fit="table", median_g=None,
-            dispersion=None, misfit=None, at_least=False, ends_matter=False,
-        )  # fmt: skip
-
     def of_draws(self, happened: BoolArray | FloatArray, *, at_least: bool) -> AnnualRow:
         """Return the annual row of what happened, or its share, at each level and draw, (levels, draws)."""
         return self.of_shares(happened.mean(axis=1), self.find_spread(happened), at_least=at_least)
@@ -137,19 +128,16 @@ class Integral:
         """
         rates = self.weights @ happened
         mean = float(rates.mean())
-        return (
-            NORMAL_95 * float(rates.std(ddof=1)) / math.sqrt(rates.size) / mean if mean > 0 and rates.size > 1 else None
-        )
+        if mean <= 0 or rates.size <= 1:
+            return None
+        return NORMAL_95 * float(rates.std(ddof=1)) / math.sqrt(rates.size) / mean
 
-    def add_up(self, falls: FloatArray, pieces: int) -> AnnualRate:
-        """Return how many of so many pieces, 1 or more, fall a year, by the table.
 
-        `falls` (n, draws) are their numbers at each level and draw.
-        """
-        shares = np.clip(self.average @ falls.mean(axis=1) / pieces, 0, 1)
-        found = integrate_table(self.curve, self.points, shares)
-        return replace(found, rate=pieces * found.rate, most=pieces * found.most)
-
+NEVER = AnnualRow(
+    rate=0.0, low=None, high=None, chance_a_year=0.0, chance_in_50_years=0.0, fit="table", median_g=None,
+    dispersion=None, misfit=None, at_least=False, ends_matter=False,
+)  # fmt: skip
+"""The annual row of what cannot happen."""
 
 # ---------------------------------------------------------------- routes and rooms
 
@@ -157,67 +145,33 @@ Happens = Callable[[Scene, Draws], int]
 """Returns of a scene and some draws the set of those in which something happens."""
 
 
-def evaluate_ways(
-    assessment: Assessment,
-    falls: Sequence[Falls],
-    integral: Integral,
-    doubtful: Collection[int],
-    settings: Settings,
-    progress: Progress,
-) -> AnnualWays:
-    """Evaluate the routes of which any segment is evaluated, and the rooms of the network.
-
-    Parameters
-    ----------
-    assessment : Assessment
-        Of the building.
-    falls : sequence of Falls
-        How its pieces fall at each level.
-    integral : Integral
-        Over the hazard curve, at the same levels.
-    doubtful : collection of int
-        Pieces (by index) whose falls are rather too few: what rests on them is a lower bound.
-    settings : Settings
-        Of the draws.
-    progress : Progress
-        Checked for a cancel.
-
-    Raises
-    ------
-    CancelledError
-        If the caller stops the work.
-    """
-    if not assessment.obstructions:
-        return AnnualWays({}, {}, {})
-    z, lanes = interval_width(settings), tuple(assessment.obstructions)
-    scenes = [Scene(assessment.inventory, lanes, one, settings.route_risk, settings.seed, z, progress) for one in falls]
-    ways = _Ways(scenes, integral, frozenset(doubtful))
-    names = dict.fromkeys(one.segment.route for one in lanes if one.is_evaluated)
-    found = {name: ways.route(name) for name in names}
-    return AnnualWays(
-        routes={name: row for name, (row, _) in found.items()},
-        routes_if_anchors_fail={name: row for name, (_, row) in found.items() if row is not None},
-        rooms={
-            place.place: ways.find(
-                part.segments,
-                lambda scene, draws, part=part, name=place.place: part.cut_off(  # type: ignore[misc]
-                    scene.blocked(draws, part.segments), [name], draws.every
-                )[0],
-            )
-            for place, part in list_rooms(scenes[0])
-        },
-    )
-
-
 @dataclass(frozen=True, slots=True)
 class _Ways:
-    """The segments at each level."""
+    """The segments at each level; what rests on `doubtful` pieces (indices), which fall too seldom, is a bound."""
 
     scenes: Sequence[Scene]
     integral: Integral
     doubtful: frozenset[int]
 
-    def route(self, name: str) -> tuple[AnnualRow, AnnualRow | None]:
+    def evaluate(self) -> AnnualWays:
+        """Evaluate the routes of which any segment is evaluated, and the rooms of the network."""
+        names = dict.fromkeys(one.segment.route for one in self.scenes[0].obstructions if one.is_evaluated)
+        found = {name: self._evaluate_route(name) for name in names}
+        return AnnualWays(
+            routes={name: row for name, (row, _) in found.items()},
+            routes_if_anchors_fail={name: row for name, (_, row) in found.items() if row is not None},
+            rooms={
+                place.place: self._find(
+                    part.segments,
+                    lambda scene, draws, part=part, name=place.place: part.cut_off(  # type: ignore[misc]
+                        scene.blocked(draws, part.segments), [name], draws.every
+                    )[0],
+                )
+                for place, part in list_rooms(self.scenes[0])
+            },
+        )
+
+    def _evaluate_route(self, name: str) -> tuple[AnnualRow, AnnualRow | None]:
         """Return the rows of a route if all anchors hold, and if they fail; None where it has no anchored pieces."""
         first = self.scenes[0]
         segments = first.segments_of(name)
@@ -227,32 +181,27 @@ class _Ways:
             return course.is_blocked(scene.blocked(draws, segments), draws.every)
 
         anchored = any(first.falls.anchored[item] for item, _ in first.keys(segments, anchors_fail=True))
-        fails = self.find(segments, happens, anchors_fail=True) if anchored else None
-        return self.find(segments, happens), fails
+        fails = self._find(segments, happens, anchors_fail=True) if anchored else None
+        return self._find(segments, happens), fails
 
-    def find(self, segments: Collection[int], happens: Happens, *, anchors_fail: bool = False) -> AnnualRow:
+    def _find(self, segments: Collection[int], happens: Happens, *, anchors_fail: bool = False) -> AnnualRow:
         """Return the annual row of what happens on some segments."""
         every = [(scene, scene.couplings(segments, anchors_fail=anchors_fail)) for scene in self.scenes]
         last, own = every[-1]
         if not happens(last, own.ends):
-            return self.integral.never
-        shares = np.array([_share(scene, own, happens) for scene, own in every])
-        spread = None
-        if all(own.is_joint for _, own in every):
-            runs = [own.joint.weight.size for _, own in every]
-            spread = (
-                self.integral.find_spread(
-                    np.array([to_array(happens(scene, own.joint), runs[0]) for scene, own in every])
-                )
-                if len(set(runs)) == 1
-                else None
-            )
+            return NEVER
+
+        def find_share(scene: Scene, own: Couplings) -> float:
+            return find_chances(own, lambda draws: [happens(scene, draws)], scene.z)[0].probability
+
+        shares, spread = np.array([find_share(scene, own) for scene, own in every]), None
+        runs = {own.joint.weight.size for _, own in every} if all(own.is_joint for _, own in every) else set()
+        if len(runs) == 1:
+            (count,) = runs
+            happened = [to_array(happens(scene, own.joint), count) for scene, own in every]
+            spread = self.integral.find_spread(np.array(happened))
         reaching = {item for item, _ in every[0][1].keys}
         return self.integral.of_shares(shares, spread, at_least=bool(reaching & self.doubtful))
-
-
-def _share(scene: Scene, couplings: Couplings, happens: Happens) -> float:
-    return find_chances(couplings, lambda draws: [happens(scene, draws)], scene.z)[0].probability
 
 
 # ---------------------------------------------------------------- the building
@@ -274,11 +223,28 @@ def evaluate_annual(assessment: Assessment, *, jobs: int | None, progress: Progr
     curve, ground = assessment.inventory.hazard, find_ground(assessment.inventory)
     if curve is None:
         return None
+    tables = AnnualTables(
+        file=curve.file,
+        latitude=curve.latitude,
+        longitude=curve.longitude,
+        distance_km=None if curve.distance is None else curve.distance / 1000,
+        curve_pga_g=tuple((curve.pga / GRAVITY).tolist()),
+        curve_rate=tuple(curve.rate.tolist()),
+        remarks=tuple(curve.remarks),
+    )
     missing = _find_missing(assessment, ground)
     if missing or ground.pga is None:
-        tables = replace(_describe_curve(curve), missing=missing)
-        return Annual(tables, {}, AnnualWays({}, {}, {}))
-    return _Annual(assessment, curve, assessment.settings.scale * ground.pga).evaluate(jobs, progress)
+        return Annual(replace(tables, missing=missing), {}, AnnualWays({}, {}, {}))
+    settings, cases, own = assessment.settings, assessment.cases, assessment.settings.scale * ground.pga
+    pairs, runs = MOST_LEVELS * int((cases.ensemble >= 0).sum()), RUNS if settings.runs == AUTO else int(settings.runs)
+    settings = replace(settings, runs=min(runs, MOST_RUNS, max(LEAST_RUNS, MOST_PAIRS // pairs)))
+    found = [_find_dispersion(one) for one in assessment.case_demand]
+    sweep = Sweep(
+        assessment=assessment, cases=replace(cases, dispersion=np.array(found, dtype=np.float64)),
+        peaks=np.full(len(found), own), settings=settings, dispersion=np.zeros(len(found)), jobs=jobs,
+        progress=progress,
+    )  # fmt: skip
+    return _Annual(sweep, curve, own, tables).evaluate()
 
 
 def _find_missing(assessment: Assessment, ground: Ground) -> Text | str:
@@ -300,113 +266,91 @@ def _find_missing(assessment: Assessment, ground: Ground) -> Text | str:
 
 
 def _find_dispersion(demand: Demand) -> float:
-    """Return the standard deviation of ln of a floor's amplitude at a ground PGA [-]."""
-    if demand.own_dispersion or demand.motion is None:
-        return demand.own_dispersion
-    return MOTION
+    """Return the standard deviation of ln of a floor's amplitude at a ground PGA [-].
 
-
-def _describe_curve(curve: HazardCurve) -> AnnualTables:
-    return AnnualTables(
-        file=curve.file,
-        latitude=curve.latitude,
-        longitude=curve.longitude,
-        distance_km=None if curve.distance is None else curve.distance / 1000,
-        curve_pga_g=tuple((curve.pga / GRAVITY).tolist()),
-        curve_rate=tuple(curve.rate.tolist()),
-        remarks=tuple(curve.remarks),
-    )
+    On floors with a record it is never none; drawn motions scatter by themselves.
+    """
+    return demand.own_dispersion if demand.own_dispersion or demand.motion is None else MOTION
 
 
 @dataclass(frozen=True)
 class _Annual:
-    """The annual chances of one building; `ground` is the ground PGA to which its floors' motions belong [m/s2]."""
+    """The annual chances of one building.
 
-    assessment: Assessment
+    * `sweep`: its cases, with the dispersion of the floors' motions at a ground PGA.
+    * `curve`: the hazard.
+    * `ground`: the ground PGA to which its floors' motions belong [m/s2].
+    * `tables`: what the curve tells.
+    """
+
+    sweep: Sweep
     curve: HazardCurve
     ground: float
+    tables: AnnualTables
 
     @property
-    def cases(self) -> Cases:
-        """The cases, with the dispersion of the floors' motions at a ground PGA.
+    def assessment(self) -> Assessment:
+        """The building."""
+        return self.sweep.assessment
 
-        On floors with a record it is never none; drawn motions scatter by themselves.
+    def evaluate(self) -> Annual:
+        """Rock every piece at every level of ground PGA, and integrate.
+
+        Levels reach from where about nothing rocks to beyond the end of the curve. Where some fall at the lowest one,
+        lower ones are added, down to that of scattered motions of the first point of the curve.
         """
-        found = [_find_dispersion(one) for one in self.assessment.case_demand]
-        return replace(self.assessment.cases, dispersion=np.array(found, dtype=np.float64))
-
-    @property
-    def largest(self) -> float:
-        """The factor that no motion at a ground PGA exceeds [-]."""
-        return math.exp(CUT * float(self.cases.dispersion.max(initial=0.0)))
-
-    @property
-    def settings(self) -> Settings:
-        """The settings, with a number of draws."""
-        settings, pairs = self.assessment.settings, MOST_LEVELS * int((self.assessment.cases.ensemble >= 0).sum())
-        runs = RUNS if settings.runs == AUTO else int(settings.runs)
-        return replace(settings, runs=min(runs, MOST_RUNS, max(LEAST_RUNS, MOST_PAIRS // pairs)))
-
-    @property
-    def floor(self) -> float:
-        """The lowest level that matters, as ground PGA [m/s2]: scattered motions of the first point of the curve."""
-        return float(self.curve.pga[0]) / self.largest
-
-    def find_levels(self) -> FloatArray:
-        """Return rising levels, as ground PGA [m/s2]: from where about nothing rocks to beyond the end of the curve."""
-        cases = self.cases
-        rocked = cases.ensemble >= 0
-        start = cases.still[rocked] * GRAVITY * cases.threshold[rocked] / cases.pfa[rocked]
-        last = float(self.curve.pga[-1]) * self.largest
-        return space(float(np.clip(self.ground * start.min(), self.floor, last / STEP)), last)
-
-    def evaluate(self, jobs: int | None, progress: Progress) -> Annual:
-        """Rock every piece at every level, and integrate; where some fall at the lowest one, at lower ones too."""
-        levels = self.find_levels()
-        rocked = self._rock(levels, jobs, progress)
-        while levels[0] > self.floor * (1 + ROUNDING) and any(one.fell[0].any() for one in rocked):
-            lower = space(max(levels[0] / STEP**LOWER, self.floor), levels[0])[:-1]
+        cases = self.sweep.cases
+        largest = math.exp(CUT * float(cases.dispersion.max(initial=0.0)))  # no factor at a ground PGA exceeds it
+        floor, last = float(self.curve.pga[0]) / largest, float(self.curve.pga[-1]) * largest
+        own = cases.ensemble >= 0
+        start = cases.still[own] * GRAVITY * cases.threshold[own] / cases.pfa[own]
+        levels = space(float(np.clip(self.ground * start.min(), floor, last / STEP)), last)
+        rocked = self.sweep.rock(levels)
+        while levels[0] > floor * (1 + ROUNDING) and any(one.fell[0].any() for one in rocked):
+            lower = space(max(levels[0] / STEP**LOWER, floor), levels[0])[:-1]
             levels = np.concatenate([lower, levels])
             rocked = [
                 replace(one, fell=np.concatenate([below.fell, one.fell]))
-                for below, one in zip(self._rock(lower, jobs, progress), rocked, strict=True)
+                for below, one in zip(self.sweep.rock(lower), rocked, strict=True)
             ]
-        return progress.wait_for(lambda: self._integrate(levels, rocked, progress))
+        return self.sweep.progress.wait_for(lambda: self._integrate(levels, rocked))
 
-    def _rock(self, levels: FloatArray, jobs: int | None, progress: Progress) -> list[RockedLevels]:
-        nothing = np.zeros(self.cases.breadth.size)
-        return rock_levels(
-            self.assessment, self.cases, levels, nothing + self.ground, self.settings,
-            dispersion=nothing, jobs=jobs, progress=progress,
-        )  # fmt: skip
-
-    def _integrate(self, levels: FloatArray, rocked: Sequence[RockedLevels], progress: Progress) -> Annual:
-        assessment, cases = self.assessment, self.cases
+    def _integrate(self, levels: FloatArray, rocked: Sequence[RockedLevels]) -> Annual:
+        assessment, sweep, case_item = self.assessment, self.sweep, self.assessment.case_item
+        cases, settings, inventory = sweep.cases, sweep.settings, assessment.inventory
         falls = [
-            find_falls(assessment, cases, assessment.cases.pfa * (level / self.ground), rocked, at, self.settings)
+            sweep.find_falls(assessment.cases.pfa * (level / self.ground), rocked, at)
             for at, level in enumerate(levels.tolist())
         ]
-        spreads = sorted({float(one) for one in cases.dispersion})
-        integrals = {one: Integral(self.curve, levels, one, int(self.settings.runs)) for one in spreads}
-        integrate = integrals[spreads[-1]]  # of the whole building: the largest
-        of_item = {
-            item: max(float(one) for one in cases.dispersion[assessment.case_item == item]) for item in falls[0].fell
+        integrals = {
+            one: Integral(self.curve, levels, one, int(settings.runs)) for one in set(cases.dispersion.tolist())
         }
-        ensembles = zip(self.cases.ensembles, rocked, strict=True)
+        integral = integrals[max(integrals)]  # of the whole building: the largest dispersion
+        ensembles = zip(cases.ensembles, rocked, strict=True)
         own = [one.own for made, one in ensembles if made.is_unknown or one.is_weak]
-        doubtful = frozenset(self.assessment.case_item[np.concatenate(own)].tolist() if own else ())
+        doubtful = frozenset(case_item[np.concatenate(own)].tolist() if own else ())
         fell = {item: np.array([one.fell[item] for one in falls]) for item in sorted(falls[0].fell)}
         shares = self._average(fell)
-        items = {item: integrals[of_item[item]].of_draws(shares[item], at_least=item in doubtful) for item in fell}
-        counted = [item for item in items if not assessment.anchors.held[item]]
-        several = {at for at, item in enumerate(assessment.inventory.items) if item.quantity > 1}
-        ways = evaluate_ways(assessment, falls, integrate, doubtful | several, self.settings, progress)
-        return Annual(self._describe(levels, integrate, items, fell, counted, doubtful), items, ways)
+        items = {
+            item: integrals[float(cases.dispersion[case_item == item].max())].of_draws(
+                shares[item], at_least=item in doubtful
+            )
+            for item in fell
+        }
+        several = {at for at, item in enumerate(inventory.items) if item.quantity > 1}
+        ways = AnnualWays({}, {}, {})
+        if assessment.obstructions:
+            z, lanes = interval_width(settings), tuple(assessment.obstructions)
+            scenes = [
+                Scene(inventory, lanes, one, settings.route_risk, settings.seed, z, sweep.progress) for one in falls
+            ]
+            ways = _Ways(scenes, integral, doubtful | several).evaluate()
+        return Annual(self._describe(levels, integral, items, fell, doubtful), items, ways)
 
     def _average(self, fell: Mapping[int, BoolArray]) -> dict[int, FloatArray]:
         """Return for each piece the share of it and those exactly like it that fall, by level and draw."""
         owns: dict[int, list[int]] = {}
-        for item, kind in zip(self.assessment.case_item.tolist(), self.cases.alike.tolist(), strict=True):
+        for item, kind in zip(self.assessment.case_item.tolist(), self.sweep.cases.alike.tolist(), strict=True):
             owns.setdefault(item, []).append(kind)
         groups: dict[tuple[int, ...], list[int]] = {}
         for item in fell:
@@ -421,26 +365,30 @@ class _Annual:
     def _describe(
         self,
         levels: FloatArray,
-        integrate: Integral,
+        integral: Integral,
         items: Mapping[int, AnnualRow],
         fell: Mapping[int, BoolArray],
-        counted: Sequence[int],
         doubtful: Collection[int],
     ) -> AnnualTables:
-        """Return what stands for the building; `counted` were simulated, of `doubtful` the motions may be too weak."""
-        inventory = self.assessment.inventory
-        quantity = {item: inventory.items[item].quantity for item in counted}
-        safety = {item: fell[item] for item in counted if inventory.items[item].importance == "life safety"}
-        too_stocky = {int(item) for item in self.assessment.case_item[self.cases.is_stocky]}
-        everything, free = sum(quantity.values()), self._list_free()
-        stocky = sum(inventory.items[at].quantity for at in too_stocky.intersection(free))
-        unknown = sum(inventory.items[at].quantity for at in free) - everything - stocky
-        weak = sum(quantity[item] for item in counted if item in doubtful)
+        """Return what stands for the building; of `doubtful` pieces the motions may be too weak."""
+        every, held = self.assessment.inventory.items, self.assessment.held
+        quantity = {item: every[item].quantity for item in items if not held[item]}
+        free = np.flatnonzero(~held).tolist()
+        too_stocky = set(self.assessment.case_item[self.sweep.cases.is_stocky].tolist())
+        everything = sum(quantity.values())
+        stocky = sum(every[at].quantity for at in too_stocky.intersection(free))
+        unknown = sum(every[at].quantity for at in free) - everything - stocky
+        weak = sum(count for item, count in quantity.items() if item in doubtful)
+        safety = [item for item in quantity if every[item].importance == "life safety"]
+        wanted = {at for at in free if every[at].importance == "life safety"} - too_stocky
+        # a lower bound where pieces of a row fall together, where some were not simulated, and where one of them is
+        at_least = any(quantity[item] > 1 or items[item].at_least for item in safety) or bool(wanted - {*safety})
+        any_fell = [fell[item] for item in safety]
         found = replace(
-            _describe_curve(self.curve),
+            self.tables,
             ground_pga_g=self.ground / GRAVITY,
-            motion_dispersion=integrate.dispersion,
-            runs=integrate.runs,
+            motion_dispersion=integral.dispersion,
+            runs=integral.runs,
             factors=tuple((levels / self.ground).tolist()),
             pieces=everything,
             not_evaluated=unknown,
@@ -448,61 +396,41 @@ class _Annual:
             at_least=weak,
             is_lower_bound=bool(weak or unknown),
             life_safety_pieces=sum(quantity[item] for item in safety),
-            life_safety=self._join(safety, items, integrate),
+            life_safety=integral.of_draws(np.any(any_fell, axis=0), at_least=at_least) if safety else None,
         )
-        return _add_falls(found, integrate, quantity, items, fell) if counted else found
-
-    def _list_free(self) -> list[int]:
-        """Return the pieces that do not count as anchored, by their index."""
-        free: list[int] = np.flatnonzero(~self.assessment.anchors.held).tolist()
-        return free
-
-    def _join(
-        self, fell: Mapping[int, BoolArray], items: Mapping[int, AnnualRow], integrate: Integral
-    ) -> AnnualRow | None:
-        """Return the annual row of any life-safety piece falling; None where none was simulated.
-
-        A lower bound where one of them is, where pieces of a row fall together, and where some were not simulated.
-        """
-        if not fell:
-            return None
-        stocky = set(self.assessment.case_item[self.cases.is_stocky].tolist())
-        every = self.assessment.inventory.items
-        wanted = {at for at in self._list_free() if every[at].importance == "life safety"} - stocky
-        several = any(self.assessment.inventory.items[item].quantity > 1 for item in fell)
-        at_least = several or bool(wanted - fell.keys()) or any(items[item].at_least for item in fell)
-        return integrate.of_draws(np.any(list(fell.values()), axis=0), at_least=at_least)
+        return _add_falls(found, integral, quantity, items, fell) if quantity else found
 
 
 def _add_falls(
     found: AnnualTables,
-    integrate: Integral,
+    integral: Integral,
     quantity: Mapping[int, int],
     items: Mapping[int, AnnualRow],
     fell: Mapping[int, BoolArray],
 ) -> AnnualTables:
-    """Return the tables with how many of the pieces in `quantity` fall a year, and what the ends of the curve do."""
-    falls = np.zeros((integrate.levels.size, integrate.runs))
+    """Return the tables with how many of the pieces in `quantity` fall a year, and what the ends of the curve do.
+
+    The number is that of the pieces' own rates, its interval and its ends those of their falls, by the table.
+    """
+    falls = np.zeros((integral.levels.size, integral.runs))
     for item, count in quantity.items():
         falls += count * fell[item]
-    total, spread = integrate.add_up(falls, found.pieces), integrate.find_spread(falls)
+    shares = np.clip(integral.average @ falls.mean(axis=1) / found.pieces, 0, 1)
+    total = integrate_table(integral.curve, integral.points, shares)
+    total = replace(total, rate=found.pieces * total.rate, most=found.pieces * total.most)
+    spread = integral.find_spread(falls)
     expected = sum(count * items[item].rate for item, count in quantity.items())
+    beyond = sum(count for item, count in quantity.items() if items[item].ends_matter)
+    remark = nfill(
+        "for {n:,} piece more than 5 % of the annual rate comes, or could come, from outside the curve",
+        "for {n:,} pieces more than 5 % of the annual rate comes, or could come, from outside the curve",
+        beyond,
+    )
     return replace(
         found,
         is_lower_bound=found.is_lower_bound or total.is_cut,
         expected_falls=expected,
         expected_low=None if spread is None else max(0.0, expected * (1 - spread)),
         expected_high=None if spread is None else expected * (1 + spread),
-        remarks=(*list_remarks(integrate.curve, total), *_remark_on_ends(quantity, items)),
+        remarks=(*list_remarks(integral.curve, total), *([remark] if beyond else ())),
     )
-
-
-def _remark_on_ends(quantity: Mapping[int, int], items: Mapping[int, AnnualRow]) -> Iterator[Text]:
-    """Say for how many of the counted pieces the ends of the curve matter."""
-    found = sum(count for item, count in quantity.items() if items[item].ends_matter)
-    if found:
-        yield nfill(
-            "for {n:,} piece more than 5 % of the annual rate comes, or could come, from outside the curve",
-            "for {n:,} pieces more than 5 % of the annual rate comes, or could come, from outside the curve",
-            found,
-        )

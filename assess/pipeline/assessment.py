@@ -1,6 +1,6 @@
 """The arrays of a run, before they become the tables of `assess.results`."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -12,9 +12,9 @@ from assess.arrays import BoolArray
 from assess.errors import Problem
 from assess.methods import Cases, Joint, Method, Outcome, simulation
 from assess.model import Axis, Inventory
-from assess.pipeline.adopt import Adoption
-from assess.pipeline.anchors import Anchors
+from assess.pipeline.adopt import Adoption, build_falls
 from assess.pipeline.floor_demand import Demand
+from assess.routes.chances import Falls
 from assess.settings import Settings
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ class Assessment:
     * `adoption`: the risk that is adopted for each case.
     * `either_axis`: of each piece that may topple along both axes, in which draws it does along either.
     * `governing` (items,): index of each item's governing case.
-    * `anchors`: what the bracket of each item has to carry, and which count as anchored.
+    * `held` (items,): which count as anchored.
     * `obstructions`: what can reach the segments of evacuation routes.
     * `problems`: warnings and notes about the input.
     * `annual`: annual chances; None where the workbook names no hazard file.
@@ -58,7 +58,7 @@ class Assessment:
     adoption: Adoption
     either_axis: Mapping[int, BoolArray]
     governing: NDArray[np.intp]
-    anchors: Anchors
+    held: BoolArray
     obstructions: "Sequence[Obstructions]"
     problems: tuple[Problem, ...]
     annual: Annual | None = None
@@ -68,3 +68,11 @@ class Assessment:
         """What the pieces on a floor motion did, motion by motion, where they were simulated."""
         joints = self.outcomes[simulation().key].joints
         return {self.case_demand[int(joint.cases[0])]: joint for joint in joints}
+
+    def find_falls(self, held: Collection[int] = ()) -> Falls:
+        """Return how the pieces fall, each under its governing motion, with further ones (indices) held."""
+        anchored = self.held.copy()
+        anchored[list(held)] = True
+        return build_falls(
+            self.inventory, self.adoption, self.outcomes, self.governing, self.settings, self.either_axis, anchored
+        )

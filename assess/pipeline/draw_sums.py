@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from assess.arrays import BoolArray
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.tables import find_falls
 from assess.progress import SILENT, Progress
 from assess.results import Results, sum_falls
 from assess.route_results import RouteRow, RouteState, RouteTables
@@ -70,7 +69,7 @@ def sum_draws(assessment: Assessment, results: Results, *, progress: Progress = 
     blocked: Mapping[str, BoolArray] = {}
     fallen = people_blocked = routes_blocked = None
     if results.main_basis == SIMULATED and runs != AUTO:
-        blocked = _find_blocked(assessment, find_falls(assessment), chances, progress)
+        blocked = _find_blocked(assessment, assessment.find_falls(), chances, progress)
         none = np.zeros(int(runs), dtype=np.int64)
         fallen = sum_falls(one for one in results if not one.is_anchored and not one.apart)
         fallen = none if fallen is None else fallen

@@ -13,23 +13,20 @@ it does not. No class or formula of an assessment enters.
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Literal, TypeVar, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from assess.arrays import BoolArray, FloatArray
 from assess.errors import InputError
 from assess.fragility import Fragility, fit_fragility
 from assess.i18n import Text, fill
-from assess.methods import Cases
 from assess.model import AXES, Axis, Inventory, Item
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.either_axis import is_square
-from assess.pipeline.floor_demand import Demand
-from assess.pipeline.levels import RockedLevels, rock_levels
+from assess.pipeline.levels import RockedLevels, Sweep
 from assess.pipeline.verify import choose_motions
 from assess.progress import SILENT, Progress
 from assess.rocking.block import threshold
@@ -196,52 +193,57 @@ def find_piece_fragilities(
         If `by`, `im` or `levels` cannot be used, the number of motions is "auto", they are the user's own, no piece
         can rock, or the results may exceed the available memory.
     """
-    if assessment.settings.runs == AUTO or assessment.suite is not None:
+    settings = assessment.settings
+    if settings.runs == AUTO or assessment.suite is not None:
         raise InputError(fill('runs: a fragility needs a fixed number of generated motions, not "auto" or a suite'))
     by, im = _choose("by", by, BY), _choose("im", im, MEASURES)
-    given = None if levels is None else _check_levels(levels)
+    if levels is not None:
+        levels = [float(one) for one in levels]
+        is_rising = all(one < other for one, other in pairwise(levels))
+        if not levels or not is_rising or not all(0 < one < math.inf for one in levels):
+            raise InputError(
+                fill("levels: expected one or more finite numbers above 0, each larger than the one before")
+            )
     rocked = np.unique(assessment.case_item[~assessment.cases.is_stocky])
     if not rocked.size:
         raise InputError(fill("no piece can rock: all are too stocky, or there are none."))
-    return progress.wait_for(lambda: _find(assessment, rocked, by, im, given, jobs, progress))
 
+    def find() -> PieceFragilities:
+        chosen = np.isin(assessment.case_item, rocked)
+        study = _Study(
+            sweep=Sweep(
+                assessment=assessment,
+                cases=choose_motions(
+                    assessment.cases,
+                    chosen,
+                    assessment.case_demand,
+                    assessment.demands,
+                    assessment.inventory,
+                    settings,
+                    None,
+                ),
+                peaks=np.array([one.pfa if im == "pfa" else one.pfv for one in assessment.case_demand]),
+                settings=settings,
+                dispersion=None if settings.ideal else np.zeros(assessment.case_item.size),
+                jobs=jobs,
+                progress=progress,
+            ),
+            groups=_group(assessment.inventory, rocked, by),
+            unit=UNITS[im],
+        )
+        every, fallen = study.rock_chosen() if levels is None else study.rock_given(np.array(levels))
+        stocky = np.unique(assessment.case_item[assessment.cases.is_stocky])
+        return PieceFragilities(
+            by=by,
+            im=im,
+            runs=int(settings.runs),
+            seed=settings.seed,
+            has_drawn_pieces=assessment.cases.uncertainty.piece and not settings.ideal,
+            curves=tuple(study.build_curve(group, every, fallen[group], by) for group in study.groups),
+            stocky=tuple(assessment.inventory.items[at] for at in stocky),
+        )
 
-def _find(
-    assessment: Assessment,
-    rocked: NDArray[np.intp],
-    by: By,
-    im: Measure,
-    given: tuple[float, ...] | None,
-    jobs: int | None,
-    progress: Progress,
-) -> PieceFragilities:
-    inventory, settings = assessment.inventory, assessment.settings
-    groups = _group(inventory, rocked, by)
-    chosen = np.isin(assessment.case_item, rocked)
-    study = _Study(
-        assessment=assessment,
-        cases=choose_motions(
-            assessment.cases, chosen, assessment.case_demand, assessment.demands, inventory, settings, None
-        ),
-        groups=groups,
-        peaks=np.array([one.pfa if im == "pfa" else one.pfv for one in assessment.case_demand]),
-        unit=UNITS[im],
-        jobs=jobs,
-        progress=progress,
-    )
-    levels, fallen = study.rock_chosen() if given is None else study.rock_given(given)
-    return PieceFragilities(
-        by=by,
-        im=im,
-        runs=int(settings.runs),
-        seed=settings.seed,
-        has_drawn_pieces=study.cases.uncertainty.piece and not settings.ideal,
-        curves=tuple(_build_curve(study, group, levels, fallen[group], by) for group in groups),
-        stocky=tuple(inventory.items[at] for at in np.unique(assessment.case_item[assessment.cases.is_stocky])),
-    )
-
-
-# ---------------------------------------------------------------- what was asked for
+    return progress.wait_for(find)
 
 
 def _choose(name: str, text: _Choice, choices: tuple[str, ...]) -> _Choice:
@@ -249,17 +251,6 @@ def _choose(name: str, text: _Choice, choices: tuple[str, ...]) -> _Choice:
         known = ", ".join(choices)
         raise InputError(fill("{name} is {text!r}, expected one of: {known}", name=name, text=str(text), known=known))
     return text
-
-
-def _check_levels(levels: Sequence[float]) -> tuple[float, ...]:
-    values = tuple(float(one) for one in levels)
-    is_rising = all(one < other for one, other in pairwise(values))
-    if not values or not is_rising or not all(0 < one < math.inf for one in values):
-        raise InputError(fill("levels: expected one or more finite numbers above 0, each larger than the one before"))
-    return values
-
-
-# ---------------------------------------------------------------- which pieces have one curve
 
 
 def _group(inventory: Inventory, rocked: Iterable[int], by: By) -> list[list[int]]:
@@ -273,49 +264,35 @@ def _group(inventory: Inventory, rocked: Iterable[int], by: By) -> list[list[int
     return list(groups.values())
 
 
-def _name(item: Item, by: By) -> tuple[str, str]:
-    """Return the name of a curve and the type of its rows, from the first of them."""
-    if by == "item" or item.type:
-        return (item.item if by == "item" else item.type), item.type
-    return f"{round(100 * item.breadth, 6):g} x {round(100 * item.height, 6):g} cm", ""
-
-
 # ---------------------------------------------------------------- rocking
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class _Study:
-    """The cases of an assessment with their motions, and how often the items of `groups` fall.
+    """How often the items of `groups` fall; `unit` is that of the levels.
 
-    `peaks` (n,) are the values of the measure of the cases' floors [m/s2] or [m/s]; `motions` fills while they are
-    rocked, by the ensembles of `cases`.
+    `motions` fills while they are rocked, by the ensembles of the cases.
     """
 
-    assessment: Assessment
-    cases: Cases
+    sweep: Sweep
     groups: Sequence[Sequence[int]]
-    peaks: FloatArray
     unit: float
-    jobs: int | None
-    progress: Progress
     motions: dict[int, FloorMotions] = field(default_factory=dict)
 
-    def rock_given(self, levels: Sequence[float]) -> tuple[FloatArray, FloatArray]:
+    def rock_given(self, levels: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the levels (l,) and how often each item fell at each, (items, l); NaN where it was not rocked."""
-        every = np.array(levels)
-        fallen = np.full((len(self.assessment.inventory.items), every.size), np.nan)
+        fallen = self._make_blank(levels.size)
         wanted = np.zeros(fallen.shape, dtype=np.bool_)
-        for group in self.groups:
-            wanted[group] = True
-        self._rock(every, wanted, fallen)
-        return every, fallen
+        wanted[[at for group in self.groups for at in group]] = True
+        self._rock(levels, wanted, fallen)
+        return levels, fallen
 
     def rock_chosen(self) -> tuple[FloatArray, FloatArray]:
         """Return the same at preferred numbers: more of them until about everything fell, as far as it goes."""
         spans = [self._span(group) for group in self.groups]
         first, last = min(low for low, _, _ in spans), max(end for _, _, end in spans)
         levels = np.array([_read_rung(rung) * self.unit for rung in range(first, last + 1)])
-        fallen = np.full((len(self.assessment.inventory.items), levels.size), np.nan)
+        fallen = self._make_blank(levels.size)
         ranges = [(low - first, top - first) for low, top, _ in spans]
         while any(start <= stop for start, stop in ranges):
             wanted = np.zeros(fallen.shape, dtype=np.bool_)
@@ -324,51 +301,39 @@ class _Study:
             self._rock(levels, wanted, fallen)
             for number, (group, (_, _, end)) in enumerate(zip(self.groups, spans, strict=True)):
                 top = ranges[number][1]
-                is_enough = float(fallen[group, top].mean()) / int(self.assessment.settings.runs) >= NEARLY_ALL
+                is_enough = float(fallen[group, top].mean()) / int(self.sweep.settings.runs) >= NEARLY_ALL
                 ranges[number] = (top + 1, top if is_enough else min(top + MORE_RUNGS, end - first))
         return levels, fallen
 
+    def _make_blank(self, levels: int) -> FloatArray:
+        return np.full((len(self.sweep.assessment.inventory.items), levels), np.nan)
+
     def _span(self, group: Sequence[int]) -> tuple[int, int, int]:
         """Return the rungs of a group's lowest level, of its highest to begin with, and of its last."""
-        own = np.isin(self.assessment.case_item, group)
-        start = self.cases.threshold[own] * GRAVITY * self.peaks[own] / self.cases.pfa[own] / self.unit
-        low, high = float((start * self.cases.still[own] / STILL).min()), float(start.max())
+        cases, own = self.sweep.cases, np.isin(self.sweep.assessment.case_item, group)
+        start = cases.threshold[own] * GRAVITY * self.sweep.peaks[own] / cases.pfa[own] / self.unit
+        low, high = float((start * cases.still[own] / STILL).min()), float(start.max())
         return _find_rung(LOWEST * low), _find_rung(HIGHEST * high) + 1, _find_rung(FARTHEST * high) + 1
 
     def _rock(self, levels: FloatArray, wanted: BoolArray, fallen: FloatArray) -> None:
         """Put into `fallen` (items, l) how often items fall at the levels that are `wanted`, (items, l)."""
-        used = wanted.any(axis=0)
-        own = self._keep(np.asarray(wanted.any(axis=1)))
-        settings = self.assessment.settings
-        rocked = rock_levels(
-            self.assessment, own, levels[used], self.peaks, settings,
-            dispersion=None if settings.ideal else np.zeros(self.cases.breadth.size),
-            wanted=wanted[self.assessment.case_item][:, used],
-            jobs=self.jobs, progress=self.progress,
-        )  # fmt: skip
-        for one in rocked:
-            self.motions.setdefault(int(self.cases.ensemble[one.own[0]]), self._describe(int(one.own[0]), one))
-        counts = self._count(rocked, int(used.sum()))
-        part = fallen[:, used]
-        part[wanted[:, used]] = counts[wanted[:, used]]
-        fallen[:, used] = part
-
-    def _keep(self, items: BoolArray) -> Cases:
-        """Return the cases of those items alone with their motions."""
-        which = np.where(items[self.assessment.case_item], self.cases.ensemble, -1)
-        numbers = np.unique(which[which >= 0])
-        renumbered = np.where(which >= 0, np.searchsorted(numbers, which), -1)
-        kept = tuple(self.cases.ensembles[number] for number in numbers)
-        return replace(self.cases, ensemble=renumbered.astype(np.intp), ensembles=kept)
+        used = np.flatnonzero(wanted.any(axis=0))
+        rocked = self.sweep.rock(levels[used], wanted[self.sweep.assessment.case_item][:, used])
+        for number, one in enumerate(rocked):
+            if one.own.size and number not in self.motions:
+                self.motions[number] = self._describe(number, int(one.own[0]), one)
+        rows, columns = np.nonzero(wanted[:, used])
+        fallen[rows, used[columns]] = self._count(rocked, used.size)[rows, columns]
 
     def _count(self, rocked: Sequence[RockedLevels], levels: int) -> FloatArray:
         """Return in how many draws each item falls at each level, (items, levels)."""
+        assessment = self.sweep.assessment
         verdicts = {int(case): one.fell[:, row] for one in rocked for row, case in enumerate(one.own)}
         axes: dict[int, dict[Axis, list[BoolArray]]] = {}
         for case, fell in sorted(verdicts.items()):
-            by_axis = axes.setdefault(int(self.assessment.case_item[case]), {})
-            by_axis.setdefault(self.assessment.case_demand[case].axis, []).append(fell)
-        items = self.assessment.inventory.items
+            by_axis = axes.setdefault(int(assessment.case_item[case]), {})
+            by_axis.setdefault(assessment.case_demand[case].axis, []).append(fell)
+        items = assessment.inventory.items
         counts = np.zeros((len(items), levels))
         for at, by_axis in axes.items():
             worst = [_take_worst(by_axis[axis]) for axis in AXES if axis in by_axis]
@@ -376,8 +341,13 @@ class _Study:
             counts[at] = fell.sum(axis=1)
         return counts
 
-    def _describe(self, case: int, rocked: RockedLevels) -> FloorMotions:
-        demand, made = self.assessment.case_demand[case], self.cases.ensembles[self.cases.ensemble[case]]
+    def _describe(self, number: int, case: int, rocked: RockedLevels) -> FloorMotions:
+        demand, made = self.sweep.assessment.case_demand[case], self.sweep.cases.ensembles[number]
+        spectrum, drawn = fill("that of the record"), demand.drawn
+        if drawn is not None and drawn.building.period is None:
+            spectrum = fill("drawn, nothing known of the building")
+        elif drawn is not None:
+            spectrum = fill("drawn for T1 {period:.3g} s", period=drawn.building.period)
         return FloorMotions(
             floor=demand.floor.floor,
             axis=demand.axis,
@@ -386,10 +356,28 @@ class _Study:
             pfv=demand.pfv,
             mean_pfa=rocked.pfa,
             mean_pfv=rocked.pfv,
-            spectrum=_say_spectrum(demand),
+            spectrum=spectrum,
             is_assumed=made.is_assumed,
             is_unknown=made.is_unknown,
             is_weak=rocked.is_weak,
+        )
+
+    def build_curve(self, group: Sequence[int], levels: FloatArray, fallen: FloatArray, by: By) -> PieceFragility:
+        """Return the curve of a group whose items fell so often at the levels, (m, l); NaN where they were not."""
+        assessment = self.sweep.assessment
+        items = tuple(assessment.inventory.items[at] for at in group)
+        own = dict.fromkeys(self.sweep.cases.ensemble[np.isin(assessment.case_item, group)].tolist())
+        kept = ~np.isnan(fallen[0])
+        counts = np.array([one.quantity if by == "type" else 1 for one in items], dtype=np.float64)
+        trials = np.full(int(kept.sum()), int(assessment.settings.runs) * counts.sum())
+        first = items[0]
+        sizes = f"{round(100 * first.breadth, 6):g} x {round(100 * first.height, 6):g} cm"
+        return PieceFragility(
+            name=first.item if by == "item" else first.type or sizes,
+            type=first.type,
+            items=items,
+            curve=fit_fragility(levels[kept], counts @ fallen[:, kept], trials),
+            motions=tuple(self.motions[number] for number in own),
         )
 
 
@@ -406,36 +394,5 @@ def _find_rung(value: float) -> int:
 
 
 def _read_rung(number: int) -> float:
-    """Return a preferred number by its number."""
     decade, at = divmod(number, len(RUNGS))
     return float(f"{RUNGS[at]}e{decade}")
-
-
-def _say_spectrum(demand: Demand) -> Text:
-    """Return in words what the motions of a demand follow."""
-    if demand.drawn is None:
-        return fill("that of the record")
-    if demand.drawn.building.period is None:
-        return fill("drawn, nothing known of the building")
-    return fill("drawn for T1 {period:.3g} s", period=demand.drawn.building.period)
-
-
-# ---------------------------------------------------------------- the curves
-
-
-def _build_curve(study: _Study, group: Sequence[int], levels: FloatArray, fallen: FloatArray, by: By) -> PieceFragility:
-    """Return the curve of a group whose items fell so often at the levels, (m, l); NaN where they were not rocked."""
-    assessment = study.assessment
-    items = tuple(assessment.inventory.items[at] for at in group)
-    own = dict.fromkeys(study.cases.ensemble[np.isin(assessment.case_item, group)].tolist())
-    kept = ~np.isnan(fallen[0])
-    counts = np.array([one.quantity if by == "type" else 1 for one in items], dtype=np.float64)
-    trials = np.full(int(kept.sum()), int(assessment.settings.runs) * counts.sum())
-    name, kind = _name(items[0], by)
-    return PieceFragility(
-        name=name,
-        type=kind,
-        items=items,
-        curve=fit_fragility(levels[kept], counts @ fallen[:, kept], trials),
-        motions=tuple(study.motions[number] for number in own),
-    )

@@ -16,7 +16,7 @@ does not depend on which others are evaluated.
 """
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
@@ -25,12 +25,12 @@ from numpy.typing import NDArray
 
 from assess.errors import InputError
 from assess.i18n import fill
-from assess.methods import Cases, Ensemble, Motions
+from assess.methods import Ensemble
 from assess.methods.simulate import interval_width
 from assess.model import AXES, Segment
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.ensembles import DrawnEnsemble, GeneratedEnsemble
-from assess.pipeline.levels import RockedLevels, find_falls, rock_levels
+from assess.pipeline.levels import RockedLevels, Sweep
 from assess.pipeline.verify import choose_motions
 from assess.progress import SILENT, Progress
 from assess.rocking.draws import Uncertainty
@@ -142,66 +142,15 @@ def find_fragility(
         raise InputError(
             fill('runs: the sweep over PFA needs a fixed number of generated motions, not "auto" or a suite')
         )
-    return progress.wait_for(lambda: _find_fragility(assessment, values, most_inserted, jobs, progress))
 
+    def find() -> Fragility:
+        study = _open(assessment, most_inserted, jobs, progress)
+        study.add(values)
+        while new := study.halve(most_inserted + len(values) - len(study.levels)):
+            study.add(new)
+        return study.describe(values)
 
-def _find_fragility(
-    assessment: Assessment, values: Sequence[float], most: int, jobs: int | None, progress: Progress
-) -> Fragility:
-    obstructions = find_obstructions(assessment.inventory, progress)
-    beside = np.array(sorted({one.item_index for segment in obstructions for one in segment.pieces}), dtype=np.intp)
-    opened: dict[int, Motions] | None = {} if most else None
-    sweep = _Sweep(assessment, obstructions, _choose(assessment, beside), jobs, progress, opened=opened)
-    names = list(dict.fromkeys(one.segment.route for one in obstructions))
-    sweep.add(values, names)
-    while new := _halve(sweep, most + len(values) - len(sweep.levels)):
-        sweep.add(new, names)
-    return _describe(sweep, values, beside, names)
-
-
-def _halve(sweep: "_Sweep", most: int) -> list[float]:
-    """Return values halfway between two at which the chance of any route jumps, the largest jumps first."""
-    values = sweep.values
-    largest: dict[int, float] = {}
-    for chances in sweep.ways():
-        for at in find_jumps(chances):
-            largest[at] = max(largest.get(at, 0.0), abs(chances[at + 1] - chances[at]))
-    wide = [at for at in largest if values[at + 1] - values[at] >= FINEST * values[at + 1]]
-    chosen = sorted(wide, key=lambda at: (-largest[at], at))[: max(most, 0)]
-    return [(values[at] + values[at + 1]) / 2 for at in sorted(chosen)]
-
-
-def _describe(sweep: "_Sweep", values: Sequence[float], beside: NDArray[np.intp], names: Sequence[str]) -> Fragility:
-    assessment, inventory = sweep.assessment, sweep.assessment.inventory
-    scene = sweep.levels[sweep.values[0]].scene
-    ensembles = list(zip(sweep.cases.ensembles, sweep.rocked, strict=True))
-    doubtful = [assessment.case_item[one.own] for made, one in ensembles if made.is_unknown or one.is_weak]
-    items = frozenset(np.concatenate(doubtful).tolist() if doubtful else ())
-
-    def name_floors(chosen: Iterable[Ensemble]) -> tuple[str, ...]:
-        names = {one.demand.floor.floor for one in chosen if isinstance(one, GeneratedEnsemble | DrawnEnsemble)}
-        return tuple(floor.floor for floor in inventory.floors if floor.floor in names)
-
-    def on_floor(floor: str) -> list[int]:
-        return [at for at, one in enumerate(scene.obstructions) if one.segment.floor == floor]
-
-    too_stocky = np.intersect1d(beside, assessment.case_item[assessment.cases.is_stocky])
-    return Fragility(
-        values=tuple(sweep.values),
-        inserted=frozenset(sweep.values) - set(values),
-        limit=assessment.settings.route_risk,
-        runs=int(assessment.settings.runs),
-        seed=assessment.settings.seed,
-        uncertainty=None
-        if assessment.settings.ideal
-        else replace(sweep.cases.uncertainty, motion=float(sweep.cases.dispersion.max(initial=0.0))),
-        routes=tuple(_route(sweep, name, items) for name in names),
-        generic=name_floors(made for made, _ in ensembles if made.is_assumed),
-        unshaped=name_floors(made for made, _ in ensembles if made.is_unknown),
-        weak=name_floors(made for made, one in ensembles if one.is_weak),
-        stocky=sum(inventory.items[at].quantity for at in too_stocky),
-        unplaced=sum(count_unplaced(scene, floor.floor, on_floor(floor.floor)) for floor in inventory.floors),
-    )
+    return progress.wait_for(find)
 
 
 def find_jumps(chances: Sequence[float]) -> list[int]:
@@ -225,17 +174,7 @@ def find_passing(values: Sequence[float], chances: Sequence[float], level: float
     return (values[at - 1] + share * (values[at] - values[at - 1]),) * 2
 
 
-# ---------------------------------------------------------------- the pieces
-
-
-def _choose(assessment: Assessment, beside: NDArray[np.intp]) -> Cases:
-    """Return the cases with the motions under which the pieces `beside` routes are to be rocked."""
-    chosen = np.isin(assessment.case_item, beside) & ~assessment.cases.is_stocky
-    inventory, settings = assessment.inventory, assessment.settings
-    own = np.array([one.own_dispersion for one in assessment.case_demand], dtype=np.float64)  # without that of PGA
-    drawn = replace(assessment.cases.earthquakes, given=())  # nor are there scenarios of it
-    cases = replace(assessment.cases, dispersion=own, earthquakes=drawn)
-    return choose_motions(cases, chosen, assessment.case_demand, assessment.demands, inventory, settings, None)
+# ---------------------------------------------------------------- the values
 
 
 @dataclass(frozen=True, slots=True)
@@ -246,96 +185,139 @@ class _Level:
     routes: Mapping[str, Judgement]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Sweep:
-    """The cases of an assessment with their motions, at several values of PFA [m/s2]."""
+def _open(assessment: Assessment, most_inserted: int, jobs: int | None, progress: Progress) -> "_Study":
+    """Return the pieces beside routes with the motions under which they are rocked; too stocky ones are not."""
+    inventory, settings, demands = assessment.inventory, assessment.settings, assessment.case_demand
+    obstructions = find_obstructions(inventory, progress)
+    beside = np.array(sorted({one.item_index for segment in obstructions for one in segment.pieces}), dtype=np.intp)
+    chosen = np.isin(assessment.case_item, beside) & ~assessment.cases.is_stocky
+    own = np.array([one.own_dispersion for one in demands], dtype=np.float64)  # without that of PGA
+    drawn = replace(assessment.cases.earthquakes, given=())  # nor are there scenarios of it
+    cases = replace(assessment.cases, dispersion=own, earthquakes=drawn)
+    cases = choose_motions(cases, chosen, demands, assessment.demands, inventory, settings, None)
+    sweep = Sweep(
+        assessment=assessment, cases=cases, peaks=np.array([one.pfa for one in demands], dtype=np.float64),
+        settings=settings, dispersion=None if settings.ideal else cases.dispersion, jobs=jobs,
+        opened={} if most_inserted else None, progress=progress,
+    )  # fmt: skip
+    return _Study(sweep, obstructions, beside, tuple(dict.fromkeys(one.segment.route for one in obstructions)))
 
-    assessment: Assessment
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Study:
+    """The routes `names` at several values of PFA [m/s2], and the pieces `beside` them (indices)."""
+
+    sweep: Sweep
     obstructions: tuple[Obstructions, ...]
-    cases: Cases
-    jobs: int | None
-    progress: Progress
+    beside: NDArray[np.intp]
+    names: tuple[str, ...]
     levels: dict[float, _Level] = field(default_factory=dict)
     rocked: list[RockedLevels] = field(default_factory=list)
     """Of the values that were added last."""
-    opened: dict[int, Motions] | None = None
 
     @property
     def values(self) -> list[float]:
-        """Return the values evaluated so far, the least first."""
+        """The values evaluated so far, the least first."""
         return sorted(self.levels)
 
-    def add(self, values: Sequence[float], names: Sequence[str]) -> None:
+    def add(self, values: Sequence[float]) -> None:
         """Evaluate further values; what was evaluated before stays as it is."""
-        cases, settings = self.cases, self.assessment.settings
-        peaks = np.array([one.pfa for one in self.assessment.case_demand], dtype=np.float64)
-        self.rocked[:] = rock_levels(
-            self.assessment, cases, np.array(values, dtype=np.float64), peaks, settings,
-            dispersion=None if settings.ideal else cases.dispersion, jobs=self.jobs, opened=self.opened,
-            progress=self.progress,
-        )  # fmt: skip
+        sweep, settings = self.sweep, self.sweep.settings
+        self.rocked[:] = sweep.rock(np.array(values, dtype=np.float64))
         for at, value in enumerate(values):
-            pfa = np.full(cases.pfa.size, value)
-            falls = find_falls(self.assessment, cases, pfa, self.rocked, at, settings)
+            falls = sweep.find_falls(np.full(sweep.cases.pfa.size, value), self.rocked, at)
             scene = Scene(
-                self.assessment.inventory, self.obstructions, falls, settings.route_risk, settings.seed,
-                interval_width(settings), self.progress,
+                sweep.assessment.inventory, self.obstructions, falls, settings.route_risk, settings.seed,
+                interval_width(settings), sweep.progress,
             )  # fmt: skip
-            self.levels[value] = _Level(scene, {name: self._judge(scene, name) for name in names})
-
-    def ways(self) -> Iterator[list[float]]:
-        """Yield the chances of each route at the values, if anchors hold, and if they fail where there are any."""
-        levels = [self.levels[value] for value in self.values]
-        for name in levels[0].routes:
-            judged = [one.routes[name] for one in levels]
-            yield [one.chances[0].probability for one in judged]
-            if all(one.if_anchors_fail for one in judged):
-                yield [one.if_anchors_fail.probability for one in judged if one.if_anchors_fail]
-
-    def course(self, segments: Mapping[int, Segment]) -> Course:
-        """Return how some segments make up a route."""
-        return build_course(segments, kinds_of(self.assessment.inventory.places))
+            self.levels[value] = _Level(scene, {name: self._judge(scene, name) for name in self.names})
 
     def _judge(self, scene: Scene, name: str) -> Judgement:
         """Return the chances that a route is blocked."""
         segments = scene.segments_of(name)
-        course = self.course(segments)
+        course = self.find_course(segments)
         return scene.judge(segments, lambda draws: [course.is_blocked(scene.blocked(draws, segments), draws.every)])
 
+    def find_course(self, segments: Mapping[int, Segment]) -> Course:
+        """Return how some segments make up a route."""
+        return build_course(segments, kinds_of(self.sweep.assessment.inventory.places))
 
-# ---------------------------------------------------------------- the routes
+    def halve(self, most: int) -> list[float]:
+        """Return values halfway between two at which the chance of any route jumps, the largest jumps first."""
+        values, largest = self.values, dict[int, float]()
+        levels = [self.levels[value] for value in values]
+        for name in self.names:  # if anchors hold, and if they fail where there are any
+            judged = [one.routes[name] for one in levels]
+            fail = [one.if_anchors_fail for one in judged if one.if_anchors_fail]
+            for ways in ([one.chances[0] for one in judged], fail if len(fail) == len(judged) else []):
+                chances = [one.probability for one in ways]
+                for at in find_jumps(chances):
+                    largest[at] = max(largest.get(at, 0.0), abs(chances[at + 1] - chances[at]))
+        wide = [at for at in largest if values[at + 1] - values[at] >= FINEST * values[at + 1]]
+        chosen = sorted(wide, key=lambda at: (-largest[at], at))[: max(most, 0)]
+        return [(values[at] + values[at + 1]) / 2 for at in sorted(chosen)]
 
+    def describe(self, given: Sequence[float]) -> Fragility:
+        """Return what was found; `given` are the values that were asked for."""
+        assessment, settings, cases = self.sweep.assessment, self.sweep.settings, self.sweep.cases
+        inventory, scene = assessment.inventory, self.levels[self.values[0]].scene
+        ensembles = list(zip(cases.ensembles, self.rocked, strict=True))
+        doubtful = [assessment.case_item[one.own] for made, one in ensembles if made.is_unknown or one.is_weak]
+        items = frozenset(np.concatenate(doubtful).tolist() if doubtful else ())
 
-def _route(sweep: _Sweep, name: str, doubtful: frozenset[int]) -> RouteFragility:
-    levels, inventory = [sweep.levels[value] for value in sweep.values], sweep.assessment.inventory
-    scene, judged = levels[0].scene, [one.routes[name] for one in levels]
-    segments = scene.segments_of(name)
-    floors = tuple(dict.fromkeys(one.floor for one in segments.values() if one.floor))
-    peaks = [demand.pfa for floor in floors for axis in AXES for demand in sweep.assessment.demands[floor, axis]]
-    unknown = [at for at in segments if levels[-1].scene.is_unknown(at) or not levels[-1].scene.is_evaluated(at)]
-    reaching = {item for item, _ in scene.keys(segments, anchors_fail=True)}
-    return RouteFragility(
-        route=name,
-        floors=floors,
-        blocked=tuple(one.chances[0] for one in judged),
-        if_anchors_fail=tuple(one.if_anchors_fail for one in judged if one.if_anchors_fail) or None,
-        is_evaluated=len(unknown) < len(segments),
-        unevaluated=tuple(segments[at].segment for at in unknown),
-        doubtful=sum(inventory.items[item].quantity for item in reaching & doubtful),
-        scenario_pfa=(min(peaks), max(peaks)) if peaks else None,
-        causes=_find_causes(sweep, levels, name, segments),
-    )
+        def name_floors(chosen: Iterable[Ensemble]) -> tuple[str, ...]:
+            names = {one.demand.floor.floor for one in chosen if isinstance(one, GeneratedEnsemble | DrawnEnsemble)}
+            return tuple(floor.floor for floor in inventory.floors if floor.floor in names)
 
+        def on_floor(floor: str) -> list[int]:
+            return [at for at, one in enumerate(scene.obstructions) if one.segment.floor == floor]
 
-def _find_causes(
-    sweep: _Sweep, levels: Sequence[_Level], name: str, segments: Mapping[int, Segment]
-) -> tuple[PieceRef, ...]:
-    """Return the pieces to blame at the first value at which a route is not below the limit."""
-    risk = sweep.assessment.settings.route_risk
-    scene = next((one.scene for one in levels if one.routes[name].chances[0].probability >= risk), None)
-    if scene is None:
-        return ()
-    lanes = {at: sweep.obstructions[at] for at in segments}
-    course = sweep.course(segments)
-    steps, _ = find_fixes(scene.couplings(segments), lanes, course.is_blocked, risk, progress=sweep.progress)
-    return tuple(scene.piece(item) for item, _, _ in steps)
+        too_stocky = np.intersect1d(self.beside, assessment.case_item[assessment.cases.is_stocky])
+        uncertainty = replace(cases.uncertainty, motion=float(cases.dispersion.max(initial=0.0)))
+        return Fragility(
+            values=tuple(self.values),
+            inserted=frozenset(self.values) - set(given),
+            limit=settings.route_risk,
+            runs=int(settings.runs),
+            seed=settings.seed,
+            uncertainty=None if settings.ideal else uncertainty,
+            routes=tuple(self._describe_route(name, items) for name in self.names),
+            generic=name_floors(made for made, _ in ensembles if made.is_assumed),
+            unshaped=name_floors(made for made, _ in ensembles if made.is_unknown),
+            weak=name_floors(made for made, one in ensembles if one.is_weak),
+            stocky=sum(inventory.items[at].quantity for at in too_stocky),
+            unplaced=sum(count_unplaced(scene, floor.floor, on_floor(floor.floor)) for floor in inventory.floors),
+        )
+
+    def _describe_route(self, name: str, doubtful: frozenset[int]) -> RouteFragility:
+        assessment, levels = self.sweep.assessment, [self.levels[value] for value in self.values]
+        first, last, judged = levels[0].scene, levels[-1].scene, [one.routes[name] for one in levels]
+        segments = first.segments_of(name)
+        floors = tuple(dict.fromkeys(one.floor for one in segments.values() if one.floor))
+        peaks = [demand.pfa for floor in floors for axis in AXES for demand in assessment.demands[floor, axis]]
+        unknown = [at for at in segments if last.is_unknown(at) or not last.is_evaluated(at)]
+        reaching = {item for item, _ in first.keys(segments, anchors_fail=True)}
+        return RouteFragility(
+            route=name,
+            floors=floors,
+            blocked=tuple(one.chances[0] for one in judged),
+            if_anchors_fail=tuple(one.if_anchors_fail for one in judged if one.if_anchors_fail) or None,
+            is_evaluated=len(unknown) < len(segments),
+            unevaluated=tuple(segments[at].segment for at in unknown),
+            doubtful=sum(assessment.inventory.items[item].quantity for item in reaching & doubtful),
+            scenario_pfa=(min(peaks), max(peaks)) if peaks else None,
+            causes=self._find_causes(levels, name, segments),
+        )
+
+    def _find_causes(
+        self, levels: Sequence[_Level], name: str, segments: Mapping[int, Segment]
+    ) -> tuple[PieceRef, ...]:
+        """Return the pieces to blame at the first value at which a route is not below the limit."""
+        risk = self.sweep.settings.route_risk
+        scene = next((one.scene for one in levels if one.routes[name].chances[0].probability >= risk), None)
+        if scene is None:
+            return ()
+        lanes = {at: self.obstructions[at] for at in segments}
+        is_blocked = self.find_course(segments).is_blocked
+        steps, _ = find_fixes(scene.couplings(segments), lanes, is_blocked, risk, progress=self.sweep.progress)
+        return tuple(scene.piece(item) for item, _, _ in steps)

@@ -20,19 +20,18 @@ from assess.model import AXES, Inventory
 from assess.pipeline.adopt import (
     UNCONFIRMED,
     adopt,
-    build_falls,
     choose_items,
     find_governing,
     find_ruling,
 )
-from assess.pipeline.anchors import find_anchors
+from assess.pipeline.anchors import find_held, find_spread
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.city_draws import check_draws, find_earthquakes, number_pieces
 from assess.pipeline.demand import build_demands, scale_demands
 from assess.pipeline.either_axis import unite_axes
 from assess.pipeline.floor_demand import Demand, Demands
 from assess.pipeline.remarks import list_too_low, remark
-from assess.pipeline.schedule import build_schedule, hold, list_entries
+from assess.pipeline.schedule import build_schedule, list_entries
 from assess.pipeline.series import Arrays, build_series, write_series
 from assess.pipeline.tables import (
     add_annual,
@@ -190,6 +189,7 @@ def _compute(
     outcomes[simulation().key] = simulated
     adoption = adopt(outcomes, cases, settings)
     adoption, both = unite_axes(adoption, outcomes, cases, inventory, case_item, case_demand, settings)
+    governing = find_governing(adoption, case_item, find_ruling(cases, settings))
     is_unconfirmed = (adoption.basis == UNCONFIRMED) & simulated.flags["unknown_building"]
     remarks = [
         *remark(inventory, filled, scenario, {inventory.items[int(at)].floor for at in case_item[is_unconfirmed]}),
@@ -210,8 +210,8 @@ def _compute(
         outcomes=outcomes,
         adoption=adoption,
         either_axis=both,
-        governing=(governing := find_governing(adoption, case_item, find_ruling(cases, settings))),
-        anchors=find_anchors(inventory, cases, governing, settings),
+        governing=governing,
+        held=find_held(inventory, cases.pfa[governing], find_spread(cases)[governing]),
         obstructions=obstructions,
         problems=(*inventory.problems, *map(inventory.place, remarks)),
     )
@@ -387,10 +387,7 @@ def evaluate_route_tables(assessment: Assessment, progress: Progress, held: Coll
         return RouteTables(risk=settings.route_risk)
     from assess.routes.evaluate import evaluate_routes
 
-    falls = build_falls(
-        inventory, assessment.adoption, assessment.outcomes, assessment.governing, settings, assessment.either_axis,
-        hold(assessment.anchors.held, held),
-    )  # fmt: skip
+    falls = assessment.find_falls(held)
     found = evaluate_routes(inventory, assessment.obstructions, falls, settings, progress=progress)
     return found if assessment.annual is None or held else add_annual(found, assessment.annual.ways)
 

@@ -10,9 +10,6 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from itertools import accumulate
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from assess.details import AT_BASE, AT_WALL, DETAILS, Detail, count_fixings, find_detail
 from assess.model import Cost, Inventory
 from assess.natural import natural_key
@@ -276,10 +273,3 @@ def list_rooms_at_risk(routes: RouteTables) -> Iterator[str]:
         if room.state != RouteState.OPEN:
             yield room.room
     yield from routes.unjoined_rooms
-
-
-def hold(held: NDArray[np.bool_], further: Collection[int]) -> NDArray[np.bool_]:
-    """Return which pieces count as anchored with further ones (indices) held."""
-    found = held.copy()
-    found[list(further)] = True
-    return found

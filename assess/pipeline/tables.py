@@ -13,7 +13,7 @@ from assess.methods.simulate import LOOKS, interval_width
 from assess.model import AXES, Floor, Inventory, Item
 from assess.motion.record import treatment
 from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED, Profile
-from assess.pipeline.adopt import build_falls
+from assess.pipeline.anchors import build_anchors
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.city_draws import describe_draws
 from assess.pipeline.demand import find_shaking
@@ -34,7 +34,6 @@ from assess.results import (
     Provenance,
     SuiteInfo,
 )
-from assess.routes.chances import Falls
 from assess.routes.walls import find_walls
 from assess.units import ACCELERATION, FORCE, LENGTH, VELOCITY, to_edge
 from assess.version import __version__, find_code
@@ -164,13 +163,11 @@ def build_items(assessment: Assessment, routes: "RouteTables") -> tuple[ItemRow,
     firsts = np.searchsorted(assessment.case_item, np.arange(len(inventory.items) + 1)).tolist()
     annual = {} if assessment.annual is None else assessment.annual.items
     governing, named = assessment.governing.tolist(), _list_routes(inventory, routes)
-    walls, held = find_walls(inventory), assessment.anchors.held.tolist()
+    walls, held = find_walls(inventory), assessment.held.tolist()
     shared = [name for name in _shared(ItemRow, Item) if name not in ("assumed", "extra")]
     read = attrgetter(*shared)
-    rows = []
-    for index, (item, anchor) in enumerate(
-        zip(map(inventory.complete, inventory.items), assessment.anchors.describe(), strict=True)
-    ):
+    anchors, rows = build_anchors(inventory, assessment.cases, assessment.governing, assessment.settings), []
+    for index, (item, anchor) in enumerate(zip(map(inventory.complete, inventory.items), anchors, strict=True)):
         row = ItemRow(
             **dict(zip(shared, read(item), strict=True)),
             index=index,
@@ -232,17 +229,9 @@ def build_cases(assessment: Assessment, demands: Sequence[Demand]) -> CaseTable:
     )
 
 
-def find_falls(assessment: Assessment) -> Falls:
-    """Return how the pieces fall, each under its governing motion."""
-    return build_falls(
-        assessment.inventory, assessment.adoption, assessment.outcomes, assessment.governing, assessment.settings,
-        assessment.either_axis, assessment.anchors.held,
-    )  # fmt: skip
-
-
 def build_draws(assessment: Assessment) -> DrawTable:
     """Return in which draws each item falls."""
-    falls, count = find_falls(assessment), len(assessment.inventory.items)
+    falls, count = assessment.find_falls(), len(assessment.inventory.items)
     draws = min((one.size for one in falls.fell.values()), default=0)
     fell = np.zeros((count, draws), dtype=np.bool_)
     for item, one in falls.fell.items():

@@ -9,7 +9,7 @@ from typing import NoReturn
 from assess.errors import Problem, SettingsError
 from assess.i18n import fill, join
 from assess.model import Inventory
-from assess.pipeline.anchors import find_anchors
+from assess.pipeline.anchors import find_held, find_spread
 from assess.pipeline.assessment import Assessment
 from assess.schedule_results import ScheduleRow
 from assess.workbook.names import key
@@ -80,8 +80,9 @@ def anchor_first(assessment: Assessment, rows: Sequence[ScheduleRow]) -> Assessm
         raise SettingsError(text)
     held = {index for row in rows[: wanted if isinstance(wanted, int) else 0] for index in row.item_indices}
     inventory = _anchor(assessment.inventory, held)
-    anchors = find_anchors(inventory, assessment.cases, assessment.governing, assessment.settings)
-    return replace(assessment, inventory=inventory, anchors=anchors)
+    cases, governing = assessment.cases, assessment.governing
+    found = find_held(inventory, cases.pfa[governing], find_spread(cases)[governing])
+    return replace(assessment, inventory=inventory, held=found)
 
 
 def _anchor(inventory: Inventory, indices: Collection[int]) -> Inventory:

@@ -22,9 +22,7 @@ def choose_example(assessment: Assessment) -> int | None:
     firsts, governing = np.searchsorted(assessment.case_item, np.arange(len(items))), assessment.governing
     upper = np.maximum.reduceat(assessment.adoption.upper, firsts)
     is_simulated = ~np.isnan(assessment.outcomes[simulation().key].value[governing])
-    return int(
-        np.lexsort((-assessment.adoption.probability[governing], -upper, ~is_simulated, assessment.anchors.held))[0]
-    )
+    return int(np.lexsort((-assessment.adoption.probability[governing], -upper, ~is_simulated, assessment.held))[0])
 
 
 def work_example(index: int, assessment: Assessment) -> tuple[WorkedMethod, ...]:

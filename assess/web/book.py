@@ -16,7 +16,7 @@ from assess.i18n import fill
 from assess.web.cell_edits import CellPlace, Contents, EditsRefused, History, Locks, Step, say, take_edits
 from assess.web.columns import PageSheet, find_sheets, find_units, show
 from assess.web.disk_file import ChangedOutsideError, DiskFile, find_hash
-from assess.web.named_files import FILES, add_file, list_missing
+from assess.web.file_names import FILES, add_file, list_missing
 from assess.web.request_errors import CONFLICT, RequestError
 from assess.web.snapshot import Snapshot
 from assess.web.stored_values import LiveRows, find_live, write_changes
@@ -116,42 +116,29 @@ class Book:
     def describe(self) -> dict[str, Any]:
         """Return everything that the page shows of the cells and of the files."""
         with self._lock:
-            now, found = self._now, {"name": self.name, "mode": self.mode, "language": self.language}
-            found |= {
+            now = self._now
+            found = {
+                "version": now.version,
+                "name": self.name,
+                "mode": self.mode,
+                "language": self.language,
                 "file": find_hash(str(self.path and self.path.resolve()).encode())[:16],
                 "remark": say(self.remark),
+                "units": self.units,
+                "state": self.state(),
+                "missing": self._find_missing(anew=True),
             }
-            missing = self._find_missing(anew=True)
-            state = self.state()
         cells = now.cells.cells
-        sheets = [one.describe(cells.get(name)) for name, one in now.sheets.items()]
-        return {
-            "version": now.version,
-            **found,
-            "units": self.units,
-            "state": state,
-            "missing": missing,
-            "sheets": sheets,
-        }
+        return found | {"sheets": [one.describe(cells.get(name)) for name, one in now.sheets.items()]}
 
     # ------------------------------------------------------------ edits
 
     def edit(self, version: int, edits: object, label: str) -> dict[str, Any]:
-        """Change cells, all of them or none.
+        """Change cells, all of them or none; return every cell that was edited, as it is now.
 
-        Returns CHANGE: every cell that was edited, as it is now.
-
-        Raises VersionError if the book has another version; EditsRefused if any cell cannot be changed so; InputError
-        if `edits` is no list of edits.
-
-        Parameters
-        ----------
-        version : int
-            That which the edits rest on.
-        edits : object
-            A list of ``[sheet, row, at, value]``.
-        label : str
-            What the step is, in a word.
+        `version` is that which the edits rest on, `edits` a list of ``[sheet, row, at, value]``, `label` what the step
+        is, in a word. Raises VersionError if the book has another version; EditsRefused if any cell cannot be changed
+        so; InputError if `edits` is no list of edits.
         """
         with self._lock:
             self._check_version(version)
@@ -169,15 +156,13 @@ class Book:
         """Take the last step back; raises VersionError if the book has another version."""
         with self._lock:
             self._check_version(version)
-            step = self._history.back()
-            return self._go(step.before if step else {})
+            return self._go(self._history.back())
 
     def redo(self, version: int) -> dict[str, Any]:
         """Do the last step again that was taken back; raises VersionError if the book has another version."""
         with self._lock:
             self._check_version(version)
-            step = self._history.forward()
-            return self._go(step.after if step else {})
+            return self._go(self._history.forward())
 
     def _go(self, contents: Contents) -> dict[str, Any]:
         if contents:
@@ -195,7 +180,8 @@ class Book:
         self.version += 1
         self._now = self._snap(self._now.cells.replaced(by_sheet))
         self._compare(contents)
-        if any(self._names_file(place) for place in contents):
+        columns = ((sheet, self.sheets[sheet].find(row, at)) for sheet, row, at in contents)
+        if any(one and one.column and (sheet, one.column.name) in FILES for sheet, one in columns):
             self._missing = None
 
     def _compare(self, places: Contents | set[CellPlace]) -> None:
@@ -210,15 +196,12 @@ class Book:
         if not self._different:
             self._saved_version = self.version
 
-    def _names_file(self, place: CellPlace) -> bool:
-        column = self.sheets[place[0]].find(place[1], place[2])
-        return bool(column and column.column and (place[0], column.column.name) in FILES)
-
     def _describe_change(self, places: Contents) -> dict[str, Any]:
         cells = self._now.cells.cells
         shown = [[sheet, row, at, show(cells[sheet].value((row, at)))] for sheet, row, at in places]
-        missing = self._find_missing()
-        return {"state": self.state(), "cells": shown, "language": self.language, "missing": missing}
+        return {
+            "state": self.state(), "cells": shown, "language": self.language, "missing": self._find_missing(),
+        }  # fmt: skip
 
     # ------------------------------------------------------------ bytes and the disk
 
@@ -248,20 +231,23 @@ class Book:
             return now, patched, different
 
     def save(self) -> None:
-        """Save the changes to the file, whole or not at all.
+        """Save the changes to the file, whole or not at all; ChangedOutsideError if another program has changed it.
 
         A file that cannot be written (read-only, gone, no space) is told by ``state()["save_error"]``; nothing is lost.
-
-        Raises
-        ------
-        ChangedOutsideError
-            If another program has changed the file.
         """
         if self._file is None:
             return
         try:
             with self._saving:
-                self._replace(self._file, *self._write())
+                now, data, different = self._write()
+                if different:
+                    self._file.replace(data)
+                with self._lock:
+                    self._save_error = self._hindrance = ""
+                    if different:
+                        self._changed_outside, self._saved_version = False, now.version
+                        self._data, self._base = data, now
+                        self._compare({*different, *self._different})  # more may have been edited meanwhile
         except ChangedOutsideError:
             with self._lock:
                 self._changed_outside = True
@@ -269,16 +255,6 @@ class Book:
         except (OutputError, WorkbookError) as error:
             with self._lock:
                 self._save_error = error.message
-
-    def _replace(self, file: DiskFile, now: Snapshot, data: bytes, different: list[CellPlace]) -> None:
-        if different:
-            file.replace(data)
-        with self._lock:
-            self._save_error = self._hindrance = ""
-            if different:
-                self._changed_outside, self._saved_version = False, now.version
-                self._data, self._base = data, now
-                self._compare({*different, *self._different})  # more may have been edited meanwhile
 
     def check_outside(self) -> bool:
         """Return whether another program has changed the file since it was opened or saved."""
@@ -315,11 +291,6 @@ class Book:
             self._hindrance = file.find_hindrance()
 
     # ------------------------------------------------------------ the files that it names
-
-    def missing(self) -> list[dict[str, Any]]:
-        """Return the files that it names and that are not there."""
-        with self._lock:
-            return self._find_missing(anew=True)
 
     def _find_missing(self, *, anew: bool = False) -> list[dict[str, Any]]:
         if self._missing is None or anew:

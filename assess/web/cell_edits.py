@@ -1,6 +1,7 @@
 """Edits of cells as they come from outside: each is taken as its column asks, or refused; steps to undo and redo."""
 
-from collections.abc import Iterable, Mapping, Sequence
+import re
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -49,19 +50,19 @@ class History:
             cells -= len(self.steps.pop(0).after)
         self.at = len(self.steps)
 
-    def back(self) -> Step | None:
-        """Return the step to undo, None where there is none; it counts as undone."""
+    def back(self) -> Contents:
+        """Return the cells as they were before the last step, nothing where there is none; it counts as undone."""
         if self.at == 0:
-            return None
+            return {}
         self.at -= 1
-        return self.steps[self.at]
+        return self.steps[self.at].before
 
-    def forward(self) -> Step | None:
-        """Return the step to do again, None where there is none; it counts as done."""
+    def forward(self) -> Contents:
+        """Return the cells as the next step has them, nothing where there is none; it counts as done."""
         if self.at == len(self.steps):
-            return None
+            return {}
         self.at += 1
-        return self.steps[self.at - 1]
+        return self.steps[self.at - 1].after
 
 
 MOST_EDITS = 500_000
@@ -70,6 +71,9 @@ COMPUTED_KINDS = ("number", "count", "date", "choice", "flag")
 """Kinds of columns into which a spreadsheet program would take a formula."""
 DIGITS = 6
 """Significant digits of a number that was converted from another unit."""
+_PLAIN_NUMBER = re.compile(r"-?(?:0|[1-9][0-9]*)(?:\.[0-9]*)?")
+
+_TOO_LONG = fill("the text is longer than a cell holds: {most:,} characters.", most=LONGEST_TEXT)
 
 Refused = list[list[Any]]
 """Sheet, row, column of each cell that is refused, and why."""
@@ -98,26 +102,23 @@ class Locks:
 
     def find(self, cells: HeldCells, row: int, at: int) -> str:
         """Return why a cell of a sheet cannot be changed, "" where it can."""
-        place = (row, at)
+        place, title = (row, at), cells.title
         if place in cells.marks.formulas:
             return fill("it holds a formula: change it in your spreadsheet program.")
         if place in cells.marks.unknown:
             return fill("it holds something that is not known: change it in your spreadsheet program.")
-        areas = self._read(cells)
-        if cells.title in self._faults:
-            return self._faults[cells.title]
-        inside = (why for (left, right, top, bottom), why in areas if left <= at + 1 <= right and top <= row <= bottom)
-        return next(inside, "")
-
-    def _read(self, cells: HeldCells) -> Sequence[tuple[Area, Text]]:
-        title = cells.title
         if title not in self._areas:
             self._areas[title] = [*cells.marks.locked, *_list_covered(cells.merged)]
             try:
                 self._areas[title] += find_headers(self.data, title, name=self.name)
             except WorkbookError as error:
                 self._faults[title] = error.problems[0].message
-        return self._areas[title]
+        inside = (
+            why
+            for (left, right, top, bottom), why in self._areas[title]
+            if left <= at + 1 <= right and top <= row <= bottom
+        )
+        return self._faults.get(title) or next(inside, "")
 
 
 def _list_covered(merged: Iterable[str]) -> Iterable[tuple[Area, Text]]:
@@ -147,13 +148,13 @@ def take_edits(
         sheet, row, at, value = _take_apart(edit)
         column, why = _find_column(sheets.get(sheet), row, at)
         if column is not None:
-            why = locks.find(held.cells[sheet], row, at) or _refuse_value(value) or _refuse_formula(column, value)
+            why = locks.find(held.cells[sheet], row, at) or _refuse_value(column, value)
         if column is None or why:
             refused.append([sheet, row, at, say(why)])
             continue
-        found[sheet, row, at] = taken = take_value(column, value)
+        found[sheet, row, at] = taken = _take_value(column, value)
         if isinstance(taken, str) and len(str(read_back(taken) or "")) > LONGEST_TEXT:
-            refused.append([sheet, row, at, say(_too_long())])
+            refused.append([sheet, row, at, say(_TOO_LONG)])
     if refused:
         raise EditsRefused(refused)
     return found
@@ -188,29 +189,23 @@ def _find_column(sheet: PageSheet | None, row: int, at: int) -> tuple[PageColumn
         return None, fill("it is a header, or lies above the headers: change it in your spreadsheet program.")
     if column is None:
         return None, fill("its column has no header.")
-    if column.is_live:
+    if column.live:
         return None, fill("its column is computed.")
     return column, ""
 
 
-def _too_long() -> Text:
-    return fill("the text is longer than a cell holds: {most:,} characters.", most=LONGEST_TEXT)
-
-
-def _refuse_value(value: Value) -> str:
-    if isinstance(value, str):
-        return _too_long() if len(value) > LONGEST_TEXT else ""
-    is_number = value is None or abs(value) <= LARGEST_NUMBER
-    return "" if is_number else fill("the value is not a number that a cell holds.")
-
-
-def _refuse_formula(column: PageColumn, value: Value) -> str:
-    """Return why a formula that was typed cannot be taken: as a text it would only be a wrong number."""
-    is_formula = isinstance(value, str) and value.lstrip().startswith("=") and column.kind in COMPUTED_KINDS
+def _refuse_value(column: PageColumn, value: Value) -> str:
+    """Return why a value cannot be taken; a formula that is typed would as a text only be a wrong number."""
+    if not isinstance(value, str):
+        is_number = value is None or abs(value) <= LARGEST_NUMBER
+        return "" if is_number else fill("the value is not a number that a cell holds.")
+    if len(value) > LONGEST_TEXT:
+        return _TOO_LONG
+    is_formula = value.lstrip().startswith("=") and column.kind in COMPUTED_KINDS
     return fill("formulas are not computed here: type the value.") if is_formula else ""
 
 
-def take_value(column: PageColumn, value: Value) -> Value:
+def _take_value(column: PageColumn, value: Value) -> Value:
     """Return what belongs into a cell for what was typed: a number in the unit of its header, a choice, a date.
 
     A text that cannot be read so is returned as it is: reading reports it as a problem of the cell. A text is never
@@ -222,7 +217,7 @@ def take_value(column: PageColumn, value: Value) -> Value:
         return None
     known = column.column
     if known is None or column.is_blind:
-        return take_number(value) if isinstance(value, str) else value
+        return _take_number(value) if isinstance(value, str) else value
     if is_free(known) or (isinstance(value, bool) and known.kind not in ("choice", "flag")):
         return value
     try:
@@ -237,16 +232,9 @@ def take_value(column: PageColumn, value: Value) -> Value:
     return meant.strip() if isinstance(meant, str) else meant if isinstance(meant, float | int) else value
 
 
-def take_number(text: str) -> Value:
+def _take_number(text: str) -> Value:
     """Return the number that a text is, where it is written as programs write numbers: not 007, not 1e5, not 1,5."""
-    try:
-        number = float(text)
-    except ValueError:
-        return text
     shown = text.strip()
-    is_plain = shown.isascii() and len(shown) <= 15 and not set(shown) - set("-0123456789.")
-    digits = shown.lstrip("-")
-    is_plain = is_plain and digits[:1].isdigit() and (digits[0] != "0" or digits[1:2] in ("", "."))
-    if not is_plain:
+    if len(shown) > 15 or not _PLAIN_NUMBER.fullmatch(shown):
         return text
-    return int(shown) if number.is_integer() and "." not in shown else number
+    return float(shown) if "." in shown else int(shown)

@@ -10,11 +10,11 @@ from assess.i18n import load_catalogue, speaking
 from assess.units import QUANTITIES
 from assess.workbook.held import HeldCells, HeldSheets
 from assess.workbook.lists import FROZEN, PLACES
-from assess.workbook.names import is_live, plain, say_choices, say_live, split_header, translate
+from assess.workbook.names import find_live, is_live, say_choices, split_header, translate
 from assess.workbook.open import MAX_ROWS, UNSAVED, Percent
 from assess.workbook.parse import Table, Tables
 from assess.workbook.plain_rows import column_letters
-from assess.workbook.schema import CLASS, ITEMS, LIVE, SHEETS, Column, Sheet
+from assess.workbook.schema import CLASS, SHEETS, Column, Sheet
 from assess.workbook.template import describe
 from assess.workbook.values import is_blank, read_text
 
@@ -40,10 +40,8 @@ class PageColumn:
         As the header says.
     column : Column, optional
         That of the schema, with its label in the workbook's language; None for a column of the user or a live one.
-    live : int, optional
-        Place among `assess.workbook.schema.LIVE` of what it shows.
-    is_live : bool
-        Whether Excel computes it.
+    live : str
+        Of a column that Excel computes its header, of `assess.workbook.schema.LIVE` or `WORKINGS`; of others blank.
     is_blind : bool
         Whether its header lacks a unit that is known, so that its numbers mean nothing.
     is_hidden : bool
@@ -55,47 +53,38 @@ class PageColumn:
     label: str
     unit: str = ""
     column: Column | None = None
-    live: int | None = None
-    is_live: bool = False
+    live: str = ""
     is_blind: bool = False
     is_hidden: bool = False
 
     @property
     def kind(self) -> str:
         """What a cell of it holds, as the page calls it."""
-        return self.column.kind if self.column else "live" if self.is_live else "own"
-
-    @property
-    def factor(self) -> float:
-        """Factor from its unit to SI; 1 where the unit is not known."""
-        return QUANTITIES.get(self.column.quantity, {}).get(self.unit, 1.0) if self.column else 1.0
+        return self.column.kind if self.column else "live" if self.live else "own"
 
     def describe(self, language: str) -> dict[str, Any]:
-        """Return it as the page takes it, in the language of its sheet."""
-        is_class = self.live is not None and LIVE[self.live] == CLASS
+        """Return it as the page takes it, in the language of its sheet; its factor leads to SI, 1 where it is unknown.
+
+        Languages are called by their own names.
+        """
+        one, catalogue = self.column, load_catalogue(language)
         found: dict[str, Any] = {
-            "at": self.at, "field": self.column.name if self.column else "class" if is_class else "",
-            "label": self.label, "unit": self.unit, "factor": self.factor, "kind": self.kind, "help": "",
-            "choices": [], "offered": [], "source": "", "required": False, "width": OWN_WIDTH, "hidden": self.is_hidden,
+            "at": self.at, "field": one.name if one else "class" if self.live == CLASS else "",
+            "label": self.label, "unit": self.unit,
+            "factor": QUANTITIES.get(one.quantity, {}).get(self.unit, 1.0) if one else 1.0, "kind": self.kind,
+            "help": "", "choices": [], "offered": [], "source": "", "required": False, "width": OWN_WIDTH,
+            "hidden": self.is_hidden,
         }  # fmt: skip
-        if self.column:
-            found |= _describe_known(self.column, language)
+        if one:
+            is_named = one.kind in ("choice", "flag")
+            with speaking(catalogue):
+                found["help"] = describe(one)
+            found |= {
+                "choices": list(say_choices(one.choices, language) if is_named else one.choices),
+                "offered": list(map(catalogue.find, one.offered)), "source": one.source, "required": one.required,
+                "width": one.width,
+            }  # fmt: skip
         return {**found, "row": self.row} if self.row else found
-
-
-def _describe_known(column: Column, language: str) -> dict[str, Any]:
-    catalogue = load_catalogue(language)
-    with speaking(catalogue):
-        help_ = describe(column)
-    is_named = column.kind in ("choice", "flag")  # languages are called by their own names
-    return {
-        "help": help_,
-        "choices": list(say_choices(column.choices, language) if is_named else column.choices),
-        "offered": list(map(catalogue.find, column.offered)),
-        "source": column.source,
-        "required": column.required,
-        "width": column.width,
-    }
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +115,7 @@ class PageSheet:
     @property
     def live(self) -> frozenset[int]:
         """The columns that Excel computes."""
-        return frozenset(at for at, one in self.columns.items() if one.is_live)
+        return frozenset(at for at, one in self.columns.items() if one.live)
 
     def find(self, row: int, at: int) -> PageColumn | None:
         """Return the column of a cell, or the line of a form; None for a cell of neither, as headers are."""
@@ -145,8 +134,10 @@ class PageSheet:
 
     def describe(self, cells: HeldCells | None) -> dict[str, Any]:
         """Return it as the page takes it, with its rows."""
-        rows = [] if cells is None or not self.found else list(self._rows(cells))
-        is_form = self.sheet.layout == "form"
+        is_form, live, rows = self.sheet.layout == "form", self.live, list[list[Any]]()
+        if cells is not None and self.found:
+            numbered = ((number, row) for number, row in cells.cells.items() if self.header < number <= MAX_ROWS)
+            rows = [[number, shown] for number, row in numbered if (shown := _show_row(row, live))]
         last = max([self.header, *(one[0] for one in rows[-1:])])
         return {
             "name": self.sheet.name, "title": self.title, "layout": self.sheet.layout, "found": self.found,
@@ -155,18 +146,11 @@ class PageSheet:
             "columns": [one.describe(self.language) for one in self.columns.values()], "rows": rows,
         }  # fmt: skip
 
-    def _rows(self, cells: HeldCells) -> Iterator[list[Any]]:
-        live = self.live
-        for number, row in cells.cells.items():
-            if self.header < number <= MAX_ROWS and (shown := show_row(row, live)):
-                yield [number, shown]
-
     def _count_frozen(self) -> int:
         """Return how many columns at the left stay in view: as in an empty workbook where they stand as there."""
-        first = sorted(
-            PLACES[self.sheet.name, one.column.name] == one.at for one in self.columns.values() if one.column
-        )
-        return FROZEN.get(self.sheet.name, 1) if all(first) else 1
+        known = [one for one in self.columns.values() if one.column]
+        is_alike = all(PLACES[self.sheet.name, one.column.name] == one.at for one in known if one.column)
+        return FROZEN.get(self.sheet.name, 1) if is_alike else 1
 
 
 # ---------------------------------------------------------------- cells as the page shows them
@@ -188,7 +172,7 @@ def show(value: Any) -> Shown:
 _PLAIN = frozenset({int, str, bool, type(None)})
 
 
-def show_row(cells: Mapping[int, Any], live: Collection[int]) -> list[Shown]:
+def _show_row(cells: Mapping[int, Any], live: Collection[int]) -> list[Shown]:
     """Return the cells of a row up to the last that is filled; those of live columns are left out."""
     last = max((at for at in cells if at not in live), default=-1)
     row = [None if at in live else cells.get(at) for at in range(last + 1)]
@@ -213,23 +197,19 @@ def find_units(sheets: Mapping[str, PageSheet]) -> str:
 def _find_sheet(sheet: Sheet, table: Table, cells: HeldCells | None) -> PageSheet:
     language = table.language
     if cells is None:
-        return PageSheet(sheet, translate(sheet, language).name, language, columns={})
+        return PageSheet(sheet, translate(sheet, language).name, language)
     if sheet.layout == "form":
         lines = {one.row: one for one in _list_lines(table, cells)}
         return PageSheet(sheet, cells.title, language, found=True, columns=lines)
     columns = {one.at: one for one in _list_columns(sheet, table, cells)} if table.header else {}
-    found = bool(columns)
-    return PageSheet(sheet, cells.title, language, found=found, header=table.header, columns=columns)
+    return PageSheet(sheet, cells.title, language, found=bool(columns), header=table.header, columns=columns)
 
 
 def _known(table: Table, name: str, at: int, row: int, label: str, *, is_hidden: bool = False) -> PageColumn:
-    unit = table.units.get(name, "")
-    written = split_header(label)[1] or ""
+    text, written = split_header(label)
     is_blind = name in table.blind
-    return PageColumn(
-        at, row, split_header(label)[0], written if is_blind else unit, table.sheet.column(name),
-        is_blind=is_blind, is_hidden=is_hidden,
-    )  # fmt: skip
+    unit = (written or "") if is_blind else table.units.get(name, "")
+    return PageColumn(at, row, text, unit, table.sheet.column(name), is_blind=is_blind, is_hidden=is_hidden)
 
 
 def _list_lines(table: Table, cells: HeldCells) -> Iterator[PageColumn]:
@@ -238,30 +218,20 @@ def _list_lines(table: Table, cells: HeldCells) -> Iterator[PageColumn]:
         label = one.get(0)
         if row > MAX_ROWS or label is UNSAVED or is_blank(label):
             continue
-        if row in names:
-            yield _known(table, names[row], 1, row, read_text(label))
-        else:
-            yield PageColumn(1, row, read_text(label))
+        text = read_text(label)
+        yield _known(table, names[row], 1, row, text) if row in names else PageColumn(1, row, text)
 
 
 def _list_columns(sheet: Sheet, table: Table, cells: HeldCells) -> Iterator[PageColumn]:
     names = {at: name for name, at in table.places.items()}
     headers = {at: read_text(one) for at, one in cells.cells[table.header].items() if one is not UNSAVED}
     filled = {at for number, row in cells.cells.items() if number > table.header for at in row}
-    live = _live_labels(table.language) if sheet is ITEMS else {}
     for at in sorted({at for at, text in headers.items() if text} | filled):
         label, is_hidden = headers.get(at, ""), at in cells.hidden_columns
+        text, unit = split_header(label)
         if at in names:
             yield _known(table, names[at], at, 0, label, is_hidden=is_hidden)
-            continue
-        text, unit = split_header(label)
-        if label and is_live(sheet, text):
-            yield PageColumn(at, 0, text, unit or "", live=live.get(plain(text)), is_live=True, is_hidden=is_hidden)
+        elif label and is_live(sheet, text):
+            yield PageColumn(at, 0, text, unit or "", live=find_live(text) or "", is_hidden=is_hidden)
         else:
             yield PageColumn(at, 0, label or column_letters(at), is_hidden=is_hidden)
-
-
-def _live_labels(language: str) -> dict[str, int]:
-    """Return the place among `LIVE` of what a live column shows, by its label in English or in a language."""
-    with speaking(load_catalogue(language)):
-        return {plain(split_header(text)[0]): at for at, one in enumerate(LIVE) for text in (one, say_live(one))}

@@ -83,7 +83,15 @@ class DiskFile:
         if self.is_changed():
             raise ChangedOutsideError(self.path)
         try:
-            self._swap(target, data, mode)
+            with staging(target.parent) as stage:
+                staged = stage / NEW / target.name
+                write_through(staged, data)
+                staged.chmod(mode)
+                _copy_rights(target, staged)
+                if self.is_changed():  # while it was written
+                    raise ChangedOutsideError(self.path)
+                staged.replace(target)
+            flush_folder(target.parent)
         except OSError as error:
             raise OutputError(self._explain(error)) from None
         self.digest, self.signature = find_hash(data), self._look()
@@ -112,17 +120,6 @@ class DiskFile:
             return fill("{name} cannot be saved: {why}. Close it in other programs.", name=name, why=why)
         return fill("{name} cannot be saved: {why}. Download your version.", name=name, why=why)
 
-    def _swap(self, target: Path, data: bytes, mode: int) -> None:
-        with staging(target.parent) as stage:
-            staged = stage / NEW / target.name
-            write_through(staged, data)
-            staged.chmod(mode)
-            _copy_rights(target, staged)
-            if self.is_changed():  # while it was written
-                raise ChangedOutsideError(self.path)
-            staged.replace(target)
-        flush_folder(target.parent)
-
     def _look(self) -> tuple[int, ...]:
         """Return what tells a changed file without reading it, nothing where it is gone."""
         try:
@@ -139,12 +136,11 @@ def _copy_rights(source: Path, target: Path) -> None:
     """
     found = source.stat()
     if hasattr(os, "chown"):
-        for owner in (found.st_uid, -1):  # a group may be given by its members, an owner by root alone
-            try:
-                os.chown(target, owner, found.st_gid)
-            except OSError:
-                continue
-            break
+        try:
+            os.chown(target, found.st_uid, found.st_gid)
+        except OSError:  # a group may be given by its members, an owner by root alone
+            with suppress(OSError):
+                os.chown(target, -1, found.st_gid)
     with suppress(OSError):
         shutil.copystat(source, target)
     os.utime(target)

@@ -1,15 +1,21 @@
-"""The Starlette application: addresses, bodies, answers and the status of what is refused."""
+"""The Starlette application: what each address answers (see docs/page.md), bodies, the status of what is refused.
 
+Every answer is worked out in a thread, in the language of the request.
+"""
+
+import base64
+import hashlib
 import json
 import logging
 import math
+import re
 import shutil
 import time
-from collections.abc import AsyncIterator, Awaitable, Callable
-from dataclasses import replace
+from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from starlette.applications import Starlette
@@ -20,13 +26,17 @@ from starlette.routing import Route
 
 from assess.errors import AssessError
 from assess.i18n import fill, load_catalogue, speaking
-from assess.web import answers
-from assess.web.answers import Answer, Asked, Content
+from assess.web.file_names import clean_name
 from assess.web.guard import MODELS, MOST_MODEL, MOST_SKIPPED, SESSION, skip_body
-from assess.web.importing import SOURCE
-from assess.web.request_errors import BAD_REQUEST, NOT_FOUND, TOO_LARGE, RequestError, describe_fault
-from assess.web.sessions import Session, check_share
-from assess.web.texts import COOKIE, choose_language
+from assess.web.importing import FOLDER, SOURCE, choose_routes
+from assess.web.jobs import REPORT, Job
+from assess.web.request_errors import BAD_REQUEST, NOT_FOUND, TOO_LARGE, UNUSABLE, RequestError, describe_fault
+from assess.web.sessions import Session
+from assess.web.starting import choose_shaking, describe_start
+from assess.web.texts import COOKIE, PAGE, choose_language, describe_texts
+
+if TYPE_CHECKING:
+    from assess.web.book import Book
 
 MOST_JSON = 32 * 2**20
 """Bytes of a request in JSON: a whole sheet that is pasted."""
@@ -34,68 +44,285 @@ MOST_FILE = 64 * 2**20
 """Bytes of a file that is sent."""
 POLLED = ("/api/state", "/api/job", MODELS)
 """What a page asks by itself: it is not its user who asks."""
+LOOK = 1.5
+"""Shortest time between two looks at whether the file was changed by another program [s]."""
+WORKBOOK = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
+PICTURE_POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; frame-ancestors 'none'; sandbox"
+"""An SVG has styles and pictures of its own; nothing else of it counts."""
+TYPES = {
+    ".html": "text/html", ".css": "text/css", ".mjs": "text/javascript", ".js": "text/javascript",
+    ".svg": "image/svg+xml",
+}  # fmt: skip
+"""Kinds of the files of the page, whatever the registry of the machine calls them."""
 LOG = logging.getLogger("assess.web")
 
-Handler = Callable[[Asked], Answer]
-
-READ: dict[str, Handler] = {
-    "/api/book": answers.describe_book,
-    "/api/state": answers.describe_state,
-    "/api/download": answers.download,
-    "/api/live": answers.describe_live,
-    "/api/routes": answers.describe_routes,
-    "/api/plan": answers.describe_plan,
-    "/api/picture": answers.find_picture,
-    "/api/catalogue": answers.describe_catalogue,
-    "/api/job": answers.describe_job,
-    "/api/job/file/{name:path}": answers.find_job_file,
-    "/api/job/report": answers.find_report,
-    MODELS: answers.describe_import,
-    "/api/start": answers.describe_start,
-    "/api/texts": answers.describe_texts,
-}
-CHANGE: dict[str, Handler] = {
-    "/api/edit": answers.edit,
-    "/api/undo": answers.undo,
-    "/api/redo": answers.redo,
-    "/api/save": answers.save,
-    "/api/reload": answers.reload,
-    "/api/close": answers.close,
-    "/api/what-if": answers.try_out,
-    "/api/job": answers.simulate,
-    "/api/job/cancel": answers.cancel,
-    "/api/import/cancel": answers.cancel_import,
-    "/api/import/open": answers.open_import,
-    "/api/start": answers.start,
-}
-SEND: dict[str, Handler] = {"/api/upload": answers.upload, "/api/file": answers.add_file}
+Answer = dict[str, Any] | Response
 
 
-NoteEdit = Callable[[Session], None]
-Take = Callable[[Request, Asked], Awaitable[Asked]]
-"""Takes in the body of a request; RequestError or OSError where it cannot be taken."""
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """A request: its session, the values of its address, its body or the file that holds it, what an edit calls."""
+
+    session: Session
+    query: Mapping[str, str] = field(default_factory=dict)
+    body: Mapping[str, Any] = field(default_factory=dict)
+    data: bytes = b""
+    file: Path | None = None
+    language: str = "en"
+    note_edit: Callable[[Session], None] = lambda _session: None
+
+    @property
+    def book(self) -> "Book":
+        """The open workbook; RequestError where there is none."""
+        if self.session.book is None:
+            raise RequestError(fill("No workbook is open."), NOT_FOUND, more=describe_start(self.session.home))
+        return self.session.book
+
+    @property
+    def job(self) -> Job:
+        """The simulation of the session; RequestError where there is none."""
+        if self.session.job is None:
+            raise RequestError(fill("Nothing has been simulated yet."), NOT_FOUND)
+        return self.session.job
+
+    @property
+    def name(self) -> str:
+        """The name of the file that is sent; RequestError where there is none."""
+        name = self.query.get("name", "")
+        if not name.strip():
+            raise RequestError(fill("The request does not name the file."), UNUSABLE)
+        return name
 
 
-def build_application(note_edit: NoteEdit) -> Starlette:
-    """Return the application; `note_edit` is called after every change of a workbook."""
+# ---------------------------------------------------------------- the book
 
-    def route(path: str, method: str, take: Take, handler: Handler) -> Route:
-        async def serve(request: Request) -> Response:
-            asked, fault = _ask(request, note_edit), None
-            try:
-                asked = await take(request, asked)
-            except (RequestError, OSError) as error:
-                fault = error
-            return await run_in_threadpool(_carry_out, handler, asked, fault)
 
-        return Route(path, serve, methods=[method])
+def _describe_book(asked: Asked) -> Answer:
+    return _note_download(asked, asked.book.describe())
 
-    routes = [route(path, "GET", _take_nothing, handler) for path, handler in READ.items()]
-    routes += [route(path, "POST", _take_json, handler) for path, handler in CHANGE.items()]
-    routes += [route(path, "POST", _take_file, handler) for path, handler in SEND.items()]
-    routes += [route(MODELS, "POST", _take_model, answers.import_model)]
-    routes += [Route("/{name:path}", _give_file, methods=["GET"])]
-    return Starlette(routes=routes)
+
+def _note_download(asked: Asked, answer: dict[str, Any]) -> dict[str, Any]:
+    """Return an answer with a state in which changes of a held workbook that were downloaded are not called unsaved."""
+    session, state = asked.session, answer["state"]
+    is_downloaded = asked.book.mode == "held" and session.downloaded == state["version"]
+    return {**answer, "state": {**state, "unsaved": False}} if is_downloaded else answer
+
+
+def _describe_state(asked: Asked) -> Answer:
+    session = asked.session
+    job = session.job.summarise() if session.job else None
+    if session.book is None:
+        return {"state": None, "job": job}
+    if time.monotonic() - session.looked > LOOK:
+        session.looked = time.monotonic()
+        session.book.follow_outside()
+    return _note_download(asked, {"state": session.book.state(), "job": job})
+
+
+def _edit(asked: Asked) -> Answer:
+    edits = asked.body.get("edits")
+    if not isinstance(edits, list):
+        raise RequestError(fill("The request cannot be read."), UNUSABLE)
+    label = str(asked.body.get("label") or "")
+    return _change(asked, lambda book, version: book.edit(version, edits, label))
+
+
+def _change(asked: Asked, change: "Callable[[Book, int], dict[str, Any]]") -> Answer:
+    """Change the workbook; VersionError where the page has another opening of it, or another book."""
+    from assess.web.book import VersionError
+
+    book, version = asked.book, asked.body.get("version")
+    if asked.body.get("server") not in (None, book.opening):
+        raise VersionError(book.state())
+    if not isinstance(version, int) or isinstance(version, bool):
+        raise RequestError(fill("The request does not name the version of the workbook."), UNUSABLE)
+    answer = change(book, version)
+    asked.note_edit(asked.session)
+    return _note_download(asked, answer)
+
+
+def _download(asked: Asked) -> Answer:
+    book = asked.book
+    version = book.version
+    data = book.write()
+    asked.session.downloaded = version
+    return _attach(data, WORKBOOK, book.name)
+
+
+def _attach(data: bytes, media_type: str, name: str) -> Response:
+    headers = {"content-disposition": f"attachment; filename*=UTF-8''{quote(name, safe='')}"}
+    return Response(data, media_type=media_type, headers=headers)
+
+
+def _save(asked: Asked) -> Answer:
+    asked.book.save()
+    return asked.book.state()
+
+
+def _reload(asked: Asked) -> Answer:
+    asked.book.reload()
+    return asked.book.describe()
+
+
+def _close(asked: Asked) -> Answer:
+    session = asked.session
+    with session.lock:
+        if asked.book.mode == "disk" and asked.book.state()["unsaved"]:
+            asked.book.save()
+        session.drop_book()
+    return {}
+
+
+def _upload(asked: Asked) -> Answer:
+    """Hold a workbook that was dropped in; a COBie file, which is no inventory yet, is read as a building model is."""
+    from assess.bim.cobie_sheets import is_cobie
+
+    name, session = asked.name, asked.session
+    if not is_cobie(asked.data):
+        return session.hold(name, asked.data).describe()
+    session.check_room(len(asked.data))
+    file = session.make_folder(FOLDER) / SOURCE
+    file.write_bytes(asked.data)
+    return _import(replace(asked, file=file))
+
+
+def _add_file(asked: Asked) -> Answer:
+    with asked.session.lock:
+        asked.session.check_room(len(asked.data))
+        asked.book.add_file(asked.name, asked.data)
+    return asked.book.describe()
+
+
+# ---------------------------------------------------------------- live values, the plan, what if
+
+
+def _describe_live(asked: Asked) -> Answer:
+    from assess.web.live import LiveView
+
+    book, session, text = asked.book, asked.session, asked.query.get("since", "")
+    with session.lock:
+        view = session.live = session.live or LiveView()
+    return view.answer(book, int(text) if text.isascii() and text.isdigit() and len(text) < 10 else None)
+
+
+def _describe_routes(asked: Asked) -> Answer:
+    from assess.web.route_states import describe_routes
+
+    return describe_routes(asked.book.snapshot())
+
+
+def _describe_plan(asked: Asked) -> Answer:
+    from assess.web.floor_plan import describe_plan
+
+    return describe_plan(asked.book.snapshot(), asked.query.get("floor"))
+
+
+def _find_picture(asked: Asked) -> Answer:
+    """Answer with the picture of a floor; as an address of its own it could hold scripts, which are not run."""
+    from assess.web.floor_plan import find_picture
+
+    found = find_picture(asked.book.snapshot(), asked.query.get("floor", ""))
+    if found is None:
+        raise RequestError(fill("This floor has no picture."), NOT_FOUND)
+    return Response(found[0], media_type=found[1], headers={"content-security-policy": PICTURE_POLICY})
+
+
+def _describe_catalogue(asked: Asked) -> Answer:
+    from assess.web.floor_plan import describe_catalogue
+
+    return describe_catalogue(asked.book.snapshot())
+
+
+def _try_out(asked: Asked) -> Answer:
+    from assess.web.what_if_answer import try_out
+
+    return try_out(asked.book.snapshot(), dict(asked.body))
+
+
+# ---------------------------------------------------------------- the job
+
+
+def _describe_job(asked: Asked) -> Answer:
+    session = asked.session
+    return {"job": session.job.describe(session.book) if session.job else None}
+
+
+def _simulate(asked: Asked) -> Answer:
+    asked.session.simulate(asked.body)
+    return _describe_job(asked)
+
+
+def _cancel(asked: Asked) -> Answer:
+    if asked.session.job is not None:
+        asked.session.job.cancel()
+    return _describe_job(asked)
+
+
+def _find_job_file(asked: Asked) -> Answer:
+    name = asked.query.get("name", "")
+    return _attach(asked.job.read_file(name), "application/octet-stream", name)
+
+
+def _find_report(asked: Asked) -> Answer:
+    """Answer with the report for a frame: its own script and styles count, and it belongs to no address.
+
+    Its one script may run, and no other.
+    """
+    html = asked.job.read_file(REPORT).replace(b"\r\n", b"\n")  # as browsers read it
+    scripts = re.findall(rb"<script>(.*?)</script>", html, re.DOTALL)
+    hashes = (base64.b64encode(hashlib.sha256(one).digest()).decode() for one in scripts)
+    allowed = " ".join(f"'sha256-{one}'" for one in hashes) or "'none'"
+    policy = (
+        f"sandbox allow-scripts; default-src 'none'; script-src {allowed}; style-src 'unsafe-inline'; img-src data:; "
+        "font-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'self'"
+    )
+    headers = {"content-security-policy": policy, "x-frame-options": "SAMEORIGIN"}
+    return Response(html, media_type="text/html", headers=headers)
+
+
+# ---------------------------------------------------------------- building models
+
+
+def _import(asked: Asked) -> Answer:
+    if asked.file is None:
+        raise RequestError(fill("The request cannot be read."), UNUSABLE)
+    try:
+        name, routes = clean_name(asked.name), choose_routes(asked.query.get("routes", ""))
+    except RequestError:
+        shutil.rmtree(asked.file.parent, ignore_errors=True)
+        raise
+    asked.session.read_model(asked.file.parent, name or SOURCE, routes)
+    return _describe_import(asked)
+
+
+def _describe_import(asked: Asked) -> Answer:
+    found, opened = asked.session.reading, asked.session.imported
+    return {
+        "import": found.describe() if found else None,
+        "opened": opened.describe() if opened else None,
+        "most": MOST_MODEL,
+    }
+
+
+def _cancel_import(asked: Asked) -> Answer:
+    asked.session.cancel_import()
+    return _describe_import(asked)
+
+
+def _open_import(asked: Asked) -> Answer:
+    return asked.session.open_imported(choose_shaking(asked.body)).describe()
+
+
+# ---------------------------------------------------------------- files of the page
+
+
+def find_page_file(name: str) -> Response | None:
+    """Return a file of the page by its name; nothing outside its folder has one."""
+    files = {path.relative_to(PAGE).as_posix(): path for path in PAGE.rglob("*") if path.is_file()}
+    path = files.get(name or "index.html")
+    if path is None:
+        return None
+    return Response(path.read_bytes(), media_type=TYPES.get(path.suffix, "application/octet-stream"))
 
 
 # ---------------------------------------------------------------- bodies
@@ -106,7 +333,7 @@ async def _take_nothing(_request: Request, asked: Asked) -> Asked:
 
 
 async def _take_json(request: Request, asked: Asked) -> Asked:
-    return replace(asked, body=parse_body(await _read_body(request, MOST_JSON)))
+    return replace(asked, body=_parse_body(await _read_body(request, MOST_JSON)))
 
 
 async def _take_file(request: Request, asked: Asked) -> Asked:
@@ -119,19 +346,27 @@ async def _read_body(request: Request, most: int) -> bytes:
 
 async def _take_model(request: Request, asked: Asked) -> Asked:
     """Save a file that is too large for the memory in a folder of its own, one at a time."""
-    session, place = asked.session, object()
-    try:
-        session.sending_slots.take(place)
-        path, room = await run_in_threadpool(_make_room, session, request)
-    except (RequestError, OSError):
-        session.sending_slots.leave(place)
-        await skip_body(request.receive)
-        raise
+    session = asked.session
+
+    def begin() -> tuple[Path, int]:
+        session.sending_slots.take()
+        try:
+            room = session.find_room()
+            session.check_room(int(request.headers.get("content-length", "0")), room)  # not every request tells it
+            return session.make_folder(FOLDER) / SOURCE, room
+        except BaseException:
+            session.sending_slots.leave()
+            raise
 
     def check(size: int) -> None:
         _check_size(MOST_MODEL, size)
-        check_share(size, room, session.limits)
+        session.check_room(size, room)
 
+    try:
+        path, room = await run_in_threadpool(begin)
+    except (RequestError, OSError):
+        await skip_body(request.receive)
+        raise
     try:
         with path.open("xb") as file:
             async for part in _stream(request, min(room, MOST_MODEL), check):
@@ -140,15 +375,8 @@ async def _take_model(request: Request, asked: Asked) -> Asked:
         shutil.rmtree(path.parent, ignore_errors=True)
         raise
     finally:
-        session.sending_slots.leave(place)
+        session.sending_slots.leave()
     return replace(asked, file=path)
-
-
-def _make_room(session: Session, request: Request) -> tuple[Path, int]:
-    """Return where the body of a request goes, and how many bytes it may have: not every request tells its length."""
-    room = session.find_room()
-    check_share(int(request.headers.get("content-length", "0")), room, session.limits)
-    return session.make_import_folder() / SOURCE, room
 
 
 async def _stream(request: Request, most: int, check: Callable[[int], None]) -> AsyncIterator[bytes]:
@@ -174,7 +402,7 @@ def _check_size(most: int, size: int) -> None:
         raise RequestError(fill("It is larger than {most:.0f} MB.", most=most / 2**20), TOO_LARGE)
 
 
-def parse_body(data: bytes) -> dict[str, Any]:
+def _parse_body(data: bytes) -> dict[str, Any]:
     """Return a JSON body, {} for an empty one.
 
     Raises RequestError if it is no JSON object, or holds what no workbook can: numbers that are not finite, halves of
@@ -183,30 +411,68 @@ def parse_body(data: bytes) -> dict[str, Any]:
     if not data:
         return {}
     try:
-        found = json.loads(data, parse_constant=_refuse_constant)
+        found = json.loads(data)
         json.dumps(found, ensure_ascii=False, allow_nan=False).encode()
-    except (ValueError, RecursionError):  # also UnicodeError, and a number such as 1e999
+    except (ValueError, RecursionError):  # also UnicodeError, and a number such as NaN or 1e999
         found = None
     if not isinstance(found, dict):
         raise RequestError(fill("The request cannot be read."), BAD_REQUEST)
     return found
 
 
-def _refuse_constant(name: str) -> None:
-    raise ValueError(name)
-
-
 # ---------------------------------------------------------------- answers
 
+Handler = Callable[[Asked], Answer]
+Take = Callable[[Request, Asked], Awaitable[Asked]]
+"""Takes in the body of a request; RequestError or OSError where it cannot be taken."""
 
-async def _give_file(request: Request) -> Response:
-    found = await run_in_threadpool(answers.find_page_file, request.path_params["name"])
-    if found is None:
-        return _refuse(RequestError(fill("There is nothing at this address."), NOT_FOUND))
-    return await run_in_threadpool(_respond, found)
+ROUTES: tuple[tuple[str, Take, Mapping[str, Handler]], ...] = (
+    ("GET", _take_nothing, {
+        "/api/book": _describe_book, "/api/state": _describe_state, "/api/download": _download,
+        "/api/live": _describe_live, "/api/routes": _describe_routes, "/api/plan": _describe_plan,
+        "/api/picture": _find_picture, "/api/catalogue": _describe_catalogue, "/api/job": _describe_job,
+        "/api/job/file/{name:path}": _find_job_file, "/api/job/report": _find_report, MODELS: _describe_import,
+        "/api/start": lambda asked: describe_start(asked.session.home),
+        "/api/texts": lambda asked: describe_texts(asked.query.get("language") or asked.language),
+    }),
+    ("POST", _take_json, {
+        "/api/edit": _edit, "/api/save": _save, "/api/reload": _reload, "/api/close": _close,
+        "/api/undo": lambda asked: _change(asked, lambda book, version: book.undo(version)),
+        "/api/redo": lambda asked: _change(asked, lambda book, version: book.redo(version)),
+        "/api/what-if": _try_out, "/api/job": _simulate, "/api/job/cancel": _cancel,
+        "/api/import/cancel": _cancel_import, "/api/import/open": _open_import,
+        "/api/start": lambda asked: asked.session.begin(asked.body).describe(),
+    }),
+    ("POST", _take_file, {"/api/upload": _upload, "/api/file": _add_file}),
+    ("POST", _take_model, {MODELS: _import}),
+)  # fmt: skip
+"""What takes the body of a request, and what answers it, by its method and its address."""
 
 
-def _ask(request: Request, note_edit: NoteEdit) -> Asked:
+def build_application(note_edit: Callable[[Session], None]) -> Starlette:
+    """Return the application; `note_edit` is called after every change of a workbook."""
+
+    def route(path: str, method: str, take: Take, handler: Handler) -> Route:
+        async def serve(request: Request) -> Response:
+            asked, fault = _ask(request, note_edit), None
+            try:
+                asked = await take(request, asked)
+            except (RequestError, OSError) as error:
+                fault = error
+            return await run_in_threadpool(_carry_out, handler, asked, fault)
+
+        return Route(path, serve, methods=[method])
+
+    routes = [route(path, method, take, one) for method, take, every in ROUTES for path, one in every.items()]
+    return Starlette(routes=[*routes, Route("/{name:path}", _give_file, methods=["GET"])])
+
+
+def _give_file(request: Request) -> Response:
+    found = find_page_file(request.path_params["name"])
+    return found or _refuse(RequestError(fill("There is nothing at this address."), NOT_FOUND))
+
+
+def _ask(request: Request, note_edit: Callable[[Session], None]) -> Asked:
     session: Session = request.scope[SESSION]
     if request.url.path not in POLLED:
         session.seen = time.monotonic()
@@ -221,7 +487,8 @@ def _carry_out(handler: Handler, asked: Asked, fault: Exception | None) -> Respo
         try:
             if fault is not None:
                 raise fault
-            return _respond(handler(asked))
+            answer = handler(asked)
+            return answer if isinstance(answer, Response) else _to_json(answer)
         except Exception as error:
             if not isinstance(error, AssessError | OSError):
                 LOG.exception("a request failed")
@@ -230,32 +497,22 @@ def _carry_out(handler: Handler, asked: Asked, fault: Exception | None) -> Respo
 
 def _refuse(error: Exception) -> Response:
     status, body = describe_fault(error)
-    return Response(to_json(body), status, media_type="application/json")
+    return _to_json(body, status)
 
 
-def _respond(answer: Answer) -> Response:
-    if not isinstance(answer, Content):
-        return Response(to_json(answer), media_type="application/json")
-    data = answer.data.read_bytes() if isinstance(answer.data, Path) else answer.data
-    headers = dict(answer.headers)
-    if answer.name:
-        headers["content-disposition"] = f"attachment; filename*=UTF-8''{quote(answer.name, safe='')}"
-    return Response(data, media_type=answer.media_type, headers=headers)
-
-
-def to_json(body: dict[str, Any]) -> bytes:
+def _to_json(body: dict[str, Any], status: int = 200) -> Response:
     """Return JSON; a number that is not finite is null."""
+    dump = partial(json.dumps, ensure_ascii=False, allow_nan=False, separators=(",", ":"), default=_simplify)
     try:
-        text = json.dumps(body, ensure_ascii=False, allow_nan=False, separators=(",", ":"), default=_simplify)
+        text = dump(body)
     except ValueError:
-        text = json.dumps(_finite(body), ensure_ascii=False, allow_nan=False, separators=(",", ":"), default=_simplify)
-    return text.encode("utf-8", "replace")
+        text = dump(_finite(body))
+    return Response(text.encode("utf-8", "replace"), status, media_type="application/json")
 
 
 def _simplify(value: Any) -> Any:
     """Return a number of numpy, or rows of them, as Python's own."""
-    found = value.tolist() if hasattr(value, "tolist") else str(value)
-    return _finite(found)
+    return _finite(value.tolist() if hasattr(value, "tolist") else str(value))
 
 
 def _finite(value: Any) -> Any:

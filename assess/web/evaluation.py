@@ -12,7 +12,6 @@ from assess.model import Inventory
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.demand import serve_floors
 from assess.pipeline.run import compute
-from assess.progress import SILENT, Progress
 from assess.settings import SCENARIOS, Settings
 from assess.workbook.names import key
 from assess.workbook.parse import Row, Tables, first_row
@@ -43,30 +42,8 @@ class Evaluation:
     problems: tuple[Problem, ...]
 
 
-def evaluate(inventory: Inventory, settings: Settings, progress: Progress = SILENT) -> Evaluation:
-    """Assess the pieces of all floors whose motion is known.
-
-    `inventory`: as read with ``strict=False``.
-    `settings`: nothing is simulated if `verify` is "none".
-    Raises InputError if a setting does not fit the inventory, as an unknown piece that is to be anchored, or a record
-    is gone.
-    """
-    kind = settings.scenario or inventory.building.scenario_kind or SCENARIOS[0]
-    reduction = settings.ductility_reduction
-    demands, faults = serve_floors(inventory, kind, ductility_reduction=reduction, progress=progress)
-    served = {floor for floor, _axis in demands}
-    unserved = frozenset(key(one.floor) for one in inventory.floors if one.floor not in served)
-    if not served:
-        return Evaluation(None, unserved, tuple(faults))
-    known = len(inventory.problems)
-    if unserved:
-        inventory, settings = _keep_floors(inventory, served), _keep_anchors(inventory, settings, served)
-    assessment = compute(inventory, settings, progress=progress)
-    return Evaluation(assessment, unserved, (*faults, *assessment.problems[known:]))
-
-
 def evaluate_once(snapshot: "Snapshot", settings: Settings, *, routes: bool = False) -> Evaluation:
-    """Return the evaluation of a snapshot, as `evaluate` does, once for all who ask.
+    """Return what is known of a snapshot, once for all who ask; nothing is simulated if `settings.verify` is "none".
 
     Annual chances are left out; where they are not asked for the routes, too, which no class by the formulas needs.
     """
@@ -83,13 +60,32 @@ def evaluate_other(snapshot: "Snapshot", settings: Settings) -> Evaluation:
 
 
 def _evaluate(snapshot: "Snapshot", inventory: Inventory, settings: Settings) -> Evaluation:
-    """Return the evaluation of an inventory; floors that were left out as nothing tells how they shake are noted."""
-    found = evaluate(inventory, settings)
+    """Assess the pieces of all floors whose motion is known.
+
+    Raises InputError if a setting does not fit the inventory, as an unknown piece that is to be anchored, or a record
+    is gone.
+    """
+    kind = settings.scenario or inventory.building.scenario_kind or SCENARIOS[0]
+    demands, faults = serve_floors(inventory, kind, ductility_reduction=settings.ductility_reduction)
+    served = {floor for floor, _axis in demands}
+    left_out = {one.floor for one in inventory.floors} - served
+    unserved = frozenset(map(key, left_out)) | _find_gaps(snapshot)
+    if not served:
+        return Evaluation(None, unserved, tuple(faults))
+    known = len(inventory.problems)
+    if left_out:
+        inventory, settings = _keep_floors(inventory, served), _keep_anchors(inventory, settings, served)
+    assessment = compute(inventory, settings)
+    return Evaluation(assessment, unserved, (*faults, *assessment.problems[known:]))
+
+
+def _find_gaps(snapshot: "Snapshot") -> frozenset[str]:
+    """Return the floors that the reading left out as nothing tells how they shake, as names are compared."""
+    if not snapshot.tables["Floors"].found:
+        return frozenset()
     cells = {one.cell for one in snapshot.problems if isinstance(one, Gap) and one.severity == "error"}
-    table = snapshot.tables["Floors"]
     gaps = {row.number: key(row.get("floor")) for row in list_floors(snapshot.tables)}
-    rows = {number for cell in cells for number in (first_row(cell),) if number in gaps} if table.found else set()
-    return replace(found, unserved=found.unserved | {gaps[number] for number in rows})
+    return frozenset(gaps[number] for number in map(first_row, cells) if number in gaps)
 
 
 def list_floors(tables: Tables) -> list[Row]:

@@ -12,7 +12,7 @@ from urllib.parse import quote
 
 import numpy as np
 
-from assess.model import AXES, CatalogueType, FloorPlan, Inventory, Outline
+from assess.model import AXES, CatalogueType, Inventory, Outline
 from assess.plans.linework import unpack
 from assess.report.figures.labels import Point
 from assess.report.figures.plan import BORDER
@@ -34,8 +34,6 @@ EMPTY = (12.0, 8.0)
 """Size of the frame of a floor on which there is nothing yet [m]."""
 UNPLACED = 20.0
 """Width of the frame for a picture of unknown width that has not been placed yet [m]."""
-
-
 DEFAULT_SIZE = 0.4
 """Side of a piece whose sizes are missing, so that it can be seen and moved [m]."""
 DECIMALS = 4
@@ -52,20 +50,10 @@ HEAD = '<svg xmlns="http://www.w3.org/2000/svg" width="{wide}" height="{tall:.2f
 
 @dataclass(frozen=True, slots=True)
 class FloorPicture:
-    """The picture of a floor; of one that has not been placed yet some of the numbers are None.
+    """The picture of a floor, of lines or grey; until it is placed some of the numbers are None.
 
-    Parameters
-    ----------
-    content : bytes
-        As `assess.model.FloorPlan` has it: nothing of the user's file reaches the page as it is.
-    is_lines : bool
-        Whether it is a drawing of lines.
-    aspect : float
-        Height over width [-].
-    left, bottom, width : float, optional
-        Where it lies, and how wide it is [m].
-    turn : float
-        By how much it is turned [deg].
+    `content` is as `assess.model.FloorPlan` has it, `aspect` the height over the width [-]; `left`, `bottom` and
+    `width` tell where it lies [m], and `turn` by how much it is turned [deg].
     """
 
     content: bytes
@@ -76,20 +64,9 @@ class FloorPicture:
     width: float | None
     turn: float = 0.0
 
-    @classmethod
-    def of(cls, plan: FloorPlan) -> "FloorPicture":
-        """Return that of a plan which is placed."""
-        aspect = plan.height / plan.width
-        return cls(plan.content, plan.is_lines, aspect, plan.left, plan.bottom, plan.width, plan.turn_deg)
-
     @property
-    def is_placed(self) -> bool:
-        """Whether it is known where it lies."""
-        return None not in (self.left, self.bottom, self.width)
-
-    @property
-    def corners(self) -> list[tuple[float, float]]:
-        """Its frame [m], from its lower left corner anticlockwise; nothing where it is not placed."""
+    def corners(self) -> list[Point]:
+        """Its frame [m], from its lower left corner anticlockwise; nothing where it is not known where it lies."""
         if self.left is None or self.bottom is None or self.width is None:
             return []
         angle, tall = np.radians(self.turn), self.width * self.aspect
@@ -106,7 +83,7 @@ class FloorPicture:
             "width": self.width,
             "height": None if self.width is None else self.width * self.aspect,
             "turn": self.turn,
-            "placed": self.is_placed,
+            "placed": bool(self.corners),
             "aspect": self.aspect,
         }
 
@@ -117,25 +94,27 @@ class FloorPicture:
         tall = WIDE * self.aspect
         lines = (line * (WIDE, -WIDE) + (0, tall) for line in unpack(self.content))
         path = "".join("M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in line.tolist()) for line in lines)
-        head = HEAD.format(wide=WIDE, tall=tall)
-        return (
-            f'{head}<path d="{path}" fill="none" stroke="{STROKE}" stroke-width="1"/></svg>'.encode(),
-            "image/svg+xml",
-        )
+        drawn = f'<path d="{path}" fill="none" stroke="{STROKE}" stroke-width="1"/></svg>'
+        return f"{HEAD.format(wide=WIDE, tall=tall)}{drawn}".encode(), "image/svg+xml"
 
 
-def find_floor_picture(snapshot: "Snapshot", row: Row) -> FloorPicture | None:
+def _find_picture(snapshot: "Snapshot", row: Row | None) -> FloorPicture | None:
     """Return the picture of a floor by its row; None where it names none, or one that cannot be used."""
+    if row is None:
+        return None
     plan = next((one.plan for one in snapshot.inventory.floors if one.row == row.number), None)
     if plan is not None:
-        return FloorPicture.of(plan)
+        aspect = plan.height / plan.width
+        return FloorPicture(plan.content, plan.is_lines, aspect, plan.left, plan.bottom, plan.width, plan.turn_deg)
     text = row.get("plan")
     drawing = None if text is None else snapshot.find_drawing(text, row.get("plan_width"))
     if drawing is None:
         return None
-    numbers = {name: row.get(f"plan_{name}") for name in ("left", "bottom", "width")}
-    numbers["width"] = drawing.width if numbers["width"] is None else numbers["width"]
-    return FloorPicture(drawing.content, drawing.is_lines, drawing.aspect, **numbers, turn=row.get("plan_turn") or 0.0)
+    left, bottom, width = (row.get(f"plan_{name}") for name in ("left", "bottom", "width"))
+    return FloorPicture(
+        drawing.content, drawing.is_lines, drawing.aspect, left, bottom, drawing.width if width is None else width,
+        row.get("plan_turn") or 0.0,
+    )  # fmt: skip
 
 
 # ---------------------------------------------------------------- the pieces
@@ -143,7 +122,7 @@ def find_floor_picture(snapshot: "Snapshot", row: Row) -> FloorPicture | None:
 
 @dataclass(frozen=True, slots=True)
 class PlacedPiece:
-    """A piece with a position; `falls` is what it may cover beyond its footprint [m], `missing` its unknown sizes."""
+    """A piece with a position: its sizes [m], those that are not known, and what it may cover beyond its footprint."""
 
     row: Row
     at: Point
@@ -151,7 +130,7 @@ class PlacedPiece:
     breadth: float
     width: float
     height: float | None
-    missing: tuple[str, ...]
+    missing: list[str]
     falls: tuple[Ring, ...] = ()
 
     @property
@@ -161,87 +140,68 @@ class PlacedPiece:
 
     def describe(self) -> dict[str, Any]:
         """Return it as the page takes it."""
-        row = self.row
         return {
-            "row": row.number,
-            "item": row.get("item") or "",
-            "description": _describe(row),
+            **_name_piece(self.row),
             "x": round(self.at[0], DECIMALS),
             "y": round(self.at[1], DECIMALS),
             "angle": self.angle,
             "breadth": round(self.breadth, DECIMALS),
             "width": round(self.width, DECIMALS),
             "height": None if self.height is None else round(self.height, DECIMALS),
-            "anchored": row.get("anchored") or "unknown",
-            "quantity": row.get("quantity") or 1,
-            "fallen": [round_points(ring) for ring in self.falls],
-            "missing": [*self.missing],
+            "anchored": self.row.get("anchored") or "unknown",
+            "quantity": self.row.get("quantity") or 1,
+            "fallen": [_round_points(ring) for ring in self.falls],
+            "missing": self.missing,
         }
 
 
-def place_pieces(
-    table: Table, rows: Iterable[Row], types: Mapping[str, CatalogueType], away: Mapping[int, float]
-) -> list[PlacedPiece]:
-    """Return the pieces of some rows that have a position.
-
-    `away` holds, of the pieces against a wall, the direction in which each falls [deg], by the number of their row.
-    """
-    return [_place(table, row, types, away.get(row.number)) for row in rows if _is_placed(row)]
+def _name_piece(row: Row) -> dict[str, Any]:
+    described = row.get("description") or row.get("type") or ""
+    return {"row": row.number, "item": row.get("item") or "", "description": described}
 
 
 def _place(table: Table, row: Row, types: Mapping[str, CatalogueType], away: float | None) -> PlacedPiece:
+    """Return a piece; `away` is the direction in which one against a wall falls [deg]."""
     sizes = filled_sizes(table, row, types)
     breadth, height = sizes.get("breadth"), sizes.get("height")
     width = sizes.get("width", breadth)
     angle = row.get("angle_deg")
     if angle is None:
         angle = 90.0 if row.get("axis") == AXES[1] else 0.0
-    piece = PlacedPiece(
-        row=row,
-        at=(row.get("x"), row.get("y")),
-        angle=angle,
-        breadth=min(DEFAULT_SIZE, width or DEFAULT_SIZE) if breadth is None else breadth,
-        width=width or DEFAULT_SIZE,
-        height=height,
-        missing=tuple(name for name in SIZES if sizes.get(name) is None),
-    )
-    return piece if breadth is None or height is None else replace(piece, falls=_list_falls(piece, height, away))
-
-
-def _list_falls(piece: PlacedPiece, height: float, away: float | None) -> tuple[Ring, ...]:
-    ahead, behind = fallen(piece.at, piece.angle, piece.breadth, piece.width, height)
+    drawn = min(DEFAULT_SIZE, width or DEFAULT_SIZE) if breadth is None else breadth
+    missing = [name for name in SIZES if sizes.get(name) is None]
+    piece = PlacedPiece(row, (row.get("x"), row.get("y")), angle, drawn, width or DEFAULT_SIZE, height, missing)
+    if breadth is None or height is None:
+        return piece
+    ahead, behind = fallen(piece.at, angle, breadth, piece.width, height)
     if away is None:
-        return ahead, behind
-    return (ahead,) if abs(angle_apart(away, piece.angle)) < 90 else (behind,)
+        return replace(piece, falls=(ahead, behind))
+    return replace(piece, falls=(ahead if abs(angle_apart(away, angle)) < 90 else behind,))
 
 
-def find_away(inventory: Inventory, floor: str) -> dict[int, float]:
+def _find_away(inventory: Inventory, floor: str) -> dict[int, float]:
     """Return the direction in which the pieces of a floor that stand against a wall fall [deg], by their rows."""
     own = tuple(one for one in inventory.items if one.floor == floor and one.against_wall)
     walls = find_walls(replace(inventory, items=own))
     return {own[at].row: one.falls_toward for at, one in walls.items() if one.falls_toward is not None}
 
 
-def cut_all(pieces: Sequence[PlacedPiece], edge: "BaseGeometry | None") -> list[PlacedPiece]:
-    """Return pieces with what they may cover cut at the building's edge; as they are where that is not known."""
-    if edge is None or not any(one.falls for one in pieces):
-        return list(pieces)
-    import numpy as np
+def _cut_all(pieces: Sequence[PlacedPiece], edge: "BaseGeometry") -> list[PlacedPiece]:
+    """Return pieces with what they may cover cut at the building's edge."""
     import shapely
 
     shapely.prepare(edge)
     rings = np.array([ring for one in pieces for ring in one.falls])
     is_inside = iter(np.asarray(shapely.covers(edge, shapely.polygons(rings)), dtype=np.bool_).tolist())
-    return [replace(one, falls=tuple(_cut(one.falls, edge, is_inside))) for one in pieces]
+
+    def cut(falls: Iterable[Ring]) -> Iterator[Ring]:
+        for ring in falls:
+            yield from (ring,) if next(is_inside) else cut_falls([ring], edge)
+
+    return [replace(one, falls=tuple(cut(one.falls))) for one in pieces]
 
 
-def _cut(falls: Iterable[Ring], edge: "BaseGeometry", is_inside: Iterator[bool]) -> Iterator[Ring]:
-    for ring in falls:
-        yield from (ring,) if next(is_inside) else cut_falls([ring], edge)
-
-
-def round_points(points: Iterable[Point] | Outline) -> list[list[float]]:
-    """Return points for the page."""
+def _round_points(points: Iterable[Point] | Outline) -> list[list[float]]:
     return [[round(x, DECIMALS), round(y, DECIMALS)] for x, y in points]
 
 
@@ -250,18 +210,14 @@ def round_points(points: Iterable[Point] | Outline) -> list[list[float]]:
 
 def describe_catalogue(snapshot: "Snapshot") -> dict[str, Any]:
     """Return the answer of `GET /api/catalogue`: the types of the workbook, with their sizes [m]."""
-    return {
-        "types": [
-            {"type": one.type, "breadth": one.breadth, "width": one.width, "height": one.height}
-            for one in snapshot.inventory.catalogue
-        ]
-    }
+    names = ("type", *SIZES)
+    return {"types": [{name: getattr(one, name) for name in names} for one in snapshot.inventory.catalogue]}
 
 
 def find_picture(snapshot: "Snapshot", floor: str) -> tuple[bytes, str] | None:
     """Return the picture of a floor as `GET /api/picture` answers it, and its media type; None where there is none."""
-    row = next((one for one in list_floors(snapshot.tables) if key(one.get("floor")) == key(floor)), None)
-    picture = None if row is None else find_floor_picture(snapshot, row)
+    named = (one for one in list_floors(snapshot.tables) if key(one.get("floor")) == key(floor))
+    picture = _find_picture(snapshot, next(named, None))
     return None if picture is None else picture.draw()
 
 
@@ -270,28 +226,31 @@ def describe_plan(snapshot: "Snapshot", floor: str | None) -> dict[str, Any]:
     floors = list_floors(snapshot.tables)
     named = (one for one in floors if floor is not None and key(one.get("floor")) == key(floor))
     row = next(named, floors[0] if floors else None)
-    answer: dict[str, Any] = {
+    name = row.get("floor") if row else ""
+    return {
         "version": snapshot.version,
-        "floor": row.get("floor") if row else "",
+        "floor": name,
         "floor_row": row.number if row else None,
         "floors": [{"floor": one.get("floor"), "name": one.get("name") or "", "row": one.number} for one in floors],
+        **_draw(snapshot.tables, snapshot.inventory, name, _find_picture(snapshot, row)),
     }
-    picture = None if row is None else find_floor_picture(snapshot, row)
-    return answer | _draw(snapshot.tables, snapshot.inventory, answer["floor"], picture)
 
 
 def _draw(tables: Tables, inventory: Inventory, floor: str, picture: FloorPicture | None) -> dict[str, Any]:
-    items, places = list_on_floor(tables["Items"], floor), list_on_floor(tables["Places"], floor)
-    types = {key(one.type): one for one in build_catalogue(tables["Catalogue"])}
+    def list_own(name: str) -> list[Row]:
+        return [row for row in tables[name].rows if floor and key(row.get("floor") or "") == key(floor)]
+
+    items, places = list_own("Items"), list_own("Places")
+    types, away = {key(one.type): one for one in build_catalogue(tables["Catalogue"])}, _find_away(inventory, floor)
+    pieces = [_place(tables["Items"], row, types, away.get(row.number)) for row in items if _is_placed(row)]
     rooms = list_rooms([one for one in inventory.places if one.floor == floor])
     placed = [(one.x, one.y) for one in inventory.items if one.floor == floor]
     stand = [(x, y) for x, y in placed if x is not None and y is not None]
     edge = find_edge(rooms, picture.corners if picture else (), stand)
-    pieces = cut_all(
-        place_pieces(tables["Items"], items, types, find_away(inventory, floor)), None if edge is None else edge[0]
-    )
+    if edge is not None and any(one.falls for one in pieces):
+        pieces = _cut_all(pieces, edge[0])
     segments = list(_describe_segments(tables, inventory, floor))
-    outlines = [round_points(row.get("outline")) for row in places if row.get("outline")]
+    outlines = [_round_points(row.get("outline")) for row in places if row.get("outline")]
     drawn: list[Iterable[Sequence[float]]] = [ring for one in pieces for ring in (one.corners, *one.falls)]
     drawn += [*outlines, *(one["outline"] or one["points"] for one in segments)]
     drawn.append([(row.get("x"), row.get("y")) for row in places if _is_placed(row)])
@@ -299,45 +258,33 @@ def _draw(tables: Tables, inventory: Inventory, floor: str, picture: FloorPictur
         "frame": _frame([(x, y) for points in drawn for x, y in points], picture),
         "picture": None if picture is None else picture.describe(floor),
         "pieces": [one.describe() for one in pieces],
-        "unplaced": [
-            {"row": row.number, "item": row.get("item") or "", "description": _describe(row)}
-            for row in items
-            if not _is_placed(row)
-        ],
+        "unplaced": [_name_piece(row) for row in items if not _is_placed(row)],
         "places": [_describe_place(row) for row in places],
         "segments": segments,
         "walls": [[one, two] for ring in outlines for one, two in zip(ring, [*ring[1:], ring[0]], strict=True)],
     }
 
 
-def list_on_floor(table: Table, floor: str) -> list[Row]:
-    """Return the rows of a table that name a floor."""
-    return [row for row in table.rows if floor and key(row.get("floor") or "") == key(floor)]
-
-
 def _is_placed(row: Row) -> bool:
     return row.get("x") is not None and row.get("y") is not None
 
 
-def _describe(row: Row) -> str:
-    return row.get("description") or row.get("type") or ""
-
-
 def _describe_place(row: Row) -> dict[str, Any]:
-    outline = row.get("outline")
+    outline, x, y = (row.get(name) for name in ("outline", "x", "y"))
     return {
         "row": row.number,
         "place": row.get("place") or "",
         "kind": row.get("kind") or "",
-        "outline": round_points(outline) if outline else None,
-        "x": None if row.get("x") is None else round(row.get("x"), DECIMALS),
-        "y": None if row.get("y") is None else round(row.get("y"), DECIMALS),
+        "outline": _round_points(outline) if outline else None,
+        "x": None if x is None else round(x, DECIMALS),
+        "y": None if y is None else round(y, DECIMALS),
     }
 
 
 def _describe_segments(tables: Tables, inventory: Inventory, floor: str) -> Iterator[dict[str, Any]]:
     places = places_by_name(tables["Places"])
-    bands = _list_bands(inventory)
+    clear = [one.clear_width or one.required_width or DEFAULT_WIDTH for one in inventory.routes]
+    bands = {inventory.routes[at].row: band for at, band in build_bands(inventory, clear).items() if band.length > 0}
     for row in tables["Routes"].rows:
         ends = [places.get(key(row.get(name) or "")) for name in ("start", "end")]
         own = {key(row.get("floor"))} if row.get("floor") else {key(end.get("floor") or "") for end in ends if end}
@@ -349,20 +296,15 @@ def _describe_segments(tables: Tables, inventory: Inventory, floor: str) -> Iter
             "row": row.number,
             "route": row.get("route") or "",
             "segment": row.get("segment") or "",
-            "points": round_points((end.get("x"), end.get("y")) for end in here) if len(here) == len(ends) else [],
+            "points": _round_points((end.get("x"), end.get("y")) for end in here) if len(here) == len(ends) else [],
             "width": row.get("clear_width") or row.get("required_width") or DEFAULT_WIDTH,
             "from": row.get("start") or "",
             "to": row.get("end") or "",
-            "outline": None if band is None else round_points(outline_band(band)),
+            "outline": None if band is None else _round_points(_outline_band(band)),
         }
 
 
-def _list_bands(inventory: Inventory) -> dict[int, Band]:
-    clear = [one.clear_width or one.required_width or DEFAULT_WIDTH for one in inventory.routes]
-    return {inventory.routes[at].row: band for at, band in build_bands(inventory, clear).items() if band.length > 0}
-
-
-def outline_band(band: Band) -> list[Point]:
+def _outline_band(band: Band) -> list[Point]:
     """Return the corners of a band on the plan, as far as it goes on round a bend [m]."""
     (x, y), long, half = band.start, band.length, band.width / 2
     before, behind = -band.extends_start, long + band.extends_end

@@ -46,6 +46,11 @@ HEADERS: Mapping[bytes, bytes] = {
 READING = ("GET", "HEAD")
 SESSION = "assess.session"
 """Where the session of a request stands in its scope."""
+_TO_PAGE = '<meta http-equiv="refresh" content="0; url=/">'
+_NO_ICON = '<link rel="icon" href="data:,">'
+"""Browsers ask for an icon otherwise."""
+_CLOSED = fill("This page is closed for this browser.")
+_AGAIN = fill("Press Enter in the window in which assess runs: it opens the page again. Or start assess open again.")
 
 
 class Guard:
@@ -115,13 +120,6 @@ class Guard:
             return site in ("same-origin", "none") or is_visit
         is_own = visit.headers.get("origin", "") in self._origins
         return site == "same-origin" and is_own and "x-assess" in visit.headers
-
-
-_TO_PAGE = '<meta http-equiv="refresh" content="0; url=/">'
-_NO_ICON = '<link rel="icon" href="data:,">'
-"""Browsers ask for an icon otherwise."""
-_CLOSED = fill("This page is closed for this browser.")
-_AGAIN = fill("Press Enter in the window in which assess runs: it opens the page again. Or start assess open again.")
 
 
 async def skip_body(receive: Receive) -> None:

@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 from assess.errors import AssessError, CancelledError
 from assess.i18n import fill, gettext
 from assess.progress import Progress, Report
+from assess.web.file_names import ENDINGS, make_safe
 from assess.web.jobs import STAGES, Slots
 from assess.web.request_errors import CONFLICT, NOT_FOUND, RequestError, describe_fault
-from assess.web.safe_names import ENDINGS, make_safe
 from assess.web.starting import Made, choose
 
 if TYPE_CHECKING:
@@ -46,17 +46,10 @@ def choose_routes(text: str) -> Routes:
     return cast(Routes, choose({"routes": text}, "routes", ROUTES))
 
 
-def read(path: Path, name: str, progress: Progress, routes: Routes) -> "ImportedBuilding":
-    """Read what was sent, whatever it is: see `assess.bim.read_source`."""
-    from assess.bim.read_source import read_source
-
-    return read_source(path, name, progress, routes=routes)
-
-
 # ---------------------------------------------------------------- what came out
 
 
-def summarise(found: "ImportedBuilding") -> dict[str, Any]:
+def _summarise(found: "ImportedBuilding") -> dict[str, Any]:
     """Return what was taken of a building and what was skipped, what may be furniture first.
 
     It is all that is kept of a reading once its workbook is open. Of `skipped` each group has its reason, whether it
@@ -80,16 +73,16 @@ def summarise(found: "ImportedBuilding") -> dict[str, Any]:
     }
 
 
-def describe_taken(taken: Mapping[str, Any]) -> dict[str, Any]:
+def _describe_taken(taken: Mapping[str, Any]) -> dict[str, Any]:
     """Return a summary as the page shows it, in the language in use; of skipped types as many as `MOST_ROWS`."""
     left, groups, maybe = MOST_ROWS, [], 0
     for reason, is_furniture, rows in taken["skipped"]:
         shown, total = rows[:left], sum(number for _, number in rows)
         left -= len(shown)
         maybe += total * is_furniture
-        more = len(rows) - len(shown)
         groups.append({
-            "reason": gettext(reason), "is_furniture": is_furniture, "count": total, "types": shown, "more": more,
+            "reason": gettext(reason), "is_furniture": is_furniture, "count": total, "types": shown,
+            "more": len(rows) - len(shown),
         })  # fmt: skip
     said = {name: [gettext(text) for text in taken[name]] for name in ("warnings", "remarks")}
     return {**taken, "of": taken["pieces"] + maybe, "skipped": groups, **said}
@@ -106,7 +99,6 @@ class _Asked(threading.Event):
         self.latest = time.monotonic()
 
     def is_set(self) -> bool:
-        """Tell whether it is to stop."""
         return super().is_set() or time.monotonic() - self.latest > LEFT_AFTER
 
 
@@ -126,31 +118,31 @@ class Import:
     """
 
     def __init__(self, folder: Path, name: str, routes: Routes, slots: Slots) -> None:
-        self.id, self.name, self.state = secrets.token_hex(8), name, "running"
+        self.id, self.name, self.state, self.book = secrets.token_hex(8), name, "running", ""
         self._folder, self._routes, self._slots = folder, routes, slots
         self._asked, self._lock = _Asked(), threading.RLock()
         self._started, self._latest = time.monotonic(), Report("", 0.0, "", None)
         self._error: Exception | None = None
         self._found: ImportedBuilding | None = None
-        self.taken: dict[str, Any] | None = None
-        self.book = ""
+        self._taken: dict[str, Any] | None = None
         try:
-            slots.take(self)
+            slots.take()
         except RequestError:
             shutil.rmtree(folder, ignore_errors=True)
             raise
         self._thread = threading.Thread(target=copy_context().run, args=(self._run,), name="assess-import", daemon=True)
         self._thread.start()
 
-    @property
-    def is_running(self) -> bool:
-        """Whether it has not ended yet."""
-        return self.state == "running"
-
     def _run(self) -> None:
+        from assess.bim.read_source import read_source
+
+        def listen(report: Report) -> None:
+            self._latest = report
+
         state, found, error = "done", None, None
         try:
-            found = read(self._folder / SOURCE, self.name, Progress(self._listen, self._asked), self._routes)
+            progress = Progress(listen, self._asked)
+            found = read_source(self._folder / SOURCE, self.name, progress, routes=self._routes)
         except CancelledError:
             state = "cancelled"
         except Exception as fault:
@@ -158,31 +150,22 @@ class Import:
             if not isinstance(fault, AssessError | OSError):
                 LOG.exception("a building model could not be read")
         shutil.rmtree(self._folder, ignore_errors=True)
-        self._slots.leave(self)
+        self._slots.leave()
         with self._lock:
-            if self.is_running:
+            if self.state == "running":
                 self._found, self._error = found, error
-                self.taken = summarise(found) if found is not None else None
+                self._taken = _summarise(found) if found is not None else None
                 self.state = state
 
-    def _listen(self, report: Report) -> None:
-        self._latest = report
-
-    def cancel(self) -> None:
-        """End it at once; nothing of it is kept."""
+    def close(self) -> None:
+        """End it at once, and forget what was read; nothing of it is kept."""
         with self._lock:
-            if self.is_running:
+            if self.state == "running":
                 self.state = "cancelled"
         self._asked.set()
         self._thread.join(timeout=PATIENCE)
-
-    def close(self) -> None:
-        """End it, and forget what was read."""
-        self.cancel()
         self._found = None
         shutil.rmtree(self._folder, ignore_errors=True)
-
-    # ------------------------------------------------------------ what the page is told
 
     def describe(self) -> dict[str, Any]:
         """Return all that the page shows, in the language in use; notes that it was asked for."""
@@ -195,17 +178,15 @@ class Import:
                 "state": self.state,
                 "name": self.name,
                 "label": gettext(STAGES.get(now.stage or "reading", STAGES["reading"])),
-                "share": now.share if self.is_running else 1.0,
+                "share": now.share if self.state == "running" else 1.0,
                 "seconds": time.monotonic() - self._started,
                 "message": fault.get("message", ""),
                 "fix": fault.get("fix", ""),
                 "problems": fault.get("problems", []),
-                "found": describe_taken(self.taken) if self.taken else None,
+                "found": _describe_taken(self._taken) if self._taken else None,
                 "workbook": name_workbook(self.name),
                 "book": self.book,
             }
-
-    # ------------------------------------------------------------ the workbook of it
 
     def build(self, folder: Path, shaking: str) -> Made:
         """Return the new workbook, in the language in use, under names that the folder does not have yet.
@@ -255,22 +236,17 @@ def _rename_files(found: "ImportedBuilding", folder: Path) -> "ImportedBuilding"
 
     Nor does any file get the name that another file of the building has or would have.
     """
+
+    def is_free(path: Path, data: bytes) -> bool:
+        return not _is_there(path) or (
+            path.is_file() and path.stat().st_size == len(data) and path.read_bytes() == data
+        )
+
     names: dict[str, str] = {}
     for name, data in found.files.items():
         others = {one.casefold() for one in (*found.files, *names.values()) if one != name}
-        names[name] = next(
-            one
-            for one in _number(PurePosixPath(name))
-            if one.casefold() not in others and (not _is_there(folder / one) or _holds(folder / one, data))
-        )
-    floors = [_rename(row, names) for row in found.floors]
+        options = (one for one in _number(PurePosixPath(name)) if one.casefold() not in others)
+        names[name] = next(one for one in options if is_free(folder / one, data))
+    plans = ((row, row.get("plan", "")) for row in found.floors)
+    floors = [{**row, "plan": names.get(plan, plan)} if plan else dict(row) for row, plan in plans]
     return replace(found, floors=floors, files={names[name]: data for name, data in found.files.items()})
-
-
-def _holds(path: Path, data: bytes) -> bool:
-    return path.is_file() and path.stat().st_size == len(data) and path.read_bytes() == data
-
-
-def _rename(row: Mapping[str, Any], names: Mapping[str, str]) -> dict[str, Any]:
-    plan = row.get("plan", "")
-    return {**row, "plan": names.get(plan, plan)} if plan else dict(row)

@@ -47,14 +47,8 @@ def main() -> None:
         try:
             tell({"state": "done", **assess_workbook(folder, order, tell)})
         except AssessError as error:
-            problems = error.problems if isinstance(error, WorkbookError) else ()
-            tell(
-                {
-                    "state": "failed",
-                    "message": gettext(error.message),
-                    "problems": list(map(describe_problem, problems)),
-                }
-            )
+            problems = list(map(describe_problem, error.problems if isinstance(error, WorkbookError) else ()))
+            tell({"state": "failed", "message": gettext(error.message), "problems": problems})
         except OSError as error:
             tell({"state": "failed", "message": error.strerror or type(error).__name__, "problems": []})
     os._exit(0)  # without waiting for anything that is still computed aside
@@ -90,7 +84,16 @@ def assess_workbook(folder: Path, order: dict[str, Any], tell: Tell) -> dict[str
     from assess.report.report_options import ReportOptions
     from assess.workbook.read import read_inventory
 
-    progress, formats = Progress(_Listener(tell)), order["formats"]
+    latest, stage = 0.0, ("", "")
+
+    def listen(report: Report) -> None:
+        nonlocal latest, stage
+        now, of = time.monotonic(), (report.stage, report.detail)
+        if of != stage or now - latest >= TOLD_EVERY:
+            latest, stage = now, of
+            tell({name: getattr(report, name) for name in ("stage", "share", "detail", "seconds_left")})
+
+    progress, formats = Progress(listen), order["formats"]
     settings = Settings(**order["settings"])
     inventory = read_inventory(folder / INPUT / order["workbook"], progress=progress)
     threads = max(1, count_processors() - 1)
@@ -102,22 +105,6 @@ def assess_workbook(folder: Path, order: dict[str, Any], tell: Tell) -> dict[str
         message = gettext(error.message)
     (folder / SUMMARY).write_text(json.dumps(summarise(results)), encoding="utf-8")
     return {"message": message, "problems": [describe_problem(one) for one in results.problem_rows]}
-
-
-class _Listener:
-    """Sends reports of progress on, not more often than anyone looks."""
-
-    def __init__(self, tell: Tell) -> None:
-        self._tell, self._latest, self._stage = tell, 0.0, ("", "")
-
-    def __call__(self, report: Report) -> None:
-        now, stage = time.monotonic(), (report.stage, report.detail)
-        if stage == self._stage and now - self._latest < TOLD_EVERY:
-            return
-        self._latest, self._stage = now, stage
-        self._tell(
-            {"stage": report.stage, "share": report.share, "detail": report.detail, "seconds_left": report.seconds_left}
-        )
 
 
 def summarise(results: Results) -> dict[str, Any]:
@@ -147,15 +134,10 @@ def key(risk: RiskClass) -> str:
 
 
 def _sum(state: State) -> dict[str, Any]:
+    names = ("falls", "falls_low", "falls_high", "anchored", "apart", "blocked_routes", "cut_off_rooms")
     return {
         "counts": {key(risk): state.count(risk) for risk in RiskClass},
-        "falls": state.falls,
-        "falls_low": state.falls_low,
-        "falls_high": state.falls_high,
-        "anchored": state.anchored,
-        "apart": state.apart,
-        "blocked_routes": state.blocked_routes,
-        "cut_off_rooms": state.cut_off_rooms,
+        **{name: getattr(state, name) for name in names},
     }
 
 

@@ -10,7 +10,7 @@ import subprocess
 import sys
 import threading
 import zipfile
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from contextvars import copy_context
 from pathlib import Path
@@ -21,8 +21,8 @@ from assess.i18n import Text, fill, gettext, spoken
 from assess.model import Inventory
 from assess.report_formats import FILES
 from assess.settings import change_settings
+from assess.web.file_names import list_present
 from assess.web.job_process import INPUT, ORDER, OUT, SUMMARY
-from assess.web.named_files import list_present
 from assess.web.request_errors import NOT_FOUND, TOO_MANY, UNUSABLE, RequestError
 from assess.workbook.records import find_place
 
@@ -57,31 +57,27 @@ class Slots:
     """How many jobs may run at once, in all sessions; `refusal` says why there is no place."""
 
     def __init__(self, most: int, refusal: Text = BUSY) -> None:
-        self._most, self._refusal = most, refusal
-        self._running, self._lock = set[object](), threading.Lock()
+        self._free, self._refusal = threading.BoundedSemaphore(most), refusal
 
-    def take(self, job: object) -> None:
+    def take(self) -> None:
         """Take a place; RequestError where there is none."""
-        with self._lock:
-            if len(self._running) >= self._most:
-                raise RequestError(self._refusal, TOO_MANY)
-            self._running.add(job)
+        if not self._free.acquire(blocking=False):
+            raise RequestError(self._refusal, TOO_MANY)
 
-    def leave(self, job: object) -> None:
+    def leave(self) -> None:
         """Give a place back."""
-        with self._lock:
-            self._running.discard(job)
+        self._free.release()
 
 
 class Job:
-    """One simulation of one version of a workbook.
+    """One simulation of one version of a workbook, which may be changed meanwhile.
 
     Raises InputError if an option cannot be used, the workbook has errors, or there is no place.
 
     Parameters
     ----------
     book : Book
-        The workbook, which may be changed meanwhile.
+        The workbook.
     body : mapping
         What the page asked for.
     parent : Path
@@ -97,13 +93,13 @@ class Job:
             "state": "running", "stage": "", "detail": "", "share": 0.0, "seconds_left": None, "message": "",
             "problems": [],
         }  # fmt: skip
-        slots.take(self)
+        slots.take()
         try:
             self._folder.mkdir(mode=0o700)
             self._order, self._inventory = prepare(book, body, self._folder)
             self._process = _start(self._folder)
         except BaseException:
-            slots.leave(self)
+            slots.leave()
             shutil.rmtree(self._folder, ignore_errors=True)
             raise
         self._reader = threading.Thread(target=copy_context().run, args=(self._listen,), name="assess-job", daemon=True)
@@ -114,38 +110,28 @@ class Job:
         """Whether it has not ended yet."""
         return bool(self._now["state"] == "running")
 
-    # ------------------------------------------------------------ its course
-
     def _listen(self) -> None:
+        """Follow the process to its end, then remove all that is no result."""
         lost = fill("The simulation ended unexpectedly; memory may have run out. Nothing was written.")
         last: dict[str, Any] = {"state": "failed", "message": gettext(lost)}
-        if self._process.stdout is None:
-            raise RuntimeError("the process has no output")
-        for line in self._process.stdout:
-            said = json.loads(line)
-            if "state" in said:
-                last = said
-            elif self.is_running:
-                self._now.update(said)
-        self._process.wait()
-        for stream in (self._process.stdin, self._process.stdout):
-            if stream is not None:
-                stream.close()
-        self._slots.leave(self)
+        with self._process as process:
+            for line in process.stdout or ():
+                said = json.loads(line)
+                if "state" in said:
+                    last = said
+                elif self.is_running:
+                    self._now.update(said)
+        self._slots.leave()
         with self._lock:
             if self.is_running:
                 self._now.update(last)
-            self._clean()
-
-    def _clean(self) -> None:
-        """Remove all that is no result; what a process wrote that broke down is shown in the window of the server."""
-        if self._now["state"] == "failed" and not self._now["problems"]:
-            with suppress(OSError):
-                said = (self._folder / ERRORS).read_text(encoding="utf-8", errors="replace")[-MOST_SHOWN:]
-                if said:
-                    LOG.error("a simulation ended with:\n%s", said)
-        for name in (TEMPORARY, INPUT) if self._now["state"] == "done" else ("",):
-            shutil.rmtree(self._folder / name, ignore_errors=True)
+            if self._now["state"] == "failed" and not self._now["problems"]:
+                with suppress(OSError):  # what it wrote is shown in the window of the server
+                    said = (self._folder / ERRORS).read_text(encoding="utf-8", errors="replace")[-MOST_SHOWN:]
+                    if said:
+                        LOG.error("a simulation ended with:\n%s", said)
+            for name in (TEMPORARY, INPUT) if self._now["state"] == "done" else ("",):
+                shutil.rmtree(self._folder / name, ignore_errors=True)
 
     def cancel(self) -> None:
         """End it at once and remove what it has written."""
@@ -177,51 +163,52 @@ class Job:
             return {"id": self.id, "label": label, "version": version, **{k: self._now[k] for k in ("state", "share")}}
 
     def describe(self, book: "Book | None") -> dict[str, Any]:
-        """Return all that the page shows; `book` is the workbook as it is now."""
+        """Return all that the page shows; `book` is the workbook as it is now.
+
+        The rows that changed since are found once for each version of the workbook.
+        """
         with self._lock:
-            order, found = self._order, {"items": None, "before_after": None}
+            order, found, stale = self._order, {"items": None, "before_after": None}, list[int]()
             is_old = book is None or book.version != order["version"]
+            if is_old and book:
+                now = book.snapshot()
+                stale = now.keep(("stale", self.id), lambda: list_stale(self._inventory, now.inventory))
             if self._now["state"] == "done":
                 found = json.loads((self._folder / SUMMARY).read_text(encoding="utf-8"))
+            files: list[dict[str, Any]] = [
+                {"name": path.name, "bytes": path.stat().st_size} for path in self._list_files()
+            ]
+            if files:
+                files.append({"name": ARCHIVE, "bytes": sum(one["bytes"] for one in files)})
             return {
                 **self._now,
                 **self.summarise(),
                 "is_old": is_old,
-                "stale": self._find_stale(book) if is_old and book else [],
+                "stale": stale,
                 "formats": order["formats"],
                 "settings": order["settings"],
-                "files": self._list_files(),
+                "files": files,
                 **found,
             }
 
-    def _find_stale(self, book: "Book") -> list[int]:
-        """Return the rows that changed since, found once for each version of the workbook."""
-        now = book.snapshot()
-        return now.keep(("stale", self.id), lambda: list_stale(self._inventory, now.inventory))
-
-    def _list_files(self) -> list[dict[str, Any]]:
-        paths = self._list_paths()
-        listed = [{"name": path.name, "bytes": path.stat().st_size} for path in paths]
-        return [*listed, {"name": ARCHIVE, "bytes": sum(path.stat().st_size for path in paths)}] if listed else []
-
-    def _list_paths(self) -> Sequence[Path]:
+    def _list_files(self) -> list[Path]:
         if self._now["state"] != "done":
-            return ()
+            return []
         return sorted(path for path in (self._folder / OUT).iterdir() if path.is_file() and path.name[0] != ".")
 
-    def find_file(self, name: str) -> Path | bytes:
+    def read_file(self, name: str) -> bytes:
         """Return a file of its results, or all in one archive; RequestError where there is none of this name."""
         with self._lock:
-            paths = {path.name: path for path in self._list_paths()}
+            paths = {path.name: path for path in self._list_files()}
             if name == ARCHIVE and paths:
                 stream = io.BytesIO()
                 with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
                     for path in paths.values():
                         archive.write(path, path.name)
                 return stream.getvalue()
-        if name not in paths:
-            raise RequestError(fill("The simulation has no file of this name."), NOT_FOUND)
-        return paths[name]
+            if name not in paths:
+                raise RequestError(fill("The simulation has no file of this name."), NOT_FOUND)
+            return paths[name].read_bytes()
 
 
 _OWN_GROUP: int = getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0)
@@ -264,7 +251,7 @@ FLOOR_INPUTS = ("floor", "elevation", "pfa", "pfv", "records")
 """Likewise of a floor; those of one floor serve the floors between, so that a change counts for all."""
 
 
-def read_changes(body: Mapping[str, Any]) -> dict[str, Any]:
+def _read_changes(body: Mapping[str, Any]) -> dict[str, Any]:
     """Return the settings that a request changes; SettingsError where one cannot be used."""
     given = {name: body[name] for name in OPTIONS if body.get(name) not in (None, "")}
     first = body.get("first") or 0
@@ -275,11 +262,8 @@ def read_changes(body: Mapping[str, Any]) -> dict[str, Any]:
     return changes
 
 
-def read_formats(body: Mapping[str, Any], folder: Path) -> list[str]:
-    """Return the formats of a request.
-
-    Raises InputError if one is unknown, or needs a package that is not installed.
-    """
+def _read_formats(body: Mapping[str, Any], folder: Path) -> list[str]:
+    """Return the formats of a request; InputError if one is unknown, or needs a package that is not installed."""
     from assess.report import check_folder
 
     given = body.get("formats", ["html"])
@@ -296,17 +280,10 @@ def read_formats(body: Mapping[str, Any], folder: Path) -> list[str]:
 def prepare(book: "Book", body: Mapping[str, Any], folder: Path) -> tuple[dict[str, Any], Inventory]:
     """Write the order of a job and a copy of the workbook with the files that it names.
 
-    Raises InputError if an option cannot be used, or the workbook has errors: as `assess run`, which works with whole
-    workbooks only.
-
-    Returns
-    -------
-    order : dict
-        What the process is told, with the version of the workbook.
-    inventory : Inventory
-        What the workbook holds.
+    Returns what the process is told, with the version of the workbook, and what that holds. Raises InputError if an
+    option cannot be used, or the workbook has errors: as `assess run`, which works with whole workbooks only.
     """
-    changes, formats = read_changes(body), read_formats(body, folder / OUT)
+    changes, formats = _read_changes(body), _read_formats(body, folder / OUT)
     snapshot, data = book.snapshot(), book.write()
     while book.version != snapshot.version:
         snapshot, data = book.snapshot(), book.write()

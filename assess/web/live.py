@@ -7,8 +7,8 @@ but that the run knows more: of a floor with a record, say, Excel shows ``run as
 import re
 from collections import OrderedDict
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cache
+from dataclasses import dataclass, field, replace
+from itertools import islice, product
 from threading import Lock
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -16,19 +16,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.errors import AssessError, Gap, Problem
-from assess.i18n import LANGUAGES, gettext, load_catalogue, speaking
+from assess.i18n import gettext, load_catalogue, speaking
 from assess.methods import Method, adopted_formula, paper_formula
-from assess.model import AXES, Inventory
+from assess.model import AXES, CatalogueType, Inventory
 from assess.pipeline.assessment import Assessment
 from assess.risk import RiskClass, classify_all
 from assess.units import GRAVITY, LENGTH, VELOCITY
-from assess.web.columns import PageSheet
 from assess.web.evaluation import BY_FORMULAS, Evaluation, evaluate_once, list_floors
 from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, say_class
 from assess.workbook.habits import list_groups
 from assess.workbook.lists import NO_SHAKING, NO_UNIT, RUN_ASSESS, WRONG
 from assess.workbook.live_row import IS_ANCHORED, NO_AXIS, NO_FLOOR, NO_TYPE
-from assess.workbook.names import find_sheet, key, plain, split_header
+from assess.workbook.names import find_sheet, key
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.plain_rows import column_number
 from assess.workbook.resolve import build_catalogue, defined, filled_sizes
@@ -49,13 +48,11 @@ SHOWN_WORKINGS = WORKINGS[2:]
 """Columns from which the live ones are computed: the axis, PFV and sizes that were used."""
 DECIMALS = 9
 """Decimals of the live values: what a sheet shows, with room to spare."""
+MOST_OF_RANGE = 400
+"""Cells of one range that are marked."""
 _RANGE = re.compile(r"([A-Z]{1,3})(\d+)(?::([A-Z]{1,3})(\d+))?")
 _FORMS = frozenset(sheet.name for sheet in SHEETS if sheet.layout == "form")
 _SEVERITIES = ("error", "warning", "note")
-MOST_OF_RANGE = 400
-"""Cells of one range that are marked."""
-
-Values = tuple[float | str | None, ...]
 
 
 class LiveRow(NamedTuple):
@@ -65,7 +62,7 @@ class LiveRow(NamedTuple):
     word: str
     chance: float | None
     outside: bool
-    values: Values
+    values: tuple[float | str | None, ...]
 
 
 Rows = Mapping[int, LiveRow]
@@ -96,43 +93,35 @@ class LiveView:
                 self._book, self._states = book, OrderedDict()
             snapshot = book.snapshot()
             before = None if since is None else self._states.get(since)
-            now = self._states.get(snapshot.version)
-            return _answer(now or self._evaluate(snapshot), before)
+            now = self._states.get(snapshot.version) or self._evaluate(snapshot)
+        is_whole = before is None or before.columns != now.columns
+        old: Rows = {} if is_whole or before is None else before.rows
+        changed = {number: row for number, row in now.rows.items() if old.get(number) != row}
+        return {
+            "version": now.version,
+            "whole": is_whole,
+            "items": describe_rows(changed, now.columns),
+            "gone": [number for number in old if number not in now.rows],
+            **now.rest,
+        }
 
     def _evaluate(self, snapshot: "Snapshot") -> _State:
-        latest = next(reversed(self._states.values()), None)
-        state = describe_state(snapshot)
-        if latest is not None:  # rows that are alike are held once
-            known = latest.rows
+        state = _describe_state(snapshot)
+        if self._states:  # rows that are alike are held once
+            known = next(reversed(self._states.values())).rows
             rows = {at: known[at] if known.get(at) == row else row for at, row in state.rows.items()}
-            state = _State(state.version, rows, state.columns, state.rest)
+            state = replace(state, rows=rows)
         self._states[state.version] = state
         while len(self._states) > MOST_VERSIONS:
             self._states.popitem(last=False)
         return state
 
 
-def _answer(now: _State, before: _State | None) -> dict[str, Any]:
-    is_whole = before is None or before.columns != now.columns
-    old: Rows = {} if is_whole or before is None else before.rows
-    changed = [(number, row) for number, row in now.rows.items() if old.get(number) != row]
-    return {
-        "version": now.version,
-        "whole": is_whole,
-        "items": describe_rows(changed, now.columns),
-        "gone": [number for number in old if number not in now.rows],
-        **now.rest,
-    }
-
-
-def describe_rows(rows: Iterable[tuple[int, LiveRow]], columns: Iterable[int] = ()) -> dict[str, Any]:
+def describe_rows(rows: Rows, columns: Iterable[int] = ()) -> dict[str, Any]:
     """Return rows as columns; without `columns`, the places of the live ones, what the page compares alone."""
-    numbers, shown = [], []
-    for number, row in rows:
-        numbers.append(number)
-        shown.append(row)
+    shown = list(rows.values())
     return {
-        "row": numbers,
+        "row": list(rows),
         "class": [row.risk for row in shown],
         "word": [row.word for row in shown],
         "chance": [row.chance for row in shown],
@@ -144,32 +133,28 @@ def describe_rows(rows: Iterable[tuple[int, LiveRow]], columns: Iterable[int] = 
 # ---------------------------------------------------------------- one version
 
 
-def describe_state(snapshot: "Snapshot") -> _State:
-    """Return all that is shown of one version of a workbook, in its language."""
-    with speaking(load_catalogue(snapshot.inventory.language)):
-        inventory = snapshot.inventory
-        columns = find_live_columns(snapshot.sheets["Items"])
-        found, fault = _evaluate(snapshot)
+def _describe_state(snapshot: "Snapshot") -> _State:
+    """Return all that is shown of one version of a workbook, in its language; of live columns those that are known."""
+    inventory = snapshot.inventory
+    with speaking(load_catalogue(inventory.language)):
+        every = snapshot.sheets["Items"].columns
+        columns = {at: every[at].live for at in sorted(every) if every[at].live in (*SHOWN_WORKINGS, *LIVE)}
+        try:
+            found = evaluate_once(snapshot, BY_FORMULAS)
+            fault = say_fault(snapshot.problems, found)
+        except AssessError as error:
+            found = Evaluation(None, frozenset(key(one.floor) for one in inventory.floors), ())
+            fault = gettext(error.message)
         rows = list_rows(snapshot.tables, inventory, found, columns.values())
         problems = describe_problems((*snapshot.problems, *found.problems), inventory.sheets)
         rest = {
             "problems": problems[:MOST_PROBLEMS],
             "more": max(0, len(problems) - MOST_PROBLEMS),
-            "counts": count_classes(rows, list_quantities(snapshot.tables["Items"])),
+            "counts": count_classes(rows, snapshot.tables["Items"]),
             "floors": [_describe_floor(row, found) for row in list_floors(snapshot.tables)],
             "error": fault,
         }
         return _State(snapshot.version, rows, tuple(columns), rest)
-
-
-def _evaluate(snapshot: "Snapshot") -> tuple[Evaluation, str]:
-    """Return what is known of the pieces, and why nothing could be computed; "" where something was."""
-    try:
-        found = evaluate_once(snapshot, BY_FORMULAS)
-    except AssessError as error:
-        floors = frozenset(key(one.floor) for one in snapshot.inventory.floors)
-        return Evaluation(None, floors, ()), gettext(error.message)
-    return found, say_fault(snapshot.problems, found)
 
 
 def say_fault(problems: Sequence[Problem], found: Evaluation) -> str:
@@ -188,55 +173,38 @@ def _describe_floor(row: Row, found: Evaluation) -> dict[str, Any]:
     name = row.get("floor")
     demands = {} if found.assessment is None else found.assessment.demands
     peaks = {axis: [one.pfa for one in demands.get((name, axis), ())] for axis in AXES}
-    return {
-        "row": row.number,
-        "floor": name,
-        **{f"pfa_{axis.lower()}": max(own) / GRAVITY if own else None for axis, own in peaks.items()},
-    }
+    largest = {f"pfa_{axis.lower()}": max(own) / GRAVITY if own else None for axis, own in peaks.items()}
+    return {"row": row.number, "floor": name, **largest}
 
 
 # ---------------------------------------------------------------- rows
 
 
-def find_live_columns(sheet: PageSheet) -> dict[int, str]:
-    """Return the columns of Items that Excel computes, by their place in the sheet, as `LIVE` and `WORKINGS` have them.
-
-    Those of which nothing is shown, as the row of Floors, are left out.
-    """
-    labels = {at: _live_labels().get(plain(one.label)) for at, one in sheet.columns.items() if one.is_live}
-    return {at: label for at, label in sorted(labels.items()) if label is not None}
-
-
-@cache
-def _live_labels() -> dict[str, str]:
-    names = {label: split_header(label)[0] for label in (*SHOWN_WORKINGS, *LIVE)}
-    return {plain(load_catalogue(code).find(name)): label for code in LANGUAGES for label, name in names.items()}
-
-
 def list_rows(
-    tables: Tables, inventory: Inventory, evaluation: Evaluation, columns: Iterable[str]
+    tables: Tables, inventory: Inventory, evaluation: Evaluation, columns: Iterable[str] = ()
 ) -> dict[int, LiveRow]:
-    """Return what is shown of each row of Items that holds anything, by its number, in the language in use."""
+    """Return what is shown of each row of Items that holds anything, by its number, in the language in use.
+
+    `columns`: the live ones, by their headers in English.
+    """
     labels = tuple(columns)
     known = {} if evaluation.assessment is None else _list_assessed(evaluation.assessment, labels)
-    words, anchored = _Words(tables, evaluation.unserved), {one.row: one.anchored for one in inventory.items}
+    types = {key(one.type): one for one in build_catalogue(tables["Catalogue"])}
+    words = _Words(tables["Items"], types, defined(tables["Floors"]), evaluation.unserved)
+    anchored = {one.row: one.anchored for one in inventory.items}
     return {
         row.number: known.get(row.number) or words.describe(row, labels, anchored.get(row.number))
         for row in tables["Items"].rows
     }
 
 
-def count_classes(rows: Mapping[int, LiveRow], quantities: Mapping[int, int]) -> dict[str, int]:
-    """Return the number of pieces (not rows) of each class, "" for those without; `quantities` by row."""
+def count_classes(rows: Rows, items: Table) -> dict[str, int]:
+    """Return the number of pieces (not rows) of each class, "" for those without; `items` has their quantities."""
     counts = dict.fromkeys((*CLASSES, ""), 0)
-    for number, row in rows.items():
-        counts[row.risk] += quantities.get(number, 1)
+    for row in items.rows:
+        quantity = row.get("quantity")
+        counts[rows[row.number].risk] += 1 if quantity is None else quantity
     return counts
-
-
-def list_quantities(table: Table) -> dict[int, int]:
-    """Return how many pieces each row of Items stands for, where that is filled in."""
-    return {row.number: row.get("quantity") for row in table.rows if row.get("quantity") is not None}
 
 
 # ---------------------------------------------------------------- pieces that were assessed
@@ -244,14 +212,14 @@ def list_quantities(table: Table) -> dict[int, int]:
 
 def _list_assessed(assessment: Assessment, labels: Sequence[str]) -> dict[int, LiveRow]:
     """Return what is shown of each piece under the motion that governs it."""
-    at, adoption, held = assessment.governing, assessment.adoption, assessment.anchors.held.tolist()
-    outside = _find_outside(assessment, adopted_formula(assessment.settings.class_by))
-    texts = _say_classes(assessment, adoption.risk[at], outside)
-    columns, blank = _columns(assessment, texts), [None] * len(texts)
+    at, adoption, held = assessment.governing, assessment.adoption, assessment.held.tolist()
+    risks, outside = adoption.risk[at], _find_outside(assessment, adopted_formula(assessment.settings.class_by))
+    texts = _say_classes(assessment, risks, outside)
+    columns, blank = _list_columns(assessment, texts) if labels else {}, [None] * len(texts)
     values = zip(*(columns.get(label, blank) for label in labels), strict=True) if labels else [()] * len(texts)
     found = zip(
-        assessment.inventory.items, adoption.risk[at].tolist(), adoption.probability[at].tolist(), outside.tolist(),
-        held, texts, values, strict=True,
+        assessment.inventory.items, risks.tolist(), adoption.probability[at].tolist(), outside.tolist(), held, texts,
+        values, strict=True,
     )  # fmt: skip
     return {
         item.row: LiveRow("", text, None, False, shown)
@@ -269,54 +237,56 @@ def _find_outside(assessment: Assessment, method: Method) -> NDArray[np.bool_]:
 
 def _say_classes(assessment: Assessment, risks: NDArray[Any], outside: NDArray[np.bool_]) -> list[str]:
     words, anchored = {risk: say_class(risk) for risk in RiskClass}, gettext(IS_ANCHORED)
-    found = zip(risks.tolist(), outside.tolist(), assessment.anchors.held.tolist(), strict=True)
+    found = zip(risks.tolist(), outside.tolist(), assessment.held.tolist(), strict=True)
     return [anchored if held else words[RiskClass(risk)] + OUTSIDE * marked for risk, marked, held in found]
 
 
-def _columns(assessment: Assessment, classes: Sequence[str]) -> dict[str, Sequence[Any]]:
+def _list_columns(assessment: Assessment, classes: Sequence[str]) -> dict[str, Sequence[Any]]:
     at, cases = assessment.governing, assessment.cases
     yes, no = gettext(YES), gettext(NO)
     paper, can_rock_at = paper_formula(), assessment.adoption.can_rock[at]
     of_paper = np.where(can_rock_at, classify_all(assessment.outcomes[paper.key].value[at]), RiskClass.LOW)
     ratio, pfa, *methods, risk, by_paper, can_rock = LIVE
     axis, pfv, breadth, height = SHOWN_WORKINGS
-    outcomes = (assessment.outcomes[method.key].value[at] for method in LIVE_METHODS)
-    return {
-        ratio: _plain_numbers(cases.breadth_to_height[at]),
-        pfa: _plain_numbers(cases.pfa[at] / GRAVITY),
-        **dict(zip(methods, map(_plain_numbers, outcomes), strict=True)),
+    numbers = {
+        ratio: cases.breadth_to_height,
+        pfa: cases.pfa / GRAVITY,
+        **{name: assessment.outcomes[one.key].value for name, one in zip(methods, LIVE_METHODS, strict=True)},
+        pfv: cases.pfv / VELOCITY["cm/s"],
+        breadth: cases.breadth / LENGTH["cm"],
+        height: cases.height / LENGTH["cm"],
+    }
+    return {  # "" for NaN, as a sheet shows it
+        **{
+            name: ["" if one != one else one for one in np.round(values[at], DECIMALS).tolist()]
+            for name, values in numbers.items()
+        },
         risk: classes,
         by_paper: _say_classes(assessment, of_paper, _find_outside(assessment, paper)),
         can_rock: [yes if one else no for one in can_rock_at.tolist()],
         axis: [assessment.case_demand[case].axis for case in at.tolist()],
-        pfv: _plain_numbers(cases.pfv[at] / VELOCITY["cm/s"]),
-        breadth: _plain_numbers(cases.breadth[at] / LENGTH["cm"]),
-        height: _plain_numbers(cases.height[at] / LENGTH["cm"]),
     }
-
-
-def _plain_numbers(values: Any) -> list[float | str]:
-    """Return numbers for JSON; "" for NaN, as a sheet shows it."""
-    return ["" if one != one else one for one in np.round(values, DECIMALS).tolist()]
 
 
 # ---------------------------------------------------------------- pieces without a class
 
 
+@dataclass(frozen=True, slots=True)
 class _Words:
     """Why rows have no class, in the words of the class column of the workbook.
 
-    `unserved` are the floors whose motion is not known, as names are compared.
+    `types` and `floors` by their names as names are compared; `unserved` are the floors whose motion is not known.
     """
 
-    def __init__(self, tables: Tables, unserved: Collection[str]) -> None:
-        self.table, self.unserved = tables["Items"], unserved
-        self.types = {key(one.type): one for one in build_catalogue(tables["Catalogue"])}
-        self.floors = defined(tables["Floors"])
+    table: Table
+    types: Mapping[str, CatalogueType]
+    floors: Collection[str]
+    unserved: Collection[str]
 
     def describe(self, row: Row, labels: Sequence[str], anchored: str | None) -> LiveRow:
         """Return what is shown of a row; `anchored` is what counts in place of its own cell, if anything does."""
-        sizes, word = filled_sizes(self.table, row, self.types), self.explain(row)
+        sizes = filled_sizes(self.table, row, self.types)
+        word = self._explain(row, sizes)
         shown: dict[str, float | str] = dict.fromkeys(LIVE, word)
         if word == gettext(NO_SHAKING):
             shown[LIVE[0]] = round(sizes["breadth"] / sizes["height"], DECIMALS)
@@ -325,28 +295,22 @@ class _Words:
                 word = shown[CLASS] = shown[CLASS_OR] = gettext(RUN_ASSESS if is_known else IS_ANCHORED)
         return LiveRow("", word, None, False, tuple(shown.get(label) for label in labels))
 
-    def explain(self, row: Row) -> str:
+    def _explain(self, row: Row, filled: Mapping[str, float]) -> str:
         """Return the word; "" where the row is not filled in as far as its name and sizes."""
-        table = self.table
-        sizes = ("breadth", "height")
+        table, sizes, kind, floor = self.table, ("breadth", "height"), row.get("type"), key(row.get("floor") or "")
         if row.get("item") is None:
             return ""
         if any(name in table.blind for name in sizes):
             return gettext(NO_UNIT)
         if any(table.spoilt(name, row) for name in sizes):
             return gettext(WRONG)
-        if len(filled_sizes(table, row, self.types).keys() & set(sizes)) < len(sizes):
-            is_unknown = row.get("type") is not None and key(row.get("type")) not in self.types
-            return gettext(NO_TYPE) if is_unknown else ""
-        return gettext(self._explain_motion(row))
-
-    def _explain_motion(self, row: Row) -> str:
-        floor = key(row.get("floor") or "")
+        if not filled.keys() >= set(sizes):
+            return "" if kind is None or key(kind) in self.types else gettext(NO_TYPE)
         if floor not in self.floors:
-            return NO_FLOOR
-        if self.table.spoilt("axis", row):
-            return NO_AXIS
-        return NO_SHAKING if floor in self.unserved else WRONG
+            return gettext(NO_FLOOR)
+        if table.spoilt("axis", row):
+            return gettext(NO_AXIS)
+        return gettext(NO_SHAKING if floor in self.unserved else WRONG)
 
 
 # ---------------------------------------------------------------- problems
@@ -361,9 +325,8 @@ def describe_problems(problems: Iterable[Problem], sheets: Mapping[str, str]) ->
 
 def _describe(shown: Problem, alike: list[Problem], english: Mapping[str, str]) -> dict[str, Any]:
     sheet = english.get(shown.sheet) or (find_sheet(shown.sheet) or (shown.sheet,))[0]
-    found = [(cell, one) for one in alike for cell in list_cells(sheet, one.cell)]
-    cells = [cell for cell, _ in found]
-    row, at = cells[0] if cells else (None, None)
+    found = [(cell, one) for one in alike for cell in _list_cells(sheet, one.cell)]
+    row, at = found[0][0] if found else (None, None)
     return {
         "severity": shown.severity,
         "sheet": sheet,
@@ -373,21 +336,17 @@ def _describe(shown: Problem, alike: list[Problem], english: Mapping[str, str]) 
         "message": gettext(shown.message),
         "fix": gettext(shown.fix),
         "count": len(alike),
-        "cells": cells,
+        "cells": [cell for cell, _ in found],
         "own": [(gettext(one.message), gettext(one.fix)) for _, one in found] if len(alike) > 1 else [],
         "lacks": shown.lacks if isinstance(shown, Gap) else "",
     }
 
 
-def list_cells(sheet: str, address: str) -> list[tuple[int, int]]:
+def _list_cells(sheet: str, address: str) -> list[tuple[int, int]]:
     """Return the cells of an address, ``H14`` or ``A1:C2``, by row from 1 and column from 0; of a form in column 1."""
     found = _RANGE.fullmatch(address)
     if found is None:
         return []
     first, top, last, bottom = found.groups()
-    columns = range(column_number(first) - 1, column_number(last or first))
-    rows = range(int(top), int(bottom or top) + 1)
-    if sheet in _FORMS:
-        return list(dict.fromkeys((row, 1) for row in rows[:MOST_OF_RANGE]))
-    every = ((row, at) for row in rows for at in columns)
-    return [cell for _, cell in zip(range(MOST_OF_RANGE), every, strict=False)]
+    columns = range(1, 2) if sheet in _FORMS else range(column_number(first) - 1, column_number(last or first))
+    return list(islice(product(range(int(top), int(bottom or top) + 1), columns), MOST_OF_RANGE))

@@ -1,12 +1,11 @@
 """States of routes, rooms and segments as the reports word them, for the page."""
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator
 from typing import TYPE_CHECKING, Any
 
 from assess.errors import AssessError
 from assess.i18n import gettext, load_catalogue, ngettext, speaking
 from assess.model import Inventory
-from assess.pipeline.assessment import Assessment
 from assess.pipeline.run import evaluate_route_tables
 from assess.progress import SILENT
 from assess.report.say.route import describe_routes as say_routes
@@ -43,15 +42,12 @@ def describe_routes(snapshot: "Snapshot") -> dict[str, Any]:
         try:
             found = evaluate_once(snapshot, BY_FORMULAS, routes=True)
             states = describe_states(snapshot.tables, inventory, found)
-            problems = [] if found.assessment is None else list(_list_problems(inventory, found.assessment))
+            assessed = found.assessment
+            shown = () if assessed is None else find_route_problems(assessed.inventory, assessed.obstructions)
+            problems = describe_problems(map(inventory.place, shown), inventory.sheets)
         except AssessError as error:
             states, problems = describe_unknown(snapshot.tables, gettext(error.message)), []
     return {"version": snapshot.version, **states, "problems": problems}
-
-
-def _list_problems(inventory: Inventory, assessment: Assessment) -> Iterable[dict[str, Any]]:
-    found = map(inventory.place, find_route_problems(assessment.inventory, assessment.obstructions))
-    return describe_problems(found, inventory.sheets)
 
 
 def describe_states(tables: Tables, inventory: Inventory, found: Evaluation) -> dict[str, Any]:
@@ -69,27 +65,45 @@ def describe_states(tables: Tables, inventory: Inventory, found: Evaluation) -> 
     routes = RouteTables(risk=0.0)
     if found.assessment is not None and inventory.routes:
         routes = evaluate_route_tables(found.assessment, SILENT)
+    known, places = {key(one.route) for one in routes.routes}, {one.place: one for one in inventory.places}
+    lost = [(name, why) for name, why in left_out.items() if name and name not in known]
     return {
-        "routes": [*_describe_routes(routes, left_out), *_describe_lost(routes, left_out)],
-        "rooms": [*_describe_rooms(routes, inventory), *_describe_unjoined(routes, inventory)],
-        "segments": [_describe_segment(one, routes.risk) for one in routes.segments],
-        "remarks": list(_list_remarks(tables, inventory, routes, left_out)),
+        "routes": [
+            *({"route": one.route, **_describe_route(one, routes, left_out)} for one in routes.routes),
+            *({"route": name, **_unknown(why)} for name, why in lost),
+        ],
+        "rooms": [
+            *(
+                {"room": one.room, "floor": one.floor, "place_row": places[one.room].row, **_describe_room(one, routes)}
+                for one in routes.rooms
+            ),
+            *(
+                {"room": name, "floor": places[name].floor, "place_row": places[name].row,
+                 **_unknown(gettext("no segment joins it to an exit or a stair"))}
+                for name in routes.unjoined_rooms
+            ),
+        ],
+        "segments": [
+            {"row": one.workbook_row, "route": one.route, "segment": one.segment, **_describe_segment(one, routes)}
+            for one in routes.segments
+        ],
+        "remarks": list(_list_remarks(tables, inventory, routes, is_left_out=bool(left_out))),
         "error": "",
-    }
+    }  # fmt: skip
 
 
 def describe_unknown(tables: Tables, why: str) -> dict[str, Any]:
     """Return every route, room and segment as not known."""
     routes, places = tables["Routes"].with_all("route"), tables["Places"].with_all("place")
-    rooms = [row for row in places if row.get("kind") == "room"]
     return {
-        "routes": [{"route": name, **_unknown("")} for name in dict.fromkeys(row.get("route") for row in routes)],
+        "routes": [{"route": name, **_unknown()} for name in dict.fromkeys(row.get("route") for row in routes)],
         "rooms": [
-            {"room": row.get("place"), "floor": row.get("floor") or "", "place_row": row.number, **_unknown("")}
-            for row in rooms
+            {"room": row.get("place"), "floor": row.get("floor") or "", "place_row": row.number, **_unknown()}
+            for row in places
+            if row.get("kind") == "room"
         ],
         "segments": [
-            {"row": row.number, "route": row.get("route"), "segment": row.get("segment") or "", **_unknown("")}
+            {"row": row.number, "route": row.get("route"), "segment": row.get("segment") or "", **_unknown()}
             for row in routes
         ],
         "remarks": [],
@@ -98,6 +112,7 @@ def describe_unknown(tables: Tables, why: str) -> dict[str, Any]:
 
 
 def _find_crossed(tables: Tables, unserved: Collection[str]) -> list[str]:
+    """Return the floors of segments and of their places whose motion is not known."""
     places, found = places_by_name(tables["Places"]), dict[str, str]()
     for row in tables["Routes"].rows:
         ends = [places.get(key(row.get(name) or "")) for name in ("start", "end")]
@@ -107,95 +122,66 @@ def _find_crossed(tables: Tables, unserved: Collection[str]) -> list[str]:
     return list(found.values())
 
 
-def _unknown(detail: str) -> dict[str, Any]:
+def _unknown(detail: str = "") -> dict[str, Any]:
     return _state(RouteState.NOT_KNOWN, say_state(RouteState.NOT_KNOWN), None, detail)
 
 
 def _state(
     state: RouteState, word: str, chance: Chance | None, detail: str, *, is_standing: bool = False
 ) -> dict[str, Any]:
-    is_known = state != RouteState.NOT_KNOWN and chance is not None
     return {
         "state": state.name.lower(),
         "standing": is_standing,
         "word": word,
-        "chance": chance.probability if is_known and chance is not None else None,
+        "chance": None if state == RouteState.NOT_KNOWN or chance is None else chance.probability,
         "detail": detail,
     }
 
 
-def _describe_routes(routes: RouteTables, left_out: Mapping[str, Sequence[int]]) -> Iterator[dict[str, Any]]:
-    for one in routes.routes:
-        if key(one.route) in left_out:
-            yield {"route": one.route, **_unknown(_say_left_out(left_out[key(one.route)]))}
-        else:
-            word, standing = say_route_state(one, routes.risk), is_blocked_standing(one)
-            yield {"route": one.route, **_state(one.state, word, one.blocked, _explain(one), is_standing=standing)}
+def _describe_route(one: RouteRow, routes: RouteTables, left_out: dict[str, str]) -> dict[str, Any]:
+    if key(one.route) in left_out:
+        return _unknown(left_out[key(one.route)])
+    word, detail = say_route_state(one, routes.risk), _join_details(one, say_blocked(one))
+    return _state(one.state, word, one.blocked, detail, is_standing=is_blocked_standing(one))
 
 
-def _describe_segment(one: SegmentRow, risk: float) -> dict[str, Any]:
-    named = {"row": one.workbook_row, "route": one.route, "segment": one.segment}
-    word, standing = say_segment_state(one, risk), one.is_blocked_standing
-    return named | _state(one.state, word, one.blocked, _explain(one), is_standing=standing)
+def _describe_segment(one: SegmentRow, routes: RouteTables) -> dict[str, Any]:
+    word, detail = say_segment_state(one, routes.risk), _join_details(one, say_blocked(one))
+    return _state(one.state, word, one.blocked, detail, is_standing=one.is_blocked_standing)
 
 
-def _explain(one: SegmentRow | RouteRow) -> str:
-    return "; ".join([say_blocked(one), *_name_reason(one)])
+def _describe_room(one: RoomRow, routes: RouteTables) -> dict[str, Any]:
+    detail = _join_details(one, say_lost(one), *(say_way(way, routes) for way in one.ways[:1]))
+    return _state(one.state, say_room_state(one), one.loses_every_exit, detail, is_standing=is_blocked_standing(one))
 
 
-def _name_reason(one: SegmentRow | RouteRow | RoomRow) -> Iterator[str]:
-    if one.missing:
-        yield say_missing(one.missing)
-    elif one.state != RouteState.OPEN and one.most_likely_piece is not None:
-        yield gettext("most likely by {item}", item=one.most_likely_piece.item)
+def _join_details(one: SegmentRow | RouteRow | RoomRow, chance: str, *further: str) -> str:
+    """Return the chance, what is missing or the piece that decides, and what else there is to say."""
+    reason = say_missing(one.missing) if one.missing else ""
+    if not one.missing and one.state != RouteState.OPEN and one.most_likely_piece is not None:
+        reason = gettext("most likely by {item}", item=one.most_likely_piece.item)
+    return "; ".join([chance, *([reason] if reason else []), *further])
 
 
-def _describe_rooms(routes: RouteTables, inventory: Inventory) -> Iterator[dict[str, Any]]:
-    rows = {one.place: one.row for one in inventory.places}
-    for one in routes.rooms:
-        detail = "; ".join([say_lost(one), *_name_reason(one), *(say_way(way, routes) for way in one.ways[:1])])
-        word, standing = say_room_state(one), is_blocked_standing(one)
-        state = _state(one.state, word, one.loses_every_exit, detail, is_standing=standing)
-        yield {"room": one.room, "floor": one.floor, "place_row": rows.get(one.room), **state}
-
-
-def _describe_unjoined(routes: RouteTables, inventory: Inventory) -> Iterator[dict[str, Any]]:
-    places = {one.place: one for one in inventory.places}
-    for name in routes.unjoined_rooms:
-        detail = gettext("no segment joins it to an exit or a stair")
-        yield {"room": name, "floor": places[name].floor, "place_row": places[name].row, **_unknown(detail)}
-
-
-def _find_left_out(tables: Tables, inventory: Inventory) -> dict[str, list[int]]:
-    """Return the rows of segments that were left out for an error, by the name of the route as names are compared."""
+def _find_left_out(tables: Tables, inventory: Inventory) -> dict[str, str]:
+    """Return what is said of the segments that were left out for an error, by the name of the route, as compared."""
     known = {one.row for one in inventory.routes}
     found: dict[str, list[int]] = {}
     for row in tables["Routes"].rows:
         if row.number not in known:
             found.setdefault(key(row.get("route") or ""), []).append(row.number)
-    return found
+    return {
+        name: ngettext(
+            "{n:,} row of the sheet Routes has an error: {rows}", "{n:,} rows of the sheet Routes have errors: {rows}",
+            len(rows), rows=", ".join(map(str, rows)),
+        )
+        for name, rows in found.items()
+    }  # fmt: skip
 
 
-def _describe_lost(routes: RouteTables, left_out: Mapping[str, Sequence[int]]) -> Iterator[dict[str, Any]]:
-    known = {key(one.route) for one in routes.routes}
-    for name, rows in left_out.items():
-        if name and name not in known:
-            yield {"route": name, **_unknown(_say_left_out(rows))}
-
-
-def _say_left_out(rows: Sequence[int]) -> str:
-    named = ", ".join(map(str, rows))
-    return ngettext(
-        "{n:,} row of the sheet Routes has an error: {rows}", "{n:,} rows of the sheet Routes have errors: {rows}",
-        len(rows), rows=named,
-    )  # fmt: skip
-
-
-def _list_remarks(
-    tables: Tables, inventory: Inventory, routes: RouteTables, left_out: Mapping[str, Sequence[int]]
-) -> Iterator[str]:
+def _list_remarks(tables: Tables, inventory: Inventory, routes: RouteTables, *, is_left_out: bool) -> Iterator[str]:
     lost = len(tables["Items"].rows) - len(inventory.items)
-    if lost and (routes.routes or left_out):
+    if lost and (routes.routes or is_left_out):
         yield ngettext(
             "{n:,} row of furniture has an error or a blank, and does not count.",
             "{n:,} rows of furniture have errors or blanks, and do not count.",

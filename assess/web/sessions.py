@@ -23,15 +23,15 @@ from starlette.requests import HTTPConnection
 from assess.delivery.folders import is_left, is_ours
 from assess.errors import AssessError
 from assess.i18n import fill
+from assess.web.file_names import make_safe
+from assess.web.importing import Import, Routes
 from assess.web.jobs import Job, Slots
 from assess.web.request_errors import CONFLICT, NOT_FOUND, TOO_MANY, RequestError
-from assess.web.safe_names import make_safe
+from assess.web.starting import Made, build_workbook, place_files, place_workbook
 
 if TYPE_CHECKING:
     from assess.web.book import Book
-    from assess.web.importing import Import, Routes
     from assess.web.live import LiveView
-    from assess.web.starting import Made
 
 ENTRANCE = "/enter"
 """The path to which the printed address leads."""
@@ -73,14 +73,6 @@ HOSTED = Limits(bytes=300_000_000, sessions=50, jobs=2, idle=12 * 3600.0)
 SENDING = fill("Another building model is being sent. Wait until it has been received, then try again.")
 
 
-def check_share(size: int, room: int, limits: Limits) -> None:
-    """Raise RequestError where so many bytes are more than the room that a session has left."""
-    if size > room:
-        raise RequestError(
-            fill("The files of this session have more than {most:.0f} MB.", most=limits.bytes / 1e6), TOO_MANY
-        )
-
-
 @dataclass(slots=True, eq=False)
 class Session:
     """What one user has open.
@@ -95,12 +87,17 @@ class Session:
         A folder for this session alone, that is removed with it.
     home : Path, optional
         Where new workbooks are made: the folder in which the command was started; None: they are only held.
-    language : str
-        Code of the language of the page; blank: see `assess.web.texts.choose_language`.
-    sending_slots : Slots
-        The place of a building model while it is sent; one at a time, so that their bytes can be counted.
+    slots, reading_slots, sending_slots : Slots
+        Places of simulations and of building models, of all sessions; and of a model of this one while it is sent: one
+        at a time, so that their bytes can be counted.
     reading, imported : Import, optional
         The building model that was sent last, as long as it has not become a workbook, and that of the open workbook.
+    language : str
+        Code of the language of the page; blank: see `assess.web.texts.choose_language`.
+    seen, looked : float
+        When its user last asked for anything, and when the file was last looked at.
+    downloaded : int
+        Version of the workbook that was downloaded last.
     """
 
     key: str
@@ -112,8 +109,8 @@ class Session:
     live: "LiveView | None" = None
     job: Job | None = None
     slots: Slots = field(default_factory=lambda: Slots(1))
-    reading: "Import | None" = None
-    imported: "Import | None" = None
+    reading: Import | None = None
+    imported: Import | None = None
     reading_slots: Slots = field(default_factory=lambda: Slots(1))
     sending_slots: Slots = field(default_factory=lambda: Slots(1, SENDING))
     language: str = ""
@@ -122,21 +119,19 @@ class Session:
     downloaded: int = 0
     lock: threading.RLock = field(default_factory=threading.RLock)
 
-    def check_room(self, size: int) -> None:
-        """Raise RequestError where so many bytes more are too many for one session."""
-        check_share(size, self.find_room(), self.limits)
-
     def find_room(self) -> int:
         """Return how many bytes more this session may have."""
         return self.limits.bytes - sum(path.stat().st_size for path in self.folder.rglob("*") if path.is_file())
 
-    def view(self) -> "LiveView":
-        """Return what answers with live values."""
-        from assess.web.live import LiveView
+    def check_room(self, size: int, room: int | None = None) -> None:
+        """Raise RequestError where so many bytes more are too many for one session; `room` is what it has left."""
+        if size > (self.find_room() if room is None else room):
+            most = self.limits.bytes / 1e6
+            raise RequestError(fill("The files of this session have more than {most:.0f} MB.", most=most), TOO_MANY)
 
-        with self.lock:
-            self.live = self.live or LiveView()
-            return self.live
+    def make_folder(self, kind: str) -> Path:
+        """Return a new folder whose name begins so: of a building model, or of the files of a held workbook."""
+        return Path(tempfile.mkdtemp(prefix=kind, dir=self.folder))
 
     def take(self, book: "Book") -> "Book":
         """Have a workbook be the open one; the one before is saved, if it is on the disk."""
@@ -165,40 +160,28 @@ class Session:
 
     def hold(self, name: str, data: bytes) -> "Book":
         """Open a workbook that was sent."""
-        from assess.web.book import Book
-
         with self.lock:
-            self.check_room(len(data))
-            folder = Path(tempfile.mkdtemp(prefix="files-", dir=self.folder))
-            return self.take(Book.hold(make_safe(name), data, folder))
+            return self._hold(Made(make_safe(name), data))
 
-    def begin(self, body: Mapping[str, Any]) -> "Book":
-        """Open a new workbook: in the folder of new workbooks where there is one, else held."""
-        from assess.web.starting import build_workbook
-
-        return self._open_new(build_workbook(body))
-
-    def _open_new(self, made: "Made") -> "Book":
+    def _hold(self, made: Made) -> "Book":
         from assess.web.book import Book
-        from assess.web.starting import place_files, place_workbook
 
-        if self.home is not None:
-            return self.take(Book.open_disk(place_workbook(made, self.home)))
         self.check_room(len(made.data))
-        folder = Path(tempfile.mkdtemp(prefix="files-", dir=self.folder))
+        folder = self.make_folder("files-")
         place_files(made, folder)
         return self.take(Book.hold(made.name, made.data, folder))
 
-    def make_import_folder(self) -> Path:
-        """Return a new folder for a building model that is sent."""
-        from assess.web.importing import FOLDER
+    def begin(self, body: Mapping[str, Any]) -> "Book":
+        """Open a new workbook: in the folder of new workbooks where there is one, else held."""
+        return self._open_new(build_workbook(body))
 
-        return Path(tempfile.mkdtemp(prefix=FOLDER, dir=self.folder))
+    def _open_new(self, made: Made) -> "Book":
+        from assess.web.book import Book
 
-    def read_model(self, folder: Path, name: str, routes: "Routes" = "none") -> None:
+        return self._hold(made) if self.home is None else self.take(Book.open_disk(place_workbook(made, self.home)))
+
+    def read_model(self, folder: Path, name: str, routes: Routes = "none") -> None:
         """Read a building model in such a folder; an earlier one that is not opened is dropped."""
-        from assess.web.importing import Import
-
         with self.lock:
             if self.reading is not None:
                 self.reading.close()
@@ -223,7 +206,7 @@ class Session:
             self.reading, self.imported = None, found
             return book
 
-    def simulate(self, body: Mapping[str, Any]) -> Job:
+    def simulate(self, body: Mapping[str, Any]) -> None:
         """Start a simulation of the open workbook; the results of an earlier one are removed."""
         with self.lock:
             if self.job is not None and self.job.is_running:
@@ -235,7 +218,6 @@ class Session:
             if self.job is not None:
                 self.job.close()
             self.job = new
-            return new
 
     def save(self) -> None:
         """Save a workbook of the disk; what stands in the way is part of its state."""

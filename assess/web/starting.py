@@ -11,8 +11,8 @@ from assess.delivery.folders import private_folder
 from assess.errors import OutputError
 from assess.i18n import LANGUAGES, Text, fill, gettext, list_languages, load_catalogue, speaking
 from assess.intensity import SHAKINGS
+from assess.web.file_names import check_name
 from assess.web.request_errors import CONFLICT, UNUSABLE, RequestError
-from assess.web.safe_names import check_name
 from assess.workbook.names import key
 from assess.workbook.schema import BUILDING, CATALOGUE, FLOORS, ITEMS, USES
 
@@ -61,23 +61,6 @@ def _list_types(use: str) -> Iterator[dict[str, Any]]:
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
-    """A new workbook as the page asks for it: texts in any language, checked."""
-
-    kind: str
-    name: str
-    use: str = ""
-    building: str = ""
-    town: str = ""
-    shaking: str = ""
-    language: str = LANGUAGES[0]
-    units: Units = "si"
-    floor: str = "1"
-    room: str = ""
-    pieces: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
 class Made:
     """A new workbook: its name, its bytes, and the files that it names."""
 
@@ -88,35 +71,39 @@ class Made:
 
 def build_workbook(request: Mapping[str, Any]) -> Made:
     """Return a new workbook; raises RequestError if the request asks for something that there is not."""
-    wanted = _read(request)
-    if wanted.kind == "example":
-        return _take_example(wanted.name)
-    from assess.workbook.template import write_workbook
-
-    catalogue = load_catalogue(wanted.language)
-    with speaking(catalogue), private_folder("assess-new-") as folder:
-        path = folder / wanted.name
-        write_workbook(path, _fill(wanted), wanted.units)
-        return Made(wanted.name, path.read_bytes())
-
-
-def _read(request: Mapping[str, Any]) -> Wanted:
     kind = choose(request, "kind", ("template", "blank", "example"))
-    name = request.get("name") or (EXAMPLE if kind == "example" else request.get("building") or gettext("building"))
-    units = choose(request, "units", ("si", "imperial"))
-    return Wanted(
-        kind=kind,
-        name=check_name(name),
-        use=choose(request, "use", ("", *USES)),
-        building=_text(request, "building"),
-        town=_text(request, "town"),
-        shaking=choose_shaking(request),
-        language=choose(request, "language", LANGUAGES),
-        units=cast(Units, units),
-        floor=_text(request, "floor") or "1",
-        room=_text(request, "room"),
-        pieces=tuple(_list_pieces(request.get("pieces") or [])),
-    )
+    called = request.get("name") or (EXAMPLE if kind == "example" else request.get("building") or gettext("building"))
+    name, units = check_name(called), cast(Units, choose(request, "units", ("si", "imperial")))
+    use, language = choose(request, "use", ("", *USES)), choose(request, "language", LANGUAGES)
+    building = {
+        "building": _text(request, "building"), "address": _text(request, "town"), "use": use,
+        "shaking": choose_shaking(request),
+    }  # fmt: skip
+    floor, room = _text(request, "floor") or "1", _text(request, "room")
+    pieces = list(_list_pieces(request.get("pieces") or []))
+    if kind == "example":
+        return _take_example(name)
+    from assess.pipeline.live_values import store_live
+    from assess.workbook.catalogue import read_catalogue
+    from assess.workbook.template import Content, write_workbook
+
+    with speaking(load_catalogue(language)), private_folder("assess-new-") as folder:
+        rows: dict[str, list[dict[str, Any]]] = {
+            CATALOGUE.name: read_catalogue(units, use), BUILDING.name: [_leave_out_blanks(building)],
+            FLOORS.name: [], ITEMS.name: [],
+        }  # fmt: skip
+        if kind == "template":
+            rows[FLOORS.name] = [{"floor": floor} | ({"elevation": 0} if floor.casefold() in GROUND else {})]
+            rows[ITEMS.name] = [
+                _leave_out_blanks({"item": f"A{at}", "floor": floor, "room": room, "type": gettext(piece)})
+                for at, piece in enumerate(pieces, 1)
+            ]
+        write_workbook(folder / name, store_live(Content(rows), units), units)
+        return Made(name, (folder / name).read_bytes())
+
+
+def _leave_out_blanks(row: Mapping[str, str]) -> dict[str, Any]:
+    return {name: value for name, value in row.items() if value}
 
 
 def choose_shaking(request: Mapping[str, Any]) -> str:
@@ -162,27 +149,6 @@ def _types() -> Mapping[str, str]:
 
     names = [line["type"] for line in catalogue_rows()]
     return {key(load_catalogue(code).find(name)): name for code in LANGUAGES for name in names}
-
-
-def _fill(wanted: Wanted) -> Any:
-    from assess.pipeline.live_values import store_live
-    from assess.workbook.catalogue import read_catalogue
-    from assess.workbook.template import Content
-
-    building = {"building": wanted.building, "address": wanted.town, "use": wanted.use, "shaking": wanted.shaking}
-    rows: dict[str, list[dict[str, Any]]] = {
-        CATALOGUE.name: read_catalogue(wanted.units, wanted.use),
-        BUILDING.name: [{name: value for name, value in building.items() if value}],
-        FLOORS.name: [],
-        ITEMS.name: [],
-    }
-    if wanted.kind == "template":
-        floor = {"floor": wanted.floor} | ({"elevation": 0} if wanted.floor.casefold() in GROUND else {})
-        rows[FLOORS.name].append(floor)
-        for at, piece in enumerate(wanted.pieces, 1):
-            row = {"item": f"A{at}", "floor": wanted.floor, "room": wanted.room, "type": gettext(piece)}
-            rows[ITEMS.name].append({name: value for name, value in row.items() if value})
-    return store_live(Content(rows), wanted.units)
 
 
 def _take_example(name: str) -> Made:

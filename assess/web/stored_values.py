@@ -16,7 +16,7 @@ from assess.workbook.held import list_formulas
 from assess.workbook.open import UNSAVED, Book
 from assess.workbook.patch import Value, patch_workbook
 from assess.workbook.plain_rows import column_letters
-from assess.workbook.schema import ITEMS
+from assess.workbook.schema import ITEMS, LIVE
 
 LiveRows = Mapping[int, list[float | str]]
 """What the live columns show, by the row of the item."""
@@ -32,18 +32,14 @@ _CLOSE = 1e-9
 def find_live(snapshot: Snapshot) -> LiveRows:
     """Return what the live columns of a workbook show.
 
-    Nothing where it has none, or where a line of Building is wrong: the formulas tell of it, the core leaves it out.
+    Nothing where it has none, or where a line of Building on which they rest is wrong: the formulas tell of it, the
+    core leaves it out.
     """
-    is_known = snapshot.sheets[ITEMS.name].live and not _is_building_wrong(snapshot)
-    return find_live_rows(snapshot.inventory) if is_known else {}
-
-
-def _is_building_wrong(snapshot: Snapshot) -> bool:
-    """Tell whether a line of Building that the live columns rest on has an error."""
     building = snapshot.tables["Building"]
     harmless = {building.cell(name, 0) for name in _IDLE if name in building.places}
     wrong = (one.cell for one in snapshot.problems if one.severity == "error" and one.sheet == building.sheet.name)
-    return not harmless.issuperset(wrong)
+    is_known = snapshot.sheets[ITEMS.name].live and harmless.issuperset(wrong)
+    return find_live_rows(snapshot.inventory) if is_known else {}
 
 
 def write_changes(data: bytes, base: Snapshot, now: Snapshot, different: Iterable[CellPlace], was: LiveRows) -> bytes:
@@ -68,13 +64,9 @@ def write_changes(data: bytes, base: Snapshot, now: Snapshot, different: Iterabl
     changes: dict[str, dict[str, Value]] = {}
     for sheet, row, at in cells:
         held = now.cells.cells[sheet]
-        changes.setdefault(held.title, {})[_address(row, at)] = held.as_written(held.value((row, at)))
+        changes.setdefault(held.title, {})[f"{column_letters(at)}{row}"] = held.as_written(held.value((row, at)))
     results = dict(_find_results(data, base, now, cells, was))
     return patch_workbook(data, changes, results, name=base.cells.name).data
-
-
-def _address(row: int, at: int) -> str:
-    return f"{column_letters(at)}{row}"
 
 
 def _find_results(
@@ -102,17 +94,15 @@ def _find_live(
     held = base.cells.cells[ITEMS.name]
     for row, at in sorted(held.marks.formulas):
         column = items.columns.get(at)
-        if column is None or not column.is_live or row <= items.header:
-            continue
-        is_touched = edited is None or row in edited or was.get(row) != rows.get(row)
-        if not is_touched:
+        if column is None or not column.live or row <= items.header:
             continue
         stored, found = held.value((row, at)), rows.get(row)
-        if found is None or column.live is None:
-            if stored is not None and stored is not UNSAVED:
-                yield _address(row, at), None
-        elif not _is_same(stored, found[column.live]):
-            yield _address(row, at), found[column.live]
+        if edited is not None and row not in edited and was.get(row) == found:
+            continue
+        shown = None if found is None or column.live not in LIVE else found[LIVE.index(column.live)]
+        is_changed = not _is_same(stored, shown) if shown is not None else stored is not None and stored is not UNSAVED
+        if is_changed:
+            yield f"{column_letters(at)}{row}", shown
 
 
 def _is_same(stored: object, found: float | str) -> bool:

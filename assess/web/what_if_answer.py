@@ -4,7 +4,7 @@ Nothing is written: the workbook as it is held is assessed anew with other setti
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from assess.errors import AssessError, InputError
@@ -15,7 +15,7 @@ from assess.pipeline.what_if import anchor_named, spell_names
 from assess.progress import SILENT
 from assess.settings import SCENARIOS, Settings
 from assess.web.evaluation import BY_FORMULAS, Evaluation, evaluate_once, evaluate_other
-from assess.web.live import count_classes, describe_rows, list_quantities, list_rows, say_fault
+from assess.web.live import count_classes, describe_rows, list_rows, say_fault
 from assess.web.route_states import describe_states, describe_unknown
 from assess.workbook.names import key
 from assess.workbook.parse import Tables
@@ -31,14 +31,6 @@ LONGEST = 40
 """Characters of a wrong value that a message repeats."""
 
 
-@dataclass(frozen=True, slots=True)
-class Wanted:
-    """What is asked for: settings with the pieces to anchor by their names, and how many of the first fixes besides."""
-
-    settings: Settings
-    first: int
-
-
 def try_out(snapshot: "Snapshot", request: object) -> dict[str, Any]:
     """Return the answer of `POST /api/what-if`.
 
@@ -47,25 +39,28 @@ def try_out(snapshot: "Snapshot", request: object) -> dict[str, Any]:
     """
     inventory = snapshot.inventory
     with speaking(load_catalogue(inventory.language)):
-        wanted = read_request(inventory, snapshot.tables, request)
-        before = snapshot.keep("before", lambda: describe_present(snapshot))
-        present = snapshot.keep("entries", lambda: _name_entries(evaluate_once(snapshot, BY_FORMULAS, routes=True)))
-        entries = (
-            present
-            if wanted.settings == BY_FORMULAS or not wanted.first
-            else _name_entries(evaluate_other(snapshot, wanted.settings))
-        )
-        first = entries[: wanted.first]
-        settings = replace(wanted.settings, anchor=_join_names(wanted.settings, first))
-        after = before if settings == BY_FORMULAS else describe_side(snapshot, settings)
-        scenarios = _list_scenarios(inventory)
-    named = set(settings.anchor if isinstance(settings.anchor, tuple) else ())
+        settings, first = _read_request(inventory, snapshot.tables, request)
+        present = evaluate_once(snapshot, BY_FORMULAS, routes=True)
+        before = snapshot.keep("before", lambda: _describe_side(snapshot, inventory, present))
+        entries = snapshot.keep("entries", lambda: _name_entries(present))
+        if first and settings != BY_FORMULAS:
+            entries = _name_entries(evaluate_other(snapshot, settings))
+        named = tuple(dict.fromkeys((*_list_anchored(settings), *(one for each in entries[:first] for one in each))))
+        settings = replace(settings, anchor=named)
+        after = before
+        if settings != BY_FORMULAS:
+            after = _describe_side(snapshot, anchor_named(inventory, named), evaluate_other(snapshot, settings))
+        own = inventory.building.scenario_kind or SCENARIOS[0]
+        scenarios = [
+            [one, gettext("{scenario} (the workbook's own)", scenario=gettext(one)) if one == own else gettext(one)]
+            for one in SCENARIOS
+        ]
     return {
         "version": snapshot.version,
         "scenarios": scenarios,
-        "scenario": settings.scenario or inventory.building.scenario_kind or SCENARIOS[0],
+        "scenario": settings.scenario or own,
         "entries": len(entries),
-        "first": len(first),
+        "first": len(entries[:first]),
         "before": before["side"],
         "after": after["side"],
         "anchored": [one.row for one in inventory.items if one.item in named],
@@ -73,8 +68,12 @@ def try_out(snapshot: "Snapshot", request: object) -> dict[str, Any]:
     }
 
 
-def read_request(inventory: Inventory, tables: Tables, request: object) -> Wanted:
-    """Return what a request asks for; InputError if it cannot be read, or names a piece that is not assessed."""
+def _list_anchored(settings: Settings) -> tuple[str, ...]:
+    return settings.anchor if isinstance(settings.anchor, tuple) else ()
+
+
+def _read_request(inventory: Inventory, tables: Tables, request: object) -> tuple[Settings, int]:
+    """Return the settings that a request asks for, and how many of the first fixes it has anchored besides."""
     if not isinstance(request, Mapping):
         raise InputError(fill("The request cannot be read."))
     unknown = [str(name) for name in request if name not in ASKED]
@@ -86,7 +85,7 @@ def read_request(inventory: Inventory, tables: Tables, request: object) -> Wante
     _check_left_out(inventory, tables, names)
     scale, scenario = _read_scale(given.get("scale", 1.0)), given.get("scenario") or None
     settings = replace(BY_FORMULAS, scale=scale, scenario=scenario, anchor=spell_names(inventory, names))
-    return Wanted(settings, _read_first(given.get("first", 0)))
+    return settings, _read_first(given.get("first", 0))
 
 
 def _read_scale(value: Any) -> float:
@@ -126,50 +125,23 @@ def _show(value: object) -> str:
 
 
 def _name_entries(found: Evaluation) -> list[list[str]]:
+    """Return the pieces of each entry of the schedule by their names."""
     if found.assessment is None:
         return []
     items, routes = found.assessment.inventory.items, evaluate_route_tables(found.assessment, SILENT)
     return [[items[at].item for at in entry] for entry in list_first_fixes(found.assessment, routes)]
 
 
-def _join_names(settings: Settings, entries: Iterable[Iterable[str]]) -> tuple[str, ...]:
-    named = settings.anchor if isinstance(settings.anchor, tuple) else ()
-    return tuple(dict.fromkeys((*named, *(name for entry in entries for name in entry))))
-
-
-def describe_present(snapshot: "Snapshot") -> dict[str, Any]:
-    """Return the side "before", which is the same for every request."""
-    return _describe_side(snapshot, snapshot.inventory, evaluate_once(snapshot, BY_FORMULAS, routes=True))
-
-
-def describe_side(snapshot: "Snapshot", settings: Settings) -> dict[str, Any]:
-    """Return classes, counts and routes with other settings, and the error where nothing can be computed."""
-    named = settings.anchor if isinstance(settings.anchor, tuple) else ()
-    return _describe_side(snapshot, anchor_named(snapshot.inventory, named), evaluate_other(snapshot, settings))
-
-
 def _describe_side(snapshot: "Snapshot", inventory: Inventory, found: Evaluation) -> dict[str, Any]:
+    """Return classes, counts and routes, and the error where nothing can be computed."""
     tables = snapshot.tables
-    rows = list_rows(tables, inventory, found, ())
-    items = describe_rows(rows.items())
+    rows = list_rows(tables, inventory, found)
+    items = describe_rows(rows)
     del items["values"]
     try:
         routes = describe_states(tables, inventory, found)
     except AssessError as error:
         routes = describe_unknown(tables, gettext(error.message))
-    side = {
-        "counts": count_classes(rows, list_quantities(tables["Items"])),
-        "items": items,
-        "routes": routes["routes"],
-        "rooms": routes["rooms"],
-    }
+    counts = count_classes(rows, tables["Items"])
+    side = {"counts": counts, "items": items, "routes": routes["routes"], "rooms": routes["rooms"]}
     return {"side": side, "error": say_fault(snapshot.problems, found) or routes["error"]}
-
-
-def _list_scenarios(inventory: Inventory) -> list[list[str]]:
-    own = inventory.building.scenario_kind or SCENARIOS[0]
-    found = []
-    for one in SCENARIOS:
-        name = gettext(one)
-        found.append([one, gettext("{scenario} (the workbook's own)", scenario=name) if one == own else name])
-    return found

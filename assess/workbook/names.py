@@ -161,16 +161,21 @@ def _sheet_names(code: str) -> dict[str, str]:
 
 def is_live(sheet: Sheet, label: str) -> bool:
     """Tell whether a label is one of the columns that Excel computes, which reading leaves out."""
-    wanted = plain(label)
-    if wanted in _live_labels(ENGLISH):
+    if plain(label) in _live_labels(ENGLISH):
         return True
-    return find_column(sheet, label) is None and any(wanted in _live_labels(code) for code in _OTHERS)
+    return find_column(sheet, label) is None and find_live(label) is not None
+
+
+def find_live(label: str) -> str | None:
+    """Return the header, of `LIVE` or `WORKINGS`, of the column of Excel that a label means; None if none."""
+    wanted = plain(label)
+    return next((_live_labels(code)[wanted] for code in LANGUAGES if wanted in _live_labels(code)), None)
 
 
 @cache
-def _live_labels(code: str) -> frozenset[str]:
-    labels = [split_header(label)[0] for label in (*LIVE, *WORKINGS)]
-    return frozenset(plain(label if code == ENGLISH else load_catalogue(code).find(label)) for label in labels)
+def _live_labels(code: str) -> dict[str, str]:
+    names = {header: split_header(header)[0] for header in (*LIVE, *WORKINGS)}
+    return {plain(name if code == ENGLISH else load_catalogue(code).find(name)): one for one, name in names.items()}
 
 
 @lru_cache(maxsize=4096)  # the same choices stand in row after row

@@ -95,7 +95,7 @@ def test_where_the_weight_comes_from(tmp_path):
     items = assess.read_inventory(write(tmp_path / "w.xlsx", rows)).items
     for item, (given, source, weight, per_metre) in zip(items, expected, strict=True):
         found = find_weight(item)
-        assert (found.source, found.is_assumed, found.is_per_metre) == (source, source == "estimate", per_metre), given
+        assert (found.source, found.is_per_metre) == (source, per_metre), given
         assert found.value == pytest.approx(weight, rel=1e-4), given
 
 

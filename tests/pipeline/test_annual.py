@@ -11,7 +11,7 @@ from assess.fragility import lognormal_chance
 from assess.hazard import read_hazard
 from assess.motion.suite import read_suite
 from assess.pipeline.annual import evaluate_annual
-from assess.pipeline.levels import rock_levels
+from assess.pipeline.levels import Sweep
 from assess.pipeline.run import build_results, compute
 from assess.progress import SILENT
 from assess.rates import integrate_lognormal
@@ -91,8 +91,11 @@ def test_a_piece_falls_as_often_as_its_lognormal_says(tmp_path):
 def test_at_the_scenarios_own_ground_pga_it_is_what_the_run_finds(several):
     """The motions of a factor of 1 are those of the run, draw by draw."""
     cases, (joint,) = several.cases, several.joints.values()
-    given = several, cases, np.array([0.5, 1.0]), np.ones(cases.breadth.size), SETTINGS
-    (found,) = rock_levels(*given, dispersion=cases.dispersion)
+    sweep = Sweep(
+        assessment=several, cases=cases, peaks=np.ones(cases.breadth.size), settings=SETTINGS,
+        dispersion=cases.dispersion,
+    )  # fmt: skip
+    (found,) = sweep.rock(np.array([0.5, 1.0]))
     np.testing.assert_array_equal(found.own, joint.cases)
     np.testing.assert_array_equal(found.fell[1], joint.fell)
     assert found.fell[0].sum() < joint.fell.sum()

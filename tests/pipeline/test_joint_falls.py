@@ -46,7 +46,7 @@ def shaken(folder: Path, settings: Settings = SETTINGS, **building: Any):
 def falls_of(assessment, settings: Settings | None = None):
     return build_falls(
         assessment.inventory, assessment.adoption, assessment.outcomes, assessment.governing,
-        settings or assessment.settings, assessment.either_axis, assessment.anchors.held,
+        settings or assessment.settings, assessment.either_axis, assessment.held,
     )  # fmt: skip
 
 

@@ -194,14 +194,14 @@ def test_values_are_inserted_at_a_jump_and_change_nothing_else(tmp_path, monkeyp
     plain = fragility(assessment, *asked)
     assert find_jumps(chances(plain))
     done: list[tuple[int, float]] = []
-    rock, made = levels._Run.rock, []
+    rock, made = levels.Sweep._rock, []
 
-    def note(run, number, motions, factors, wanted):
-        done.extend((number, factor) for factor in factors)
+    def note(sweep, own, motions, factors, *rest):
+        done.extend((int(own[0]), factor) for factor in factors)
         made.append(id(motions))
-        return rock(run, number, motions, factors, wanted)
+        return rock(sweep, own, motions, factors, *rest)
 
-    monkeypatch.setattr(levels._Run, "rock", note)
+    monkeypatch.setattr(levels.Sweep, "_rock", note)
     fine = fragility(assessment, *asked, most_inserted=MOST_INSERTED)
     assert len(set(done)) == len(done)
     assert len(set(made)) == len({number for number, _ in done}) < len(made), "motions are made ready once"

@@ -256,7 +256,7 @@ def test_a_missing_file_is_taken_in(named, tmp_path, mode):
     book.add_file("p.png", picture("PNG"))
     assert book.version == version + 2
     assert (folder / "records" / "a.smc").read_bytes() == RECORD.read_bytes()
-    assert {one["name"] for one in book.missing()} == {"logo.png", "plan 1.png"}
+    assert {one["name"] for one in book.describe()["missing"]} == {"logo.png", "plan 1.png"}
     assert {*book.snapshot().inventory.photos} == {"p.png"}
     assert not book.state()["unsaved"]
     column = PLACES["Floors", "plan"]

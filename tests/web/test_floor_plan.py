@@ -203,11 +203,11 @@ FIRST = """
 import sys, threading
 from pathlib import Path
 from types import SimpleNamespace
-from assess.web import answers
+from assess.web import endpoints
 from assess.web.book import Book
 sys.setswitchinterval(2e-6)
 asked, faults = SimpleNamespace(book=Book.open_disk(Path(sys.argv[1])), query={}), []
-every = answers.describe_plan, answers.describe_catalogue, answers.describe_routes
+every = endpoints._describe_plan, endpoints._describe_catalogue, endpoints._describe_routes
 ready = threading.Barrier(len(every))
 def ask(describe):
     ready.wait()

@@ -9,11 +9,11 @@ import pytest
 import assess
 from assess.bim.import_workbook import ImportedBuilding
 from assess.web import importing
+from assess.web.file_names import clean_name
 from assess.web.guard import MOST_MODEL
 from assess.web.importing import Import, find_free, name_workbook
 from assess.web.jobs import READING, Slots
 from assess.web.request_errors import RequestError
-from assess.web.safe_names import clean_name
 from assess.web.sessions import HOSTED
 from assess.workbook.read import read_tables
 from tests.bim import scan_files
@@ -270,7 +270,7 @@ def test_a_reading_for_which_nobody_asks_ends(tmp_path, monkeypatch):
 
 def test_without_a_place_nothing_is_kept(tmp_path):
     slots = Slots(1, READING)
-    slots.take(object())
+    slots.take()
     with pytest.raises(RequestError, match="Other building models are being read"):
         _begin(tmp_path, slots)
     assert list(tmp_path.iterdir()) == []

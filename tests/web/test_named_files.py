@@ -5,8 +5,8 @@ import shutil
 import pytest
 
 from assess.web.book import Book
+from assess.web.file_names import list_present
 from assess.web.jobs import prepare
-from assess.web.named_files import list_present
 from tests.motion.grids import EPICENTRE
 from tests.workbooks import write
 
@@ -23,10 +23,10 @@ def book(tmp_path):
 
 
 def test_a_missing_shakemap_is_listed_and_taken_in(book):
-    (missing,) = book.missing()
+    (missing,) = book.describe()["missing"]
     assert (missing["name"], missing["kind"]) == ("grid.xml", "hazard")
     book.add_file("grid.xml", EPICENTRE.read_bytes())
-    assert book.missing() == []
+    assert book.describe()["missing"] == []
     site = book.snapshot().inventory.site_ground
     assert site is not None
     assert site.shared is None, "no uncertainty.xml lies beside it"

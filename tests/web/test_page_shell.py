@@ -13,7 +13,7 @@ from openpyxl import load_workbook
 from playwright.sync_api import expect
 
 import assess.web
-from assess.web.answers import find_page_file
+from assess.web.endpoints import find_page_file
 from tests.conftest import EXAMPLE
 from tests.web.looking import THEMES, VIEWS, examine, note_requests, show
 from tests.web.opened import write_office

@@ -6,7 +6,7 @@ import pytest
 
 import assess
 from assess.web import texts
-from assess.web.safe_names import make_safe
+from assess.web.file_names import make_safe
 from assess.web.starting import ROOMS
 from assess.workbook.schema import USES
 
