@@ -76,84 +76,53 @@ def basis_of(found: Adoption, at: int = 0) -> str:
     return BASES[found.basis[at]]
 
 
-def one(case: Case) -> tuple[float, RiskClass, RiskClass, bool, bool]:
-    """Return probability, class, upper class, whether it is the simulation's, and whether it is unconfirmed."""
-    found = adopted(case)
-    return (
-        float(found.probability[0]), RiskClass(found.risk[0]), RiskClass(found.upper[0]),
-        basis_of(found) == "simulated", basis_of(found) == "unconfirmed",
-    )  # fmt: skip
+ADOPTED = [
+    (Case(0.5), (0.5, HIGH, HIGH, "formula")),
+    (Case(0.5, 0, 100), (0.0, LOW, MEDIUM, "simulated")),  # the upper class is that of the interval's end
+    (Case(0.5, 0, 200), (0.0, LOW, LOW, "simulated")),
+    (Case(0.5, 55, 200), (0.275, MEDIUM, HIGH, "simulated")),
+    (Case(0.5, 160, 200), (0.8, VERY_HIGH, VERY_HIGH, "simulated")),
+    # motions that are too weak raise a class but do not lower it; a lower number of the same class is taken
+    (Case(0.5, 20, 200, is_weak=True), (0.5, HIGH, HIGH, "unconfirmed")),
+    (Case(0.5, 70, 200, is_weak=True), (0.35, HIGH, HIGH, "simulated")),
+    (Case(0.5, 160, 200, is_weak=True), (0.8, VERY_HIGH, VERY_HIGH, "simulated")),
+    # where the formula stands the interval may still raise the upper class: 5 of 20 may be as many as half
+    (Case(0.1, 5, 20, is_weak=True), (0.25, MEDIUM, HIGH, "simulated")),
+    # of an unknown building the class is that of the faster third where it is higher
+    (Case(0.5, 20, 200, is_unknown=True), (0.1, MEDIUM, MEDIUM, "unconfirmed")),
+    (Case(0.1, 20, 200, is_unknown=True, faster=0.8), (0.1, VERY_HIGH, VERY_HIGH, "unconfirmed")),
+    (Case(0.1, 20, 200, faster=0.8), (0.1, MEDIUM, MEDIUM, "simulated")),
+    # a piece that falls in the record is at least high
+    (Case(0.1, 2, 200, fell=True), (0.01, HIGH, HIGH, "simulated")),
+    (Case(0.0, 0, 200, fell=True, pfa=0.01), (0.0, HIGH, HIGH, "simulated")),  # so it can rock
+    # 0.4 x 1.8 m starts at 0.222 g; with 4.28 times 0.033 g it stays below 0.65 of that, with 0.034 g it does not
+    (Case(0.5, pfa=0.033), (0.0, LOW, LOW, "cannot rock")),
+    (Case(0.5, 0, 200, is_unknown=True, pfa=0.033), (0.0, LOW, LOW, "cannot rock")),
+    (Case(0.5, 20, 200, pfa=0.01), (0.1, MEDIUM, MEDIUM, "simulated")),  # what fell under stronger motions can rock
+    (Case(0.5, pfa=0.034), (0.5, HIGH, HIGH, "formula")),
+    # a higher class of the piece as given raises the upper class alone
+    (Case(0.5, 130, 200, ideal=190), (0.65, HIGH, VERY_HIGH, "simulated")),
+]
 
 
-def test_what_was_not_verified_keeps_the_formula():
-    assert one(Case(0.5)) == (0.5, HIGH, HIGH, False, False)
-    found = adopted(Case(0.5))
-    assert np.isnan([found.low[0], found.high[0]]).all()
-
-
-@pytest.mark.parametrize(("overturned", "risk"), [(0, LOW), (20, MEDIUM), (100, HIGH), (160, VERY_HIGH)])
-def test_verification_lowers_and_raises(overturned, risk):
-    case = Case(0.5, overturned, 200)
-    assert one(case)[:2] == (overturned / 200, risk)
-    found = adopted(case)
-    assert basis_of(found) == "simulated"
-    low, high = wilson_interval(overturned, 200)
-    assert (found.low[0], found.high[0]) == (low, high)
-
-
-def test_motions_that_are_too_weak_raise_a_class_but_do_not_lower_it():
-    assert one(Case(0.5, 20, 200, is_weak=True)) == (0.5, HIGH, HIGH, False, True)
-    assert one(Case(0.5, 160, 200, is_weak=True))[:2] == (0.8, VERY_HIGH)
-    assert one(Case(0.5, 70, 200, is_weak=True))[:2] == (0.35, HIGH), "a lower number of the same class is taken"
-    found = adopted(Case(0.5, 20, 200, is_weak=True))
-    assert np.isnan([found.low[0], found.high[0]]).all(), "the interval is of a risk that was not adopted"
-
-
-def test_of_an_unknown_building_the_chance_is_simulated_and_the_class_unconfirmed():
-    """Draws of every building are no weaker than they should be: the formula's class does not stand in for theirs."""
-    assert one(Case(0.5, 20, 200, is_unknown=True))[:2] == (0.1, MEDIUM)
-    for overturned in (0, 20, 160):
-        assert one(Case(0.5, overturned, 200, is_unknown=True))[3:] == (False, True)
-
-
-def test_of_an_unknown_building_the_class_is_that_of_the_faster_third_where_it_is_higher():
-    assert one(Case(0.1, 20, 200, is_unknown=True, faster=0.8))[:3] == (0.1, VERY_HIGH, VERY_HIGH)
-    assert one(Case(0.1, 100, 200, is_unknown=True, faster=0.1))[:2] == (0.5, HIGH)
-    assert one(Case(0.1, 20, 200, faster=0.8))[:2] == (0.1, MEDIUM), "of a building that is known it decides nothing"
-
-
-def test_a_piece_that_cannot_start_to_rock_is_low_whatever_its_motions_are():
-    """0.4 x 1.8 m starts at 0.222 g; with 4.28 times 0.033 g it stays below 0.65 of that, with 0.034 g it does not."""
-    for still in (Case(0.5, 0, 200, is_unknown=True, pfa=0.033), Case(0.5, pfa=0.033), Case(0.5, 0, 9, pfa=0.033)):
-        assert one(still) == (0.0, LOW, LOW, False, False), "simulated or not, and of however many draws"
-        found = adopted(still)
-        assert basis_of(found) == "cannot rock"
-        assert np.isnan([found.low[0], found.high[0]]).all()
-    assert one(Case(0.5, 0, 200, is_weak=True, pfa=0.034))[1:] == (HIGH, HIGH, False, True)
-    assert one(Case(0.5, pfa=0.034))[1:3] == (HIGH, HIGH)
-    assert adopted(Case(0.5, 0, 200, pfa=0.06)).can_rock[0]
-    ideal = adopted(Case(0.5, 0, 200, pfa=0.06), settings=Settings(ideal=True))
-    assert not ideal.can_rock[0], "only peaks of motions vary"
+def test_what_is_adopted():
+    found = adopted(*(case for case, _ in ADOPTED))
+    for at, (case, expected) in enumerate(ADOPTED):
+        shown = (found.probability[at], RiskClass(found.risk[at]), RiskClass(found.upper[at]), basis_of(found, at))
+        assert shown == (pytest.approx(expected[0]), *expected[1:]), case
+        interval = wilson_interval(case.overturned, case.runs) if expected[3] == "simulated" else (math.nan, math.nan)
+        np.testing.assert_array_equal((found.low[at], found.high[at]), interval)
 
 
 def test_a_stocky_piece_is_low_whatever_the_motion():
-    outcomes = {FORMULA: Outcome(np.array([0.9])), SIMULATION: _not_simulated(1)}
-    cases = Cases.of(breadth=1.5, height=1.0, pfa=2 * GRAVITY)
-    found = adopt(outcomes, cases, Settings())
+    unknown, no = np.full(1, np.nan), np.zeros(1, dtype=np.bool_)
+    detail = dict.fromkeys(("low", "high", "ideal", "ideal_low", "ideal_high", "if_faster"), unknown)
+    simulated = Outcome(unknown, detail, dict.fromkeys(("unknown_building", "weak_motions", "fell_in_record"), no))
+    outcomes = {FORMULA: Outcome(np.array([0.9])), SIMULATION: simulated}
+    found = adopt(outcomes, Cases.of(breadth=1.5, height=1.0, pfa=2 * GRAVITY), Settings())
     assert (basis_of(found), found.probability[0], found.upper[0]) == ("cannot rock", 0.0, LOW)
     narrow = adopt(outcomes, Cases.of(breadth=1.4, height=1.0, pfa=2 * GRAVITY), Settings())
     assert (basis_of(narrow), narrow.probability[0]) == ("formula", 0.9)
-
-
-def _not_simulated(count):
-    unknown, no = np.full(count, np.nan), np.zeros(count, dtype=np.bool_)
-    detail = dict.fromkeys(("low", "high", "ideal", "ideal_low", "ideal_high", "if_faster"), unknown)
-    return Outcome(unknown, detail, dict.fromkeys(("unknown_building", "weak_motions", "fell_in_record"), no))
-
-
-def test_what_fell_under_stronger_motions_of_the_users_own_can_rock():
-    assert one(Case(0.5, 20, 200, pfa=0.01))[:2] == (0.1, MEDIUM)
-    assert one(Case(0.0, 0, 200, fell=True, pfa=0.01))[1] is HIGH
 
 
 def test_ideal_adopts_what_happens_if_exactly_this_motion_recurs():
@@ -162,32 +131,8 @@ def test_ideal_adopts_what_happens_if_exactly_this_motion_recurs():
     assert (found.probability[0], RiskClass(found.risk[0]), RiskClass(found.upper[0])) == (0.02, LOW, MEDIUM)
     assert (found.low[0], found.high[0]) == pytest.approx((0.018, 0.118))
     assert adopted(case).probability[0] == 0.5
-
-
-def test_a_higher_class_of_the_ideal_raises_the_upper_class_alone():
-    found = adopted(Case(0.5, 130, 200, ideal=190))
-    assert (found.probability[0], RiskClass(found.risk[0]), RiskClass(found.upper[0])) == (0.65, HIGH, VERY_HIGH)
-    assert found.ideal_higher[0]
-    assert not adopted(Case(0.5, 130, 200, ideal=100)).ideal_higher[0]
-
-
-def test_a_piece_that_falls_in_the_record_is_at_least_high():
-    assert one(Case(0.1, 2, 200, fell=True))[:3] == (0.01, HIGH, HIGH)
-    assert one(Case(0.1, 150, 200, fell=True))[:2] == (0.75, VERY_HIGH)
-    assert one(Case(0.01, 0, 200, fell=True, is_weak=True))[1] is HIGH
-
-
-def test_the_upper_class_is_that_of_the_intervals_end():
-    assert one(Case(0.5, 0, 100))[1:3] == (LOW, MEDIUM)
-    assert one(Case(0.5, 0, 200))[1:3] == (LOW, LOW)
-    assert one(Case(0.5, 55, 200))[1:3] == (MEDIUM, HIGH)
-
-
-def test_where_the_formula_stands_the_interval_may_still_raise_the_upper_class():
-    """The formula's medium stands; 5 of 20 may be as many as half."""
-    assert one(Case(0.299, 0, 20, is_weak=True))[1:] == (MEDIUM, MEDIUM, False, True)
-    assert one(Case(0.31, 5, 20, is_weak=True))[1:] == (HIGH, HIGH, False, True)
-    assert one(Case(0.1, 5, 20, is_weak=True))[1:3] == (MEDIUM, HIGH)
+    ideal = adopted(Case(0.5, 0, 200, pfa=0.06), settings=Settings(ideal=True))
+    assert not ideal.can_rock[0], "only peaks of motions vary"
 
 
 probabilities = st.one_of(st.floats(0, 1), st.sampled_from([0.03, 0.3, 0.7]))

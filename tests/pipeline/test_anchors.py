@@ -3,7 +3,7 @@
 import pytest
 
 import assess
-from assess.pipeline.anchors import DENSITIES, find_weight
+from assess.pipeline.anchors import find_weight
 from assess.settings import Settings
 from tests.pipeline.rows import assessed
 from tests.workbooks import UNVERIFIED, write
@@ -97,18 +97,6 @@ def test_where_the_weight_comes_from(tmp_path):
         found = find_weight(item)
         assert (found.source, found.is_per_metre) == (source, per_metre), given
         assert found.value == pytest.approx(weight, rel=1e-4), given
-
-
-def test_densities_say_what_they_rest_on():
-    assert [one for one, density in DENSITIES.items() if str(density.source) != "assumed"] == ["storage", "paper"]
-    values = [one.value for one in DENSITIES.values()]
-    assert values == sorted(values)
-
-
-def test_a_blank_bracket_height_is_assumed():
-    found = anchor_of(assess_one(bracket_height=None))
-    assert (found.bracket_height_cm, found.is_height_assumed) == (pytest.approx(162), True)
-    assert found.tension_kn == pytest.approx(0.24 * 1.7 / 1.62)
 
 
 @pytest.mark.parametrize(

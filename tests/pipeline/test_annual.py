@@ -136,34 +136,6 @@ def test_the_dispersion_of_a_record_is_always_in_it(tmp_path):
     assert ratio == pytest.approx(np.exp(K**2 * (0.4**2 - 0.01**2) / 2), rel=0.15)
 
 
-def test_drawn_motions_scatter_by_themselves(tmp_path):
-    """They need no dispersion to differ; a typed one is averaged over, but for what a fitted lognormal changes."""
-    blank, given = (assessed(tmp_path, motion_uncertainty=beta, piece_uncertainty="no") for beta in (None, 0.4))
-    assert [one.annual.tables.motion_dispersion for one in (blank, given)] == [0, 0.4]
-    ratio = rows_of(given)[1][0].rate / rows_of(blank)[1][0].rate
-    assert ratio == pytest.approx(np.exp(K**2 * 0.4**2 / 2), rel=0.25)
-
-
-@pytest.mark.slow
-def test_a_square_piece_falls_along_either_axis(tmp_path):
-    square = {**CABINET, "width": 45, "axis": None}
-    x, y, either = (
-        rows_of(assessed(tmp_path, one))[1][0].rate for one in (square | {"axis": "X"}, square | {"axis": "Y"}, square)
-    )
-    assert 1.02 * max(x, y) < either < x + y
-
-
-@pytest.mark.slow
-def test_where_motions_serve_slip_alone_nothing_is_rocked(tmp_path):
-    """A floor whose only piece is too stocky to rock, but slides."""
-    floors = [*FLOORS, {"floor": "2", "pfa_x": 0.5, "pfa_y": 0.5}]
-    block = {"item": "z", "floor": "2", "breadth": 145, "width": 145, "height": 100, "friction": 0.2}
-    results, rows = rows_of(assessed(tmp_path, CABINET, block, floors=floors))
-    assert rows[0].rate == pytest.approx(rows_of(assessed(tmp_path, CABINET))[1][0].rate, rel=0.15)
-    assert rows[1] is None
-    assert (results.annual.pieces, results.annual.cannot_rock) == (1, 1)
-
-
 def test_no_level_cuts_off_motions_that_are_stronger_than_the_floor(tmp_path):
     """Where pieces fall at the lowest level, lower ones follow until none does."""
     assessment = assessed(tmp_path, motion_uncertainty=None)
@@ -184,11 +156,6 @@ def test_the_users_own_motions_have_to_be_scaled_to_the_floors(tmp_path):
     scaled = assessed(tmp_path, suite=suite, settings=Settings(scale_motions=True))
     assert rows_of(scaled)[1][0].rate > 0
     assert scaled.annual.tables.runs == 3
-
-
-@pytest.mark.slow
-def test_auto_takes_the_usual_number_of_draws(tmp_path):
-    assert assessed(tmp_path, settings=Settings(runs="auto")).annual.tables.runs == 200
 
 
 # --- the building
@@ -216,14 +183,6 @@ def test_the_building_adds_up_its_free_standing_pieces(several):
     )
 
 
-def test_pieces_of_one_row_fall_together_so_that_any_of_them_is_a_lower_bound(tmp_path):
-    row = {**CABINET, **BLOCKS, "quantity": 5, "importance": "life safety"}
-    results, (one,) = rows_of(assessed(tmp_path, row, routes=True))
-    assert not one.at_least
-    assert results.annual.life_safety.at_least
-    assert results.route_tables.routes[0].annual.at_least
-
-
 def test_pieces_that_were_not_simulated_make_sums_lower_bounds(tmp_path):
     first, floors = {**CABINET, "importance": "life safety"}, [*FLOORS, {"floor": "2", "pfa_x": 0.12, "pfa_y": 0.12}]
     still = {**first, "item": "b", "floor": "2", "breadth": 60}
@@ -243,15 +202,6 @@ def test_a_route_and_a_room_are_lost_as_often_as_the_piece_that_blocks_them_fall
     assert route.annual_if_anchors_fail is None
 
 
-def test_where_all_pieces_are_anchored_nothing_is_counted(tmp_path):
-    write_hazard(tmp_path, 0.01, 0.3)
-    results, (row,) = rows_of(assessed(tmp_path, {**CABINET, "anchored": "yes", "importance": "life safety"}))
-    found = results.annual
-    assert row.rate > 0
-    assert (found.pieces, found.expected_falls, found.expected_low, found.life_safety) == (0, 0, None, None)
-    assert found.remarks == ()
-
-
 def test_a_route_that_anchored_pieces_reach_has_a_rate_if_they_fail(tmp_path):
     items = {**CABINET, **BLOCKS}, {**CABINET, **BLOCKS, "item": "b", "breadth": 35, "anchored": "yes"}
     results, rows = rows_of(assessed(tmp_path, *items, routes=True))
@@ -265,15 +215,6 @@ def test_rates_are_lower_bounds_where_the_motions_may_be_too_weak(tmp_path):
     assert row.at_least
     assert results.annual.at_least == 1
     assert results.route_tables.routes[0].annual.at_least
-
-
-def test_what_cannot_fall_within_the_curve_has_a_rate_of_0(tmp_path):
-    write_hazard(tmp_path, 0.001, 0.004, 5)
-    results, (row,) = rows_of(assessed(tmp_path))
-    assert (row.rate, row.low, row.high, row.fit) == (0, None, None, "table")
-    assert row.at_least, "beyond the end of the curve it may fall"
-    assert results.annual.expected_falls == 0
-    assert results.annual.expected_high is None
 
 
 @pytest.mark.parametrize(("first", "last", "word"), [(0.2, 3.0, "begins at 0.2 g"), (0.01, 0.3, "ends at 0.3 g")])
@@ -304,17 +245,6 @@ def test_what_is_missing_is_named(tmp_path, building, settings, why):
     else:
         assert why in results.annual.missing
         assert not results.annual.is_evaluated
-
-
-@pytest.mark.slow
-def test_sds_stands_in_for_the_ground_pga_only_where_floors_follow_a_profile(tmp_path):
-    """A floor with a PFA of its own may be of another earthquake than the code's."""
-    assert "fill in Ground PGA" in rows_of(assessed(tmp_path, ground_pga=None, sds=0.375))[0].annual.missing
-    profile = [{"floor": "1", "elevation": 6}]
-    by_sds = rows_of(assessed(tmp_path, floors=profile, ground_pga=None, sds=0.375, height=12))
-    by_pga = rows_of(assessed(tmp_path, floors=profile, height=12))
-    assert by_sds[0].annual.ground_pga_g == pytest.approx(0.15)
-    assert by_sds[1][0].rate == pytest.approx(by_pga[1][0].rate)
 
 
 @pytest.mark.slow

@@ -16,7 +16,6 @@ from assess.workbook.example import example_content
 from assess.workbook.held import list_formulas
 from assess.workbook.patch import patch_workbook
 from assess.workbook.read import read_inventory
-from assess.workbook.schema import LIVE
 from assess.workbook.template import write_workbook
 from tests.recalculate import libreoffice, needs_libreoffice, stored_cells
 from tests.workbook.books import change_parts
@@ -66,30 +65,6 @@ def test_the_corrections_are_in_the_workbook_and_nothing_else_is(tmp_path: Path)
     sheets = openpyxl.load_workbook(path).sheetnames
     numbers = {f"xl/worksheets/sheet{1 + sheets.index(name)}.xml" for name in ("Items", "Floors", "Lists")}
     assert changed_parts(path.read_bytes(), done.inventory.data or b"") == numbers
-
-
-@pytest.mark.slow
-def test_corrected_once_there_is_nothing_left_to_correct(tmp_path: Path) -> None:
-    done = correct_workbook(example(tmp_path / "book.xlsx", HABITS))
-    (tmp_path / "out.xlsx").write_bytes(done.inventory.data or b"")
-    again = correct_workbook(tmp_path / "out.xlsx")
-    assert (again.changed, again.kept) == ((), ())
-    assert again.inventory.data == done.inventory.data
-    assert again.inventory.items == done.inventory.items
-    assert again.inventory.sha256 == done.inventory.sha256
-
-
-@pytest.mark.slow
-def test_the_live_columns_store_what_they_show(tmp_path: Path) -> None:
-    done = correct_workbook(example(tmp_path / "book.xlsx", {**HABITS, "Items": {BREADTH: "30 cm", HEIGHT: "2 m"}}))
-    page = openpyxl.load_workbook(io.BytesIO(done.inventory.data or b""), data_only=True)["Items"]
-    places = {cell.value: cell.column for cell in page[1]}
-    expected = live_values(done.inventory)
-    found = [[page.cell(item.row, places[head]).value for head in LIVE[:5]] for item in done.inventory.items]
-    assert found == [row[:5] for row in expected]
-    assert page.cell(2, places["B/H"]).value == 0.15
-    assert page.cell(2, places["Class (formula)"]).value in expected[0]
-    assert page.cell(2, places["Height used [cm]"]).value is None, "computed by every program on opening"
 
 
 @needs_libreoffice

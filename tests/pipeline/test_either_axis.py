@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-import assess
 from assess.pipeline.either_axis import is_square, unite_axes
 from assess.pipeline.run import compute
 from assess.risk import wilson_interval
@@ -83,11 +82,6 @@ def test_without_any_uncertainty_it_is_nearly_the_product():
     assert found.adoption.probability[0] == pytest.approx(expected, abs=3 * np.sqrt(expected * (1 - expected) / 400))
 
 
-def test_where_an_axis_is_not_simulated_nothing_is_united():
-    inventory = read({"item": "square", "width": 35})
-    assert compute(inventory, Settings(verify="none")).either_axis == {}
-
-
 def test_an_unconfirmed_axis_is_not_united(done):
     adoption = done.adoption
     unconfirmed = np.array([2 if at == 0 else one for at, one in enumerate(adoption.basis)], dtype=np.int8)
@@ -96,8 +90,3 @@ def test_an_unconfirmed_axis_is_not_united(done):
         adoption, done.outcomes, done.cases, done.inventory, done.case_item, done.case_demand, SETTINGS
     )
     assert united == {}
-
-
-def test_results_say_so():
-    results = assess.run(read({"item": "square", "width": 35}), SETTINGS, figures=False)
-    assert "either_axis" in results["square"].adopted.flags

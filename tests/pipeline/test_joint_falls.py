@@ -4,7 +4,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
 from assess.methods import simulation
@@ -77,12 +76,6 @@ def test_ideal_verdicts_are_those_of_the_motions_as_they_are(strong):
     for item, case in enumerate(strong.governing.tolist()):
         assert (ideal.fell[item] == rows[case]).all()
     assert any((ideal.fell[item] != falls_of(strong).fell[item]).any() for item in range(2))
-
-
-def test_what_is_not_simulated_has_no_draws(tmp_path):
-    found = falls_of(shaken(tmp_path, replace(SETTINGS, verify="none")))
-    assert (dict(found.fell), dict(found.unconfirmed)) == ({}, {})
-    assert np.isnan(found.in_record).all()
 
 
 def test_a_piece_whose_lower_class_is_not_adopted_says_why(tmp_path):

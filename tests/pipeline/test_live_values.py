@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import pytest
 
-from assess.errors import WorkbookError
 from assess.pipeline.live_values import live_values, with_live
 from assess.pipeline.run import compute
 from assess.risk import RiskClass
@@ -41,24 +40,6 @@ def test_a_record_on_any_axis_of_a_piece_asks_for_a_run(tmp_path):
     assert anchored[5:7] == ["anchored"] * 2
     assert partly[6] == "◇ medium*", "outside the checked range, and classed as free-standing"
     assert anchored[:5] == partly[:5]
-
-
-def test_the_temporary_workbook_leaves_nothing_behind(tmp_path):
-    (tmp_path / "x.csv").write_text(RECORD, encoding="utf-8")
-    with_live(CONTENT, folder=tmp_path)
-    with pytest.raises(WorkbookError, match="not found next to the workbook"):
-        with_live(
-            replace(CONTENT, rows={**CONTENT.rows, "Floors": [{"floor": "1", "record_x": "y.csv"}]}), "si", tmp_path
-        )
-    assert [path.name for path in tmp_path.iterdir()] == ["x.csv"]
-
-
-def test_given_motion_hides_the_record(tmp_path):
-    (tmp_path / "x.csv").write_text(RECORD, encoding="utf-8")
-    path = tmp_path / "book.xlsx"
-    write_workbook(path, CONTENT)
-    values = live_values(read_inventory(path), "given")
-    assert all(row[1] == pytest.approx(0.4) for row in values[:3])
 
 
 def test_what_no_formula_knows_asks_for_a_run(tmp_path):

@@ -4,7 +4,6 @@ import math
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
-from threading import Event
 from typing import Any
 
 import numpy as np
@@ -13,9 +12,8 @@ import pytest
 import assess
 from assess.pipeline import levels
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.route_sweep import FINEST, JUMP, MOST_INSERTED, find_fragility, find_jumps, find_passing
+from assess.pipeline.route_sweep import FINEST, MOST_INSERTED, find_fragility, find_jumps, find_passing
 from assess.pipeline.run import build_results, compute
-from assess.progress import Progress, Report
 from assess.settings import Settings
 from assess.units import GRAVITY
 from tests.pipeline.alone import rocked
@@ -92,14 +90,6 @@ def test_below_the_threshold_of_every_piece_nothing_falls(tmp_path):
     assert chances(none) == chances(none, "B") == [0]
 
 
-def test_a_blank_axis_takes_the_worse_at_each_value(tmp_path):
-    assessment = assessed(tmp_path, {**CABINET, "axis": None}, building=EXACT)
-    values = (0.3, 0.4, 0.5, 0.6)
-    along = [share(assessment, pfa) for pfa in values]
-    assert chances(fragility(assessment, *values)) == [pytest.approx(max(both)) for both in along]
-    assert any(one != other for one, other in along)
-
-
 def test_a_square_piece_blocks_in_draws_in_which_it_falls_along_either_axis(tmp_path):
     """The route is blocked as often as the piece falls, at the scenario's own PFA and in a run."""
     square = {**CABINET, "axis": None, "width": 50, "breadth": 40}
@@ -172,22 +162,6 @@ def test_where_the_motions_may_be_too_weak_a_run_does_not_know(tmp_path):
     assert run.pieces < found.routes[0].blocked[0].pieces
 
 
-def test_the_uncertainty_of_the_workbook_counts(tmp_path):
-    """At a PFA at which no motion fells the piece as given, it falls where the earthquake is stronger or it thinner."""
-    exact, uncertain = (fragility(assessed(tmp_path, building=one, floor=SLOW), 0.15) for one in (EXACT, {}))
-    assert chances(exact)[0] <= 0.05
-    assert chances(uncertain)[0] > chances(exact)[0] + 0.05
-    assert exact.uncertainty is not None
-    assert (exact.uncertainty.motion, exact.uncertainty.piece) == (0, False)
-
-
-def test_values_and_threads_change_nothing(tmp_path):
-    assessment = assessed(tmp_path, *ITEMS)
-    several = fragility(assessment, 0.2, 0.4, 0.6, jobs=1)
-    assert fragility(assessment, 0.2, 0.4, 0.6, jobs=3) == several
-    assert chances(fragility(assessment, 0.4)) == chances(several)[1:2]
-
-
 def test_values_are_inserted_at_a_jump_and_change_nothing_else(tmp_path, monkeypatch):
     """Nothing is uncertain but the phases: the chance rises steeply. No case is rocked twice at one value."""
     assessment, asked = assessed(tmp_path, *ITEMS, building=EXACT), (0.1, 0.2, 0.6, 0.9)
@@ -219,15 +193,6 @@ def test_values_are_inserted_at_a_jump_and_change_nothing_else(tmp_path, monkeyp
             assert all(step[jump] < 2.1 * FINEST for jump in find_jumps([chance.probability for chance in way]))
 
 
-def test_no_more_values_are_inserted_than_wanted(tmp_path):
-    found = fragility(assessed(tmp_path, building=EXACT), 0.1, 0.9, most_inserted=2)
-    assert len(found.inserted) == 2
-    assert 0.5 in [round(value / GRAVITY, 6) for value in found.inserted]
-    assert chances(found, "B") == [0, 0, 0, 0]
-    assert not fragility(assessed(tmp_path), 0.02, 0.03, most_inserted=9).inserted, "no chance jumps by over 0.2"
-    assert JUMP == 0.2
-
-
 def test_the_pieces_to_blame_are_those_without_which_it_stays_below(tmp_path):
     """a1 leaves nothing of the corridor; a2, a small one far from it, cannot block it."""
     far = {**CABINET, "item": "a2", "breadth": 20, "height": 60, "edge_distance": 0.2}
@@ -235,23 +200,6 @@ def test_the_pieces_to_blame_are_those_without_which_it_stays_below(tmp_path):
     assert [[piece.item for piece in one.causes] for one in found.routes] == [["a1"], []]
     assert found.limit == SETTINGS.route_risk
     assert fragility(assessed(tmp_path, CABINET, far), 0.02).routes[0].causes == ()
-
-
-def test_progress_is_reported_and_a_cancel_ends_it(tmp_path):
-    assessment, cancel = assessed(tmp_path, *ITEMS), Event()
-    reports: list[Report] = []
-    fragility(assessment, 0.2, jobs=1, progress=Progress(reports.append))
-    own = [one for one in reports if one.stage == "rocking"]
-    assert {one.detail for one in own} == {"4 rows on 1 floor"}
-    assert [one.share for one in own] == sorted(one.share for one in own)
-    assert (own[0].share, own[-1].share) == (0, 1)
-
-    def listen(report: Report) -> None:
-        assert not cancel.is_set(), "nothing is reported once it is cancelled"
-        cancel.set()
-
-    with pytest.raises(assess.CancelledError):
-        fragility(assessment, 0.2, progress=Progress(listen, cancel))
 
 
 def test_what_it_cannot_do(tmp_path):
@@ -287,20 +235,3 @@ def test_where_a_chance_reaches_a_level(chances, level, between):
     assert find_passing([0.1, 0.2, 0.3], chances, level) == pytest.approx(between)
     assert find_jumps([0.0, 0.3, 0.5, 0.7, 0.9, 0.6]) == [0, 4], "20 percentage points are none"
     assert find_jumps([0.5]) == []
-
-
-def test_a_stair_without_a_clear_width_is_named(tmp_path):
-    """As in the report, where that route is not known; with a width it is evaluated."""
-    flight = {"route": "A", "segment": "flight", "start": "Up", "end": "Down", "required_width": 0.9}
-    places = [{"place": "Up", "floor": "2", "kind": "stair"}, {"place": "Down", "floor": "1", "kind": "stair"}]
-    write_records(tmp_path, "pulse", "slow")
-    for width, named in ((None, ("flight",)), (1.2, ())):
-        rows = {
-            "Building": [{}], "Floors": [{"floor": name, "record_x": "pulse.csv"} for name in "12"],
-            "Items": [CABINET], "Places": places, "Routes": [CORRIDOR, {**flight, "clear_width": width}],
-        }  # fmt: skip
-        assessment = compute(read_sheets(tmp_path, **rows), SETTINGS)
-        (route,) = fragility(assessment, 0.01).routes
-        assert (route.is_evaluated, route.unevaluated) == (True, named)
-        (row,) = build_results(assessment, figures=False).route_tables.routes
-        assert row.unevaluated_segments == named

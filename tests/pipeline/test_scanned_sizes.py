@@ -6,7 +6,6 @@ import pytest
 import assess
 from assess.pipeline.piece_fragility import find_piece_fragilities
 from assess.pipeline.run import compute
-from assess.report.say.simulation import count_scanned
 from assess.settings import Settings
 from assess.units import GRAVITY
 from tests.pipeline import rows
@@ -54,15 +53,6 @@ def test_the_draws_of_others_do_not_change(measured, mixed):
     assert before["two"].ideal == after["two"].ideal, "as given it is the same piece"
 
 
-def test_a_model_counts_as_measured(measured):
-    assert simulated(run(pieces(sizes_from="model"))) == simulated(measured)
-
-
-def test_certain_pieces_do_not_vary_by_a_scan_either():
-    every = [run(items, piece_uncertainty="no") for items in (pieces(), pieces(*NAMES))]
-    assert simulated(every[0]) == simulated(every[1])
-
-
 def curves(items, runs, **levels):
     return find_piece_fragilities(compute(read(items), Settings(verify="none", runs=runs, seed=2)), **levels).curves
 
@@ -78,12 +68,6 @@ def test_the_curve_of_a_scanned_piece_is_wider():
     assert wide[0].curve.dispersion > usual[0].curve.dispersion
 
 
-def test_its_curve_begins_lower():
-    """Its most slender draws start to rock at a lower level; the first level is found by that."""
-    usual, wide = (curves(items[:1], 40) for items in (pieces(), pieces(*NAMES)))
-    assert wide[0].curve.levels[0] < usual[0].curve.levels[0]
-
-
 def test_a_weak_floor_may_rock_it():
     """0.65 of B/H 0.25 is 0.1625 g; 0.0458 g times 3.48 is 0.159 g, times 3.60, as sizes are less certain, 0.165 g."""
     floors = [{"floor": "1", "pfa_x": 0.0458, "pfa_y": 0.0458}]
@@ -94,24 +78,4 @@ def test_a_weak_floor_may_rock_it():
 # --- what is counted ---
 
 
-def test_pieces_are_counted_by_quantity():
-    assert count_scanned(run(pieces("two", "three", quantity=5), Settings(verify="none"))) == 10
-
-
 # --- the column ---
-
-
-@pytest.mark.parametrize(
-    ("typed", "message"), [("scam", "Did you mean scan"), ("laser", "expected one of: measured, model, scan")]
-)
-def test_another_word_is_an_error_of_its_cell(typed, message):
-    with pytest.raises(assess.WorkbookError, match=message) as raised:
-        read(pieces(sizes_from=typed)[:1])
-    (error,) = [one for one in raised.value.problems if one.severity == "error"]
-    assert error.message.startswith(f"Sizes from is '{typed}'")
-
-
-def test_blank_is_measured():
-    inventory = read([*pieces()[:1], *pieces(sizes_from=" Scan ")[1:2]])
-    assert [one.sizes_from for one in inventory.items] == ["measured", "scan"]
-    assert inventory.frame()["sizes_from"].tolist() == ["measured", "scan"]

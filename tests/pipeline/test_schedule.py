@@ -3,7 +3,6 @@
 import pytest
 
 import assess
-from assess.details import DETAILS, SCREW, count_fixings
 from assess.report.say.work import list_changes
 from tests.pipeline.rows import read_sheets
 from tests.workbooks import UNVERIFIED
@@ -88,16 +87,6 @@ def test_a_cost_for_nothing_that_is_done_is_a_warning():
     assert schedule.cost is None
 
 
-def test_the_demand_is_the_larger_of_the_scenario_and_the_code():
-    results, schedule, _ = schedule_of([TALL | {"item": "a", "weight": 400}], Building=[{"sds": 3.0}])
-    anchor = results["a"].item.anchor
-    assert anchor.tension_code_kn > anchor.tension_high_kn
-    (work,) = schedule.rows[0].works
-    assert work.tension_code_kn == anchor.tension_code_kn
-    needed = [count_fixings(DETAILS[work.detail], 1000 * kn) for kn in (anchor.tension_high_kn, anchor.tension_code_kn)]
-    assert needed[0] < work.fixings == needed[1]
-
-
 BY_HAND = {
     # Bookcase, bracket at 0.9 of its height: W = 1.2 kN, B = 0.30 m, z = 0.95 m, h = 1.71 m.
     # At PFA, k = 0.5: T = 1.2 (0.5 x 0.95 - 0.15) / 1.71 = 0.2281 kN; shear 0.5 x 1.2 - 0.2281 = 0.3719 kN.
@@ -139,13 +128,6 @@ def test_the_forces_of_pieces_by_hand():
         found = (one.tension_kn, one.tension_high_kn, one.tension_code_kn, one.shear_kn)
         assert (one.detail, one.fixings) == (detail, fixings), name
         assert found == pytest.approx(forces, abs=6e-5), name
-
-
-def test_fixings_follow_from_the_printed_capacity():
-    bracket = DETAILS["bracket"]
-    assert pytest.approx(854, abs=1) == SCREW
-    assert [count_fixings(bracket, force) for force in (0, 2 * SCREW, 2 * SCREW + 1, 5 * SCREW)] == [2, 2, 3, 5]
-    assert count_fixings(DETAILS["base_angle"], 1e6) == 2
 
 
 def test_routes_and_rooms_that_averages_leave_out_are_counted():

@@ -87,11 +87,6 @@ def test_expected_falls_scatter_by_at_most_2_5_percent_and_no_group_is_split(run
 
 
 @pytest.mark.long
-def test_the_ranges_of_what_is_counted_overlap(runs):
-    check_ranges_overlap([count("", list(build_results(one, figures=False))) for one in runs])
-
-
-@pytest.mark.long
 def test_each_chance_is_within_7_points_of_that_of_5000_draws(runs, example_inventory):
     many = chances(compute(example_inventory, Settings(verify="all", runs=5000)))
     covered = []
