@@ -16,15 +16,7 @@ from assess.version import __version__
 TYPE_CHECKING = False  # as type checkers know it: importing `typing` takes milliseconds
 
 if TYPE_CHECKING:
-    from assess.errors import (
-        AssessError,
-        CancelledError,
-        InputError,
-        OutputError,
-        Problem,
-        RecordError,
-        WorkbookError,
-    )
+    from assess.errors import AssessError, CancelledError, InputError, OutputError, Problem, RecordError, WorkbookError
     from assess.methods.fitted import read_model
     from assess.model import Inventory
     from assess.pipeline.run import run

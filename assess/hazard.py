@@ -335,12 +335,7 @@ def _read_site(heading: Sequence[str], line: int, cells: Sequence[str]) -> tuple
     lat, lon = (_read_number(cells[heading.index(column)], line, column) for column in ("lat", "lon"))
     if abs(lat) > 90 or abs(lon) > 360:
         raise InputError(
-            fill(
-                "line {line}: lon {lon:g} and lat {lat:g} are not a place on earth",
-                line=line,
-                lon=lon,
-                lat=lat,
-            )
+            fill("line {line}: lon {lon:g} and lat {lat:g} are not a place on earth", line=line, lon=lon, lat=lat)
         )
     return lat, lon
 

@@ -130,8 +130,7 @@ def _describe(error: BaseException) -> Text:
 def _bomb(name: str) -> WorkbookError:
     return unreadable(
         fill(
-            "{name} unpacks to far more than a furniture list needs, as a zip bomb does; it was not opened.",
-            name=name,
+            "{name} unpacks to far more than a furniture list needs, as a zip bomb does; it was not opened.", name=name
         ),
         fill("Copy the tables into a new workbook made with `assess new`."),
     )

@@ -11,12 +11,7 @@ from assess.i18n import LANGUAGES, gettext, load_catalogue, speaking
 from assess.workbook.lists import list_columns
 from assess.workbook.names import say_choices, translate
 from assess.workbook.schema import CLASS, LISTS, SHEETS, Sheet
-from assess.workbook.template import (
-    CHECKED,
-    ROWS,
-    describe,
-    write_workbook,
-)
+from assess.workbook.template import CHECKED, ROWS, describe, write_workbook
 from tests.workbook.books import read_part
 
 LETTER, LINE = 1.1, 15

@@ -107,9 +107,7 @@ def test_building(tmp_path: Path) -> None:
     assert (found.height, found.ground_pga, found.sds) == pytest.approx((15.24, 3, GRAVITY))
     assert (found.scenario_kind, found.restitution, found.language, found.logo) == ("given", 0.9, "", None)
     assert (found.cell("ground_pga"), found.cell("sds"), found.cell("friction")) == ("B7", "B8", "")
-    assert remarks(inventory, "note") == {
-        "Building!A10: 'Architect' is not known; it is not used.",
-    }
+    assert remarks(inventory, "note") == {"Building!A10: 'Architect' is not known; it is not used."}
 
 
 def test_the_uncertainties_and_the_velocity_of_the_ground(tmp_path: Path) -> None:
