@@ -10,9 +10,9 @@ from typing import Any, Literal
 from assess.errors import Problem
 from assess.i18n import Text, fill, nfill
 from assess.units import QUANTITIES
-from assess.workbook.held import HeldCells, Place
+from assess.workbook.held import HeldCells
 from assess.workbook.names import is_live, key, say_choices, split_header
-from assess.workbook.open import MAX_ROWS, UNSAVED, Percent
+from assess.workbook.open import MAX_ROWS, UNSAVED, Percent, Place
 from assess.workbook.outlines import OutlineError, parse_outline
 from assess.workbook.parse import Row, Table
 from assess.workbook.patch import Value

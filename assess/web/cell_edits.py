@@ -11,8 +11,8 @@ from assess.web.columns import PageColumn, PageSheet
 from assess.web.request_errors import UNUSABLE, RequestError
 from assess.workbook.habits import CellError
 from assess.workbook.held import HeldCells, HeldSheets
-from assess.workbook.open import MAX_COLUMNS, MAX_ROWS
-from assess.workbook.patch import LARGEST_NUMBER, LONGEST_TEXT, Area, Value, find_headers, read_back
+from assess.workbook.open import MAX_COLUMNS, MAX_ROWS, Area
+from assess.workbook.patch import LARGEST_NUMBER, LONGEST_TEXT, Value, find_headers, read_back
 from assess.workbook.plain_rows import split_range
 from assess.workbook.typed import is_converted, is_free, understand
 from assess.workbook.values import is_blank, shorten

@@ -11,53 +11,11 @@ from itertools import islice
 from typing import Any, ClassVar
 
 from assess.errors import Problem
-from assess.i18n import Text
-from assess.workbook.open import HEADER_ROWS, TRUE, UNSAVED, Book, Cells, Percent, SheetCells, read_number
-from assess.workbook.patch import LOCKED, Area, Value, read_back
-from assess.workbook.plain_rows import column_letters, split_range
-
-Place = tuple[int, int]
-"""The row of a cell, from 1, and its column, from 0."""
+from assess.workbook.open import HEADER_ROWS, UNSAVED, Book, Cells, Marks, Percent, Place, read_number
+from assess.workbook.patch import Value, read_back
+from assess.workbook.plain_rows import column_letters
 
 _TIMES = (datetime.datetime, datetime.date, datetime.time, datetime.timedelta)
-_CONTENT = frozenset({"v", "f", "is", "t", "r", "rPh", "phoneticPr", "rPr", "rFont", "charset", "family", "b", "i",
-                      "strike", "outline", "shadow", "condense", "extend", "color", "sz", "u", "vertAlign",
-                      "scheme"})  # fmt: skip
-"""What a cell may hold: its value, its formula, a text in parts with their fonts (ECMA-376 Part 1, 18.3.1.4, 18.4)."""
-
-
-@dataclass(frozen=True, slots=True)
-class Marks:
-    """What the values of a sheet's cells do not show; it stays while these change.
-
-    * `formulas`: Cells that hold a formula.
-    * `unknown`: Cells that hold elements which no change understands.
-    * `locked` (sequence of (Area, Text)): Areas of formulas of several cells, and what they are.
-    * `formats`: The format of a cell that shows its number as a date, a time or a percentage; None for a cell that does
-      not, although its row or column does.
-    * `row_formats`: That of the rows that have one.
-    * `column_formats` (sequence of (int, int, str or None)): First and last column, from 0, and that of those columns.
-    * `low`: Last row of a cell that holds something but no value that is read, such as a formula whose result is blank.
-    * `is_1904`: Whether dates are counted from 1904.
-    """
-
-    formulas: frozenset[Place] = frozenset()
-    unknown: frozenset[Place] = frozenset()
-    locked: Sequence[tuple[Area, Text]] = ()
-    formats: Mapping[Place, str | None] = field(default_factory=dict)
-    row_formats: Mapping[int, str | None] = field(default_factory=dict)
-    column_formats: Sequence[tuple[int, int, str | None]] = ()
-    low: int = 0
-    is_1904: bool = False
-
-    def format_at(self, place: Place) -> str | None:
-        """Return the format that a number in a cell gets: its own, else that of its row or column."""
-        row, at = place
-        if place in self.formats:
-            return self.formats[place]
-        if row in self.row_formats:
-            return self.row_formats[row]
-        return next((code for first, last, code in self.column_formats if first <= at <= last), None)
 
 
 @dataclass(slots=True)
@@ -86,7 +44,7 @@ class HeldCells:
 
     title: str
     cells: dict[int, Cells]
-    marks: Marks = Marks()
+    marks: Marks = field(default_factory=Marks)
     far: str = ""
     merged: Sequence[str] = ()
     hidden_rows: Sequence[int] = ()
@@ -183,12 +141,12 @@ class HeldSheets:
 
 def hold_cells(book: Book, sheet: str) -> HeldCells:
     """Return the cells of a sheet of an open workbook."""
-    found = book.cells_as(HoldingCells, sheet)
+    found = book.cells(sheet, is_marked=True)
     cells = dict(found.rows())
     return HeldCells(
         title=sheet,
         cells=cells,
-        marks=found.marks(),
+        marks=found.marks or Marks(),
         far=found.far,
         merged=tuple(found.merged),
         hidden_rows=tuple(found.hidden_rows),
@@ -204,62 +162,3 @@ def list_formulas(data: bytes, sheet: str, *, name: str = "workbook.xlsx") -> di
     with Book(data, name) as book:
         held = hold_cells(book, sheet)
     return {held.address(*place): held.value(place) not in (None, UNSAVED) for place in sorted(held.marks.formulas)}
-
-
-class HoldingCells(SheetCells):
-    """The cells of one sheet, and while they are read what `Marks` tells of them."""
-
-    marks_cells = True
-
-    def __init__(self, *args: Any) -> None:
-        super().__init__(*args)
-        self._formulas, self._unknown = set[Place](), set[Place]()
-        self._formats: dict[Place, str | None] = {}
-        self._row_formats: dict[int, str | None] = {}
-        self._column_formats: list[tuple[int, int, str | None]] = []
-        self._locked: list[tuple[Area, Text]] = []
-        self._low = 0
-
-    def marks(self) -> Marks:
-        """Return what was noted, once all rows have been read."""
-        return Marks(
-            formulas=frozenset(self._formulas),
-            unknown=frozenset(self._unknown),
-            locked=tuple(self._locked),
-            formats=self._formats,
-            row_formats=self._row_formats,
-            column_formats=self._column_formats,
-            low=self._low,
-            is_1904=self.shared.is_1904,
-        )
-
-    def _open_column(self, attributes: dict[str, str]) -> None:
-        super()._open_column(attributes)
-        style = attributes.get("style", "")
-        if style.isdigit() and int(style):
-            first, last = int(attributes["min"]) - 1, int(attributes["max"]) - 1
-            self._column_formats.append((first, last, self._format(style)))
-
-    def _open_row(self, attributes: dict[str, str]) -> None:
-        super()._open_row(attributes)
-        style = attributes.get("s", "")
-        if attributes.get("customFormat") in TRUE and style.isdigit():
-            self._row_formats[self._number] = self._format(style)
-
-    def _open_formula(self, attributes: dict[str, str]) -> None:
-        why, area = LOCKED.get(attributes.get("t", "")), split_range(attributes.get("ref", ""))
-        if why and area:
-            self._locked.append((area, why))
-
-    def _close_cell(self, text: str) -> None:
-        super()._close_cell(text)
-        place, tags = (self._number, self._at - 1), self._tags
-        if "f" in tags:
-            self._formulas.add(place)
-        if not tags <= _CONTENT:
-            self._unknown.add(place)
-        if place[1] not in self._cells and not tags.isdisjoint(("v", "f", "is")):
-            self._low = self._number
-        code = self._format(self._style)
-        if code is not None or self._column_formats or self._row_formats:
-            self._formats[place] = code

@@ -20,7 +20,15 @@ from assess.errors import Problem, WorkbookError
 from assess.i18n import Text, fill
 from assess.input_file import open_input
 from assess.progress import SILENT, Progress
-from assess.workbook.plain_rows import PlainCell, RowCutter, column_letters, column_number, list_cells, list_unsaved
+from assess.workbook.plain_rows import (
+    PlainCell,
+    RowCutter,
+    column_letters,
+    column_number,
+    list_cells,
+    list_unsaved,
+    split_range,
+)
 
 _DATES = frozenset({*range(14, 23), 45, 46, 47})
 """Numbers of the built-in formats that show a number as a date or a time."""
@@ -99,6 +107,18 @@ _PLAIN_TAGS = {(False, False): set[str](), (False, True): {"v"}, (True, False): 
 
 Cells = dict[int, Any]
 """The values of a row by column, from 0; blank cells are left out."""
+
+
+Place = tuple[int, int]
+"""The row of a cell, from 1, and its column, from 0."""
+Area = tuple[int, int, int, int]
+"""First and last column, first and last row of cells, from 1."""
+LOCKED = {"dataTable": fill("it belongs to a data table."), "array": fill("it belongs to an array formula.")}
+"""Why no cell of a formula of several cells is changed by itself."""
+_CONTENT = frozenset({"v", "f", "is", "t", "r", "rPh", "phoneticPr", "rPr", "rFont", "charset", "family", "b", "i",
+                      "strike", "outline", "shadow", "condense", "extend", "color", "sz", "u", "vertAlign",
+                      "scheme"})  # fmt: skip
+"""What a cell may hold: its value, its formula, a text in parts with their fonts (ECMA-376 Part 1, 18.3.1.4, 18.4)."""
 
 
 def decode_text(text: str) -> str:
@@ -350,18 +370,50 @@ class _Shared:
     is_1904: bool = False
 
 
+@dataclass(slots=True)
+class Marks:
+    """What the values of a sheet's cells do not show; it stays while these change.
+
+    * `formulas`: Cells that hold a formula.
+    * `unknown`: Cells that hold elements which no change understands.
+    * `locked`: Areas of formulas of several cells, and why none of their cells is changed by itself.
+    * `formats`: The format of a cell that shows its number as a date, a time or a percentage; None for a cell that does
+      not, although its row or column does.
+    * `row_formats`, `column_formats`: That of the rows that have one; first and last column, from 0, and that of these.
+    * `low`: Last row of a cell that holds something but no value that is read, such as a formula whose result is blank.
+    * `is_1904`: Whether dates are counted from 1904.
+    """
+
+    formulas: set[Place] = field(default_factory=set)
+    unknown: set[Place] = field(default_factory=set)
+    locked: list[tuple[Area, Text]] = field(default_factory=list)
+    formats: dict[Place, str | None] = field(default_factory=dict)
+    row_formats: dict[int, str | None] = field(default_factory=dict)
+    column_formats: list[tuple[int, int, str | None]] = field(default_factory=list)
+    low: int = 0
+    is_1904: bool = False
+
+    def format_at(self, place: Place) -> str | None:
+        """Return the format that a number in a cell gets: its own, else that of its row or column."""
+        row, at = place
+        if place in self.formats:
+            return self.formats[place]
+        if row in self.row_formats:
+            return self.row_formats[row]
+        return next((code for first, last, code in self.column_formats if first <= at <= last), None)
+
+
 class SheetCells(Part):
     """The cells of one sheet.
 
     `rows` yields them once, row by row. After that `last_row` is the last row that holds a value or a formula (0 in
     an empty sheet), `far` the address of the first value right of the columns that are read ("" if there is none),
-    `merged` the merged ranges, as in ``A1:C2``, and `hidden_rows` and `hidden_columns` (from 0) what is not shown.
+    `merged` the merged ranges, as in ``A1:C2``, `hidden_rows` and `hidden_columns` (from 0) what is not shown, and
+    `marks` what the values do not show, if that was asked for: cells without a value are then looked at one by one.
     """
 
     limits = None
     header_rows, top, kept = HEADER_ROWS, "A1", None
-    marks_cells = False
-    """Whether cells without a value are looked at one by one."""
     title = ""
     """The sheet as the workbook calls it."""
 
@@ -370,9 +422,11 @@ class SheetCells(Part):
         """Return how messages call a cell, ``C3``; that of the first column where no column is given."""
         return f"{column_letters(at or 0)}{row}"
 
-    def __init__(self, archive: zipfile.ZipFile, path: str, name: str, shared: _Shared, progress: Progress) -> None:
+    def __init__(
+        self, archive: zipfile.ZipFile, path: str, name: str, shared: _Shared, progress: Progress, marks: Marks | None
+    ) -> None:
         super().__init__(archive, path, name, progress)
-        self.shared = shared
+        self.shared, self.marks = shared, marks
         self.last_row, self.far, self.merged = 0, "", list[str]()
         self.hidden_rows, self.hidden_columns = list[int](), set[int]()
         self._ready: list[tuple[int, Cells]] = []
@@ -421,8 +475,9 @@ class SheetCells(Part):
         elif self._texts is not None:
             self._tags.add(tag)
             self._takes = tag == "v" or (tag == "t" and "rPh" not in self._tags)
-            if tag == "f":
-                self._open_formula(attributes)
+            if tag == "f" and self.marks and (why := LOCKED.get(attributes.get("t", ""))):
+                area = split_range(attributes.get("ref", ""))
+                self.marks.locked += [(area, why)] if area else []
 
     def leave(self, tag: str) -> None:
         """Close a row or a cell."""
@@ -458,11 +513,16 @@ class SheetCells(Part):
             self.hidden_rows.append(self._number)
         self._row_start = self.parser.CurrentByteIndex
         self._cells, self._at, self._count = {}, 0, 0
+        if self.marks and attributes.get("customFormat") in TRUE and (style := attributes.get("s", "")).isdigit():
+            self.marks.row_formats[self._number] = self._format(style)
 
     def _open_column(self, attributes: dict[str, str]) -> None:
         if attributes.get("hidden") in TRUE:
             first, last = (min(int(attributes.get(name, "0")), MAX_COLUMNS) for name in ("min", "max"))
             self.hidden_columns.update(range(first - 1, last))
+        if self.marks and (style := attributes.get("style", "")).isdigit() and int(style):
+            first, last = int(attributes["min"]) - 1, int(attributes["max"]) - 1
+            self.marks.column_formats.append((first, last, self._format(style)))
 
     def _open_cell(self, attributes: dict[str, str]) -> None:
         self._address = attributes.get("r", "")
@@ -476,7 +536,7 @@ class SheetCells(Part):
         self._texts, self._tags = [], set()
 
     def _take_plain(self, cells: str, is_empty: bool) -> None:
-        if self.marks_cells:
+        if self.marks:
             self._close_cells(list_cells(cells))
         elif not is_empty:
             self._close_cells(self._take_common(list_cells(cells)))
@@ -508,12 +568,25 @@ class SheetCells(Part):
             self._tags = _PLAIN_TAGS[bool(formula), bool(value)]
             self._close_cell(value[3:-4])
 
-    def _open_formula(self, attributes: dict[str, str]) -> None:
-        """Take in the beginning of a formula."""
-
     def _close_cell(self, text: str) -> None:
-        if self._tags.isdisjoint(("v", "f", "is")):
-            return
+        if not self._tags.isdisjoint(("v", "f", "is")):
+            self._keep(text)
+        if self.marks:
+            self._mark(self.marks)
+
+    def _mark(self, marks: Marks) -> None:
+        place = self._number, self._at - 1
+        if "f" in self._tags:
+            marks.formulas.add(place)
+        if not self._tags <= _CONTENT:
+            marks.unknown.add(place)
+        if place[1] not in self._cells and not self._tags.isdisjoint(("v", "f", "is")):
+            marks.low = self._number
+        code = self._format(self._style)
+        if code is not None or marks.column_formats or marks.row_formats:
+            marks.formats[place] = code
+
+    def _keep(self, text: str) -> None:
         self.last_row = self._number
         if self._at > MAX_COLUMNS:
             self.far = self.far or self._address or fill("column {at} of row {row}", at=self._at, row=self._number)
@@ -559,9 +632,6 @@ def _check_kind(types: Tree, book: Tree) -> None:
 def _list_formats(styles: Tree) -> list[str | None]:
     codes = {one.get("numFmtId", ""): one.get("formatCode", "") for one in styles.find("numFmt")}
     return [find_format(one.get("numFmtId", "0"), codes) for one in styles.find("xf", "cellXfs")]
-
-
-_Cells = TypeVar("_Cells", bound=SheetCells)
 
 
 class Book:
@@ -625,12 +695,9 @@ class Book:
         """Return a part of the zip, read as one kind of part."""
         return kind(self.archive, path, self.name, self.progress).read()
 
-    def cells(self, sheet: str) -> SheetCells:
-        """Return the cells of a sheet."""
-        return self.cells_as(SheetCells, sheet)
-
-    def cells_as(self, kind: type[_Cells], sheet: str) -> _Cells:
-        """Return the cells of a sheet, as one kind of reader takes them."""
-        cells = kind(self.archive, self.sheets[sheet], self.name, self._shared, self.progress)
+    def cells(self, sheet: str, *, is_marked: bool = False) -> SheetCells:
+        """Return the cells of a sheet, with marks if these are asked for."""
+        marks = Marks(is_1904=self._shared.is_1904) if is_marked else None
+        cells = SheetCells(self.archive, self.sheets[sheet], self.name, self._shared, self.progress, marks)
         cells.title = sheet
         return cells

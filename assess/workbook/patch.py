@@ -2,15 +2,17 @@
 
 Loading a workbook in a library and saving it again loses what the library does not know: pictures, threaded comments,
 sparklines, the stored results of formulas. Here the places of the cells are found in the XML of their sheet, and
-only those bytes are replaced; every other part of the zip keeps its bytes, name, date and place. Office Open XML:
-ECMA-376 Part 1, 18.3 (worksheets), 18.6 (calculation chain), 22.9.2.19 (ST_Xstring).
+only those bytes are replaced; every other part of the zip keeps its bytes, name, date and place. What is not
+understood is refused: a change is only made where its effect is known. Office Open XML: ECMA-376 Part 1, 18.3
+(worksheets), 18.6 (calculation chain), 22.9.2.19 (ST_Xstring).
 """
 
 import io
 import posixpath
 import re
 import zipfile
-from collections.abc import Collection, Mapping, Sequence
+from bisect import bisect_right
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
 
@@ -18,33 +20,24 @@ from assess.errors import Problem, WorkbookError
 from assess.i18n import Text, fill
 from assess.progress import SILENT, Progress
 from assess.workbook.open import (
+    LOCKED,
     RELATIONS,
     SHEET_COLUMNS,
     SHEET_ROWS,
     TYPES,
     WORKBOOK,
+    Area,
     Book,
+    Part,
     Tree,
+    damaged,
     decode_text,
     unreadable,
-)
-from assess.workbook.places import (
-    CellPlace,
-    Edit,
-    RowPlace,
-    SheetPlaces,
-    SmallPart,
-    add_attribute,
-    apply_edits,
-    drop_attributes,
-    open_tag,
 )
 from assess.workbook.plain_rows import column_letters, split_address, split_range
 
 Value = float | str | bool | None
 """What a cell may hold; None leaves it blank."""
-Area = tuple[int, int, int, int]
-"""First and last column, first and last row of cells, from 1."""
 Values = Mapping[str, Value]
 """Values by the addresses of cells, ``{"H14": 45.0}``."""
 
@@ -54,10 +47,13 @@ LARGEST_NUMBER = 9.99999999999999e307
 """The largest number that a cell holds."""
 MOST_CHECKED = 4 * 2**20
 """Bytes up to which a sheet is read, before it is changed, to see whether it can be."""
-_UNWRITABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]|_(?=x[0-9A-Fa-f]{4}_)")
-LOCKED = {"dataTable": fill("it belongs to a data table."), "array": fill("it belongs to an array formula.")}
-"""Why no cell of a formula of several cells is changed by itself."""
+MOST_NESTED = 100
+"""Elements in one another; a sheet has a dozen."""
 _HEADER = fill("it is a header of a table.")
+_UNWRITABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]|_(?=x[0-9A-Fa-f]{4}_)")
+_TAG = re.compile(rb"""<[^>"']*(?:(?:"[^"]*"|'[^']*')[^>"']*)*>""")
+_ATTRIBUTE = re.compile(rb"""\s+([^\s=/>]+)\s*=\s*(?:"[^"]*"|'[^']*')""")
+_ENCODINGS = ("utf-8", "us-ascii", "ascii")
 _CONTENT = frozenset({"f", "v", "is"})
 _LEVEL = 6
 
@@ -140,50 +136,274 @@ def _check_names(book: Book, names: Sequence[str]) -> None:
         raise unreadable(message, fill("Save it from Excel without the signature."))
 
 
-# ---------------------------------------------------------------- one sheet
+# ---------------------------------------------------------------- where elements lie
+
+Edit = tuple[int, int, bytes]
+"""Bytes from a place up to another, and what stands there instead."""
+
+
+def apply_edits(data: bytes, edits: Iterable[Edit]) -> bytes:
+    """Return `data` with edits made; none may overlap, and those at one place keep their order."""
+    out, at = [], 0
+    for start, end, new in sorted(edits, key=lambda edit: edit[:2]):
+        out += [data[at:start], new]
+        at = end
+    return b"".join((*out, data[at:]))
+
+
+def drop_attributes(tag: bytes, names: Collection[bytes]) -> bytes:
+    """Return a start tag without some of its attributes."""
+    return _ATTRIBUTE.sub(lambda found: b"" if found[1] in names else found[0], tag)
+
+
+def add_attribute(tag: bytes, text: bytes) -> bytes:
+    """Return a start tag with ``name="value"`` at its end."""
+    end = -2 if tag.endswith(b"/>") else -1
+    return tag[:end].rstrip() + b" " + text + tag[end:]
+
+
+def open_tag(tag: bytes) -> bytes:
+    """Return the start tag of an element that has no content as one that may have some."""
+    return tag[:-2].rstrip() + b">" if tag.endswith(b"/>") else tag
 
 
 @dataclass(slots=True)
+class Element:
+    """An element: its bytes from `start` to `end`, its start tag to `head`, its content to `foot`.
+
+    `parts` are those in a cell, such as f (its formula) and v (its value).
+    """
+
+    name: str
+    parent: str
+    attributes: Mapping[str, str]
+    start: int
+    head: int
+    foot: int = 0
+    end: int = 0
+    parts: "list[Element]" = field(default_factory=list)
+
+    @property
+    def bare(self) -> str:
+        """Its name without the prefix."""
+        return self.name.rpartition(":")[2]
+
+    def part(self, name: str) -> "Element | None":
+        """Return the element of a bare name in a cell."""
+        return next((one for one in self.parts if one.bare == name), None)
+
+
+class SmallPart(Part):
+    """A part of the zip whose `elements`, down to the third level, can be found again in its bytes, `data`."""
+
+    limits: tuple[int, int] | None = (24 * 2**20, 1_000_000)
+
+    def __init__(self, archive: zipfile.ZipFile, path: str, name: str, progress: Progress = SILENT) -> None:
+        super().__init__(archive, path, name, progress)
+        self.data = archive.read(path)
+        self.parser.CharacterDataHandler = None
+        self.parser.StartDoctypeDeclHandler = self._refuse_types
+        self.parser.XmlDeclHandler = self._check_encoding
+        self.elements: list[Element] = []
+        self._open: list[Element | None] = []
+
+    def enter(self, tag: str, attributes: dict[str, str]) -> None:
+        """Note where an element begins, if it is wanted."""
+        if len(self._open) >= MOST_NESTED:
+            raise self.not_understood(fill("it nests its elements too deep"))
+        self._open.append(self.take(len(self._open) + 1, tag, attributes))
+
+    def take(self, depth: int, tag: str, attributes: dict[str, str]) -> Element | None:
+        """Return an element that begins, if its place is wanted; `depth` is 1 for the root."""
+        if depth > 3:
+            return None
+        self.elements.append(self.locate(tag, attributes))
+        return self.elements[-1]
+
+    def locate(self, tag: str, attributes: dict[str, str]) -> Element:
+        """Return an element that begins here."""
+        start = self.parser.CurrentByteIndex
+        head = _TAG.match(self.data, start)
+        if head is None:
+            raise self.not_understood(fill("a tag cannot be found in it"))
+        above = self._open[-1] if self._open else None
+        return Element(tag, above.name if above else "", attributes, start, head.end())
+
+    def leave(self, tag: str) -> None:
+        """Note where an element ends."""
+        one = self._open.pop()
+        if one is not None and self.data[one.head - 2 : one.head] == b"/>":
+            one.foot = one.end = one.head
+        elif one is not None:
+            one.foot = self.parser.CurrentByteIndex
+            one.end = self.data.index(b">", one.foot) + 1
+
+    def named(self, name: str) -> Iterator[Element]:
+        """Yield the elements of a name, whatever their prefix."""
+        return (one for one in self.elements if one.bare == name)
+
+    def not_understood(self, why: Text) -> WorkbookError:
+        """Build the error for XML that cannot be changed with certainty."""
+        message = fill("{part} cannot be changed without risk: {why}.", part=self.path, why=why)
+        return unreadable(message, fill("Open the workbook in Excel, save it under another name, and use that."))
+
+    def _refuse_types(self, *_: object) -> None:
+        raise self.not_understood(fill("it declares a document type"))
+
+    def _check_encoding(self, _version: str, encoding: str | None, _standalone: int) -> None:
+        if encoding is not None and encoding.lower() not in _ENCODINGS:
+            raise damaged(fill("{part} is not written in UTF-8", part=self.path))
+
+
+@dataclass(slots=True)
+class RowPlace:
+    """Where a row lies, its wanted cells by their columns, from 1, and column and beginning of every cell."""
+
+    element: Element
+    cells: dict[int, Element] = field(default_factory=dict)
+    starts: list[tuple[int, int]] = field(default_factory=list)
+
+
+class SheetPlaces(SmallPart):
+    """Where the rows of a sheet lie, and the cells that are `wanted`, columns by row, both from 1.
+
+    `sheet_data` is the element that holds the rows, `dimension` the one that says how far they reach, `columns` the
+    styles of columns by their first and last, `locked` the ranges of formulas of several cells with what they are.
+    """
+
+    limits = None
+
+    def __init__(
+        self, archive: zipfile.ZipFile, path: str, name: str, wanted: Mapping[int, Collection[int]], progress: Progress
+    ) -> None:
+        super().__init__(archive, path, name, progress)
+        self.wanted = wanted
+        self.rows: dict[int, RowPlace] = {}
+        self.dimension: Element | None = None
+        self.columns: list[tuple[int, int, str]] = []
+        self.locked: list[tuple[Area, str]] = []
+        self._sheet_data: Element | None = None
+        self._numbers, self._starts = list[int](), list[int]()
+        self._prefix, self._is_inside = "", False
+        self._row: RowPlace | None = None
+        self._cell: Element | None = None
+        self._number = self._column = 0
+
+    @property
+    def sheet_data(self) -> Element:
+        """The element that holds the rows; raises WorkbookError if there is none."""
+        if self._sheet_data is None:
+            raise self.not_understood(fill("it holds no rows"))
+        return self._sheet_data
+
+    @property
+    def prefix(self) -> bytes:
+        """The prefix of the names of elements, with its colon."""
+        return self._prefix.encode()
+
+    def place_of_new(self, number: int) -> int:
+        """Return where the first row after one that is missing begins; the end of all rows if it is the last."""
+        at = bisect_right(self._numbers, number)
+        return self._starts[at] if at < len(self._starts) else self.sheet_data.foot
+
+    def take(self, depth: int, tag: str, attributes: dict[str, str]) -> Element | None:
+        """Note what the sheet says of itself, its rows, and the cells of those that are wanted."""
+        if self._is_inside and depth > 2:
+            return (
+                (self._take_row, self._take_cell, self._take_content)[depth - 3](tag, attributes) if depth < 6 else None
+            )
+        prefix, colon, name = tag.rpartition(":")
+        if depth == 2:
+            self._is_inside = name == "sheetData"
+            kept = self.locate(tag, attributes) if name in ("sheetData", "dimension") else None
+            if name == "dimension":
+                self.dimension = kept
+            elif self._is_inside:
+                if self._sheet_data is not None:
+                    raise self.not_understood(fill("it holds the rows of a sheet twice"))
+                self._sheet_data, self._prefix = kept, prefix + colon
+            return kept
+        if name == "col" and "style" in attributes:
+            self.columns.append((int(attributes["min"]), int(attributes["max"]), attributes["style"]))
+        return None
+
+    def _expect(self, tag: str, name: str) -> None:
+        if tag != f"{self._prefix}{name}":
+            raise self.not_understood(fill("{found} stands where {name} is expected", found=tag[:40], name=name))
+
+    def _take_row(self, tag: str, attributes: dict[str, str]) -> Element | None:
+        self._expect(tag, "row")
+        number = int(attributes["r"]) if "r" in attributes else self._number + 1
+        if number <= self._number:
+            raise damaged(fill("the rows of {part} are out of order", part=self.path))
+        self._number, self._column, self._row = number, 0, None
+        self._numbers.append(number)
+        self._starts.append(self.parser.CurrentByteIndex)
+        if number not in self.wanted:
+            return None
+        self._row = self.rows[number] = RowPlace(self.locate(tag, attributes))
+        return self._row.element
+
+    def _take_cell(self, tag: str, attributes: dict[str, str]) -> Element | None:
+        self._expect(tag, "c")
+        self._cell = None
+        if self._row is None:  # of these there may be a million
+            return None
+        self._column += 1
+        if "r" in attributes:
+            place = split_address(attributes["r"])
+            if place is None or place[1] != self._number or place[0] < self._column:
+                raise self.not_understood(
+                    fill("cell {address} stands in row {row}", address=attributes["r"][:20], row=self._number)
+                )
+            self._column = place[0]
+        self._row.starts.append((self._column, self.parser.CurrentByteIndex))
+        if self._column in self.wanted[self._number]:
+            self._cell = self._row.cells[self._column] = self.locate(tag, attributes)
+        return self._cell
+
+    def _take_content(self, tag: str, attributes: dict[str, str]) -> Element | None:
+        kind = attributes.get("t", "")
+        if kind in LOCKED and tag == f"{self._prefix}f":
+            area = split_range(attributes.get("ref", ""))
+            if area is None:
+                raise self.not_understood(fill("a formula of several cells does not say of which"))
+            self.locked.append((area, kind))
+        if self._cell is None:
+            return None
+        self._cell.parts.append(self.locate(tag, attributes))
+        return self._cell.parts[-1]
+
+
+# ---------------------------------------------------------------- one sheet
+
+
 class _SheetPatch:
-    book: Book
-    sheet: str
-    changes: Values
-    results: Values
-    formulas: list[str] = field(default_factory=list)
-    problems: list[Problem] = field(default_factory=list)
+    """Changes and results of one sheet; `problems` tells what is refused, `formulas` what values replace."""
+
+    def __init__(self, book: Book, sheet: str, changes: Values, results: Values) -> None:
+        self.sheet, path = sheet, book.sheets[sheet]
+        self.formulas, self.problems = list[str](), list[Problem]()
+        self.changes, self.results = self._by_row(changes), self._by_row(results)
+        numbers = sorted({*self.changes, *self.results})
+        wanted = {one: {*self.changes.get(one, ()), *self.results.get(one, ())} for one in numbers}
+        self.headings = find_headings(book, path)
+        self.places = SheetPlaces(book.archive, path, book.name, wanted, book.progress).read()
+        self.added: list[tuple[int, int]] = []
 
     def write(self) -> bytes:
-        """Return the bytes of the sheet with the changes made; `problems` tells what is refused."""
-        changes, results = self._by_row(self.changes), self._by_row(self.results)
-        book, path = self.book, self.book.sheets[self.sheet]
-        wanted = {number: {*changes.get(number, ()), *results.get(number, ())} for number in {*changes, *results}}
-        headings = find_headings(book, path)
-        places = SheetPlaces(book.archive, path, book.name, wanted, book.progress).read()
+        """Return the bytes of the sheet with the changes made."""
         edits: list[Edit] = []
         new_rows: list[tuple[int, bytes]] = []
-        added: list[tuple[int, int]] = []
-        for number in sorted(wanted):
-            values = changes.get(number, {})
-            for column in values:
-                address = f"{column_letters(column - 1)}{number}"
-                for (left, right, top, bottom), kind in places.locked:
-                    if left <= column <= right and top <= number <= bottom:
-                        self._refuse(address, LOCKED[kind])
-                if any(left <= column <= right and number == top for left, right, top in headings):
-                    self._refuse(address, _HEADER)
-            row = places.rows.get(number)
-            one = _RowPatch(places, number, row, values, results.get(number, {}))
-            if row is None:
-                new_rows += [(number, text)] if (text := one.write_new()) else []
-            else:
-                edits += one.edit(row)
-            self.formulas += one.formulas
-            added += [(column, number) for column in one.added]
-            for refused, why in one.refused:
-                self._refuse(f"{column_letters(refused - 1)}{one.number}", why)
-        edits += _insert_rows(places, new_rows)
-        edits += _widen(places, added)
-        return apply_edits(places.data, edits)
+        for number in self.places.wanted:
+            self._check_areas(number)
+            if number in self.places.rows:
+                edits += self._edit_row(number, self.places.rows[number])
+            elif cells := self._write_row(number):
+                p = self.places.prefix
+                new_rows.append((number, b'<%brow r="%d">%b</%brow>' % (p, number, cells, p)))
+        edits += _insert_rows(self.places, new_rows)
+        return apply_edits(self.places.data, [*edits, *_widen(self.places, self.added)])
 
     def _by_row(self, values: Values) -> dict[int, dict[int, Value]]:
         found: dict[int, dict[int, Value]] = {}
@@ -191,8 +411,7 @@ class _SheetPatch:
             place = split_address(address)
             if place is None or place[0] > SHEET_COLUMNS or place[1] > SHEET_ROWS:
                 self._refuse(address, fill("{address} is no cell of a sheet.", address=address[:20]))
-                continue
-            if isinstance(value, str) and len(value) > LONGEST_TEXT:
+            elif isinstance(value, str) and len(value) > LONGEST_TEXT:
                 message = fill("the text is longer than a cell holds: {most:,} characters.", most=LONGEST_TEXT)
                 self._refuse(address, message)
             elif isinstance(value, int | float) and not abs(value) <= LARGEST_NUMBER:
@@ -201,97 +420,86 @@ class _SheetPatch:
                 found.setdefault(place[1], {})[place[0]] = value
         return found
 
-    def _refuse(self, address: str, message: str) -> None:
-        fix = fill("Change this cell in Excel.")
-        self.problems.append(Problem("error", self.sheet, address, message, fix))
+    def _refuse(self, cell: str | tuple[int, int], message: Text) -> None:
+        address = cell if isinstance(cell, str) else f"{column_letters(cell[0] - 1)}{cell[1]}"
+        self.problems.append(Problem("error", self.sheet, address, message, fill("Change this cell in Excel.")))
 
+    def _check_areas(self, number: int) -> None:
+        for column in self.changes.get(number, ()):
+            for (left, right, top, bottom), kind in self.places.locked:
+                if left <= column <= right and top <= number <= bottom:
+                    self._refuse((column, number), LOCKED[kind])
+            if any(left <= column <= right and number == top for left, right, top in self.headings):
+                self._refuse((column, number), _HEADER)
 
-@dataclass(slots=True)
-class _RowPatch:
-    places: SheetPlaces
-    number: int
-    row: RowPlace | None
-    values: Mapping[int, Value]
-    results: Mapping[int, Value]
-    formulas: list[str] = field(default_factory=list)
-    added: list[int] = field(default_factory=list)
-    refused: list[tuple[int, str]] = field(default_factory=list)
+    def _write_row(self, number: int) -> bytes:
+        """Return the cells of a row that the sheet lacks."""
+        for column in self.results.get(number, ()):
+            self._refuse((column, number), fill("it holds no formula."))
+        values = sorted(self.changes.get(number, {}).items())
+        return b"".join(self._new_cell(number, column, value, {}) for column, value in values if value is not None)
 
-    def write_new(self) -> bytes:
-        """Return a row that the sheet lacks; nothing where it would be blank."""
-        self.refused += [(column, fill("it holds no formula.")) for column in self.results]
-        cells = b"".join(self._new_cell(column) for column, value in sorted(self.values.items()) if value is not None)
-        p = self.places.prefix
-        return b'<%brow r="%d">%b</%brow>' % (p, self.number, cells, p) if cells else b""
-
-    def edit(self, row: RowPlace) -> list[Edit]:
-        """Return the edits of a row that is there."""
-        edits: list[Edit] = []
+    def _edit_row(self, number: int, row: RowPlace) -> Iterator[Edit]:
+        values, own = self.changes.get(number, {}), row.element.attributes
         new: list[tuple[int, bytes]] = []
-        for column, value in sorted(self.values.items()):
+        added = len(self.added)
+        for column, value in sorted(values.items()):
             cell = row.cells.get(column)
             if cell is not None:
-                edits.append((cell.element.start, cell.element.end, self._changed_cell(cell, value)))
+                yield cell.start, cell.end, self._changed_cell(number, column, cell, value)
             elif value is not None:
-                new.append((self._place_after(row, column), self._new_cell(column)))
-        for column, value in sorted(self.results.items()):
+                at = next((start for other, start in row.starts if other > column), row.element.foot)
+                new.append((at, self._new_cell(number, column, value, own)))
+        for column, value in sorted(self.results.get(number, {}).items()):
             cell = row.cells.get(column)
-            formula = cell.part("f") if cell is not None and column not in self.values else None
+            formula = cell.part("f") if cell is not None and column not in values else None
             if cell is None or formula is None:
-                self.refused.append((column, fill("it holds no formula.")))
+                self._refuse((column, number), fill("it holds no formula."))
             else:
                 kept = self.places.data[formula.start : formula.end]
-                text = _write_cell(self.places.prefix, self._tag(cell, keeps=True), value, kept)
-                edits.append((cell.element.start, cell.element.end, text))
-        return edits + self._insert(row, new)
+                tag = self._tag(number, column, cell, (b"t",))
+                yield cell.start, cell.end, _write_cell(self.places.prefix, tag, value, kept)
+        if new:
+            yield from self._insert(row.element, new, [column for column, _ in self.added[added:]])
 
-    def _insert(self, row: RowPlace, new: Sequence[tuple[int, bytes]]) -> list[Edit]:
-        if not new:
-            return []
-        one, data = row.element, self.places.data
-        tag = data[one.start : one.head]
+    def _insert(self, one: Element, new: Sequence[tuple[int, bytes]], columns: Collection[int]) -> Iterator[Edit]:
+        tag = self.places.data[one.start : one.head]
         spans = [split.partition(":") for split in one.attributes.get("spans", "").split()]
         inside = [range(int(first), int(last) + 1) for first, _, last in spans]
-        wrong = any(not any(column in span for span in inside) for column in self.added)
+        wrong = any(not any(column in span for span in inside) for column in columns)
         changed = drop_attributes(tag, (b"spans",)) if wrong else tag
         if tag.endswith(b"/>"):
             cells = b"".join(text for _, text in new)
-            return [(one.start, one.head, open_tag(changed) + cells + b"</%brow>" % self.places.prefix)]
-        return [(one.start, one.head, changed), *((at, at, text) for at, text in new)]
+            yield one.start, one.head, open_tag(changed) + cells + b"</%brow>" % self.places.prefix
+        else:
+            yield one.start, one.head, changed
+            yield from ((at, at, text) for at, text in new)
 
-    def _place_after(self, row: RowPlace, column: int) -> int:
-        return next((start for at, start in row.starts if at > column), row.element.foot)
-
-    def _new_cell(self, column: int) -> bytes:
-        self.added.append(column)
-        p, address = self.places.prefix, f"{column_letters(column - 1)}{self.number}".encode()
-        style = self._style(column)
-        tag = b'<%bc r="%b"%b>' % (p, address, b' s="%b"' % style.encode() if style else b"")
-        return _write_cell(p, tag, self.values[column])
-
-    def _style(self, column: int) -> str:
-        """Return the style that a new cell takes over from its row or column, as in spreadsheet programs."""
-        of_row = self.row.element.attributes if self.row else {}
-        if of_row.get("customFormat") in ("1", "true") and of_row.get("s", "").isdigit():
-            return of_row["s"]
+    def _new_cell(self, number: int, column: int, value: Value, of_row: Mapping[str, str]) -> bytes:
+        """Return a cell with the style that it takes over from its row or column, as in spreadsheet programs."""
+        self.added.append((column, number))
         found = (style for first, last, style in self.places.columns if first <= column <= last)
-        return next((style for style in found if style.isdigit() and int(style)), "")
+        style = next((style for style in found if style.isdigit() and int(style)), "")
+        if of_row.get("customFormat") in ("1", "true") and of_row.get("s", "").isdigit():
+            style = of_row["s"]
+        p, address = self.places.prefix, f"{column_letters(column - 1)}{number}".encode()
+        return _write_cell(p, b'<%bc r="%b"%b>' % (p, address, b' s="%b"' % style.encode() if style else b""), value)
 
-    def _changed_cell(self, cell: CellPlace, value: Value) -> bytes:
+    def _changed_cell(self, number: int, column: int, cell: Element, value: Value) -> bytes:
         formula = cell.part("f")
         if formula is not None:
-            self.formulas.append(f"{column_letters(cell.column - 1)}{self.number}")
+            self.formulas.append(f"{column_letters(column - 1)}{number}")
             if formula.attributes.get("t") == "shared" and "ref" in formula.attributes:
-                self.refused.append((cell.column, fill("its formula is shared by other cells.")))
-        return _write_cell(self.places.prefix, self._tag(cell), value)
+                self._refuse((column, number), fill("its formula is shared by other cells."))
+        return _write_cell(self.places.prefix, self._tag(number, column, cell, (b"t", b"cm", b"vm")), value)
 
-    def _tag(self, cell: CellPlace, *, keeps: bool = False) -> bytes:
+    def _tag(self, number: int, column: int, cell: Element, dropped: Collection[bytes]) -> bytes:
         known = {f"{self.places.prefix.decode()}{name}" for name in _CONTENT}
         unknown = [one.name for one in cell.parts if one.name not in known]
         if unknown:
-            self.refused.append((cell.column, fill("it holds {element}, which is not known.", element=unknown[0][:40])))
-        tag = self.places.data[cell.element.start : cell.element.head]
-        return open_tag(drop_attributes(tag, (b"t",) if keeps else (b"t", b"cm", b"vm")))
+            message = fill("it holds {element}, which is not known.", element=unknown[0][:40])
+            self._refuse((column, number), message)
+        return open_tag(drop_attributes(self.places.data[cell.start : cell.head], dropped))
 
 
 def _write_cell(prefix: bytes, tag: bytes, value: Value, formula: bytes = b"") -> bytes:
@@ -390,13 +598,9 @@ def set_recalculation(book: Book) -> dict[str, bytes]:
         tag = drop_attributes(part.data[named.start : named.head], (b"fullCalcOnLoad",))
         edit = (named.start, named.head, add_attribute(tag, b'fullCalcOnLoad="1"'))
         return {WORKBOOK: apply_edits(part.data, [edit])}
-    root = part.elements[-1]
+    root = part.elements[0]
     prefix, colon, _ = root.name.rpartition(":")
-    before = [
-        one.end
-        for one in part.elements
-        if one.parent == root.name and one.name.rpartition(":")[2] in _BEFORE_CALCULATION
-    ]
+    before = [one.end for one in part.elements if one.parent == root.name and one.bare in _BEFORE_CALCULATION]
     at = max(before, default=root.head)
     return {WORKBOOK: apply_edits(part.data, [(at, at, f'<{prefix}{colon}calcPr fullCalcOnLoad="1"/>'.encode())])}
 

@@ -14,9 +14,10 @@ from hypothesis import strategies as st
 
 from assess.model import Inventory
 from assess.plans import Drawing, read_plan
-from assess.workbook.held import HeldSheets, Place
+from assess.workbook.held import HeldSheets
 from assess.workbook.kept_files import KeptFiles
 from assess.workbook.lists import PLACES
+from assess.workbook.open import Place
 from assess.workbook.patch import Value, patch_workbook
 from assess.workbook.plain_rows import column_letters
 from assess.workbook.read import build_held, hold_sheets, parse_held, read_inventory
