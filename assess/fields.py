@@ -42,44 +42,31 @@ def _simulation_field(name: str, kind: Kind, label: str, source: str = "", **mor
 
 
 SIMULATION_FIELDS = (
-    _simulation_field(
-        "runs", "count", fill("Motions"),
-        help="Draws of an earthquake like this one and of the piece, a motion each, that it was simulated under.",
-    ),
-    _simulation_field(
-        "draws", "count", fill("Draws"), help="Draws of all pieces exactly alike on its floor: `runs` of each."
-    ),
+    _simulation_field("runs", "count", fill("Motions"),
+        help="Draws of an earthquake like this one and of the piece, a motion each, that it was simulated under."),
+    _simulation_field("draws", "count", fill("Draws"),
+        help="Draws of all pieces exactly alike on its floor: `runs` of each."),
     _simulation_field("overturned", "count", fill("Overturned"), help="Those of them in which the piece overturned."),
     _simulation_field("probability", "share", fill("Chance"), help="`overturned` / `draws`."),
     _simulation_field("low", "share", fill("Low"), help="Lower end of the 95 % sampling interval (Wilson)."),
     _simulation_field("high", "share", fill("High"), help="Upper end of it."),
     _simulation_field("ideal.runs", "count", fill("Motions"), help="Motions, the same as of the draws."),
-    _simulation_field(
-        "if_slower", "share", fill("Chance if slower"), is_optional=True,
-        help="Chance in the third of the draws with the least PFV/PFA, where ground motion and building are drawn.",
-    ),
-    _simulation_field(
-        "if_faster", "share", fill("Chance if faster"), is_optional=True, help="Chance in that with the most.",
-    ),
-    _simulation_field(
-        "ideal.overturned", "count", fill("Overturned"),
-        help="Motions under which the piece overturned exactly as given, if exactly this motion recurred.",
-    ),
-    _simulation_field(
-        "ideal.probability", "share", fill("Chance if exactly this motion recurred"),
-        short=fill("If exactly this motion recurred"), shows=DATA | {"methods"}, help="`overturned` / `runs`.",
-    ),
+    _simulation_field("if_slower", "share", fill("Chance if slower"), is_optional=True,
+        help="Chance in the third of the draws with the least PFV/PFA, where ground motion and building are drawn."),
+    _simulation_field("if_faster", "share", fill("Chance if faster"), is_optional=True,
+        help="Chance in that with the most."),
+    _simulation_field("ideal.overturned", "count", fill("Overturned"),
+        help="Motions under which the piece overturned exactly as given, if exactly this motion recurred."),
+    _simulation_field("ideal.probability", "share", fill("Chance if exactly this motion recurred"),
+        short=fill("If exactly this motion recurred"), shows=DATA | {"methods"}, help="`overturned` / `runs`."),
     _simulation_field("ideal.low", "share", fill("Low"), help="Lower end of its sampling interval."),
     _simulation_field("ideal.high", "share", fill("High"), help="Upper end of it."),
-    _simulation_field(
-        "record.overturned", "flag", fill("Overturns under the record"), "record_overturned",
+    _simulation_field("record.overturned", "flag", fill("Overturns under the record"), "record_overturned",
         short=fill("Under the record"), shows=DATA | {"pieces"},
-        help="Whether it overturns under the recorded motion itself.",
-    ),
-    _simulation_field(
-        "record.max_rotation_ratio", "number", fill("Largest rotation under the record, over the critical angle"),
-        "record_max_rotation_ratio", help="Largest |theta| over the critical angle under the recorded motion.",
-    ),
+        help="Whether it overturns under the recorded motion itself."),
+    _simulation_field("record.max_rotation_ratio", "number",
+        fill("Largest rotation under the record, over the critical angle"), "record_max_rotation_ratio",
+        help="Largest |theta| over the critical angle under the recorded motion."),
 )  # fmt: skip
 """What simulation found under a motion: together null in results.json where it did not run."""
 
@@ -117,55 +104,32 @@ def _adopted(name: str, label: str, kind: Kind, source: str = "", **more: Any) -
 
 
 ADOPTED_FIELDS = (
-    _adopted(
-        "method", fill("Method"), "text",
-        help='Key of the method whose value it is; "" where the piece cannot rock.',
-    ),
-    _adopted(
-        "basis", fill("Basis"), "text", choices=BASES,
-        help="`simulated`; `formula`: not simulated; `unconfirmed`: the formula's class, as the motions of a "
-        "simulation that gave a lower one may be too weak; or `cannot rock`: too stocky, or not even the strongest "
-        "motion that may be drawn can start it. Counts, lists and sums never mix the first three; the last is low, and "
-        "counts with those of the run.",
-    ),
-    _adopted(
-        "probability", fill("Chance of overturning"), "share", format="0.0%",
-        short=fill("Chance"), shows=DATA | {"pieces", "risky"},
-    ),
-    _adopted(
-        "low", fill("Low"), "share", is_optional=True, format="0.0%",
-        help="Lower end of the sampling interval; null where the formula's value is adopted.",
-    ),
+    _adopted("method", fill("Method"), "text",
+        help='Key of the method whose value it is; "" where the piece cannot rock.'),
+    _adopted("basis", fill("Basis"), "text", choices=BASES, help="`simulated`; `formula`: not simulated; "
+        "`unconfirmed`: the formula's class, as the motions of a simulation that gave a lower one may be too weak; "
+        "or `cannot rock`: too stocky, or not even the strongest motion that may be drawn can start it. Counts, "
+        "lists and sums never mix the first three; the last is low, and counts with those of the run."),
+    _adopted("probability", fill("Chance of overturning"), "share", format="0.0%", short=fill("Chance"),
+        shows=DATA | {"pieces", "risky"}),
+    _adopted("low", fill("Low"), "share", is_optional=True, format="0.0%",
+        help="Lower end of the sampling interval; null where the formula's value is adopted."),
     _adopted("high", fill("High"), "share", is_optional=True, format="0.0%"),
     _adopted("class", fill("Class"), "class", "risk", shows=DATA | {"pieces", "risky"}),
     _adopted("class_upper", fill("Class, upper estimate"), "class", "upper"),
-    _adopted(
-        "lowered_from", fill("Lowered from"), "class", is_optional=True,
-        help="Class by formula where simulation lowered it.",
-    ),
-    _adopted(
-        "flags", fill("Flags"), "list", short=fill("Marks"), shows=DATA | {"pieces"},
-    ),
+    _adopted("lowered_from", fill("Lowered from"), "class", is_optional=True,
+        help="Class by formula where simulation lowered it."),
+    _adopted("flags", fill("Flags"), "list", short=fill("Marks"), shows=DATA | {"pieces"}),
 )  # fmt: skip
 
 FORMULA_CLASSES = (
-    Field(
-        key="class_formula",
-        source="formula_class",
-        label=fill("Class (formula)"),
-        kind="class",
+    Field(key="class_formula", source="formula_class", label=fill("Class (formula)"), kind="class",
         shows=DATA | {"pieces", "risky"},
-        help="By the formula that *Class by* chooses, the highest under any of its motions; low where it cannot rock.",
-    ),
-    Field(
-        key="class_or",
-        source="paper_class",
-        label=fill("Class (OR)"),
-        kind="class",
+        help="By the formula that *Class by* chooses, the highest under any of its motions; low where it cannot rock."),
+    Field(key="class_or", source="paper_class", label=fill("Class (OR)"), kind="class",
         shows=DATA | {"pieces", "risky"},
-        help="By the paper's formula under the governing motion; low where it cannot rock.",
-    ),
-)
+        help="By the paper's formula under the governing motion; low where it cannot rock."),
+)  # fmt: skip
 """The classes of a row of furniture by formula, beside the one that is adopted."""
 
 
@@ -199,19 +163,13 @@ def _sliding(name: str, label: str, **more: Any) -> Field:
 
 
 SLIDING_FIELDS = (
-    _sliding(
-        "branch", fill("Starts to (as run)"), choices=BRANCHES, width=12,
-        help="What it does first at the floor's PFA (Shenton 1996); `sliding` is null where no friction is given.",
-    ),
-    _sliding(
-        "slip_median_cm", fill("Peak slip, median (as run)"), unit="cm", kind="number", format="0.0",
+    _sliding("branch", fill("Starts to (as run)"), choices=BRANCHES, width=12,
+        help="What it does first at the floor's PFA (Shenton 1996); `sliding` is null where no friction is given."),
+    _sliding("slip_median_cm", fill("Peak slip, median (as run)"), unit="cm", kind="number", format="0.0",
         help="Of a block that slides and does not rock (Newmark 1965), under the draws of the simulation; null where "
-        "it cannot slide, or nothing was simulated.",
-    ),
-    _sliding(
-        "slip_84_cm", fill("Peak slip, 84 % (as run)"), unit="cm", kind="number", format="0.0",
-        help="Not exceeded in 84 % of the draws.",
-    ),
+        "it cannot slide, or nothing was simulated."),
+    _sliding("slip_84_cm", fill("Peak slip, 84 % (as run)"), unit="cm", kind="number", format="0.0",
+        help="Not exceeded in 84 % of the draws."),
 )  # fmt: skip
 """How a piece of known friction slides: together null in results.json where no friction is given."""
 
@@ -227,64 +185,39 @@ PIECE_FIELDS = (
     _of_item(
         "quantity", fill("Quantity"), short=fill("No."), kind="count", format="#,##0", shows=EVERYWHERE | {"risky"},
     ),
-    _of_item(
-        "breadth_cm", fill("Breadth"), short=fill("B × W × H"), kind="number", unit="cm", shows=EVERYWHERE | {"risky"},
-    ),
+    _of_item("breadth_cm", fill("Breadth"), short=fill("B × W × H"), kind="number", unit="cm",
+        shows=EVERYWHERE | {"risky"}),
     _of_item("width_cm", fill("Width"), kind="number", unit="cm", is_optional=True),
     _of_item("height_cm", fill("Height"), kind="number", unit="cm"),
-    _of_item(
-        "breadth_to_height", fill("B/H"), kind="number", format="0.000", width=8, shows=EVERYWHERE | {"methods"},
-    ),
-    _of_item(
-        "centre_of_gravity", fill("Centre of gravity"), kind="share", format="0%", width=8, shows=DATA,
-        help="Height of the centre of gravity, as a share of the piece's height.",
-    ),
-    Field(
-        key="axis", source="governing.motion.axis", label=fill("Axis"), choices=AXES, width=6,
-        shows=EVERYWHERE, help="The axis that governs.",
-    ),
-    _of_item(
-        "axis_given", fill("Axis given"), is_optional=True, choices=AXES, width=7,
-        help="null: unknown, the worse of both governs.",
-    ),
+    _of_item("breadth_to_height", fill("B/H"), kind="number", format="0.000", width=8, shows=EVERYWHERE | {"methods"}),
+    _of_item("centre_of_gravity", fill("Centre of gravity"), kind="share", format="0%", width=8, shows=DATA,
+        help="Height of the centre of gravity, as a share of the piece's height."),
+    Field(key="axis", source="governing.motion.axis", label=fill("Axis"), choices=AXES, width=6, shows=EVERYWHERE,
+        help="The axis that governs."),
+    _of_item("axis_given", fill("Axis given"), is_optional=True, choices=AXES, width=7,
+        help="null: unknown, the worse of both governs."),
     _of_item("angle_deg", fill("Angle"), kind="number", unit="deg", width=8, is_optional=True),
     _of_item("x_m", fill("X"), kind="number", unit="m", width=8, is_optional=True),
     _of_item("y_m", fill("Y"), kind="number", unit="m", width=8, is_optional=True),
-    _of_item(
-        "friction", fill("Friction"), kind="number", is_optional=True,
-        help="The one used: the piece's own, else the building's.",
-    ),
+    _of_item("friction", fill("Friction"), kind="number", is_optional=True,
+        help="The one used: the piece's own, else the building's."),
     *SLIDING_FIELDS,
-    _of_item(
-        "against_wall", fill("Against wall"), kind="flag", is_optional=True, width=8,
-        help="Whether a long side stands against a wall; null: not known.",
-    ),
-    _of_item(
-        "falls_toward_deg", fill("Falls toward"), kind="number", unit="deg", is_optional=True, shows=DATA,
-        help="Direction in which a piece against a wall falls, anticlockwise from X; null: it may fall either way.",
-    ),
-    Field(
-        key="one_sided_chance", source="governing.one_sided", label=fill("Chance with a wall at its back"),
+    _of_item("against_wall", fill("Against wall"), kind="flag", is_optional=True, width=8,
+        help="Whether a long side stands against a wall; null: not known."),
+    _of_item("falls_toward_deg", fill("Falls toward"), kind="number", unit="deg", is_optional=True, shows=DATA,
+        help="Direction in which a piece against a wall falls, anticlockwise from X; null: it may fall either way."),
+    Field(key="one_sided_chance", source="governing.one_sided", label=fill("Chance with a wall at its back"),
         kind="share", format="0.0%", is_optional=True, width=10,
-        help="Simulated beside the adopted chance, which it does not change: turning away from the wall alone.",
-    ),
-    Field(
-        key="importance", source="item.importance", is_blank_unknown=True, label=fill("Importance"), is_optional=True,
-        choices=IMPORTANCE, width=13,
-    ),
-    Field(
-        key="pfa_g", source="governing.motion.pfa_g", label=fill("PFA used"), short=fill("PFA"), unit="g",
-        kind="number", format="0.000", shows=EVERYWHERE | {"methods"}, help="Of the motion that governs.",
-    ),
-    Field(
-        key="pfv_cm_s", source="governing.motion.pfv_cm_s", label=fill("PFV used"), short=fill("PFV"),
-        unit="cm/s", kind="number", format="0.0", is_optional=True, shows=FILES | {"methods"},
-    ),
-    Field(
-        key="pfa_source", source="governing.motion.label", shows=DATA,
-        help="The record, `given`, the code of a profile (with an assumed intensity: `Shaking MMI VII, ASCE 7-22`), "
-        "or the floors that it is interpolated between.",
-    ),
+        help="Simulated beside the adopted chance, which it does not change: turning away from the wall alone."),
+    Field(key="importance", source="item.importance", is_blank_unknown=True, label=fill("Importance"), is_optional=True,
+        choices=IMPORTANCE, width=13),
+    Field(key="pfa_g", source="governing.motion.pfa_g", label=fill("PFA used"), short=fill("PFA"), unit="g",
+        kind="number", format="0.000", shows=EVERYWHERE | {"methods"}, help="Of the motion that governs."),
+    Field(key="pfv_cm_s", source="governing.motion.pfv_cm_s", label=fill("PFV used"), short=fill("PFV"), unit="cm/s",
+        kind="number", format="0.0", is_optional=True, shows=FILES | {"methods"}),
+    Field(key="pfa_source", source="governing.motion.label", shows=DATA, help="The record, `given`, the code of a "
+        "profile (with an assumed intensity: `Shaking MMI VII, ASCE 7-22`), or the floors that it is interpolated "
+        "between."),
 )  # fmt: skip
 
 
@@ -296,10 +229,8 @@ def _of_anchor(key: str, label: str = "", **more: Any) -> Field:
 ANCHOR_FIELDS = (
     _of_item("weight_kg", fill("Weight"), unit="kg", kind="number", is_optional=True),
     _of_anchor("weight_kn", fill("Weight with contents")),
-    _of_anchor(
-        "weight_source", fill("Source of the weight (estimate: assumed)"), unit="", kind="text", is_optional=False,
-        choices=("given", "type", "estimate"),
-    ),
+    _of_anchor("weight_source", fill("Source of the weight (estimate: assumed)"), unit="", kind="text",
+        is_optional=False, choices=("given", "type", "estimate")),
     _of_anchor("bracket_height_cm", fill("Bracket height"), unit="cm"),
     _of_anchor("bracket_capacity_kn", fill("Bracket capacity"), help="Tension that its bracket holds."),
     _of_anchor("tension_kn", fill("Tension at the bracket")),
@@ -307,14 +238,11 @@ ANCHOR_FIELDS = (
     _of_anchor("tension_high_kn", fill("Tension at 84 % of PFA")),
     _of_anchor("tension_without_weight_kn", fill("Tension without the help of the weight")),
     _of_anchor("shear_kn", fill("Shear at the base")),
-    _of_anchor(
-        "tension_code_kn", fill("Tension by the code"), help="For F_p of ASCE 7-22, where SDS or Ground PGA is known."
-    ),
+    _of_anchor("tension_code_kn", fill("Tension by the code"),
+        help="For F_p of ASCE 7-22, where SDS or Ground PGA is known."),
     _of_anchor("shear_code_kn", fill("Shear by the code")),
-    _of_anchor(
-        "needed_friction", fill("Friction needed at the base"), unit="", shows=DATA,
-        help="Coefficient below which the base of the held piece slides at PFA.",
-    ),
+    _of_anchor("needed_friction", fill("Friction needed at the base"), unit="", shows=DATA,
+        help="Coefficient below which the base of the held piece slides at PFA."),
     *(
         _of_anchor(key, unit="", kind="flag", is_optional=False, shows=DATA, help=text)
         for key, text in (
@@ -333,11 +261,9 @@ ANCHOR_FIELDS = (
             ("holds_code", fill("Bracket holds by the code")),
         )
     ),
-    Field(
-        key="counts_as_anchored", source="item.is_held", path=("anchor", "counts_as_anchored"),
+    Field(key="counts_as_anchored", source="item.is_held", path=("anchor", "counts_as_anchored"),
         label=fill("Counts as anchored"), kind="flag", shows=DATA,
-        help="It says so and its bracket is not known to fail, or it is partly anchored by one that holds at 84 %.",
-    ),
+        help="It says so and its bracket is not known to fail, or it is partly anchored by one that holds at 84 %."),
 )  # fmt: skip
 """The weight of a piece, and what its bracket has to carry; all of it is screening, not design."""
 
@@ -365,10 +291,8 @@ def item_fields(methods: Sequence[MethodInfo]) -> tuple[Field, ...]:
         *ADOPTED_FIELDS,
         *FORMULA_CLASSES,
         *ANNUAL_FIELDS,
-        Field(
-            key="axes", source="cases", kind="records", records=_axis_fields(methods), shows=DATA,
-            line="{axis}: {source} {pfa_g} g", help="Every motion that the item was evaluated under.",
-        ),
+        Field(key="axes", source="cases", kind="records", records=_axis_fields(methods), shows=DATA,
+            line="{axis}: {source} {pfa_g} g", help="Every motion that the item was evaluated under."),
         _of_item("anchored", fill("Anchored"), choices=ANCHORED, width=10),
         *(
             _of_item(key, label, width=24, is_optional=True, is_blank_unknown=True)
@@ -377,20 +301,14 @@ def item_fields(methods: Sequence[MethodInfo]) -> tuple[Field, ...]:
         *ANCHOR_FIELDS,
         _of_item("edge_distance_m", fill("Edge distance"), unit="m", kind="number", is_optional=True, shows=DATA),
         _of_item("notes", fill("Notes"), width=40),
-        _of_item(
-            "assumed", fill("Assumed"), kind="list", width=28,
-            help="Fields that were blank in the workbook and were filled in.",
-        ),
+        _of_item("assumed", fill("Assumed"), kind="list", width=28,
+            help="Fields that were blank in the workbook and were filled in."),
         Field(key="source_sheet", source="sheet", path=("source", "sheet"), shows=DATA),
         Field(key="source_row", source="item.row", path=("source", "row"), kind="count", shows=DATA),
-        _of_item(
-            "source_id", fill("Source ID"), is_optional=True, shows=DATA,
-            help="Its identifier in the building model or handover file that it was imported from.",
-        ),
-        _of_item(
-            "sizes_from", fill("Sizes from"), choices=SIZES_FROM, shows=DATA,
-            help="Where its sizes come from; base and height of a scan are drawn with a larger standard deviation.",
-        ),
+        _of_item("source_id", fill("Source ID"), is_optional=True, shows=DATA,
+            help="Its identifier in the building model or handover file that it was imported from."),
+        _of_item("sizes_from", fill("Sizes from"), choices=SIZES_FROM, shows=DATA,
+            help="Where its sizes come from; base and height of a scan are drawn with a larger standard deviation."),
     )  # fmt: skip
 
 
@@ -429,42 +347,22 @@ def _none_is_empty(value: list[Any] | None) -> list[Any]:
 MOTION_FIELDS = (
     Field(key="axis", label=fill("Axis"), choices=AXES),
     Field(key="source", choices=("record", "given", "interpolated", "profile", "beam")),
-    Field(
-        key="pfa_g", kind="number", label=fill("PFA"), unit="g", format="0.000",
-        help="After treatment.",
-    ),
-    Field(
-        key="pfv_cm_s", kind="number", label=fill("PFV"), unit="cm/s", format="0.0",
-        is_optional=True,
-    ),
+    Field(key="pfa_g", kind="number", label=fill("PFA"), unit="g", format="0.000", help="After treatment."),
+    Field(key="pfv_cm_s", kind="number", label=fill("PFV"), unit="cm/s", format="0.0", is_optional=True),
     Field(key="flags", kind="list"),
-    Field(
-        key="between", kind="list",
-        help="The floors below and above that it is interpolated between.",
-    ),
-    Field(
-        key="profile", source="profile.key", is_optional=True, help="The code whose design profile gave the PFA.",
-    ),
-    Field(
-        key="profile_verified", source="profile.verified", kind="flag", is_optional=True,
-        help="Whether the profile agrees with public implementations of the code.",
-    ),
+    Field(key="between", kind="list", help="The floors below and above that it is interpolated between."),
+    Field(key="profile", source="profile.key", is_optional=True, help="The code whose design profile gave the PFA."),
+    Field(key="profile_verified", source="profile.verified", kind="flag", is_optional=True,
+        help="Whether the profile agrees with public implementations of the code."),
     _of_motion("clause"),
     _of_motion("height_ratio", "number", label=fill("z/h"), format="0.000", help="Its height over the roof's."),
     _of_motion("amplification", "number", label=fill("Amplification"), format="0.000", help="PFA over ground PGA."),
-    Field(
-        key="dispersion", kind="number", label=fill("Motion uncertainty"),
-        format="0.00", help="Standard deviation of ln amplitude that is drawn, from one earthquake to the next.",
-    ),
-    Field(
-        key="pfv_follows", kind="flag",
-        help="Whether PFV is not known by itself and follows PFA.",
-    ),
+    Field(key="dispersion", kind="number", label=fill("Motion uncertainty"), format="0.00",
+        help="Standard deviation of ln amplitude that is drawn, from one earthquake to the next."),
+    Field(key="pfv_follows", kind="flag", help="Whether PFV is not known by itself and follows PFA."),
     _of_motion("record", help="The record as the workbook names it."),
-    _of_motion(
-        "pfa_file_g", "number", label=fill("PFA in the file"), unit="g", format="0.000",
-        help="Peak of the file's own values, before treatment.",
-    ),
+    _of_motion("pfa_file_g", "number", label=fill("PFA in the file"), unit="g", format="0.000",
+        help="Peak of the file's own values, before treatment."),
     _of_record("format"),
     _of_record("station", fill("Station")),
     _of_record("location"),
@@ -476,28 +374,17 @@ MOTION_FIELDS = (
     _of_motion("samples", "count"),
     Field(key="notes", kind="list"),
     _in_group("ensemble", "motions", kind="count", label=fill("Motions"), format="#,##0"),
-    _in_group(
-        "ensemble", "assumed_motion", kind="flag",
-        help="Whether no record is known, so that ground motion and building are drawn.",
-    ),
-    _in_group(
-        "ensemble", "unknown_building", kind="flag",
-        help="Whether neither T1, Height, Storeys nor an Elevation is known, so that no class is confirmed.",
-    ),
-    _in_group(
-        "ensemble", "weak_motions", kind="flag",
-        help="Whether the motions are weaker than the floor's, so that they may not lower a class.",
-    ),
-    _in_group(
-        "ensemble", "bands", kind="factors", is_optional=True, flat=_none_is_empty,
-        help="Factors above and below PFA/(2 pi PFV) by which drawn motions were brought to the floor's peaks.",
-    ),
-    _in_group(
-        "ensemble", "signs", kind="signs", is_optional=True, flat=_none_is_empty,
-        help="Whether the motions move as the phases that all floors share (1) or against them (-1), by octave from "
-        "0.1 to 25.6 Hz: as the records of two floors or more of one earthquake on one clock do; null where no such "
-        "records are known.",
-    ),
+    _in_group("ensemble", "assumed_motion", kind="flag",
+        help="Whether no record is known, so that ground motion and building are drawn."),
+    _in_group("ensemble", "unknown_building", kind="flag",
+        help="Whether neither T1, Height, Storeys nor an Elevation is known, so that no class is confirmed."),
+    _in_group("ensemble", "weak_motions", kind="flag",
+        help="Whether the motions are weaker than the floor's, so that they may not lower a class."),
+    _in_group("ensemble", "bands", kind="factors", is_optional=True, flat=_none_is_empty,
+        help="Factors above and below PFA/(2 pi PFV) by which drawn motions were brought to the floor's peaks."),
+    _in_group("ensemble", "signs", kind="signs", is_optional=True, flat=_none_is_empty, help="Whether the motions "
+        "move as the phases that all floors share (1) or against them (-1), by octave from 0.1 to 25.6 Hz: as the "
+        "records of two floors or more of one earthquake on one clock do; null where no such records are known."),
     _fit("matched_to_s", fill("Matched from 0.05 s to"), "0.00", "s"),
     _fit("mean_deviation", fill("Mean deviation"), "0.0%"),
     _fit("worst_deviation", fill("Worst deviation"), "+0.0%;-0.0%"),
@@ -537,35 +424,24 @@ WORK_FIELDS = (
     _work("room", label=fill("Room"), width=16),
     _work("items", "list", fill("Items"), width=24, help="The most urgent first."),
     _work("pieces", "count", fill("Pieces"), width=7, help="How many pieces they are, quantities counted."),
-    _work(
-        "detail", label=fill("Detail"), width=20, choices=tuple(DETAILS),
-        help="A generic way to fix them: screening, not design.",
-    ),
-    _force(
-        "tension_kn", fill("Tension at PFA"), fill("T at PFA"),
-        help="What the fixings of each piece carry together: at the bracket, or, where it is fixed at its base, at the "
-        "far edge of the base, on the lever of its breadth.",
-    ),
+    _work("detail", label=fill("Detail"), width=20, choices=tuple(DETAILS),
+        help="A generic way to fix them: screening, not design."),
+    _force("tension_kn", fill("Tension at PFA"), fill("T at PFA"), help="What the fixings of each piece carry "
+        "together: at the bracket, or, where it is fixed at its base, at the far edge of the base, on the lever of "
+        "its breadth."),
     _force("tension_high_kn", fill("Tension at 84 % of PFA"), fill("T at 84 %")),
-    _force(
-        "tension_code_kn", fill("Tension by the code"), fill("T by code"), is_optional=True,
-        help="For F_p of ASCE 7-22; null where neither SDS nor Ground PGA is known.",
-    ),
+    _force("tension_code_kn", fill("Tension by the code"), fill("T by code"), is_optional=True,
+        help="For F_p of ASCE 7-22; null where neither SDS nor Ground PGA is known."),
     _force("shear_kn", fill("Shear at the base"), fill("Shear"), help="Of each piece at PFA."),
-    _work(
-        "fixings", "count", fill("Fixings each"), width=8,
-        help="Of one piece, by the larger of the tensions at 84 % and by the code over the printed capacity of one.",
-    ),
-    _work(
-        "fixings_are_least", "flag", source="is_least",
-        help="Whether they are the least, not a result: no capacity is printed.",
-    ),
+    _work("fixings", "count", fill("Fixings each"), width=8,
+        help="Of one piece, by the larger of the tensions at 84 % and by the code over the printed capacity of one."),
+    _work("fixings_are_least", "flag", source="is_least",
+        help="Whether they are the least, not a result: no capacity is printed."),
     _work("weights_assumed", "count", help="Pieces whose weight is an estimate."),
     _work("heights_assumed", "count", help="Pieces whose bracket height is assumed."),
     _work("is_per_metre", "flag", help="Whether forces are those of one metre of a piece, as its width is not known."),
-    _work(
-        "unit_cost", "number", fill("Unit cost"), width=10, is_optional=True, help="Of one piece, of the sheet Costs.",
-    ),
+    _work("unit_cost", "number", fill("Unit cost"), width=10, is_optional=True,
+        help="Of one piece, of the sheet Costs."),
     _work("cost", "number", fill("Cost"), width=10, is_optional=True),
     _work("cost_source", label=fill("Source of the cost"), width=24),
 )  # fmt: skip
@@ -578,10 +454,8 @@ ENTRY_FIELDS = (
     _work("pieces", "count"),
     _work("only_together", "flag", source="is_together", help="Whether fixing some of them opens no route."),
     _work("falls_avoided", "number", fill("Falls avoided"), format="0.000", help="Expected number, if anchors hold."),
-    _work(
-        "falls_left", "number", fill("Falls left"), format="0.000",
-        help="Expected number once it and those before it are fixed.",
-    ),
+    _work("falls_left", "number", fill("Falls left"), format="0.000",
+        help="Expected number once it and those before it are fixed."),
     _work("cost", "number", is_optional=True, help="null where the sheet Costs leaves any part of it open."),
     _work("works", "records", records=WORK_FIELDS, help="What is to be done."),
 )  # fmt: skip
@@ -598,15 +472,12 @@ STATE_FIELDS = (
         )
         for risk in RiskClass
     ),
-    _work(
-        "pieces_apart", "count", fill("Unconfirmed, or by formula only"), path=("pieces", "apart"),
-        source="apart", help="Unconfirmed, or by formula only where others were simulated.",
-    ),
+    _work("pieces_apart", "count", fill("Unconfirmed, or by formula only"), path=("pieces", "apart"), source="apart",
+        help="Unconfirmed, or by formula only where others were simulated."),
     _work("pieces_anchored", "count", fill("Anchored"), path=("pieces", "anchored"), source="anchored"),
     _work("routes", "counts", help="How many there are by their state."),
     _work("blocked_routes_expected", "number", fill("Blocked routes, expected"), source="blocked_routes"),
-    _work("cut_off_rooms_expected", "number", fill("Rooms that lose every exit, expected"),
-        source="cut_off_rooms"),
+    _work("cut_off_rooms_expected", "number", fill("Rooms that lose every exit, expected"), source="cut_off_rooms"),
     _work("rooms_at_risk", "list", fill("Rooms that may lose every exit"),
         help="Their chance of losing every exit is at least the chosen risk, or not known."),
     _work("unknown_routes", "count", fill("Left out of these averages: routes not known"),
