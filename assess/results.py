@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, fields
 from functools import cached_property
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -198,24 +198,11 @@ class EnsembleRow:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MotionRow:
-    """One motion of one floor along one axis; parallel records give several.
+    """One motion of one floor along one axis (`assess.fields.MOTION_FIELDS`); parallel records give several.
 
-    * `index`: Its place in `Results.motions`.
-    * `floor`, `axis`: Where it serves.
-    * `source` ("record", "given", "interpolated", "profile" or "beam"): Where it comes from.
-    * `label`: The source in short: the record's name, "given", the profile's code, the two floors, or what shakes the
-      beam.
-    * `pfa_g`, `pfv_cm_s`: Peaks; `pfv_cm_s` is None where it is unknown.
-    * `flags`: Keys of `MOTION_FLAGS`.
-    * `between`: The floors below and above that it is interpolated between.
-    * `profile`, `clause`: The code's profile.
-    * `height_ratio`, `amplification`: z/h [-], and PFA over the ground's PGA where it follows from that [-].
-    * `record`: The record as the workbook names it, "" where there is none; what its file says stands behind it.
-    * `pfa_file_g`: The record's peak before treatment.
-    * `treatment`: What was done to the record.
-    * `pfv_follows`: Whether its PFV follows its PFA where that is edited, as it is not known by itself.
-    * `dispersion`: Standard deviation of ln of its amplitude from one earthquake to the next that is drawn [-].
-    * `ensemble`: What pieces were simulated under; None where none was.
+    `index` is its place in `Results.motions`, `label` its source in short: the record's name, "given", the profile's
+    code, the two floors, or what shakes the beam. `flags` are keys of `MOTION_FLAGS`. `record` is as the workbook names
+    it, "" where there is none; what its file says stands behind it. `ensemble` is None where nothing was simulated.
     """
 
     index: int
@@ -271,23 +258,12 @@ class MotionRow:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AnchorRow:
-    """What a bracket at the wall has to carry to hold a piece: screening, not design.
+    """What a bracket at the wall has to carry to hold a piece (`assess.fields.ANCHOR_FIELDS`): screening, not design.
 
-    * `weight_kn`: With contents.
-    * `weight_source` ("given", "type" or "estimate"): Where the weight comes from; `weight_words` say it.
-    * `is_per_metre`: Whether the weight, and so every force, is that of one metre of the piece, as its width is not
-      known.
-    * `bracket_height_cm`, `is_height_assumed`: Above the floor, and whether the workbook leaves it blank.
-    * `bracket_capacity_kn`: Tension that the bracket carries; None where the workbook leaves it blank.
-    * `tension_kn`, `tension_low_kn`, `tension_high_kn`: At the bracket for PFA, and for its 16 % and 84 %, helped by
-      the weight.
-    * `tension_without_weight_kn`: The same for PFA without the help of the weight.
-    * `shear_kn`: At the base for PFA, in whichever direction.
-    * `needed_friction`: Coefficient of friction below which the base slides [-].
-    * `tension_code_kn`, `shear_code_kn`: For F_p of ASCE 7-22, 13.3.1; None where neither SDS nor Ground PGA is known.
-    * `holds`, `holds_high`, `holds_code`: Whether the bracket carries the tension for PFA, for its 84 %, and for the
-      code; None where that is not known. Where `is_per_metre` it is False where it does not carry the tension of one
-      metre, and None where it carries one above 0.
+    `weight_source` is "given", "type" or "estimate", which `weight_words` say. `tension_low_kn` and `tension_high_kn`
+    are those at 16 % and 84 % of PFA. What is by the code is None where neither SDS nor Ground PGA is known. Where
+    `is_per_metre`, `holds` and its like are False where the bracket does not carry the tension of one metre, and None
+    where it carries one above 0.
     """
 
     weight_kn: float
@@ -1239,6 +1215,20 @@ class Provenance:
     profiles: tuple[ProfileInfo, ...]
 
 
+class Frame:
+    """A table of the results, by its name, for a notebook."""
+
+    def __init__(self, text: str) -> None:
+        self.__doc__ = text
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    def __get__(self, results: "Results | None", owner: type) -> "pd.DataFrame":
+        """Return the table as pandas has it; the descriptor where it is asked of the class."""
+        return cast("pd.DataFrame", self) if results is None else results.table(self._name).to_frame()
+
+
 @dataclass(frozen=True, kw_only=True)
 class Results:
     """The result of `assess.run`.
@@ -1282,6 +1272,14 @@ class Results:
     series: Series
     schedule: Schedule = NOTHING
     draws: DrawTable = field(default_factory=lambda: NO_DRAWS)
+
+    items: ClassVar = Frame("One row an item, with the columns of items.csv.")
+    cases: ClassVar = Frame("One row a piece and motion.")
+    floors: ClassVar = Frame("One row a floor, axis and motion.")
+    segments: ClassVar = Frame("One row a segment of a route.")
+    routes: ClassVar = Frame("One row an evacuation route.")
+    rooms: ClassVar = Frame("One row a room of the network.")
+    problems: ClassVar = Frame("One row a warning or note about the input.")
 
     def __len__(self) -> int:
         return len(self.item_rows)
@@ -1387,38 +1385,3 @@ class Results:
         from assess.fields import build_table
 
         return build_table(self, name)
-
-    @property
-    def items(self) -> "pd.DataFrame":
-        """One row an item, with the columns of items.csv."""
-        return self.table("items").to_frame()
-
-    @property
-    def cases(self) -> "pd.DataFrame":
-        """One row a piece and motion."""
-        return self.table("cases").to_frame()
-
-    @property
-    def floors(self) -> "pd.DataFrame":
-        """One row a floor, axis and motion."""
-        return self.table("floors").to_frame()
-
-    @property
-    def segments(self) -> "pd.DataFrame":
-        """One row a segment of a route."""
-        return self.table("segments").to_frame()
-
-    @property
-    def routes(self) -> "pd.DataFrame":
-        """One row an evacuation route."""
-        return self.table("routes").to_frame()
-
-    @property
-    def rooms(self) -> "pd.DataFrame":
-        """One row a room of the network."""
-        return self.table("rooms").to_frame()
-
-    @property
-    def problems(self) -> "pd.DataFrame":
-        """One row a warning or note about the input."""
-        return self.table("problems").to_frame()

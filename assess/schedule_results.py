@@ -10,20 +10,8 @@ from assess.risk import RiskClass
 class WorkRow:
     """Alike pieces of one room that are fixed in the same way: an entry of the schedule is one of these, or several.
 
-    * `floor`, `room`: Where they stand.
-    * `items`, `item_indices`: Their names, and their places in `Results.item_rows`, the most urgent first.
-    * `pieces`: How many they are, quantities counted.
-    * `detail`: How they may be fixed: key of `assess.details.DETAILS`.
-    * `tension_kn`, `tension_high_kn`: What the fixings of each piece have to carry together at PFA and at its 84 %: at
-      the bracket, or, where it is fixed at its base, at the far edge of the base, on the lever of its breadth [kN].
-    * `tension_code_kn`: The same by the code; None where neither SDS nor Ground PGA is known [kN].
-    * `shear_kn`: Horizontal force at the base of each piece at PFA [kN].
-    * `fixings`: Of one piece, by the larger of the tensions at 84 % and by the code over the printed capacity of one
-      fixing.
-    * `weights_assumed`, `heights_assumed`: Pieces whose weight, and whose bracket height, is assumed.
-    * `is_per_metre`: Whether forces and fixings are those of one metre of a piece, as its width is not known.
-    * `unit_cost`, `cost`: Of one piece and of all, as the sheet Costs has it; None where it does not.
-    * `cost_source`: Where that comes from, as the workbook says.
+    The fields are those of `assess.fields.WORK_FIELDS`; `item_indices` are the places of the pieces in
+    `Results.item_rows`.
     """
 
     floor: str
@@ -54,14 +42,8 @@ class WorkRow:
 class ScheduleRow:
     """One entry of the schedule: a piece, pieces that are alike, or pieces that only help together.
 
-    * `place`: Its place in the order of urgency, from 1.
-    * `floor`, `room`: Where it is to be done: of its most urgent piece.
-    * `item_indices`: Its pieces, as places in `Results.item_rows`, the most urgent first.
-    * `pieces`: How many they are, quantities counted.
-    * `is_together`: Whether they only help together: fixing some of them opens no route.
-    * `works`: What is to be done: alike pieces of a room are one.
-    * `falls_avoided`: Expected number of falls that it avoids; 0 of pieces that stand apart.
-    * `falls_left`: Expected number of falls that are left once it and those before it are fixed.
+    The fields are those of `assess.fields.ENTRY_FIELDS`; `item_indices` are its pieces, as places in
+    `Results.item_rows`, the most urgent first. `falls_avoided` is 0 of pieces that stand apart.
     """
 
     place: int
@@ -85,16 +67,8 @@ class ScheduleRow:
 class State:
     """What is to be expected of the building: before anything of the schedule is done, or after all of it.
 
-    * `falls`: Expected number of free-standing pieces that fall, of the run's basis.
-    * `falls_low`, `falls_high`: What 5 and 95 % of the draws do not exceed; None where nothing was simulated.
-    * `apart`: Free-standing pieces that stand apart: unconfirmed, or by formula only where others were simulated.
-    * `classes`: Free-standing pieces of the run's basis by class, from low to very high.
-    * `anchored`: Pieces that count as anchored.
-    * `routes` (mapping as tuple of (str, int)): Routes by their state.
-    * `blocked_routes`, `cut_off_rooms`: Expected number of routes that are blocked, and of rooms that lose every exit,
-      among those that are known.
-    * `unknown_routes`, `unknown_rooms`: Those that these two leave out, as they are not known.
-    * `rooms_at_risk`: Rooms whose best way to the street is not open, or that no segment joins to one.
+    The fields are those of `assess.fields.STATE_FIELDS`; `classes` are pieces from low to very high, `routes` counts by
+    state, `rooms_at_risk` those whose best way to the street is not open, or that no segment joins to one.
     """
 
     falls: float
