@@ -10,7 +10,8 @@ import hashlib
 import posixpath
 import re
 import unicodedata
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Any
@@ -91,57 +92,6 @@ def replace_ground(tables: Tables, ground: GroundField) -> tuple[Tables, list[Pr
     return {**tables, BUILDING.name: replace(table, rows=(cleared,))}, notes
 
 
-class GroundReader:
-    """Finds how the ground shakes at the building, and checks it as the functions of `check` do.
-
-    `name`: the field of Building that asks for it; "" where the run does.
-    """
-
-    def __init__(self, ground: GroundField, name: str = "") -> None:
-        self.ground, self.name = ground, name
-        self.found: SiteGround | None = None
-
-    def check(self, tables: Tables) -> Iterator[Problem]:
-        """Find the motion at the building, or report why that is not known."""
-        table = tables[BUILDING.name]
-        row = table.rows[0] if table.rows else Row(0, {})
-        if table.spoilt("latitude", row) or table.spoilt("longitude", row):
-            return
-        place = row.get("latitude"), row.get("longitude")
-        if place[0] is None or place[1] is None:
-            yield _report_no_place(table, row, self.name, self.ground.file)
-            return
-        try:
-            self.found = self.ground.at(*place)
-        except InputError as error:
-            fix = fill("Correct Latitude and Longitude, or name a ground motion that covers the building.")
-            message = fill("no ground motion at the building: {why}.", why=error.message)
-            yield table.problem(self.name or "latitude", row, message, fix)
-
-
-def report_unplaced(table: Table, row: Row) -> Iterator[Problem]:
-    """Report that a ShakeMap is named without the place of the building, unless that was reported already."""
-    lacking = [name for name in ("latitude", "longitude") if table.lacks(row, name)]
-    if len(lacking) == 2:  # of one alone the other was reported
-        yield _report_no_place(table, row, "shakemap", row.get("shakemap"))
-
-
-def _report_no_place(table: Table, row: Row, name: str, file: str) -> Problem:
-    lacking = [one for one in ("latitude", "longitude") if row.get(one) is None]
-    cells = [cell for one in lacking if re.fullmatch(r"[A-Z]+\d+", cell := table.cell(one, row.number))]
-    message = nfill(
-        "{labels} is blank; the ground motion of {file} needs the building's place.",
-        "{labels} are blank; the ground motion of {file} needs the building's place.",
-        len(lacking),
-        labels=join(", ", [table.label(one) for one in lacking]),
-        file=file,
-    )
-    fix = fill("Fill in Latitude and Longitude.")
-    if cells:
-        fix = fill("Fill in Latitude and Longitude (cells {cells}).", cells=", ".join(cells))
-    return table.problem(name if name in table.places else lacking[0], row, message, fix)
-
-
 _RESERVED = frozenset(
     {"CON", "PRN", "AUX", "NUL", *(f"{port}{number}" for port in ("COM", "LPT") for number in range(10))}
 )
@@ -176,7 +126,7 @@ class FileReader:
         self.records: dict[tuple[int, Axis], tuple[FloorRecord, ...]] = {}
         self.hazard: HazardCurve | None = None
         self.site_ground: SiteGround | None = None
-        self._read: dict[str, tuple[tuple[Record, ...] | CellError, str]] = {}
+        self._read: dict[str, tuple[tuple[Record, ...], str] | CellError] = {}
         self._allowance = Allowance()
 
     def check_hazard(self, tables: Tables) -> Iterator[Problem]:
@@ -203,58 +153,81 @@ class FileReader:
             )
 
     def _read_hazard(self, file: str, latitude: float | None, longitude: float | None) -> HazardCurve:
+        curve: HazardCurve
+        curve, self.hashes[file] = self._take(
+            file,
+            "hazard",
+            lambda content, address: _parse_hazard(content, address, latitude, longitude),
+            latitude,
+            longitude,
+        )
+        return curve
+
+    def _take(self, file: str, purpose: str, parse: Callable[[bytes | Path, str], Any], *more: Hashable) -> Any:
+        """Return what `parse` makes of a file and its address; CellError where it cannot be used."""
         content, address = self._find(file)
-        key = find_key(content, "hazard", latitude, longitude)
-        found = self.kept.take(key, self._allowance, lambda: _parse_hazard(content, address, latitude, longitude))
+        key = find_key(content, purpose, *more)
+        found = self.kept.take(key, self._allowance, lambda: parse(content, address))
         if isinstance(found, CellError):
             raise found
-        curve: HazardCurve
-        curve, self.hashes[file] = found
-        return curve
+        return found
 
     def check_ground(self, tables: Tables) -> Iterator[Problem]:
         """Find the ground motion of the run, or of the ShakeMap that is named, at the building, or report a fault."""
-        if self.ground is not None:
-            yield from self._place(tables, GroundReader(self.ground))
-            return
         table = tables["Building"]
+        if self.ground is not None:
+            row = table.rows[0] if table.rows else Row(0, {})
+            yield from self._place(table, row, self.ground, self.ground.file)
+            return
         for row in table.with_all("shakemap"):
+            file = row.get("shakemap")
             try:
-                map_ = self._read_shakemap(row.get("shakemap"))
+                map_ = self._read_shakemap(file)
             except CellError as error:
                 yield table.problem("shakemap", row, error.message, error.fix)
                 continue
-            if table.says(row, *STRONGER):
-                continue
-            if table.lacks(row, "latitude") or table.lacks(row, "longitude"):
-                yield from report_unplaced(table, row)
-                continue
-            yield from self._place(tables, GroundReader(map_, "shakemap"))
+            if not table.says(row, *STRONGER):
+                yield from self._place(table, row, map_, file, "shakemap")
 
-    def _place(self, tables: Tables, reader: GroundReader) -> Iterator[Problem]:
-        yield from reader.check(tables)
-        self.site_ground = reader.found
+    def _place(self, table: Table, row: Row, ground: GroundField, file: str, name: str = "") -> Iterator[Problem]:
+        """Find the motion at the building; `name` is the field that asks for it, "" where the run does."""
+        if table.spoilt("latitude", row) or table.spoilt("longitude", row):
+            return
+        lacking = [one for one in ("latitude", "longitude") if row.get(one) is None]
+        if not lacking:
+            try:
+                self.site_ground = ground.at(row.get("latitude"), row.get("longitude"))
+            except InputError as error:
+                fix = fill("Correct Latitude and Longitude, or name a ground motion that covers the building.")
+                message = fill("no ground motion at the building: {why}.", why=error.message)
+                yield table.problem(name or "latitude", row, message, fix)
+        elif not name or len(lacking) == 2:  # of one alone the other was reported
+            message = nfill(
+                "{labels} is blank; the ground motion of {file} needs the building's place.",
+                "{labels} are blank; the ground motion of {file} needs the building's place.",
+                len(lacking), labels=join(", ", [table.label(one) for one in lacking]), file=file,
+            )  # fmt: skip
+            cells = [cell for one in lacking if re.fullmatch(r"[A-Z]+\d+", cell := table.cell(one, row.number))]
+            fix = fill("Fill in Latitude and Longitude.")
+            if cells:
+                fix = fill("Fill in Latitude and Longitude (cells {cells}).", cells=", ".join(cells))
+            yield table.problem(name if name in table.places else lacking[0], row, message, fix)
 
     def _read_shakemap(self, file: str) -> ShakeMap:
-        content, address = self._find(file)
-        beside = self._find_beside(file)
-        keys = [None if one is None else find_key(one, "shakemap") for one in (content, beside[0])]
-        key = None if keys[0] is None else (*keys[0], keys[1])
-        found = self.kept.take(key, self._allowance, lambda: _parse_shakemap(content, address, *beside))
-        if isinstance(found, CellError):
-            raise found
-        map_: ShakeMap = found
+        beside, name = self._find_beside(file)
+        given = None if beside is None else find_key(beside, "shakemap")
+        map_: ShakeMap = self._take(
+            file, "shakemap", lambda content, address: _parse_shakemap(content, address, beside, name), given
+        )
         self.hashes[file] = map_.grid_sha256
         if map_.uncertainty_file:
-            self.hashes[beside[1]] = map_.uncertainty_sha256
+            self.hashes[name] = map_.uncertainty_sha256
         return map_
 
     def _find_beside(self, file: str) -> tuple[bytes | Path | None, str]:
         for path in list_beside(file):
-            try:
+            with suppress(CellError):
                 return self._find(path)[0], path
-            except CellError:
-                continue
         return None, ""
 
     def check_records(self, tables: Tables) -> Iterator[Problem]:
@@ -287,8 +260,6 @@ class FileReader:
     def _record(self, text: str) -> FloorRecord:
         file, _, channel = (part.strip() for part in text.partition("#"))
         known, digest = self._records(file)
-        if isinstance(known, CellError):
-            raise known
         try:
             record = select(known, channel or None)
         except RecordError as error:
@@ -299,23 +270,20 @@ class FileReader:
         path = None if self.folder is None else (self.folder / _posix(file)).resolve()
         return FloorRecord(name=text, record=record, file=file, channel=channel, sha256=digest, path=path)
 
-    def _records(self, file: str) -> tuple[tuple[Record, ...] | CellError, str]:
-        content, address = self._find(file)
+    def _records(self, file: str) -> tuple[tuple[Record, ...], str]:
+        _content, address = self._find(file)
         if address not in self._read:
             self.progress.check()
-            found, digest = self._read[address] = self._take(content, address)
-            if not isinstance(found, CellError):
-                self.hashes[file] = digest
-        return self._read[address]
-
-    def _take(self, content: bytes | Path, address: str) -> tuple[tuple[Record, ...] | CellError, str]:
-        allowance, key = self._allowance, find_key(content, "record")
-        try:
-            found: tuple[tuple[Record, ...] | CellError, str] = self.kept.take(
-                key, allowance, lambda: _parse(content, address, allowance, self.progress)
-            )
-        except CellError as error:  # of the allowance
-            return error, ""
+            try:
+                known = self._take(
+                    file, "record", lambda content, address: _parse(content, address, self._allowance, self.progress)
+                )
+                self._read[address], self.hashes[file] = known, known[1]
+            except CellError as error:
+                self._read[address] = error
+        found = self._read[address]
+        if isinstance(found, CellError):
+            raise found
         return found
 
     def _find(self, file: str) -> tuple[bytes | Path, str]:
@@ -331,7 +299,7 @@ class FileReader:
 
 def _parse(
     data: bytes | Path, address: str, allowance: Allowance, progress: Progress
-) -> tuple[tuple[Record, ...] | CellError, str]:
+) -> tuple[tuple[Record, ...], str] | CellError:
     try:
         read = data if isinstance(data, bytes) else read_bytes(data)
         allowance.take(record_bytes=len(read), archives=int(is_archive(read)))
@@ -339,7 +307,7 @@ def _parse(
         allowance.take(samples=sum(record.acceleration.size for record in found))
         return found, hashlib.sha256(read).hexdigest()
     except RecordError as error:
-        return CellError(fill("the record cannot be read: {why}.", why=error.message)), ""
+        return CellError(fill("the record cannot be read: {why}.", why=error.message))
 
 
 def _parse_hazard(
