@@ -24,9 +24,7 @@ def find_source_date() -> datetime.datetime | None:
         message = fill(
             "the environment variable {name} is {value}, expected seconds since 1970, 0 to {last}. Unset it, or give "
             "a number.",
-            name=DATE,
-            value=repr(text[:40]),
-            last=LAST,
-        )
+            name=DATE, value=repr(text[:40]), last=LAST,
+        )  # fmt: skip
         raise InputError(message)
     return datetime.datetime(1970, 1, 1, tzinfo=datetime.UTC) + datetime.timedelta(seconds=int(text))

@@ -176,13 +176,10 @@ def _read_number(text: str, line: int, column: str) -> float:
 
 def _read_table(name: str, heading: Sequence[str], rows: Sequence[Line], *, is_ended: bool) -> HazardCurve:
     if sorted(heading) != sorted(COLUMNS):
-        raise InputError(
-            fill(
-                "line {line}: the first row has to be {columns}, or that of hazard_curve-mean-PGA.csv of OpenQuake",
-                line=rows[0][0],
-                columns=",".join(COLUMNS),
-            )
-        )
+        raise InputError(fill(
+            "line {line}: the first row has to be {columns}, or that of hazard_curve-mean-PGA.csv of OpenQuake",
+            line=rows[0][0], columns=",".join(COLUMNS),
+        ))  # fmt: skip
     places = [heading.index(column) for column in COLUMNS]
     points = []
     for line, cells in rows[1:]:
@@ -209,38 +206,26 @@ _NO_END = fill("the last line of the hazard file has no end: see that its last r
 
 def _check_point(line: int, pga: float, rate: float) -> None:
     if not 0 < pga <= MOST_PGA:
-        raise InputError(
-            fill(
-                "line {line}: pga_g is {pga:g}, expected above 0 and at most {most:g}, in g",
-                line=line,
-                pga=pga,
-                most=MOST_PGA,
-            )
-        )
+        raise InputError(fill(
+            "line {line}: pga_g is {pga:g}, expected above 0 and at most {most:g}, in g",
+            line=line, pga=pga, most=MOST_PGA,
+        ))  # fmt: skip
     if not rate > 0:
         raise InputError(fill("line {line}: annual_rate is {rate:g}, expected above 0", line=line, rate=rate))
 
 
 def _check_order(line: int, pga_before: float, rate_before: float, pga: float, rate: float) -> None:
     if not pga > pga_before:
-        raise InputError(
-            fill(
-                "line {line}: pga_g {pga:g} does not rise from {before:g} in the row before",
-                line=line,
-                pga=pga,
-                before=pga_before,
-            )
-        )
+        raise InputError(fill(
+            "line {line}: pga_g {pga:g} does not rise from {before:g} in the row before",
+            line=line, pga=pga, before=pga_before,
+        ))  # fmt: skip
     if rate > rate_before:
-        raise InputError(
-            fill(
-                "line {line}: annual_rate rises from {before:g} to {rate:g}, but it has to fall as PGA rises: give "
-                "rates, not return periods",
-                line=line,
-                before=rate_before,
-                rate=rate,
-            )
-        )
+        raise InputError(fill(
+            "line {line}: annual_rate rises from {before:g} to {rate:g}, but it has to fall as PGA rises: give "
+            "rates, not return periods",
+            line=line, before=rate_before, rate=rate,
+        ))  # fmt: skip
 
 
 # ---------------------------------------------------------------- OpenQuake
@@ -324,14 +309,10 @@ def _choose_site(
 
 def _read_site(heading: Sequence[str], line: int, cells: Sequence[str]) -> tuple[float, float]:
     if len(cells) != len(heading):
-        raise InputError(
-            fill(
-                "line {line}: the number of cells is {cells}, but there are {headings} headings",
-                line=line,
-                cells=len(cells),
-                headings=len(heading),
-            )
-        )
+        raise InputError(fill(
+            "line {line}: the number of cells is {cells}, but there are {headings} headings",
+            line=line, cells=len(cells), headings=len(heading),
+        ))  # fmt: skip
     lat, lon = (_read_number(cells[heading.index(column)], line, column) for column in ("lat", "lon"))
     if abs(lat) > 90 or abs(lon) > 360:
         raise InputError(
@@ -343,21 +324,14 @@ def _read_site(heading: Sequence[str], line: int, cells: Sequence[str]) -> tuple
 def _check_chances(line: int, levels: FloatArray, chances: FloatArray) -> None:
     for level, chance in zip(levels, chances, strict=True):
         if not 0 <= chance <= 1:
-            raise InputError(
-                fill(
-                    "line {line}: the chance of exceeding {level:g} g is {chance:g}, expected 0 to 1",
-                    line=line,
-                    level=float(level),
-                    chance=float(chance),
-                )
-            )
+            raise InputError(fill(
+                "line {line}: the chance of exceeding {level:g} g is {chance:g}, expected 0 to 1",
+                line=line, level=float(level), chance=float(chance),
+            ))  # fmt: skip
     rises = np.flatnonzero(np.diff(chances) > 0)
     if rises.size:
         level = float(levels[rises[0] + 1])
-        raise InputError(
-            fill(
-                "line {line}: the chance of exceeding {level:g} g is larger than that of the level before",
-                line=line,
-                level=level,
-            )
-        )
+        raise InputError(fill(
+            "line {line}: the chance of exceeding {level:g} g is larger than that of the level before",
+            line=line, level=level,
+        ))  # fmt: skip

@@ -218,11 +218,7 @@ def _check(path: Path, ids: tuple[str, ...], texts: tuple[str, ...]) -> None:
             )
             raise InputError(message) from None
         if off - {"n"}:
-            raise InputError(
-                fill(
-                    "{path}: {text!r}: its translation has to hold the same names in braces; check {names}",
-                    path=path,
-                    text=ids[0],
-                    names=", ".join(sorted(off)),
-                )
-            )
+            raise InputError(fill(
+                "{path}: {text!r}: its translation has to hold the same names in braces; check {names}",
+                path=path, text=ids[0], names=", ".join(sorted(off)),
+            ))  # fmt: skip

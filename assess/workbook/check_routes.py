@@ -307,10 +307,8 @@ def _warn_unplaced(items: Table, floor: str, rows: Sequence[Row], lost: Sequence
             "is not known, and it is not counted.",
             "{n} of {total} pieces of floor {floor} have neither a position nor a Route: whether they fall onto a "
             "route is not known, and they are not counted.",
-            _count_pieces(lost),
-            total=_count_pieces(rows),
-            floor=shorten(floor),
-        )
+            _count_pieces(lost), total=_count_pieces(rows), floor=shorten(floor),
+        )  # fmt: skip
         yield items.problem("x", lost[0], message, fill("Fill in X, Y and Angle, or name the Route."), "warning")
 
 
@@ -389,8 +387,6 @@ def _warn_room(items: Table, rows: Sequence[Row], meant: str) -> Problem:
         "them.",
         "Room {room} is not that of any segment, so its {n} pieces do not count beside those of {meant} unless they "
         "name them.",
-        _count_pieces(rows),
-        room=rows[0].quote("room"),
-        meant=shorten(meant),
-    )
+        _count_pieces(rows), room=rows[0].quote("room"), meant=shorten(meant),
+    )  # fmt: skip
     return items.problem("room", rows[0], message, fill("Did you mean {room}?", room=meant), "warning")

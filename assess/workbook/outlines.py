@@ -43,15 +43,11 @@ def parse_outline(text: str, factor: float) -> Outline:
     if len(corners) > 1 and _is_same(corners[0], corners[-1]):
         corners.pop()
     if not LEAST <= len(corners) <= MOST:
-        raise OutlineError(
-            nfill(
-                "it has {n:,} corner, expected {least} to {most}.",
-                "it has {n:,} corners, expected {least} to {most}.",
-                len(corners),
-                least=LEAST,
-                most=MOST,
-            )
-        )
+        raise OutlineError(nfill(
+            "it has {n:,} corner, expected {least} to {most}.",
+            "it has {n:,} corners, expected {least} to {most}.",
+            len(corners), least=LEAST, most=MOST,
+        ))  # fmt: skip
     for at, corner in enumerate(corners):
         if _is_same(corner, corners[at - 1]):
             raise OutlineError(fill("corner {n} is the same as the one before it.", n=at + 1))

@@ -84,10 +84,8 @@ def replace_ground(tables: Tables, ground: GroundField) -> tuple[Tables, list[Pr
         message = nfill(
             "{labels} is not used: the ground motion of {file} takes its place.",
             "{labels} are not used: the ground motion of {file} takes their place.",
-            len(filled),
-            labels=join(", ", [table.label(name) for name in filled]),
-            file=ground.file,
-        )
+            len(filled), labels=join(", ", [table.label(name) for name in filled]), file=ground.file,
+        )  # fmt: skip
         notes = [table.problem(filled[0], row, message, severity="note")]
     return {**tables, BUILDING.name: replace(table, rows=(cleared,))}, notes
 
@@ -349,11 +347,8 @@ def _check_direction(
     if off > NEAR_AXIS:
         message = fill(
             "{record} points to {azimuth:g} deg, {off:.0f} deg off the {axis} axis.",
-            record=shorten(one.name),
-            azimuth=azimuth,
-            off=off,
-            axis=axis,
-        )
+            record=shorten(one.name), azimuth=azimuth, off=off, axis=axis,
+        )  # fmt: skip
         yield table.problem(name, row, message, fill("Check the axis, or Azimuth of X in Building."), "warning")
 
 
