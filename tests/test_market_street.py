@@ -76,16 +76,6 @@ def test_each_floor_and_axis_has_the_motion_of_its_channels(example):
             assert ("one_axis_only" in motion.flags) == ((floor, axis) in BORROWED), (floor, axis)
 
 
-def test_of_parallel_channels_that_of_the_larger_velocity_governs(example):
-    for floor, channels, larger in (("42", "ab", "a"), ("34", "de", "e"), ("25", "gh", "h")):
-        along_x = [one for one in example if one.item.floor == floor and one.item.axis_given == "X"]
-        assert along_x
-        for one in along_x:
-            assert [case.motion.record[-5] for case in one.cases] == list(channels), one.item.item
-            assert one.governing.motion.record[-5] == larger, one.item.item
-            assert one.governing.motion.pfv_cm_s == max(case.motion.pfv_cm_s for case in one.cases), one.item.item
-
-
 def test_stored_live_values_are_those_of_the_program_and_of_a_spreadsheet_engine(example_inventory):
     page = openpyxl.load_workbook(WORKBOOK, data_only=True)["Items"]
     book = formualizer.load_workbook(str(WORKBOOK))
@@ -134,13 +124,6 @@ def test_as_a_scenario_of_a_code_it_sets_its_records_aside(example_inventory):
 
 
 @pytest.mark.slow
-def test_recorded_each_floor_has_its_record(example_inventory, example):
-    found = run(example_inventory, Settings(scenario="recorded", verify="none"))
-    assert [one.governing.motion for one in found] == [one.governing.motion for one in example]
-    assert {one.source for one in found.motions} == {"record"}
-
-
-@pytest.mark.slow
 def test_interpolation_left_out_as_a_test_gives_less_than_was_recorded(example_inventory):
     """On the 25th floor along X, from G and the 34th: 132.8 + 100/137.5 x (151.2 - 132.8) = 146.2 cm/s2 = 0.149 g."""
     floors = tuple(replace(floor, records={}) if floor.floor == "25" else floor for floor in example_inventory.floors)
@@ -167,22 +150,3 @@ def test_a_floor_that_lost_its_record_is_interpolated(tmp_path, script):
 
 
 # ------------------------------------------------------------------ verified
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("class_by", "most"), [pytest.param(None, 12, marks=pytest.mark.long), ("proposed OR", 60)])
-def test_verified_under_its_records_classes_are_lowered_and_say_so(tmp_path, example_inventory, class_by, most):
-    """With 20 motions: weak long shaking, which overturns less than FEMA P-58 says, and far less than OR does."""
-    results = run(example_inventory, replace(UNVERIFIED, class_by=class_by))
-    found = run(example_inventory, Settings(runs=20, verify="high", class_by=class_by))
-    for one, plain in zip(found, results, strict=True):
-        by_formula = plain.adopted.risk
-        wanted = one.item.route or by_formula >= RiskClass.HIGH or "extrapolated" in plain.adopted.flags
-        assert one.is_simulated or not wanted or one.does_not_rock, one.item.item
-        if not one.is_simulated:
-            assert one.adopted == plain.adopted
-        assert one.adopted.lowered_from == (by_formula if one.adopted.risk < by_formula else None)
-        assert "assumed_motion" not in one.adopted.flags
-    assert sum(one.adopted.lowered_from is not None for one in found) > most
-    written = write_reports(found, tmp_path / "out", ("json", "npz"))
-    jsonschema.validate(json.loads(written["json"].read_text(encoding="utf-8")), json.loads(SCHEMA.read_text("utf-8")))

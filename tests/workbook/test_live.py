@@ -227,32 +227,7 @@ def test_live_columns_of_an_italian_workbook_equal_the_program(tmp_path: Path, u
         check(italian_grid(tmp_path / "book.xlsx", units))
 
 
-ITALIAN_WORDS: list[tuple[dict[str, Any], list[tuple[dict[str, Any], Any]]]] = [
-    ({}, [({"floor": "9"}, "piano?"), ({"axis": "Z"}, "asse?"), ({}, 0.5), ({"floor": "2"}, "scuotimento?")]),
-    ({"ground_pga": 0.2}, [({"floor": "2"}, "eseguire assess")]),
-    ({"scenario_kind": " REGISTRATO"}, [({}, "scuotimento?")]), ({"scenario_kind": "Assegnato"}, [({}, 0.5)]),
-    ({"scenario_kind": "given"}, [({}, 0.5)]), ({"scenario_kind": "come-compilato"}, [({}, 0.5)]),
-    ({"scenario_kind": "as filled"}, [({}, 0.5)]), ({"scenario_kind": "NTC 2018"}, [({}, "scuotimento?")]),
-]  # fmt: skip
-
-
-def test_words_of_an_italian_workbook(tmp_path: Path) -> None:
-    floors = [{"floor": "1", "pfa_x": 0.5}, {"floor": "2", "elevation": 4}]
-    for building, rows in ITALIAN_WORDS:
-        with speaking(load_catalogue("it")):
-            found = shown_rows(tmp_path, [item for item, _ in rows], floors, **building)
-        for shown, (item, wanted) in zip(found, rows, strict=True):
-            assert shown[1] == wanted, (building, item)
-            assert isinstance(wanted, float) or set(shown[1:]) == {wanted}
-
-
 # ---------------------------------------------------------------- words in place of numbers
-
-
-def shown_of(
-    folder: Path, item: dict[str, Any], floors: Rows | None = None, catalogue: Rows | None = None, **building: Any
-) -> Live:
-    return shown_rows(folder, [item], floors, catalogue, **building)[0]
 
 
 def shown_rows(
@@ -265,20 +240,54 @@ def shown_rows(
     return [shown[at] for at in range(2, 2 + len(rows))]
 
 
+Case = tuple[dict[str, Any], Rows, list[tuple[dict[str, Any], Any]]]
+"""Lines of Building, floors, and pieces with what they show: their PFA, or a word in place of all but B/H."""
+TWO: Rows = [{"floor": "1", "pfa_x": 0.5}, {"floor": "2", "elevation": 4}]
+RECORDED: Rows = [{"floor": "1", "pfa_x": 0.5, "record_x": "roof.csv"}]
+WORDS: list[Case] = [
+    ({}, TWO, [({"floor": "9"}, "floor?"), ({"floor": None}, "floor?"), ({"type": "none such"}, 0.5)]),
+    ({}, [{"floor": "1", "pfa_x": 0.3, "pfa_y": 0.5}], [({"axis": "x"}, 0.3), ({"axis": " Y "}, 0.5), ({"axis": "Z"}, "axis?")]),
+    *(({}, [{"floor": "1", **floor}], [({}, "run assess")]) for floor in (
+        {"record_x": "roof.csv"}, {"record_x": "roof.csv", "pfa_x": 0.5}, {"record_x": "roof.csv", "pfa_y": 0.5},
+        {"record_y": "roof.csv", "pfa_x": 0.5},
+    )),
+    ({}, [{"floor": "1", "record_y": "roof.csv", "pfa_x": 0.5}], [({"axis": "X"}, 0.5)]),
+    ({}, [{"floor": "1", "record_y": "  ", "pfa_x": 0.5}], [({}, 0.5)]),
+    *(({"scenario_kind": kind}, RECORDED, [({}, shown)]) for kind, shown in {
+        "given": 0.5, " GIVEN": 0.5, "recorded": "run assess", "as filled": "run assess", "As_Filled": "run assess",
+        "ASCE 7-22": "shaking?", "en 1998-1": "shaking?",
+    }.items()),
+    *(({}, [{"floor": "1", "pfa_x": 0.5, "pfv_x": pfv}], [({}, "check")]) for pfv in ("1,5", 0, -20, 2000)),
+    # cells that were emptied with the space bar
+    ({}, TWO, [({"breadth": 40, "width": " ", "angle_deg": " ", "axis": " ", "type": " ", "centre_of_gravity": " "}, 0.5)]),
+]  # fmt: skip
+ITALIAN_WORDS: list[Case] = [
+    ({}, TWO, [({"floor": "9"}, "piano?"), ({"axis": "Z"}, "asse?"), ({}, 0.5), ({"floor": "2"}, "scuotimento?")]),
+    ({"ground_pga": 0.2}, TWO, [({"floor": "2"}, "eseguire assess")]),
+    *(({"scenario_kind": kind}, TWO, [({}, shown)]) for kind, shown in {
+        " REGISTRATO": "scuotimento?", "Assegnato": 0.5, "given": 0.5, "come-compilato": 0.5, "as filled": 0.5,
+        "NTC 2018": "scuotimento?",
+    }.items()),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("language", "cases"), [("en", WORDS), ("it", ITALIAN_WORDS)])
+def test_what_is_not_known_or_wrong_is_named_in_place_of_a_class(
+    tmp_path: Path, language: str, cases: list[Case]
+) -> None:
+    for building, floors, rows in cases:
+        with speaking(load_catalogue(language)):
+            found = shown_rows(tmp_path, [item for item, _ in rows], floors, **building)
+        for shown, (item, wanted) in zip(found, rows, strict=True):
+            assert shown[1] == wanted, (building, floors, item)
+            assert isinstance(wanted, float) or set(shown[1:]) == {wanted}
+
+
 def test_blank_rows_show_nothing(tmp_path: Path) -> None:
     shown = by_formualizer(poison(fill(tmp_path / "book.xlsx", GRID[:1], FLOORS, {}, spare=None)))
     assert shown[2] != [""] * 8
     assert len(shown) == ROWS["Items"]
     assert all(shown[row] == [""] * 8 for row in range(3, ROWS["Items"] + 2))
-
-
-def test_what_is_not_known_yet_is_named_in_place_of_a_class(tmp_path: Path) -> None:
-    """Own sizes need no type."""
-    items: Rows = [{"floor": "9"}, {"floor": None}, {"breadth": None}, {"type": "none such"}]
-    unknown, blank, (ratio, pfa, *rest), sized = shown_rows(tmp_path, items)
-    assert unknown[1:] == blank[1:] == ["floor?"] * 7
-    assert (ratio, pfa, rest) == ("", 0.5, [""] * 6)
-    assert sized[0] == pytest.approx(40 / 180)
 
 
 def unknown_types(path: Path) -> Path:
@@ -291,38 +300,6 @@ def test_no_such_type(tmp_path: Path) -> None:
     shown = by_formualizer(poison(unknown_types(tmp_path / "book.xlsx")))
     unknown = ["type?", 0.5, *["type?"] * 6]
     assert [shown[row] for row in (2, 3, 4)] == [unknown, ["", 0.5, *[""] * 6], unknown]
-
-
-def test_axis_as_typed(tmp_path: Path) -> None:
-    """Pasting goes round the drop-down; a wrong axis never shows the class of another."""
-    items: Rows = [{"axis": axis} for axis in ("x", " Y ", "Z")]
-    x, y, wrong = shown_rows(tmp_path, items, [{"floor": "1", "pfa_x": 0.3, "pfa_y": 0.5}])
-    assert (x[1], y[1], wrong[1:]) == (0.3, 0.5, ["axis?"] * 7)
-
-
-FLOORS_WITH_RECORDS: list[tuple[dict[str, Any], dict[str, Any], bool]] = [
-    ({"record_x": "roof.csv"}, {}, True), ({"record_x": "roof.csv", "pfa_x": 0.5}, {}, True),
-    ({"record_x": "roof.csv", "pfa_y": 0.5}, {}, True), ({"record_y": "roof.csv", "pfa_x": 0.5}, {}, True),
-    ({"record_y": "roof.csv", "pfa_x": 0.5}, {"axis": "X"}, False), ({"record_y": "  ", "pfa_x": 0.5}, {}, False),
-]  # fmt: skip
-
-
-def test_floors_with_records(tmp_path: Path) -> None:
-    """Where any motion that counts is a record, no formula can know the class: none is shown."""
-    floors = [{"floor": str(at), **floor} for at, (floor, *_) in enumerate(FLOORS_WITH_RECORDS)]
-    items = [{"floor": str(at), **item} for at, (_, item, _) in enumerate(FLOORS_WITH_RECORDS)]
-    for shown, (floor, item, is_left) in zip(shown_rows(tmp_path, items, floors), FLOORS_WITH_RECORDS, strict=True):
-        assert shown[1:] == ["run assess"] * 7 if is_left else shown[1] == 0.5, (floor, item)
-
-
-KINDS = [("given", 0.5), ("recorded", "run assess"), ("as filled", "run assess"), ("ASCE 7-22", "shaking?"),
-         (" GIVEN", 0.5), ("As_Filled", "run assess"), ("en 1998-1", "shaking?")]  # fmt: skip
-
-
-@pytest.mark.parametrize(("kind", "pfa"), KINDS)
-def test_scenario_kind(tmp_path: Path, kind: str, pfa: Any) -> None:
-    floors = [{"floor": "1", "pfa_x": 0.5, "record_x": "roof.csv"}]
-    assert shown_of(tmp_path, {}, floors, scenario_kind=kind)[1] == pfa
 
 
 UNSERVED: list[tuple[dict[str, Any], dict[str, Any], str | None]] = [
@@ -346,15 +323,13 @@ UNSERVED: list[tuple[dict[str, Any], dict[str, Any], str | None]] = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("floor", "building", "word"), UNSERVED)
-def test_what_a_floor_without_a_motion_of_its_own_shows(
-    tmp_path: Path, floor: dict[str, Any], building: dict[str, Any], word: str | None
-) -> None:
+def test_what_a_floor_without_a_motion_of_its_own_shows(tmp_path: Path) -> None:
     """As the program finds it: where it refuses the floor, the row does not ask to run it."""
-    shown = shown_of(tmp_path, {}, [{"floor": "1", **floor}], **building)
-    assert isinstance(shown[1], float) if word is None else shown[1:] == [word] * 7
-    if floor.keys() <= {"elevation", "pfa_x"}:
-        assert is_run(tmp_path / "book.xlsx") == (word != "shaking?")
+    for floor, building, word in UNSERVED:
+        (shown,) = shown_rows(tmp_path, [{}], [{"floor": "1", **floor}], **building)
+        assert isinstance(shown[1], float) if word is None else shown[1:] == [word] * 7, (floor, building)
+        if floor.keys() <= {"elevation", "pfa_x"}:
+            assert is_run(tmp_path / "book.xlsx") == (word != "shaking?"), (floor, building)
 
 
 def is_run(path: Path) -> bool:
@@ -365,29 +340,13 @@ def is_run(path: Path) -> bool:
     return True
 
 
-BESIDE: list[tuple[tuple[Any, Any], float | None, bool]] = [
-    ((0, 8), 4, True), ((0, 8), 8, True), ((0, 8), 9, True), ((0, 8), -1, True), ((0, 8), None, True),
-    ((4, 8), None, False), ((0, None), 4, True), ((None, None), 0, False), ((4, None), 4, True), ((0, "8 m"), 4, True), ((4, 8), 0, True),
+BESIDE: list[tuple[tuple[Any, Any], float | None, str]] = [
+    *(((0, 8), z, "as filled") for z in (4, 8, 9, -1, None)), ((4, 8), None, "as filled"), ((0, None), 4, "as filled"),
+    ((None, None), 0, "as filled"), ((4, None), 4, "as filled"), ((0, "8 m"), 4, "as filled"), ((4, 8), 0, "as filled"),
+    *(((0, 8), z, "given") for z in (4, 8, 9, -1)), ((4, 8), 3, "given"), ((4, 8), 6, "given"), ((0, None), 4, "given"),
+    ((4, None), None, "given"), ((-3, 8), -1, "given"),
 ]  # fmt: skip
-
-
-@pytest.mark.parametrize(("elevations", "z", "is_served"), BESIDE)
-def test_a_floor_beside_others_is_left_to_the_program(
-    tmp_path: Path, elevations: Sequence[Any], z: float | None, is_served: bool
-) -> None:
-    """What is known of one goes on in height to every other."""
-    assert shows_a_run(tmp_path, elevations, z, "as filled") == is_served
-
-
-@pytest.mark.parametrize(
-    ("elevations", "z", "is_served"),
-    [((0, 8), 4, True), ((0, 8), 8, True), ((0, 8), 9, False), ((0, 8), -1, True), ((4, 8), 3, False),
-     ((4, 8), 6, True), ((0, None), 4, False), ((4, None), None, False), ((-3, 8), -1, True)],
-)  # fmt: skip
-def test_where_own_motions_alone_count_a_floor_is_served_between_others(
-    tmp_path: Path, elevations: Sequence[Any], z: float | None, is_served: bool
-) -> None:
-    assert shows_a_run(tmp_path, elevations, z, "given") == is_served
+"""Elevations of floors with a PFA, that of the floor without, and the kind of scenario."""
 
 
 def floors_beside(path: Path, elevations: Sequence[Any], z: float | None, kind: str = "as filled") -> Path:
@@ -397,12 +356,14 @@ def floors_beside(path: Path, elevations: Sequence[Any], z: float | None, kind: 
     return fill(path, [row], [{"floor": "1", "elevation": z}, *known], {"scenario_kind": kind})
 
 
-def shows_a_run(folder: Path, elevations: Sequence[Any], z: float | None, kind: str) -> bool:
-    """Return whether such a floor is left to the program, which does serve it then."""
-    path = floors_beside(folder / "book.xlsx", elevations, z, kind)
-    (word,) = set(by_formualizer(poison(path))[2][1:])
-    assert word == ("run assess" if is_run(path) else "shaking?")
-    return bool(word == "run assess")
+def test_a_floor_beside_others_is_left_to_the_program_where_that_serves_it(tmp_path: Path) -> None:
+    words = []
+    for elevations, z, kind in BESIDE:
+        path = floors_beside(tmp_path / "book.xlsx", elevations, z, kind)
+        (word,) = set(by_formualizer(poison(path))[2][1:])
+        assert word == ("run assess" if is_run(path) else "shaking?"), (elevations, z, kind)
+        words.append(word)
+    assert len(set(words)) == 2
 
 
 ROCKING: dict[Any, list[tuple[dict[str, Any], str]]] = {
@@ -599,16 +560,6 @@ def test_a_breadth_up_to_the_width_shows_its_class(tmp_path: Path) -> None:
     """Beside a width that is blank, no number, or the row's own in place of a narrower type's, Breadth is taken."""
     shown = by_formualizer(poison(breadths_and_widths(tmp_path / "book.xlsx")))
     assert [shown[row][0] for row in range(2, 7)] == pytest.approx([40 / 180] * 5)
-
-
-def test_blank_looking_cells_are_blank(tmp_path: Path) -> None:
-    """Cells that were emptied with the space bar."""
-    row = {"breadth": " ", "height": "  ", "angle_deg": " ", "axis": " ", "type": "plain", "centre_of_gravity": " "}
-    shown = shown_of(tmp_path, row, catalogue=[{"type": "plain", "breadth": 30, "height": 150}])
-    assert shown[:2] == pytest.approx([0.2, 0.5])
-
-
-# ---------------------------------------------------------------- more rows than prepared
 
 
 def test_formulas_that_are_copied_down_compute(tmp_path: Path) -> None:

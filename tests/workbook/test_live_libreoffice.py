@@ -40,8 +40,7 @@ def _grid(units: Units = "si", headers: str | None = None) -> Book:
 
 
 def _beside(at: int) -> Book:
-    elevations, z, _ = live.BESIDE[at]
-    return lambda path: live.floors_beside(path, elevations, z)
+    return lambda path: live.floors_beside(path, *live.BESIDE[at])
 
 
 def _ground(floors: live.Rows, building: dict[str, Any], units: Units = "si") -> Book:
