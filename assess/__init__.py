@@ -16,55 +16,54 @@ from assess.version import __version__
 TYPE_CHECKING = False  # as type checkers know it: importing `typing` takes milliseconds
 
 if TYPE_CHECKING:
-    from assess.errors import AssessError, CancelledError, InputError, OutputError, Problem, RecordError, WorkbookError
-    from assess.methods.fitted import read_model
-    from assess.model import Inventory
-    from assess.pipeline.run import run
-    from assess.progress import Progress
-    from assess.report import write_reports
-    from assess.report.report_options import ReportOptions
-    from assess.results import Results
-    from assess.settings import Settings
-    from assess.workbook.read import read_inventory
+    from assess.errors import (
+        AssessError as AssessError,
+    )
+    from assess.errors import (
+        CancelledError as CancelledError,
+    )
+    from assess.errors import (
+        InputError as InputError,
+    )
+    from assess.errors import (
+        OutputError as OutputError,
+    )
+    from assess.errors import (
+        Problem as Problem,
+    )
+    from assess.errors import (
+        RecordError as RecordError,
+    )
+    from assess.errors import (
+        WorkbookError as WorkbookError,
+    )
+    from assess.methods.fitted import read_model as read_model
+    from assess.model import Inventory as Inventory
+    from assess.pipeline.run import run as run
+    from assess.progress import Progress as Progress
+    from assess.report import write_reports as write_reports
+    from assess.report.report_options import ReportOptions as ReportOptions
+    from assess.results import Results as Results
+    from assess.settings import Settings as Settings
+    from assess.workbook.read import read_inventory as read_inventory
 
-_HOME = {
-    "AssessError": "assess.errors",
-    "CancelledError": "assess.errors",
-    "InputError": "assess.errors",
-    "Inventory": "assess.model",
-    "OutputError": "assess.errors",
-    "Problem": "assess.errors",
-    "Progress": "assess.progress",
-    "RecordError": "assess.errors",
-    "ReportOptions": "assess.report.report_options",
-    "Results": "assess.results",
-    "Settings": "assess.settings",
-    "WorkbookError": "assess.errors",
-    "read_inventory": "assess.workbook.read",
-    "read_model": "assess.methods.fitted",
-    "run": "assess.pipeline.run",
-    "write_reports": "assess.report",
-}
+_NAMES = {
+    "assess.errors": (
+        "AssessError", "CancelledError", "InputError", "OutputError", "Problem", "RecordError", "WorkbookError",
+    ),
+    "assess.methods.fitted": ("read_model",),
+    "assess.model": ("Inventory",),
+    "assess.pipeline.run": ("run",),
+    "assess.progress": ("Progress",),
+    "assess.report": ("write_reports",),
+    "assess.report.report_options": ("ReportOptions",),
+    "assess.results": ("Results",),
+    "assess.settings": ("Settings",),
+    "assess.workbook.read": ("read_inventory",),
+}  # fmt: skip
+_HOME = {name: module for module, names in _NAMES.items() for name in names}
 
-__all__ = [
-    "AssessError",
-    "CancelledError",
-    "InputError",
-    "Inventory",
-    "OutputError",
-    "Problem",
-    "Progress",
-    "RecordError",
-    "ReportOptions",
-    "Results",
-    "Settings",
-    "WorkbookError",
-    "__version__",
-    "read_inventory",
-    "read_model",
-    "run",
-    "write_reports",
-]
+__all__ = [*_HOME, "__version__"]  # noqa: PLE0604
 
 
 def __getattr__(name: str) -> object:
