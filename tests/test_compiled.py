@@ -48,14 +48,6 @@ def test_it_is_kept_in_the_users_folder(tmp_path):
     assert _kept(PACKAGE) == before, "nothing beside the code, which may be read-only or shared"
 
 
-@pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="other systems have other folders")
-@pytest.mark.slow
-def test_a_folder_that_cannot_be_written_is_done_without(tmp_path):
-    (tmp_path / "assess").write_text("a file where the folder should be", encoding="utf-8")
-    _child(FIRST_USE, XDG_CACHE_HOME=tmp_path)
-    assert (tmp_path / "assess").is_file()
-
-
 def test_each_system_has_its_folder(monkeypatch):
     for system, variables, folder in (
         ("linux", {"XDG_CACHE_HOME": "/caches"}, "/caches/assess"),

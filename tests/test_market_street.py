@@ -1,23 +1,18 @@
 """The worked example: 575 Market Street with its own records, as committed and as its script builds it."""
 
 import importlib.util
-import json
 import shutil
 import sys
 from dataclasses import replace
 from pathlib import Path
 
 import formualizer
-import jsonschema
 import openpyxl
 import pytest
 
 from assess.pipeline.live_values import live_values
 from assess.pipeline.run import run
-from assess.report import write_reports
-from assess.report.data import SCHEMA
 from assess.results import MAY_BE_LOWER
-from assess.risk import RiskClass
 from assess.settings import Settings
 from assess.units import GRAVITY
 from assess.workbook.lists import PLACES, RUN_ASSESS

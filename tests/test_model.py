@@ -1,6 +1,5 @@
 """The inventory as an object: it pickles small, compares by content, and its waveforms are read when they are used."""
 
-import dataclasses
 import pickle
 from pathlib import Path
 
@@ -8,8 +7,7 @@ import numpy as np
 import pytest
 
 from assess.errors import RecordError
-from assess.model import FloorRecord, Inventory
-from assess.motion.formats import read_records
+from assess.model import Inventory
 from assess.workbook.read import read_inventory
 from tests.workbook.books import read, write
 from tests.workbook.test_records import floors_with, write_record
@@ -70,15 +68,6 @@ def test_records_that_were_bytes_are_asked_for(tmp_path: Path) -> None:
     with pytest.raises(RecordError, match=r"one\.csv: .* pass its bytes to `with_records`"):
         samples(again)
     assert samples(again.with_records(files))[0].size == 400
-
-
-def test_a_record_of_no_file_is_pickled_with_its_waveform(tmp_path: Path) -> None:
-    write_record(tmp_path / "one.csv")
-    one = FloorRecord(name="mine", record=read_records(tmp_path / "one.csv")[0])
-    again = pickle.loads(pickle.dumps(one))
-    assert again == one
-    louder = dataclasses.replace(one.record, acceleration=2 * one.record.acceleration)
-    assert FloorRecord(name="mine", record=louder) != one
 
 
 def test_a_frame_has_units_in_its_names(market_street: Inventory) -> None:

@@ -101,14 +101,6 @@ print(len(channels), all(one.read().pfa > 0 and "site-packages" in str(one.file)
 """
 
 
-@pytest.mark.long
-def test_the_installed_wheel_does_a_study_elsewhere(installed, tmp_path):
-    """The gate does so, too, with a wheel of its own."""
-    told = _elsewhere(installed, tmp_path, "-m", "assess", "study", "table3", "--out", "out")
-    assert "27 printed OR" in told
-    assert (tmp_path / "out" / "table3.md").is_file()
-
-
 @pytest.mark.slow
 def test_the_installed_wheel_reads_its_records_elsewhere(installed, tmp_path):
     assert _elsewhere(installed, tmp_path, "-c", READ_ALL).split() == ["21", "True"]

@@ -5,14 +5,12 @@ from contextlib import closing
 from threading import Event
 
 import matplotlib as mpl
-import numpy as np
 import pytest
 
 import assess
 from assess.errors import CancelledError, InputError
 from assess.i18n import gettext, load_catalogue, speaking
-from assess.motion.formats import _text, plain_csv, read_records
-from assess.pipeline.series import write_series
+from assess.motion.formats import plain_csv, read_records
 from assess.progress import SILENT, Progress, Report, check_waits
 from assess.report.figures.draw import draw
 from assess.report_formats import DEFAULT
@@ -127,21 +125,6 @@ def test_a_long_record_of_plain_csv_is_not_read_to_its_end(tmp_path, monkeypatch
     assert 5 <= len(blocks) <= 6
 
 
-def test_a_long_record_of_words_is_not_converted_to_its_end(tmp_path, monkeypatch):
-    path, cancel, blocks = tmp_path / "long.at2", Event(), list[int]()
-    header = "PEER\nQuake, 1/1/2000, Station, 90\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 2000, DT= .01 SEC\n"
-    path.write_text(header + "\n".join(f"{at % 7 / 100:.4E}" for at in range(ROWS)), encoding="utf-8")
-    (whole,) = read_records(path)
-    monkeypatch.setattr(_text, "AT_ONCE", 100)
-    (again,) = read_records(path)
-    np.testing.assert_array_equal(again.acceleration, whole.acceleration)
-    monkeypatch.setattr(_text, "_convert", _after(3, _text._convert, cancel, blocks))
-    with pytest.raises(CancelledError):
-        read_records(path, progress=Progress(cancel=cancel))
-    _join()
-    assert len(blocks) == 3
-
-
 # ---------------------------------------------------------------- a run, reports
 
 
@@ -165,14 +148,6 @@ def test_work_is_left_in_its_midst_and_leaves_nothing(tmp_path, monkeypatch):
                 work(blocked.cancel)
             assert not blocked.ended.is_set(), place
             assert [one.name for one in tmp_path.iterdir()] == ["w.xlsx"], place
-
-
-def test_a_file_of_series_is_not_left_half_written(tmp_path):
-    cancel = Event()
-    cancel.set()
-    with pytest.raises(CancelledError):
-        write_series(tmp_path / "series.npz", {"a": np.zeros(10)}, Progress(cancel=cancel))
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_no_format_leaves_a_file(tmp_path, monkeypatch):

@@ -12,7 +12,7 @@ from scipy.stats import norm
 from assess.fragility import fit_fragility, lognormal_chance
 from assess.hazard import HazardCurve, read_hazard
 from assess.i18n import Text
-from assess.rates import AnnualRate, evaluate_rate, integrate_lognormal, integrate_table, list_remarks
+from assess.rates import evaluate_rate, integrate_lognormal, integrate_table, list_remarks
 from assess.units import GRAVITY as G
 
 DATA = Path(__file__).parent / "data" / "hazard"
@@ -37,13 +37,6 @@ def test_cornell_2002_closed_form(beta, rate, points):
     assert found.rate == pytest.approx(closed, rel=1e-6)
     assert found.rate == pytest.approx(rate, rel=5e-6)
     assert found.below < 1e-4
-
-
-def test_cornell_2002_in_50_years():
-    found = integrate_lognormal(power_law(20), median=0.5 * G, dispersion=0.5)
-    assert found.chance_within(50) == pytest.approx(0.1233, abs=5e-5)
-    assert found.chance_within(0) == 0
-    assert AnnualRate(rate=1e-12, most=0, beyond=0, below=0).chance_within(1) == pytest.approx(1e-12, rel=1e-9)
 
 
 def by_quadrature(curve, density, points=()):

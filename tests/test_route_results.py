@@ -8,7 +8,7 @@ import pytest
 
 from assess.report.data import SCHEMA, write_json
 from assess.settings import Settings
-from tests.report.routed import KNOWN, ROUTES, assess_routed
+from tests.report.routed import KNOWN, assess_routed
 
 VERIFIED = Settings(verify="all", runs=20, route_risk=0.1)
 
@@ -93,48 +93,3 @@ def test_rows_join_the_other_tables(written):
         assert {routes.segments[at].route for at in one.segment_indices} == {one.route}
     for room in routes.rooms:
         assert room.unevaluated_segments == tuple(routes.segments[at].segment for at in room.unevaluated_indices)
-
-
-def test_widths_needs_and_what_blocks(written):
-    """From the rows of the workbook to what is said of each segment."""
-    rows = {one.item: one.row for one in written[0].item_rows}
-    segments, routes = written[1]["routes"]["segments"], written[1]["routes"]["routes"]
-    aisle, flight, lane, back, yard = segments
-    assert (back["clear_width_used_m"], back["required_width_used_m"]) == (0.9, 0.9)
-    assert {"clear_assumed", "required_assumed"} <= set(back["flags"])
-    assert (flight["needed_width_m"], flight["insufficient_for_occupants"]) == (pytest.approx(1.524), True)
-    assert flight["insufficient_after_falls"]["probability"] == 1
-    assert lane["insufficient_after_falls"] is lane["needed_width_m"] is None
-    (tall,) = aisle["pieces"]
-    assert (tall["item"], tall["row"], tall["by_plan"], tall["blocks_alone"]) == ("tall", rows["tall"], True, True)
-    assert tall["distance_m"] == pytest.approx(0.15)
-    assert (aisle["state"], tall["falls_while_blocked"]) == ("blocked", aisle["blocked"]["probability"])
-    (held,) = yard["pieces"]
-    assert (held["item"], yard["state"], yard["blocked"]["pieces"]) == ("held", "open", 0)
-    assert yard["blocked_if_anchors_fail"]["pieces"] == 1
-    (fix,) = routes[0]["fixes"]
-    assert (fix["item"], fix["left"], fix["gain"]) == ("tall", 0, pytest.approx(routes[0]["blocked"]["probability"]))
-
-
-def test_a_stair_is_open_and_without_a_clear_width_not_known(written, tmp_path):
-    """The flight joins two floors and no piece names it; of one without a width that it is open is not known."""
-    flight = written[1]["routes"]["segments"][1]
-    assert (flight["state"], flight["blocked"]["probability"], flight["missing"]) == ("open", 0, [])
-    blank = [{**one, "clear_width": None} if one["segment"] == "flight" else one for one in ROUTES]
-    run = assess_routed(tmp_path / "w.xlsx", Routes=blank)
-    write_json(run, tmp_path / "r.json")
-    found = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))["routes"]
-    assert [one["evaluated"] for one in found["segments"]] == [True, False, True, True, True]
-    flight, letter = found["segments"][1], "G"
-    assert (flight["state"], flight["flags"]) == ("not known", ["stair_width_missing", "between_floors"])
-    (missing,) = flight["missing"]
-    assert (missing["what"], missing["names"], missing["cells"]) == (
-        "clear_width", ["West: flight"], [f"Routes!{letter}3"],
-    )  # fmt: skip
-    empty = ("blocked", "blocked_or_reduced", "blocked_if_anchors_fail", "under_record", "least_width_m")
-    assert {flight[name] for name in empty} == {None}
-    assert [one["unevaluated_segments"] for one in found["routes"]] == [["flight"], [], []]
-    assert [one["evaluated"] for one in found["routes"]] == [True, True, True]
-    assert [one["unevaluated_segments"] for one in found["rooms"]] == [["flight"], ["flight"]]
-    assert [one["uncounted_pieces"] for one in found["floors"]] == [1, 0]
-    assert found["uncounted_pieces"] == 1

@@ -291,11 +291,6 @@ def test_a_floor_that_cannot_be_drawn_counts_only_pieces_that_name_a_route(tmp_p
         }
 
 
-def test_without_rows_of_routes_rooms_are_not_asked_for(tmp_path: Path) -> None:
-    path = write(tmp_path, [HEADS["Items"], ITEMS["B2"]], TWO_FLOORS, Places=[HEADS["Places"], *PLACES.values()])
-    assert read_inventory(path).problems == ()
-
-
 UNREAD: list[tuple[str, str, Any]] = [
     ("Office", "X", "far"), ("Office", "Floor", None), ("Office", "Kind", "roof"),
     ("Upper", "Kind", "roof"), ("aisle", "Route", None), ("aisle", "Segment", None), ("aisle", "Clear", "wide"),

@@ -11,7 +11,7 @@ from assess.errors import WorkbookError
 from assess.workbook.patch import patch_workbook
 from assess.workbook.read import read_inventory
 from tests.recalculate import libreoffice, needs_libreoffice
-from tests.workbook.books import FLOORS, ITEMS, change_parts, read_part, replace, write, write_book, write_shared
+from tests.workbook.books import FLOORS, ITEMS, change_parts, read_part, write, write_book, write_shared
 from tests.workbook.raw import zip_bytes
 
 SHEET = "xl/worksheets/sheet1.xml"  # Items
@@ -58,27 +58,6 @@ def test_files_of_other_programs(tmp_path: Path) -> None:
         assert items_of(path) == [("A1", "1", 0.4, 1.8), ("A2", "1", 0.5, 2.0)]
 
 
-def test_cells_out_of_order(tmp_path: Path) -> None:
-    """Openpyxl's quick reader takes the last cell for the widest, and leaves out what is right of it."""
-
-    def exchange(data: bytes) -> bytes:
-        found = re.search(rb'(<row r="2"[^>]*>)(.*)(<c r="D2".*?</c>)(</row>)', data)
-        assert found
-        return data.replace(found[0], found[1] + found[3] + found[2] + found[4])
-
-    assert items_of(change_parts(write(tmp_path), {SHEET: exchange})) == [("A1", "1", 0.4, 1.8)]
-
-
-def test_sheets_of_excel_with_extensions(tmp_path: Path) -> None:
-    """What openpyxl remarks on never reaches the user: warnings are errors here."""
-    extension = (
-        '<extLst><ext xmlns:x14="http://schemas.microsoft.com/office/spreadsheetml/2009/9/main" '
-        'uri="{CCE6A557-97BC-4b89-ADB6-D9C93CAAB3DF}"><x14:dataValidations count="0"/></ext></extLst></worksheet>'
-    )
-    path = change_parts(write(tmp_path), {SHEET: replace("</worksheet>", extension)})
-    assert len(items_of(path)) == 1
-
-
 def test_a_date_beyond_the_calendar(tmp_path: Path) -> None:
     path = write(tmp_path, [ITEMS[0], ["A1", "1", datetime(2024, 1, 1), 180]])
     change_parts(path, {SHEET: lambda data: re.sub(rb"<v>45292</v>|<v>2024-01-01[^<]*</v>", b"<v>99999999</v>", data)})
@@ -103,14 +82,6 @@ def test_files_by_libreoffice(tmp_path: Path) -> None:
     path = write(tmp_path, [[*ITEMS[0], "Quantity", "Notes"], [*ITEMS[1], "=1+1", "ä\n2"]], Building=[["Use", "x"]])
     found = read_inventory(libreoffice(path, tmp_path / "again.xlsx")).items[0]
     assert (found.item, found.breadth, found.quantity, found.notes) == ("A1", 0.4, 2, "ä\n2")
-
-
-@pytest.mark.slow
-def test_many_rows(tmp_path: Path) -> None:
-    rows = [[f"A{n}", "1", 30 + n % 50, 180] for n in range(6_000)]
-    inventory = read_inventory(write_shared(tmp_path / "book.xlsx", {"Items": [ITEMS[0], *rows], "Floors": FLOORS}))
-    assert len(inventory.items) == 6_000
-    assert inventory.items[-1].row == 6_001
 
 
 def test_signs_without_width_round_a_text_are_no_part_of_it(tmp_path: Path) -> None:

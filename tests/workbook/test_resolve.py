@@ -124,25 +124,6 @@ def test_the_uncertainties_and_the_velocity_of_the_ground(tmp_path: Path) -> Non
         assert (found.ground_pgv, found.motion_uncertainty, found.piece_uncertainty) == (None, None, None)
 
 
-PLACES: Sheet = [["Place", "Floor", "X [m]", "Kind"], ["Hall", 1, 2, "Room"], ["Exit", "1", None, None]]
-ROUTES: Sheet = [["Route", "Segment", "Floor", "From", "To", "Clear width [cm]", "Occupants"],
-                 ["R1", "a", "1", "Hall", "Exit", 120, 40], ["R1", "b", None, None, None, None, None]]  # fmt: skip
-
-
-def test_places_and_routes(tmp_path: Path) -> None:
-    items: Sheet = [[*ITEMS[0], "Route", "Segment"], [*ITEMS[1], "r1", "A"]]
-    inventory = read(tmp_path, items, Places=PLACES, Routes=ROUTES)
-    assert [(one.place, one.floor, one.x, one.kind) for one in inventory.places] == [
-        ("Hall", "1", 2, "room"), ("Exit", "1", None, ""),
-    ]  # fmt: skip
-    assert [(one.route, one.segment, one.clear_width, one.occupants) for one in inventory.routes] == [
-        ("R1", "a", 1.2, 40), ("R1", "b", None, None),
-    ]  # fmt: skip
-    assert inventory.items[0].route == "R1"
-    assert inventory.items[0].segment == "a", "spelt as in Routes"
-    assert remarks(inventory, "note") == set()
-
-
 def test_weights_and_brackets_are_read_in_any_unit(tmp_path: Path) -> None:
     sizes = ["Breadth [cm]", "Height [cm]", "Anchored"]
     for units, cells, expected in (
