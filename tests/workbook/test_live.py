@@ -244,7 +244,7 @@ Case = tuple[dict[str, Any], Rows, list[tuple[dict[str, Any], Any]]]
 """Lines of Building, floors, and pieces with what they show: their PFA, or a word in place of all but B/H."""
 TWO: Rows = [{"floor": "1", "pfa_x": 0.5}, {"floor": "2", "elevation": 4}]
 RECORDED: Rows = [{"floor": "1", "pfa_x": 0.5, "record_x": "roof.csv"}]
-WORDS: list[Case] = [
+WORDS: Sequence[Any] = [
     ({}, TWO, [({"floor": "9"}, "floor?"), ({"floor": None}, "floor?"), ({"type": "none such"}, 0.5)]),
     ({}, [{"floor": "1", "pfa_x": 0.3, "pfa_y": 0.5}], [({"axis": "x"}, 0.3), ({"axis": " Y "}, 0.5), ({"axis": "Z"}, "axis?")]),
     *(({}, [{"floor": "1", **floor}], [({}, "run assess")]) for floor in (
@@ -261,7 +261,7 @@ WORDS: list[Case] = [
     # cells that were emptied with the space bar
     ({}, TWO, [({"breadth": 40, "width": " ", "angle_deg": " ", "axis": " ", "type": " ", "centre_of_gravity": " "}, 0.5)]),
 ]  # fmt: skip
-ITALIAN_WORDS: list[Case] = [
+ITALIAN_WORDS: Sequence[Any] = [
     ({}, TWO, [({"floor": "9"}, "piano?"), ({"axis": "Z"}, "asse?"), ({}, 0.5), ({"floor": "2"}, "scuotimento?")]),
     ({"ground_pga": 0.2}, TWO, [({"floor": "2"}, "eseguire assess")]),
     *(({"scenario_kind": kind}, TWO, [({}, shown)]) for kind, shown in {
@@ -273,7 +273,7 @@ ITALIAN_WORDS: list[Case] = [
 
 @pytest.mark.parametrize(("language", "cases"), [("en", WORDS), ("it", ITALIAN_WORDS)])
 def test_what_is_not_known_or_wrong_is_named_in_place_of_a_class(
-    tmp_path: Path, language: str, cases: list[Case]
+    tmp_path: Path, language: str, cases: Sequence[Case]
 ) -> None:
     for building, floors, rows in cases:
         with speaking(load_catalogue(language)):
