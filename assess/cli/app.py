@@ -19,12 +19,19 @@ from typing import Annotated, TextIO
 import typer
 
 import assess.cli
-from assess.cli.completion import ASKED, PROGRAM, find_typed_command
 from assess.cli.console import describe_fault, guard, print_error, say
 from assess.cli.interrupts import answer_signals
 from assess.version import __version__
 
-PREFIX = "command_"
+PROGRAM, PREFIX = "assess", "command_"
+ASKED = f"_{PROGRAM.upper()}_COMPLETE"
+"""Variable that a shell sets when it asks for completions, to what it asks and its own name: ``complete_bash``.
+
+It calls ``assess`` without arguments; typer answers with the options and the words that follow them. Files are left to
+the shell.
+"""
+TYPED = ("_TYPER_COMPLETE_ARGS", "COMP_WORDS")
+"""Variables that hold the line as it is typed: of zsh, fish and PowerShell, and of bash."""
 BAD_USAGE, NOT_WRITTEN = 2, 1
 """Exit status of a blank word, and of an output that cannot be written."""
 START = """\b
@@ -56,6 +63,13 @@ def main() -> None:
         os.environ["COLUMNS"] = ONE_LINE
     app = build_app([typed] if typed in list_names() else ())
     run_to_the_end(lambda: app(prog_name=PROGRAM), sys.argv[1:])
+
+
+def find_typed_command() -> str:
+    """Return the command in the line that is to be completed, if it is typed to its end; else an empty text."""
+    line = next((os.environ[name] for name in TYPED if os.environ.get(name)), "")
+    words = line.split()
+    return words[1] if len(words) > 2 or (len(words) == 2 and line[-1].isspace()) else ""
 
 
 def run_to_the_end(app: Callable[[], object], words: Sequence[str]) -> None:

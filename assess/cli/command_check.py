@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Never
 import typer
 
 from assess.cli.console import count, count_errors, print_numbered, print_problems, print_ways, say, show_progress
-from assess.cli.options import Workbook, check_new_file, save_file
-from assess.errors import Gap, Problem, WorkbookError
+from assess.cli.options import Workbook, check_file, check_new, force, is_same, save_files
+from assess.errors import Gap, InputError, Problem, WorkbookError
 from assess.settings import Settings
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def command(
         Path | None,
         typer.Option(help="Write a corrected copy: cells typed in another way as their column asks.", metavar="OUT"),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace an existing OUT.")] = False,
+    replaces: Annotated[bool, force("an existing OUT")] = False,
 ) -> None:
     """Check a workbook and name every problem by sheet and cell.
 
@@ -46,7 +46,7 @@ def command(
 
     try:
         if fix is not None:
-            inventory = _write_corrected(path, fix, replaces=force)
+            inventory = _write_corrected(path, fix, replaces=replaces)
             if inventory.errors:  # read again as without --fix: nothing is left out, and so nothing said of that
                 read_inventory(inventory.data or b"", records=path.resolve().parent)
         else:
@@ -94,11 +94,14 @@ def _write_corrected(path: Path, out: Path, *, replaces: bool) -> "Inventory":
     """Write the corrected workbook, if there is anything to correct, and print what was changed."""
     from assess.pipeline.corrected import correct_workbook
 
-    check_new_file(out, path, replaces=replaces)
+    check_file(out, "copy", (path.suffix.lower() or ".xlsx",))
+    if is_same(out, path):
+        raise InputError(f"{out} is the workbook itself: name another file, so that the original stays as it is.")
+    check_new(out, replaces=replaces)
     with show_progress() as progress:
         done = correct_workbook(path, progress)
     if done.changed:
-        save_file(done.inventory.data or b"", out)
+        save_files({out: done.inventory.data or b""})
     for line in _describe(done, path, out):
         say(line)
     return done.inventory
@@ -117,27 +120,23 @@ def _describe(done: "Corrected", path: Path, out: Path) -> Iterator[str]:
         yield f"{path.name}: no cell to correct; {out} was not written."
     for one in done.kept:
         yield f"{one.sheet}!{one.cell} holds a formula and is left as it is: {shorten(one.was)}"
-    if done.changed and _names_files(done.inventory) and path.resolve().parent != out.resolve().parent:
+    own = done.inventory
+    names_files = own.files or any(floor.plan for floor in own.floors) or own.building.logo
+    if done.changed and names_files and path.resolve().parent != out.resolve().parent:
         yield f"The files that the workbook names lie next to {path.name}: copy them next to {out.name} as well."
 
 
 def _describe_group(group: "Sequence[Correction]") -> str:
     """Return the first corrections of one kind, and how many there are."""
+    from assess.workbook.values import shorten
+
+    shown = []
+    for one in group[:MOST_SHOWN]:
+        now = f"{one.value:.12g}" if isinstance(one.value, int | float) else "blank"
+        now = shorten(one.value) if isinstance(one.value, str) else now
+        shown.append(f"{one.cell} {shorten(one.was)} -> {now}")
     first, more = group[0], len(group) - MOST_SHOWN
-    shown = [f"{one.cell} {_change(one)}" for one in group[:MOST_SHOWN]]
     if len(group) == 1:
         return f"  {first.sheet}!{shown[0]}. {first.why}"
     listed = ", ".join(shown) + (f" and {more:,} more" if more > 0 else "")
     return f"  {first.sheet}, {count(len(group), 'cell')}: {listed}. {first.why}"
-
-
-def _change(one: "Correction") -> str:
-    from assess.workbook.values import shorten
-
-    now = f"{one.value:.12g}" if isinstance(one.value, int | float) else "blank"
-    return f"{shorten(one.was)} -> {shorten(one.value) if isinstance(one.value, str) else now}"
-
-
-def _names_files(inventory: "Inventory") -> bool:
-    plans = any(floor.plan is not None for floor in inventory.floors)
-    return bool(inventory.files) or plans or inventory.building.logo is not None

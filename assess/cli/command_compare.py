@@ -1,5 +1,6 @@
 """``assess compare``: two runs of a building, and what changed between them."""
 
+import contextlib
 import hashlib
 import shlex
 from collections.abc import Iterator
@@ -9,9 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from assess.cli.completion import list_of, one_of
 from assess.cli.console import say, say_written, show_progress
-from assess.cli.options import AsJson, read_formats
+from assess.cli.options import AsJson, language_of, list_of, read_formats
 from assess.errors import InputError
 from assess.i18n import LANGUAGES, find_language
 from assess.input_file import read_input
@@ -54,12 +54,7 @@ def command(
     formats: Annotated[
         str, typer.Option(help="Files to write, separated by commas.", autocompletion=list_of(FORMATS))
     ] = ",".join(FORMATS[:-1]),
-    language: Annotated[
-        str | None,
-        typer.Option(
-            help="Language of the files: en, it.", show_default="AFTER's workbook's", autocompletion=one_of(LANGUAGES)
-        ),
-    ] = None,
+    language: Annotated[str | None, language_of("the files", "AFTER's workbook's")] = None,
     as_is: Annotated[
         bool, typer.Option("--as-is", help="Compare runs that were computed by different code of assess as they are.")
     ] = False,
@@ -87,7 +82,9 @@ def command(
         if not as_is:
             check_code(*runs)
         found = compare(*runs)
-        options = ReportOptions(language=code or _find_own_language(found.after))
+        with contextlib.suppress(InputError):  # the workbook may name one that is not known
+            code = code or find_language(str(found.after.building.get("language") or LANGUAGES[0]))
+        options = ReportOptions(language=code or LANGUAGES[0])
         written = write_comparison(found, out, wanted, options, progress=progress)
     if as_json:
         say(dump(describe(found)), nl=False)
@@ -95,14 +92,6 @@ def command(
         for line in describe_comparison(found):
             say(line)
     say_written(written.values(), written.removed)
-
-
-def _find_own_language(run: "PastRun") -> str:
-    """Return the language of the workbook of a run, English where that names none that is known."""
-    try:
-        return find_language(str(run.building.get("language") or LANGUAGES[0]))
-    except InputError:
-        return LANGUAGES[0]
 
 
 def check_code(before: "PastRun", after: "PastRun") -> None:
@@ -121,8 +110,14 @@ def check_code(before: "PastRun", after: "PastRun") -> None:
 def _list_ways(name: str, run: "PastRun") -> Iterator[str]:
     """Yield the command that assesses the workbook of a run again, and where that workbook is."""
     folder, workbook = run.path.parent, Path(run.workbook).name  # a name alone: results.json may come from anybody
-    places = (folder / workbook, folder.parent / workbook, Path(workbook))
-    found = next((one for one in places if _is_file(one, run.workbook_sha256)), None)
+
+    def is_it(path: Path) -> bool:
+        try:
+            return hashlib.sha256(read_input(path, MOST_BYTES)).hexdigest() == run.workbook_sha256
+        except (OSError, ValueError):
+            return False
+
+    found = next(filter(is_it, (folder / workbook, folder.parent / workbook, Path(workbook))), None)
     default = Settings().as_record()
     parts = ["assess", "run", str(found or workbook), "--out", f"{folder.resolve().name}-again"]
     for option in OPTIONS:
@@ -132,13 +127,6 @@ def _list_ways(name: str, run: "PastRun") -> Iterator[str]:
     yield f"Assess {name} again, and compare that: {shlex.join(parts)}"
     if found is None and (folder / PDF).is_file():
         yield f"{workbook} is attached to {folder / PDF}: save it from there."
-
-
-def _is_file(path: Path, sha256: str) -> bool:
-    try:
-        return hashlib.sha256(read_input(path, MOST_BYTES)).hexdigest() == sha256
-    except (OSError, ValueError):
-        return False
 
 
 def describe_comparison(found: "Comparison") -> Iterator[str]:

@@ -77,7 +77,11 @@ def list_requirements() -> list[Requirement]:
     try:
         lines = metadata.requires("assess") or []
     except metadata.PackageNotFoundError:
-        lines = _read_pyproject()
+        file = Path(__file__).parents[2] / "pyproject.toml"
+        project = tomllib.loads(file.read_text(encoding="utf-8"))["project"] if file.is_file() else {}
+        extras = project.get("optional-dependencies", {})
+        own = (f'{line}; extra == "{extra}"' for extra, lines in extras.items() for line in lines)
+        lines = [*project.get("dependencies", []), *own]
     found: dict[str, Requirement] = {}
     for line in lines:
         parts = _REQUIREMENT.match(line)
@@ -85,16 +89,6 @@ def list_requirements() -> list[Requirement]:
             one = Requirement(parts["name"], parts["least"] or "", parts["extra"] or "")
             found.setdefault(one.name.lower(), one)  # two extras may need the same package
     return list(found.values())
-
-
-def _read_pyproject() -> list[str]:
-    file = Path(__file__).parents[2] / "pyproject.toml"
-    project = tomllib.loads(file.read_text(encoding="utf-8"))["project"] if file.is_file() else {}
-    extras = project.get("optional-dependencies", {})
-    return [
-        *project.get("dependencies", []),
-        *(f'{line}; extra == "{extra}"' for extra, lines in extras.items() for line in lines),
-    ]
 
 
 def examine_package(one: Requirement) -> Finding:

@@ -6,13 +6,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from assess.cli.console import count, say, show_progress
-from assess.cli.options import check_file, save_files
-from assess.errors import InputError, OutputError
+from assess.cli.console import count, say, say_written, show_progress
+from assess.cli.options import check_file, check_new, force, is_same, save_files
+from assess.errors import InputError
 
 if TYPE_CHECKING:
     from assess.bim.export_files import Export
-    from assess.bim.export_topics import Topics
 
 ORDER = 4
 EXAMPLES = (
@@ -45,7 +44,7 @@ def command(
         typer.Option("--bcf", help="The topics to write: what to fix, in order (BCF 2.1: .bcfzip or .bcf).",
                      show_default=False),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace existing files.")] = False,
+    replaces: Annotated[bool, force("existing files")] = False,
 ) -> None:  # fmt: skip
     """Bring the results back to the building model: risk classes as properties, what to fix as topics.
 
@@ -54,7 +53,7 @@ def command(
     found. Texts are in the language of the workbook. The exit status is 1 where a piece is not furniture in the model,
     or shares its Source ID.
     """
-    _check_names({"--out": out, "--bcf": bcf}, {ifc, results}, replaces=force)
+    _check_names({"--out": out, "--bcf": bcf}, {ifc, results}, replaces=replaces)
     from assess.bim.export_files import build_export
     from assess.bim.export_results import read_export
     from assess.i18n import LANGUAGES, load_catalogue, speaking
@@ -67,8 +66,7 @@ def command(
     save_files({path: data for path, data in files.items() if path is not None and data is not None})
     for line in describe_export(export, ifc.name):
         say(line)
-    for path in filter(None, (out, bcf)):
-        say(f"wrote {path}", err=True)
+    say_written(filter(None, (out, bcf)))
     if not export.is_complete:
         raise typer.Exit(1)
 
@@ -83,22 +81,27 @@ def _check_names(files: Mapping[str, Path | None], sources: set[Path], *, replac
     for option, path in wanted.items():
         endings = TOPICS if option == "--bcf" else (".ifc",)
         check_file(path, "topics" if option == "--bcf" else "model", endings)
-        if any(_is_same(path, source) for source in sources):
+        if any(is_same(path, source) for source in sources):
             raise InputError(f"{option}: {path} is read for this: name another file, so that it stays as it is.")
-        if path.exists() and not replaces:
-            raise OutputError(f"{path} already exists: add --force to replace it, or choose another name.")
-
-
-def _is_same(path: Path, other: Path) -> bool:
-    return path.resolve() == other.resolve() or (path.exists() and other.exists() and path.samefile(other))
+        check_new(path, replaces=replaces)
 
 
 def describe_export(export: "Export", model: str) -> Iterator[str]:
     """Yield what was written, and which pieces could not be."""
     if export.model is not None:
         yield f"{model}: a property set Assess_OverturningRisk on {count(export.written, 'piece')}."
-    if export.topics is not None:
-        yield from _describe_topics(export.topics, model)
+    if (topics := export.topics) is not None:
+        doors = f", {topics.doors:,} of them with a door" if topics.doors else ""
+        yield f"{count(topics.count, 'topic')}: what to fix, in the order of the schedule{doors}."
+        if topics.beyond:
+            yield f"Less urgent entries of the schedule that are no topics: {topics.beyond:,}."
+        if topics.unplaced:
+            yield (
+                f"Entries of the schedule that are no topics, as none of their pieces is in {model}: "
+                f"{topics.unplaced:,}."
+            )
+        if topics.count and not topics.is_placed:
+            yield "No doors were sought: the positions of the workbook are not those of the model."
     groups = {
         "without a Source ID": export.without_id,
         f"with a Source ID that is not in {model}": export.missing,
@@ -115,15 +118,3 @@ def describe_export(export: "Export", model: str) -> Iterator[str]:
 def _name_first(names: Sequence[str]) -> str:
     more = f" and {len(names) - MOST_NAMED:,} more" if len(names) > MOST_NAMED else ""
     return ", ".join(names[:MOST_NAMED]) + more
-
-
-def _describe_topics(topics: "Topics", model: str) -> Iterator[str]:
-    """Yield how many topics there are, and what they leave out."""
-    doors = f", {topics.doors:,} of them with a door" if topics.doors else ""
-    yield f"{count(topics.count, 'topic')}: what to fix, in the order of the schedule{doors}."
-    if topics.beyond:
-        yield f"Less urgent entries of the schedule that are no topics: {topics.beyond:,}."
-    if topics.unplaced:
-        yield f"Entries of the schedule that are no topics, as none of their pieces is in {model}: {topics.unplaced:,}."
-    if topics.count and not topics.is_placed:
-        yield "No doors were sought: the positions of the workbook are not those of the model."

@@ -1,15 +1,12 @@
 """``assess fragility``: the chance that pieces overturn, against the PFA or PFV of their floor, and a fit to it."""
 
-from collections.abc import Sequence
 from dataclasses import replace
-from enum import Enum
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Literal
 
 import typer
 
-from assess.cli.completion import list_of
 from assess.cli.console import print_warnings, say, show_progress
 from assess.cli.options import (
     AsJson,
@@ -21,18 +18,12 @@ from assess.cli.options import (
     Workbook,
     check_file,
     check_out,
+    list_of,
+    plot_of,
+    read_draw_settings,
     read_formats,
-    read_settings,
-    save_with_figure,
+    write_files,
 )
-from assess.errors import InputError
-from assess.settings import AUTO
-
-if TYPE_CHECKING:
-    from assess.cli.fragility_output import Curves
-    from assess.progress import Progress
-    from assess.report.interchange.exchange_files import Exchange
-    from assess.settings import Settings
 
 ORDER = 4
 EXAMPLES = (
@@ -45,32 +36,19 @@ EXAMPLES = (
 DEFAULT, KNOWN = "csv,json", ("csv", "json", "pelicun", "nrml")
 
 
-class By(str, Enum):
-    """What has one curve."""
-
-    ITEM = "item"
-    TYPE = "type"
-
-
-class Measure(str, Enum):
-    """Intensity measures."""
-
-    PFA = "pfa"
-    PFV = "pfv"
-
-
 SPANS = {
-    Measure.PFA: Span("--levels", "g", step="0.05", most=20, examples="0.1:1.0 or 0.1:1.0:0.05"),
-    Measure.PFV: Span("--levels", "cm/s", step="5", most=5000, examples="10:200 or 10:200:10"),
+    "pfa": Span("--levels", "g", step="0.05", most=20, examples="0.1:1.0 or 0.1:1.0:0.05"),
+    "pfv": Span("--levels", "cm/s", step="5", most=5000, examples="10:200 or 10:200:10"),
 }
 
 
 def command(
     path: Workbook,
     by: Annotated[
-        By, typer.Option(help="One curve for each row of Items, or for all rows of a Type (without one: of a size).")
-    ] = By.ITEM,
-    im: Annotated[Measure, typer.Option(help="Intensity measure: PFA or PFV of the floor.")] = Measure.PFA,
+        Literal["item", "type"],
+        typer.Option(help="One curve for each row of Items, or for all rows of a Type (without one: of a size)."),
+    ] = "item",
+    im: Annotated[Literal["pfa", "pfv"], typer.Option(help="Intensity measure: PFA or PFV of the floor.")] = "pfa",
     levels: Annotated[
         str | None,
         typer.Option(
@@ -101,7 +79,7 @@ def command(
     ] = False,
     jobs: Jobs = None,
     as_json: AsJson = False,
-    plot: Annotated[Path | None, typer.Option(help="Draw the curves to this .png, .svg or .pdf.")] = None,
+    plot: Annotated[Path | None, plot_of("the curves")] = None,
 ) -> None:
     """Fit the chance that a piece overturns to the PFA or PFV of its floor.
 
@@ -116,60 +94,33 @@ def command(
     status 1.
     """
     span = None if levels is None else SPANS[im].read(levels)
-    settings = read_settings(verify="none", runs=runs, seed=seed, scenario=scenario, ideal=ideal)
-    if settings.runs == AUTO:
-        raise InputError(f"--runs: {AUTO} is for assess run, as every level uses the same motions. Give a number.")
-    from assess.cli.fragility_output import FORMATS
-
-    wanted = (
-        []
-        if as_json and formats is None and out is None
-        else list(dict.fromkeys(read_formats(formats or DEFAULT, FORMATS)))
-    )
-    folder = out or Path(f"{path.stem}-fragility")
-    if wanted:
-        check_out(folder)
-    check_file(plot, "figure")
-    with show_progress() as progress:
-        curves = _find(path, by, im, span, settings, "nrml" in wanted, jobs, progress)
-    written = [FORMATS[one](curves) for one in wanted]
-    say(curves.to_json() if as_json else curves.to_text())
-    _write(curves, written, folder, plot)
-
-
-def _find(
-    path: Path,
-    by: By,
-    im: Measure,
-    span: Sequence[float] | None,
-    settings: "Settings",
-    needs_ground: bool,
-    jobs: int | None,
-    progress: "Progress",
-) -> "Curves":
-    from assess.cli.fragility_output import Curves
+    settings = read_draw_settings("level", runs=runs, seed=seed, scenario=scenario, ideal=ideal)
+    from assess.cli.curve_figures import draw_curves
+    from assess.cli.fragility_output import FORMATS, Curves, say_left_out
     from assess.pipeline.piece_fragility import UNITS, find_piece_fragilities
     from assess.pipeline.run import compute
     from assess.report.interchange.nrml import find_ground_pga
     from assess.workbook.read import read_inventory
 
-    inventory = replace(read_inventory(path, progress=progress), routes=())  # they play no part
-    assessment = compute(inventory, settings, progress=progress)
-    print_warnings(assessment.problems)
-    if needs_ground:
-        find_ground_pga(assessment, im.value)
-    levels = None if span is None else [one * UNITS[im.value] for one in span]
-    found = find_piece_fragilities(assessment, by=by.value, im=im.value, levels=levels, jobs=jobs, progress=progress)
-    return Curves(assessment, found)
-
-
-def _write(curves: "Curves", written: "Sequence[Exchange]", folder: Path, plot: Path | None) -> None:
-    """Write the files and the figure, all of them or none; exit status 1 where a format could not hold every curve."""
-    from assess.cli.curve_figures import draw_curves
-    from assess.cli.fragility_output import say_left_out
-
+    is_written = not as_json or formats is not None or out is not None
+    wanted = list(dict.fromkeys(read_formats(formats or DEFAULT, FORMATS))) if is_written else []
+    folder = out or Path(f"{path.stem}-fragility")
+    if wanted:
+        check_out(folder)
+    check_file(plot, "figure")
+    with show_progress() as progress:
+        inventory = replace(read_inventory(path, progress=progress), routes=())  # they play no part
+        assessment = compute(inventory, settings, progress=progress)
+        print_warnings(assessment.problems)
+        if "nrml" in wanted:
+            find_ground_pga(assessment, im)
+        points = None if span is None else [one * UNITS[im] for one in span]
+        found = find_piece_fragilities(assessment, by=by, im=im, levels=points, jobs=jobs, progress=progress)
+    curves = Curves(assessment, found)
+    written = [FORMATS[one](curves) for one in wanted]
+    say(curves.to_json() if as_json else curves.to_text())
     files = {folder / name: data for one in written for name, data in one.files.items()}
-    save_with_figure(files, plot, partial(draw_curves, curves), "curve")
+    write_files(files, plot, partial(draw_curves, curves), "curve")
     lines = [line for one in written for line in say_left_out(one)]
     for line in lines:
         say(line, err=True)

@@ -2,14 +2,13 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
 from assess.cli.console import count, say, show_progress
-from assess.cli.options import save_files
+from assess.cli.options import force, is_same, quote, save_files
 from assess.errors import InputError, OutputError
 from assess.progress import Progress
 
@@ -29,13 +28,6 @@ MOST_CHANGES = 200
 """Changes that are listed one by one."""
 
 
-class Routes(str, Enum):
-    """Whether evacuation routes are drafted."""
-
-    none = "none"
-    draft = "draft"
-
-
 def command(
     source: Annotated[
         Path,
@@ -48,8 +40,9 @@ def command(
     ],
     out: Annotated[Path, typer.Option("--out", "-o", help="The workbook to write, an .xlsx.", show_default=False)],
     routes: Annotated[
-        Routes, typer.Option("--routes", help="Draft evacuation routes from the rooms to stairs and exits.")
-    ] = Routes.none,
+        Literal["none", "draft"],
+        typer.Option("--routes", help="Draft evacuation routes from the rooms to stairs and exits."),
+    ] = "none",
     also: Annotated[
         list[str] | None,
         typer.Option("--also", metavar="CLASS", help="A further class of the model whose elements are furniture, "
@@ -59,7 +52,7 @@ def command(
         bool,
         typer.Option("--update", help="Take new sizes, positions and pieces into the workbook; all else in it stays."),
     ] = False,
-    force: Annotated[bool, typer.Option("--force", help="Replace an existing workbook.")] = False,
+    replaces: Annotated[bool, force("an existing workbook")] = False,
 ) -> None:  # fmt: skip
     """Make an inventory workbook from a building model, a scan or a COBie handover file.
 
@@ -68,21 +61,21 @@ def command(
     reason, on the screen and in a file beside the workbook, which lacks only how the floors shake: choose Shaking in
     Building, or fill in Floors. The exit status is 1 where furniture was left out, or none was found.
     """
-    if update and force:
+    if update and replaces:
         raise InputError("--update keeps what is in the workbook, --force replaces it: give one of them.")
-    if update and routes is not Routes.none:
+    if update and routes != "none":
         raise InputError(
-            f"--update: --routes {routes.value}: routes are drafted into a new workbook only: leave out one of the two."
+            f"--update: --routes {routes}: routes are drafted into a new workbook only: leave out one of the two."
         )
-    _check_names(source, out, replaces=force, updates=update)
+    _check_names(source, out, replaces=replaces, updates=update)
     from assess.bim.import_workbook import describe
 
-    choices = {"routes": routes.value, "also": also or ()}
+    choices = {"routes": routes, "also": also or ()}
     with show_progress() as progress, progress.stage("reading", source.name):
         if update:
             made = _update(source, out, progress, choices)
         else:
-            made = _build(source, out, progress, choices, replaces=force)
+            made = _build(source, out, progress, choices, replaces=replaces)
     save_files({**({out: made.data} if made.data is not None else {}), **made.plans})
     for line in (*describe(made.found), *made.lines):
         say(line)
@@ -108,7 +101,11 @@ def _build(source: Path, out: Path, progress: Progress, choices: Mapping[str, An
 
     found = read_source(source, source.name, progress, **choices)
     plans = {out.parent / name: data for name, data in found.files.items()}
-    _check_plans(plans, replaces=replaces)
+    there = next((path for path in plans if path.exists()), None)
+    if there is not None and not replaces:
+        raise OutputError(
+            f"{there} already exists: add --force to replace it, or write the workbook into another folder."
+        )
     return _Made(progress.wait_for(lambda: build_workbook(found)), plans, found, found.is_complete)
 
 
@@ -129,19 +126,14 @@ def _update(source: Path, out: Path, progress: Progress, choices: Mapping[str, A
     lines = tuple(describe_changes(updated))
     records = {name: text for name, text in found.files.items() if name.endswith(ENDING)}
     plans = {out.parent / name: one for name, one in {**updated.plans, **records}.items()}
-    _check_unchanged(out, data)
+    try:
+        is_unchanged = out.read_bytes() == data
+    except OSError:
+        is_unchanged = False
+    if not is_unchanged:
+        raise OutputError(f"{out.name} was changed while the model was read: run the import again.")
     written = updated.data if updated.is_changed else None
     return _Made(written, plans, found, found.is_complete and is_whole, lines)
-
-
-def _check_unchanged(out: Path, data: bytes) -> None:
-    """Raise OutputError where a workbook no longer holds what was read of it."""
-    try:
-        is_same = out.read_bytes() == data
-    except OSError:
-        is_same = False
-    if not is_same:
-        raise OutputError(f"{out.name} was changed while the model was read: run the import again.")
 
 
 def _describe_written(out: Path, made: _Made, *, is_new: bool) -> str:
@@ -150,15 +142,13 @@ def _describe_written(out: Path, made: _Made, *, is_new: bool) -> str:
     written = f"{', '.join(parts)} and this list beside it" if parts else "this list beside it"
     then = "Choose Shaking in Building or fill in Floors, then run" if is_new else "Now run"
     start = "" if made.data is not None else f"{out} stays as it is; "
-    quoted = f'"{out}"' if " " in str(out) else str(out)
-    return f"{start}wrote {written}. {then}: assess check {quoted}"
+    return f"{start}wrote {written}. {then}: assess check {quote(out)}"
 
 
 def _check_names(source: Path, out: Path, *, replaces: bool, updates: bool) -> None:
-    """Raise InputError or OutputError unless the workbook may be written, as far as is known before the work."""
     if out.suffix.lower() != ".xlsx":
         raise InputError(f"--out: {out} does not end in .xlsx: name it {out.stem or 'building'}.xlsx.")
-    if out.resolve() == source.resolve() or (out.exists() and source.exists() and out.samefile(source)):
+    if is_same(out, source):
         raise InputError(f"--out: {out} is the file to import: name another file, so that the original stays as it is.")
     if updates and not out.exists():
         raise InputError(f"--update: {out} does not exist: name the workbook of an earlier import, or leave it out.")
@@ -166,15 +156,6 @@ def _check_names(source: Path, out: Path, *, replaces: bool, updates: bool) -> N
         raise OutputError(
             f"{out} already exists: add --update to take the changes of the model into it, --force to replace it, or "
             "choose another name."
-        )
-
-
-def _check_plans(plans: Mapping[Path, bytes], *, replaces: bool) -> None:
-    """Raise if a plan would replace a file; raises OutputError."""
-    there = next((path for path in plans if path.exists()), None)
-    if there is not None and not replaces:
-        raise OutputError(
-            f"{there} already exists: add --force to replace it, or write the workbook into another folder."
         )
 
 

@@ -3,16 +3,14 @@
 The live columns of example rows hold their results.
 """
 
-from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from assess.cli.completion import one_of
 from assess.cli.console import say
+from assess.cli.options import check_new, force, language_of, quote
 from assess.errors import InputError, OutputError
-from assess.i18n import LANGUAGES
 
 if TYPE_CHECKING:
     from assess.workbook.template import Units
@@ -26,33 +24,16 @@ EXAMPLES = (
 )
 
 
-class UnitSystem(str, Enum):
-    """Units of a new workbook."""
-
-    SI = "si"
-    IMPERIAL = "imperial"
-
-
-class Use(str, Enum):
-    """Uses of a building: `assess.workbook.schema.USES` in small letters."""
-
-    OFFICE = "office"
-    HOSPITAL = "hospital"
-    SCHOOL = "school"
-    LABORATORY = "laboratory"
-    LIBRARY = "library"
-    HOME = "home"
-    SHOP = "shop"
+USES = Literal["office", "hospital", "school", "laboratory", "library", "home", "shop"]
+"""`assess.workbook.schema.USES` in small letters."""
 
 
 def command(
     path: Annotated[Path, typer.Argument(help="The workbook to write, .xlsx.", show_default=False)],
-    units: Annotated[UnitSystem, typer.Option(help="Units of the headers: cm or in.")] = UnitSystem.SI,
-    language: Annotated[
-        str, typer.Option(help="Language of the workbook: en, it.", autocompletion=one_of(LANGUAGES))
-    ] = "en",
+    units: Annotated[Literal["si", "imperial"], typer.Option(help="Units of the headers: cm or in.")] = "si",
+    language: Annotated[str, language_of("the workbook")] = "en",
     use: Annotated[
-        Use | None,
+        USES | None,
         typer.Option(
             "--for",
             help="List only the furniture of this use, and fill in an example room of it. "
@@ -64,7 +45,7 @@ def command(
         bool,
         typer.Option("--example", help="Fill in an example that can be run: a small office, or with --for its room."),
     ] = False,
-    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
+    replaces: Annotated[bool, force("an existing file")] = False,
 ) -> None:
     """Write a workbook to fill in: empty, for one use of a building, or with an example.
 
@@ -72,17 +53,17 @@ def command(
     """
     from assess.i18n import find_language
 
-    purpose = use.value.capitalize() if use else ""
-    write_new_workbook(path, units.value, language=find_language(language), use=purpose, example=example, replace=force)
-    name = f'"{path}"' if " " in str(path) else path
+    code, purpose = find_language(language), use.capitalize() if use else ""
+    write_new_workbook(path, units, language=code, use=purpose, example=example, replace=replaces)
+    then = "Fill in its sheets Floors and Items, then run: assess check"
     if example:
-        say(f"wrote {path}. Open it to see its classes. Assess it with: assess run {name}", err=True)
+        then = "Open it to see its classes. Assess it with: assess run"
     elif use:
-        steps = "Put your furniture in place of the example room in Items, fill in how the floor shakes in Floors or "
-        steps += "choose Shaking in Building"
-        say(f"wrote {path}. {steps}, then run: assess check {name}", err=True)
-    else:
-        say(f"wrote {path}. Fill in its sheets Floors and Items, then run: assess check {name}", err=True)
+        then = (
+            "Put your furniture in place of the example room in Items, fill in how the floor shakes in Floors or "
+            "choose Shaking in Building, then run: assess check"
+        )
+    say(f"wrote {path}. {then} {quote(path)}", err=True)
 
 
 def write_new_workbook(
@@ -90,32 +71,13 @@ def write_new_workbook(
 ) -> None:
     """Write a workbook to fill in; it appears whole or not at all.
 
-    Parameters
-    ----------
-    path : Path
-        An .xlsx.
-    units : "si" or "imperial"
-        Units of the headers.
-    language : str
-        Code of the language of the workbook, one of `assess.i18n.LANGUAGES`.
-    use : str
-        One of `assess.workbook.schema.USES`, for its types of furniture alone and an example room; blank: every type.
-    example : bool
-        Whether to fill in an example that can be run: a small office, or the room of `use`.
-    replace : bool
-        Whether an existing file may be replaced.
-
-    Raises
-    ------
-    InputError
-        If the name does not end in .xlsx.
-    OutputError
-        If the file exists, or cannot be written.
+    `use` is one of `assess.workbook.schema.USES`, for its types of furniture alone and an example room; `example` fills
+    in what can be run. Raises InputError if the name does not end in .xlsx; OutputError if the file cannot be written,
+    or exists and is not to be replaced.
     """
     if path.suffix.lower() != ".xlsx":
         raise InputError(f"{path} does not end in .xlsx: name it {path.stem or 'inventory'}.xlsx.")
-    if path.exists() and not replace:
-        raise OutputError(f"{path} already exists: add --force to replace it, or choose another name.")
+    check_new(path, replaces=replace)
     from assess.delivery.deliver import saving
     from assess.i18n import ENGLISH, load_catalogue, speaking
     from assess.pipeline.live_values import fill_content

@@ -3,20 +3,21 @@
 import re
 import sys
 import threading
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from assess.cli import interrupts
-from assess.cli.completion import one_of
 from assess.cli.console import say
+from assess.cli.options import language_of
 from assess.errors import AssessError, InputError
 from assess.extras import say_install
-from assess.i18n import LANGUAGES, find_language
+from assess.i18n import find_language
 
 if TYPE_CHECKING:
-    from assess.web.server import Ending, Place, Server
+    from assess.web.server import Place, Server
 
 ORDER = 2
 EXAMPLES = (
@@ -46,14 +47,7 @@ def command(
     ] = None,
     port: Annotated[int, typer.Option(min=0, max=65535, help="Port of the page; 0: any that is free.")] = 0,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Only print the address of the page.")] = False,
-    language: Annotated[
-        str | None,
-        typer.Option(
-            help="Language of the page: en, it.",
-            show_default="the workbook's, else the browser's",
-            autocompletion=one_of(LANGUAGES),
-        ),
-    ] = None,
+    language: Annotated[str | None, language_of("the page", "the workbook's, else the browser's")] = None,
     host: Annotated[
         str, typer.Option(help="Address to listen at; other than this machine's only with the next two options.")
     ] = "127.0.0.1",
@@ -74,7 +68,8 @@ def command(
     Changes are saved in the workbook as you make them. Ctrl-C ends it. docs/hosting.md tells how to run it for others.
     """
     code = find_language(language) if language else ""
-    _check_packages()
+    if missing := [name for name in PACKAGES if find_spec(name) is None]:
+        raise AssessError(f"the page needs {', '.join(missing)}, which is not installed. {say_install('web')}")
     from assess.delivery.folders import private_folder
     from assess.web.server import Place, Server, bind
     from assess.web.sessions import PREFIX
@@ -89,24 +84,17 @@ def command(
     with bind(place) as listening, private_folder(PREFIX) as folder:
         server = Server(listening, place, folder, Path.cwd())
         if book is not None:
-            _warn(server.take(book), str(book.state()["save_error"]))
+            for remark in filter(None, (server.take(book), str(book.state()["save_error"]))):
+                say(f"warning  {remark}", err=True)
         ending = server.run(interrupts.NUMBERS, lambda: _welcome(server, place, no_browser))
-    _say_goodbye(ending)
-
-
-def _warn(*remarks: str) -> None:
-    for remark in filter(None, remarks):
-        say(f"warning  {remark}", err=True)
-
-
-def _check_packages() -> None:
-    """Raise AssessError where the extra is not installed."""
-    from importlib.util import find_spec
-
-    missing = [name for name in PACKAGES if find_spec(name) is None]
-    if missing:
-        names = ", ".join(missing)
-        raise AssessError(f"the page needs {names}, which is not installed. {say_install('web')}")
+    for name in ending.lost:
+        say(f"Changes of {name} were not downloaded and are gone.", err=True)
+    for name, kept in ending.kept:
+        say(f"Changes of {name} that were not saved in it are kept in {kept}.", err=True)
+    if ending.saved:
+        say(f"Stopped. All changes are saved in {ending.saved}.", err=True)
+    else:
+        say("Stopped.", err=True)
 
 
 def _check_place(place: "Place", path: Path | None) -> None:
@@ -151,14 +139,3 @@ def _show(address: str, no_browser: bool) -> None:
 def _repeat(server: "Server", no_browser: bool) -> None:
     for _ in sys.stdin:
         _show(server.issue_address(), no_browser)
-
-
-def _say_goodbye(ending: "Ending") -> None:
-    for name in ending.lost:
-        say(f"Changes of {name} were not downloaded and are gone.", err=True)
-    for name, path in ending.kept:
-        say(f"Changes of {name} that were not saved in it are kept in {path}.", err=True)
-    if ending.saved:
-        say(f"Stopped. All changes are saved in {ending.saved}.", err=True)
-    else:
-        say("Stopped.", err=True)

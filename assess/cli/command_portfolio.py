@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from assess.cli.completion import list_of, one_of
 from assess.cli.console import InterruptedWorkError, count, print_error, say, say_written, show_progress
 from assess.cli.options import (
     ClassBy,
@@ -20,6 +19,8 @@ from assess.cli.options import (
     ShakeMapFile,
     Verify,
     fit_runs,
+    language_of,
+    list_of,
     read_formats,
     read_ground,
     read_run_settings,
@@ -30,7 +31,6 @@ from assess.plain_text import plain_line
 from assess.settings import ROUTE_RISK, Settings
 
 if TYPE_CHECKING:
-    from assess.portfolio.background import Background
     from assess.portfolio.city import Group
     from assess.portfolio.run_portfolio import PortfolioResult
 
@@ -97,10 +97,7 @@ def command(
             show_default=False,
         ),
     ] = None,
-    language: Annotated[
-        str,
-        typer.Option(help="Language of the reports: en, it.", autocompletion=one_of(LANGUAGES)),
-    ] = LANGUAGES[0],
+    language: Annotated[str, language_of("the reports")] = LANGUAGES[0],
     example: Annotated[
         bool,
         typer.Option(
@@ -133,11 +130,12 @@ def command(
         settings = fit_runs(settings, getattr(ground, "event_count", 0))
     with show_progress() as progress:
         try:
+            from assess.portfolio.background import read_background
             from assess.portfolio.run_portfolio import run_portfolio
 
             result = run_portfolio(
                 source, folder, settings, ground=ground, jobs=jobs, scheduler=scheduler, formats=wanted,
-                background=_read_background(background), language=code,
+                background=read_background(background) if background else None, language=code,
                 repeat=_say_repeat(source, settings, shakemap, ground_motions), progress=progress,
             )  # fmt: skip
         except (KeyboardInterrupt, CancelledError):
@@ -180,14 +178,6 @@ def _quote(path: Path) -> str:
     """Return a path for a shell; one that begins with a dash would be taken for an option."""
     text = str(path)
     return shlex.quote(f"./{text}" if text.startswith("-") else text).rstrip("/")
-
-
-def _read_background(file: Path | None) -> "Background | None":
-    if file is None:
-        return None
-    from assess.portfolio.background import read_background
-
-    return read_background(file)
 
 
 # ---------------------------------------------------------------- what is printed at the end

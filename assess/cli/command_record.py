@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from assess.cli.console import count, print_error, say, show_progress
-from assess.cli.options import AsJson, check_file, figure_kind, save_file
+from assess.cli.options import AsJson, check_file, plot_of, write_files
 from assess.errors import InputError
 from assess.units import GRAVITY
 
@@ -33,7 +33,7 @@ MOST_DRAWN = 12
 def command(
     files: Annotated[list[str], typer.Argument(help="Records: FILE or FILE#channel.", show_default=False)],
     as_json: AsJson = False,
-    plot: Annotated[Path | None, typer.Option(help="Draw the channels to this .png, .svg or .pdf.")] = None,
+    plot: Annotated[Path | None, plot_of("the channels")] = None,
 ) -> None:
     """Show what files of recorded motion hold.
 
@@ -50,10 +50,7 @@ def command(
         say(json.dumps(documents[0] if len(files) == 1 else documents, ensure_ascii=False, indent=1))
     else:
         say("\n\n".join("\n".join(list_lines(document)) for document in documents))
-    if plot is not None:
-        channels = [channel for every in found for channel in every]
-        left = len(channels) - write_figure(channels, plot)
-        say(f"wrote {plot}" + (f"; {count(left, 'more channel')} not drawn" if left else ""), err=True)
+    write_files({}, plot, partial(draw_channels, [channel for every in found for channel in every]), "channel")
     if len(found) < len(files):
         raise typer.Exit(1)
 
@@ -157,19 +154,12 @@ def _say_direction(vertical: bool | None, azimuth_deg: float | None, sign: str) 
 # ---------------------------------------------------------------- figure
 
 
-def write_figure(channels: Sequence["Channel"], path: Path) -> int:
-    """Draw acceleration, velocity and spectrum of each channel; return how many of the channels were drawn.
-
-    Raises
-    ------
-    OutputError
-        If the file cannot be written; what was there is left as it was.
-    """
+def draw_channels(channels: Sequence["Channel"], kind: str) -> tuple[bytes, int]:
+    """Return acceleration, velocity and spectrum of each channel, and how many channels are not drawn."""
     from assess.report.figures.draw import draw
 
     shown = channels[:MOST_DRAWN]
-    save_file(draw(10, 0.4 + 1.9 * len(shown), partial(_paint, shown), figure_kind(path)), path)
-    return len(shown)
+    return draw(10, 0.4 + 1.9 * len(shown), partial(_paint, shown), kind), len(channels) - len(shown)
 
 
 def _paint(shown: Sequence["Channel"], figure: Any) -> None:

@@ -6,9 +6,8 @@ from typing import Annotated
 
 import typer
 
-from assess.cli.completion import one_of
 from assess.cli.console import say, show_progress
-from assess.cli.options import SIZE, AsJson, check_file, figure_kind, save_file
+from assess.cli.options import SIZE, AsJson, check_file, one_of, plot_of, write_files
 
 ORDER = 5
 EXAMPLES = (
@@ -51,7 +50,7 @@ def command(
         float | None, typer.Option(help="Show how it starts to move, and how far it slides.", show_default="no sliding")
     ] = None,
     as_json: AsJson = False,
-    plot: Annotated[Path | None, typer.Option(help="Draw motion and rotation to this .png, .svg or .pdf.")] = None,
+    plot: Annotated[Path | None, plot_of("motion and rotation")] = None,
 ) -> None:
     """Integrate the rocking of one block under one record, by Housner's equation."""
     check_file(plot, "figure")
@@ -61,6 +60,4 @@ def command(
         case = read_case(breadth, height, record, pfa, restitution, baseline, cg)
         found = evaluate(case, wall=wall, vertical=vertical, friction=friction)
     say(json.dumps(describe(case, found), indent=1) if as_json else "\n".join(list_lines(case, found)))
-    if plot is not None:
-        save_file(draw_figure(case, found.response, figure_kind(plot)), plot)
-        say(f"wrote {plot}", err=True)
+    write_files({}, plot, lambda kind: (draw_figure(case, found.response, kind), 0), "")

@@ -16,11 +16,11 @@ from assess.cli.options import (
     Span,
     Workbook,
     check_file,
-    read_settings,
-    save_with_figure,
+    plot_of,
+    read_draw_settings,
+    write_files,
 )
 from assess.errors import InputError
-from assess.settings import AUTO
 from assess.units import GRAVITY
 
 ORDER = 4
@@ -47,7 +47,7 @@ def command(
     csv: Annotated[
         Path | None, typer.Option(help="Write a table to this .csv, one line for each route and PFA.")
     ] = None,
-    plot: Annotated[Path | None, typer.Option(help="Draw the chances to this .png, .svg or .pdf.")] = None,
+    plot: Annotated[Path | None, plot_of("the chances")] = None,
 ) -> None:
     """Show the chance that each evacuation route is blocked.
 
@@ -64,9 +64,7 @@ def command(
     Rocking is not monotone: a piece may stand in a stronger motion and overturn in a weaker one, so a chance may fall.
     Ranges are 95 % sampling intervals, for the number of draws only.
     """
-    values, settings = PFA.read(pfa), read_settings(verify="none", runs=runs, seed=seed, scenario=scenario)
-    if settings.runs == AUTO:
-        raise InputError(f"--runs: {AUTO} is for assess run, as every value uses the same motions. Give a number.")
+    values, settings = PFA.read(pfa), read_draw_settings("value", runs=runs, seed=seed, scenario=scenario)
     check_file(csv, "table", (".csv",))
     check_file(plot, "figure")
     from assess.cli.curve_figures import draw_routes
@@ -87,4 +85,4 @@ def command(
     say(sweep.to_json() if as_json else sweep.to_text())
     print_warnings(assessment.problems)
     files = {} if csv is None else {csv: sweep.to_csv().encode("utf-8-sig")}
-    save_with_figure(files, plot, partial(draw_routes, sweep), "route")
+    write_files(files, plot, partial(draw_routes, sweep), "route")

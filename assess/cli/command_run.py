@@ -2,11 +2,10 @@
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from assess.cli.completion import list_of, one_of
 from assess.cli.console import print_warnings, say, say_written, show_progress
 from assess.cli.opening import open_file
 from assess.cli.options import (
@@ -23,19 +22,18 @@ from assess.cli.options import (
     Workbook,
     check_out,
     fit_runs,
+    language_of,
+    list_of,
     read_formats,
     read_ground,
     read_run_settings,
 )
 from assess.errors import InputError
-from assess.i18n import LANGUAGES
 from assess.progress import Progress
 from assess.report_formats import ALL, DEFAULT, FILES
-from assess.settings import ROUTE_RISK, Settings
+from assess.settings import ROUTE_RISK
 
 if TYPE_CHECKING:
-    from assess.delivery.deliver import Written
-    from assess.model import Inventory
     from assess.report.report_options import ReportOptions
     from assess.results import Results
     from assess.route_results import RouteTables
@@ -123,12 +121,7 @@ def command(
         ),
     ] = ",".join(DEFAULT),
     jobs: Jobs = None,
-    language: Annotated[
-        str | None,
-        typer.Option(
-            help="Language of the reports: en, it.", show_default="the workbook's", autocompletion=one_of(LANGUAGES)
-        ),
-    ] = None,
+    language: Annotated[str | None, language_of("the reports", "the workbook's")] = None,
     templates: Annotated[
         Path | None,
         typer.Option(
@@ -147,7 +140,12 @@ def command(
     """Assess a workbook and write the reports."""
     folder = out or Path(f"{path.stem}-report")
     wanted = _read_formats(formats, verify, open_report)
-    _check_motions(verify, runs, seed, motions, scale_motions)
+    if motions is not None and (verify == "none" or runs is not None or seed is not None):
+        raise InputError(
+            "--motions: the simulation uses each of your own motions once; leave out --verify none, --runs and --seed"
+        )
+    if scale_motions and motions is None:
+        raise InputError("--scale-motions: there are no motions to scale; name their folder with --motions")
     settings = read_run_settings(
         verify=verify, runs=runs, seed=seed, scenario=scenario, scale=scale, ideal=ideal, scale_motions=scale_motions,
         route_risk=route_risk, anchor=anchor, city=city, class_by=class_by,
@@ -155,14 +153,22 @@ def command(
     check_out(folder, wanted)
     options = _read_options(language, templates, accessible)
     with show_progress() as progress:
+        from assess.pipeline.run import run
+        from assess.report import write_reports
         from assess.workbook.read import read_inventory
 
         ground = read_ground(shakemap, ground_motions)
         inventory = read_inventory(path, ground=ground, progress=progress)
         if not (runs or motions or inventory.site_ground is None):
             settings = fit_runs(settings, len(inventory.site_ground.scenarios))
-        results = _assess(inventory, settings, motions, methods or (), jobs, not set(wanted) <= PLAIN, progress)
-        written = _write(results, folder, wanted, options, progress)
+        own, figures = _read_methods(methods or (), motions, progress), not set(wanted) <= PLAIN
+        results = run(inventory, settings, **own, jobs=jobs, figures=figures, progress=progress)
+        print_warnings(results.problem_rows)
+        if {"pdf", "annex"} & set(wanted):
+            from assess.report.pages.pdf import list_problems
+
+            print_warnings(list_problems(results))
+        written = write_reports(results, folder, wanted, options, progress=progress)
     for line in describe_result(results):
         say(line)
     say_written(written.values(), written.removed)
@@ -170,42 +176,20 @@ def command(
         say(message, err=True)
 
 
-def _assess(
-    inventory: "Inventory",
-    settings: Settings,
-    motions: Path | None,
-    models: Sequence[Path],
-    jobs: int | None,
-    figures: bool,
-    progress: Progress,
-) -> "Results":
-    from assess.pipeline.run import run
-
+def _read_methods(models: Sequence[Path], motions: Path | None, progress: Progress) -> dict[str, Any]:
+    """Return the fitted models and the motions of the user's own."""
     if len(models) > MOST_METHODS:
         raise InputError(f"--method names {len(models)} files; a report has room for {MOST_METHODS}. Leave some out.")
-    methods, suite = [], None
+    found: dict[str, Any] = {}
     if models:
         from assess.methods.fitted import read_model
 
-        methods = [read_model(file) for file in models]
+        found["methods"] = [read_model(file) for file in models]
     if motions is not None:
         from assess.motion.suite import read_suite
 
-        suite = read_suite(motions, progress=progress)
-    return run(inventory, settings, suite=suite, methods=methods, jobs=jobs, figures=figures, progress=progress)
-
-
-def _write(
-    results: "Results", folder: Path, formats: Sequence[str], options: "ReportOptions", progress: Progress
-) -> "Written":
-    from assess.report import write_reports
-
-    print_warnings(results.problem_rows)
-    if {"pdf", "annex"} & set(formats):
-        from assess.report.pages.pdf import list_problems
-
-        print_warnings(list_problems(results))
-    return write_reports(results, folder, formats, options, progress=progress)
+        found["suite"] = read_suite(motions, progress=progress)
+    return found
 
 
 # ---------------------------------------------------------------- what was given
@@ -221,16 +205,6 @@ def _read_formats(formats: str, verify: str, open_report: bool) -> list[str]:
     if open_report and not set(wanted) & set(OPENED):
         raise InputError(f"--open opens a report: write one of {', '.join(OPENED)} with --formats.")
     return wanted
-
-
-def _check_motions(verify: str, runs: str | None, seed: int | None, motions: Path | None, scale: bool) -> None:
-    """Raise InputError where options contradict the use of the user's own motions."""
-    if motions is not None and (verify == "none" or runs is not None or seed is not None):
-        raise InputError(
-            "--motions: the simulation uses each of your own motions once; leave out --verify none, --runs and --seed"
-        )
-    if scale and motions is None:
-        raise InputError("--scale-motions: there are no motions to scale; name their folder with --motions")
 
 
 def _read_options(language: str | None, templates: Path | None, accessible: bool) -> "ReportOptions":
@@ -260,21 +234,25 @@ def describe_result(results: "Results") -> Iterator[str]:
 
     rows = tuple(results)
     counts = count("", rows)
+
+    def line(label: str, number: int, text: str) -> str:
+        return f"{label:<13} {number:>6,}{text}"
+
     for risk in reversed(RiskClass):
         span = counts.say(risk)
         unit = "piece" if counts.by_class[risk] == 1 else "pieces"
         note = f" ({span} by the sampling intervals)" if "–" in span else ""
-        yield f"{risk.label:<13} {counts.by_class[risk]:>6,} {unit}{note}"
+        yield line(risk.label, counts.by_class[risk], f" {unit}{note}")
     if counts.cannot_rock:
-        yield f"{'  cannot rock':<13} {counts.cannot_rock:>6,} of the low ones: too stocky, or no motion can start them"
+        yield line("  cannot rock", counts.cannot_rock, " of the low ones: too stocky, or no motion can start them")
     if counts.unconfirmed:
         ways = [*list_ways_to_settle(list_apart(rows, "unconfirmed")), "Records of your own: --motions."]
-        yield " ".join([f"{'  unconfirmed':<13} {counts.unconfirmed:>6,}, not counted above: {UNCONFIRMED}", *ways])
+        yield line("  unconfirmed", counts.unconfirmed, f", not counted above: {' '.join([UNCONFIRMED, *ways])}")
     if counts.by_formula:
-        yield f"{'  by formula':<13} {counts.by_formula:>6,}, not counted above: not simulated"
+        yield line("  by formula", counts.by_formula, ", not counted above: not simulated")
     if counts.anchored:
         depends = "it depends on its anchors" if counts.anchored == 1 else "they depend on their anchors"
-        yield f"{'  anchored':<13} {counts.anchored:>6,}, not classified: {depends}"
+        yield line("  anchored", counts.anchored, f", not classified: {depends}")
     if results.has_routes:
         yield _describe_routes(results.route_tables)
     verified = describe_verification(results) if results.has_simulated else "Not simulated."
@@ -285,24 +263,16 @@ def describe_result(results: "Results") -> Iterator[str]:
 
 
 def _describe_routes(routes: "RouteTables") -> str:
-    from assess.report.say.route import (
-        count_rooms,
-        count_routes,
-        is_held,
-        say_expected,
-        say_not_counted,
-        say_reservations,
-        say_to_fill_in,
-    )
+    from assess.report.say import route as say_route
 
-    held = sum(is_held(one, routes.risk) for one in routes.routes)
+    held = sum(say_route.is_held(one, routes.risk) for one in routes.routes)
     texts = [
-        count_routes(routes),
-        *count_rooms(routes),
-        *say_reservations(routes),
-        say_expected(routes),
-        *say_not_counted(routes),
+        say_route.count_routes(routes),
+        *say_route.count_rooms(routes),
+        *say_route.say_reservations(routes),
+        say_route.say_expected(routes),
+        *say_route.say_not_counted(routes),
         *([f"If anchors fail, {held:,} would be worse."] if held else []),
-        *say_to_fill_in(routes),
+        *say_route.say_to_fill_in(routes),
     ]
     return " ".join(texts)

@@ -7,16 +7,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from assess.cli.completion import one_of
 from assess.cli.console import InterruptedWorkError, say, show_progress
-from assess.cli.options import SIZE, Jobs, check_size
+from assess.cli.options import SIZE, Jobs, check_size, one_of
 from assess.errors import CancelledError, InputError
 from assess.progress import Progress
 from assess.settings import count_processors
 from assess.units import LENGTH
 
 if TYPE_CHECKING:
-    from assess.studies import Finding, Options, Study
+    from assess.studies import Options, Study
 
 ORDER = 7
 EXAMPLES = (
@@ -82,19 +81,17 @@ def command(
         with show_progress() as progress:
             _run(name, Path(out), runs, seed, jobs or count_processors(), given, progress)
     except (KeyboardInterrupt, CancelledError):
-        raise InterruptedWorkError(_describe_parts(Path(out))) from None
+        from assess.studies import PARTS
+
+        parts = Path(out) / PARTS
+        kept = f"finished parts are kept in {parts}; the same command continues from there"
+        raise InterruptedWorkError(kept if parts.is_dir() else "nothing was written") from None
 
 
 def _run(
-    name: str,
-    out: Path,
-    runs: int,
-    seed: int,
-    jobs: int,
-    given: "Mapping[str, Path | float | None]",
-    progress: "Progress",
+    name: str, out: Path, runs: int, seed: int, jobs: int, given: Mapping[str, Path | float | None], progress: Progress
 ) -> None:
-    from assess.studies import PAGE, Options, all_studies, build_page, check_folder, run_all, write_files
+    from assess.studies import PAGE, PARTS, Options, all_studies, build_page, check_folder, run_all, write_files
 
     every = all_studies()
     chosen = [one for one in every if name.lower() in (one.name, ALL)]
@@ -106,11 +103,16 @@ def _run(
     findings = run_all(chosen, options, progress)
     if name.lower() == ALL:
         write_files(out, {PAGE: build_page(chosen, findings, options).encode("utf-8")})
-    _print_findings(chosen, findings, out)
+    for one in chosen:
+        for sentence in findings[one.name].summary:
+            say(sentence)
+    page = out / (f"{chosen[0].name}.md" if len(chosen) == 1 else PAGE)
+    kept = f"; {out / PARTS} keeps the long integrations for the next run" if (out / PARTS).is_dir() else ""
+    say(f"wrote {page}{kept}", err=True)
 
 
 def _add_own(
-    given: "Mapping[str, Path | float | None]", options: "Options", chosen: "Sequence[Study]", every: "Sequence[Study]"
+    given: Mapping[str, Path | float | None], options: "Options", chosen: "Sequence[Study]", every: "Sequence[Study]"
 ) -> "Options":
     """Return the options with those that the user gave; InputError if no chosen study uses one of them."""
     own: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
@@ -128,23 +130,3 @@ def _add_own(
     if found.records is not None and found.records.resolve() == found.out.resolve():
         raise InputError("--records and --out are the same folder: name another one for the files with --out")
     return found
-
-
-def _print_findings(chosen: "Sequence[Study]", findings: "Mapping[str, Finding]", out: Path) -> None:
-    from assess.studies import PAGE, PARTS
-
-    for one in chosen:
-        for sentence in findings[one.name].summary:
-            say(sentence)
-    page = out / (f"{chosen[0].name}.md" if len(chosen) == 1 else PAGE)
-    kept = f"; {out / PARTS} keeps the long integrations for the next run" if (out / PARTS).is_dir() else ""
-    say(f"wrote {page}{kept}", err=True)
-
-
-def _describe_parts(out: Path) -> str:
-    """Return what remains of a run that was interrupted."""
-    from assess.studies import PARTS
-
-    if not (out / PARTS).is_dir():
-        return "nothing was written"
-    return f"finished parts are kept in {out / PARTS}; the same command continues from there"

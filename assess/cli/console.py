@@ -107,23 +107,17 @@ def _explain(error: BaseException, command: Callable[..., None]) -> Never:
         print_ways(error.problems)
         say(f"{count_errors(error.problems)}; nothing was written.", err=True)
         raise typer.Exit(2) from None
-    if isinstance(error, InputError):
-        text = str(error) if isinstance(error, RecordError) else _name_option(str(error), command)
-        print_error(text)
-        raise typer.Exit(2) from None
     if isinstance(error, AssessError):
-        print_error(str(error))
-        raise typer.Exit(1) from None
+        is_input, message = isinstance(error, InputError), str(error)
+        if is_input and not isinstance(error, RecordError):  # with the option in place of the keyword argument
+            options = _list_options(command)
+            message = re.sub(r"^\w+(?=:| )", lambda found: options.get(found[0], found[0]), message)
+        print_error(message)
+        raise typer.Exit(2 if is_input else 1) from None
     if isinstance(error, OSError) and error.filename is not None:  # else the output itself, see `assess.cli.app`
         print_error(describe_fault(error))
         raise typer.Exit(2 if error.errno == errno.ENAMETOOLONG else 1) from None
     raise error
-
-
-def _name_option(message: str, command: Callable[..., None]) -> str:
-    """Return a message with the option in place of the keyword argument that it begins with, if it does."""
-    options = _list_options(command)
-    return re.sub(r"^\w+(?=:| )", lambda found: options.get(found[0], found[0]), message)
 
 
 def _list_options(command: Callable[..., None]) -> Mapping[str, str]:
@@ -225,10 +219,13 @@ class _Line:
         self._is_shown, self._report, self._lock = False, _NOTHING, threading.Lock()
 
     def __call__(self, report: Report) -> None:
+        def name(one: Report) -> tuple[str, str]:
+            """Return what is worked on without its numbers, which count on while the work is the same."""
+            return one.stage, re.sub(r"\d[\d,]*", "", one.detail)
+
         with self._lock:
             before, self._report = self._report, report if report.share < 1.0 else _NOTHING
-            is_new = (report.stage, _without_numbers(report)) != (before.stage, _without_numbers(before))
-            now = time.monotonic()
+            is_new, now = name(report) != name(before), time.monotonic()
             if report.share >= 1.0:
                 self._clear()
             elif self.is_terminal and (is_new or now - self._written >= REDRAW):
@@ -244,8 +241,7 @@ class _Line:
             if not self.is_terminal and now >= self._due:
                 known = self._report is not _NOTHING
                 text = describe_progress(replace(self._report, seconds_left=None)) if known else "Working"
-                text = f"{text}, {now - self._start:.0f} s so far"
-                self._print(f"{text}\n", now)
+                self._print(f"{text}, {now - self._start:.0f} s so far\n", now)
 
     def clear(self) -> None:
         """Remove the line from the terminal."""
@@ -263,11 +259,6 @@ class _Line:
         self._written, self._due = now, now + REPEAT
 
 
-def _without_numbers(report: Report) -> str:
-    """Return what is worked on without its numbers, which count on while the work is the same."""
-    return re.sub(r"\d[\d,]*", "", report.detail)
-
-
 _NOTHING = Report("", 1.0, "", None)
 """The state between two stages."""
 
@@ -275,9 +266,6 @@ _NOTHING = Report("", 1.0, "", None)
 @contextmanager
 def _repeat(line: _Line) -> Iterator[None]:
     """Have a line printed every `REPEAT` seconds away from a terminal, whatever the work is busy with."""
-    if line.is_terminal:
-        yield
-        return
     done = threading.Event()
 
     def look() -> None:
@@ -285,21 +273,19 @@ def _repeat(line: _Line) -> Iterator[None]:
             line.repeat()
 
     watching = threading.Thread(target=look, name="assess-progress", daemon=True)
-    watching.start()
+    if not line.is_terminal:
+        watching.start()
     try:
         yield
     finally:
         done.set()
-        watching.join()
+        if not line.is_terminal:
+            watching.join()
 
 
 def describe_progress(report: Report) -> str:
     """Return stage, share and time left: "Simulating 240 rows on 4 floors: 43 %, about 2 min left"."""
-    stage = STAGES.get(report.stage, report.stage.capitalize())
-    left = "" if report.seconds_left is None else f", about {_round_time(report.seconds_left)} left"
+    stage, left = STAGES.get(report.stage, report.stage.capitalize()), ""
+    if (seconds := report.seconds_left) is not None:  # with no more digits than can be known
+        left = f", about {max(1, round(seconds))} s left" if seconds < 90 else f", about {round(seconds / 60)} min left"
     return f"{plain_line(' '.join((stage, report.detail))).strip()}: {int(100 * report.share)} %{left}"
-
-
-def _round_time(seconds: float) -> str:
-    """Return a time with no more digits than can be known."""
-    return f"{max(1, round(seconds))} s" if seconds < 90 else f"{round(seconds / 60)} min"

@@ -3,23 +3,21 @@
 import json
 import math
 import textwrap
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from assess.cli.console import count
-from assess.cli.route_output import WIDE, finite, name_floors, write_rows
+from assess.cli.route_output import WIDE, describe_run, finite, say_motions, say_run, write_rows
 from assess.fragility import MOST_MISFIT, lognormal_chance
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.piece_fragility import UNITS, FloorMotions, PieceFragilities, PieceFragility
-from assess.pipeline.versions import versions
 from assess.plain_text import plain_line
 from assess.report import words
 from assess.report.interchange.exchange_files import LABELS, Exchange
 from assess.report.interchange.nrml import write_nrml
 from assess.report.interchange.pelicun import write_pelicun
 from assess.units import GRAVITY, LENGTH, to_edge
-from assess.version import __version__
 
 SCHEMA = "1.0"
 """Version of the document's shape: the first number changes where a key goes or gets another meaning."""
@@ -89,34 +87,28 @@ class Curves:
     def cautions(self) -> Iterator[str]:
         """Yield what in this building makes the curves less certain, and what was left out."""
         every = [one for curve in self.found.curves for one in curve.motions]
-        if floors := self._list_floors(one for one in every if one.is_assumed):
-            yield f"No record is known for {name_floors(floors)}: ground motion and building are drawn."
-        for chosen, why, fix in (
-            ((one for one in every if one.is_unknown), "as nothing is known of the building",
-             "Enter Storeys or the Period T1 in the sheet Building."),
-            ((one for one in every if one.is_weak), "as they are weaker than the floor's", ""),
-        ):  # fmt: skip
-            if floors := self._list_floors(chosen):
-                yield (
-                    f"The motions of {name_floors(floors)} may be too weak, {why}: pieces may overturn at lower levels "
-                    f"than curves that rest on them say. {fix}"
-                ).strip()
+
+        def list_floors(holds: Callable[[FloorMotions], bool]) -> list[str]:
+            names = {one.floor for one in every if holds(one)}
+            return [floor.floor for floor in self.assessment.inventory.floors if floor.floor in names]
+
+        yield from say_motions(
+            list_floors(lambda one: one.is_assumed), list_floors(lambda one: one.is_unknown),
+            list_floors(lambda one: one.is_weak),
+            "pieces may overturn at lower levels than curves that rest on them say.",
+        )  # fmt: skip
         if stocky := sum(item.quantity for item in self.found.stocky):
             yield f"Left out: {count(stocky, 'piece')} too stocky to rock."
-
-    def _list_floors(self, motions: Iterable[FloorMotions]) -> list[str]:
-        names = {one.floor for one in motions}
-        return [floor.floor for floor in self.assessment.inventory.floors if floor.floor in names]
 
     # ------------------------------------------------------------ the document
 
     def describe(self) -> dict[str, Any]:
         """Return the document of `assess fragility --json` and fragility.json."""
-        inventory, found = self.assessment.inventory, self.found
+        found = self.found
+        motions = {id(one): one for curve in found.curves for one in curve.motions}  # each once
         return {
             "schema": SCHEMA,
-            "workbook": {"file": inventory.file_name, "sha256": inventory.sha256},
-            "assess": {"version": __version__, "platform": dict(versions(has_rocked=True))},
+            **describe_run(self.assessment),
             "meaning": " ".join(self.say()),
             "cautions": list(self.cautions()),
             "scenario": self.assessment.scenario,
@@ -126,18 +118,22 @@ class Curves:
             "seed": found.seed,
             "uncertainty": {"motion": 0.0, "piece": found.has_drawn_pieces},
             "too_stocky": [item.item for item in found.stocky],
-            "motions": [_describe_motions(one) for one in self.list_motions()],
+            "motions": [_describe_motions(one) for one in motions.values()],
             "curves": [self._describe(curve) | {"table": list(self._tabulate(curve))} for curve in found.curves],
         }
-
-    def list_motions(self) -> list[FloorMotions]:
-        """Return the motions of all curves, each once."""
-        return list({id(one): one for curve in self.found.curves for one in curve.motions}.values())
 
     def _describe(self, one: PieceFragility) -> dict[str, Any]:
         """Return a curve without its table, flat."""
         curve, unit, level = one.curve, UNITS[self.found.im], COLUMNS[self.found.im]
-        thresholds, ratios, motions = one.thresholds, one.pfv_per_pfa, one.motions
+        motions = one.motions
+        ranges = {
+            "breadth_{}_cm": [to_edge(item.breadth, LENGTH["cm"]) for item in one.items],
+            "height_{}_cm": [to_edge(item.height, LENGTH["cm"]) for item in one.items],
+            "breadth_to_height_{}": [item.breadth / item.height for item in one.items],
+            "centre_of_gravity_{}_percent": [round(100 * item.centre_of_gravity, DECIMALS) for item in one.items],
+            "rocks_from_{}_g": [value / GRAVITY for value in one.thresholds],
+            "pfv_per_pfa_{}_s": one.pfv_per_pfa,
+        }
         return {
             "name": one.name,
             "type": one.type or None,
@@ -151,14 +147,11 @@ class Curves:
             "beta": finite(curve.dispersion),
             "misfit": finite(curve.misfit),
             "is_lognormal": curve.is_lognormal,
-            **_range("breadth_{}_cm", [to_edge(item.breadth, LENGTH["cm"]) for item in one.items]),
-            **_range("height_{}_cm", [to_edge(item.height, LENGTH["cm"]) for item in one.items]),
-            **_range("breadth_to_height_{}", [item.breadth / item.height for item in one.items]),
-            **_range(
-                "centre_of_gravity_{}_percent", [round(100 * item.centre_of_gravity, DECIMALS) for item in one.items]
-            ),
-            **_range("rocks_from_{}_g", [value / GRAVITY for value in thresholds]),
-            **_range("pfv_per_pfa_{}_s", ratios),
+            **{
+                name.format(end): choose(values)
+                for name, values in ranges.items()
+                for end, choose in (("min", min), ("max", max))
+            },
             "assumed_motion": any(motion.is_assumed for motion in motions),
             "unknown_building": any(motion.is_unknown for motion in motions),
             "weak_motions": any(motion.is_weak for motion in motions),
@@ -204,10 +197,7 @@ class Curves:
 
     def _lines(self) -> Iterator[str]:
         found = self.found
-        yield (
-            f"{self.assessment.inventory.file_name}: scenario {self.assessment.scenario}, "
-            f"{count(found.runs, 'draw')}, seed {found.seed}; against the floor's {self.measure}"
-        )
+        yield f"{say_run(self.assessment, found.runs, found.seed)}; against the floor's {self.measure}"
         yield ""
         rows = [self._cells(one) for one in found.curves[:MOST_LINES]]
         yield from _align(
@@ -287,11 +277,6 @@ def _describe_motions(one: FloorMotions) -> dict[str, Any]:
         "unknown_building": one.is_unknown,
         "weak_motions": one.is_weak,
     }
-
-
-def _range(name: str, values: Sequence[float]) -> dict[str, float]:
-    """Return the least and the largest value by name."""
-    return {name.format("min"): min(values), name.format("max"): max(values)}
 
 
 def _spread(values: Sequence[float]) -> str:

@@ -1,4 +1,4 @@
-"""Options that several commands have: their help, and what turns them into arguments of the library."""
+"""Options that several commands have, their values as arguments of the library, and the writing of files."""
 
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
@@ -9,13 +9,44 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from assess.cli.completion import one_of
 from assess.cli.console import count, say
 from assess.errors import InputError, OutputError
+from assess.i18n import LANGUAGES
 from assess.settings import AUTO, CLASS_BY, MOST_SCALE, RUNS, SCENARIOS, SEED, VERIFY, Settings, change_settings
 
 if TYPE_CHECKING:
     from assess.motion.site_ground import GroundField
+
+FIGURES = (".png", ".svg", ".pdf")
+"""Kinds of figures that can be written."""
+
+# ---------------------------------------------------------------- what completes an option in a shell
+
+
+def one_of(values: Sequence[str]) -> Callable[[str], list[str]]:
+    """Return what completes one of some words, in capitals or not.
+
+    A space in one becomes a hyphen, so that no shell has to quote it.
+    """
+
+    def complete(incomplete: str) -> list[str]:
+        plain = [value.replace(" ", "-").lower() for value in values]
+        return [f"{incomplete}{value[len(incomplete) :]}" for value in plain if value.startswith(incomplete.lower())]
+
+    return complete
+
+
+def list_of(values: Sequence[str]) -> Callable[[str], list[str]]:
+    """Return what completes the last of some words that commas separate, without those that are there already."""
+
+    def complete(incomplete: str) -> list[str]:
+        before, comma, _last = incomplete.rpartition(",")
+        return [f"{before}{comma}{value}" for value in values if value not in before.split(",")]
+
+    return complete
+
+
+# ---------------------------------------------------------------- options
 
 Workbook = Annotated[Path, typer.Argument(help="The inventory, an .xlsx workbook.", show_default=False)]
 Runs = Annotated[
@@ -32,35 +63,33 @@ Seed = Annotated[int | None, typer.Option(help="Random seed of the generated mot
 
 def read_size(text: str | float) -> float:
     """Return a length in cm, typed as in the workbook: 40, 40 cm, 12in, 1' 6"; typer.BadParameter if it is none."""
+    from assess.workbook.habits import CellError
     from assess.workbook.schema import ITEMS
     from assess.workbook.typed import understand
-
-    return _read_typed(
-        text, lambda typed: understand(ITEMS.column("breadth"), typed, "cm", repr)[0], "such as 40 or 12in"
-    )
-
-
-def read_factor(text: str | float) -> float:
-    """Return a factor [-], which may be typed as a percentage; typer.BadParameter if it is none."""
-    share = str(text).strip().endswith("%")
-    number = _read_typed(str(text).strip().removesuffix("%"), lambda typed: None, "such as 1.5 or 150%")
-    return number / 100 if share else number
-
-
-def _read_typed(text: str | float, understand: Callable[[str], object], example: str) -> float:
-    from assess.workbook.habits import CellError
 
     try:
         return float(text)
     except ValueError:
         pass
     try:
-        found = understand(str(text))
+        found = understand(ITEMS.column("breadth"), str(text), "cm", repr)[0]
     except CellError as error:
         raise typer.BadParameter(f"{error.message} {error.fix}".strip()) from None
     if not isinstance(found, int | float):
-        raise typer.BadParameter(f"{text!r} is not a number; expected one {example}")
+        raise typer.BadParameter(f"{text!r} is not a number; expected one such as 40 or 12in")
     return float(found)
+
+
+def read_factor(text: str | float) -> float:
+    """Return a factor [-], which may be typed as a percentage; typer.BadParameter if it is none."""
+    typed = str(text).strip()
+    try:
+        number = float(typed.removesuffix("%"))
+    except ValueError:
+        raise typer.BadParameter(
+            f"{typed.removesuffix('%')!r} is not a number; expected one such as 1.5 or 150%"
+        ) from None
+    return number / 100 if typed.endswith("%") else number
 
 
 SIZE: dict[str, Any] = {"parser": read_size, "metavar": "<float>"}
@@ -127,8 +156,21 @@ GroundMotions = Annotated[
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON document instead of text.")]
 
-FIGURES = (".png", ".svg", ".pdf")
-"""Kinds of figures that can be written."""
+
+def language_of(what: str, default: str = LANGUAGES[0]) -> Any:
+    """Return the option for the language of what is written; `default` says which one it is without it."""
+    own: dict[str, Any] = {} if default == LANGUAGES[0] else {"show_default": default}
+    return typer.Option(help=f"Language of {what}: {', '.join(LANGUAGES)}.", autocompletion=one_of(LANGUAGES), **own)
+
+
+def plot_of(what: str) -> Any:
+    """Return the option for a figure."""
+    return typer.Option(help=f"Draw {what} to this {', '.join(FIGURES[:-1])} or {FIGURES[-1]}.")
+
+
+def force(what: str) -> Any:
+    """Return the option that has a file replaced."""
+    return typer.Option("--force", help=f"Replace {what}.")
 
 
 def read_settings(**given: Any) -> Settings:
@@ -143,6 +185,14 @@ def read_run_settings(**given: Any) -> Settings:
     return read_settings(**given)
 
 
+def read_draw_settings(of_each: str, **given: Any) -> Settings:
+    """Return the settings of commands whose draws serve at every level of shaking (`of_each`)."""
+    settings = read_settings(verify="none", **given)
+    if settings.runs == AUTO:
+        raise InputError(f"--runs: {AUTO} is for assess run, as every {of_each} uses the same motions. Give a number.")
+    return settings
+
+
 def fit_runs(settings: Settings, scenarios: int) -> Settings:
     """Return the settings with as many draws as count every computed scenario of the ground alike, if there are any."""
     from assess.pipeline.city_draws import choose_runs
@@ -151,13 +201,7 @@ def fit_runs(settings: Settings, scenarios: int) -> Settings:
 
 
 def read_ground(shakemap: Path | None, scenarios: Path | None) -> "GroundField | None":
-    """Return the ground motion that --shakemap or --ground-motions names; None where neither does.
-
-    Raises
-    ------
-    InputError
-        If both are given, or a file cannot be used.
-    """
+    """Return the ground motion that --shakemap or --ground-motions names, which exclude each other."""
     if shakemap is not None and scenarios is not None:
         raise InputError("--shakemap and --ground-motions both give the ground motion: leave one out")
     if shakemap is not None:
@@ -195,35 +239,26 @@ def check_file(path: Path | None, what: str, endings: tuple[str, ...] = FIGURES)
         raise InputError(f"the {what} {path} cannot be written there: name a file in a folder that exists")
 
 
-def check_new_file(out: Path, source: Path, *, replaces: bool) -> None:
-    """Raise unless a copy of a file may be written, as far as is known before the work.
-
-    Raises
-    ------
-    InputError
-        If it is the file itself, is of another kind, or its folder does not exist.
-    OutputError
-        If it exists, and it was not asked for that it be replaced.
-    """
-    check_file(out, "copy", (source.suffix.lower() or ".xlsx",))
-    if out.resolve() == source.resolve() or (out.exists() and source.exists() and out.samefile(source)):
-        raise InputError(f"{out} is the workbook itself: name another file, so that the original stays as it is.")
-    if out.exists() and not replaces:
-        raise OutputError(f"{out} already exists: add --force to replace it, or choose another name.")
+def quote(path: Path) -> str:
+    """Return a path as it is typed in a command."""
+    return f'"{path}"' if " " in str(path) else str(path)
 
 
-def save_file(data: bytes, path: Path) -> None:
-    """Write a file whole or not at all; OutputError if it cannot be written."""
-    save_files({path: data})
+def is_same(path: Path, other: Path) -> bool:
+    """Tell whether two names are those of one file."""
+    return path.resolve() == other.resolve() or (path.exists() and other.exists() and path.samefile(other))
+
+
+def check_new(path: Path, *, replaces: bool) -> None:
+    """Raise OutputError if a file exists, and it was not asked for that it be replaced."""
+    if path.exists() and not replaces:
+        raise OutputError(f"{path} already exists: add --force to replace it, or choose another name.")
 
 
 def save_files(files: Mapping[Path, bytes]) -> None:
     """Write files, whole or none of them; the folder of each is made if missing. See `assess.delivery`.
 
-    Raises
-    ------
-    OutputError
-        If one cannot be written; what was there before is left.
+    Raises OutputError if one cannot be written; what was there before is left.
     """
     from assess.delivery.deliver import save
 
@@ -231,34 +266,25 @@ def save_files(files: Mapping[Path, bytes]) -> None:
         save(files)
     except OSError as error:
         names = {path.name: path for path in files}
-        path = next((names[each] for each in _list_names(error) if each in names), next(iter(files)))
+        named = (Path(name).name for name in (error.filename2, error.filename) if isinstance(name, str))
+        path = next((names[each] for each in named if each in names), next(iter(files)))
         why = error.strerror or error
         raise OutputError(f"{path} could not be written: {why}. Name another file.") from None
 
 
-def _list_names(error: OSError) -> list[str]:
-    return [Path(name).name for name in (error.filename2, error.filename) if isinstance(name, str)]
+Draw = Callable[[str], tuple[bytes, int]]
+"""From the kind of a figure, png, svg or pdf, to the figure, and how many of what it shows it has no room for."""
 
 
-def save_with_figure(
-    files: Mapping[Path, bytes], plot: Path | None, draw: Callable[[str], tuple[bytes, int]], what: str
-) -> None:
-    """Write files and a figure, whole or none of them, and name each on stderr.
-
-    `draw` is given the kind of the figure; it returns the figure, and how many of `what` it has no room for.
-    """
+def write_files(files: Mapping[Path, bytes], plot: Path | None, draw: Draw, what: str) -> None:
+    """Write files and a figure of `what`, whole or none of them, and name each on stderr."""
     everything, left = dict(files), 0
     if plot is not None:
-        everything[plot], left = draw(figure_kind(plot))
-    save_files(everything)
+        everything[plot], left = draw(plot.suffix.lower().removeprefix("."))
+    if everything:
+        save_files(everything)
     for file in everything:
-        more = f"; {count(left, f'more {what}')} not drawn" if file == plot and left else ""
-        say(f"wrote {file}{more}", err=True)
-
-
-def figure_kind(path: Path) -> str:
-    """Return the kind of a figure by the ending of its name: png, svg or pdf."""
-    return path.suffix.lower().removeprefix(".")
+        say(f"wrote {file}" + (f"; {count(left, f'more {what}')} not drawn" if file == plot and left else ""), err=True)
 
 
 def check_size(option: str, value: float, name: str = "") -> None:

@@ -41,26 +41,10 @@ BOX = {"facecolor": "white", "edgecolor": "none", "pad": 1, "alpha": 0.85}
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Case:
-    """What `assess rock` was asked for.
+    """What `assess rock` was asked for: sizes in m, the height of the centre of gravity as a share of the height.
 
-    Parameters
-    ----------
-    breadth, height : float
-        Sizes of the block [m].
-    centre : float
-        Height of its centre of gravity as a share of its height [-].
-    restitution : float
-        As given [-]; NaN is Housner's.
-    channel : Channel
-        The record, as in its file and as treated.
-    baseline : str
-        How it was treated.
-    motion : Motion
-        The treated motion times `factor`.
-    factor : float
-        1 where no peak was asked for [-].
-    pfa_g : float
-        Peak of the scaled motion [g].
+    A restitution of NaN is Housner's. `channel` is the record as in its file and as treated by `baseline`, `motion`
+    that times `factor`, which is 1 where no peak was asked for, and `pfa_g` its peak [g].
     """
 
     breadth: float
@@ -98,14 +82,7 @@ def read_case(
     baseline: str,
     centre_percent: float | None = None,
 ) -> Case:
-    """Check the options, by the limits of the workbook, and read the record.
-
-    Raises
-    ------
-    InputError
-        If an option cannot be used; or if the record cannot be read, holds several channels and none is named, or is
-        vertical.
-    """
+    """Check the options, by the limits of the workbook, and read the record; InputError where one cannot be used."""
     check_size("breadth", breadth_cm)
     check_size("height", height_cm)
     if centre_percent is not None:
@@ -151,24 +128,13 @@ class Found:
 
 
 def evaluate(case: Case, *, wall: bool = False, vertical: str | None = None, friction: float | None = None) -> Found:
-    """Integrate the block under its record, and evaluate what else was asked for.
-
-    Raises
-    ------
-    InputError
-        If the block is too stocky to rock, friction lies outside the limits of the workbook, or the vertical channel
-        cannot be used.
-    """
+    """Integrate the block under its record, and evaluate what else was asked for; InputError where that cannot be."""
     motion = case.motion
     try:
         response = free = follow_block(
-            case.breadth,
-            case.height,
-            motion.acceleration,
-            motion.time_step,
-            restitution=case.restitution,
-            centre=case.centre,
-        )
+            case.breadth, case.height, motion.acceleration, motion.time_step,
+            restitution=case.restitution, centre=case.centre,
+        )  # fmt: skip
     except ValueError as error:  # the stockiest block that rocks is a limit of the integration
         named = "--breadth and --height" if case.is_mid_height else "--breadth, --height and --cg"
         raise InputError(f"{named}: {error}") from None
@@ -176,23 +142,28 @@ def evaluate(case: Case, *, wall: bool = False, vertical: str | None = None, fri
         check_size("friction", friction)
     centre_height = case.breadth / 2 / math.tan(free.critical_angle)
     body = Body.of(
-        half_base=case.breadth / 2,
-        centre_height=centre_height,
-        frequency_parameter=free.frequency_parameter,
+        half_base=case.breadth / 2, centre_height=centre_height, frequency_parameter=free.frequency_parameter,
         restitution=free.restitution,
-    )
+    )  # fmt: skip
     document: dict[str, Any] = {}
     lines: list[str] = []
     up = None
+
+    def follow(away: Away) -> Response:
+        try:
+            return follow_body(body, motion.acceleration, motion.time_step, vertical=up, away=away)
+        except ValueError as error:
+            raise InputError(f"--vertical: {error}") from None
+
     if vertical is not None:
         name, up = read_vertical(vertical, case)
-        response, peak = _follow(case, body, up, 0), float(np.abs(up).max()) / GRAVITY
+        response, peak = follow(0), float(np.abs(up).max()) / GRAVITY
         document["vertical"] = {"channel": name, "pfa_g": peak, "without": describe_verdict(free)}
         scaled = "" if case.factor == 1 else f", scaled by {case.factor:.4g} like the horizontal motion"
         lines.append(f"Vertical {name}: peak {peak:.4f} g{scaled}")
         lines.append(f"         without it, the block {_tell(free)}")
     if wall:
-        sides = {where: _follow(case, body, up, away) for where, away in SIDES.items()}
+        sides = {where: follow(away) for where, away in SIDES.items()}
         verdicts = {where: describe_verdict(one) for where, one in sides.items()}
         document["wall"] = {"rebound": float(body.rebound)} | verdicts
         lines += _list_wall(body, sides)
@@ -202,22 +173,10 @@ def evaluate(case: Case, *, wall: bool = False, vertical: str | None = None, fri
     return Found(response, document, tuple(lines))
 
 
-def _follow(case: Case, body: Body, up: FloatArray | None, away: Away) -> Response:
-    try:
-        return follow_body(body, case.motion.acceleration, case.motion.time_step, vertical=up, away=away)
-    except ValueError as error:
-        raise InputError(f"--vertical: {error}") from None
-
-
 def read_vertical(name: str, case: Case) -> tuple[str, FloatArray]:
     """Return the name of a vertical channel and its samples [m/s2] at the times of the horizontal one, scaled alike.
 
-    Both are taken to begin at the same instant.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, or holds no vertical channel or several; or if it is not as long as the horizontal one.
+    Both are taken to begin at the same instant. Raises InputError where there is not one such channel of that length.
     """
     channels = read_channels(name)
     upright = [channel for channel in channels if channel.record.vertical]
@@ -262,13 +221,14 @@ def _slide(case: Case, share: float, friction: float) -> dict[str, Any]:
 def describe(case: Case, found: Found) -> dict[str, Any]:
     """Return the document of `assess rock --json`."""
     response = found.response
-    own = {
+    return {
+        **describe_verdict(response),
         "pfa_g": case.pfa_g,
         "critical_angle_rad": response.critical_angle,
         "frequency_parameter_rad_s": response.frequency_parameter,
         "restitution": response.restitution,
+        **found.document,
     }
-    return describe_verdict(response) | own | found.document
 
 
 def describe_verdict(response: Response) -> dict[str, Any]:
@@ -297,7 +257,12 @@ def list_lines(case: Case, found: Found) -> Iterator[str]:
     yield f"Record   {case.channel.name} ({', '.join(part for part in parts if part)})"
     yield f"         {treatment(record, case.baseline)}"
     yield from (f"         note: {note}" for note in record.notes)
-    yield f"Motion   {_motion(case)}"
+    peak = f"PFA {case.channel.motion.pfa / GRAVITY:.4f} g"
+    velocity = f"PFV {case.motion.pfv / VELOCITY['cm/s']:.1f} cm/s"
+    if case.factor == 1:
+        yield f"Motion   PFA {case.pfa_g:.4f} g, {velocity}, not scaled"
+    else:
+        yield f"Motion   {peak}, scaled by {case.factor:.4g} to {case.pfa_g:.4f} g, {velocity}"
     exceeds = "exceeded" if case.pfa_g > case.threshold_g else "not exceeded"
     yield f"Rocks    above g {case.threshold_name} = {case.threshold_g:.4f} g: {exceeds}"
     yield f"Outcome  {describe_outcome(case, response)}"
@@ -312,15 +277,6 @@ def _size(case: Case, times: str) -> str:
 
 def _centre(case: Case) -> str:
     return f"centre of gravity at {case.centre / SHARE['%']:.12g} % of the height"
-
-
-def _motion(case: Case) -> str:
-    """Return the peaks of the motion, before and after scaling."""
-    velocity = f"PFV {case.motion.pfv / VELOCITY['cm/s']:.1f} cm/s"
-    if case.factor == 1:
-        return f"PFA {case.pfa_g:.4f} g, {velocity}, not scaled"
-    own = case.channel.motion.pfa / GRAVITY
-    return f"PFA {own:.4f} g, scaled by {case.factor:.4g} to {case.pfa_g:.4f} g, {velocity}"
 
 
 def describe_outcome(case: Case, response: Response) -> str:
@@ -347,12 +303,12 @@ def _tell(response: Response) -> str:
 
 
 def _list_wall(body: Body, sides: Mapping[str, Response]) -> Iterator[str]:
-    begin = "Wall    "
-    for where, one in sides.items():
-        yield f"{begin} on the {where.replace('_', ' ')} of the record: {_tell(one)}"
-        begin = " " * len(begin)
-    yield f"{begin} rebound {float(body.rebound):.4f} times the velocity (after Sorrentino et al. 2011, to be checked)"
-    yield f"{begin} the wall is taken to move with the floor, without pounding: this lowers no risk"
+    for begin, (where, one) in zip(("Wall ", "     "), sides.items(), strict=True):
+        yield f"{begin}    on the {where.replace('_', ' ')} of the record: {_tell(one)}"
+    yield (
+        f"         rebound {float(body.rebound):.4f} times the velocity (after Sorrentino et al. 2011, to be checked)"
+    )
+    yield "         the wall is taken to move with the floor, without pounding: this lowers no risk"
 
 
 def _list_friction(found: Mapping[str, Any]) -> Iterator[str]:

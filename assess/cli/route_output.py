@@ -64,77 +64,41 @@ NOTES = (
 
 @dataclass(frozen=True, eq=False)
 class Verdict:
-    """What a sweep comes to, at the values of PFA that were evaluated."""
+    """What a sweep comes to, at the values of PFA that were evaluated.
+
+    Parameters
+    ----------
+    evaluated, not_evaluated : list of RouteFragility
+        The routes that can be judged: all their segments are evaluated, or those that are reach the limit; the others.
+    below_up_to_g, reached_at_g : float, optional
+        The last value up to which the chances of all routes are below the limit, and the next one [g]; None where it
+        is none.
+    first : list of RouteFragility
+        The routes whose chance is not below the limit there, the largest chance first.
+    anchored_at_g, anchored : float, optional, and list of RouteFragility
+        The same if anchors fail, where that is at a smaller value [g].
+    reaching : int
+        Routes whose chance is not below the limit at any value.
+    """
 
     fragility: Fragility
     pfa_g: Sequence[float]
-
-    def _reach(self, chances: Sequence[Chance] | None) -> int | None:
-        """Return the number of the first value at which a chance is not below the limit."""
-        limit = self.fragility.limit
-        return next((at for at, one in enumerate(chances or ()) if one.probability >= limit), None)
-
-    @cached_property
-    def evaluated(self) -> list[RouteFragility]:
-        """The routes that can be judged: all their segments are evaluated, or those that are reach the limit."""
-        return [one for one in self.fragility.routes if self._is_judged(one)]
-
-    @cached_property
-    def not_evaluated(self) -> list[RouteFragility]:
-        """The other routes."""
-        return [one for one in self.fragility.routes if not self._is_judged(one)]
-
-    def _is_judged(self, route: RouteFragility) -> bool:
-        return route.is_evaluated and (not route.unevaluated or self._reach(route.blocked) is not None)
-
-    @cached_property
-    def _reached(self) -> int | None:
-        found = [at for one in self.evaluated if (at := self._reach(one.blocked)) is not None]
-        return min(found, default=None)
-
-    @property
-    def below_up_to_g(self) -> float | None:
-        """The last value up to which the chances of all routes are below the limit [g]; None where it is none."""
-        last = len(self.pfa_g) - 1 if self._reached is None else self._reached - 1
-        return self.pfa_g[last] if last >= 0 and self.evaluated else None
-
-    @property
-    def reached_at_g(self) -> float | None:
-        """The next one, the first at which a chance is not [g]; None where all stay below."""
-        return None if self._reached is None else self.pfa_g[self._reached]
-
-    @property
-    def first(self) -> list[RouteFragility]:
-        """The routes whose chance is not below the limit there, the largest chance first."""
-        at = self._reached
-        found = [one for one in self.evaluated if at is not None and self._reach(one.blocked) == at]
-        return sorted(found, key=lambda one: -one.blocked[at or 0].probability)
-
-    @cached_property
-    def _anchored(self) -> tuple[float | None, list[RouteFragility]]:
-        """The first value at which a chance is not below the limit if anchors fail [g], and the routes of it.
-
-        None and no routes where that is not smaller than `reached_at_g`.
-        """
-        ways = [(one, self._reach(one.if_anchors_fail)) for one in self.evaluated]
-        early = min((at for _, at in ways if at is not None), default=None)
-        if early is None or (self._reached is not None and early >= self._reached):
-            return None, []
-        return self.pfa_g[early], [one for one, at in ways if at == early]
+    evaluated: list[RouteFragility]
+    not_evaluated: list[RouteFragility]
+    below_up_to_g: float | None
+    reached_at_g: float | None
+    first: list[RouteFragility]
+    anchored_at_g: float | None
+    anchored: list[RouteFragility]
+    reaching: int
 
     @property
     def lower_bounds(self) -> list[str]:
         """The routes whose chances are lower bounds: motions may be too weak, or a segment is not evaluated."""
         return [one.route for one in self.evaluated if one.doubtful or one.unevaluated]
 
-    @property
-    def reaching(self) -> int:
-        """Routes whose chance is not below the limit at any value."""
-        return sum(self._reach(one.blocked) is not None for one in self.evaluated)
-
     def describe(self) -> dict[str, Any]:
         """Return it as data, with its text."""
-        anchored_at_g, anchored = self._anchored
         return {
             "text": self.say(),
             "limit": self.fragility.limit,
@@ -149,8 +113,8 @@ class Verdict:
             "reached_at_g": self.reached_at_g,
             "first": [{"route": one.route, "pieces": _list_causes(one)} for one in self.first],
             "routes_reaching": self.reaching,
-            "reached_at_g_if_anchors_fail": anchored_at_g or self.reached_at_g,
-            "first_if_anchors_fail": [one.route for one in anchored],
+            "reached_at_g_if_anchors_fail": self.anchored_at_g or self.reached_at_g,
+            "first_if_anchors_fail": [one.route for one in self.anchored],
             "lower_bounds": self.lower_bounds,
             "pieces_left_out": self.fragility.unplaced,
         }
@@ -160,18 +124,17 @@ class Verdict:
         return " ".join(self._sentences())
 
     def _sentences(self) -> Iterator[str]:
+        level = f"{100 * self.fragility.limit:g} %"
         if self.evaluated:
-            yield from self._say_reached()
+            yield from self._say_reached(level)
         elif any(one.is_evaluated for one in self.not_evaluated):
             yield "No route can be evaluated as a whole."
         else:
             yield "No route can be evaluated: the workbook places no furniture next to any."
             return
-        at_g, anchored = self._anchored
-        if at_g is not None:
-            named = _name([one.route for one in anchored], VERDICT_ROUTES)
-            level = f"{100 * self.fragility.limit:g} %"
-            yield f"If the anchors fail, {named} {_reaches(anchored)} {level} from {at_g:.4g} g."
+        if self.anchored_at_g is not None:
+            named = _name([one.route for one in self.anchored], VERDICT_ROUTES)
+            yield f"If the anchors fail, {named} {_reaches(self.anchored)} {level} from {self.anchored_at_g:.4g} g."
         if self.lower_bounds:
             yield f"The chances of {_name(self.lower_bounds, VERDICT_ROUTES)} are lower bounds."
         for what, routes in (
@@ -183,8 +146,8 @@ class Verdict:
         if self.fragility.unplaced:
             yield f"Left out: {count(self.fragility.unplaced, 'piece')} without a usable position or route."
 
-    def _say_reached(self) -> Iterator[str]:
-        level, number = f"{100 * self.fragility.limit:g} %", len(self.evaluated)
+    def _say_reached(self, level: str) -> Iterator[str]:
+        number = len(self.evaluated)
         whole = count(number, "evaluated route" if self.not_evaluated else "route")
         if self.below_up_to_g is not None:
             every = f"All {whole} stay" if number > 1 else f"The only {whole.removeprefix('1 ')} stays"
@@ -200,6 +163,40 @@ class Verdict:
             where = f"Already at {self.pfa_g[0]:.4g} g, the smallest PFA evaluated,"
         named = [f"{_quote(one.route)} ({_blame(one)})" for one in first]
         yield f"{where} {words.name_first(named, VERDICT_ROUTES)} {_reaches(first)} {level}{more}."
+
+
+def judge(fragility: Fragility, pfa_g: Sequence[float]) -> Verdict:
+    """Return what a sweep comes to at its values of PFA [g]."""
+
+    def reach(chances: Sequence[Chance] | None) -> int | None:
+        """Return the number of the first value at which a chance is not below the limit."""
+        return next((at for at, one in enumerate(chances or ()) if one.probability >= fragility.limit), None)
+
+    def find_first(ways: Mapping[int, int | None]) -> tuple[int | None, list[RouteFragility]]:
+        """Return the first of all these numbers, and the routes of it."""
+        early = min((at for at in ways.values() if at is not None), default=None)
+        return early, [evaluated[place] for place, at in ways.items() if at is not None and at == early]
+
+    evaluated: list[RouteFragility] = []
+    others: list[RouteFragility] = []
+    for one in fragility.routes:
+        is_judged = one.is_evaluated and (not one.unevaluated or reach(one.blocked) is not None)
+        (evaluated if is_judged else others).append(one)
+    reached = {place: reach(one.blocked) for place, one in enumerate(evaluated)}
+    at, first = find_first(reached)
+    early, anchored = find_first({place: reach(one.if_anchors_fail) for place, one in enumerate(evaluated)})
+    if early is None or (at is not None and early >= at):
+        early, anchored = None, []
+    last = len(pfa_g) - 1 if at is None else at - 1
+    return Verdict(
+        fragility, pfa_g, evaluated, others,
+        below_up_to_g=pfa_g[last] if last >= 0 and evaluated else None,
+        reached_at_g=None if at is None else pfa_g[at],
+        first=sorted(first, key=lambda one: -one.blocked[at or 0].probability),
+        anchored_at_g=None if early is None else pfa_g[early],
+        anchored=anchored,
+        reaching=sum(place is not None for place in reached.values()),
+    )  # fmt: skip
 
 
 def _blame(route: RouteFragility) -> str:
@@ -232,7 +229,7 @@ def _reaches(routes: Sequence[RouteFragility]) -> str:
 # ---------------------------------------------------------------- sweep
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Sweep:
     """What `assess routes` found."""
 
@@ -246,23 +243,15 @@ class Sweep:
 
     def cautions(self) -> Iterator[str]:
         """Yield what in this building makes the chances less certain."""
-        if floors := self.fragility.generic:
-            yield f"No record is known for {name_floors(floors)}: ground motion and building are drawn."
-        for floors, why, fix in (
-            (self.fragility.unshaped, "as nothing is known of the building",
-             "Enter Storeys or the Period T1 in the sheet Building."),
-            (self.fragility.weak, "as they are weaker than the floor's",
-             "assess run --motions takes motions of your own."),
-        ):  # fmt: skip
-            if floors:
-                yield (
-                    f"The motions of {name_floors(floors)} may be too weak, {why}: chances that rest on them are "
-                    f"lower bounds. {fix}"
-                )
-        if stocky := self.fragility.stocky:
+        found = self.fragility
+        yield from say_motions(
+            found.generic, found.unshaped, found.weak, "chances that rest on them are lower bounds.",
+            "assess run --motions takes motions of your own.",
+        )  # fmt: skip
+        if found.stocky:
             yield (
-                f"{count(stocky, 'piece')} next to routes too stocky to rock (B/H of 1.41 or more): the formula's "
-                "chance at each PFA is used, with bounds on the correlation."
+                f"{count(found.stocky, 'piece')} next to routes too stocky to rock (B/H of 1.41 or more): the "
+                "formula's chance at each PFA is used, with bounds on the correlation."
             )
 
     def say_uncertain(self) -> str:
@@ -280,17 +269,16 @@ class Sweep:
             return "Nothing is taken as uncertain but the phases of the motions: the PFA and every piece are exact."
         return f"Taken as uncertain in each draw: {'; '.join(parts)}. All pieces of a draw share its earthquake."
 
-    @property
+    @cached_property
     def verdict(self) -> Verdict:
         """Up to which PFA every route stays below the limit, and which one first does not."""
-        return Verdict(self.fragility, self.pfa_g)
+        return judge(self.fragility, self.pfa_g)
 
     def describe(self) -> dict[str, Any]:
         """Return the document of `assess routes --json`."""
-        inventory, fragility = self.assessment.inventory, self.fragility
+        fragility = self.fragility
         return {
-            "workbook": {"file": inventory.file_name, "sha256": inventory.sha256},
-            "assess": {"version": __version__, "platform": dict(versions(has_rocked=True, has_routes=True))},
+            **describe_run(self.assessment, has_routes=True),
             "verdict": self.verdict.describe(),
             "meaning": " ".join((*MEANING, self.say_uncertain())),
             "cautions": list(self.cautions()),
@@ -376,10 +364,7 @@ class Sweep:
         yield ""
         for paragraph in (*self.cautions(), *self._notes()):
             yield from textwrap.wrap(paragraph, WIDE)
-        yield (
-            f"{self.assessment.inventory.file_name}: scenario {self.assessment.scenario}, "
-            f"{count(fragility.runs, 'draw')}, seed {fragility.seed}"
-        )
+        yield say_run(self.assessment, fragility.runs, fragility.seed)
 
     def _notes(self) -> Iterator[str]:
         """Yield what the table leaves open, shortly."""
@@ -473,6 +458,36 @@ def _describe_known(one: RouteFragility) -> str:
     )
 
 
+# ---------------------------------------------------------------- what `assess fragility` has as well
+
+
+def describe_run(assessment: Assessment, *, has_routes: bool = False) -> dict[str, Any]:
+    """Return with what a document was made."""
+    return {
+        "workbook": {"file": assessment.inventory.file_name, "sha256": assessment.inventory.sha256},
+        "assess": {"version": __version__, "platform": dict(versions(has_rocked=True, has_routes=has_routes))},
+    }
+
+
+def say_run(assessment: Assessment, runs: int, seed: int) -> str:
+    """Return with what a text was made."""
+    return f"{assessment.inventory.file_name}: scenario {assessment.scenario}, {count(runs, 'draw')}, seed {seed}"
+
+
+def say_motions(
+    drawn: Sequence[str], unknown: Sequence[str], weak: Sequence[str], meaning: str, stronger: str = ""
+) -> Iterator[str]:
+    """Yield what makes results less certain by floors: motions that are drawn, or may be too weak."""
+    if drawn:
+        yield f"No record is known for {name_floors(drawn)}: ground motion and building are drawn."
+    known = "Enter Storeys or the Period T1 in the sheet Building."
+    for floors, why, fix in (
+        (unknown, "as nothing is known of the building", known), (weak, "as they are weaker than the floor's", stronger)
+    ):  # fmt: skip
+        if floors:
+            yield f"The motions of {name_floors(floors)} may be too weak, {why}: {meaning} {fix}".strip()
+
+
 def write_rows(rows: Iterable[Mapping[str, Any]]) -> str:
     """Return rows as CSV, in which no text is taken for a formula; the first one names the columns."""
     file = io.StringIO()
@@ -497,6 +512,14 @@ def _format_pfa(value: float, values: Sequence[float]) -> str:
     return f"below {values[0]:g}" if value < 0 else f"above {values[-1]:g}"
 
 
+def finite(value: float) -> float | None:
+    """Return a number, None for what is not finite."""
+    return value if math.isfinite(value) else None
+
+
+# ---------------------------------------------------------------- lines
+
+
 def _grid(rows: dict[str, list[str]]) -> Iterator[str]:
     wide = 1 + max(len(text) for row in rows.values() for text in row)
     for start in range(0, len(rows["PFA [g]"]), A_LINE):
@@ -512,8 +535,3 @@ def _chance(chance: Chance, fails: Chance | None) -> dict[str, Any]:
 
 def _in_g(value: float) -> float:
     return round(value / GRAVITY, 12)
-
-
-def finite(value: float) -> float | None:
-    """Return a number, None for what is not finite."""
-    return value if math.isfinite(value) else None

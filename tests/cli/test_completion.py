@@ -11,8 +11,8 @@ from unittest.mock import patch
 
 import pytest
 
-from assess.cli import command_fragility, completion
-from assess.cli.app import app, list_names
+from assess.cli import command_fragility
+from assess.cli.app import ASKED, app, list_names
 from assess.i18n import LANGUAGES
 from assess.settings import SCENARIOS, VERIFY, Settings
 from tests.waiting import PATIENCE
@@ -33,7 +33,7 @@ def ask(variables, *command):
 def complete(line):
     """Return what bash is offered for the last word of a line; it separates the words by newlines."""
     words = line.split(" ")
-    told = {"COMP_WORDS": "\n".join(words), "COMP_CWORD": str(len(words) - 1), completion.ASKED: "complete_bash"}
+    told = {"COMP_WORDS": "\n".join(words), "COMP_CWORD": str(len(words) - 1), ASKED: "complete_bash"}
     with patch.dict(os.environ, told), redirect_stdout(StringIO()) as said, pytest.raises(SystemExit):
         app(prog_name="assess")
     return said.getvalue().split()
@@ -85,10 +85,10 @@ def test_the_formats_are_those_that_can_be_written():
 
 def test_zsh_and_fish_get_help_whole_on_one_line():
     line = {"_TYPER_COMPLETE_ARGS": "assess run b.xlsx --sce"}
-    zsh = ask(line | {completion.ASKED: "complete_zsh"})
+    zsh = ask(line | {ASKED: "complete_zsh"})
     assert '"--scenario":"Source of the floor motion' in zsh
     assert "NTC 2018" in zsh
-    fish = ask(line | {completion.ASKED: "complete_fish", "_TYPER_COMPLETE_FISH_ACTION": "get-args"})
+    fish = ask(line | {ASKED: "complete_fish", "_TYPER_COMPLETE_FISH_ACTION": "get-args"})
     (offered,) = fish.splitlines()
     assert offered.startswith("--scenario\tSource")
     assert "NTC 2018" in offered
@@ -96,7 +96,7 @@ def test_zsh_and_fish_get_help_whole_on_one_line():
 
 def test_powershell_gets_words_and_help():
     line = {"_TYPER_COMPLETE_ARGS": "assess run b.xlsx --open --ver", "_TYPER_COMPLETE_WORD_TO_COMPLETE": "--ver"}
-    (offered,) = ask(line | {completion.ASKED: "complete_powershell"}).splitlines()
+    (offered,) = ask(line | {ASKED: "complete_powershell"}).splitlines()
     assert offered.startswith("--verify:::Pieces to simulate")
 
 
@@ -108,7 +108,7 @@ def test_nothing_heavy_is_loaded_and_only_the_command_that_is_typed(words):
         f"    print(json.dumps([[name for name in {HEAVY!r} if name in sys.modules], "
         "[name[19:] for name in sys.modules if name.startswith('assess.cli.command_')]]))"
     )
-    told = {"COMP_WORDS": "\n".join(words), "COMP_CWORD": str(len(words) - 1), completion.ASKED: "complete_bash"}
+    told = {"COMP_WORDS": "\n".join(words), "COMP_CWORD": str(len(words) - 1), ASKED: "complete_bash"}
     heavy, commands = json.loads(ask(told, sys.executable, "-c", code).splitlines()[-1])
     assert heavy == []
     assert sorted(commands) == (sorted(list_names()) if words[1] == "" else [words[1]])
