@@ -64,9 +64,6 @@ class Falls:
     quantity: NDArray[np.intp]
 
 
-# ---------------------------------------------------------------- sets of draws
-
-
 def to_sets(happens: BoolArray) -> list[int]:
     """Return the sets of the draws in which each of r things happens (m draws, r)."""
     packed = np.packbits(happens, axis=0, bitorder="little")
@@ -118,9 +115,6 @@ class Draws:
 
 Happens = Callable[[Draws], Sequence[int]]
 """Returns for some draws the sets of those in which each of several things happens."""
-
-
-# ---------------------------------------------------------------- three couplings
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -288,11 +282,9 @@ def _levels(seed: int, name: int, is_joint: int) -> FloatArray:
 
 def _correlate(falls: Falls, keys: tuple[Key, ...], fallen: Collection[Key]) -> Draws:
     """Return the draws where one level decides for all: what falls at a chance falls at every higher one."""
-
-    def find_chance(key: Key) -> float:
-        return float(key in fallen) if key[0] in falls.unconfirmed else float(falls.probability[key[0]])
-
-    chance = {key: find_chance(key) for key in keys}
+    chance = {
+        key: float(key in fallen) if key[0] in falls.unconfirmed else float(falls.probability[key[0]]) for key in keys
+    }
     levels = sorted({0.0, 1.0, *chance.values()})
     under = {level: (1 << at) - 1 for at, level in enumerate(levels)}
     return Draws({key: under[level] for key, level in chance.items()}, np.diff(levels))
@@ -302,9 +294,6 @@ def _find_ends(falls: Falls, keys: tuple[Key, ...], fallen: Collection[Key]) -> 
     """Return the draws where nothing falls, and where everything does, but for unconfirmed pieces."""
     certain = {key: NONE | EVERY if key in fallen else 0 for key in keys if key[0] in falls.unconfirmed}
     return Draws({**dict.fromkeys(keys, EVERY), **certain}, np.array([0.5, 0.5]))
-
-
-# ---------------------------------------------------------------- chances
 
 
 def find_chances(couplings: Couplings, happens: Happens, z: float) -> list[Chance]:
@@ -325,12 +314,8 @@ def find_upper(couplings: Couplings, chance: float, left: Collection[int], z: fl
     """Return the upper end of the interval of a chance [-] that rests on some of the pieces, by their index."""
     counts = [couplings.sizes[item] for item in left if item in couplings.sizes]
     counts += [DRAWS] if couplings.is_drawn else []
-    return max(chance, _widen(chance, min(counts), z)[1]) if counts else chance
-
-
-def _widen(chance: float, runs: int, z: float) -> tuple[float, float]:
-    low, high = wilson_interval(chance * runs, runs, z)
-    return float(low), float(high)
+    runs = min(counts, default=0)
+    return max(chance, float(wilson_interval(chance * runs, runs, z)[1])) if runs else chance
 
 
 def _chance(couplings: Couplings, shares: Sequence[float], z: float, *, is_certain: bool) -> Chance:
@@ -339,7 +324,8 @@ def _chance(couplings: Couplings, shares: Sequence[float], z: float, *, is_certa
     low, high = min(values), max(values)
     counts = [*([couplings.runs] if couplings.runs else []), *([DRAWS] if couplings.is_drawn else [])]
     if counts and not is_certain:
-        low, high = _widen(low, min(counts), z)[0], _widen(high, min(counts), z)[1]
+        runs = min(counts)
+        low, high = (float(wilson_interval(one * runs, runs, z)[at]) for at, one in enumerate((low, high)))
     return Chance(
         probability=max(values), low=min(low, max(values)), high=max(high, *values), joint=joint,
         independent=independent, correlated=correlated, runs=couplings.runs, is_joint=couplings.is_joint,

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,6 @@ from assess.model import Inventory
 from assess.progress import SILENT, Progress
 from assess.route_results import (
     BesideRow,
-    Chance,
     RouteRow,
     RouteState,
     RouteTables,
@@ -46,15 +46,11 @@ def evaluate_routes(
     *,
     progress: Progress = SILENT,
 ) -> RouteTables:
-    """Evaluate the routes of an inventory.
+    """Return what is to be expected of the routes of an inventory; nothing where it has none.
 
-    `inventory`: the building. `obstructions`: its segments, from `assess.routes.obstructions.find_obstructions`.
-    `falls`: how its pieces fall. `settings`: the chosen risk, the seed of draws where combinations of pieces are too
-    many, and the runs, which decide the width of intervals.
-
-    Empty where the inventory has no routes.
-
-    Raises CancelledError if `progress` is cancelled.
+    `obstructions`: its segments, from `assess.routes.obstructions.find_obstructions`. `falls`: how its pieces fall.
+    `settings`: the chosen risk, the seed of draws where combinations of pieces are too many, and the runs, which decide
+    the width of intervals. `progress` receives the stage "routes".
     """
     if not obstructions:
         return RouteTables(risk=settings.route_risk)
@@ -96,14 +92,15 @@ def evaluate_routes(
     )
 
 
-# ---------------------------------------------------------------- segments
-
-
 def _segment(scene: Scene, at: int) -> SegmentRow:
     one = scene.obstructions[at]
     segment, band, is_evaluated, standing = one.segment, one.band, scene.is_evaluated(at), one.standing
-    needed = needed_width(segment, kinds_of(scene.inventory.places))
+    needed, crowded = needed_width(segment, kinds_of(scene.inventory.places)), None
     is_short = needed is not None and standing < needed - NARROWER
+    if needed is not None and (is_evaluated or is_short):
+        (stands,), (fallen,) = scene.bounds([at], lambda draws: [scene.narrower(draws, at, needed)])
+        crowded = stands if scene.is_known(stands, fallen) else None
+    free = np.array([not scene.falls.anchored[item] for item, _ in one.gaps.keys], dtype=np.bool_)
     return SegmentRow(
         route=segment.route,
         segment=segment.segment,
@@ -128,28 +125,16 @@ def _segment(scene: Scene, at: int) -> SegmentRow:
         clear_width_used_m=one.clear,
         required_width_used_m=one.required,
         standing_width_m=standing,
-        least_width_m=_least_width(scene, at) if is_evaluated else None,
+        # with every free-standing piece fallen
+        least_width_m=one.gaps.residual(free) if is_evaluated else None,
         needed_width_m=needed,
         is_blocked_standing=one.is_blocked_standing,
         insufficient_for_occupants=is_short,
-        insufficient_after_falls=_crowded(scene, at, needed)
-        if needed is not None and (is_evaluated or is_short)
-        else None,
+        insufficient_after_falls=crowded,
         pieces=tuple(_beside(scene, at)),
         other_rooms=tuple(scene.piece(item) for item in one.other_rooms),
         flags=one.flags,
     )
-
-
-def _least_width(scene: Scene, at: int) -> float:
-    """Return the width that is left with every free-standing piece fallen [m]."""
-    gaps = scene.obstructions[at].gaps
-    return gaps.residual(np.array([not scene.falls.anchored[item] for item, _ in gaps.keys], dtype=np.bool_))
-
-
-def _crowded(scene: Scene, at: int, needed: float) -> Chance | None:
-    (standing,), (fallen,) = scene.bounds([at], lambda draws: [scene.narrower(draws, at, needed)])
-    return standing if scene.is_known(standing, fallen) else None
 
 
 def _beside(scene: Scene, at: int) -> list[BesideRow]:
@@ -161,26 +146,14 @@ def _beside(scene: Scene, at: int) -> list[BesideRow]:
     for fail in (True, False):
         together = scene.together([at], lambda draws: [scene.blocked(draws, [at])[at]], anchors_fail=fail)
         found |= {item: together.get(item, 0.0) for item, _ in scene.keys([at], anchors_fail=fail)}
-    falls = scene.falls
+    falls, rows = scene.falls, []
     found |= dict.fromkeys(falls.unconfirmed)
-    rows = [
-        replace(
-            one,
-            falls_while_blocked=found.get(one.item_index, 0.0),
-            flags=(*one.flags, *falls.unconfirmed.get(one.item_index, ())),
-        )
-        for one in scene.obstructions[at].pieces
-    ]
-
-    def place(one: BesideRow) -> tuple[Any, ...]:
+    for one in scene.obstructions[at].pieces:
         index = one.item_index
-        order = bool(falls.anchored[index]), -(one.falls_while_blocked or 0.0)
-        return *order, one.left_m, -falls.probability[index], index
-
-    return sorted(rows, key=place)
-
-
-# ---------------------------------------------------------------- routes
+        chance, flags = found.get(index, 0.0), (*one.flags, *falls.unconfirmed.get(index, ()))
+        place = bool(falls.anchored[index]), -(chance or 0.0), one.left_m, -falls.probability[index], index
+        rows.append((place, replace(one, falls_while_blocked=chance, flags=flags)))
+    return [row for _, row in sorted(rows, key=itemgetter(0))]
 
 
 def _route(scene: Scene, name: str, rows: Sequence[SegmentRow]) -> RouteRow:
@@ -208,9 +181,6 @@ def _route(scene: Scene, name: str, rows: Sequence[SegmentRow]) -> RouteRow:
     )
 
 
-# ---------------------------------------------------------------- draw by draw
-
-
 def find_joint_draws(
     inventory: Inventory,
     obstructions: Sequence[Obstructions],
@@ -220,27 +190,21 @@ def find_joint_draws(
     *,
     progress: Progress = SILENT,
 ) -> dict[str, BoolArray]:
-    """Return of each route that has joint outcomes in which of `runs` draws it is blocked, (runs,).
+    """Return of each route with joint outcomes in which of `runs` draws it is blocked, (runs,), if all anchors hold.
 
-    If all anchors hold. A route has none where one of the pieces that reach it was not simulated, is not confirmed, or
-    was simulated in another number of draws.
-
-    Raises CancelledError if `progress` is cancelled.
+    A route has none where one of the pieces that reach it was not simulated, is not confirmed, or was simulated in
+    another number of draws.
     """
     z = interval_width(settings)
     scene = Scene(inventory, tuple(obstructions), falls, settings.route_risk, settings.seed, z, progress)
-    names = list(dict.fromkeys(one.segment.route for one in obstructions))
-    found = {name: _find_blocked(scene, name, runs) for name in names}
-    return {name: blocked for name, blocked in found.items() if blocked is not None}
-
-
-def _find_blocked(scene: Scene, name: str, runs: int) -> BoolArray | None:
-    segments = scene.segments_of(name)
-    couplings = scene.couplings(segments)
-    if not couplings.is_joint or couplings.unconfirmed:
-        return None
-    draws, course = couplings.joint, build_course(segments, kinds_of(scene.inventory.places))
-    blocked = course.is_blocked(scene.blocked(draws, segments), draws.every)
-    if not couplings.runs:  # no piece reaches it: it is open in every draw, or in none
-        return np.full(runs, bool(blocked))
-    return to_array(blocked, runs).astype(np.bool_) if couplings.runs == runs else None
+    found = {}
+    for name in dict.fromkeys(one.segment.route for one in obstructions):
+        segments = scene.segments_of(name)
+        couplings = scene.couplings(segments)
+        if not couplings.is_joint or couplings.unconfirmed or couplings.runs not in (0, runs):
+            continue
+        draws, course = couplings.joint, build_course(segments, kinds_of(inventory.places))
+        blocked = course.is_blocked(scene.blocked(draws, segments), draws.every)
+        # where no piece reaches it, it is open in every draw, or in none
+        found[name] = to_array(blocked, runs).astype(np.bool_) if couplings.runs else np.full(runs, bool(blocked))
+    return found

@@ -3,7 +3,8 @@
 Pieces whose chance is not confirmed are taken as fallen in it, which is on the safe side.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import pairwise
 
 from assess.progress import SILENT, Progress
 from assess.routes.chances import EVERY, NONE, Couplings, Draws, Key, find_upper
@@ -32,7 +33,7 @@ def find_fixes(
     be needed is left out again.
 
     `couplings`: how the pieces that reach the route fall together. `lanes`: the segments of the route by their number.
-    `is_blocked`: see `IsBlocked`. `risk`: the chosen risk [-]. `z`: half width of intervals [-].
+    `z`: half width of intervals [-].
     """
     trial = _Trial(couplings, lanes, is_blocked, z, progress)
     if trial.chance(Fixed(trial.involved(Fixed()))) >= risk:
@@ -46,15 +47,10 @@ def find_fixes(
         upper = trial.upper(Fixed(rest))
         if upper < risk or upper <= goal:
             fixed = rest
-    return list(_steps(trial, fixed)), True
-
-
-def _steps(trial: "_Trial", fixed: Sequence[int]) -> Iterator[tuple[int, float, float]]:
-    before = trial.chance(Fixed())
-    for count, item in enumerate(fixed, 1):
-        left = trial.chance(Fixed(fixed[:count]))
-        yield item, max(0.0, before - left), left
-        before = left
+    left = [trial.chance(Fixed(fixed[:count])) for count in range(len(fixed) + 1)]
+    return [
+        (item, max(0.0, before - now), now) for item, (before, now) in zip(fixed, pairwise(left), strict=True)
+    ], True
 
 
 class _Trial:
@@ -129,14 +125,15 @@ class _Sample:
 
     def blocked(self, fixed: Fixed) -> dict[int, int]:
         """Return for each segment the set of the draws in which it is blocked."""
-        return {at: self._blocked_lane(at, fixed & reach) for at, reach in self._reach.items()}
-
-    def _blocked_lane(self, at: int, fixed: Fixed) -> int:
-        if (at, fixed) not in self._blocked:
-            self._progress.check()
-            fallen = {key: falls for key, falls in self._fallen.items() if key[0] not in fixed}
-            self._blocked[at, fixed] = self._lanes[at].blocked(fallen, self._draws.every)
-        return self._blocked[at, fixed]
+        found = {}
+        for at, reach in self._reach.items():
+            own = fixed & reach
+            if (at, own) not in self._blocked:
+                self._progress.check()
+                fallen = {key: falls for key, falls in self._fallen.items() if key[0] not in own}
+                self._blocked[at, own] = self._lanes[at].blocked(fallen, self._draws.every)
+            found[at] = self._blocked[at, own]
+        return found
 
     def happened(self, fixed: Fixed) -> int:
         """Return the set of the draws in which the route is blocked."""

@@ -3,7 +3,7 @@
 import math
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -20,9 +20,6 @@ Point = tuple[float, float]
 Corners = tuple[Point, Point, Point, Point]
 
 
-# ---------------------------------------------------------------- pieces
-
-
 def turn(item: Item) -> float:
     """Return the direction of Breadth [deg], anticlockwise from X: that of the axis where no angle is given."""
     if item.angle_deg is not None:
@@ -31,10 +28,10 @@ def turn(item: Item) -> float:
 
 
 def rectangle(at: Point, angle: float, along: tuple[float, float], across: float) -> Corners:
-    """Return the corners of a rectangle, anticlockwise.
+    """Return the corners of a rectangle about a point, anticlockwise [m].
 
-    `at`: centre of the piece [m]. `angle`: direction of Breadth, anticlockwise from X [deg]. `along`: where it begins
-    and ends along Breadth, from the centre [m]. `across`: its width across Breadth [m], half of it on each side.
+    `angle` is the direction of Breadth, anticlockwise from X [deg]; `along` is where it begins and ends along that, and
+    `across` its width, half of it on each side.
     """
     cos, sin = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     (x, y), (near, far), half = at, along, across / 2
@@ -73,19 +70,16 @@ def build_shapes(
 
     `away` holds, of the pieces against a wall, the direction in which each falls [deg]; None: that is not known.
     """
-    placed = ((at, item, item.x, item.y) for at, item in enumerate(items) if item.floor in floors)
     found = {}
-    for at, item, x, y in placed:
+    for at, item in enumerate(items):
         progress.check()
-        if x is not None and y is not None:
-            found[at] = _shape(item, (x, y), away.get(at))
-            if at in away:
-                flag = "wall_side_unknown" if away[at] is None else "falls_from_wall"
-                found[at] = replace(found[at], flags=(*found[at].flags, flag))
+        if item.floor in floors and item.x is not None and item.y is not None:
+            wall = ("wall_side_unknown" if away[at] is None else "falls_from_wall",) if at in away else ()
+            found[at] = _shape(item, (item.x, item.y), away.get(at), wall)
     return found
 
 
-def _shape(item: Item, at: Point, away: float | None) -> Shape:
+def _shape(item: Item, at: Point, away: float | None, wall: tuple[str, ...]) -> Shape:
     from shapely import Polygon, union_all
 
     across, turns = item.width or item.breadth, [turn(item)]
@@ -97,16 +91,13 @@ def _shape(item: Item, at: Point, away: float | None) -> Shape:
         ways = [ways[0] if abs(angle_apart(away, turn(item))) < 90 else ways[1]]
     falls = [Polygon(one) for one in ways]
     doubts = {"direction_unknown": len(turns) > 1, "width_assumed": item.width is None}
-    flags = tuple(flag for flag, holds in doubts.items() if holds)
+    flags = (*(flag for flag, holds in doubts.items() if holds), *wall)
     return Shape(standing, tuple(falls), union_all([standing, *falls]), flags)
 
 
 def angle_apart(one: float, other: float) -> float:
     """Return how far a direction is from another, -180 to 180 [deg]."""
     return (one - other + 180.0) % 360.0 - 180.0
-
-
-# ---------------------------------------------------------------- segments
 
 
 @dataclass(frozen=True, slots=True)

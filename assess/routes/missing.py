@@ -6,7 +6,7 @@ segment, and not in another room than those that it runs through. Whether they m
 falls, all of them together: `combine` bounds the chance of a blockage by that.
 """
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -21,22 +21,25 @@ from assess.routes.obstructions import Obstructions, is_walled_off
 def find_missing(one: Obstructions, inventory: Inventory, left_out: Collection[int]) -> tuple[MissingRow, ...]:
     """Return what is missing of a segment; nothing where it is too narrow with nothing fallen.
 
-    `one`: the segment with the pieces that reach it. `inventory`: the building. `left_out`: the pieces, by their index,
-    that may fall and of which it is not known whether they reach it.
+    `left_out`: the pieces, by their index, that may fall and of which it is not known whether they reach it.
     """
     if one.is_blocked_standing:
         return ()
+    segment = one.segment
     if one.is_stair:
-        return tuple(_of_stair(one, inventory)) if is_unknown(one, inventory) else ()
+        if not is_unknown(one, inventory):
+            return ()
+        name, pieces = f"{segment.route}: {segment.segment}", [(near.item, near.row) for near in one.pieces]
+        width = _row("clear_width", [(name, segment.row)], inventory, "Routes", "clear_width")
+        return width, *([_row("stair_pieces", pieces, inventory, "Items", "route")] if pieces else [])
     items = [inventory.items[at] for at in left_out]
-    unplaced = [item for item in items if item.x is None or item.y is None]
+    unplaced = [(item.item, item.row) for item in items if item.x is None or item.y is None]
     is_needed = one.band is None and (items or is_unknown(one, inventory))
-    found = [_of_plan(one.segment, inventory)] if is_needed else []
+    found = [_of_plan(segment, inventory)] if is_needed else []
     if unplaced:
-        cells = tuple(_cell(inventory, "Items", item.row, "x") for item in unplaced)
-        found.append(MissingRow(what="positions", names=tuple(item.item for item in unplaced), cells=cells))
+        found.append(_row("positions", unplaced, inventory, "Items", "x"))
     if not inventory.items:
-        found.append(MissingRow(what="furniture", cells=(_cell(inventory, "Items", 2, "item"),)))
+        found.append(MissingRow(what="furniture", cells=(f"Items!{inventory.locate('Items', 2, 'item')}",)))
     return tuple(found)
 
 
@@ -112,42 +115,20 @@ def combine(known: Chance, worst: Chance, any_falls: tuple[float, float]) -> Cha
     )
 
 
-def _of_stair(one: Obstructions, inventory: Inventory) -> Iterator[MissingRow]:
-    segment = one.segment
-    yield MissingRow(
-        what="clear_width",
-        names=(_name(segment),),
-        cells=(_cell(inventory, "Routes", segment.row, "clear_width"),),
-    )
-    if one.pieces:
-        yield MissingRow(
-            what="stair_pieces",
-            names=tuple(near.item for near in one.pieces),
-            cells=tuple(_cell(inventory, "Items", near.row, "route") for near in one.pieces),
-        )
+def _row(what: str, named: Iterable[tuple[str, int]], inventory: Inventory, sheet: str, field: str) -> MissingRow:
+    """Return what is to be filled in, of things by their names and rows of a sheet."""
+    own = tuple(named)
+    cells = tuple(f"{sheet}!{inventory.locate(sheet, row, field)}" for _, row in own)
+    return MissingRow(what=what, names=tuple(name for name, _ in own), cells=cells)
 
 
 def _of_plan(segment: Segment, inventory: Inventory) -> MissingRow:
     """Return why it is not known where a segment lies."""
+    own = [(f"{segment.route}: {segment.segment}", segment.row)]
     places = [one for name in (segment.start, segment.end) for one in inventory.places if name and one.place == name]
     if not (segment.start and segment.end and places):
-        return MissingRow(
-            what="ends", names=(_name(segment),), cells=(_cell(inventory, "Routes", segment.row, "start"),)
-        )
+        return _row("ends", own, inventory, "Routes", "start")
     if len({one.floor for one in places}) > 1:
-        cells = (_cell(inventory, "Routes", segment.row, "floor"),)
-        return MissingRow(what="stair_floor", names=(_name(segment),), cells=cells)
+        return _row("stair_floor", own, inventory, "Routes", "floor")
     without = [one for one in places if one.x is None or one.y is None] or places
-    return MissingRow(
-        what="places",
-        names=tuple(one.place for one in without),
-        cells=tuple(_cell(inventory, "Places", one.row, "x") for one in without),
-    )
-
-
-def _name(segment: Segment) -> str:
-    return f"{segment.route}: {segment.segment}"
-
-
-def _cell(inventory: Inventory, sheet: str, row: int, field: str) -> str:
-    return f"{sheet}!{inventory.locate(sheet, row, field)}"
+    return _row("places", ((one.place, one.row) for one in without), inventory, "Places", "x")

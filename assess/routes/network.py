@@ -84,9 +84,6 @@ def _outward(graph: "nx.MultiGraph[str]", targets: Collection[str]) -> tuple[tup
     return tuple(sorted(edges, key=lambda edge: (min(far.get(edge[0], 0), far.get(edge[1], 0)), edge[2])))
 
 
-# ---------------------------------------------------------------- one route
-
-
 @dataclass(frozen=True, slots=True)
 class Course:
     """When a route counts as blocked: where a place that it serves is cut off, or a segment that joins nothing is."""
@@ -164,9 +161,6 @@ def _served(graph: "nx.MultiGraph[str]", kinds: Mapping[str, str], targets: Coll
     others = [place for place in graph if place not in targets]
     served = [place for place in others if kinds.get(place) == "room" or graph.degree(place) == 1]
     return served or others
-
-
-# ---------------------------------------------------------------- one room
 
 
 def find_rooms(

@@ -121,7 +121,24 @@ def find_obstructions(inventory: Inventory, progress: Progress = SILENT) -> tupl
         for index in named.get(at, ()):
             if one := cover_by_distance(index, inventory.items[index], clear[at], band, shapes.get(index)):
                 covered[index] = one
-        found.append(_obstruct(inventory, segment, clear[at], band, covered, others))
+        required = segment.required_width or DEFAULT_WIDTH
+        gaps = build_gaps([one for index in sorted(covered) for one in covered[index].obstacles], clear[at])
+        found.append(
+            Obstructions(
+                segment=segment,
+                clear=clear[at],
+                required=required,
+                band=band,
+                flags=tuple(_flag(inventory, segment, has_band=band is not None)),
+                pieces=tuple(
+                    _beside(index, inventory.items[index], covered[index], clear[at], required)
+                    for index in sorted(covered)
+                ),
+                gaps=gaps,
+                other_rooms=tuple(sorted(others)),
+                standing=gaps.residual(np.zeros(len(gaps.keys), dtype=np.bool_)),
+            )
+        )
     return tuple(found)
 
 
@@ -130,30 +147,6 @@ def is_walled_off(item: Item, segment: Segment) -> bool:
     is_named = item.route == segment.route and item.segment in ("", segment.segment)
     rooms = {key(room) for room in segment.rooms}
     return not is_named and bool(rooms) and bool(item.room) and key(item.room) not in rooms
-
-
-def _obstruct(
-    inventory: Inventory,
-    segment: Segment,
-    clear: float,
-    band: Band | None,
-    covered: Mapping[int, Coverage],
-    others: Sequence[int],
-) -> Obstructions:
-    required = segment.required_width or DEFAULT_WIDTH
-    indices = sorted(covered)
-    gaps = build_gaps([obstacle for index in indices for obstacle in covered[index].obstacles], clear)
-    return Obstructions(
-        segment=segment,
-        clear=clear,
-        required=required,
-        band=band,
-        flags=tuple(_flag(inventory, segment, has_band=band is not None)),
-        pieces=tuple(_beside(index, inventory.items[index], covered[index], clear, required) for index in indices),
-        gaps=gaps,
-        other_rooms=tuple(sorted(others)),
-        standing=gaps.residual(np.zeros(len(gaps.keys), dtype=np.bool_)),
-    )
 
 
 def is_stair(segment: Segment) -> bool:
@@ -220,9 +213,6 @@ def _find_near(inventory: Inventory, shapes: Mapping[int, Shape], bands: Mapping
     return found
 
 
-# ---------------------------------------------------------------- what a fallen piece covers
-
-
 def cover_by_plan(index: int, shape: Shape, band: Band) -> Coverage | None:
     """Return what a placed piece covers of a band: nothing where the plan shows that it cannot reach it."""
     from shapely import union_all
@@ -278,9 +268,6 @@ def _from_sides(index: int, item: Item, distance: float, clear: float) -> Iterat
                 yield Obstacle(item=index, number=number, falls=falls, left=left, right=right, side=side)
 
 
-# ---------------------------------------------------------------- problems
-
-
 def find_route_problems(inventory: Inventory, obstructions: Sequence[Obstructions]) -> Iterator[Problem]:
     """Yield warnings where the workbook contradicts itself beside routes, and notes on what could not count."""
     seen: set[tuple[str, int]] = set()
@@ -306,27 +293,14 @@ _CONTRADICTIONS = ("nearer_than_plan", "standing_inside")
 
 
 def _contradict(inventory: Inventory, segment: Segment, one: BesideRow, flag: str) -> Problem:
-    field = "x" if flag == "standing_inside" and one.by_plan else "edge_distance"
-    message, fix = (
-        (
-            fill(
-                "Edge distance {distance:g} m of '{item}' is smaller than its position on the plan gives; the Edge "
-                "distance is used.",
-                distance=one.distance_m,
-                item=one.item,
-            ),
-            fill("Correct one of the two."),
-        )
-        if flag == "nearer_than_plan"
-        else (
-            fill(
-                "'{item}' stands {depth:.2f} m inside route '{route}', segment '{segment}', with nothing fallen.",
-                item=one.item,
-                depth=-one.distance_m,
-                route=segment.route,
-                segment=segment.segment,
-            ),
-            fill("Move it, or correct its position or the Clear width."),
-        )
-    )
-    return Problem("warning", "Items", inventory.locate("Items", one.row, field), message, fix)
+    is_inside = flag == "standing_inside"
+    values = {"item": one.item, "route": segment.route, "segment": segment.segment}
+    message = fill("Edge distance {distance:g} m of '{item}' is smaller than its position on the plan gives; the Edge "
+                   "distance is used.", distance=one.distance_m, **values)  # fmt: skip
+    fix = fill("Correct one of the two.")
+    if is_inside:
+        message = fill("'{item}' stands {depth:.2f} m inside route '{route}', segment '{segment}', with nothing "
+                       "fallen.", depth=-one.distance_m, **values)  # fmt: skip
+        fix = fill("Move it, or correct its position or the Clear width.")
+    cell = inventory.locate("Items", one.row, "x" if is_inside and one.by_plan else "edge_distance")
+    return Problem("warning", "Items", cell, message, fix)

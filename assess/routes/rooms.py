@@ -59,18 +59,11 @@ def find_missing_after(
     scene: Scene, segments: Collection[int], fixes: Sequence[RouteFixRow], is_blocked: IsBlocked
 ) -> tuple[MissingRow, ...]:
     """Return what is to be filled in once fixes are done so that it is known whether some segments are open."""
-    if not _may_lack(scene, segments, fixes):
+    if not fixes or not any(scene.missing(at) for at in segments):  # fixes count unconfirmed pieces already
         return ()
     held = scene.with_held(fix.item_index for fix in fixes)
     found = held.settle(segments, lambda draws: held.at_best_and_worst(draws, segments, is_blocked))
     return held.list_missing(found.verdict, segments)
-
-
-def _may_lack(scene: Scene, segments: Collection[int], fixes: Sequence[RouteFixRow]) -> bool:
-    return bool(fixes) and any(scene.missing(at) for at in segments)
-
-
-# ---------------------------------------------------------------- rooms
 
 
 def list_rooms(scene: Scene) -> list[tuple[Place, Part]]:
@@ -102,6 +95,11 @@ def evaluate_room(scene: Scene, place: Place, part: Part, rows: Sequence[Segment
     ways = _ways(scene, place, part, rows)
     seeks_fixes = verdict.state in (RouteState.DOUBTFUL, RouteState.BLOCKED)
     fixes, is_fixed = list_fixes(scene, part.segments, is_cut_off) if seeks_fixes else ((), True)
+    missing_after: tuple[MissingRow, ...] = ()
+    if fixes and (part.by_stairs or any(scene.missing(at) for at in part.segments)):
+        held = scene.with_held(fix.item_index for fix in fixes)
+        after = held.settle(part.segments, partial(_lose, held, part, place.place))
+        missing_after = _list_missing(held, after.verdict, part, ways)
     return RoomRow(
         room=place.place,
         floor=place.floor,
@@ -116,7 +114,7 @@ def evaluate_room(scene: Scene, place: Place, part: Part, rows: Sequence[Segment
         decisive_segment=_find_decisive(scene, ways, rows, is_known=verdict.state != RouteState.NOT_KNOWN),
         fixes=fixes,
         is_fixed=is_fixed,
-        missing_after=_list_missing_after(scene, place, part, ways, fixes),
+        missing_after=missing_after,
         unevaluated_segments=name_unevaluated(scene, part.segments),
         unevaluated_indices=tuple(at for at in part.segments if not scene.is_evaluated(at)),
         ways=tuple(ways),
@@ -131,16 +129,6 @@ def _lose(scene: Scene, part: Part, room: str, draws: Draws) -> tuple[int, int, 
     """Return the sets of the draws in which a room loses every exit, as `Scene.at_best_and_worst` does."""
     lost, known, at_most = scene.at_best_and_worst(draws, part.segments, partial(_is_cut_off, part, room))
     return (lost, draws.every, draws.every) if part.by_stairs else (lost, known, at_most)
-
-
-def _list_missing_after(
-    scene: Scene, place: Place, part: Part, ways: Sequence[WayRow], fixes: Sequence[RouteFixRow]
-) -> tuple[MissingRow, ...]:
-    if not (fixes and part.by_stairs) and not _may_lack(scene, part.segments, fixes):
-        return ()
-    held = scene.with_held(fix.item_index for fix in fixes)
-    found = held.settle(part.segments, partial(_lose, held, part, place.place))
-    return _list_missing(held, found.verdict, part, ways)
 
 
 def _list_exits(part: Part) -> tuple[str, ...]:
@@ -168,7 +156,19 @@ def _list_missing(scene: Scene, verdict: Verdict, part: Part, ways: Sequence[Way
 def _ways(scene: Scene, place: Place, part: Part, rows: Sequence[SegmentRow]) -> list[WayRow]:
     known = {at: rows[at].blocked for at in part.segments if rows[at].state != RouteState.NOT_KNOWN}
     chance = {at: UNKNOWN if (one := known.get(at)) is None else one.probability for at in part.segments}
-    ways = [_way(scene, segments, end) for segments, end in find_ways(part, place.place, chance)]
+    ways = []
+    for segments, end in find_ways(part, place.place, chance):
+        blocked = partial(scene.at_best_and_worst, segments=segments, is_blocked=_is_any_blocked)
+        found = scene.settle(segments, blocked)
+        ways.append(
+            WayRow(
+                segment_indices=segments,
+                end=end,
+                state=found.verdict.state,
+                blocked=found.standing[0],
+                blocked_if_unconfirmed_fall=found.if_unconfirmed_fall,
+            )
+        )
     ways.sort(key=lambda way: (way.state.severity, (way.blocked_if_unconfirmed_fall or way.blocked).probability))
     for number, way in enumerate(ways[1:], start=1):
         shared = (at for at in way.segment_indices if at in ways[0].segment_indices)
@@ -176,21 +176,8 @@ def _ways(scene: Scene, place: Place, part: Part, rows: Sequence[SegmentRow]) ->
     return ways
 
 
-def _way(scene: Scene, segments: tuple[int, ...], end: str) -> WayRow:
-    def happens(draws: Draws) -> tuple[int, int, int]:
-        return scene.at_best_and_worst(draws, segments, lambda blocked, _: union(blocked.values()))
-
-    found = scene.settle(segments, happens)
-    return WayRow(
-        segment_indices=segments,
-        end=end,
-        state=found.verdict.state,
-        blocked=found.standing[0],
-        blocked_if_unconfirmed_fall=found.if_unconfirmed_fall,
-    )
-
-
-# ---------------------------------------------------------------- floors
+def _is_any_blocked(blocked: Blocked, _every: int) -> int:
+    return union(blocked.values())
 
 
 def evaluate_floor(
@@ -201,20 +188,27 @@ def evaluate_floor(
     rooms: Sequence[RoomRow],
 ) -> FloorRoutesRow:
     """Return what is to be expected on one floor; `every` are all segments, `rooms` those of `parts`."""
+    kinds = kinds_of(scene.inventory.places)
     segments = [at for at, one in enumerate(scene.obstructions) if one.segment.floor == floor]
     routes = sorted({scene.obstructions[at].segment.route for at in segments}, key=natural_key)
     here = [(place, part) for place, part in parts if place.floor == floor]
     own = [room for room in rooms if room.floor == floor]
     known = [every[at] for at in segments if every[at].state != RouteState.NOT_KNOWN]
-    blocked = [_blocked_here(scene, route, segments) for route in routes]
+    blocked = []
+    for route in routes:  # by their segments on this floor
+        lanes = {at: scene.obstructions[at].segment for at in segments if scene.obstructions[at].segment.route == route}
+        is_blocked = build_course(lanes, kinds).is_blocked
+        found = scene.settle(lanes, partial(scene.at_best_and_worst, segments=lanes, is_blocked=is_blocked))
+        if found.verdict.state != RouteState.NOT_KNOWN:
+            blocked.append(found.standing[0].probability)
     return FloorRoutesRow(
         floor=floor,
         segments=len(segments),
         blocked_segments_expected=sum(one.blocked.probability for one in known if one.blocked),
         unknown_segments=len(segments) - len(known),
         routes=len(routes),
-        blocked_routes_expected=sum(one for one in blocked if one is not None),
-        unknown_routes=blocked.count(None),
+        blocked_routes_expected=sum(blocked),
+        unknown_routes=len(routes) - len(blocked),
         rooms=len(own),
         cut_off_rooms_expected=sum(room.loses_every_exit.probability for room in own if room.is_known),
         unknown_rooms=sum(not room.is_known for room in own),
@@ -230,15 +224,6 @@ def count_unplaced(scene: Scene, floor: str, segments: Sequence[int]) -> int:
     return sum(item.quantity for item in items if item.x is None or item.y is None or not has_plan)
 
 
-def _blocked_here(scene: Scene, route: str, segments: Sequence[int]) -> float | None:
-    """Return the chance that a route is blocked by its segments on one floor; None where its state is not known."""
-    own = {at: one for at, one in scene.segments_of(route).items() if at in segments}
-    course = build_course(own, kinds_of(scene.inventory.places))
-
-    found = scene.settle(own, lambda draws: scene.at_best_and_worst(draws, own, course.is_blocked))
-    return None if found.verdict.state == RouteState.NOT_KNOWN else found.standing[0].probability
-
-
 def _find_any_cut_off(scene: Scene, rooms: Sequence[tuple[Place, Part]]) -> Chance | None:
     segments = sorted({at for _, part in rooms for at in part.segments})
 
@@ -250,9 +235,6 @@ def _find_any_cut_off(scene: Scene, rooms: Sequence[tuple[Place, Part]]) -> Chan
     return standing[0] if scene.is_known(standing[0], worst) else None
 
 
-# ---------------------------------------------------------------- rooms without furniture
-
-
 def list_rooms_to_furnish(inventory: Inventory) -> tuple[Place, ...]:
     """Return the rooms and corridors of Places."""
     return tuple(one for one in inventory.places if one.kind in ROOMS)
@@ -262,18 +244,28 @@ def list_unfurnished(inventory: Inventory) -> tuple[Place, ...]:
     """Return the rooms and corridors of Places in which no furniture is listed.
 
     A room has the pieces of its name, else those of the Room of the segments that begin or end there, and those that
-    stand inside its outline. A row of furniture of which nothing tells the room counts as the only one of a room.
+    stand inside its outline. A row of furniture of which nothing tells the room counts as the only one of a room: so
+    the first of each floor are left out, as many as there are such rows.
     """
+    named: dict[str, set[str]] = defaultdict(set)
+    for segment in inventory.routes:
+        for place in (segment.start, segment.end):
+            named[place].update(key(room) for room in segment.rooms)
     taken = {(item.floor, key(item.room)) for item in inventory.items if item.room}
-    names = _list_names(inventory)
-    left = [
-        one
-        for one in list_rooms_to_furnish(inventory)
-        if not any((one.floor, name) in taken for name in names[one.place])
-    ]
+    left = []
+    for one in list_rooms_to_furnish(inventory):
+        names = {key(one.place)} if key(one.place) in named[one.place] else {key(one.place), *named[one.place]}
+        if not any((one.floor, name) in taken for name in names):
+            left.append(one)
     inside = _find_inside(left, inventory.items)
     loose = Counter(item.floor for item in inventory.items if not item.room and (item.x is None or item.y is None))
-    return tuple(_leave_out(loose, [one for at, one in enumerate(left) if at not in inside]))
+    found = []
+    for one in (one for at, one in enumerate(left) if at not in inside):
+        if loose[one.floor] > 0:
+            loose[one.floor] -= 1
+        else:
+            found.append(one)
+    return tuple(found)
 
 
 def find_unfurnished(inventory: Inventory) -> Iterator[Problem]:
@@ -291,26 +283,6 @@ def find_unfurnished(inventory: Inventory) -> Iterator[Problem]:
         )
         cell = inventory.locate("Places", found[0].row, "place")
         yield Problem("warning", "Places", cell, message, fill("List the furniture of every room on the way."))
-
-
-def _leave_out(loose: Counter[str], rooms: Sequence[Place]) -> Iterator[Place]:
-    """Yield rooms but for the first of each floor, as many as there are rows of unknown room."""
-    left = loose.copy()
-    for one in rooms:
-        if left[one.floor] > 0:
-            left[one.floor] -= 1
-        else:
-            yield one
-
-
-def _list_names(inventory: Inventory) -> dict[str, Collection[str]]:
-    """Return by place the names that pieces may give as its room."""
-    named: dict[str, set[str]] = defaultdict(set)
-    for segment in inventory.routes:
-        for place in (segment.start, segment.end):
-            named[place].update(key(room) for room in segment.rooms)
-    own = {one.place: key(one.place) for one in inventory.places}
-    return {place: {name} if name in named[place] else {name, *named[place]} for place, name in own.items()}
 
 
 def _find_inside(rooms: Sequence[Place], items: Sequence[Item]) -> set[int]:

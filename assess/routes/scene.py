@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TypedDict
+from typing import Any, TypedDict, TypeVar, cast
 
 import numpy as np
 
@@ -13,6 +13,8 @@ from assess.routes.chances import Couplings, Draws, Falls, Happens, Key, build_c
 from assess.routes.missing import combine, find_any_falls, find_missing, is_unknown, list_left_out
 from assess.routes.network import Blocked
 from assess.routes.obstructions import Obstructions
+
+_Found = TypeVar("_Found")
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,24 +82,24 @@ class Scene:
     seed: int
     z: float
     progress: Progress = SILENT
-    _couplings: dict[tuple[tuple[Key, ...], bool], Couplings] = field(default_factory=dict)
-    _of_all: dict[tuple[bool, bool], Couplings] = field(default_factory=dict)
-    """Of all pieces, by whether anchors fail and unconfirmed pieces fall: those of fewer pieces share its draws."""
-    _missing: dict[int, tuple[MissingRow, ...]] = field(default_factory=dict)
-    _left_out: dict[int, tuple[int, ...]] = field(default_factory=dict)
-    _with_held: dict[frozenset[int], "Scene"] = field(default_factory=dict)
+    _kept: dict[Any, Any] = field(default_factory=dict)
+    """What was worked out before, by what it is of."""
+
+    def _keep(self, of: Any, make: Callable[[], _Found]) -> _Found:
+        if of not in self._kept:
+            self._kept[of] = make()
+        return cast(_Found, self._kept[of])
 
     def with_held(self, items: Iterable[int]) -> "Scene":
         """Return the scene with further pieces (indices) anchored."""
         held = frozenset(items)
-        if held not in self._with_held:
+
+        def make() -> Scene:
             anchored = self.falls.anchored.copy()
             anchored[list(held)] = True
-            falls = replace(self.falls, anchored=anchored)
-            self._with_held[held] = Scene(
-                self.inventory, self.obstructions, falls, self.risk, self.seed, self.z, self.progress
-            )
-        return self._with_held[held]
+            return replace(self, falls=replace(self.falls, anchored=anchored), _kept={})
+
+        return self._keep(("held", held), make)
 
     def segments_of(self, route: str) -> dict[int, Segment]:
         """Return the segments of a route by their number."""
@@ -105,17 +107,13 @@ class Scene:
 
     def missing(self, segment: int) -> tuple[MissingRow, ...]:
         """Return what is missing of a segment; of pieces that are left out, whether or not they matter."""
-        if segment not in self._missing:
-            one = self.obstructions[segment]
-            self._missing[segment] = find_missing(one, self.inventory, self.left_out(segment))
-        return self._missing[segment]
+        one = self.obstructions[segment]
+        return self._keep(("missing", segment), lambda: find_missing(one, self.inventory, self.left_out(segment)))
 
     def left_out(self, segment: int) -> tuple[int, ...]:
         """Return the pieces (indices) that may fall and of which it is not known whether they reach a segment."""
-        if segment not in self._left_out:
-            found = list_left_out(self.obstructions[segment], self.inventory, self.falls)
-            self._left_out[segment] = tuple(found)
-        return self._left_out[segment]
+        one = self.obstructions[segment]
+        return self._keep(("left out", segment), lambda: tuple(list_left_out(one, self.inventory, self.falls)))
 
     def any_left_out_falls(self, segments: Iterable[int]) -> tuple[float, float]:
         """Return how likely any piece falls that is left out of some segments, and the upper end [-]."""
@@ -142,34 +140,30 @@ class Scene:
         found = {key for at in segments for key in self.obstructions[at].keys}
         return tuple(sorted(key for key in found if not out[key[0]]))
 
-    def find_doubts(self, segments: Iterable[int]) -> tuple[str, ...]:
-        """Return why pieces that reach some segments, and are not anchored, are unconfirmed, as keys of `FLAGS`."""
-        items = {item for item, _ in self.keys(segments)} & self.falls.unconfirmed.keys()
-        raised = {flag for item in items for flag in self.falls.unconfirmed[item]}
-        return tuple(flag for flag in DOUBTS.values() if flag in raised)
-
     def couplings(
         self, segments: Iterable[int], *, anchors_fail: bool = False, unconfirmed_fall: bool = False
     ) -> Couplings:
         """Return how the pieces that reach any of some segments fall together; unconfirmed ones stand by default."""
         keys = self.keys(segments, anchors_fail=anchors_fail)
         fall = unconfirmed_fall and any(item in self.falls.unconfirmed for item, _ in keys)
-        if (keys, fall) not in self._couplings:
+
+        def make() -> Couplings:
             self.progress.check()
             takes_anchored = any(self.falls.anchored[item] for item, _ in keys)  # the same pieces, the same couplings
-            self._couplings[keys, fall] = build_couplings(
+            return build_couplings(
                 self.falls, keys, self.seed, lambda: self._all(takes_anchored, fall), self.progress,
                 unconfirmed_fall=fall,
             )  # fmt: skip
-        return self._couplings[keys, fall]
+
+        return self._keep((keys, fall), make)
 
     def _all(self, anchors_fail: bool, fall: bool) -> Couplings:
-        if (anchors_fail, fall) not in self._of_all:
-            keys = self.keys(range(len(self.obstructions)), anchors_fail=anchors_fail)
-            self._of_all[anchors_fail, fall] = build_couplings(
-                self.falls, keys, self.seed, progress=self.progress, unconfirmed_fall=fall
-            )
-        return self._of_all[anchors_fail, fall]
+        """Return the couplings of all pieces: those of fewer share its draws."""
+        keys = self.keys(range(len(self.obstructions)), anchors_fail=anchors_fail)
+        return self._keep(
+            (anchors_fail, fall),
+            lambda: build_couplings(self.falls, keys, self.seed, progress=self.progress, unconfirmed_fall=fall),
+        )
 
     # ------------------------------------------------------------ what happens in draws
 
@@ -231,12 +225,7 @@ class Scene:
         if has_anchored:
             failed = self.couplings(segments, anchors_fail=True, unconfirmed_fall=True)
             if_anchors_fail = find_chances(failed, happens, self.z)[0]
-        return Judgement(
-            chances=chances,
-            at_most=at_most,
-            if_anchors_fail=if_anchors_fail,
-            most_likely_piece=None if likeliest is None else self.piece(likeliest),
-        )
+        return Judgement(chances, at_most, if_anchors_fail, None if likeliest is None else self.piece(likeliest))
 
     def outlook(
         self, segments: Collection[int], is_blocked: Callable[[Blocked, int], int], *, is_evaluated: bool
@@ -303,13 +292,15 @@ class Scene:
 
     def list_missing(self, verdict: Verdict, segments: Collection[int]) -> tuple[MissingRow, ...]:
         """Return what is to be filled in so that the state of some segments is known; nothing where it is."""
-        of_segments = [row for at in segments for row in self.missing(at)] if verdict.by_missing else []
-        doubts = self.find_doubts(segments) if verdict.by_unconfirmed else ()
-        return join_missing([*of_segments, *(self._of_doubt(segments, flag) for flag in doubts)])
-
-    def _of_doubt(self, segments: Collection[int], flag: str) -> MissingRow:
-        items = sorted({item for item, _ in self.keys(segments) if flag in self.falls.unconfirmed.get(item, ())})
-        return MissingRow(what=flag, names=tuple(self.inventory.items[item].item for item in items))
+        rows = [row for at in segments for row in self.missing(at)] if verdict.by_missing else []
+        if verdict.by_unconfirmed:
+            reaching = sorted({item for item, _ in self.keys(segments)} & self.falls.unconfirmed.keys())
+            for flag in DOUBTS.values():
+                items = [item for item in reaching if flag in self.falls.unconfirmed[item]]
+                if items:
+                    names = tuple(self.inventory.items[item].item for item in items)
+                    rows.append(MissingRow(what=flag, names=names))
+        return join_missing(rows)
 
     def find_decisive(self, rows: Mapping[int, tuple[RouteState, Chance | None]], *, is_known: bool) -> int | None:
         """Return which segment decides the state of several, by the state and chance of each; None where none does.

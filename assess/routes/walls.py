@@ -6,7 +6,7 @@ no side does, or sides do on both faces, the side of the wall is not known, and 
 """
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -43,11 +43,9 @@ REASONS: Mapping[int, Text] = {
 
 @dataclass(frozen=True, slots=True)
 class Wall:
-    """The wall at the back of a piece.
+    """The wall at the back of a piece, which falls away from it in a direction, anticlockwise from X [deg].
 
-    * `falls_toward`: direction in which the piece falls, anticlockwise from X [deg]; None where the side of the wall is
-      not known.
-    * `reason`: why it is not known.
+    None where the side of the wall is not known, for a reason, one of `REASONS`.
     """
 
     falls_toward: float | None
@@ -73,9 +71,6 @@ def find_walls(inventory: Inventory) -> dict[int, Wall]:
         for at, item in enumerate(inventory.items)
         if item.against_wall
     }
-
-
-# ---------------------------------------------------------------- one piece
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,9 +120,6 @@ def _find_side(item: Item, at: Point, side: tuple[Point, Point]) -> int:
     return 1 if ends[0] > 0 else -1
 
 
-# ---------------------------------------------------------------- outlines
-
-
 def _sides(outline: Outline) -> Iterator[tuple[Point, Point]]:
     return pairwise((*outline, outline[0]))
 
@@ -145,42 +137,21 @@ def is_inside(at: Point, outline: Outline) -> bool:
 
 def _find_edge(outlines: Sequence[Outline]) -> _Edge:
     """Return the building's edge as far as outlines show it: their sides that lie on the hull of them all."""
-    hull = find_hull(point for outline in outlines for point in outline)
-    lines = list(_sides(hull))
-    on_hull = [
+    from shapely import MultiPoint, get_coordinates
+
+    points = [point for outline in outlines for point in outline]
+    hull = tuple((x, y) for x, y in get_coordinates(MultiPoint(points).convex_hull).tolist()[:-1])
+    sides = [
         side for outline in outlines for side in _sides(outline)
-        if any(all(_distance(point, *line) <= ON_EDGE for point in side) for line in lines)
+        if any(all(_distance(point, *line) <= ON_EDGE for point in side) for line in _sides(hull))
     ]  # fmt: skip
-    return _Edge(hull, on_hull)
-
-
-def find_hull(points: Iterable[Point]) -> Outline:
-    """Return the corners of the smallest convex polygon round some points, anticlockwise."""
-    ordered = sorted(set(points))
-    lower, upper = (_chain(one) for one in (ordered, ordered[::-1]))
-    return (*lower[:-1], *upper[:-1])
-
-
-def _chain(ordered: Sequence[Point]) -> list[Point]:
-    found: list[Point] = []
-    for x, y in ordered:
-        while len(found) > 1 and _turns_right(found[-2], found[-1], (x, y)):
-            found.pop()
-        found.append((x, y))
-    return found
-
-
-def _turns_right(a: Point, b: Point, c: Point) -> bool:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) <= 0
+    return _Edge(hull, sides)
 
 
 def _distance(point: Point, one: Point, two: Point) -> float:
     """Return how far a point is from the line through two others [m]."""
     x, y = two[0] - one[0], two[1] - one[1]
     return abs(x * (point[1] - one[1]) - y * (point[0] - one[0])) / math.hypot(x, y)
-
-
-# ---------------------------------------------------------------- problems
 
 
 def remark_on_walls(inventory: Inventory) -> Iterator[Problem]:

@@ -13,7 +13,6 @@ from assess.routes.walls import (
     NO_WALL_NEAR,
     OUTSIDE,
     UNPLACED,
-    find_hull,
     find_walls,
     remark_on_walls,
 )
@@ -110,11 +109,6 @@ def test_a_room_without_an_outline_takes_the_buildings_edge():
     assert wall(against(7, 0.3, room="Hall"), west, east, hall).falls_toward == pytest.approx(90)
     assert wall(against(4.3, 3, angle_deg=0, room="Hall"), west, east).reason == NO_WALL_NEAR
     assert wall(against(7, -0.3, room="Hall"), west, east, hall).reason == OUTSIDE
-
-
-def test_the_hull_of_points():
-    hull = find_hull([(0, 0), (2, 1), (4, 0), (4, 4), (2, 2), (0, 4), (4, 2)])
-    assert hull == ((0, 0), (4, 0), (4, 4), (0, 4))
 
 
 @pytest.mark.parametrize(
