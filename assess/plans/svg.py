@@ -7,6 +7,7 @@ Source: W3C (2011), Scalable Vector Graphics 1.1, second edition, 7.6 (transform
 9 (shapes), F.6 (arcs from their ends).
 """
 
+import cmath
 import math
 import re
 from collections import Counter
@@ -28,8 +29,6 @@ from assess.plans.linework import (
     pack,
     too_many,
 )
-
-Point = tuple[float, float]
 
 CHORDS = 8
 """Chords of a curve."""
@@ -145,7 +144,8 @@ class SvgReader:
             if self._points > MOST_RAW:
                 raise too_many()
             if len(line) > 1:
-                moved = np.array(line) @ matrix[:2, :2].T + matrix[:2, 2]
+                points = np.array(line)
+                moved = np.column_stack((points.real, points.imag)) @ matrix[:2, :2].T + matrix[:2, 2]
                 if not np.abs(moved).max() <= 1e12:
                     raise unreadable()
                 self.lines.append(moved)
@@ -222,48 +222,51 @@ def _step(name: str, given: list[float]) -> Sequence[float]:
     if len(given) not in counts[name]:
         raise unreadable()
     first, last = given[0], given[-1]
-    if name == "matrix":
-        return given
-    if name == "translate":
-        return 1.0, 0.0, 0.0, 1.0, first, last if len(given) == 2 else 0.0
-    if name == "scale":
-        return first, 0.0, 0.0, last, 0.0, 0.0
-    cos, sin, tan = math.cos(math.radians(first)), math.sin(math.radians(first)), math.tan(math.radians(first))
-    if name != "rotate":
-        return (1.0, 0.0, tan, 1.0, 0.0, 0.0) if name == "skewX" else (1.0, tan, 0.0, 1.0, 0.0, 0.0)
-    x, y = (given[1], given[2]) if len(given) == 3 else (0.0, 0.0)
-    return cos, sin, -sin, cos, x - cos * x + sin * y, y - sin * x - cos * y
+    cos, sin, tan = (way(math.radians(first)) for way in (math.cos, math.sin, math.tan))
+    x, y = (given[1], given[2]) if name == "rotate" and len(given) == 3 else (0.0, 0.0)
+    return {
+        "matrix": given,
+        "translate": (1.0, 0.0, 0.0, 1.0, first, last if len(given) == 2 else 0.0),
+        "scale": (first, 0.0, 0.0, last, 0.0, 0.0),
+        "rotate": (cos, sin, -sin, cos, x - cos * x + sin * y, y - sin * x - cos * y),
+        "skewX": (1.0, 0.0, tan, 1.0, 0.0, 0.0),
+        "skewY": (1.0, tan, 0.0, 1.0, 0.0, 0.0),
+    }[name]
 
 
 # ---------------------------------------------------------------- shapes
 
 Attributes = Mapping[str, str]
-Lines = list[list[Point]]
+Lines = list[list[complex]]
+"""Points of each line, X as the real and Y as the imaginary part."""
 
 
-def _lengths(attributes: Attributes, *names: str) -> list[float] | None:
-    """Return lengths; None where one of them is relative to something else."""
+def _lengths(attributes: Attributes, *names: str) -> list[float]:
+    """Return lengths; none where one of them is relative to something else."""
     found = [read_length(attributes, name) for name in names]
-    return None if None in found else [one for one in found if one is not None]
+    return [] if None in found else [one for one in found if one is not None]
 
 
 def _line(attributes: Attributes) -> Lines:
     given = _lengths(attributes, "x1", "y1", "x2", "y2")
-    return [[(given[0], given[1]), (given[2], given[3])]] if given else []
+    return [_pair(given)] if given else []
+
+
+def _pair(given: Sequence[float]) -> list[complex]:
+    return [complex(x, y) for x, y in zip(given[::2], given[1::2], strict=False)]
 
 
 def _polyline(attributes: Attributes) -> Lines:
-    given = read_list(attributes.get("points", ""))
-    points = list(zip(given[::2], given[1::2], strict=False))
+    points = _pair(read_list(attributes.get("points", "")))
     return [points] if len(points) > 1 else []
 
 
 def _rect(attributes: Attributes) -> Lines:
     given = _lengths(attributes, "x", "y", "width", "height")
-    if not given or given[2] <= 0 or given[3] <= 0:
+    if not given or min(given[2:]) <= 0:
         return []
     x, y, wide, tall = given
-    return [[(x, y), (x + wide, y), (x + wide, y + tall), (x, y + tall), (x, y)]]
+    return [_pair((x, y, x + wide, y, x + wide, y + tall, x, y + tall, x, y))]
 
 
 def _ellipse(attributes: Attributes, *radii: str) -> Lines:
@@ -272,13 +275,10 @@ def _ellipse(attributes: Attributes, *radii: str) -> Lines:
         return []
     x, y, rx, ry = *given[:3], given[-1]
     u, v = _ROUND * rx, _ROUND * ry
-    quarters = (
-        ((x + rx, y), (x + rx, y + v), (x + u, y + ry), (x, y + ry)),
-        ((x, y + ry), (x - u, y + ry), (x - rx, y + v), (x - rx, y)),
-        ((x - rx, y), (x - rx, y - v), (x - u, y - ry), (x, y - ry)),
-        ((x, y - ry), (x + u, y - ry), (x + rx, y - v), (x + rx, y)),
-    )
-    return [[(x + rx, y), *(point for quarter in quarters for point in bend(*quarter))]]
+    ways = ((rx, 0), (rx, v), (u, ry), (0, ry), (-u, ry), (-rx, v), (-rx, 0), (-rx, -v), (-u, -ry), (0, -ry),
+            (u, -ry), (rx, -v), (rx, 0))  # fmt: skip
+    points = [complex(x + a, y + b) for a, b in ways]
+    return [[points[0], *(point for at in range(0, 12, 3) for point in bend(points[at : at + 4]))]]
 
 
 _SHAPES: Mapping[str, Callable[[Attributes], Lines]] = {
@@ -301,6 +301,8 @@ _ARGUMENT = re.compile(rf"[\s,]*+({NUMBER})")
 _FLAG = re.compile(r"[\s,]*+([01])")
 _ARGUMENTS = {"M": 2, "Z": 0, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7}
 """How many numbers each command takes."""
+_CONTINUED = frozenset({("S", "C"), ("S", "S"), ("T", "Q"), ("T", "T")})
+"""Commands that go on from the control point of the one before."""
 
 
 class PathReader:
@@ -308,8 +310,8 @@ class PathReader:
 
     def __init__(self) -> None:
         self.lines: Lines = []
-        self.here = self.begun = (0.0, 0.0)
-        self.control: Point | None = None
+        self.here = self.begun = 0j
+        self.control: complex | None = None
         self.kind = ""
         self.count = 0
 
@@ -333,104 +335,75 @@ class PathReader:
                     raise unreadable()
                 given.append(read_number(argument[1]))
                 at = argument.end()
-            self._do(kind, given, self.here if command.islower() else (0.0, 0.0))
+            self._do(kind, given, self.here if command.islower() else 0j)
             command = {"M": "L", "m": "l"}.get(command, command)
         return self.lines
 
-    def _do(self, kind: str, given: list[float], origin: Point) -> None:
+    def _do(self, kind: str, given: list[float], origin: complex) -> None:
         """Draw one command, its coordinates counted from `origin`."""
         before, self.kind = self.kind, kind
         control = self.control if (kind, before) in _CONTINUED else None
         self.control = None
         if kind == "Z":
-            self._close()
-        elif kind == "H":
-            self._go((origin[0] + given[0], self.here[1]))
-        elif kind == "V":
-            self._go((self.here[0], origin[1] + given[0]))
+            if self.lines[-1]:
+                self._go(self.begun)
+            self._add(1)
+            self.lines.append([])
+            self.here = self.begun
+        elif kind in "HV":
+            x, y = (origin.real + given[0], self.here.imag) if kind == "H" else (self.here.real, origin.imag + given[0])
+            self._go(complex(x, y))
         else:
-            arguments, given = (given[:5], given[5:]) if kind == "A" else ([], given)
-            *controls, end = [(origin[0] + x, origin[1] + y) for x, y in zip(given[::2], given[1::2], strict=True)]
+            *controls, end = [origin + point for point in _pair(given[5:] if kind == "A" else given)]
             if kind == "M":
                 self.begun = end
                 self.lines.append([])
             if kind in "ST":  # the first control point is the reflection of the last of the curve before
-                here, last = self.here, control or self.here
-                controls.insert(0, (2 * here[0] - last[0], 2 * here[1] - last[1]))
+                controls.insert(0, 2 * self.here - (self.here if control is None else control))
             if controls:
                 self.control = controls[-1]
-                self._go(*self._bend(controls, end))
+                if len(controls) == 1:  # quadratic
+                    controls = [at + 2 / 3 * (controls[0] - at) for at in (self.here, end)]
+                self._go(*bend([self.here, *controls, end]))
             else:
-                self._go(*(self._arc(arguments, end) if arguments else [end]))
+                self._go(*(arc(self.here, end, given) if kind == "A" else [end]))
 
-    def _go(self, *points: Point) -> None:
-        if not all(abs(value) <= FARTHEST for point in points for value in point):
+    def _go(self, *points: complex) -> None:
+        if not all(abs(value) <= FARTHEST for point in points for value in (point.real, point.imag)):
             raise unreadable()
-        self._count(len(points))
+        self._add(len(points))
         if self.kind not in "MZ" and not self.lines[-1]:
             self.lines[-1].append(self.begun)
         self.lines[-1] += points
         self.here = points[-1]
 
-    def _count(self, done: int) -> None:
+    def _add(self, done: int) -> None:
         self.count += done
         if self.count > MOST_RAW:
             raise too_many()
 
-    def _close(self) -> None:
-        if self.lines[-1]:
-            self._go(self.begun)
-        self._count(1)
-        self.lines.append([])
-        self.here = self.begun
 
-    def _bend(self, controls: list[Point], end: Point) -> list[Point]:
-        if len(controls) == 1:
-            (one,) = controls
-            controls = [(at[0] + 2 / 3 * (one[0] - at[0]), at[1] + 2 / 3 * (one[1] - at[1])) for at in (self.here, end)]
-        return bend(self.here, controls[0], controls[1], end)
-
-    def _arc(self, given: list[float], end: Point) -> list[Point]:
-        rx, ry = abs(given[0]), abs(given[1])
-        if rx == 0 or ry == 0 or end == self.here:
-            return [end]
-        radii = (rx, ry, math.radians(given[2] % 360))
-        return arc(self.here, end, radii, is_large=bool(given[3]), is_swept=bool(given[4]))
+def bend(points: Sequence[complex]) -> list[complex]:
+    """Return points of a cubic Bézier curve, from its start, two control points and end; the last at its end."""
+    shares = [at / CHORDS for at in range(1, CHORDS)]
+    weights = [((1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t * t * (1 - t), t**3) for t in shares]
+    return [*(sum(a * point for a, point in zip(own, points, strict=True)) for own in weights), points[-1]]
 
 
-_CONTINUED = frozenset({("S", "C"), ("S", "S"), ("T", "Q"), ("T", "T")})
-"""Commands that go on from the control point of the one before."""
-
-
-def bend(start: Point, first: Point, second: Point, end: Point) -> list[Point]:
-    """Return points of a cubic Bézier curve, the last at its end."""
-    found = []
-    for at in range(1, CHORDS):
-        t = at / CHORDS
-        a, b, c, d = (1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t * t * (1 - t), t**3
-        x, y = (a * start[i] + b * first[i] + c * second[i] + d * end[i] for i in (0, 1))
-        found.append((x, y))
-    return [*found, end]
-
-
-def arc(start: Point, end: Point, radii: tuple[float, float, float], *, is_large: bool, is_swept: bool) -> list[Point]:
-    """Return points of an elliptical arc, the last at its end (F.6.5 and F.6.6); `radii` ends with its turn [rad]."""
-    rx, ry, turn = radii
-    cos, sin = math.cos(turn), math.sin(turn)
-    half_x, half_y = (start[0] - end[0]) / 2, (start[1] - end[1]) / 2
-    x, y = cos * half_x + sin * half_y, cos * half_y - sin * half_x
-    grown = math.sqrt(max((x / rx) ** 2 + (y / ry) ** 2, 1.0))
+def arc(start: complex, end: complex, given: Sequence[float]) -> list[complex]:
+    """Return points of an elliptical arc, the last at its end, from the arguments of its command (F.6.5 and F.6.6)."""
+    rx, ry, turn, (is_large, is_swept) = abs(given[0]), abs(given[1]), math.radians(given[2] % 360), given[3:5]
+    if rx == 0 or ry == 0 or end == start:
+        return [end]
+    axis = cmath.rect(1.0, turn)
+    half = (start - end) / 2 * axis.conjugate()
+    grown = math.sqrt(max((half.real / rx) ** 2 + (half.imag / ry) ** 2, 1.0))
     rx, ry = rx * grown, ry * grown
-    ratio = (x / rx) ** 2 + (y / ry) ** 2
+    ratio = (half.real / rx) ** 2 + (half.imag / ry) ** 2
     root = math.sqrt(max(1 / ratio - 1, 0.0)) * (-1 if is_large == is_swept else 1) if ratio else 0.0
-    u, v = root * rx * y / ry, -root * ry * x / rx
-    centre = cos * u - sin * v + (start[0] + end[0]) / 2, sin * u + cos * v + (start[1] + end[1]) / 2
-    begin = math.atan2((y - v) / ry, (x - u) / rx)
-    sweep = (math.atan2((-y - v) / ry, (-x - u) / rx) - begin) % (2 * math.pi)
-    sweep -= 0 if is_swept else 2 * math.pi
-    found = []
-    for at in range(1, 2 * CHORDS):
-        angle = begin + sweep * at / (2 * CHORDS)
-        along, across = rx * math.cos(angle), ry * math.sin(angle)
-        found.append((centre[0] + cos * along - sin * across, centre[1] + sin * along + cos * across))
-    return [*found, end]
+    middle = complex(root * rx * half.imag / ry, -root * ry * half.real / rx)
+    begin, stop = (math.atan2((one - middle).imag / ry, (one - middle).real / rx) for one in (half, -half))
+    sweep = (stop - begin) % (2 * math.pi) - (0 if is_swept else 2 * math.pi)
+    centre = middle * axis + (start + end) / 2
+    angles = [begin + sweep * at / (2 * CHORDS) for at in range(1, 2 * CHORDS)]
+    return [*(centre + complex(rx * math.cos(one), ry * math.sin(one)) * axis for one in angles), end]
