@@ -17,17 +17,7 @@ from assess.errors import Problem, WorkbookError
 from assess.i18n import fill
 from assess.progress import SILENT, Progress
 from assess.workbook.names import find_sheet, is_cobie_list, plain
-from assess.workbook.open import (
-    DAMAGE,
-    HEADER_ROWS,
-    MAX_ROWS,
-    UNSAVED,
-    WORKBOOK,
-    Book,
-    Cells,
-    read_file,
-    unreadable,
-)
+from assess.workbook.open import DAMAGE, HEADER_ROWS, MAX_ROWS, UNSAVED, WORKBOOK, Book, Cells, read_file, unreadable
 from assess.workbook.plain_rows import column_letters
 from assess.workbook.values import ERRORS, is_blank, read_text
 

@@ -42,11 +42,7 @@ _Given = ParamSpec("_Given")
 
 
 def run_apart(
-    name: str,
-    progress: Progress,
-    work: Callable[_Given, _Found],
-    *args: _Given.args,
-    **named: _Given.kwargs,
+    name: str, progress: Progress, work: Callable[_Given, _Found], *args: _Given.args, **named: _Given.kwargs
 ) -> _Found:
     """Return what `work` returns, called in a process of its own.
 

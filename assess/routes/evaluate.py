@@ -12,13 +12,7 @@ from assess.i18n import count
 from assess.methods.simulate import interval_width
 from assess.model import Inventory
 from assess.progress import SILENT, Progress
-from assess.route_results import (
-    BesideRow,
-    RouteRow,
-    RouteState,
-    RouteTables,
-    SegmentRow,
-)
+from assess.route_results import BesideRow, RouteRow, RouteState, RouteTables, SegmentRow
 from assess.routes.chances import DRAWS, Falls, to_array
 from assess.routes.network import build_course, find_ends
 from assess.routes.obstructions import Obstructions

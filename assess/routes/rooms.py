@@ -181,11 +181,7 @@ def _is_any_blocked(blocked: Blocked, _every: int) -> int:
 
 
 def evaluate_floor(
-    scene: Scene,
-    floor: str,
-    parts: Sequence[tuple[Place, Part]],
-    every: Sequence[SegmentRow],
-    rooms: Sequence[RoomRow],
+    scene: Scene, floor: str, parts: Sequence[tuple[Place, Part]], every: Sequence[SegmentRow], rooms: Sequence[RoomRow]
 ) -> FloorRoutesRow:
     """Return what is to be expected on one floor; `every` are all segments, `rooms` those of `parts`."""
     kinds = kinds_of(scene.inventory.places)
