@@ -14,7 +14,7 @@ COMMON, CSV, TEXT = (f"assess.motion.formats.{name}" for name in ("_format", "pl
 ALLOWANCE, PICTURES, PLANS = "assess.workbook.kept_files", "assess.pictures", "assess.plans"
 
 MODEL, PROCESS = "assess.bim.ifc_file", "assess.bim.model_process"
-SCAN, HOME = "assess.bim.scan_values", "assess.bim.sweet_home"
+SCAN, HOME = "assess.bim.roomplan", "assess.bim.sweet_home"
 
 ROWS: tuple[tuple[str, str, str, float, str, str], ...] = (
     ("Workbook: size of the file", OPEN, "MAX_FILE", 2**20, "{:.0f} MiB", REFUSED),

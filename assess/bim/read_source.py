@@ -11,8 +11,8 @@ from assess.bim.ifc_model import read_model
 from assess.bim.import_workbook import ImportedBuilding, keep_record
 from assess.bim.model_process import run_apart
 from assess.bim.model_rows import Drafts, list_building
+from assess.bim.roomplan import MOST_BYTES as MOST_OF_SCAN
 from assess.bim.roomplan import read_roomplan
-from assess.bim.scan_values import MOST_BYTES as MOST_OF_SCAN
 from assess.bim.sweet_home import HOME, OLD_HOME, read_sweet_home
 from assess.bim.sweet_home import MOST_BYTES as MOST_OF_HOME
 from assess.errors import InputError, ModelError

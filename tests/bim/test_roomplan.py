@@ -10,7 +10,7 @@ import pytest
 import shapely
 
 import assess
-from assess.bim import scan_values
+from assess.bim import roomplan
 from assess.bim.import_workbook import build_workbook
 from assess.bim.model_rows import list_building
 from assess.bim.plan_shapes import to_polygon
@@ -366,7 +366,7 @@ def test_odd_words_and_numbers_do_no_harm():
 
 
 def test_a_million_objects_are_refused_before_they_are_read():
-    walls = [wall(f"w{at}", 0, at, 5) for at in range(scan_values.MOST_SURFACES + 1)]
+    walls = [wall(f"w{at}", 0, at, 5) for at in range(roomplan.MOST_SURFACES + 1)]
     assert "holds more than 500 walls" in refused(write(office(walls=walls)))
     many = b'{"objects": [' + b",".join([b'{"a": [0, 0, 0]}'] * 1_000_000) + b"]}"
     assert "holds more than 4,000,000 values" in refused(many)
@@ -375,7 +375,7 @@ def test_a_million_objects_are_refused_before_they_are_read():
 
 
 def test_a_large_file_is_refused_unless_its_bulk_is_one_text(monkeypatch):
-    monkeypatch.setattr(scan_values, "MOST_BYTES", 100_000)
+    monkeypatch.setattr(roomplan, "MOST_BYTES", 100_000)
     read_roomplan(write(office(coreModel="A" * 60_000)), "s.json")
     assert "larger than 0 MB" in refused(write(office(coreModel="A" * 100_000)))
 
