@@ -75,7 +75,8 @@ class FloorPlan:
         return shapely.STRtree(self.solids)
 
     @cached_property
-    def _piece_tree(self) -> shapely.STRtree:
+    def piece_tree(self) -> shapely.STRtree:
+        """Return the index of the furniture."""
         return shapely.STRtree(self.footprints)
 
     @cached_property
@@ -87,10 +88,6 @@ class FloorPlan:
         """Return walls and windows that touch a shape, as one."""
         return shapely.union_all([self.solids[at] for at in sorted(self._solid_tree.query(shape))])
 
-    def pieces_near(self, shape: BaseGeometry) -> BaseGeometry:
-        """Return the furniture that stands on the floor and touches a shape, as one."""
-        return shapely.union_all([self.footprints[at] for at in sorted(self._piece_tree.query(shape))])
-
     def spaces_along(self, line: BaseGeometry, least: float) -> list[str]:
         """Return the keys of the spaces in which more than `least` [m] of a line lies."""
         near = sorted(self.tree.query(line))
@@ -98,7 +95,7 @@ class FloorPlan:
 
     def hides(self, line: BaseGeometry, space: str, within: float) -> bool:
         """Tell whether furniture of a space is within some distance [m] of a line, with a wall between."""
-        near = (self.footprints[at] for at in self._piece_tree.query(line, predicate="dwithin", distance=within))
+        near = (self.footprints[at] for at in self.piece_tree.query(line, predicate="dwithin", distance=within))
         ways = [shapely.shortest_line(line, one) for one in near if self.by_key[space].intersects(one)]
         return any(self.solids_near(way).intersection(way).length > 0 for way in ways)
 
@@ -197,7 +194,7 @@ def build_rooms(plan: FloorPlan, links: Iterable[Link]) -> dict[str, Room]:
     rooms = {}
     for space, polygon in zip(plan.spaces, plan.polygons, strict=True):
         floor = _widest(polygon.difference(plan.solids_near(polygon)), polygon)
-        pieces = plan.pieces_near(polygon)
+        pieces = shapely.union_all([plan.footprints[at] for at in sorted(plan.piece_tree.query(polygon))])
         free = floor if pieces.is_empty else _widest(floor.difference(pieces), floor)
         rooms[space.key] = Room(space, polygon, floor, free, tuple(of_space[space.key]))
     return rooms

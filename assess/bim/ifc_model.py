@@ -28,7 +28,7 @@ from assess.bim.ifc_elements import (
 from assess.bim.ifc_file import read_with
 from assess.bim.ifc_pieces import FURNITURE, find_pieces
 from assess.bim.model_position import bring_near
-from assess.bim.plan_shapes import FloatArray, Rectangle, Shape, cut, find_base, find_rectangle, merge
+from assess.bim.plan_shapes import FloatArray, cut, find_base, find_rectangle, merge
 from assess.errors import ModelError
 from assess.i18n import Text, fill, nfill
 
@@ -215,8 +215,12 @@ def list_doors(model: Any, storeys: Collection[str], unit: float) -> Iterator[Do
         opening = openings.get(one.id())
         shape = (shapes.get(opening.id()) if opening is not None else None) or shapes.get(one.id())
         plan = find_rectangle(shape.points[:, :2]) if shape is not None else None
-        if plan is not None:
-            plan = _turn_to_leaf(plan, shapes.get(one.id()))
+        leaf = find_rectangle(shapes[one.id()].points[:, :2]) if one.id() in shapes else None
+        if plan is not None and leaf is not None and plan.long < CLEARLY_LONGER * plan.short:
+            # the short side of a rectangle is taken for the thickness of the wall; here the door itself tells it
+            is_across = abs(math.sin(math.radians(leaf.angle_deg - plan.angle_deg))) > 0.9
+            if is_across and leaf.long >= CLEARLY_LONGER * leaf.short:
+                plan = replace(plan, short=plan.long, long=plan.short, angle_deg=leaf.angle_deg)
         if storey is None or plan is None:
             continue
         overall = float(one.OverallWidth or 0.0) * unit
@@ -224,16 +228,6 @@ def list_doors(model: Any, storeys: Collection[str], unit: float) -> Iterator[Do
             keys[one.id()], storey, say(one.Name), plan.x, plan.y, plan.angle_deg, plan.long, plan.short,
             overall if math.isfinite(overall) and overall > 0 else 0.0,
         )  # fmt: skip
-
-
-def _turn_to_leaf(plan: Rectangle, leaf: Shape | None) -> Rectangle:
-    """Return the plan of an opening with the direction of the door's normal, which a leaf tells if it is squarish."""
-    own = find_rectangle(leaf.points[:, :2]) if leaf is not None else None
-    if own is None or plan.long >= CLEARLY_LONGER * plan.short or own.long < CLEARLY_LONGER * own.short:
-        return plan
-    # the short side of a rectangle is taken for the thickness of the wall; here the door itself tells it
-    is_across = abs(math.sin(math.radians(own.angle_deg - plan.angle_deg))) > 0.9
-    return replace(plan, short=plan.long, long=plan.short, angle_deg=own.angle_deg) if is_across else plan
 
 
 def list_stairs(model: Any, storeys: Sequence[Storey]) -> Iterator[Stair]:

@@ -50,13 +50,20 @@ def match_floors(model: Levels, workbook: Levels, pairs: Iterable[tuple[str, str
         counts.setdefault(one, Counter())[own] += 1
     found = {one: one for one in workbook if one in counts and counts[one][one] == max(counts[one].values())}
     kept = set(found)
+
+    def is_at(one: str, own: str) -> bool:
+        return _is_level(model[one], workbook.get(own))
+
     for one in model:
         own = _find_majority(counts.get(one, Counter()))
-        if one not in found and own in workbook and own not in kept and not _have_moved(one, own, model, workbook):
+        have_moved = is_at(one, one) and not is_at(one, own)  # the pieces, not the names
+        if one not in found and own in workbook and own not in kept and not have_moved:
             found[one] = own
-    for one in model:
-        if one not in found and (alike := _find_alike(one, model, workbook, set(found.values()))) is not None:
-            found[one] = alike
+    for one in model:  # those of which no pieces tell
+        near = [own for own in workbook if own not in found.values() and is_at(one, own)]
+        is_named = one in workbook and (one in near or workbook[one] is None or len(near) != 1)
+        if one not in found and (is_named or len(near) == 1):
+            found[one] = one if is_named else near[0]
     return {one: own for one, own in found.items() if one in model}
 
 
@@ -64,22 +71,6 @@ def _find_majority(counter: Counter[str]) -> str:
     """Return what more than half agree on, "" where there is nothing such."""
     best, number = max(counter.items(), key=lambda one: one[1], default=("", 0))
     return best if 2 * number > counter.total() else ""
-
-
-def _have_moved(one: str, own: str, model: Levels, workbook: Levels) -> bool:
-    """Tell whether a floor of the same name is where the model has it, and the one that has its pieces is not."""
-    level = model[one]
-    return _is_level(level, workbook.get(one)) and not _is_level(level, workbook[own])
-
-
-def _find_alike(one: str, model: Levels, workbook: Levels, taken: Collection[str]) -> str | None:
-    """Return the floor that is most likely one of which no pieces tell, None for a new one."""
-    level = model[one]
-    near = [own for own in workbook if own not in taken and _is_level(level, workbook[own])]
-    is_named = one in workbook
-    if is_named and (one in near or workbook[one] is None or len(near) != 1):
-        return one
-    return near[0] if len(near) == 1 else None
 
 
 def _is_level(one: float | None, other: float | None) -> bool:
@@ -179,18 +170,18 @@ def find_offset(pairs: Iterable[Pair]) -> Point:
 
 def move_rows(rows: Mapping[str, Rows], by: Point) -> dict[str, Rows]:
     """Return the rows of an import, by sheet, with all their positions and outlines moved [m]."""
-    return {sheet: [_move_row(row, by) for row in some] for sheet, some in rows.items()} if any(by) else dict(rows)
 
+    def move(row: Mapping[str, Any]) -> dict[str, Any]:
+        moved = dict(row)
+        for names, distance in zip((ALONG_X, ALONG_Y), by, strict=True):
+            for name in names:
+                if row.get(name) is not None:
+                    moved[name] = round(row[name] + distance, 3)
+        if row.get("outline"):
+            corners = (zip(corner.split(), by, strict=True) for corner in row["outline"].split(";"))
+            moved["outline"] = "; ".join(
+                " ".join(f"{round(float(one) + distance, 3):g}" for one, distance in corner) for corner in corners
+            )
+        return moved
 
-def _move_row(row: Mapping[str, Any], by: Point) -> dict[str, Any]:
-    moved = dict(row)
-    for names, distance in zip((ALONG_X, ALONG_Y), by, strict=True):
-        for name in names:
-            if row.get(name) is not None:
-                moved[name] = round(row[name] + distance, 3)
-    if row.get("outline"):
-        moved["outline"] = "; ".join(
-            " ".join(f"{round(float(one) + distance, 3):g}" for one, distance in zip(corner.split(), by, strict=True))
-            for corner in row["outline"].split(";")
-        )
-    return moved
+    return {sheet: list(map(move, some)) for sheet, some in rows.items()} if any(by) else dict(rows)

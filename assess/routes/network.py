@@ -103,40 +103,44 @@ def build_course(segments: Mapping[int, Segment], kinds: Mapping[str, str]) -> C
     Without an exit it leads to its stairs, down a flight that it includes to the end of that; without stairs, or where
     it is all stairs, to where its last segment ends.
     """
-    graph = build_graph(segments)
     parts, loose = [], [at for at, one in segments.items() if not (one.start and one.end)]
-    for part in _find_route_parts(graph, segments, kinds):
-        led = part if part.targets else Part(part.edges, frozenset({_last_end(part, segments)}), by_stairs=False)
-        places = _list_places(led)
-        served = sorted(_served(graph.subgraph(places), kinds, led.targets))
-        is_chain = len(led.targets) == 1 and len(led.edges) == len(places) - 1  # every segment is on the only way
+    for led, served in _list_led(segments, kinds):
+        is_chain = len(led.targets) == 1 and len(led.edges) == len(_list_places(led)) - 1  # one way for all segments
         if served and not is_chain:
-            parts.append((led, tuple(served)))
+            parts.append((led, tuple(sorted(served))))
         else:  # without any that it serves, it is all ways out
-            loose += part.segments
+            loose += led.segments
     return Course(tuple(parts), tuple(loose))
 
 
 def find_ends(segments: Mapping[int, Segment], kinds: Mapping[str, str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return the places that a route serves, and those that it leads to, as in `build_course`."""
+    every = list(_list_led(segments, kinds))
+    served = (place for _, own in every for place in sorted(own, key=natural_key))
+    led = (place for part, _ in every for place in sorted(part.targets, key=natural_key))
+    return tuple(dict.fromkeys(served)), tuple(dict.fromkeys(led))
+
+
+def _list_led(segments: Mapping[int, Segment], kinds: Mapping[str, str]) -> Iterator[tuple[Part, list[str]]]:
+    """Yield the parts of a route with what they lead to, and what they serve.
+
+    The top of a flight of its own is no way out, its end is.
+    """
     graph = build_graph(segments)
-    served, led = dict[str, None](), dict[str, None]()
-    for part in _find_route_parts(graph, segments, kinds):
-        targets = part.targets or frozenset({_last_end(part, segments)})
-        places = _list_places(part)
-        served |= dict.fromkeys(sorted(_served(graph.subgraph(places), kinds, targets), key=natural_key))
-        led |= dict.fromkeys(sorted(targets, key=natural_key))
-    return tuple(served), tuple(led)
-
-
-def _find_route_parts(
-    graph: "nx.MultiGraph[str]", segments: Mapping[int, Segment], kinds: Mapping[str, str]
-) -> Iterator[Part]:
-    """Yield the parts of a route as `find_parts` does; the top of a flight of its own is no way out, its end is."""
     for part in find_parts(graph, kinds):
-        left = part.targets - _find_tops([segments[at] for at in part.segments], part.targets)
-        is_shorter = part.by_stairs and left and left != part.targets
-        yield Part(_outward(graph.subgraph(_list_places(part)), left), left, by_stairs=True) if is_shorter else part
+        own = graph.subgraph(_list_places(part))
+        targets = part.targets - _find_tops([segments[at] for at in part.segments], part.targets)
+        led = part
+        if part.by_stairs and targets and targets != part.targets:
+            led = Part(_outward(own, targets), targets, by_stairs=True)
+        elif not part.targets:
+            starts, ends = ({at: getattr(segments[at], end) for at in part.segments} for end in ("start", "end"))
+            # the end from which no segment goes on; where they go round, that of the last segment
+            last = next((end for end in reversed(ends.values()) if end not in starts.values()), [*ends.values()][-1])
+            led = Part(part.edges, frozenset({last}), by_stairs=False)
+        others = [place for place in own if place not in led.targets]
+        served = [place for place in others if kinds.get(place) == "room" or own.degree(place) == 1]
+        yield led, served or others
 
 
 def _find_tops(segments: Sequence[Segment], stairs: Collection[str]) -> set[str]:
@@ -148,19 +152,6 @@ def _find_tops(segments: Sequence[Segment], stairs: Collection[str]) -> set[str]
 
 def _list_places(part: Part) -> set[str]:
     return {place for edge in part.edges for place in edge[:2]}
-
-
-def _last_end(part: Part, segments: Mapping[int, Segment]) -> str:
-    """Return the end from which no segment goes on; where they go round, that of the last segment."""
-    starts = {segments[at].start for at in part.segments}
-    ends = [segments[at].end for at in part.segments]
-    return next((end for end in reversed(ends) if end not in starts), ends[-1])
-
-
-def _served(graph: "nx.MultiGraph[str]", kinds: Mapping[str, str], targets: Collection[str]) -> Iterable[str]:
-    others = [place for place in graph if place not in targets]
-    served = [place for place in others if kinds.get(place) == "room" or graph.degree(place) == 1]
-    return served or others
 
 
 def find_rooms(
