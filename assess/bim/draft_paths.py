@@ -53,14 +53,8 @@ INSET = 0.45
 """Middle lines end this far from the walls at their ends [m]."""
 
 
-@dataclass(frozen=True, slots=True)
-class Way:
-    """A straight way between two nodes of a room, by their names: its cost, and its free width in a corridor [m]."""
-
-    start: str
-    end: str
-    cost: float
-    width: float | None = None
+Way = tuple[str, str, dict[str, Any]]
+"""A straight way between two nodes of a room, by their names: its cost, and its free width in a corridor [m]."""
 
 
 @dataclass(slots=True)
@@ -91,11 +85,11 @@ class Ways:
         for (one, other), (start, end), seen in zip(pairs, places, shapely.covers(area, lines), strict=True):
             length = math.dist(start, end)
             if seen and length >= SHORTEST:
-                self.found.append(Way(one, other, cost * length + BEND))
+                self.found.append((one, other, {"cost": cost * length + BEND, "width": None}))
 
     def is_joined(self) -> bool:
         """Tell whether every end is joined to every other."""
-        graph = nx.Graph([(way.start, way.end) for way in self.found])
+        graph = nx.Graph(self.found)
         graph.add_nodes_from(self.ends)
         return set(self.ends) <= nx.node_connected_component(graph, next(iter(self.ends)))
 
@@ -290,7 +284,8 @@ def _follow_axes(ways: Ways) -> None:
         for one, other in pairwise(sorted(names, key=lambda name: axis.find(ways.at(name))[0])):
             ends = ways.at(one), ways.at(other)
             if math.dist(*ends) >= SHORTEST:
-                ways.found.append(Way(one, other, math.dist(*ends), measure_width(axis.width, ends, room.floor)))
+                width = measure_width(axis.width, ends, room.floor)
+                ways.found.append((one, other, {"cost": math.dist(*ends), "width": width}))
     pairs = {(name, spot) for name, spots in own.items() for spot in spots if name in ways.ends and name != spot}
     pairs |= {(one, other) for at in range(len(joints)) for one in own.get(f"from {joints[at][0]}", ())
               for other in own.get(joints[at][0], ()) if one != other}  # fmt: skip

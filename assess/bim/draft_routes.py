@@ -94,10 +94,10 @@ class Network:
     exits: list[str] = field(default_factory=list)
     stairs: list[str] = field(default_factory=list)
 
-    def join(self, one: str, other: str, *, cost: float, space: str, width: float | None) -> None:
-        """Add a way, unless there is a cheaper one."""
-        if not self.graph.has_edge(one, other) or self.graph.edges[one, other]["cost"] > cost:
-            self.graph.add_edge(one, other, cost=cost, space=space, width=width)
+    def join(self, one: str, other: str, space: str = "", **way: Any) -> None:
+        """Add a way with its cost and width, unless there is a cheaper one."""
+        if not self.graph.has_edge(one, other) or self.graph.edges[one, other]["cost"] > way["cost"]:
+            self.graph.add_edge(one, other, space=space, **way)
 
 
 def build_network(model: BuildingModel) -> Network:
@@ -113,7 +113,7 @@ def build_network(model: BuildingModel) -> Network:
         if foot is not None and head is not None and foot.storey != head.storey:
             rise = abs(levels[head.storey] - levels[foot.storey])
             cost = math.hypot(math.dist(foot.at, head.at), PER_RISE * rise)
-            network.join(f"stair {stair} foot", f"stair {stair} head", cost=cost, space="", width=None)
+            network.join(f"stair {stair} foot", f"stair {stair} head", cost=cost, width=None)
     return network
 
 
@@ -146,8 +146,8 @@ def _add_storey(
         network.nodes[own] = Node(places[space], storey.key, space)
         ways = find_ways(room, own, places[space])
         network.nodes |= {name: Node(at, storey.key) for name, at in ways.points.items()}
-        for way in ways.found:
-            network.join(way.start, way.end, cost=way.cost, space=space, width=way.width)
+        for one, other, way in ways.found:
+            network.join(one, other, space, **way)
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,8 +13,6 @@ from assess.errors import OutputError
 from assess.i18n import fill
 from assess.progress import SILENT, Progress
 
-# ---------------------------------------------------------------- a folder
-
 
 def name_aside(data: str) -> tuple[str, str]:
     """Return how the lists of the earlier and of the new run are called while files are moved: hidden files."""
@@ -56,36 +54,29 @@ def deliver(
 ) -> list[str]:
     """Bring what is in the folder `NEW` of a stage to a folder, which is made if missing.
 
-    `stage`: from `stage_for`. `folder`: where to. `find_old`: returns the names of the files in the folder that are an
-    earlier run's, which are replaced or removed; whatever it raises leaves all as it was. Called while the folder is
-    locked. `data`: name of the file that lists the others; it is among the new ones.
+    `find_old` returns the names of the files there that are of an earlier run and are replaced or removed; whatever it
+    raises leaves all as it was. It is called while the folder is locked. `data` is the new file that lists the others.
 
-    Returns names of the files that were removed and not replaced.
-
-    Raises OSError if a file cannot be moved; all is as it was. OutputError if another run writes to the folder.
+    Returns the names of the files that were removed and not replaced. Raises OSError if a file cannot be moved, and all
+    is as it was; OutputError if another run writes to the folder.
     """
     flush_folder(stage / NEW)
     target = folder.resolve()
-    if not target.exists() and _put(stage / NEW, target):
-        return []
+    if not target.exists():
+        target.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            with moving():
+                (stage / NEW).rename(target)
+                flush_folder(target.parent)
+        except OSError:  # another run was faster
+            target.mkdir(exist_ok=True)
+        else:
+            return []
     with locked(target, progress):
         old = frozenset(find_old(target))
         progress.check()
         with moving():
             return _replace_set(stage, target, old, data)
-
-
-def _put(new: Path, target: Path) -> bool:
-    """Give a folder its name, which nothing has; if that cannot be, make a folder of this name and return False."""
-    target.parent.mkdir(parents=True, exist_ok=True)
-    try:
-        with moving():
-            new.rename(target)
-            flush_folder(target.parent)
-    except OSError:  # another run was faster
-        target.mkdir(exist_ok=True)
-        return False
-    return True
 
 
 def _replace_set(stage: Path, target: Path, old: Collection[str], data: str) -> list[str]:
@@ -155,13 +146,10 @@ def explain_fault(folder: Path, error: OSError, files: Collection[str]) -> Outpu
     return OutputError(fill("{folder} cannot be written to: {why}.", folder=folder, why=why))
 
 
-# ---------------------------------------------------------------- some files
-
-
 def save(files: Mapping[Path, bytes]) -> None:
     """Write files, whole or none of them; a folder below one that exists is made if missing.
 
-    Raises OSError if one cannot be written; all is as it was. `filename` names it, or its folder. OutputError if
+    Raises OSError if one cannot be written, which `filename` names, or its folder, and all is as it was; OutputError if
     another run writes to a folder.
     """
     made: list[Path] = []

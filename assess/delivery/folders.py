@@ -72,8 +72,7 @@ class FolderLock:
         return True
 
     def _open(self, path: Path) -> int:
-        flags = os.O_RDONLY if path == self._folder else os.O_RDWR | os.O_CREAT
-        return os.open(path, flags, 0o600)
+        return os.open(path, os.O_RDONLY if path == self._folder else os.O_RDWR | os.O_CREAT, 0o600)
 
     def release(self) -> None:
         """Release the lock, if it was taken."""
@@ -121,9 +120,6 @@ def locked(folder: Path, progress: Progress = SILENT) -> Iterator[None]:
         yield
     finally:
         lock.release()
-
-
-# ---------------------------------------------------------------- temporary folders
 
 
 @contextmanager

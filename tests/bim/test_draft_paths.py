@@ -23,7 +23,7 @@ def build(area: Polygon, *links: Link, solids: tuple[Polygon, ...] = (), pieces:
 
 def follow(ways: Ways, start: str, end: str) -> LineString:
     """Return the cheapest way between two nodes."""
-    graph = nx.Graph([(one.start, one.end, {"cost": one.cost}) for one in ways.found])
+    graph = nx.Graph(ways.found)
     return LineString([ways.at(name) for name in nx.dijkstra_path(graph, start, end, weight="cost")])
 
 
@@ -64,7 +64,7 @@ def test_a_way_goes_round_walls_inside_a_room():
 def test_parts_of_a_room_that_a_wall_divides_are_not_joined():
     room = build(box(0, 0, 6, 5), link("one", 1.0, -0.05), link("two", 1.0, 5.05), solids=(box(-1, 2.4, 7, 2.6),))
     ways = find_ways(room, "room a", (3.0, 1.0))
-    graph = nx.Graph([(one.start, one.end) for one in ways.found])
+    graph = nx.Graph(ways.found)
     assert nx.has_path(graph, "one", "room a")
     assert "two" not in graph or not nx.has_path(graph, "one", "two")
 
@@ -111,7 +111,7 @@ def test_ways_in_a_corridor_run_in_its_middle(area):
     ways = find_ways(build(area, *doors), "room a", (10.0, 0.9))
     way = follow(ways, "door 2.0", "door 16.0")
     assert {round(y, 2) for _, y in way.coords} == {-0.05, 0.9}
-    assert any(one.width == pytest.approx(1.8) for one in ways.found)
+    assert any(way["width"] == pytest.approx(1.8) for *_, way in ways.found)
 
 
 def test_a_branch_and_both_arms_are_joined():
