@@ -1,7 +1,7 @@
 """The network of places that segments join: what a blockage cuts off, and the ways that are left."""
 
 import math
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, pairwise
 
