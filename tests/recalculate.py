@@ -17,7 +17,7 @@ import formualizer
 import openpyxl
 import pytest
 
-from assess.report.content import build_content
+from assess.report.content import Content
 from assess.report.xlsx import write_xlsx
 from assess.results import Results
 from tests.waiting import PATIENCE
@@ -36,7 +36,7 @@ _PROFILE = """<?xml version="1.0" encoding="UTF-8"?>
 
 def write_report(results: Results, path: Path) -> None:
     """Write the Excel report."""
-    write_xlsx(build_content(results), path)
+    write_xlsx(Content(results), path)
 
 
 def libreoffice(path: Path, out: Path, *, recalculates: bool = True) -> Path:

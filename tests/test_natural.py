@@ -7,7 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from assess.natural import natural_key
-from assess.report.content import build_content
+from assess.report.content import Content
+from assess.report.say.piece import list_apart
+from assess.report.sections.floors import count_rooms
 from tests.workbooks import UNVERIFIED, assessed
 
 
@@ -59,11 +61,12 @@ def results(tmp_path_factory):
 
 
 def test_equal_pieces_and_rooms_are_ranked_by_name(results):
-    content = build_content(results)
+    content = Content(results)
     assert [one.item.item for one in content.listed] == ["A2", "A10", "A9", "B1", "B11", "B3"], (
         "identical rows together"
     )
-    assert [one.item.item for one in content.summary.worst][:3] == ["A2", "A10", "B3"]
-    fixed = [one.item.item for entry in content.summary.fixes for one in entry.results]
+    assert [one.item.item for one in list_apart(results, "")][:3] == ["A2", "A10", "B3"]
+    fixed = [one.item.item for entry in content.fixes for one in entry.results]
     assert fixed.index("A2") < fixed.index("A10") < fixed.index("B3")
-    assert [bar.label for bar in content.floors[0].rooms] == ["Room 10", "Room 9"]  # the riskier one first
+    rooms = [bar.label for bar in count_rooms(content.floors[0].results)]
+    assert rooms == ["Room 10", "Room 9"], "the riskier one first"

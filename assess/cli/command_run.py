@@ -267,11 +267,7 @@ def _describe_routes(routes: "RouteTables") -> str:
 
     held = sum(say_route.is_held(one, routes.risk) for one in routes.routes)
     texts = [
-        say_route.count_routes(routes),
-        *say_route.count_rooms(routes),
-        *say_route.say_reservations(routes),
-        say_route.say_expected(routes),
-        *say_route.say_not_counted(routes),
+        *say_route.count_all(routes),
         *([f"If anchors fail, {held:,} would be worse."] if held else []),
         *say_route.say_to_fill_in(routes),
     ]

@@ -1,11 +1,10 @@
-"""Pieces counted by class: of the building, a floor or a room, and drawn as bars."""
+"""Pieces counted by class: of the building, a floor or a room."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
-from assess.natural import natural_key
 from assess.report import words
 from assess.results import ItemResult, sum_falls
 from assess.risk import RiskClass, find_ends
@@ -56,15 +55,19 @@ class Counts:
         return self.by_class[RiskClass.HIGH] + self.by_class[RiskClass.VERY_HIGH]
 
     @property
-    def say_cannot_rock(self) -> str:
-        """How many are low as they cannot rock, in one sentence."""
-        return ngettext(
+    def has_apart(self) -> bool:
+        """Whether pieces are counted apart, as they are unconfirmed or not simulated."""
+        return bool(self.unconfirmed or self.by_formula)
+
+    def say_cannot_rock(self) -> list[str]:
+        """Return how many are low as they cannot rock, in one sentence; nothing where none is."""
+        return [ngettext(
             "{n:,} piece cannot rock: it is too stocky, or not even the strongest motion that may be drawn can start "
             "it. Its class is low, whatever a formula says.",
             "{n:,} pieces cannot rock: they are too stocky, or not even the strongest motion that may be drawn can "
             "start them. Their class is low, whatever a formula says.",
             self.cannot_rock,
-        )
+        )] if self.cannot_rock else []  # fmt: skip
 
     def share(self, risk: RiskClass) -> str:
         """Share of a class among the pieces that have one."""
@@ -73,9 +76,7 @@ class Counts:
     @property
     def falls(self) -> str:
         """The expected falls, and up to how many unconfirmed pieces besides."""
-        expected = words.fixed(self.expected, 1)
-        if self.falls_low is not None and self.falls_high is not None:
-            expected = f"{expected} ({words.say_span((round(self.falls_low), round(self.falls_high)))})"
+        expected = words.say_falls(self.expected, self.falls_low, self.falls_high)
         if not self.unconfirmed:
             return expected
         return _("{expected} and up to {n:,}", expected=expected, n=self.unconfirmed)
@@ -89,38 +90,22 @@ class Counts:
         return self.spans.get(risk, (self.by_class[risk],) * 2)
 
 
-def count_pieces(results: Iterable[ItemResult]) -> tuple[dict[RiskClass, int], int]:
-    """Count pieces, not rows: the free-standing ones by class, and the anchored ones, which have no class.
-
-    Those that stand apart (`ItemResult.apart`) are in neither.
-    """
-    by_class, anchored = dict.fromkeys(RiskClass, 0), 0
+def count(label: str, results: Iterable[ItemResult]) -> Counts:
+    """Count pieces, not rows, by class, those that stand apart, and those whose class could be another."""
+    groups: dict[str, list[ItemResult]] = {basis: [] for basis in ("", "anchored", "unconfirmed", "formula")}
     for one in results:
-        if one.is_anchored:
-            anchored += one.item.quantity
-        elif not one.apart:
-            by_class[one.adopted.risk] += one.item.quantity
-    return by_class, anchored
-
-
-def count_apart(results: Iterable[ItemResult], basis: str) -> int:
-    """Count the free-standing pieces that stand apart with a basis, "unconfirmed" or "formula"."""
-    return sum(one.item.quantity for one in results if not one.is_anchored and one.apart == basis)
-
-
-def count(label: str, results: Sequence[ItemResult]) -> Counts:
-    """Count pieces by class, those that stand apart, and those whose class was lowered, or could be higher."""
-    free = [one for one in results if not one.is_anchored]
-    main = [one for one in free if not one.apart]
+        groups["anchored" if one.is_anchored else one.apart].append(one)
+    main = groups[""]
     low, high = find_ends(sum_falls(main))
     return Counts(
         label,
-        *count_pieces(results),
-        unconfirmed=count_apart(results, "unconfirmed"),
-        by_formula=count_apart(results, "formula"),
-        lowered=sum(one.item.quantity for one in main if one.adopted.lowered_from is not None),
-        may_be=sum(one.item.quantity for one in main if words.find_highest(one) != one.adopted.risk),
-        cannot_rock=sum(one.item.quantity for one in main if not one.adopted.can_rock),
+        {risk: _sum(one for one in main if one.adopted.risk == risk) for risk in RiskClass},
+        anchored=_sum(groups["anchored"]),
+        unconfirmed=_sum(groups["unconfirmed"]),
+        by_formula=_sum(groups["formula"]),
+        lowered=_sum(one for one in main if one.adopted.lowered_from is not None),
+        may_be=_sum(one for one in main if words.find_highest(one) != one.adopted.risk),
+        cannot_rock=_sum(one for one in main if not one.adopted.can_rock),
         expected=sum(one.adopted.probability * one.item.quantity for one in main),
         falls_low=low,
         falls_high=high,
@@ -129,21 +114,11 @@ def count(label: str, results: Sequence[ItemResult]) -> Counts:
     )
 
 
-def _find_span(results: Iterable[ItemResult], first: RiskClass, last: RiskClass) -> Span:
+def _sum(results: Iterable[ItemResult]) -> int:
+    return sum(one.item.quantity for one in results)
+
+
+def _find_span(results: Sequence[ItemResult], first: RiskClass, last: RiskClass) -> Span:
     """Return how many pieces are of the classes from `first` to `last` with their whole intervals, and in part."""
-    surely = possibly = 0
-    for one in results:
-        lower, upper = one.adopted.lower, one.adopted.upper
-        surely += one.item.quantity * (first <= lower and upper <= last)
-        possibly += one.item.quantity * (lower <= last and upper >= first)
-    return surely, possibly
-
-
-def count_rooms(results: Sequence[ItemResult]) -> list[Counts]:
-    """Count the pieces of each room, the rooms with most of high and very high class first, then by name."""
-    rooms: dict[str, list[ItemResult]] = {}
-    for one in results:
-        rooms.setdefault(one.item.room, []).append(one)
-    named = sorted(rooms.items(), key=lambda one: natural_key(one[0]))
-    counts = [count(words.cut(room, 40) if room else _("no room named"), own) for room, own in named]
-    return sorted(counts, key=lambda one: -one.risky)
+    surely = _sum(one for one in results if first <= one.adopted.lower and one.adopted.upper <= last)
+    return surely, _sum(one for one in results if one.adopted.lower <= last and one.adopted.upper >= first)

@@ -5,7 +5,9 @@ from assess.i18n import ngettext
 from assess.report import words
 from assess.report.blocks import Block, Contents, Document, Image, Paragraph, Runs, Span, Title, Words, strong
 from assess.report.embedded import embed_logo
-from assess.report.sections.about import list_facts, list_signing
+from assess.report.say.ground import say_ground_source
+from assess.report.say.simulation import list_conditions
+from assess.report.sections.methods import list_facts, list_signing
 from assess.report.view import View
 
 MOST_PRINTED, MOST = 12, 40
@@ -31,7 +33,7 @@ def build_document(view: View) -> Document:
         author=", ".join(filter(None, (building.prepared_by, building.organisation))),
         description=_("Overturning of furniture in an earthquake: assessment"),
         keywords=_("earthquake, furniture, overturning, rocking, floor acceleration"),
-        conditions=content.verified.conditions,
+        conditions=" · ".join(list_conditions(view.run)),
         kind=view.edition,
         contents=None if view.for_print else build_contents(view),
     )
@@ -68,13 +70,13 @@ def _build_cover(view: View) -> list[Block]:
     ]
     if building.scenario:
         blocks.append(Paragraph(_("Scenario: {scenario}", scenario=words.clip(building.scenario, 300)), "scenario"))
-    if content.shaking:
-        blocks.append(Paragraph(content.shaking, "shaking caution"))
+    if shaking := say_ground_source(view.run):
+        blocks.append(Paragraph(shaking, "shaking caution"))
     if building.revision:
         revision = words.cut(building.revision, 40)
         blocks.append(Paragraph(_("Revision {revision} of {date}", revision=revision, date=content.date), "revision"))
     if view.for_print:
-        return [*blocks, *list_facts(view), build_contents(view), *list_signing(view)]
+        return [*blocks, list_facts(view), build_contents(view), *list_signing(view)]
     status, why = content.verified.status
     links: Runs = [Span(_("Contents"), href="#contents"), " · ", Span(_("About this report"), href="#about")]
     return [*blocks, Paragraph([*links, f" · {content.date} · ", strong(status), f": {why}"], "small")]
@@ -82,7 +84,7 @@ def _build_cover(view: View) -> list[Block]:
 
 def _title(view: View, title: str, short: str) -> Title:
     verified = view.content.verified
-    return Title(title, short, verified.footer, verified.conditions)
+    return Title(title, short, verified.footer, " · ".join(list_conditions(view.run)))
 
 
 def build_contents(view: View) -> Contents:

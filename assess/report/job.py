@@ -42,9 +42,9 @@ class Job:
     @cached_property
     def content(self) -> "Content":
         """What HTML, PDF and Excel show, in the language of the reports."""
-        from assess.report.content import build_content
+        from assess.report.content import Content
 
-        return self.progress.wait_for(lambda: build_content(self.results))
+        return self.progress.wait_for(lambda: Content(self.results))
 
     def write_data(self) -> None:
         """Write results.json, with the list of the other files."""

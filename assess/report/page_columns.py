@@ -13,7 +13,7 @@ from assess.i18n import number
 from assess.report import words
 from assess.report.blocks import Cell, Column, Runs, Span, Table, Words, join_words, note, table
 from assess.report.say.ground import describe_origin, describe_source
-from assess.report.summary import describe
+from assess.report.say.piece import describe
 from assess.results import ItemResult, Results
 from assess.route_results import BesideRow, FloorRoutesRow, RoomRow, RouteRow, SegmentRow
 from assess.table import Field, Where

@@ -5,13 +5,13 @@ import pkgutil
 from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property, partial
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal
 
 from assess.i18n import gettext as _
-from assess.i18n import number
+from assess.i18n import ngettext
 from assess.progress import SILENT, Progress
 from assess.report import words
-from assess.report.blocks import Inline, Section, Span
+from assess.report.blocks import Block, Inline, Paragraph, Section, Span
 from assess.report.content import Content
 from assess.report.embedded import Photos
 from assess.report.figures.plan import Plan, build_plan
@@ -19,7 +19,7 @@ from assess.report.figures.ways import build_stretches
 from assess.report.page_columns import PageColumn, list_columns, short_columns
 from assess.report.report_options import ReportOptions
 from assess.report.say.route import list_segments
-from assess.results import Results
+from assess.results import ItemResult, Results
 from assess.route_results import SegmentRow
 
 Edition = Literal["client", "annex", "all"]
@@ -30,8 +30,6 @@ MOST_ROWS = 5000
 """Rows that the table of all pieces shows; the Excel report holds all."""
 MOST_SEGMENTS = 150
 """Segments of routes that are listed, those most likely to be blocked; the Excel report holds all."""
-MOST_ASSUMPTIONS = 36
-"""Assumptions that the client's edition has room for on a page; where there are more, the annex has all."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,19 +48,19 @@ class View:
         return self.content.run
 
     @property
+    def results(self) -> Sequence[ItemResult]:
+        """The rows of furniture."""
+        return self.content.results
+
+    @property
     def is_long(self) -> bool:
         """Whether there are too many rows for whole tables in print."""
-        return len(self.content.results) > FULL_ROWS
+        return len(self.results) > FULL_ROWS
 
     @property
     def is_compact(self) -> bool:
         """Whether the pieces have an appendix of lines in place of whole tables."""
         return self.is_long and self.for_print and not self.options.accessible
-
-    @property
-    def has_apart(self) -> bool:
-        """Whether pieces are counted apart, as they are unconfirmed or not simulated."""
-        return bool(self.content.total.unconfirmed or self.content.total.by_formula)
 
     @cached_property
     def parts(self) -> Sequence["Part"]:
@@ -83,6 +81,11 @@ class View:
     def marks(self) -> str:
         """The legend of the marks as a sentence, "" where nothing was simulated."""
         return f"{words.marks()}." if self.content.verified.done else ""
+
+    @property
+    def legend(self) -> list[str]:
+        """That legend, and the one of the signs of what is counted apart."""
+        return [self.marks, f"{words.apart_legend()}." if self.content.total.has_apart else ""]
 
     @cached_property
     def photos(self) -> Photos:
@@ -138,23 +141,20 @@ class View:
 
     def name_piece(self, at: int, longest: int = 20) -> Inline:
         """Return the name of a piece by its index, a link to its row where that is shown."""
-        name = words.cut(self.content.results[at].item.item, longest)
+        name = words.cut(self.results[at].item.item, longest)
         if self.for_print or self.is_compact or at >= MOST_ROWS:
             return name
         return Span(name, "whole" if len(name) <= 10 else "", f"#row-{at + 1}")  # a short one is not broken at a hyphen
 
     def name_row(self, at: int, longest: int = 20) -> list[Inline]:
         """Return the name of a piece, with how many pieces its row has where they are several."""
-        count = self.content.results[at].item.quantity
+        count = self.results[at].item.quantity
         return [self.name_piece(at, longest), *([f" ({words.plural(count, 'piece')})"] if count > 1 else [])]
-
-
-Built: TypeAlias = "Section | Sequence[Section]"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Part:
-    """A section of the report: one file in `assess.report.sections`, which is found there.
+    """A section of the report: one of the `PARTS` of a module in `assess.report.sections`, which is found there.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ class Part:
     key: str
     heading: str
     places: Mapping[Edition, int]
-    build: Callable[[View], Built]
+    build: Callable[[View], Section | Sequence[Section]]
     is_shown: Callable[[View], bool] = lambda _view: True
 
     def build_sections(self, view: View) -> list[Section]:
@@ -188,14 +188,17 @@ def list_all_parts() -> Sequence[Part]:
     """Return every section there is: those of the modules in `assess.report.sections`."""
     sections = importlib.import_module("assess.report.sections")
     names = sorted(one.name for one in pkgutil.iter_modules(sections.__path__))
-    return [importlib.import_module(f"{sections.__name__}.{name}").PART for name in names]
+    return [part for name in names for part in importlib.import_module(f"{sections.__name__}.{name}").PARTS]
 
 
-def in_whole(value: float) -> str:
-    """Return a count."""
-    return number(value, ",d")
-
-
-def shorten(rows: Sequence[Any], most: int) -> tuple[Sequence[Any], int]:
-    """Return the first rows, and how many are left out."""
-    return rows[:most], max(len(rows) - most, 0)
+def say_left(left: int, *, is_likely: bool = False) -> list[Block]:
+    """Return a line on how many rows only the Excel report has, if any; `is_likely`: the likeliest are shown."""
+    if left <= 0:
+        return []
+    text = (
+        ngettext("{n:,} more, less likely, is in the Excel report.",
+                 "{n:,} more, less likely, are in the Excel report.", left)
+        if is_likely else
+        ngettext("{n:,} more is in the Excel report.", "{n:,} more are in the Excel report.", left)
+    )  # fmt: skip
+    return [Paragraph(text, "small")]

@@ -150,6 +150,24 @@ def say_span(span: tuple[int, int]) -> str:
     return low if low == high else _("{low} to {high}", low=low, high=high)
 
 
+def say_falls(expected: float, low: float | None, high: float | None) -> str:
+    """Return the expected falls, and what 5 and 95 % of the draws do not exceed: ``3.1 (1 to 6)``."""
+    said = fixed(expected, 1)
+    return said if low is None or high is None else f"{said} ({say_span((round(low), round(high)))})"
+
+
+def list_limits() -> list[tuple[RiskClass, str]]:
+    """Return the classes with their limits in words."""
+    medium, high, very_high = (f"{number(100 * limit, 'g')} %" for limit in LIMITS)
+    texts = (
+        _("below {limit}", limit=medium),
+        _("{lower} to below {upper}", lower=medium, upper=high),
+        _("{lower} to below {upper}", lower=high, upper=very_high),
+        _("{limit} and above", limit=very_high),
+    )
+    return list(zip(RiskClass, texts, strict=True))
+
+
 def deviation(value: float) -> str:
     """Return a share that is no probability as a percentage with one decimal."""
     return f"{number(100 * value, '.1f')} %"

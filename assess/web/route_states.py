@@ -10,7 +10,6 @@ from assess.pipeline.run import evaluate_route_tables
 from assess.progress import SILENT
 from assess.report.say.route import describe_routes as say_routes
 from assess.report.say.route import (
-    is_blocked_standing,
     name_few,
     say_blocked,
     say_lost,
@@ -142,7 +141,7 @@ def _describe_route(one: RouteRow, routes: RouteTables, left_out: dict[str, str]
     if key(one.route) in left_out:
         return _unknown(left_out[key(one.route)])
     word, detail = say_route_state(one, routes.risk), _join_details(one, say_blocked(one))
-    return _state(one.state, word, one.blocked, detail, is_standing=is_blocked_standing(one))
+    return _state(one.state, word, one.blocked, detail, is_standing=not one.is_fixed)
 
 
 def _describe_segment(one: SegmentRow, routes: RouteTables) -> dict[str, Any]:
@@ -152,7 +151,7 @@ def _describe_segment(one: SegmentRow, routes: RouteTables) -> dict[str, Any]:
 
 def _describe_room(one: RoomRow, routes: RouteTables) -> dict[str, Any]:
     detail = _join_details(one, say_lost(one), *(say_way(way, routes) for way in one.ways[:1]))
-    return _state(one.state, say_room_state(one), one.loses_every_exit, detail, is_standing=is_blocked_standing(one))
+    return _state(one.state, say_room_state(one), one.loses_every_exit, detail, is_standing=not one.is_fixed)
 
 
 def _join_details(one: SegmentRow | RouteRow | RoomRow, chance: str, *further: str) -> str:

@@ -19,12 +19,12 @@ import assess
 from assess.report.fonts import print_fonts
 from assess.report.pages import html
 from assess.report.pages.pdf_layout import open_page
-from assess.report.content import build_content
+from assess.report.content import Content
 from assess.report.cover import build_document
 from assess.report.report_options import ReportOptions
 from assess.report.view import View
 found = assess.run(sys.argv[1], verify="none")
-options, content = ReportOptions(), build_content(found)
+options, content = ReportOptions(), Content(found)
 with options.spoken():
     start = time.perf_counter()
     build_document(View(content=content, for_print=True))

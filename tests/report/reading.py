@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 import assess
-from assess.report.content import build_content
+from assess.report.content import Content
 from assess.report.figures import math_figures, motion_figures, risk_contours
 from assess.report.figures.math_figures import MathFigure
 from assess.report.fonts import print_fonts
@@ -56,7 +56,7 @@ def render(
     """Return the HTML of a report in its language; with `for_print` as the PDF is laid out from it, with figures."""
     options = options or ReportOptions(language=results.provenance.language)
     with options.spoken(), nullcontext() if for_print else no_figures():
-        return pages.render(build_content(results), options, for_print=for_print, edition=edition)
+        return pages.render(Content(results), options, for_print=for_print, edition=edition)
 
 
 def lay_out(page: str) -> list[Any]:

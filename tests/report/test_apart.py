@@ -10,11 +10,11 @@ import pytest
 
 import assess
 from assess.cli.command_run import describe_result
-from assess.report.content import build_content
+from assess.report.content import Content
 from assess.report.counts import count
 from assess.report.figures.bars import draw_bars
 from assess.report.figures.plan import build_plan
-from assess.report.say.piece import list_parts, list_ways_to_settle
+from assess.report.say.piece import list_apart, list_risky, list_ways_to_settle
 from assess.results import BASES
 from assess.risk import RiskClass, classify
 from assess.settings import Settings
@@ -61,11 +61,6 @@ def page(mixed):
     return render(mixed)
 
 
-@pytest.fixture(scope="module")
-def formulas(tmp_path_factory):
-    return _assess(tmp_path_factory.mktemp("formulas"), verify="none")
-
-
 # ---------------------------------------------------------------- counts and lists
 
 
@@ -97,27 +92,23 @@ def test_a_piece_that_cannot_rock_counts_as_low(mixed):
 
 
 def test_lists_never_rank_what_stands_apart_among_simulated_pieces(mixed):
-    content = build_content(mixed)
-    assert [one.item.item for one in content.summary.worst] == ["felled", "still"]
-    assert [one.item.item for one in content.risky] == ["felled"]
-    assert [one.item.item for one in content.unconfirmed] == ["wide", "broad"]
-    fixes = content.summary.fixes
-    assert [fix.result.apart for fix in fixes] == sorted((fix.result.apart for fix in fixes), key=bool)
-    assert [fix.result.item.item for fix in fixes if fix.together is None] == ["wide", "broad", "calm"]
-    assert [fix.together for fix in fixes if not fix.result.apart][-1] == pytest.approx(1.0)
-    parts = list_parts(content.results)
-    assert [[one.item.item for one in own] for _heading, own in parts] == [
-        ["felled", "still"], ["wide", "broad", "fixed"], ["calm"],
-    ]  # fmt: skip
+    content = Content(mixed)
+    assert [one.item.item for one in list_apart(mixed, "")] == ["felled", "still"]
+    assert [one.item.item for one in list_risky(mixed)] == ["felled"]
+    assert [one.item.item for one in list_apart(mixed, "unconfirmed")] == ["wide", "broad"]
+    fixes = [(fix.results[0], fix.together) for fix in content.fixes]
+    assert [one.apart for one, _share in fixes] == sorted((one.apart for one, _share in fixes), key=bool)
+    assert [one.item.item for one, share in fixes if share is None] == ["wide", "broad", "calm"]
+    assert [share for one, share in fixes if not one.apart][-1] == pytest.approx(1.0)
 
 
 def test_bars_and_plans_give_them_no_class(mixed):
-    content = build_content(mixed)
-    counts = next(one for one in content.by_floor if one.label == "Floor 2")
+    content = Content(mixed)
+    floor = next(one for one in content.floors if one.floor.floor == "2")
+    counts = floor.counts
     bars = draw_bars([counts], "Bars")
     assert bars
     assert re.findall(">([^<>]+)</text>", bars[0].source) == ["Floor 2", "◌ 4", "ƒ 1", "⚓ 1", "6"]
-    floor = next(one for one in content.floors if one.floor.floor == "2")
     (piece,) = build_plan(floor, mixed).pieces
     assert (piece.symbol, piece.class_name, piece.upper, piece.marks) == ("◌", "apart-unconfirmed", None, "")
     assert piece.fill not in {risk.fill for risk in RiskClass}
@@ -140,21 +131,6 @@ def test_a_class_of_the_table_of_all_pieces_never_mixes_bases(mixed, page):
     assert {style for number, style in styles.items() if rows[int(number) - 1].apart} == {
         "apart-unconfirmed", "apart-formula", "anchored",
     }  # fmt: skip
-
-
-def test_classes_are_said_to_stay_unconfirmed_only_where_pieces_were_simulated(mixed, formulas):
-    drawn = "neither T1, Height, Storeys nor an Elevation is known, so that buildings of every period and floors of"
-    for results, is_said in ((mixed, True), (formulas, False)):
-        (text,) = (one.message for one in results.problem_rows if drawn in one.message)
-        assert text.endswith("; classes stay unconfirmed.") == is_said
-
-
-def test_the_command_ends_with_a_count_of_each(mixed):
-    lines = list(describe_result(mixed))
-    assert sum(int(re.findall(r"(\d+) piece", line)[0]) for line in lines[:4]) == 2
-    text = "\n".join(lines)
-    assert re.search(r"^  unconfirmed +4, not counted above: .*fill in Storeys or Period T1", text, re.MULTILINE)
-    assert re.search(r"^  by formula +1, not counted above: not simulated$", text, re.MULTILINE)
 
 
 def test_weak_motions_are_settled_by_stronger_ones(tmp_path):
@@ -198,16 +174,6 @@ CONDITIONS = ("Assumed: exactly this motion, and every piece exactly as given", 
 @pytest.fixture(scope="module")
 def exactly(tmp_path_factory):
     return _assess(tmp_path_factory.mktemp("ideal"), ideal=True, scale=1.2)
-
-
-@pytest.mark.slow
-def test_other_conditions_are_named_at_the_head_of_the_page(exactly, page):
-    text = read_text(render(exactly))
-    assert text.partition("Overturning of furniture in an earthquake: assessment")[0].endswith(
-        f"{' · '.join(CONDITIONS)} "
-    )
-    assert [f"{one}." for one in CONDITIONS] == list(describe_result(exactly))[-3:-1]
-    assert 'class="conditions"' not in page
 
 
 @pytest.mark.slow

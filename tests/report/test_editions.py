@@ -8,8 +8,9 @@ import pypdfium2
 import pytest
 
 import assess
-from assess.report.content import build_content
-from assess.report.say.piece import PieceGroup, choose_groups, group_rows
+from assess.report.content import Content
+from assess.report.sections.methods import list_facts
+from assess.report.sections.pieces import choose_groups, say_chances
 from assess.report.view import View, list_all_parts
 from tests.pictures import picture
 from tests.report.reading import changed, read_text, render
@@ -67,7 +68,7 @@ def written(results, tmp_path_factory):
 def test_every_section_is_shown_in_its_order_and_no_two_have_a_place(results):
     both = {key for edition in ("client", "annex") for key in _keys(edition)}
     assert {*_keys("all"), "pieces"} == both | {"about"}
-    content = build_content(results)
+    content = Content(results)
     for edition in ("client", "annex", "all"):
         places = [part.places[edition] for part in list_all_parts() if edition in part.places]
         assert len(set(places)) == len(places)
@@ -84,7 +85,7 @@ def _keys(edition):
 @pytest.mark.slow
 def test_the_client_reads_no_more_pages_than_a_client_reads(results, written):
     pages, toc = _read(written["pdf"])
-    assert len(pages) <= MOST_PAGES + len(build_content(results).shown_floors)
+    assert len(pages) <= MOST_PAGES + len(Content(results).shown_floors)
     parts = [title for level, title, _page in toc if level == 0]
     assert parts[0] == "Summary"
     assert parts[-3:] == ["How the chances were computed", "Limits of the methods", "Assumptions and defaults"]
@@ -93,18 +94,6 @@ def test_the_client_reads_no_more_pages_than_a_client_reads(results, written):
     assert min(page for page in starts.values() if page > 1) == 2, "the summary is one page"
     for text in ("Contents", "Prepared by", "Checked by", "Approved by", "Annex, on request"):
         assert text in pages[0]
-
-
-@pytest.mark.slow
-def test_the_annex_has_every_piece_and_what_the_classes_rest_on(results, written):
-    pages, toc = _read(written["annex"])
-    text = " ".join(pages)
-    assert all(one.item.item in text for one in results)
-    parts = [title for level, title, _page in toc if level == 0]
-    wanted = ["Motion of the floors", "Verification", "Methods", "Data-quality log", "References", "Appendix"]
-    assert [title for title in parts if title in wanted] == wanted
-    assert parts[-2:] == ["All pieces", "Comparison of the methods"]
-    assert "Default friction" in text, "the cover has no room for it"
 
 
 @pytest.mark.slow
@@ -144,38 +133,35 @@ OF_ANCHORS, KNOWN = "used for the code's force on anchors only", "the motion at 
 def test_a_ground_motion_that_is_not_used_says_what_is(tmp_path, floors, building, pga, sds):
     write_records(tmp_path, "slow")
     results = assessed(tmp_path / "w.xlsx", [dict(ITEMS[0], floor="1")], floors, ground_pga=0.139, **building)
-    said = build_content(results).building
-    assert said["ground_pga"][1] == pga
-    assert sds is None or said["sds"][1] == sds
+    rows = list_facts(View(content=Content(results))).groups[0]
+    said = {row.cells[0].words: row.cells[1] for row in rows}
+    assert said["Ground PGA"] == pga
+    assert sds is None or said["SDS"] == sds
 
 
 # ---------------------------------------------------------------- alike pieces
 
 
 def test_alike_pieces_are_one_row(results):
-    groups = group_rows(build_content(results).listed)
-    assert sum(len(group.results) for group in groups) == len(results)
-    (first,) = (group for group in groups if group.names.startswith("A-"))
-    assert (first.names, first.pieces, first.rooms) == ("A-01 to A-07 (7)", 7, "Hall")
     listed = render(results, for_print=True, edition="client").partition('<section id="pieces">')[2]
-    assert "A-07" in read_text(listed)
-    assert "A-03" not in read_text(listed)
+    text = read_text(listed)
+    assert "A-01 to A-07 (7)" in text
+    assert "A-03" not in text
 
 
 def test_a_group_shows_the_chances_of_all_its_rows(results):
     one = next(iter(results))
     other = changed(one, adopted=replace(one.adopted, probability=0.5, low=0.4, high=0.6))
     simulated = changed(one, adopted=replace(one.adopted, probability=0.2, low=0.1, high=0.3))
-    group = PieceGroup((simulated, other))
-    assert group.chance.replace("\xa0", " ") == "20.0 to 50.0 % (10.0 to 60.0 %)"
-    assert PieceGroup((one, other)).chance.count("(") == 0, "one of them has no interval"
+    assert say_chances([simulated, other]).replace("\xa0", " ") == "20.0 to 50.0 % (10.0 to 60.0 %)"
+    assert say_chances([one, other]).count("(") == 0, "one of them has no interval"
 
 
 def test_of_too_many_groups_the_worst_are_shown_in_their_order(results):
-    groups = group_rows(build_content(results).listed)
-    (worst,) = (own for _floor, own in choose_groups(groups, 1))
-    assert worst[0].urgency == max(group.urgency for group in groups)
-    shown = [group for _floor, own in choose_groups(groups, 3) for group in own]
+    groups = [[one] for one in results]
+    (worst,) = choose_groups(groups, 1)
+    assert worst[0].adopted.upper == max(one.adopted.upper for one in results)
+    shown = choose_groups(groups, 3)
     assert shown == [group for group in groups if group in shown]
 
 
@@ -185,7 +171,9 @@ def test_of_too_many_groups_the_worst_are_shown_in_their_order(results):
 @pytest.mark.slow
 def test_the_worked_example_has_its_pages_and_none_is_half_empty(verified_example, samples_now):
     pages, toc = _read(samples_now["pdf"])
-    plans = [page for page in build_content(verified_example).shown_floors if page.placed]
+    plans = [
+        page for page in Content(verified_example).shown_floors if any(one.item.x_m is not None for one in page.results)
+    ]
     assert len(pages) <= MOST_PAGES + len(plans) == 16
     assert _count_pages(toc, len(pages))["Evacuation routes"] == 1
     assert [at for at, share in enumerate(_fill(samples_now["pdf"])[:-1], 1) if share < 0.5] == []

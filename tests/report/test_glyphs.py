@@ -94,7 +94,7 @@ _ON_A_BARE_MACHINE = """
 import sys
 from pathlib import Path
 import assess
-from assess.report.content import build_content
+from assess.report.content import Content
 from assess.report.pages import pdf
 from assess.report.pages.pdf_layout import open_page
 from assess.report.report_options import ReportOptions
@@ -104,7 +104,7 @@ results = assess.run(sys.argv[1], verify="none")
 print(*pdf.list_problems(results), sep="\\n")
 for accessible in (False, True):
     options = ReportOptions(accessible=accessible)
-    pdf.write_pdf(build_content(results), Path(sys.argv[2 + accessible]), options, edition="all")
+    pdf.write_pdf(Content(results), Path(sys.argv[2 + accessible]), options, edition="all")
 """
 
 

@@ -7,12 +7,9 @@ from dataclasses import replace
 import openpyxl
 import pytest
 
-import assess
-from assess.intensity import MIDORIKAWA
-from assess.report.content import build_content
 from assess.report.data import describe_run
-from assess.report.say.ground import say_ground, say_ground_source, say_shaking, say_shaking_shortly
-from assess.report.say.simulation import list_references, say_draws, say_source
+from assess.report.say.ground import say_ground, say_ground_source
+from assess.report.say.simulation import say_draws, say_source
 from assess.results import EarthquakeDraws
 from assess.settings import Settings
 from tests.cli.calling import run
@@ -69,14 +66,6 @@ def test_reports_name_source_scatter_and_provenance_where_the_numbers_are(writte
     assert "ShakeMap grid.xml" in (book["Summary"].oddHeader.center.text or "")
 
 
-def test_where_the_scatter_is_not_in_the_results_they_say_so(tmp_path):
-    shutil.copy(BAY, tmp_path / "grid.xml")
-    results = assessed(tmp_path / "w.xlsx", floors=FLOORS, shakemap="grid.xml", **PLACE)
-    assert "the median alone and leave it out" in say_ground_source(results)
-    ideal = replace(results, settings=Settings(runs=25, ideal=True))
-    assert "leave it out" in say_ground_source(ideal)
-
-
 def test_where_motion_uncertainty_is_blank_the_scatter_of_the_map_alone_is_drawn(tmp_path):
     shutil.copy(BAY, tmp_path / "grid.xml")
     results = assessed(
@@ -105,15 +94,6 @@ def test_typed_peaks_of_the_ground_are_told_as_an_intensity(tmp_path, building, 
     assert say_ground_source(results) == ""
 
 
-@pytest.mark.slow
-def test_a_record_of_the_ground_comes_first_and_nothing_is_assumed_beside_it():
-    results = assess.run("inventories/market-street.xlsx", Settings(verify="none"), figures=False)
-    assert say_ground(results) == (
-        "Ground motion: recorded, with a PGA of 0.135 g and a PGV of 23.0 cm/s. By its PGV that is about MMI VII, very "
-        "strong (Worden et al. 2012)."
-    )
-
-
 def test_options_that_contradict_or_cannot_be_used(tmp_path):
     path = write(tmp_path / "w.xlsx", floors=FLOORS, **PLACE)
     both = run("run", path, "--shakemap", BAY, "--ground-motions", tmp_path)
@@ -138,41 +118,6 @@ def test_scenarios_set_the_number_of_draws(tmp_path):
     assert found["assess"]["site_ground"]["scenarios"] == 3
 
 
-# ---------------------------------------------------------------- an assumed intensity
-
-CHOICE = "MMI VII, very strong"
-
-
-def test_where_the_scatter_is_left_out_it_is_not_said_to_be_in(tmp_path):
-    simulated = assessed(tmp_path / "w.xlsx", floors=FLOORS, shaking=CHOICE, settings=Settings(runs=25))
-    assert say_shaking(simulated).endswith("by 0.88 (standard deviation of ln PGV), which is drawn.")
-    ideal = replace(simulated, settings=Settings(runs=25, ideal=True))
-    plain = assessed(tmp_path / "w.xlsx", floors=FLOORS, shaking=CHOICE)
-    for results, wanted in (
-        (ideal, "the simulation leaves this scatter out"),
-        (plain, "The formula takes the median; the scatter is not in it."),
-    ):
-        paragraph, sentence = say_shaking(results), say_shaking_shortly(results)
-        assert wanted in paragraph
-        assert "which is drawn" not in paragraph
-        assert "scatter is not in the results" in sentence
-    scaled = replace(plain, settings=replace(plain.settings, scale=0.5))
-    assert say_shaking_shortly(scaled).endswith("The results are for these medians times 0.5.")
-    assert " The results are for these medians times 0.5. PGV scatters" in say_shaking(scaled)
-
-
-def test_a_derived_pga_and_an_open_class_are_among_the_assumptions(tmp_path):
-    results = assessed(tmp_path / "w.xlsx", floors=FLOORS, shaking="JMA 7")
-    content = build_content(results)
-    assumed = dict(content.assumptions)
-    assert assumed["PGA of the assumed shaking"].startswith("from PGV by the ratio that is drawn")
-    shaking = results.provenance.shaking
-    assert shaking.pgv_cm_s / shaking.pga_g == pytest.approx(105)
-    assert "open above: taken as 7" in assumed["Class of the assumed shaking"]
-    assert "(Midorikawa et al. 1999)" in assumed["Shaking"]
-    assert MIDORIKAWA in content.references
-
-
 # ---------------------------------------------------------------- drawn earthquakes
 
 ITEMS = [{"item": "A", "floor": "1", "axis": "X", "breadth": 40, "width": 90, "height": 180}]
@@ -187,41 +132,9 @@ def placed(tmp_path_factory):
                     latitude=37.79, longitude=-122.4)  # fmt: skip
 
 
-def changed(results, **changes):
-    """Return the results with other draws of the earthquake."""
-    draws = replace(results.provenance.earthquakes, **changes)
-    return replace(results, provenance=replace(results.provenance, earthquakes=draws))
-
-
 def alone(results):
     """Return the results as of a building alone."""
     return replace(results, provenance=replace(results.provenance, earthquakes=None))
-
-
-def test_a_building_of_a_city_names_the_correlation_and_its_sources(placed):
-    text = " ".join(build_content(placed).trials.paragraphs)
-    assert "one normal number ε for the whole building" in text
-    assert "what is drawn, of ln PGA, has a part that is common to all places" in text
-    assert "a share of 0.331 of its variance (Boore et al. 2014)" in text
-    assert "exp(-3h/40.7 km) (Jayaram and Baker 2009)" in text
-    assert "Motion k has the same random phases in every building" in text
-    assert [key for key in (JAYARAM, BOORE) for one in list_references(placed) if key in one] == [JAYARAM, BOORE]
-
-
-def test_a_building_of_a_city_without_a_place_is_fully_correlated(placed):
-    text = say_draws(changed(placed, is_placed=False))
-    assert "Latitude and Longitude are not filled in" in text
-    assert "buildings without a place are fully correlated" in text
-    assert "Jayaram" not in text
-    assert list_references(changed(placed, is_placed=False)) == []
-
-
-def test_scenarios_are_told_with_their_share_also_for_a_building_alone(placed):
-    results = changed(placed, is_city=False, is_placed=False, scenarios=250, scenario_share=0.36)
-    assert say_draws(results) == (
-        "A share of 0.36 of the variance of ε is that of 250 scenarios of the ground, draw by draw in their order; the "
-        "rest is drawn."
-    )
 
 
 def test_nothing_is_said_of_draws_that_were_not_made(placed):

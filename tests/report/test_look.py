@@ -150,7 +150,7 @@ def test_the_files_for_programs_are_the_same_in_every_language(assessment, tmp_p
 
 
 def test_a_long_list_is_cut_with_a_word(assessment, monkeypatch):
-    monkeypatch.setattr("assess.report.sections.items.MOST_ROWS", 3)
+    monkeypatch.setattr("assess.report.sections.pieces.MOST_ROWS", 3)
     assert "5 rows, the first 3 of which are shown: the Excel report holds all" in read_text(render(assessment))
 
 

@@ -6,10 +6,9 @@ import jsonschema
 import pytest
 
 import assess
-from assess.motion.scenario import UNVERIFIED
-from assess.report.content import build_content
+from assess.report.content import Content
 from assess.report.data import SCHEMA
-from assess.report.say.ground import ENVELOPES, describe_origin, describe_source
+from assess.report.say.ground import describe_source
 from tests.shaking import write_records
 from tests.workbooks import UNVERIFIED as BY_FORMULA
 from tests.workbooks import write
@@ -87,69 +86,20 @@ def test_above_1_g_a_drawn_building_is_said_to_stay_elastic(tmp_path):
     assert said == {("1", ""), ("2", ""), ("3", ""), ("4", "if the building stays elastic")}
 
 
-def test_the_assumptions_give_what_the_profile_started_from(tmp_path):
-    assumed = dict(_content(tmp_path, PLACED, scenario_kind="EN 1998-1", sds=0.5, period=1).assumptions)
-    assert assumed["Motion of floors 1, 2, 3, 4"] == f"design profile of EN 1998-1 ({UNVERIFIED}), the scenario"
-    assert assumed["Ground motion of the profile"].startswith("0.200 g, 0.4 SDS, as Ground PGA is blank")
-    assert assumed["Roof height h of the profile"] == "16 m, the highest floor, as Height is blank"
-    assert "R_μ of ASCE 7-22" not in assumed
-
-
-def test_an_unverified_profile_says_so_where_it_is_used(tmp_path):
-    content = _content(tmp_path, PLACED, "NTC 2018", ground_pga=0.3)
-    assert f"Floors 1, 2, 3, 4: the motion is that of NTC 2018 ({UNVERIFIED}). {ENVELOPES}" in content.cautions
-    assert {one.source for one in content.run.motions} == {"profile"}
-
-
 def _content(folder, floors, scenario=None, **building):
     write_records(folder)
     path = write(folder / "w.xlsx", ITEMS, floors, **building)
-    return build_content(assess.run(path, scenario=scenario, verify="none"))
-
-
-def test_of_many_such_warnings_the_first_are_given_and_the_rest_counted(tmp_path):
-    floors = [{"floor": name, "elevation": 3, "pfa_x": 0.9, "pfa_y": 0.8} for name in "1234"]
-    cautions = _content(tmp_path, floors, ground_pga=0.1, scenario_kind="ASCE 7-16").cautions
-    known = [text for text in cautions if text.startswith("More is known than is used: ")]
-    assert known[0].startswith("More is known than is used: PFA X 0.900 g of floor '1' is not used: the scenario")
-    assert len(known) == 6
-    assert known[5].endswith(": 3 further warnings of this kind, see the data-quality log.")
-
-
-def test_a_floor_at_the_height_of_a_known_one_is_said_to_be_the_same(tmp_path):
-    known = {"floor": "3", "elevation": 3, "pfa_x": 0.2}
-    floors = [known, {"floor": "1", "elevation": 3}, {"floor": "2", "elevation": 3}, {"floor": "4", "elevation": 3}]
-    content = _content(tmp_path, floors, period=0.5)
-    (one,) = content.run.motions_of("1", "X")
-    assert (one.label, describe_origin(one)) == ("as floor 3", "the same as floor 3, at the same height")
-    assert describe_source(one) == "the same as floor 3, at the same height"
-    text = "Floors 1, 2, 4: no motion is known there; it is that of a known floor at the same height."
-    assert content.cautions[0] == text
-
-
-def test_basements_alone_print_no_negative_roof(tmp_path):
-    floors = [{"floor": name, "elevation": -3 * at} for at, name in enumerate("1234", 1)]
-    assumed = dict(_content(tmp_path, floors, "ASCE 7-22", ground_pga=0.2).assumptions)
-    assert assumed["Roof height h of the profile"] == "0 m, no floor above the ground, Height is blank"
-
-
-def _many(folder, count, known):
-    """A tower of which some floors have one record."""
-    write_records(folder, "slow")
-    floors = [{"floor": f"F{at}", "elevation": 3 * at} | ({"record_x": "slow.csv"} if at in known else {})
-              for at in range(count)]  # fmt: skip
-    items = [{"item": "i", "floor": "F0", "breadth": 30, "width": 40, "height": 100}]
-    return build_content(assess.run(write(folder / "w.xlsx", items, floors), BY_FORMULA))
+    return Content(assess.run(path, scenario=scenario, verify="none"))
 
 
 def test_short_cautions_are_whole_however_many_floors_there_are(tmp_path):
-    short = _many(tmp_path, 60, known=(0, 30)).short_cautions
+    write_records(tmp_path, "slow")
+    floors = [{"floor": f"F{at}", "elevation": 3 * at} | ({"record_x": "slow.csv"} if at in (0, 30) else {})
+              for at in range(60)]  # fmt: skip
+    items = [{"item": "i", "floor": "F0", "breadth": 30, "width": 40, "height": 100}]
+    results = assess.run(write(tmp_path / "w.xlsx", items, floors), BY_FORMULA)
+    short = [one.short for one in Content(results).cautions]
     text = "Floors F1, F2, F3, F4, F5, F6 and 23 more: interpolated between floors; it may be lower than the truth."
     assert text in short
     assert all(len(text) <= 130 and text.endswith(".") for text in short), short
     assert len(short) == len(set(short)) >= 2
-
-
-def test_of_many_floors_with_one_source_the_first_are_named(tmp_path):
-    (given, *_) = _many(tmp_path, 30, known=range(30)).sources
-    assert given == f"recorded motion: {', '.join(f'F{at} X' for at in range(20))} and 10 more"

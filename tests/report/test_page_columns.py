@@ -10,8 +10,8 @@ import assess
 from assess import fields
 from assess.fields import item_fields, route_fields
 from assess.i18n import load_catalogue, speaking
-from assess.report.compact import list_lines
 from assess.report.page_columns import ROUTE_TABLES, list_columns, route_columns, say_value
+from assess.report.sections.pieces import list_lines
 from assess.settings import Settings
 from assess.table import EVERYWHERE, Field
 from tests.report.reading import render

@@ -13,7 +13,7 @@ import pytest
 import assess
 from assess.errors import CancelledError
 from assess.progress import Progress
-from assess.report.content import build_content
+from assess.report.content import Content
 from assess.report.pages.pdf import list_attached, list_problems, write_pdf
 from assess.report.report_options import ReportOptions
 from assess.results import Series
@@ -98,7 +98,7 @@ def test_an_accessible_report_has_the_workbook_that_was_read_whatever_became_of_
     results, read = assessed(tmp_path / "w.xlsx"), (tmp_path / "w.xlsx").read_bytes()
     (tmp_path / "w.xlsx").write_bytes(b"changed")
     assert list_problems(results) == []
-    write_pdf(build_content(results), tmp_path / "a.pdf", ReportOptions(accessible=True))
+    write_pdf(Content(results), tmp_path / "a.pdf", ReportOptions(accessible=True))
     assert b"pdfuaid" in _unpack(tmp_path / "a.pdf")
     document = pypdfium2.PdfDocument(tmp_path / "a.pdf")
     attached = _attachments(document)
@@ -123,7 +123,7 @@ def test_without_its_series_a_report_names_what_is_left_out(tmp_path):
         "w.xlsx is not attached to the PDF: the results hold no copy of it."
     ]
     assert [file.name for file in list_attached(gone)] == ["results.json"]
-    write_pdf(build_content(gone), tmp_path / "a.pdf", ReportOptions(), edition="annex")
+    write_pdf(Content(gone), tmp_path / "a.pdf", ReportOptions(), edition="annex")
     document = pypdfium2.PdfDocument(tmp_path / "a.pdf")
     text = " ".join(" ".join(document[at].get_textpage().get_text_range() for at in range(len(document))).split())
     assert list(_attachments(document)) == ["results.json"]
@@ -136,7 +136,7 @@ def test_without_its_series_a_report_names_what_is_left_out(tmp_path):
 def test_a_cancelled_layout_ends_at_once(tmp_path, monkeypatch):
     """Cancelled while WeasyPrint lays the page out: its process is gone when the error arrives."""
     cancel, started, results = Event(), [], assessed(tmp_path / "w.xlsx")
-    content = build_content(results)
+    content = Content(results)
 
     class Started(subprocess.Popen[bytes]):
         def __init__(self, *args, **named):

@@ -1,6 +1,6 @@
 """The map of risk over breadth and PFA: what is chosen, what is computed, what is drawn."""
 
-import math
+import base64
 import xml.etree.ElementTree as ET
 
 import numpy as np
@@ -8,152 +8,82 @@ import pytest
 
 from assess.i18n import Catalogue, speaking
 from assess.methods import Cases, all_methods
-from assess.pipeline import series
 from assess.report.figures.draw import draw
-from assess.report.figures.risk_contours import build_contours, draw_contours
-from assess.report.figures.risk_map import (
-    GAP,
-    LETTER,
-    LINE,
-    LINES,
-    MOST_NAMES,
-    box_around,
-    find_clearest,
-    find_room,
-)
+from assess.report.figures.risk_contours import draw_contours
+from assess.report.figures.risk_map import GAP, LETTER, LINE, LINES, MOST_NAMES, box_around, find_clearest, find_room
 from assess.settings import Settings
 from assess.units import GRAVITY
 from tests.workbooks import assessed
 
 FLOORS = [{"floor": "1", "pfa_x": 0.5, "pfv_x": 60}, {"floor": "2", "pfa_x": 0.3}]
 TALL = {"breadth": 40, "height": 200}
-SETTINGS = Settings()
 
 
 def _items(*sizes):
     return [{"item": f"i{at}", "floor": "1", "axis": "X", **size} for at, size in enumerate(sizes)]
 
 
-def _build(folder, items, floors=FLOORS, **building):
-    """Return the results, which hold the series while they live, and what is drawn of them."""
-    results = assessed(folder / "w.xlsx", items, floors, **building)
-    return results, build_contours(results)
+def _choose(folder, *sizes, floors=FLOORS):
+    """Return the results, which hold the series while they live."""
+    return assessed(folder / "w.xlsx", _items(*sizes), floors)
 
 
-def _chosen(folder, *sizes, **building):
-    return _build(folder, _items(*sizes), **building)[1]
+def _ids(results, *names):
+    """Return how many elements of the figure have each id."""
+    source = draw_contours(results).image.source
+    drawn = list(ET.fromstring(base64.b64decode(source.partition(",")[2])).iter())
+    return [sum(one.get("id", "") == name for one in drawn) for name in names]
 
 
-def _ids(contours, name):
-    drawn = ET.fromstring(draw_contours(contours))
-    return [one for one in drawn.iter() if one.get("id", "") == name]
+# --- what is chosen and computed ---
 
 
-@pytest.fixture(scope="module")
-def mixed(tmp_path_factory):
-    """Two high tall pieces and one nearly as tall, three stout ones, and one that is anchored."""
-    sizes = [{**TALL, "quantity": 2}, {"breadth": 50, "height": 185}, {"breadth": 120, "height": 60, "quantity": 9}]
-    items = [*_items(*sizes), {"item": "fixed", "floor": "1", **TALL, "anchored": "yes"}]
-    return _build(tmp_path_factory.mktemp("mixed"), items)[1]
-
-
-# --- what is chosen ---
-
-
-def test_the_height_that_most_risky_pieces_share(mixed):
-    assert mixed.height_cm == 200
-    assert [one.item.item for one in mixed.pieces] == ["i0", "i1"], "free-standing, within 10 %, the worst first"
-    for one in mixed.pieces:
-        assert mixed.breadth_cm[0] < one.item.breadth_cm < mixed.breadth_cm[-1]
-        assert mixed.pfa_g[0] < one.governing.motion.pfa_g < mixed.pfa_g[-1]
-
-
-def test_of_heights_as_common_the_larger(tmp_path):
-    slim = {"breadth": 30, "height": 150}
-    assert _chosen(tmp_path, TALL, slim).height_cm == 200
-    assert _chosen(tmp_path, TALL, slim, {**slim, "breadth": 25}).height_cm == 150
-
-
-def test_without_risky_pieces_the_commonest_height(tmp_path):
-    chosen = _chosen(tmp_path, {"breadth": 300, "height": 200}, {"breadth": 300, "height": 90, "quantity": 3})
-    assert chosen.height_cm == 90
-
-
-@pytest.mark.parametrize(("height", "rounded"), [(5.2, 5), (49.4, 49), (204.9, 200)])
-def test_every_piece_lies_on_the_map_of_its_own_height(tmp_path, height, rounded):
-    chosen = _chosen(tmp_path, {"breadth": 5, "height": height})
-    assert (chosen.height_cm, len(chosen.pieces)) == (rounded, 1)
-
-
-def test_nothing_without_free_standing_pieces(tmp_path):
-    items = [{"item": "fixed", "floor": "1", **TALL, "anchored": "yes"}]
-    assert _build(tmp_path, items)[1] is None
-
-
-# --- what is computed ---
+def test_the_height_that_most_risky_pieces_share_and_of_those_as_common_the_larger(tmp_path):
+    slim, stout = {"breadth": 30, "height": 150}, {"breadth": 300, "height": 200}
+    for sizes, height in (
+        ((TALL, slim), 200),
+        ((TALL, slim, {**slim, "breadth": 25}), 150),
+        ((stout, {**stout, "height": 90, "quantity": 3}), 90),
+        (({"breadth": 5, "height": 5.2},), 5),
+        (({"breadth": 5, "height": 204.9},), 200),
+    ):
+        assert _choose(tmp_path, *sizes).series["contours/height_cm"] == height
+    assert "contours/items" not in _choose(tmp_path, {**TALL, "anchored": "yes"}).series
 
 
 @pytest.mark.parametrize("pfv", [60, None])
 def test_the_map_is_that_of_the_methods(tmp_path, pfv):
-    results, chosen = _build(tmp_path, _items(TALL), [{"floor": "1", "pfa_x": 0.5, "pfv_x": pfv}])
-    known = results.motions_of("1", "X")[0].pfv_cm_s
-    assert pfv in (None, known)
-    assert [method.key for method, _risk in chosen.panels] == ["fema_p58", "proposed_or", "kaneko_hayashi"]
-    for method, risk in chosen.panels:
-        evaluate = next(one.evaluate for one in all_methods() if one.key == method.key)
-        assert risk.shape == (chosen.pfa_g.size, chosen.breadth_cm.size)
+    results = _choose(tmp_path, TALL, floors=[{"floor": "1", "pfa_x": 0.5, "pfv_x": pfv}])
+    known, series = results.motions_of("1", "X")[0].pfv_cm_s, results.series
+    breadth, peaks = series["contours/breadth_cm"], series["contours/pfa_g"]
+    for key in ("fema_p58", "proposed_or", "kaneko_hayashi"):
+        risk = series[f"contours/{key}"]
+        evaluate = next(one.evaluate for one in all_methods() if one.key == key)
+        assert risk.shape == (peaks.size, breadth.size)
         for row, column in ((0, 0), (3, 70), (60, 20), (120, 120)):
-            pfa = chosen.pfa_g[row]
-            speed = pfa / 0.5 * known / 100
-            case = Cases.of(breadth=chosen.breadth_cm[column] / 100, height=2.0, pfa=pfa * GRAVITY, pfv=speed)
-            assert risk[row, column] == pytest.approx(evaluate(case, SETTINGS).value[0], rel=1e-6)
-
-
-@pytest.mark.slow
-def test_pieces_too_stocky_to_rock_have_no_chance_on_the_map(tmp_path):
-    """FEMA P-58 gives them no value."""
-    chosen = _chosen(tmp_path, {"breadth": 300, "height": 100}, {"breadth": 20, "height": 100})
-    risk = next(risk for method, risk in chosen.panels if method.key == "fema_p58")
-    assert not risk[:, chosen.breadth_cm >= 141].any()
-    assert risk[:, chosen.breadth_cm < 141].all()
-    assert len(_ids(chosen, "lines")) == 3
-
-
-def test_without_a_pfv_that_goes_with_a_pfa_there_is_no_map_by_it(tmp_path, monkeypatch):
-    monkeypatch.setattr(series, "_velocity_ratio", lambda _worst: math.nan)
-    chosen = _chosen(tmp_path, TALL)
-    assert [method.key for method, _risk in chosen.panels] == ["proposed_or", "kaneko_hayashi"]
-    assert len(_ids(chosen, "piece")) == 2
-    assert "the panel Kaneko-Hayashi formula shows the largest chance that any PFV gives" in " ".join(chosen.caption)
+            speed = peaks[row] / 0.5 * known / 100
+            case = Cases.of(breadth=breadth[column] / 100, height=2.0, pfa=peaks[row] * GRAVITY, pfv=speed)
+            assert risk[row, column] == pytest.approx(evaluate(case, Settings()).value[0], rel=1e-6)
 
 
 # --- what is drawn ---
 
 
 @pytest.mark.slow
-def test_each_piece_is_drawn_in_every_panel(mixed):
-    assert len(_ids(mixed, "piece")) == 3 * 2
-    assert len(_ids(mixed, "name")) == 3 * 2
-    assert len(_ids(mixed, "checked")) == 2, "only FEMA P-58 and the formula of the paper have a checked range"
-    assert 3 * 4 <= len(_ids(mixed, "chance")) <= 3 * len(LINES)
-
-
-@pytest.mark.slow
 def test_one_piece_and_many(tmp_path):
-    one = _chosen(tmp_path, TALL)
-    assert (len(_ids(one, "piece")), len(_ids(one, "name"))) == (3, 3)
-    many = _chosen(tmp_path, *[{"breadth": 20 + 3 * at, "height": 200} for at in range(24)], TALL, TALL)
-    assert len(many.pieces) == 26
-    assert len(_ids(many, "piece")) == 3 * len({one.item.breadth_cm for one in many.pieces})
-    assert 3 <= len(_ids(many, "name")) <= 3 * MOST_NAMES
-    assert len(draw_contours(many)) < 250_000
+    assert _ids(_choose(tmp_path, TALL), "piece", "name", "checked") == [3, 3, 2], "of FEMA P-58 and of the paper"
+    many = _choose(tmp_path, *[{"breadth": 20 + 3 * at, "height": 200} for at in range(24)], TALL, TALL)
+    pieces, names, chances = _ids(many, "piece", "name", "chance")
+    assert pieces == 3 * len({one.item.breadth_cm for one in many})
+    assert 3 <= names <= 3 * MOST_NAMES
+    assert 3 * 4 <= chances <= 3 * len(LINES)
+    assert len(draw_contours(many).image.source) < 340_000
 
 
 @pytest.mark.slow
 def test_a_strange_name_and_a_chance_that_is_everywhere_one(tmp_path):
-    items = [{"item": "棚 $x$ \u0628", "floor": "1", "axis": "X", "breadth": 5, "height": 300}]
-    chosen = _build(tmp_path, items, [{"floor": "1", "pfa_x": 4.0, "pfv_x": 900}])[1]
-    assert len(_ids(chosen, "piece")) == 3
+    size = {"item": "棚 $x$ \u0628", "breadth": 5, "height": 300}
+    assert _ids(_choose(tmp_path, size, floors=[{"floor": "1", "pfa_x": 4.0, "pfv_x": 900}]), "piece") == [3]
 
 
 @pytest.mark.parametrize("shares", [False, True])

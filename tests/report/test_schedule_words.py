@@ -5,12 +5,10 @@ from dataclasses import replace
 import pytest
 
 import assess
-from assess.details import DETAILS
-from assess.report.content import build_content
+from assess.report.content import Content
 from assess.report.say import work as say
 from assess.report.say.work import RouteStep, say_effect
 from assess.report.words import say_bracket
-from assess.schedule_results import NOTHING
 from assess.settings import Settings
 from tests.workbooks import write_sheets
 
@@ -48,12 +46,12 @@ def results(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def content(results):
-    return build_content(results)
+    return Content(results)
 
 
 @pytest.fixture(scope="module")
 def works(content):
-    return {one.all_names: one for one in say.list_work(content.summary.fixes, ["2", "1"])}
+    return {", ".join(sorted(one.row.items)): one for one in say.list_work(content.fixes, ["2", "1"])}
 
 
 # ---------------------------------------------------------------- names
@@ -74,15 +72,8 @@ def test_names_are_shortened(names, short):
     assert say.join_names(say.shorten_names(names)) == short
 
 
-def test_only_what_helps_together_says_so(content):
-    entry = next(one for one in content.summary.fixes if len(one.results) == 5)
-    assert entry.names == "b1 to b5"
-    joined = replace(entry, row=replace(entry.row, is_together=True))
-    assert joined.names == "b1 to b5 together"
-
-
 def test_a_part_of_an_entry_names_the_others_that_it_needs(content):
-    first, second, *_ = content.summary.fixes
+    first, second, *_ = content.fixes
     row = replace(first.row, is_together=True, works=(*first.row.works, *second.row.works))
     entry = replace(first, row=row, results=[*first.results, *second.results])
     parts = sorted(say.list_work([entry], ["2", "1"]), key=lambda one: not one.is_first)
@@ -94,7 +85,7 @@ def test_a_part_of_an_entry_names_the_others_that_it_needs(content):
 
 def test_steps_of_a_route_that_are_one_entry_have_one_effect():
     first = RouteStep("West", 0, 1, 3, 0.5, 0.4, 0.0)
-    second, third = replace(first, place=2, before=0.4, after=0.1), replace(first, place=3, before=0.1, after=0.0)
+    second, third = first._replace(place=2, before=0.4, after=0.1), first._replace(place=3, before=0.1, after=0.0)
     assert say_effect([first]) == "route West: 50.0 % → 40.0 % (step 1 of 3)"
     assert say_effect([first, second]) == "route West: 50.0 % → 10.0 % (steps 1 to 2 of 3)"
     assert say_effect([first, third]) == "route West: 50.0 % → 0.0 % (with all 3 steps)"
@@ -104,12 +95,10 @@ def test_steps_of_a_route_that_are_one_entry_have_one_effect():
 
 
 def test_work_stands_by_floor_and_room_and_there_by_urgency(content):
-    works = say.list_work(content.summary.fixes, ["2", "1"])
-    rooms = say.list_rooms(works, {"2": "Floor 2", "1": "Floor 1"})
-    assert [one.heading for one in rooms] == ["Floor 2: Alpha", "Floor 2: Beta", "Floor 2: Gamma", "Floor 1: Alpha"]
-    for room in rooms:
-        places = [one.entry.place for one in room.works]
-        assert places == sorted(places)
+    works = say.list_work(content.fixes, ["2", "1"])
+    rooms = [("2", "Alpha"), ("2", "Beta"), ("2", "Gamma"), ("1", "Alpha")]
+    places = [(rooms.index((one.row.floor, one.row.room)), one.entry.row.place) for one in works]
+    assert places == sorted(places)
 
 
 def test_a_bracket_that_fails_is_named(results, works):
@@ -150,13 +139,7 @@ def test_an_anchored_piece_whose_bracket_may_fail_is_named(tmp_path, anchored, c
     assert results["firm"].is_anchored
     assert say_bracket(results["firm"]) == words
     said = "1 anchored piece has a bracket that fails at 84 % of PFA or by the code: firm."
-    assert (said in build_content(results).summary.plainly) is bool(words)
+    assert (say.say_doubtful_brackets(results) == [said]) is bool(words)
 
 
 # ---------------------------------------------------------------- sums
-
-
-def test_without_costs_and_without_work(tmp_path):
-    assert "sheet Costs" in say.say_costs(assess_these(tmp_path).schedule)
-    assert say.say_effect_of_all(NOTHING) == []
-    assert say.list_details(NOTHING) == ([], list(DETAILS.values()))

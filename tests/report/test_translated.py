@@ -12,9 +12,12 @@ import pytest
 import assess
 from assess.i18n import Catalogue, gettext, speaking
 from assess.motion.formats import read_records
-from assess.report import words
-from assess.report.content import build_content
+from assess.report import statements, words
+from assess.report.content import Content
 from assess.report.say import ground
+from assess.report.say.methods import find_disagreements
+from assess.report.say.simulation import describe_trials
+from assess.report.sections.methods import say_result
 from docs.texts import collect
 from tests.pictures import picture
 from tests.report.test_verified import _assess
@@ -108,25 +111,27 @@ def test_what_shakes_the_floors_is_said(odd, spoken):
             assert not _left(ground.describe_source(motion))
             assert not _left(ground.describe_origin(motion), *names)
             assert not _left(ground.describe_treatment(motion))
-        content = build_content(odd)
-        for text in (*content.sources, *content.cautions, *content.short_cautions):
+        content = Content(odd)
+        cautions = (text for one in content.cautions for text in (one.text, one.short))
+        for text in (*ground.list_sources(odd.motions), *cautions):
             assert text.startswith("⟦")
             assert not _left(text), text
-        for line in (*content.assumptions, *content.flags.items()):
+        for line in (*content.assumptions, *statements.list_flags(odd).items()):
             assert not _left(" ".join(line[1:]), "EXP", "sin"), line
-        assert not _left(" ".join((*content.limits, *content.summary.plainly)))
+        assert not _left(" ".join(statements.list_limits(odd)))
         for profile in odd.provenance.profiles:
             assert not _left(ground.profile_status(profile))
 
 
 def test_why_methods_disagree_and_the_worked_example_are_said(example, spoken):
     with speaking(spoken):
-        content = build_content(example)
-        assert content.disagreements.groups
-        for group in content.disagreements.groups:
+        _summary, groups = find_disagreements(example, tuple(example))
+        assert groups
+        for group in groups:
             assert not _left(" ".join((*group.reasons, group.highest, group.lowest))), group.reasons
-        for one in content.worked:
-            assert not _left(one.title + one.result), one
+        methods = {one.key: one for one in example.methods}
+        for one in example.worked:
+            assert not _left(say_result(methods[one.key], one)), one
 
 
 def test_what_reading_changed_of_a_record_is_said(spoken, tmp_path):
@@ -142,13 +147,13 @@ def test_what_reading_changed_of_a_record_is_said(spoken, tmp_path):
 def test_the_verification_is_said(spoken, tmp_path):
     results = _assess(tmp_path, [1.0] * 10 + [0.1] * 30, SLENDER_AND_STOCKY, scale_motions=True)
     with speaking(spoken):
-        content = build_content(results)
-        verified, section = content.verified, content.trials
-        texts = [*verified.status, verified.footer, verified.interval, verified.adopted, *section.paragraphs]
-        for text in (*texts, *verified.summary, *content.cautions, verified.sentence):
+        content = Content(results)
+        verified = content.verified
+        texts = [*verified.status, verified.footer, verified.interval, verified.adopted, *describe_trials(verified)]
+        for text in (*texts, *(one.text for one in content.cautions), verified.sentence):
             assert text.startswith("⟦")
             assert not _left(text, "ours"), text
-        for line in (*content.assumptions, *((row.kind, row.source) for row in section.motions)):
+        for line in content.assumptions:
             assert not _left(" ".join(line), "sin"), line
         for one in results:
             assert not _left(f"{words.risk_words(one)} {words.under_record(one)} {words.chance(one)}")

@@ -11,7 +11,7 @@ import pytest
 from shapely import Point, Polygon, box
 
 import assess
-from assess.report.content import build_content
+from assess.report.content import Content
 from assess.report.embedded import Photos
 from assess.report.figures.labels import overlap
 from assess.report.figures.plan import Plan, build_plan
@@ -42,7 +42,7 @@ def _assess(folder: Path, pieces=(PIECE,), places=(), **floor):
 
 def _plans(results) -> list[Plan]:
     ways = build_stretches(results.route_tables)
-    pages = build_content(results).floors
+    pages = Content(results).floors
     built = (build_plan(page, results, ways.get(page.floor.floor, ())) for page in pages)
     return [plan for plan in built if plan is not None]
 

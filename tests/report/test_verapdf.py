@@ -18,7 +18,7 @@ import assess
 from assess.compare.changes import compare
 from assess.compare.comparison_files import write_comparison
 from assess.compare.read_results import read_run
-from assess.report.content import build_content
+from assess.report.content import Content
 from assess.report.pages.html import render
 from assess.report.pages.pdf import write_pdf
 from assess.report.report_options import ReportOptions
@@ -83,7 +83,7 @@ def _validate(jars, *pairs):
 def _write(results, path, *, accessible=False, language="en", edition="client"):
     options = ReportOptions(language=language, accessible=accessible)
     with options.spoken():
-        write_pdf(build_content(results), path, options, edition=edition)
+        write_pdf(Content(results), path, options, edition=edition)
     return path
 
 
@@ -110,7 +110,7 @@ def _strange(folder, kinds=EVERY_KIND):
     (folder / "p.png").write_bytes(picture("PNG", "RGBA", (1600, 1200)))
     floors = [{"floor": "1", "pfa_x": 0.4, "plan": "p.png", "plan_left": 0, "plan_bottom": 0, "plan_width": 16}]
     results = assessed(folder / "表.xlsx", JAPANESE, floors, building="東京", organisation="Us & Co", logo="p.png")
-    assert 'class="photo"' in render(build_content(results))
+    assert 'class="photo"' in render(Content(results))
     return _write_each(results, folder / "strange", kinds, language="it")
 
 

@@ -14,12 +14,12 @@ from assess.motion.record import Motion
 from assess.motion.suite import Suite
 from assess.pipeline import ensembles
 from assess.report import words
-from assess.report.content import build_content
-from assess.report.say.simulation import describe_verification
+from assess.report.content import Content
+from assess.report.say.simulation import describe_trials, list_misfits
 from assess.risk import RiskClass, classify
 from assess.settings import Settings
 from assess.units import GRAVITY
-from tests.report.reading import read_text, write_html
+from tests.report.reading import write_html
 from tests.shaking import write_records
 from tests.workbooks import RECORDS, write
 
@@ -71,12 +71,6 @@ def _ids(figure, name):
 
 
 @pytest.fixture(scope="module")
-def lowered(tmp_path_factory):
-    """Motions so weak that nothing falls: partly simulated, and every class lowered that was simulated."""
-    return _assess(tmp_path_factory.mktemp("lowered"), [0.1] * 40, verify="high")
-
-
-@pytest.fixture(scope="module")
 def some(tmp_path_factory):
     """All simulated; of 40 motions 10 overturn the slender pieces."""
     return _assess(tmp_path_factory.mktemp("some"), [1.0] * 10 + [0.1] * 30, ITEMS[:4], verify="all")
@@ -99,11 +93,6 @@ def recorded(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def page_of_lowered(lowered, tmp_path_factory):
-    return write_html(lowered, tmp_path_factory.mktemp("html"))
-
-
-@pytest.fixture(scope="module")
 def page_of_some(some, tmp_path_factory):
     return write_html(some, tmp_path_factory.mktemp("html"), figures=True)
 
@@ -113,34 +102,12 @@ def page_of_assumed(assumed, tmp_path_factory):
     return write_html(assumed, tmp_path_factory.mktemp("html"), figures=True)
 
 
-class TestExtent:
-    def test_a_partly_simulated_report_names_both_parts(self, lowered, page_of_lowered):
-        text = read_text(page_of_lowered)
-        status = "Partly simulated: rocking of 3 of 5 rows simulated, 40 motions of the user's own"
-        apart = "the other rows have a class by a published formula, and are counted apart"
-        assert text.count(f"{status}; {apart}") == 3
-        assert "Not simulated: chance and class come from the formula: 4 pieces in 1 row." in text
-        assert "The rocking of 3 of 5 rows was integrated step by step" in text
-        assert "no rocking has been simulated" not in text
-
-
 class TestChanges:
-    def test_a_lowered_class_is_marked_wherever_it_is_shown(self, lowered, page_of_lowered):
-        text = read_text(page_of_lowered)
-        rows = [one for one in lowered if one.adopted.lowered_from is not None]
-        assert len(rows) == 3
-        note = "○ low, could be medium, lowered by simulation (formula: very high)"
-        assert text.count(note) == 2 * 2  # all pieces, classes lowered
-        assert text.count("○ low ?↓") == 3 * 2  # on one line: the worst, what to fix first, what to fix
-        assert "class lowered: 3 pieces in 3 rows (1 of them anchored)" in describe_verification(lowered)
-        assert build_content(lowered).total.lowered == 3 - 1
-
     def test_a_raised_class_is_reported_and_comes_first(self, tmp_path):
-        content = build_content(_assess(tmp_path, [2.0] * 30, verify="all", class_by="proposed OR"))
+        content = Content(_assess(tmp_path, [2.0] * 30, verify="all", class_by="proposed OR"))
         raised = "7 pieces in 4 rows (1 of them anchored)"
-        assert f"Class raised by simulation: {raised}: 7 to very high." in content.verified.summary
         assert f"class raised: {raised}" in content.verified.sentence
-        assert {one.adopted.risk for one in content.trials.changed} == {RiskClass.VERY_HIGH}
+        assert {one.adopted.risk for one in content.verified.raised} == {RiskClass.VERY_HIGH}
 
     def test_the_stopping_rule_names_the_undecided(self, some):
         table = some.cases_table
@@ -151,14 +118,13 @@ class TestChanges:
             some, settings=Settings(runs="auto"), cases_table=replace(table, outcomes=outcomes),
             provenance=replace(some.provenance, suite=None, interval_z=2.64),
         )  # fmt: skip
-        content = build_content(auto)
-        text = " ".join(content.trials.paragraphs)
+        content = Content(auto)
+        text = " ".join(describe_trials(content.verified))
         assert "checked after 125, 250, 500, 1,000, 2,500 and 5,000 motions, with an interval (z = 2.64)" in text
         assert f"Undecided after 5,000: {SCRIPT}." in text
-        assert f"one class after 5,000 motions: 1 piece in 1 row: {SCRIPT}." in " ".join(content.verified.summary)
         assert "1 row still undecided" in content.verified.sentence
-        decided = build_content(replace(auto, cases_table=table))
-        assert "No piece is left undecided." in " ".join(decided.trials.paragraphs)
+        decided = Content(replace(auto, cases_table=table))
+        assert "No piece is left undecided." in " ".join(describe_trials(decided.verified))
         assert "125 to 5,000 motions each" in decided.verified.sentence
 
 
@@ -178,27 +144,15 @@ class TestMotions:
         write_records(tmp_path, "slow")
         inventory = assess.read_inventory(write(tmp_path / "w.xlsx", ITEMS[:1], floors, **building))
         results = assess.run(inventory, Settings(runs=25), jobs=1)
-        interval = build_content(results).verified.interval
+        interval = Content(results).verified.interval
         assert interval.partition("; what would narrow it most: ")[2] == (ways or "")
-        (one,), texts = list(results), build_content(results).cautions
+        (one,), texts = list(results), [each.text for each in Content(results).cautions]
         assert any(f"What would narrow it: {(ways or '').partition(',')[0]}" in text for text in texts) == bool(ways)
         thirds = words.find_thirds(one)
         if thirds is not None:
             low, high = map(words.in_percent, thirds)
             assert words.chance(one).replace(words.NO_BREAK, " ").endswith(f"({low} to {high} %)")
             assert words.find_highest(one) == max(one.adopted.upper, classify(thirds[1]) or RiskClass.LOW)
-
-    def test_where_nothing_is_known_of_the_building_no_class_is_that_of_the_formula(self, assumed):
-        (one,) = assumed
-        found = one.governing.simulation
-        assert (one.apart, one.adopted.method) == ("unconfirmed", assumed.simulation.key)
-        assert one.adopted.probability == found.probability
-        assert one.adopted.risk == classify(max(found.probability, found.if_faster))
-        assert (found.ideal, found.tried) == (None, {})
-        assert words.apart_words(one) == f"unconfirmed ({words.risk_word(one.adopted.risk)})"
-        low, high = map(words.in_percent, words.find_thirds(one))
-        assert f"({low} to {high} %)" in words.chance(one).replace(words.NO_BREAK, " ")
-        assert words.ideal_chance(one) == "–"
 
     def test_a_large_misfit_is_reported(self, recorded):
         def worsen(motion):
@@ -207,31 +161,12 @@ class TestMotions:
             fit = replace(motion.ensemble.fit, mean_deviation=0.15, worst_deviation=-0.4, worst_period_s=2.0)
             return replace(motion, ensemble=replace(motion.ensemble, fit=fit))
 
-        assert build_content(recorded).trials.misfits == ()
-        (misfit,) = build_content(replace(recorded, motions=tuple(map(worsen, recorded.motions)))).trials.misfits
+        assert list_misfits(recorded) == []
+        (misfit,) = list_misfits(replace(recorded, motions=tuple(map(worsen, recorded.motions))))
         assert misfit == (
             "Floor 1 X: PFA and the spectrum cannot both be matched. PFA takes precedence; the mean spectrum deviates "
             "by 15.0 % on average, and by 40.0 % at 2.00 s, where it is worst."
         )
-
-    def test_the_users_own_motions_are_named_and_compared_with_the_floor(self, some, lowered, tmp_path):
-        cautions = build_content(some).cautions
-        assert cautions[-2].startswith(
-            "Simulation uses 40 motions of the folder ours, as they are, not scaled: m0.csv, m1"
-        )
-        weak = "The median PFA of these motions, 0.100 g, differs from that of floor 1 X (0.200 g), 50 % below; floor 1"
-        assert cautions[-1].startswith(weak)
-        caution = build_content(lowered).cautions[-1]
-        assert caution.startswith(weak)
-        assert caution.endswith("Where it is below, chances come out too low; they lower no class.")
-        assert "floor 2" not in caution
-        scaled = build_content(_assess(tmp_path, [0.1, 0.3], ITEMS[:1], scale_motions=True, verify="all"))
-        assert "of the folder ours, scaled to each floor's PFA" in scaled.cautions[-1]
-        (motion,) = scaled.trials.motions
-        assert (motion.kind, motion.spectrum, motion.pfa) == ("own, scaled to PFA", "–", "1.00 ± 0.00")
-        own = build_content(some).trials.motions[0]
-        ratio, scatter = (1.0 * 10 + 0.1 * 30) / 40 / 0.2, np.std([1.0] * 10 + [0.1] * 30) / 0.2
-        assert own.pfa == f"{ratio:.2f} ± {scatter:.2f}"
 
 
 class TestFigures:

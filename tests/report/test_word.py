@@ -15,7 +15,7 @@ from assess.errors import CancelledError, InputError
 from assess.extras import say_install
 from assess.progress import Progress
 from assess.report.blocks import Image
-from assess.report.content import build_content
+from assess.report.content import Content
 from assess.report.pages.html import render
 from assess.report.report_options import ReportOptions
 from assess.report.word import drawings
@@ -43,7 +43,7 @@ def written(tmp_path_factory):
     options = ReportOptions(language="en")
     with pytest.MonkeyPatch.context() as patch, options.spoken():
         patch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-        page = render(build_content(results), options, for_print=True, edition="client")
+        page = render(Content(results), options, for_print=True, edition="client")
     return files["docx"], html.fromstring(page).find("body"), docx.Document(str(files["docx"]))
 
 

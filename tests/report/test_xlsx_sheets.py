@@ -14,7 +14,7 @@ import pytest
 from assess.errors import CancelledError
 from assess.i18n import Catalogue, speaking
 from assess.progress import Progress
-from assess.report.content import build_content
+from assess.report.content import Content
 from assess.report.xlsx import write_xlsx
 from assess.report.xlsx.item_formulas import literal, sentence
 from assess.report.xlsx.pen import name_sheets, refer
@@ -125,7 +125,7 @@ def test_long_names_are_whole_in_rows_that_grow(tmp_path):
 
 
 def test_a_cancelled_report_leaves_nothing(tmp_path):
-    content, cancel, rows = build_content(assessed(tmp_path / "w.xlsx")), Event(), []
+    content, cancel, rows = Content(assessed(tmp_path / "w.xlsx")), Event(), []
 
     class Fifth(Progress):
         def check(self):

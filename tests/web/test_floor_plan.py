@@ -12,7 +12,7 @@ from PIL import Image
 from shapely import Polygon, union_all
 
 import assess
-from assess.report.content import build_content
+from assess.report import content
 from assess.report.figures.plan import BORDER, build_plan
 from assess.report.figures.ways import build_stretches
 from assess.web.floor_plan import describe_catalogue, describe_plan, find_picture
@@ -62,7 +62,7 @@ def _area(rings):
 
 def _drawn(results):
     ways = build_stretches(results.route_tables)
-    pages = build_content(results).floors
+    pages = content.Content(results).floors
     built = (build_plan(page, results, ways.get(page.floor.floor, ())) for page in pages)
     return {page.floor.floor: plan for page, plan in zip(pages, built, strict=True) if plan is not None}
 

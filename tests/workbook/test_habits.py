@@ -10,7 +10,7 @@ import assess
 from assess.errors import Problem, WorkbookError
 from assess.i18n import fill
 from assess.model import Inventory
-from assess.report.content import build_content
+from assess.report.content import Content
 from assess.results import Results
 from assess.workbook.habits import count_kinds, group_problems
 from assess.workbook.read import read_inventory
@@ -90,7 +90,7 @@ def test_a_hospital_typed_with_every_habit_is_read_with_notes_and_no_error(typed
     } <= {str(one) for one in shown if one.severity == "note"}
     assert len(shown) < 30 < len(inventory.problems)
     results: Results = assess.run(inventory, UNVERIFIED)
-    for rows, count in ((results.problem_rows, 30), (build_content(results).problems, 1)):  # data keep each cell
+    for rows, count in ((results.problem_rows, 30), (Content(results).problems, 1)):  # data keep each cell
         assert len([one for one in rows if one.group == "breadth: unit"]) == count
 
 

@@ -13,7 +13,9 @@ from assess.i18n import ngettext, number
 from assess.natural import natural_key
 from assess.progress import SILENT, Progress
 from assess.report import words
+from assess.report.blocks import Figure, Image
 from assess.report.content import Content
+from assess.report.embedded import data_uri
 from assess.report.figures.draw import draw, label, thin_out
 from assess.results import ItemResult, MotionRow, Results
 from assess.risk import LIMITS, RiskClass, wilson_interval
@@ -92,18 +94,18 @@ class Traced:
         return ngettext("{name} (and {n:,} alike)", "{name} (and {n:,} alike)", self.alike, name=name)
 
 
-def choose_traced(content: Content) -> tuple[Traced, ...]:
+def choose_traced(results: Results, rows: Sequence[ItemResult]) -> list[Traced]:
     """Return the worst simulated piece, those left undecided, and the next worst; of equal pieces one."""
-    if not content.run.series.is_there:
-        return ()
-    simulated = [one for one in content.results if one.is_simulated]
+    if not results.series.is_there:
+        return []
+    simulated = [one for one in rows if one.is_simulated]
     alike: dict[tuple[int, float, float], list[ItemResult]] = {}
     for one in sorted([one for one in simulated if not one.is_anchored] or simulated, key=_by_risk):
         alike.setdefault((one.governing.motion.index, one.item.breadth_cm, one.item.height_cm), []).append(one)
     firsts = {own[0].item.index: own for own in alike.values()}
     undecided = [index for index, own in firsts.items() if "undecided" in own[0].adopted.flags]
     chosen = set(list(dict.fromkeys([*list(firsts)[:1], *undecided, *firsts]))[:MOST])
-    return tuple(_trace(content.run, own[0], len(own) - 1) for index, own in firsts.items() if index in chosen)
+    return [_trace(results, own[0], len(own) - 1) for index, own in firsts.items() if index in chosen]
 
 
 def _by_risk(one: ItemResult) -> tuple[object, ...]:
@@ -119,23 +121,24 @@ def _trace(results: Results, one: ItemResult, alike: int) -> Traced:
     return Traced(one, alike, fell[:runs], rotation[:runs])
 
 
-@dataclass(frozen=True, slots=True)
-class Figure:
-    """A figure, what it shows in words, and what it shows for those who cannot see it."""
-
-    drawing: bytes
-    caption: str
-    alternative: str
-
-
-def draw_traced(content: Content, traced: Sequence[Traced], progress: Progress = SILENT) -> Iterator[Figure]:
+def draw_traced(content: Content, progress: Progress = SILENT) -> Iterator[Figure]:
     """Draw the figures of the simulation, one by one; none where nothing is simulated."""
+    traced = choose_traced(content.run, content.results)
     if not traced:
         return
-    names = ", ".join(one.name for one in traced)
     yield _draw_motions(content.run, traced[0], progress)
-    yield _draw_convergence(content, traced, names, progress)
-    yield Figure(
+    names = ", ".join(one.name for one in traced)
+    which = (_("the worst simulated pieces and those left undecided") if content.verified.undecided
+             else _("the worst simulated pieces"))  # fmt: skip
+    z, is_long = content.run.provenance.interval_z, content.run.settings.runs == AUTO
+    yield _figure(
+        draw(7, 2.4, partial(_paint_convergences, traced, z, is_long), progress=progress),
+        _("Chance of overturning against the number of motions: {names} ({which}). Band: the interval; dashed: the "
+          "limits of the classes, 3, 30 and 70 %. The vertical scale is stretched towards 0.",
+          names=names, which=which),
+        _("Chance of overturning against the number of motions, with its interval, of {names}", names=names),
+    )  # fmt: skip
+    yield _figure(
         draw(7, 2.2, partial(_paint_all_rotations, traced), progress=progress),
         _("How far the same pieces turned: largest rotation over the critical angle in each motion. White bar: at "
           "rest; hatched bar: overturned; right of the dashed line: past the critical angle, but without "
@@ -145,48 +148,36 @@ def draw_traced(content: Content, traced: Sequence[Traced], progress: Progress =
     )  # fmt: skip
 
 
+def _figure(drawing: bytes, caption: str, alternative: str) -> Figure:
+    return Figure(Image(data_uri(drawing, "image/svg+xml"), alternative), caption)
+
+
 def _draw_motions(results: Results, worst: Traced, progress: Progress) -> Figure:
     floor, axis = words.cut(worst.motion.floor, 20), worst.motion.axis
     accelerations, spectra = _list_accelerations(results, worst), _read_spectra(results, worst.motion)
     texts = [_("Floor {floor} along {axis}, where {item} stands, the worst simulated piece.",
                floor=floor, axis=axis, item=worst.name)]  # fmt: skip
     examples = sum(name != "record" for name, *_rest in accelerations)
-    shown = _("Acceleration against time and 5 % response spectra of the motions of floor {floor}, {axis}",
-              floor=floor, axis=axis)  # fmt: skip
     if spectra is None:
         texts.append(ngettext("The first of the motions.", "The first {n:,} of the motions.", examples))
         shown = _("Acceleration against time of the motions of floor {floor}, {axis}", floor=floor, axis=axis)
-    elif len(accelerations) > examples:
-        texts.append(
-            ngettext(
-                "Left: the recorded motion and the first of those made for it.",
-                "Left: the recorded motion and the first {n:,} of those made for it.",
-                examples,
-            )
-        )
     else:
-        texts.append(ngettext("Left: the first of the motions.", "Left: the first {n:,} of the motions.", examples))
-    if spectra is not None:
+        texts.append(
+            ngettext("Left: the recorded motion and the first of those made for it.",
+                     "Left: the recorded motion and the first {n:,} of those made for it.", examples)
+            if len(accelerations) > examples else
+            ngettext("Left: the first of the motions.", "Left: the first {n:,} of the motions.", examples)
+        )  # fmt: skip
         texts.append(ngettext(
             "Right: the 5 % response spectrum of {n:,} motion, with the target.",
             "Right: the 5 % response spectra of {n:,} motions, their mean and the band from the 16th to the 84th "
             "percentile, with the target.", len(spectra.pseudo_g),
         ))  # fmt: skip
+        shown = _("Acceleration against time and 5 % response spectra of the motions of floor {floor}, {axis}",
+                  floor=floor, axis=axis)  # fmt: skip
     height = max(2.9, 0.5 + 0.75 * (1 + len(accelerations)))
     drawing = draw(7, height, partial(_paint_motions, accelerations, spectra), progress=progress)
-    return Figure(drawing, " ".join(texts), shown)
-
-
-def _draw_convergence(content: Content, traced: Sequence[Traced], names: str, progress: Progress) -> Figure:
-    which = _("the worst simulated pieces")
-    if content.verified.undecided:
-        which = _("the worst simulated pieces and those left undecided")
-    text = _("Chance of overturning against the number of motions: {names} ({which}). Band: the interval; dashed: the "
-             "limits of the classes, 3, 30 and 70 %. The vertical scale is stretched towards 0.",
-             names=names, which=which)  # fmt: skip
-    shown = _("Chance of overturning against the number of motions, with its interval, of {names}", names=names)
-    z, is_long = content.run.provenance.interval_z, content.run.settings.runs == AUTO
-    return Figure(draw(7, 2.4, partial(_paint_convergences, traced, z, is_long), progress=progress), text, shown)
+    return _figure(drawing, " ".join(texts), shown)
 
 
 # ---------------------------------------------------------------- convergence and rotations, one panel a piece

@@ -6,6 +6,7 @@ from assess.report.blocks import Block, Image, Inline, Paragraph, Span, join_wor
 from assess.report.figures.plan import Plan
 from assess.report.templates import open_template
 from assess.report.view import MOST_ROWS, View
+from assess.risk import RiskClass
 
 
 def draw_plan(plan: Plan, view: View) -> Image:
@@ -19,9 +20,7 @@ def draw_plan(plan: Plan, view: View) -> Image:
 
 def list_legend(plan: Plan, view: View) -> list[Block]:
     """Return what signs and colours mean, the names that had no room, and where the drawing under it comes from."""
-    badges = [
-        Span(words.risk_label(risk), f"badge {words.class_name(risk)}") for risk, _limits in view.content.class_limits
-    ]
+    badges = [Span(words.risk_label(risk), f"badge {words.class_name(risk)}") for risk in RiskClass]
     badges += [
         Span(words.apart_label(name), "badge apart")
         for sign, name in ((words.UNCONFIRMED, "unconfirmed"), (words.BY_FORMULA, "formula"))

@@ -2,13 +2,14 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext
 from assess.progress import SILENT, Progress
+from assess.report.blocks import Figure, Image
+from assess.report.embedded import data_uri
 from assess.report.figures.draw import draw
 from assess.report.figures.risk_map import (
     FloatArray,
@@ -26,55 +27,32 @@ if TYPE_CHECKING:
     from assess.methods import MethodInfo
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Contours:
-    """What the figure shows.
-
-    Parameters
-    ----------
-    height_cm : float
-        Of the pieces that it is drawn for.
-    pieces : tuple of ItemResult
-        Those drawn: free-standing rows whose height is within 10 % of it, the worst first.
-    breadth_cm, pfa_g : (b,) and (a,) arrays
-        The grid.
-    panels : sequence of (MethodInfo, (a, b) array)
-        The methods that are drawn, and their chances on the grid [-].
-    caption : tuple of str
-        Sentences that belong below the figure.
-    alt : str
-        What it shows, for those who cannot see it.
-    """
-
-    height_cm: float
-    pieces: tuple[ItemResult, ...]
-    breadth_cm: FloatArray
-    pfa_g: FloatArray
-    panels: Sequence[tuple["MethodInfo", FloatArray]]
-    caption: tuple[str, ...]
-    alt: str
+Panel = tuple["MethodInfo", FloatArray]
+"""A method and its chances on the grid [-], (a, b)."""
 
 
-def build_contours(results: Results) -> Contours | None:
-    """Return what the series hold for the figure; None where they hold nothing."""
+def draw_contours(results: Results, progress: Progress = SILENT) -> Figure:
+    """Draw what the series hold: the methods over breadth and PFA, and the free-standing pieces of about one height."""
     series = results.series
-    if "contours/items" not in series:
-        return None
-    pieces = tuple(results.result(int(at)) for at in series["contours/items"])
+    pieces = [results.result(int(at)) for at in series["contours/items"]]
     height, ratio = float(series["contours/height_cm"]), float(series["contours/pfv_per_pfa_s"])
     panels = [
         (method, series[f"contours/{method.key}"]) for method in results.methods if f"contours/{method.key}" in series
     ]
     methods = [method for method, _risk in panels]
-    return Contours(
-        height_cm=height,
-        pieces=pieces,
-        breadth_cm=series["contours/breadth_cm"],
-        pfa_g=series["contours/pfa_g"],
-        panels=panels,
-        caption=(*_describe_figure(height, pieces, methods), *_describe_ratio(pieces[0], ratio, methods)),
-        alt=_describe_alt(height, pieces, methods),
+    paint = partial(_paint, pieces, height, series["contours/breadth_cm"], series["contours/pfa_g"], panels)
+    drawn = data_uri(draw(7, 3.6, paint, progress=progress), "image/svg+xml")
+    alternative = ngettext(
+        "Maps of the chance of overturning over breadth and PFA for a height of {height:.0f} cm ({methods}), with "
+        "{n:,} piece on them; its chance is in the table of all pieces",
+        "Maps of the chance of overturning over breadth and PFA for a height of {height:.0f} cm ({methods}), with "
+        "{n:,} pieces on them; their chances are in the table of all pieces",
+        sum(one.item.quantity for one in pieces),
+        height=height,
+        methods=_name(methods),
     )
+    caption = (*_describe_figure(height, pieces, methods), *_describe_ratio(pieces[0], ratio, methods))
+    return Figure(Image(drawn, alternative), " ".join(caption))
 
 
 def _name(methods: Sequence["MethodInfo"]) -> str:
@@ -134,49 +112,29 @@ def _describe_ratio(worst: ItemResult, ratio: float, methods: Sequence["MethodIn
         )
 
 
-def _describe_alt(height: float, pieces: Sequence[ItemResult], methods: Sequence["MethodInfo"]) -> str:
-    return ngettext(
-        "Maps of the chance of overturning over breadth and PFA for a height of {height:.0f} cm ({methods}), with "
-        "{n:,} piece on them; its chance is in the table of all pieces",
-        "Maps of the chance of overturning over breadth and PFA for a height of {height:.0f} cm ({methods}), with "
-        "{n:,} pieces on them; their chances are in the table of all pieces",
-        sum(one.item.quantity for one in pieces),
-        height=height,
-        methods=_name(methods),
-    )
-
-
-def draw_contours(contours: Contours, progress: Progress = SILENT) -> bytes:
-    """Draw the figure as SVG."""
-    return draw(7, 3.6, partial(_paint, contours), progress=progress)
-
-
-def _paint(contours: Contours, figure: Any) -> None:
-    places = _find_places(contours.pieces)
-    panels = figure.subplots(1, len(contours.panels), sharex=True, sharey=True, squeeze=False)[0]
-    for axes, (method, risk) in zip(panels, contours.panels, strict=True):
-        lines = paint_risk(axes, contours.breadth_cm, contours.pfa_g, risk)
-        paint_checked(axes, method, contours.height_cm)
-        paint_pieces(axes, places)
-        _frame(axes, method, contours)
-        taken = paint_chances(axes, lines, places)
-        paint_names(axes, places, taken)
-    panels[0].set_ylabel(_("PFA [g]"), fontsize=8)
-    paint_legend(figure)
-
-
-def _find_places(pieces: Sequence[ItemResult]) -> dict[Place, list[ItemResult]]:
-    """Return the pieces at each place, the worst first."""
+def _paint(
+    pieces: Sequence[ItemResult],
+    height: float,
+    breadth: FloatArray,
+    pfa: FloatArray,
+    panels: Sequence[Panel],
+    figure: Any,
+) -> None:
+    """Paint a panel a method; the pieces at each place are the worst first."""
     places: dict[Place, list[ItemResult]] = {}
     for one in pieces:
         place = round(one.item.breadth_cm, 6), round(one.governing.motion.pfa_g, 6)
         places.setdefault(place, []).append(one)
-    return places
-
-
-def _frame(axes: Any, method: "MethodInfo", contours: Contours) -> None:
-    axes.set_xlim(*contours.breadth_cm[[0, -1]])
-    axes.set_ylim(*contours.pfa_g[[0, -1]])
-    axes.set_title(_(method.title), fontsize=8, loc="left")
-    axes.set_xlabel(_("breadth [cm]"), fontsize=8)
-    axes.tick_params(labelsize=7)
+    drawn = figure.subplots(1, len(panels), sharex=True, sharey=True, squeeze=False)[0]
+    for axes, (method, risk) in zip(drawn, panels, strict=True):
+        lines = paint_risk(axes, breadth, pfa, risk)
+        paint_checked(axes, method, height)
+        paint_pieces(axes, places)
+        axes.set_xlim(*breadth[[0, -1]])
+        axes.set_ylim(*pfa[[0, -1]])
+        axes.set_title(_(method.title), fontsize=8, loc="left")
+        axes.set_xlabel(_("breadth [cm]"), fontsize=8)
+        axes.tick_params(labelsize=7)
+        paint_names(axes, places, paint_chances(axes, lines, places))
+    drawn[0].set_ylabel(_("PFA [g]"), fontsize=8)
+    paint_legend(figure)

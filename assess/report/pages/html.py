@@ -3,7 +3,7 @@
 import base64
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,7 @@ from assess.report.cover import build_document
 from assess.report.fonts import font_faces, web_font_faces
 from assess.report.html_blocks import HtmlWriter
 from assess.report.report_options import ReportOptions
-from assess.report.sections.appendix import is_drawn
+from assess.report.sections.methods import is_drawn
 from assess.report.templates import render_template
 from assess.report.view import Edition, View
 from assess.report.words import apart_label, class_name, risk_label
@@ -81,15 +81,8 @@ class Page:
 def write_html(content: Content, path: Path, options: ReportOptions, progress: Progress = SILENT) -> None:
     """Write report.html; raises InputError where a template of the firm's own cannot be used."""
     problems = progress.wait_for(lambda: list_missing_figures(content))
-    page = render(with_problems(content, problems), options, progress=progress)
+    page = render(content.with_problems(problems), options, progress=progress)
     path.write_text(page, encoding="utf-8")
-
-
-def with_problems(content: Content, problems: list[Problem]) -> Content:
-    """Return content whose data-quality log lists further problems, which concern one format alone."""
-    if not problems:
-        return content
-    return replace(content, run=replace(content.run, problem_rows=(*content.run.problem_rows, *problems)))
 
 
 def render(

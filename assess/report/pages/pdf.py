@@ -21,7 +21,7 @@ from assess.report.content import Content
 from assess.report.fonts import find_missing, find_nowhere, print_fonts, replace_signs
 from assess.report.ownership import DATA
 from assess.report.pages import glyphs
-from assess.report.pages.html import list_missing_figures, render, with_problems
+from assess.report.pages.html import list_missing_figures, render
 from assess.report.pages.pdf_layout import MISSING, UNWRITTEN
 from assess.report.provenance import report_time
 from assess.report.report_options import ReportOptions
@@ -89,7 +89,7 @@ def start_pdf(
 ) -> Iterator["Layout"]:
     """Begin to lay a PDF out in a process of its own, for `finish_pdf`; raises CancelledError if cancelled."""
     problems = progress.wait_for(lambda: [*list_problems(content.run), *list_missing_figures(content)])
-    html = render(with_problems(content, problems), options, for_print=True, edition=edition, progress=progress)
+    html = render(content.with_problems(problems), options, for_print=True, edition=edition, progress=progress)
     with start_layout(html) as layout:
         yield layout
 

@@ -11,7 +11,6 @@ from assess.i18n import gettext as _
 from assess.intensity import RATIO, name_mmi
 from assess.model import AXES
 from assess.report import words
-from assess.report.counts import Counts
 from assess.results import (
     MAY_BE_LOWER,
     MOTION_FLAGS,
@@ -23,7 +22,6 @@ from assess.results import (
     SiteGroundInfo,
     SuiteInfo,
 )
-from assess.risk import RiskClass
 from assess.units import GRAVITY
 from assess.workbook.schema import BUILDING
 
@@ -760,17 +758,3 @@ def _say_peak(axis: str, motions: Sequence[MotionRow]) -> str:
 def _say_speed(axis: str, motions: Sequence[MotionRow]) -> str:
     known = [one.pfv_cm_s for one in motions if one.pfv_cm_s is not None]
     return _("PFV {axis} {pfv} cm/s", axis=axis, pfv=words.in_cm_s(max(known))) if known else ""
-
-
-def say_counts(counts: Counts) -> str:
-    """Return the pieces of a floor by class, with what stands apart, and the expected falls."""
-    parts = [f"{words.risk_label(risk)} {counts.say(risk)}" for risk in reversed(RiskClass)]
-    apart = (
-        (words.UNCONFIRMED, _("unconfirmed"), counts.unconfirmed),
-        (words.BY_FORMULA, _("by formula only"), counts.by_formula),
-        (words.ANCHORED, _("anchored"), counts.anchored),
-    )
-    parts += [f"{sign} {name} {pieces:,}" for sign, name, pieces in apart if pieces]
-    pieces = ngettext("{n:,} piece", "{n:,} pieces", counts.total)
-    return _("{pieces}: {classes}; expected falls {falls}.", pieces=pieces, classes=", ".join(parts),
-             falls=counts.falls)  # fmt: skip

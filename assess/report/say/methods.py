@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain, zip_longest
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number, placeholders
@@ -23,38 +23,21 @@ NAMED = 12
 """Pieces of a group that a report names."""
 
 
-@dataclass(frozen=True, slots=True)
-class Verdict:
+class Verdict(NamedTuple):
     """The probability [-] that a method gives, and its class."""
 
     method: "MethodInfo"
     risk: RiskClass
     value: float
 
-    @property
-    def title(self) -> str:
-        """Title of the method."""
-        return _(self.method.title)
 
-
-@dataclass(frozen=True, slots=True)
-class Disagreement:
+class Disagreement(NamedTuple):
     """A piece for which the `highest` and the `lowest` method differ by more than one class, with their `reasons`."""
 
     result: ItemResult
     highest: Verdict
     lowest: Verdict
     reasons: "tuple[tuple[MethodInfo, Reason], ...]"
-
-    @property
-    def model(self) -> "MethodInfo | None":
-        """The fitted model among the two."""
-        return next((one.method for one in (self.highest, self.lowest) if one.method.fitted), None)
-
-    @property
-    def spread(self) -> int:
-        """Classes between the two, 2 or 3."""
-        return int(self.highest.risk) - int(self.lowest.risk)
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,16 +49,12 @@ class Group:
     @property
     def highest(self) -> str:
         """The higher method, its class and its range of values."""
-        return self._describe([row.highest for row in self.rows])
+        return _describe([row.highest for row in self.rows])
 
     @property
     def lowest(self) -> str:
         """The lower method, its class and its range of values."""
-        return self._describe([row.lowest for row in self.rows])
-
-    def _describe(self, verdicts: Sequence[Verdict]) -> str:
-        first = verdicts[0]
-        return f"{first.title}: {words.risk_label(first.risk)}, {words.percents([one.value for one in verdicts])}"
+        return _describe([row.lowest for row in self.rows])
 
     @property
     def reasons(self) -> Sequence[str]:
@@ -93,27 +72,73 @@ class Group:
         return max(0, len(self.rows) - NAMED)
 
 
-@dataclass(frozen=True, slots=True)
-class Disagreements:
-    """All disagreements: a summary, and groups, the widest first and those of fitted models last."""
-
-    summary: str
-    groups: Sequence[Group]
+def _describe(verdicts: Sequence[Verdict]) -> str:
+    method, risk, _value = verdicts[0]
+    return f"{_(method.title)}: {words.risk_label(risk)}, {words.percents([one.value for one in verdicts])}"
 
 
-def find_disagreements(results: Results, rows: Sequence[ItemResult]) -> Disagreements:
-    """Compare the methods row by row."""
+def find_disagreements(results: Results, rows: Sequence[ItemResult]) -> tuple[str, list[Group]]:
+    """Compare the methods row by row; return a summary, and groups, the widest first and those of fitted models last.
+
+    A fitted model is compared with the published method that lies farthest from it.
+    """
     methods = [one for one in results.methods if one.kind == "probability"]
     published = [one for one in methods if one.fitted is None]
     rocks = next((one.key for one in results.methods if one.tells_rocking), "")
     found = [one for row in rows if (one := _compare(row, _list_verdicts(row, published), rocks))]
-    texts = [_summarise(found, len(rows))]
+    if found:
+        text = ngettext(
+            "On {found:,} of {n:,} row, methods differ by more than one class; most often {highest} lies above "
+            "{lowest} (on {count:,}).",
+            "On {found:,} of {n:,} rows, methods differ by more than one class; most often {highest} lies above "
+            "{lowest} (on {count:,}).",
+            len(rows), found=len(found), **_find_commonest(found),
+        )  # fmt: skip
+    else:
+        text = ngettext(
+            "On the {n:,} row, the methods lie within one class of each other.",
+            "On all {n:,} rows, the methods lie within one class of each other.",
+            len(rows),
+        )
+    texts = [text]
     for model in methods:
-        if model.fitted is not None:
-            own = [one for row in rows if (one := _compare(row, _list_farthest(row, model, published), rocks))]
-            texts += [_summarise_model(model, own, len(rows))] if own else []
-            found += own
-    return Disagreements(" ".join(texts), group_disagreements(found))
+        if model.fitted is None:
+            continue
+        own = []
+        for row in rows:
+            mine, others = _list_verdicts(row, [model]), _list_verdicts(row, published)
+            if mine and others:
+                other = max(others, key=lambda each: (abs(each.risk - mine[0].risk), abs(each.value - mine[0].value)))
+                own += [differs] if (differs := _compare(row, [other, *mine], rocks)) else []
+        if own:
+            texts.append(ngettext(
+                "Counted separately: {model} differs by more than one class from a published method on {found:,} of "
+                "{n:,} row; most often {highest} lies above {lowest} (on {count:,}).",
+                "Counted separately: {model} differs by more than one class from a published method on {found:,} of "
+                "{n:,} rows; most often {highest} lies above {lowest} (on {count:,}).",
+                len(rows), found=len(own), model=_(model.title), **_find_commonest(own),
+            ))  # fmt: skip
+        found += own
+    groups: dict[tuple[object, ...], list[Disagreement]] = {}
+    for each in found:
+        reasons = tuple((method.key, reason.text) for method, reason in each.reasons)
+        key = (each.highest.method.key, each.highest.risk, each.lowest.method.key, each.lowest.risk, reasons)
+        groups.setdefault(key, []).append(each)
+    for same in groups.values():
+        same.sort(key=lambda one: (-int(one.result.adopted.upper), natural_key(one.result.item.item)))
+    return " ".join(texts), [Group(same) for same in sorted(groups.values(), key=_rank)]
+
+
+def _rank(rows: Sequence[Disagreement]) -> tuple[bool, int, int, int]:
+    _result, highest, lowest, _reasons = rows[0]
+    is_model = any(one.method.fitted is not None for one in (highest, lowest))
+    return is_model, int(lowest.risk) - int(highest.risk), -int(highest.risk), -len(rows)
+
+
+def _find_commonest(found: Sequence[Disagreement]) -> dict[str, Any]:
+    pairs = Counter((_(one.highest.method.title), _(one.lowest.method.title)) for one in found)
+    ((highest, lowest), count), *_others = pairs.most_common(1)
+    return {"highest": highest, "lowest": lowest, "count": count}
 
 
 def _list_verdicts(row: ItemResult, methods: "Iterable[MethodInfo]") -> list[Verdict]:
@@ -126,14 +151,6 @@ def _list_verdicts(row: ItemResult, methods: "Iterable[MethodInfo]") -> list[Ver
     return verdicts
 
 
-def _list_farthest(row: ItemResult, model: "MethodInfo", published: "Sequence[MethodInfo]") -> list[Verdict]:
-    """Return the verdict of a fitted model, and that of the published method that lies farthest from it."""
-    own, others = _list_verdicts(row, [model]), _list_verdicts(row, published)
-    if not (own and others):
-        return []
-    return [max(others, key=lambda one: (abs(one.risk - own[0].risk), abs(one.value - own[0].value))), *own]
-
-
 def _compare(row: ItemResult, verdicts: Sequence[Verdict], rocks: str) -> Disagreement | None:
     """Return the disagreement of the highest and the lowest verdict; `rocks` is the criterion for rocking."""
     if not verdicts:
@@ -143,8 +160,14 @@ def _compare(row: ItemResult, verdicts: Sequence[Verdict], rocks: str) -> Disagr
     if highest.risk - lowest.risk <= 1:
         return None
     can_rock = bool(rocks) and row.governing.methods[rocks].value == 1
-    above = _list_reasons(row, highest.method, "above", can_rock)
-    below = _list_reasons(row, lowest.method, "below", can_rock)
+
+    def list_reasons(method: "MethodInfo", side: Literal["above", "below"]) -> "list[tuple[MethodInfo, Reason]]":
+        found = row.governing.methods[method.key]
+        return [
+            (method, one) for one in method.reasons if one.applies(side, found.detail, found.flags, can_rock=can_rock)
+        ]
+
+    above, below = list_reasons(highest.method, "above"), list_reasons(lowest.method, "below")
     first, second = (below, above) if lowest.method.fitted else (above, below)
     once: dict[str, tuple[MethodInfo, Reason]] = {}
     for one in filter(None, chain.from_iterable(zip_longest(first, second))):
@@ -153,13 +176,6 @@ def _compare(row: ItemResult, verdicts: Sequence[Verdict], rocks: str) -> Disagr
 
 
 # ---------------------------------------------------------------- reasons
-
-
-def _list_reasons(
-    row: ItemResult, method: "MethodInfo", side: Literal["above", "below"], can_rock: bool
-) -> "list[tuple[MethodInfo, Reason]]":
-    found = row.governing.methods[method.key]
-    return [(method, one) for one in method.reasons if one.applies(side, found.detail, found.flags, can_rock=can_rock)]
 
 
 _FACTS: Mapping[str, tuple[str, Callable[[ItemResult], float | None]]] = {
@@ -202,57 +218,3 @@ def span(values: Sequence[float | None], spec: str) -> str:
         return words.DASH
     low, high = number(min(there), spec), number(max(there), spec)
     return low if low == high else _("{low} to {high}", low=low, high=high)
-
-
-# ---------------------------------------------------------------- groups
-
-
-def group_disagreements(disagreements: Iterable[Disagreement]) -> Sequence[Group]:
-    """Return groups of rows, the widest first, then the largest; those of fitted models last."""
-    groups: dict[tuple[object, ...], list[Disagreement]] = {}
-    for one in disagreements:
-        reasons = tuple((method.key, reason.text) for method, reason in one.reasons)
-        key = (one.highest.method.key, one.highest.risk, one.lowest.method.key, one.lowest.risk, reasons)
-        groups.setdefault(key, []).append(one)
-    for rows in groups.values():
-        rows.sort(key=lambda row: (-int(row.result.adopted.upper), natural_key(row.result.item.item)))
-    return tuple(map(Group, sorted(groups.values(), key=_rank)))
-
-
-def _rank(rows: Sequence[Disagreement]) -> tuple[bool, int, int, int]:
-    first = rows[0]
-    return first.model is not None, -first.spread, -int(first.highest.risk), -len(rows)
-
-
-def _summarise(found: Sequence[Disagreement], rows: int) -> str:
-    """Return on how many of `rows` the published methods disagree, and which two most often."""
-    if not found:
-        return ngettext(
-            "On the {n:,} row, the methods lie within one class of each other.",
-            "On all {n:,} rows, the methods lie within one class of each other.",
-            rows,
-        )
-    highest, lowest, count = _commonest(found)
-    return ngettext(
-        "On {found:,} of {n:,} row, methods differ by more than one class; most often {highest} lies above {lowest} "
-        "(on {count:,}).",
-        "On {found:,} of {n:,} rows, methods differ by more than one class; most often {highest} lies above {lowest} "
-        "(on {count:,}).",
-        rows, found=len(found), highest=highest, lowest=lowest, count=count,
-    )  # fmt: skip
-
-
-def _summarise_model(model: "MethodInfo", found: Sequence[Disagreement], rows: int) -> str:
-    highest, lowest, count = _commonest(found)
-    return ngettext(
-        "Counted separately: {model} differs by more than one class from a published method on {found:,} of {n:,} row; "
-        "most often {highest} lies above {lowest} (on {count:,}).",
-        "Counted separately: {model} differs by more than one class from a published method on {found:,} of {n:,} "
-        "rows; most often {highest} lies above {lowest} (on {count:,}).",
-        rows, found=len(found), model=_(model.title), highest=highest, lowest=lowest, count=count,
-    )  # fmt: skip
-
-
-def _commonest(found: Sequence[Disagreement]) -> tuple[str, str, int]:
-    (pair, count), *_others = Counter((one.highest.title, one.lowest.title) for one in found).most_common(1)
-    return *pair, count

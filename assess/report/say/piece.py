@@ -1,73 +1,96 @@
-"""What is said of pieces: those that are counted apart, and alike ones as one line."""
+"""What is said of pieces: what each is, their order, and those that are counted apart."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from itertools import groupby
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext
 from assess.natural import natural_key
 from assess.report import words
-from assess.report.row_order import by_chance, find_kind
 from assess.results import ItemResult
 from assess.risk import RiskClass
 from assess.workbook.schema import BUILDING
 
 NAMED = 3
 """Pieces that a sentence names; the rest are counted."""
+LEAST = 12
+"""Characters of a description that are kept next to "partly anchored"."""
+
+
+def describe(one: ItemResult, longest: int = 80) -> str:
+    """Return the piece in the workbook's words, and that it is partly anchored or its bracket fails."""
+    text = one.item.description or one.item.type or _("no description")
+    is_failing = one.item.anchored == "yes" and not one.is_anchored
+    if one.item.anchored != "partly" and not is_failing:
+        return words.cut(text, longest)
+    note = _("bracket fails") if is_failing else _("partly anchored")
+    return f"{words.cut(text, max(LEAST, longest - len(note) - 2))}, {note}"
+
+
+# ---------------------------------------------------------------- their order
+
+
+def by_chance(one: ItemResult) -> tuple[object, ...]:
+    """Return what sorts rows by their class and chance, the worst first, then by name."""
+    return -one.adopted.upper, -one.adopted.probability, natural_key(one.item.item)
+
+
+def find_kind(one: ItemResult) -> tuple[object, ...]:
+    """Return what identical rows share: floor, description, type, sizes, anchoring and class."""
+    item, adopted = one.item, one.adopted
+    sizes = (item.breadth_cm, item.width_cm, item.height_cm)
+    return item.floor, item.description, item.type, sizes, one.is_anchored, one.apart, adopted.risk, adopted.upper
+
+
+def order_rows(rows: Sequence[ItemResult], floors: Sequence[str]) -> list[ItemResult]:
+    """Return rows by `floors` and then in natural order of their names; identical ones where the first of them is."""
+    rank = {floor: at for at, floor in enumerate(floors)}
+    groups: dict[tuple[object, ...], list[ItemResult]] = {}
+    for one in sorted(rows, key=lambda row: natural_key(row.item.item)):
+        groups.setdefault(find_kind(one), []).append(one)
+    return [one for own in sorted(groups.values(), key=lambda own: rank[own[0].item.floor]) for one in own]
+
+
+# ---------------------------------------------------------------- those counted apart
 
 
 def list_apart(results: Iterable[ItemResult], basis: str) -> list[ItemResult]:
-    """Return the free-standing pieces that stand apart with a basis, the worst by formula first."""
+    """Return the free-standing pieces that stand apart with a basis, or "" of the run's basis, the worst first."""
     found = [one for one in results if not one.is_anchored and one.apart == basis]
     return sorted(found, key=by_chance)
 
 
-def list_parts(results: Sequence[ItemResult]) -> list[tuple[str, list[ItemResult]]]:
-    """Return the rows of a list by their basis, each part in their order: the first has no heading."""
-    heads = {"": "", "unconfirmed": _("Unconfirmed: nothing is known of the building, or the motions may be too weak"),
-             "formula": _("By formula only: not simulated")}  # fmt: skip
-    parts = {basis: [one for one in results if one.apart == basis] for basis in heads}
-    return [(heads[basis], own) for basis, own in parts.items() if own]
+def list_risky(results: Iterable[ItemResult], basis: str = "") -> list[ItemResult]:
+    """Return those of them that reach high by the upper estimate."""
+    return [one for one in list_apart(results, basis) if one.adopted.upper >= RiskClass.HIGH]
 
 
 def say_apart(results: Sequence[ItemResult]) -> list[str]:
     """Return sentences on the free-standing pieces that stand apart, with what settles them; none where none do."""
     texts = []
     if unconfirmed := list_apart(results, "unconfirmed"):
-        texts.append(f"{_say_unconfirmed(unconfirmed)} {' '.join(list_ways_to_settle(unconfirmed))}")
+        text = ngettext(
+            "{n:,} piece is unconfirmed and counted apart, as nothing is known of its building or its motions may be "
+            "too weak ({names}).",
+            "{n:,} pieces are unconfirmed and counted apart, as nothing is known of their building or their motions "
+            "may be too weak ({names}).",
+            _count(unconfirmed), names=words.name_pieces([one.item.item for one in unconfirmed], NAMED),
+        )  # fmt: skip
+        texts.append(f"{_add_risky(text, unconfirmed)} {' '.join(list_ways_to_settle(unconfirmed))}")
     if left := list_apart(results, "formula"):
         text = ngettext(
             "{n:,} piece was not simulated and is counted apart, by formula only.",
             "{n:,} pieces were not simulated and are counted apart, by formula only.",
-            _pieces(left),
+            _count(left),
         )
         texts.append(_add_risky(text, left))
     return texts
 
 
-def _say_unconfirmed(unconfirmed: Sequence[ItemResult]) -> str:
-    names = words.name_pieces([one.item.item for one in unconfirmed], NAMED)
-    text = ngettext(
-        "{n:,} piece is unconfirmed and counted apart, as nothing is known of its building or its motions may be too "
-        "weak ({names}).",
-        "{n:,} pieces are unconfirmed and counted apart, as nothing is known of their building or their motions may be "
-        "too weak ({names}).",
-        _pieces(unconfirmed), names=names,
-    )  # fmt: skip
-    return _add_risky(text, unconfirmed)
-
-
 def _add_risky(text: str, pieces: Sequence[ItemResult]) -> str:
     """Return a text on pieces followed by how many of them would be high or very high by the formula, if any."""
-    risky = _pieces(one for one in pieces if one.adopted.risk >= RiskClass.HIGH)
-    if not risky:
-        return text
-    return text + " " + ngettext(
-        "{n:,} of them would be high or very high.",
-        "{n:,} of them would be high or very high.",
-        risky,
-    )  # fmt: skip
+    risky = _count(one for one in pieces if one.adopted.risk >= RiskClass.HIGH)
+    more = ngettext("{n:,} of them would be high or very high.", "{n:,} of them would be high or very high.", risky)
+    return f"{text} {more}" if risky else text
 
 
 def list_ways_to_settle(unconfirmed: Iterable[ItemResult]) -> list[str]:
@@ -84,82 +107,5 @@ def list_ways_to_settle(unconfirmed: Iterable[ItemResult]) -> list[str]:
     return ways
 
 
-def _pieces(results: Iterable[ItemResult]) -> int:
+def _count(results: Iterable[ItemResult]) -> int:
     return sum(one.item.quantity for one in results)
-
-
-# ---------------------------------------------------------------- alike pieces
-
-MOST_GROUPS = 110
-"""Groups that the client's edition has room for."""
-NAMED_ALIKE, LONGEST_NAME = 4, 16
-"""Runs of names that a group shows, and characters of a name."""
-
-
-@dataclass(frozen=True, slots=True)
-class PieceGroup:
-    """Rows of Items that are alike: floor, description, type, sizes, anchoring and class, in natural order."""
-
-    results: tuple[ItemResult, ...]
-
-    @property
-    def first(self) -> ItemResult:
-        """The row that stands for all where they agree."""
-        return self.results[0]
-
-    @property
-    def floor(self) -> str:
-        """Their floor."""
-        return self.first.item.floor
-
-    @property
-    def pieces(self) -> int:
-        """How many pieces they are, quantities counted."""
-        return sum(one.item.quantity for one in self.results)
-
-    @property
-    def names(self) -> str:
-        """Their names with runs joined and the number of rows: ``25-07 to 25-09 (3)``."""
-        text = words.name_pieces([one.item.item for one in self.results], NAMED_ALIKE, LONGEST_NAME)
-        return f"{text} ({len(self.results)})" if len(self.results) > 1 else text
-
-    @property
-    def rooms(self) -> str:
-        """Their rooms, as far as the workbook names them."""
-        rooms = sorted({words.cut(one.item.room, 24) for one in self.results if one.item.room}, key=natural_key)
-        return words.name_first(rooms, 2) or words.DASH
-
-    @property
-    def chance(self) -> str:
-        """Their chance with its interval; where rows differ, from the least to the largest of both."""
-        texts = {words.chance(one) for one in self.results}
-        if len(texts) == 1:
-            return texts.pop()
-        chance = words.percents([one.adopted.probability for one in self.results])
-        lows = [one.adopted.low for one in self.results if one.adopted.low is not None]
-        highs = [one.adopted.high for one in self.results if one.adopted.high is not None]
-        if len(lows) < len(self.results) or len(highs) < len(self.results):
-            return chance
-        interval = f"({words.percents([min(lows), max(highs)])})".replace(" ", words.NO_BREAK)
-        return f"{chance} {interval}"
-
-    @property
-    def urgency(self) -> tuple[int, float]:
-        """What groups are chosen by where there are too many: class by the upper estimate, then chance."""
-        return int(self.first.adopted.upper), max(one.adopted.probability for one in self.results)
-
-
-def group_rows(rows: Sequence[ItemResult]) -> list[PieceGroup]:
-    """Return rows that stand in the order of the tables (`assess.report.row_order.order_rows`) as groups."""
-    groups: dict[tuple[object, ...], list[ItemResult]] = {}
-    for one in rows:
-        groups.setdefault((*find_kind(one), one.item.anchored, words.say_bracket(one)), []).append(one)
-    return [PieceGroup(tuple(own)) for own in groups.values()]
-
-
-def choose_groups(groups: Sequence[PieceGroup], most: int = MOST_GROUPS) -> list[tuple[str, list[PieceGroup]]]:
-    """Return groups floor by floor in their order; of too many, those most likely to fall."""
-    if len(groups) > most:
-        worst = sorted(range(len(groups)), key=lambda at: groups[at].urgency, reverse=True)[:most]
-        groups = [groups[at] for at in sorted(worst)]
-    return [(floor, list(own)) for floor, own in groupby(groups, key=lambda one: one.floor)]

@@ -1,8 +1,8 @@
 """What is said of what to fix: the entries by urgency, the work by room, the details, and what they change."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from itertools import groupby
+from typing import NamedTuple
 
 from assess.details import DETAILS, LEAST_FIXINGS, Detail
 from assess.fields import schedule_fields
@@ -27,9 +27,6 @@ WEIGHT, HEIGHT, METRE = "w", "h", "m"
 """Marks of forces that rest on an assumed weight or bracket height, and of those of one metre of a piece."""
 
 
-# ---------------------------------------------------------------- names
-
-
 def shorten_names(names: Iterable[str]) -> list[str]:
     """Return names in natural order, cut, with runs of them joined."""
     return words.join_runs(sorted(names, key=natural_key), 20)
@@ -47,8 +44,7 @@ def join_names(parts: Sequence[str]) -> str:
 # ---------------------------------------------------------------- steps for each route
 
 
-@dataclass(frozen=True, slots=True)
-class RouteStep:
+class RouteStep(NamedTuple):
     """One step of what to fix for a route: step `place` of `steps`, the first of which is 1.
 
     `item_index` is the index of the piece. The chance [-] that the route is blocked is `before` before this step,
@@ -69,54 +65,36 @@ class RouteStep:
 def list_steps(routes: RouteTables) -> list[RouteStep]:
     """Return what to fix for every route, step by step."""
     return [
-        RouteStep(
-            one.route,
-            fix.item_index,
-            place,
-            len(one.fixes),
-            fix.left + fix.gain,
-            fix.left,
-            one.fixes[-1].left,
-            is_bound=one.blocked_if_unconfirmed_fall is not None,
-        )
-        for one in routes.routes
-        for place, fix in enumerate(one.fixes, 1)
-    ]
-
-
-def say_step(step: RouteStep) -> str:
-    """Return for which route a step is, and its effect: ``route West: 15.5 % → 3.0 % (step 3 of 3)``.
-
-    Where pieces that fall together must all be fixed before there is any effect, it is that of all steps.
-    """
-    route, before, after = words.cut(step.route, 30), _say_left(step, step.before), _say_left(step, step.after)
-    if before != after or step.steps == 1:
-        return _("route {route}: {before} → {after} (step {place:,} of {steps:,})",
-                 route=route, before=before, after=after, place=step.place, steps=step.steps)  # fmt: skip
-    return _("route {route}: {before} → {after} (with all {steps:,} steps)",
-             route=route, before=before, after=_say_left(step, step.at_last), steps=step.steps)  # fmt: skip
-
-
-def _say_left(step: RouteStep, chance: float) -> str:
-    said = words.percent(chance)
-    return _("up to {chance}", chance=said) if step.is_bound and chance > 0 else said
+        RouteStep(one.route, fix.item_index, place, len(one.fixes), fix.left + fix.gain, fix.left, one.fixes[-1].left,
+                  is_bound=one.blocked_if_unconfirmed_fall is not None)
+        for one in routes.routes for place, fix in enumerate(one.fixes, 1)
+    ]  # fmt: skip
 
 
 def say_effect(steps: Sequence[RouteStep]) -> str:
-    """Return the effect of steps of one route, in their order; of steps with others between, that of all."""
+    """Return the effect of steps of one route in their order: ``route West: 15.5 % → 3.0 % (step 3 of 3)``.
+
+    Where pieces that fall together must all be fixed before there is any effect, and of steps with others between, it
+    is that of all steps.
+    """
     first, last = steps[0], steps[-1]
-    if len(steps) == 1:
-        return say_step(first)
-    route, before, after = words.cut(first.route, 30), _say_left(first, first.before), _say_left(last, last.after)
-    if before != after and last.place - first.place + 1 == len(steps):
-        return _("route {route}: {before} → {after} (steps {place:,} to {last:,} of {steps:,})",
-                 route=route, before=before, after=after, place=first.place, last=last.place,
-                 steps=first.steps)  # fmt: skip
-    return _("route {route}: {before} → {after} (with all {steps:,} steps)",
-             route=route, before=before, after=_say_left(first, first.at_last), steps=first.steps)  # fmt: skip
+
+    def say_left(chance: float) -> str:
+        said = words.percent(chance)
+        return _("up to {chance}", chance=said) if first.is_bound and chance > 0 else said
+
+    values = {"route": words.cut(first.route, 30), "before": say_left(first.before), "steps": first.steps}
+    after = say_left(last.after)
+    if len(steps) == 1 and (values["before"] != after or first.steps == 1):
+        return _("route {route}: {before} → {after} (step {place:,} of {steps:,})", after=after, place=first.place,
+                 **values)  # fmt: skip
+    if len(steps) > 1 and values["before"] != after and last.place - first.place + 1 == len(steps):
+        return _("route {route}: {before} → {after} (steps {place:,} to {last:,} of {steps:,})", after=after,
+                 place=first.place, last=last.place, **values)  # fmt: skip
+    return _("route {route}: {before} → {after} (with all {steps:,} steps)", after=say_left(first.at_last), **values)
 
 
-# ---------------------------------------------------------------- entries
+# ---------------------------------------------------------------- entries, and the work of each
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,26 +108,6 @@ class Entry:
     results: Sequence[ItemResult]
     steps: Sequence[RouteStep]
     together: float | None
-
-    @property
-    def place(self) -> int:
-        """Its place in the order of urgency, from 1."""
-        return self.row.place
-
-    @property
-    def result(self) -> ItemResult:
-        """Its most urgent piece."""
-        return self.results[0]
-
-    @property
-    def pieces(self) -> int:
-        """How many pieces it has, quantities counted."""
-        return self.row.pieces
-
-    @property
-    def saved(self) -> float:
-        """Expected number of falls that it avoids if its anchors hold."""
-        return self.row.falls_avoided
 
     @property
     def names(self) -> str:
@@ -173,23 +131,14 @@ class Entry:
 
 def list_entries(results: Results, rows: Sequence[ItemResult]) -> list[Entry]:
     """Return the entries of the schedule, the most urgent first; `rows` are all pieces in the order of the results."""
-    steps: dict[int, list[RouteStep]] = {}
-    for step in list_steps(results.route_tables):
-        steps.setdefault(step.item_index, []).append(step)
-    total = results.schedule.before.falls
-    return [_build_entry(row, [rows[at] for at in row.item_indices], steps, total) for row in results.schedule.rows]
-
-
-def _build_entry(
-    row: ScheduleRow, pieces: Sequence[ItemResult], steps: Mapping[int, Sequence[RouteStep]], total: float
-) -> Entry:
-    own = [step for index in row.item_indices for step in steps.get(index, ())]
-    share = 1 - row.falls_left / total if total else 0.0
-    own.sort(key=lambda step: (step.route, step.place))
-    return Entry(row, pieces, own, None if pieces[0].apart else share)
-
-
-# ---------------------------------------------------------------- work, room by room
+    total, entries = results.schedule.before.falls, []
+    steps = sorted(list_steps(results.route_tables), key=lambda step: (step.route, step.place))
+    for row in results.schedule.rows:
+        pieces = [rows[at] for at in row.item_indices]
+        share = 1 - row.falls_left / total if total else 0.0
+        own = [step for step in steps if step.item_index in row.item_indices]
+        entries.append(Entry(row, pieces, own, None if pieces[0].apart else share))
+    return entries
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,11 +166,6 @@ class Work:
         return _("{names} together", names=named) if self.entry.row.is_together and len(self.row.items) > 1 else named
 
     @property
-    def all_names(self) -> str:
-        """Its pieces, each by its name."""
-        return ", ".join(sorted(self.row.items, key=natural_key))
-
-    @property
     def described(self) -> str:
         """What its pieces are."""
         item = self.results[0].item
@@ -233,11 +177,6 @@ class Work:
         return _keep(words.percents([one.adopted.probability for one in self.results]))
 
     @property
-    def risk(self) -> str:
-        """The class of the most urgent piece in words, with what it could be."""
-        return f"{words.class_symbol(self.results[0])} {words.risk_words(self.results[0])}"
-
-    @property
     def reason(self) -> str:
         """Why it is to be done: that of its entry, and with which other pieces it only helps together."""
         others = [one for one in self.entry.row.works if one is not self.row]
@@ -247,12 +186,6 @@ class Work:
             texts.append(_("only together with {names}", names=named))
         texts += dict.fromkeys(filter(None, map(words.say_bracket, self.results)))
         return _keep("; ".join(texts)) or words.DASH
-
-    @property
-    def remarks(self) -> list[str]:
-        """What is to be known of its forces: what a tension of 0 means, and the marks of what they rest on."""
-        texts = (say_held() if self.is_held_by_weight else "", self.marks)
-        return [one for one in texts if one]
 
     @property
     def is_held_by_weight(self) -> bool:
@@ -271,42 +204,15 @@ def _keep(text: str) -> str:
     return text.replace(" %", f"{words.NO_BREAK}%")
 
 
-@dataclass(frozen=True, slots=True)
-class Room:
-    """The work in a room; `heading` names it with its floor."""
-
-    heading: str
-    works: Sequence[Work]
-
-
 def list_work(entries: Sequence[Entry], floors: Sequence[str]) -> list[Work]:
-    """Return the work floor by floor, room by room, and there by urgency.
-
-    Parameters
-    ----------
-    entries : sequence of Entry
-        In order of urgency.
-    floors : sequence of str
-        Names of the floors in their order.
-    """
+    """Return the work of entries, which are by urgency, by `floors`, room by room, and there by urgency."""
     rank = {floor: at for at, floor in enumerate(floors)}
     by_index = {one.item.index: one for entry in entries for one in entry.results}
     works = [
         Work(entry, row, [by_index[at] for at in row.item_indices]) for entry in entries for row in entry.row.works
     ]
-    works.sort(key=lambda one: (rank[one.row.floor], not one.row.room, natural_key(one.row.room), one.entry.place))
+    works.sort(key=lambda one: (rank[one.row.floor], not one.row.room, natural_key(one.row.room), one.entry.row.place))
     return works
-
-
-def list_rooms(works: Sequence[Work], floors: Mapping[str, str]) -> list[Room]:
-    """Return work under the headings of its rooms; `floors` are the titles of the floors by their names."""
-    nowhere = _("no room given")
-
-    def head(floor: str, room: str) -> str:
-        return f"{floors[floor]}: {words.cut(room, 60) or nowhere}"
-
-    rooms = groupby(works, key=lambda one: (one.row.floor, one.row.room))
-    return [Room(head(*place), list(own)) for place, own in rooms]
 
 
 def say_fixings(work: WorkRow) -> int | str:
@@ -367,7 +273,9 @@ def say_effect_of_all(schedule: Schedule) -> list[str]:
     """Return what the whole schedule changes, and what it costs; nothing where there is nothing to fix."""
     if not schedule.rows:
         return []
-    before, after = map(_say_falls, (schedule.before, schedule.after))
+    before, after = (
+        words.say_falls(one.falls, one.falls_low, one.falls_high) for one in (schedule.before, schedule.after)
+    )
     pieces = words.plural(sum(one.pieces for one in schedule.rows), "piece")
     effect = ngettext(
         "Fixing the {n:,} entry below ({pieces}) lowers the expected falls from {before} to {after}, if all anchors "
@@ -376,41 +284,25 @@ def say_effect_of_all(schedule: Schedule) -> list[str]:
         "hold.",
         len(schedule.rows), pieces=pieces, before=before, after=after,
     )  # fmt: skip
-    return [effect, say_costs(schedule)]
-
-
-def _say_falls(state: State) -> str:
-    """Return the expected falls, and what 5 and 95 % of the draws do not exceed."""
-    expected = words.fixed(state.falls, 1)
-    if state.falls_low is None or state.falls_high is None:
-        return expected
-    return f"{expected} ({words.say_span((round(state.falls_low), round(state.falls_high)))})"
+    if schedule.cost is None:
+        costs = _("No cost is given: unit costs are read from the sheet {sheet} of the workbook.", sheet=_("Costs"))
+        return [effect, costs]
+    costs = _("The costs that the workbook gives sum to {cost}.", cost=say_cost(schedule.cost))
+    if schedule.uncosted:
+        costs += " " + ngettext("{n:,} entry has a part without a cost.", "{n:,} entries have a part without a cost.",
+                                schedule.uncosted)  # fmt: skip
+    return [effect, costs]
 
 
 def say_doubtful_brackets(rows: Iterable[ItemResult]) -> list[str]:
     """Return which pieces count as anchored by brackets that fail at 84 % of PFA or by the code; nothing if none."""
     found = sorted(filter(words.has_doubtful_bracket, rows), key=lambda one: natural_key(one.item.item))
-    if not found:
-        return []
-    text = ngettext(
+    return [ngettext(
         "{n:,} anchored piece has a bracket that fails at 84 % of PFA or by the code: {names}.",
         "{n:,} anchored pieces have brackets that fail at 84 % of PFA or by the code: {names}.",
         sum(one.item.quantity for one in found),
         names=words.name_pieces([one.item.item for one in found], MOST_NAMES, 40),
-    )  # fmt: skip
-    return [text]
-
-
-def say_costs(schedule: Schedule) -> str:
-    """Return the sum of the costs that are known, and how many entries have none."""
-    if schedule.cost is None:
-        return _("No cost is given: unit costs are read from the sheet {sheet} of the workbook.", sheet=_("Costs"))
-    known = _("The costs that the workbook gives sum to {cost}.", cost=say_cost(schedule.cost))
-    if not schedule.uncosted:
-        return known
-    return known + " " + ngettext(
-        "{n:,} entry has a part without a cost.", "{n:,} entries have a part without a cost.", schedule.uncosted
-    )  # fmt: skip
+    )] if found else []  # fmt: skip
 
 
 def list_marks(schedule: Schedule) -> list[str]:
@@ -451,8 +343,7 @@ def list_details(schedule: Schedule) -> tuple[list[tuple[Detail, int]], list[Det
 # ---------------------------------------------------------------- before and after
 
 
-@dataclass(frozen=True, slots=True)
-class Change:
+class Change(NamedTuple):
     """One number of the building before and after the schedule; `decimals` is how it is shown."""
 
     label: str
@@ -463,38 +354,30 @@ class Change:
 
 def list_changes(schedule: Schedule) -> tuple[list[Change], list[Change]]:
     """Return what the schedule changes: falls and pieces by class; routes by state and rooms that lose every exit."""
-    return [_change(schedule, "falls", 2), *_list_pieces(schedule)], list(_list_routes(schedule))
+    before, after, fields = schedule.before, schedule.after, schedule_fields(State)
 
+    def change(key: str, decimals: int = 0) -> Change:
+        return Change(fields[key].heading(), fields[key].read(before), fields[key].read(after), decimals)
 
-def _change(schedule: Schedule, key: str, decimals: int = 0) -> Change:
-    field = schedule_fields(State)[key]
-    before, after = (field.read(one) for one in (schedule.before, schedule.after))
-    return Change(field.heading(), before, after, decimals)
-
-
-def _list_pieces(schedule: Schedule) -> Iterator[Change]:
-    before, after = schedule.before, schedule.after
-    for risk in reversed(RiskClass):
-        label = _("Pieces: {risk}", risk=words.risk_label(risk))
-        yield Change(label, before.count(risk), after.count(risk))
-    if before.apart:
-        yield _change(schedule, "pieces_apart")
-    yield _change(schedule, "pieces_anchored")
-
-
-def _list_routes(schedule: Schedule) -> Iterator[Change]:
-    before, after = dict(schedule.before.routes), dict(schedule.after.routes)
-    states = [*dict.fromkeys((*before, *after))]
-    for state in states:
-        yield Change(_("Routes: {state}", state=_(state)), before.get(state, 0), after.get(state, 0))
+    pieces = [
+        change("falls", 2),
+        *(Change(_("Pieces: {risk}", risk=words.risk_label(risk)), before.count(risk), after.count(risk))
+          for risk in reversed(RiskClass)),
+        *([change("pieces_apart")] if before.apart else []),
+        change("pieces_anchored"),
+    ]  # fmt: skip
+    counts, later = dict(before.routes), dict(after.routes)
+    states = [*dict.fromkeys((*counts, *later))]
     if not states:
-        return
-    yield _change(schedule, "blocked_routes_expected", 2)
-    yield _change(schedule, "cut_off_rooms_expected", 2)
-    left_out = (_change(schedule, "unknown_routes"), _change(schedule, "unknown_rooms"))
-    yield from (one for one in left_out if one.before or one.after)
-    label = schedule_fields(State)["rooms_at_risk"].heading()
-    yield Change(label, len(schedule.before.rooms_at_risk), len(schedule.after.rooms_at_risk))
+        return pieces, []
+    left_out = (change("unknown_routes"), change("unknown_rooms"))
+    return pieces, [
+        *(Change(_("Routes: {state}", state=_(one)), counts.get(one, 0), later.get(one, 0)) for one in states),
+        change("blocked_routes_expected", 2),
+        change("cut_off_rooms_expected", 2),
+        *(one for one in left_out if one.before or one.after),
+        Change(fields["rooms_at_risk"].heading(), len(before.rooms_at_risk), len(after.rooms_at_risk)),
+    ]
 
 
 def say_rooms_at_risk(schedule: Schedule) -> str:

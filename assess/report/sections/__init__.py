@@ -1,1 +1,1 @@
-"""The sections of a report, one a file: each is found here, and says in which editions it stands and where."""
+"""The sections of a report: the `PARTS` of each file are found here, and say in which editions they stand where."""

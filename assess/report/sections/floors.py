@@ -1,62 +1,75 @@
-"""A page for each floor: its motion, its counts, its plan, and the pieces that are most likely to fall."""
+"""The floors: their motion and where it comes from, their counts, plans, and the pieces most likely to fall."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
-from assess.i18n import fill, ngettext
+from assess.i18n import fill, ngettext, number
 from assess.i18n import gettext as _
-from assess.report import words
-from assess.report.blocks import Block, Box, Figure, Heading, Paragraph, Section, join_words
+from assess.model import AXES
+from assess.natural import natural_key
+from assess.report import blocks, words
 from assess.report.content import FloorPage
-from assess.report.counts import Counts
+from assess.report.counts import Counts, count
 from assess.report.figures.bars import draw_bars
 from assess.report.figures.plan import Plan
 from assess.report.figures.plan_drawing import draw_plan, list_legend
-from assess.report.page_columns import build_table
-from assess.report.say.ground import say_counts, say_motions
+from assess.report.page_columns import build_table, motion_columns
+from assess.report.say import ground
+from assess.report.say.piece import list_apart, list_risky
 from assess.report.view import Part, View
 from assess.results import ItemResult
+from assess.risk import RiskClass
 
 BRIEF = 12
 """Rows up to which a floor without a plan shares a page with the next."""
 BESIDE_PLAN, WITHOUT_PLAN = 8, 20
 """Rows of the risky pieces that are listed."""
+MOST = 6
+"""Motions of a floor that the table lists."""
 
 
-def build(view: View) -> Section:
-    """Return the floors that have pieces or a segment of a route on their plan."""
-    content = view.content
-    boxes: list[Block] = [_build_floor(view, page, at) for at, page in enumerate(content.shown_floors, start=1)]
-    empty = len(content.floors) - len(content.shown_floors)
-    if empty:
-        boxes.append(Paragraph(ngettext("{n:,} floor has no pieces and no page of its own.",
-                                        "{n:,} floors have no pieces and no page of their own.", empty)))  # fmt: skip
-    return Section(boxes)
+def build_floors(view: View) -> blocks.Section:
+    """Return the floors that have pieces or a segment of a route on their plan, a page each."""
+    shown, everything = view.content.shown_floors, view.content.floors
+    boxes: list[blocks.Block] = [_build_floor(view, page, at) for at, page in enumerate(shown, start=1)]
+    if empty := len(everything) - len(shown):
+        boxes.append(blocks.Paragraph(ngettext("{n:,} floor has no pieces and no page of its own.",
+                                               "{n:,} floors have no pieces and no page of their own.",
+                                               empty)))  # fmt: skip
+    return blocks.Section(boxes)
 
 
-def _build_floor(view: View, page: FloorPage, at: int) -> Box:
-    plan = view.plans.get(page.floor.floor)
-    blocks: list[Block] = [
-        Heading(page.title),
-        Paragraph(say_motions(page.floor, page.motions), "motion"),
-        Paragraph(say_counts(page.counts), "motion"),
+def _build_floor(view: View, page: FloorPage, at: int) -> blocks.Box:
+    plan, risky = view.plans.get(page.floor.floor), list_risky(page.results)
+    found: list[blocks.Block] = [
+        blocks.Heading(page.title),
+        blocks.Paragraph(ground.say_motions(page.floor, page.motions), "motion"),
+        blocks.Paragraph(_say_counts(page.counts), "motion"),
     ]
     if plan:
-        drawn = draw_plan(plan, view)
-        kind = f"plan rows-{min(len(page.risky), BESIDE_PLAN)}"
-        blocks.append(Figure(drawn, _caption_plan(view, page, plan), kind, list_legend(plan, view)))
+        kind = f"plan rows-{min(len(risky), BESIDE_PLAN)}"
+        found.append(blocks.Figure(draw_plan(plan, view), _caption_plan(view, page, plan), kind,
+                                   list_legend(plan, view)))  # fmt: skip
     title = _("Bars: pieces of each class in every room of {floor}", floor=page.title)
-    bars = draw_bars(page.rooms, title) if page.results and not (plan and plan.pieces) else None
+    bars = draw_bars(count_rooms(page.results), title) if page.results and not (plan and plan.pieces) else None
     if bars:
         caption = [
             _("Pieces by class and room; no piece of this floor has a position on the plan."),
             ngettext("{n:,} more room is left out.", "{n:,} more rooms are left out.", bars[1]) if bars[1] else "",
             say_changes(page.counts),
         ]  # fmt: skip
-        blocks.append(Figure(bars[0], join_words(caption)))
+        found.append(blocks.Figure(bars[0], blocks.join_words(caption)))
+    found += _list_pieces(view, page, risky, BESIDE_PLAN if plan else WITHOUT_PLAN, "" if plan else view.marks)
     is_brief = not plan and len(page.results) <= BRIEF
-    return Box(
-        [*blocks, *_list_pieces(view, page, plan)], f"floor{' brief' if is_brief else ''}", "article", f"floor-{at}"
-    )
+    return blocks.Box(found, f"floor{' brief' if is_brief else ''}", "article", f"floor-{at}")
+
+
+def _say_counts(counts: Counts) -> str:
+    """Return the pieces of a floor by class, with what stands apart, and the expected falls."""
+    parts = [f"{words.risk_label(risk)} {counts.say(risk)}" for risk in reversed(RiskClass)]
+    apart = (("unconfirmed", counts.unconfirmed), ("formula", counts.by_formula), ("anchored", counts.anchored))
+    parts += [f"{words.apart_label(name)} {pieces:,}" for name, pieces in apart if pieces]
+    return _("{pieces}: {classes}; expected falls {falls}.", pieces=words.plural(counts.total, "piece"),
+             classes=", ".join(parts), falls=counts.falls)  # fmt: skip
 
 
 def say_changes(counts: Counts) -> str:
@@ -67,6 +80,18 @@ def say_changes(counts: Counts) -> str:
              lowered=counts.lowered, could_be=counts.may_be)  # fmt: skip
 
 
+def count_rooms(results: Sequence[ItemResult]) -> list[Counts]:
+    """Count the pieces of each room, the rooms with most of high and very high class first, then by name."""
+    rooms: dict[str, list[ItemResult]] = {}
+    for one in results:
+        rooms.setdefault(one.item.room, []).append(one)
+    counts = [
+        count(words.cut(room, 40) if room else _("no room named"), rooms[room])
+        for room in sorted(rooms, key=natural_key)
+    ]
+    return sorted(counts, key=lambda one: -one.risky)
+
+
 def _caption_plan(view: View, page: FloorPage, plan: Plan) -> str:
     if plan.pieces:
         first = _(
@@ -75,7 +100,7 @@ def _caption_plan(view: View, page: FloorPage, plan: Plan) -> str:
             "is known."
         )
         texts = [first, view.marks]
-        if left := len(page.results) - page.placed:
+        if left := sum(one.item.x_m is None or one.item.y_m is None for one in page.results):
             texts.append(ngettext("{n:,} row without a position is left out.",
                                   "{n:,} rows without a position are left out.", left))  # fmt: skip
     else:
@@ -91,48 +116,125 @@ def _caption_plan(view: View, page: FloorPage, plan: Plan) -> str:
     return " ".join(filter(None, texts))
 
 
-def _list_pieces(view: View, page: FloorPage, plan: Plan | None) -> list[Block]:
+def _list_pieces(view: View, page: FloorPage, risky: Sequence[ItemResult], most: int, marks: str) -> list[blocks.Block]:
     """Return the risky pieces of a floor, those that are counted apart, and how many classes were lowered."""
-    most = BESIDE_PLAN if plan else WITHOUT_PLAN
-    counts = page.counts
+    counts, left = page.counts, list_risky(page.results, "formula")
+    unconfirmed = list_apart(page.results, "unconfirmed")
+    found: list[blocks.Block] = []
 
-    def list_some(rows: Sequence[ItemResult], text: str, *columns: str, after: str = "") -> list[Block]:
-        if not rows:
-            return []
-        first = _("The first {most}:", most=most) if len(rows) > most else ""
-        lead = Paragraph(join_words((text, first, after)), "lead-in")
-        return [lead, build_table(view.columns(*columns), rows[:most], "short" if "chance" in columns else "apart")]
+    def list_some(rows: Sequence[ItemResult], text: str, *columns: str, after: str = "") -> None:
+        if rows:
+            first = _("The first {most}:", most=most) if len(rows) > most else ""
+            found.append(blocks.Paragraph(blocks.join_words((text, first, after)), "lead-in"))
+            shown = view.columns("piece", "room_short", "size", "quantity", *columns)
+            found.append(build_table(shown, rows[:most], "short" if "chance" in columns else "apart"))
 
-    risky = ngettext("{n:,} row is high or very high, including borderline cases.",
-                     "{n:,} rows are high or very high, including borderline cases.", len(page.risky))  # fmt: skip
-    unconfirmed = ngettext(
+    text = ngettext("{n:,} row is high or very high, including borderline cases.",
+                    "{n:,} rows are high or very high, including borderline cases.", len(risky))  # fmt: skip
+    list_some(risky, text, "chance", "class", after=marks)
+    if not risky and counts.free and view.content.total.has_apart:
+        found.append(blocks.Paragraph(_("No simulated free-standing piece on this floor reaches high.")))
+    elif not risky and (counts.free or (page.results and not counts.has_apart)):
+        found.append(blocks.Paragraph(_("No free-standing piece on this floor reaches high.")))
+    text = ngettext(
         "{n:,} row is unconfirmed, as nothing is known of the building, or as the motions are too weak to confirm its "
         "lower class.",
         "{n:,} rows are unconfirmed, as nothing is known of the building, or as the motions are too weak to confirm "
         "their lower class.",
-        len(page.unconfirmed),
+        len(unconfirmed),
     )
-    by_formula = ngettext("{n:,} row that was not simulated is high or very high by formula.",
-                          "{n:,} rows that were not simulated are high or very high by formula.",
-                          len(page.risky_by_formula))  # fmt: skip
-    shown = ("piece", "room_short", "size", "quantity")
-    blocks = list_some(page.risky, risky, *shown, "chance", "class", after="" if plan else view.marks)
-    if not page.risky:
-        if counts.free and view.has_apart:
-            blocks.append(Paragraph(_("No simulated free-standing piece on this floor reaches high.")))
-        elif counts.free or (page.results and not counts.unconfirmed and not counts.by_formula):
-            blocks.append(Paragraph(_("No free-standing piece on this floor reaches high.")))
-    blocks += list_some(page.unconfirmed, f"{words.UNCONFIRMED} {unconfirmed}", *shown, "formula", "class")
-    blocks += list_some(page.risky_by_formula, f"{words.BY_FORMULA} {by_formula}", *shown, "formula", "class")
+    list_some(unconfirmed, f"{words.UNCONFIRMED} {text}", "formula", "class")
+    text = ngettext("{n:,} row that was not simulated is high or very high by formula.",
+                    "{n:,} rows that were not simulated are high or very high by formula.", len(left))  # fmt: skip
+    list_some(left, f"{words.BY_FORMULA} {text}", "formula", "class")
     if counts.lowered:
-        blocks.append(Paragraph(ngettext(
+        found.append(blocks.Paragraph(ngettext(
             "Simulation lowered the class of {n:,} free-standing piece on this floor; it is marked in the table of all "
             "pieces.",
             "Simulation lowered the class of {n:,} free-standing pieces on this floor; each is marked in the table of "
             "all pieces.",
             counts.lowered,
         )))  # fmt: skip
-    return blocks
+    return found
 
 
-PART = Part(key="floors", heading=fill("Floors"), places={"client": 40, "all": 40}, build=build)
+# ---------------------------------------------------------------- all floors in two tables
+
+
+def build_motions(view: View) -> blocks.Section:
+    """Return the floors with their counts, the sources of their motions with cautions, and each motion."""
+    found: list[blocks.Block] = [
+        _count_floors(view),
+        blocks.Heading(_("Where the motion of each floor comes from")),
+        blocks.Bullets(ground.list_sources(view.run.motions)),
+        *(blocks.Paragraph(one.text, "caution") for one in view.content.cautions),
+    ]
+    columns = motion_columns("axis", "source", "pfa_g", "pfv_cm_s", "origin")
+    groups = []
+    for page in view.content.shown_floors:
+        title = page.title
+        if page.floor.elevation_m is not None:
+            title = _("{floor}, {elevation} m above ground", floor=title, elevation=words.in_m(page.floor.elevation_m))
+        rows = [blocks.part(title, len(columns))]
+        rows += [blocks.Row([column.cell(one) for column in columns]) for one in page.motions[:MOST]]
+        if (left := len(page.motions) - MOST) > 0:
+            text = ngettext("{n:,} more record of this floor: see the appendix.",
+                            "{n:,} more records of this floor: see the appendix.", left)  # fmt: skip
+            rows.append(blocks.Row([blocks.Cell(text, columns=len(columns))]))
+        groups.append(rows)
+    return blocks.Section([*found, blocks.Table([one.column for one in columns], groups, "demand", is_named=True)])
+
+
+def _count_floors(view: View) -> blocks.Table:
+    """Return the pieces of each floor by class.
+
+    With columns of what is counted apart there is no room for those of the changes, which the section Verification has.
+    """
+    total = view.content.total
+    has_changes = bool(view.content.verified.done) and not total.has_apart
+    caption = [
+        _("Motion of each floor, and its pieces by class; anchored pieces have no class."),
+        _("Classes and expected falls are of simulated pieces alone. Unconfirmed pieces and those by formula only are "
+          "counted apart; up to as many more could fall as are unconfirmed.") if total.has_apart else "",
+        _("Lowered: by simulation. Could be higher: the interval reaches into a higher class. Both are included in the "
+          "classes on the left.") if has_changes else "",
+    ]  # fmt: skip
+    further: list[tuple[blocks.Words, str, str]] = []
+    if has_changes:
+        further += [(_("Lowered"), "w10", "lowered"), (_("Could be higher"), "w8", "may_be")]
+    if total.unconfirmed:
+        further.append(([f"{words.UNCONFIRMED} ", blocks.BREAK, _("unconfirmed")], "w10", "unconfirmed"))
+    if total.by_formula:
+        further.append(([f"{words.BY_FORMULA} ", blocks.BREAK, _("by formula only")], "w8", "by_formula"))
+    further += [(_("Anchored"), "w10", "anchored"), (_("All"), "w8", "total")]
+
+    def list_cells(counts: Counts, *, is_total: bool = False) -> Iterator[blocks.Words]:
+        for risk in RiskClass:
+            share = blocks.Span(f"({counts.share(risk)})", "unit") if is_total else ""
+            yield blocks.join_words((counts.say(risk), share))
+        yield from (number(getattr(counts, name), ",d") for _heading, _width, name in further)
+        yield counts.falls
+
+    def head_class(risk: RiskClass) -> blocks.Words:
+        return [blocks.Span(risk.symbol, f"badge {words.class_name(risk)}"), " ", blocks.BREAK, words.risk_word(risk)]
+
+    columns = blocks.list_columns(
+        (_("Floor"), ""),
+        ("PFA X, Y [g]", "w12", "num"),
+        *((head_class(risk), "w8", "num") for risk in RiskClass),
+        *((heading, width, "num") for heading, width, _name in further),
+        (_("Expected falls"), "w14" if total.unconfirmed else "w9", "num"),
+    )  # fmt: skip
+    rows = []
+    for page in view.content.floors:
+        peaks = (words.in_g(max(one.pfa_g for one in page.motions if one.axis == axis)) for axis in AXES)
+        cells = [blocks.head(words.cut(page.counts.label, 30)), ", ".join(peaks), *list_cells(page.counts)]
+        rows.append(blocks.Row(cells))
+    rows.append(blocks.Row([blocks.head(total.label), "", *list_cells(total, is_total=True)], "total"))
+    return blocks.table(columns, rows, "counts", blocks.join_words(caption))
+
+
+PARTS = (
+    Part(key="floors", heading=fill("Floors"), places={"client": 40, "all": 40}, build=build_floors),
+    Part(key="motions", heading=fill("Motion of the floors"), places={"annex": 10, "all": 60}, build=build_motions),
+)

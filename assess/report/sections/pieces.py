@@ -1,50 +1,281 @@
-"""The pieces for a client: alike ones in one row."""
+"""The pieces: alike ones in one row for a client, a row each, as lines of fixed columns, and by every method."""
 
-from assess.i18n import fill, ngettext
+import unicodedata
+from collections.abc import Sequence
+from itertools import groupby
+
+from assess.i18n import fill, ngettext, number
 from assess.i18n import gettext as _
-from assess.report import words
-from assess.report.blocks import Paragraph, Row, Section, Span, Table, join_words, list_columns, part
-from assess.report.page_columns import mark
-from assess.report.say.piece import choose_groups, group_rows
-from assess.report.summary import describe
-from assess.report.view import Part, View, in_whole
+from assess.natural import natural_key
+from assess.report import blocks, words
+from assess.report.page_columns import PageColumn, build_table, mark
+from assess.report.say.methods import find_disagreements
+from assess.report.say.piece import describe, find_kind, list_apart, list_risky
+from assess.report.view import MOST_ROWS, Part, View
+from assess.results import ItemResult
+
+MOST_GROUPS = 110
+"""Groups of alike pieces that the client's edition has room for."""
+NAMED, LONGEST = 4, 16
+"""Runs of names that a group shows, and characters of a name."""
+MOST_RISKY = 60
+"""Risky pieces that stand in place of the whole table."""
+MOST_REASONS = 15
+"""Groups of disagreements that are shown."""
+LINES, MOST_LINES = 58, 5000
+"""Lines of a block of fixed columns, which a page holds; rows beyond which a PDF gets too long for anybody to read."""
 
 
-def build(view: View) -> Section:
-    """Return the groups of pieces, floor by floor, those most likely to fall where there are too many."""
-    groups = group_rows(view.content.listed)
-    chosen = choose_groups(groups)
-    count = sum(len(own) for _floor, own in chosen)
+# ---------------------------------------------------------------- alike ones in one row
+
+
+def build_groups(view: View) -> blocks.Section:
+    """Return the groups of alike pieces, floor by floor, those most likely to fall where there are too many."""
+    groups: dict[tuple[object, ...], list[ItemResult]] = {}
+    for one in view.content.listed:
+        groups.setdefault((*find_kind(one), one.item.anchored, words.say_bracket(one)), []).append(one)
+    chosen = choose_groups(list(groups.values()), MOST_GROUPS)
     lead = [
         ngettext("{n:,} row of the workbook; alike ones stand together.",
-                 "{n:,} rows of the workbook; alike ones stand together.", len(view.content.results)),
+                 "{n:,} rows of the workbook; alike ones stand together.", len(view.results)),
         _("Alike are rows of the same floor, description, type, sizes, anchoring and class; the number of rows is in "
           "brackets. The annex lists every piece."),
-        _("The {n:,} groups most likely to fall, of {all:,}, are shown.", n=count, all=len(groups))
-        if count < len(groups) else "",
+        _("The {n:,} groups most likely to fall, of {all:,}, are shown.", n=len(chosen), all=len(groups))
+        if len(chosen) < len(groups) else "",
     ]  # fmt: skip
     anchored = _("Chance of an anchored piece: as if free-standing.") if view.content.total.anchored else ""
-    legend = [view.marks, f"{words.apart_legend()}." if view.has_apart else "", anchored]
-    heads = list_columns(
-        (_("Items"), "w15"), (_("Room"), "w12"), (_("What"), ""), (["B × W × H ", Span("[cm]", "unit")], "w15", "num"),
+    heads = blocks.list_columns(
+        (_("Items"), "w15"), (_("Room"), "w12"), (_("What"), ""),
+        (["B × W × H ", blocks.Span("[cm]", "unit")], "w15", "num"),
         (_("No."), "w4", "num"), (_("Chance (range)"), "w24", "num"), (_("Class"), "w12"),
     )  # fmt: skip
     rows = [
-        [part(view.floor_titles[floor], len(heads)),
-         *(Row((one.names, one.rooms, describe(one.first, 48), words.size(one.first), in_whole(one.pieces),
-                one.chance, mark(one.first))) for one in own)]
-        for floor, own in chosen
-    ]  # fmt: skip
-    return Section(
-        [
-            Paragraph(join_words(lead)),
-            Paragraph(join_words(legend), "small"),
-            Table(heads, rows, "grouped", is_named=True),
-        ]
+        [blocks.part(view.floor_titles[floor], len(heads)), *(blocks.Row(_list_cells(one)) for one in own)]
+        for floor, own in groupby(chosen, key=lambda one: one[0].item.floor)
+    ]
+    return blocks.Section([
+        blocks.Paragraph(blocks.join_words(lead)),
+        blocks.Paragraph(blocks.join_words([*view.legend, anchored]), "small"),
+        blocks.Table(heads, rows, "grouped", is_named=True),
+    ])  # fmt: skip
+
+
+def choose_groups(groups: Sequence[Sequence[ItemResult]], most: int) -> Sequence[Sequence[ItemResult]]:
+    """Return groups in their order; of too many, those most likely to fall."""
+    if len(groups) <= most:
+        return groups
+    urgency = [(int(own[0].adopted.upper), max(one.adopted.probability for one in own)) for own in groups]
+    worst = sorted(range(len(groups)), key=lambda at: urgency[at], reverse=True)[:most]
+    return [groups[at] for at in sorted(worst)]
+
+
+def _list_cells(group: Sequence[ItemResult]) -> list[blocks.Words]:
+    first = group[0]
+    names = words.name_pieces([one.item.item for one in group], NAMED, LONGEST)
+    rooms = sorted({words.cut(one.item.room, 24) for one in group if one.item.room}, key=natural_key)
+    return [
+        f"{names} ({len(group)})" if len(group) > 1 else names,
+        words.name_first(rooms, 2) or words.DASH,
+        describe(first, 48),
+        words.size(first),
+        number(sum(one.item.quantity for one in group), ",d"),
+        say_chances(group),
+        mark(first),
+    ]
+
+
+def say_chances(group: Sequence[ItemResult]) -> str:
+    """Return the chance of alike pieces with its interval; where rows differ, from the least to the largest of both."""
+    texts = {words.chance(one) for one in group}
+    if len(texts) == 1:
+        return texts.pop()
+    chance = words.percents([one.adopted.probability for one in group])
+    lows = [one.adopted.low for one in group if one.adopted.low is not None]
+    highs = [one.adopted.high for one in group if one.adopted.high is not None]
+    if len(lows) < len(group) or len(highs) < len(group):
+        return chance
+    interval = f"({words.percents([min(lows), max(highs)])})".replace(" ", words.NO_BREAK)
+    return f"{chance} {interval}"
+
+
+# ---------------------------------------------------------------- a row each
+
+
+def build_items(view: View) -> blocks.Section:
+    """Return the table of all pieces, or the risky ones in three tables: by class, unconfirmed, by formula."""
+    if not view.results:
+        return blocks.Section([blocks.Paragraph(_("There are no pieces."))], "run-on")
+    lead = blocks.Paragraph(blocks.join_words(_explain(view)))
+    if not view.is_compact:
+        return blocks.Section([lead, blocks.Box([_list_all(view)], "scroll", label=_("All pieces"))], "wide")
+    found: list[blocks.Block] = [lead]
+    first = _(
+        "The rows that are high or very high, including borderline cases, the worst first; all rows are in the "
+        "appendix."
     )
+    parts = (
+        (first, list_risky(view.results)),
+        (f"{words.UNCONFIRMED} " + _("Unconfirmed, counted apart:"), list_apart(view.results, "unconfirmed")),
+        (f"{words.BY_FORMULA} " + _("By formula only, counted apart:"), list_risky(view.results, "formula")),
+    )
+    for at, (text, rows) in enumerate(parts):
+        if rows or not at:
+            most = _("The first {n:,} of {all:,}:", n=MOST_RISKY, all=len(rows)) if len(rows) > MOST_RISKY else ""
+            found += [blocks.Paragraph(blocks.join_words((text, most)), "lead-in"),
+                      build_table(view.columns("risky"), rows[:MOST_RISKY], "pieces")]  # fmt: skip
+    return blocks.Section(found)
 
 
-PART = Part(
-    key="pieces", heading=fill("Pieces"), places={"client": 50}, build=build,
-    is_shown=lambda view: bool(view.content.results),
+def _explain(view: View) -> list[str]:
+    """Return how many rows there are, and what the columns mean."""
+    verified, n = view.content.verified, len(view.results)
+    if n > MOST_ROWS:
+        count = _(
+            "{n:,} rows, the first {shown:,} of which are shown: the Excel report holds all.", n=n, shown=MOST_ROWS
+        )
+    else:
+        count = ngettext("{n:,} row.", "{n:,} rows.", n)
+    if verified.done:
+        chance = _("Chance: the adopted risk, simulated where it has a range, otherwise from the formula; {interval}.",
+                   interval=verified.interval)  # fmt: skip
+        record = _("Under the record: the behaviour under the recorded motion itself, as largest rotation over the "
+                   "critical angle, the worst of several records; a dash: no record, or not simulated.")  # fmt: skip
+    else:
+        chance = _("Chance: the adopted risk, here from: {formula}.", formula=_(view.run.formula.title))
+        record = ""
+    raw = _("Raw: as printed, before the departures listed in the section Methods. Where the axis is not known, the "
+            "worse of both governs.")  # fmt: skip
+    return [count, chance, record, raw]
+
+
+def _list_all(view: View) -> blocks.Table:
+    columns, rows = view.columns("pieces"), view.content.listed[:MOST_ROWS]
+    heads = {"": "", "unconfirmed": _("Unconfirmed: nothing is known of the building, or the motions may be too weak"),
+             "formula": _("By formula only: not simulated")}  # fmt: skip
+    parts = [(heads[basis], [one for one in rows if one.apart == basis]) for basis in heads]
+    groups = [
+        [*([blocks.part(heading, len(columns))] if heading else []), *(_list_one(view, columns, one) for one in own)]
+        for heading, own in parts
+        if own
+    ]
+    return blocks.Table([one.column for one in columns], groups, "items", id="pieces", is_named=True)
+
+
+def _list_one(view: View, columns: Sequence[PageColumn], one: ItemResult) -> blocks.Row:
+    at, item, on_screen = one.item.index + 1, one.item, not view.for_print
+    is_on_plan = on_screen and item.x_m is not None and item.y_m is not None and view.plans.get(item.floor)
+
+    def link(text: str) -> blocks.Words:
+        return blocks.Span(text, href=f"#piece-{at}", title=_("Show it on the plan")) if is_on_plan else text
+
+    return blocks.Row(
+        [link(each.text(one)) if each.key == "item" else each.cell(one, can_sort=on_screen) for each in columns],
+        id=f"row-{at}",
+        data={"floor": item.floor, "room": item.room, "class": words.style_name(one), "route": item.route}
+        if on_screen else {},
+    )  # fmt: skip
+
+
+# ---------------------------------------------------------------- by every method
+
+
+def build_comparison(view: View) -> blocks.Section:
+    """Return the disagreements by their reason, and the table of all methods where the rows have room."""
+    found: list[blocks.Block] = [blocks.Paragraph(text) for text in view.content.total.say_cannot_rock()]
+    if not view.results:
+        return blocks.Section([*found, blocks.Paragraph(_("There are no pieces."))], "run-on")
+    summary, groups = find_disagreements(view.run, view.results)
+    rows: list[list[blocks.Cell | blocks.Words]] = []
+    for one in groups[:MOST_REASONS]:
+        further = ngettext("and {n:,} more", "and {n:,} more", one.left) if one.left else ""
+        named = f"{words.plural(len(one.rows), 'row')}: {', '.join(one.named)} {further}".rstrip()
+        rows.append([named, [one.highest, blocks.BREAK, one.lowest], " ".join(one.reasons)])
+    heads = blocks.list_columns((_("Rows"), "w20"), (_("Highest and lowest"), "w20"), (_("Why"), ""))
+    found += [blocks.Heading(_("Where the methods disagree by more than one class, and why")),
+              blocks.Paragraph(summary)]  # fmt: skip
+    found += [blocks.table(heads, rows, "disagreements")] if rows else []
+    if any(one.left for one in groups):
+        found.append(blocks.Paragraph(_("The sheet Items of the Excel report has all rows."), "small"))
+    if (left := len(groups) - MOST_REASONS) > 0:
+        text = ngettext("{n:,} further group is left out.", "{n:,} further groups are left out.", left)
+        found.append(blocks.Paragraph(text, "small"))
+    found.append(blocks.Heading(_("Results of every method for each row")))
+    if view.is_long:
+        see = (_("See the appendix, and the sheet Items of the Excel report.") if view.is_compact
+               else _("See the sheet Items of the Excel report."))  # fmt: skip
+        return blocks.Section([*found, blocks.Paragraph(see)])
+    text = _(
+        "Under the governing motion of the row: that of the highest adopted class, then of the largest adopted chance. "
+        "A larger value under another motion of the row (its other axis, or a parallel record) follows an arrow. "
+        "Criteria are met or not met and have no class. A dash: not evaluated, for the reason in the marks of the "
+        "method, or not simulated."
+    )
+    table = build_table(view.columns("methods"), view.content.listed, "items methods")
+    return blocks.Section([*found, blocks.Paragraph(text), table], "wide")
+
+
+# ---------------------------------------------------------------- as lines, which a PDF lays out many times faster
+
+
+def build_lists(view: View) -> blocks.Section:
+    """Return one line a row, then the results of every method."""
+    texts = [
+        _("One line for each row; longer texts are cut, the Excel report has all of them."),
+        view.marks,
+        _("The first {n:,} rows; the Excel report lists all.", n=MOST_LINES) if len(view.results) > MOST_LINES else "",
+    ]
+    heading = blocks.Heading(_("Results of every method for each row under its governing motion"))
+    pieces, methods = (list_lines(view.content.listed, view.columns(name)) for name in ("pieces", "methods"))
+    return blocks.Section([blocks.Paragraph(blocks.join_words(texts)), *pieces, heading, *methods], "wide")
+
+
+def list_lines(results: Sequence[ItemResult], columns: Sequence[PageColumn]) -> list[blocks.Listing]:
+    """Return a line a row, with those of the columns of a table that have a place in it, and the class at its end."""
+    shown = [one for one in columns if one.places]
+    head = "  ".join([*(_put(one, one.line_heading or one.heading) for one in shown), _("Class")])
+    lines = [_line(shown, one) for one in results[:MOST_LINES]]
+    return [blocks.Listing(head, lines[at : at + LINES]) for at in range(0, len(lines), LINES)]
+
+
+def _put(column: PageColumn, text: str) -> str:
+    """Return a text that takes the places of a column in a font of equal widths, cut where it is longer."""
+    text, width = " ".join(text.split()), column.places
+    taken = sum(map(_places, text))
+    if taken > width:
+        kept, left = "", width - 1
+        for character in text:
+            left -= _places(character)
+            if left < 0:
+                break
+            kept += character
+        text, taken = kept + "…", sum(map(_places, kept)) + 1
+    blank = " " * (width - taken)
+    return blank + text if column.is_number or column.is_method else text + blank
+
+
+def _places(character: str) -> int:
+    """Return how many places a character takes: none if it stands above another one, two if it is a wide one."""
+    if unicodedata.combining(character):
+        return 0
+    return 2 if unicodedata.east_asian_width(character) in "WF" else 1
+
+
+def _line(columns: Sequence[PageColumn], one: ItemResult) -> blocks.Words:
+    text = "  ".join(_put(column, (column.line or column.text)(one)) for column in columns)
+    marks = words.class_marks(one)
+    if one.is_anchored:
+        return f"{text}  {words.apart_label('anchored')} ({words.class_label(one)}{marks})"
+    if one.apart:
+        return f"{text}  {words.class_label(one)} ({words.apart_note(one)})"
+    return [f"{text}  ", blocks.Span(f"{words.class_label(one)}{marks}", f"badge {words.style_name(one)}")]
+
+
+PARTS = (
+    Part(key="pieces", heading=fill("Pieces"), places={"client": 50}, build=build_groups,
+         is_shown=lambda view: bool(view.results)),
+    Part(key="items", heading=fill("All pieces"), places={"annex": 110, "all": 50}, build=build_items),
+    Part(key="comparison", heading=fill("Comparison of the methods"), places={"annex": 120, "all": 90},
+         build=build_comparison),
+    Part(key="lists", heading=fill("Appendix: all pieces"), places={"annex": 130, "all": 190}, build=build_lists,
+         is_shown=lambda view: view.is_compact),
 )  # fmt: skip

@@ -1,91 +1,155 @@
-"""What was simulated, under which motions, and what it changed."""
+"""What was simulated, under which motions, and what it changed; risk over breadth and PFA; chances a year."""
 
-from assess.i18n import fill, ngettext
+import statistics
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+from assess.i18n import fill, ngettext, number
 from assess.i18n import gettext as _
-from assess.report import words
-from assess.report.blocks import (
-    Block,
-    Bullets,
-    Figure,
-    Heading,
-    Image,
-    Paragraph,
-    Section,
-    list_columns,
-    more,
-    rich,
-    strong,
-    table,
-)
-from assess.report.embedded import data_uri
-from assess.report.figures.motion_figures import choose_traced, draw_traced
+from assess.report import blocks, words
+from assess.report.figures.motion_figures import draw_traced
+from assess.report.figures.risk_contours import draw_contours
 from assess.report.page_columns import build_table
-from assess.report.say.simulation import LISTED
-from assess.report.view import Part, View, in_whole, shorten
+from assess.report.say import annual
+from assess.report.say.annual import AnnualLine
+from assess.report.say.piece import by_chance
+from assess.report.say.simulation import count_rows, describe_trials, list_misfits, name_some
+from assess.report.view import Part, View, say_left
+from assess.results import EnsembleRow, ItemResult, MotionRow
+from assess.risk import RiskClass
 
 MOST, MISFITS = 60, 6
 """Motions, and sentences on large misfits, that are shown."""
+LISTED = 20
+"""Rows of the lists of changes, of falls under the record, and of chances a year."""
 
 
-def build(view: View) -> Section:
+def build(view: View) -> blocks.Section:
     """Return the status, the motions of each floor with their fit, figures, and what simulation changed."""
-    content = view.content
-    if not content.verified.done:
-        text = rich(_(
+    verified = view.content.verified
+    if not verified.done:
+        text = blocks.rich(_(
             "<strong>Not simulated.</strong> The risks in this report come from published formulas. No rocking has "
             "been simulated, so no class has been confirmed, raised or lowered, and no interval is given."
         ))  # fmt: skip
-        return Section([Paragraph(text)], "run-on")
-    status, why = content.verified.status
-    blocks: list[Block] = [Paragraph([strong(status), f": {why}."], "lead")]
-    blocks += [Paragraph(text) for text in content.trials.paragraphs]
-    blocks += [Bullets(content.verified.summary), *_list_motions(view)]
-    blocks += view.once("verification", lambda: _draw(view))
-    return Section([*blocks, *_list_changes(view)])
+        return blocks.Section([blocks.Paragraph(text)], "run-on")
+    status, why = verified.status
+    return blocks.Section([
+        blocks.Paragraph([blocks.strong(status), f": {why}."], "lead"),
+        *map(blocks.Paragraph, describe_trials(verified)),
+        blocks.Bullets(list(_list_found(view))),
+        *_list_motions(view),
+        *view.once("verification", lambda: list(draw_traced(view.content, view.progress))),
+        *_list_changes(view),
+    ])  # fmt: skip
 
 
-def _list_motions(view: View) -> list[Block]:
-    trials = view.content.trials
-    shown, left = shorten(trials.motions, MOST)
-    heads = list_columns(
+def _list_found(view: View) -> Iterator[str]:
+    """Yield what simulation changed, and what is open, line by line."""
+    found = view.content.verified
+
+    def by_class(
+        rows: Sequence[ItemResult], risk_of: Callable[[ItemResult], RiskClass | None]
+    ) -> Iterator[dict[str, Any]]:
+        for risk in reversed(RiskClass):
+            if n := sum(one.item.quantity for one in rows if risk_of(one) == risk):
+                yield {"n": n, "risk": words.risk_word(risk)}
+
+    lowered = [_("{n:,} from {risk}", **one) for one in by_class(found.lowered, lambda one: one.adopted.lowered_from)]
+    raised = [_("{n:,} to {risk}", **one) for one in by_class(found.raised, lambda one: one.adopted.risk)]
+    most = view.run.provenance.looks[-1]
+    lines = [
+        (_("Class lowered by simulation"), found.lowered, ", ".join(lowered)),
+        (_("Class raised by simulation"), found.raised, ", ".join(raised)),
+        (_("Unconfirmed, as nothing is known of the building, or the formula's class although simulation gave a "
+           "lower one, as the motions are weaker than the floor's"),
+         found.unconfirmed, name_some(found.unconfirmed)),
+        (_("Could be of a higher class: the range reaches into it"), found.may_be, ""),
+        (_("Would be of a higher class if exactly this motion recurred and the piece were exactly as given"),
+         found.ideal_higher, name_some(found.ideal_higher)),
+        (_("Undecided: the interval still covers more than one class after {most:,} motions", most=most),
+         found.undecided, name_some(found.undecided)),
+        (_("Overturn under the recorded motion itself, and so are at least high"), found.fell, name_some(found.fell)),
+        (_("Not simulated: chance and class come from the formula"), found.left, ""),
+    ]  # fmt: skip
+    for label, rows, more in lines:
+        if rows:
+            yield f"{label}: {count_rows(rows)}{': ' if more else ''}{more}."
+
+
+def _list_motions(view: View) -> list[blocks.Block]:
+    made = [(one, one.ensemble) for one in view.run.motions if one.ensemble is not None]
+    misfits = list_misfits(view.run)
+    heads = blocks.list_columns(
         (_("Floor"), "w8"), (_("Axis"), "w6"), (_("Floor motion"), ""), (_("Motions made for"), "w12"),
         (_("Motions"), "w9", "num"), (_("Rows simulated"), "w11", "num"),
         (_("Spectral misfit (mean; most)"), "w15", "num"), (_("PFA, ratio"), "w11", "num"),
         (_("PFV, ratio"), "w11", "num"),
     )  # fmt: skip
-    rows = [
-        (one.floor, one.axis, one.source, one.kind, one.motions, in_whole(one.rows), one.spectrum, one.pfa, one.pfv)
-        for one in shown
-    ]
     misfit = _(
         "Spectral misfit: mean deviation of the motions' mean 5 % spectrum from its target, over its periods; then the "
         "largest, and its period. Ratios: mean peak of the motions over the floor's, ± the scatter from motion to "
         "motion."
     )
+    left = len(misfits) - MISFITS
+    more = ngettext("{n:,} more floor motion with a large misfit is in the table.",
+                    "{n:,} more floor motions with a large misfit are in the table.", left)  # fmt: skip
     return [
-        Heading(_("Motions of each floor")),
-        table(heads, rows, "motions"),
-        *more(left, lambda n: ngettext("{n:,} more is in the Excel report.", "{n:,} more are in the Excel report.", n)),
-        Paragraph(misfit, "small"),
-        *(Paragraph(text, "caution") for text in trials.misfits[:MISFITS]),
-        *more(
-            len(trials.misfits) - MISFITS,
-            lambda n: ngettext("{n:,} more floor motion with a large misfit is in the table.",
-                               "{n:,} more floor motions with a large misfit are in the table.", n),
-        ),
-    ]  # fmt: skip
-
-
-def _draw(view: View) -> list[Figure]:
-    return [
-        Figure(Image(data_uri(one.drawing, "image/svg+xml"), one.alternative), one.caption)
-        for one in draw_traced(view.content, choose_traced(view.content), view.progress)
+        blocks.Heading(_("Motions of each floor")),
+        blocks.table(heads, (_list_fit(view, *one) for one in made[:MOST]), "motions"),
+        *say_left(len(made) - MOST),
+        blocks.Paragraph(misfit, "small"),
+        *(blocks.Paragraph(text, "caution") for text in misfits[:MISFITS]),
+        *([blocks.Paragraph(more, "small")] if left > 0 else []),
     ]
 
 
-def _list_changes(view: View) -> list[Block]:
-    changed, fell = view.content.trials.changed, view.content.trials.fell
-    blocks: list[Block] = [Heading(_("Classes lowered or raised"))]
+def _list_fit(view: View, motion: MotionRow, ensemble: EnsembleRow) -> list[str]:
+    """Return the motions of one floor along one axis, and how they fit its own."""
+    fit, suite = ensemble.fit, view.run.provenance.suite
+    pfa = pfv = spectrum = words.DASH
+    if suite is not None:
+        kind = _("own, scaled to PFA") if suite.is_scaled else _("own, not scaled")
+        factors = [motion.pfa_g / one if suite.is_scaled else 1.0 for one in suite.pfa_g]
+        pfa = _peak_ratio(suite.pfa_g, factors, motion.pfa_g)
+        pfv = _peak_ratio(suite.pfv_cm_s, factors, motion.pfv_cm_s)
+    elif ensemble.unknown_building:
+        kind = _("assumed motion, nothing known of the building")
+    else:
+        kind = _("assumed motion") if ensemble.assumed_motion else _("recorded motion")
+    if suite is None and fit is not None:
+        pfa, pfv = _ratio(fit.pfa_ratio, fit.pfa_scatter), _ratio(fit.pfv_ratio, fit.pfv_scatter)
+        spectrum = _("{mean}; {most:+.1f} % at {period:.2f} s", mean=words.deviation(fit.mean_deviation),
+                     most=100 * fit.worst_deviation, period=fit.worst_period_s)  # fmt: skip
+    least, most = ensemble.least_motions, ensemble.motions
+    count = number(most, ",") if least == most else _("{least:,} to {most:,}", least=least, most=most)
+    source = words.cut(_(motion.label).rsplit("/", 1)[-1], 60)
+    rows = number(ensemble.cases, ",d")
+    return [words.cut(motion.floor, 20), motion.axis, source, kind, count, rows, spectrum, pfa, pfv]
+
+
+def _ratio(ratio: float | None, scatter: float) -> str:
+    """Return a ratio of peaks with its scatter, a coefficient of variation."""
+    return words.DASH if ratio is None else f"{number(ratio, '.2f')} ± {number(ratio * scatter, '.2f')}"
+
+
+def _peak_ratio(peaks: Sequence[float], factors: Sequence[float], floor: float | None) -> str:
+    if not floor:
+        return words.DASH
+    ratios = [peak * factor / floor for peak, factor in zip(peaks, factors, strict=True)]
+    mean = statistics.fmean(ratios)
+    return _ratio(mean, statistics.pstdev(ratios) / mean)
+
+
+def _list_changes(view: View) -> list[blocks.Block]:
+    verified = view.content.verified
+
+    def by_change(one: ItemResult) -> tuple[object, ...]:
+        return -abs(one.adopted.risk - one.formula_class), *by_chance(one)
+
+    changed = [*sorted(verified.raised, key=by_change), *sorted(verified.lowered, key=by_change)]
+    fell = sorted(verified.fell, key=by_chance)
+    found: list[blocks.Block] = [blocks.Heading(_("Classes lowered or raised"))]
     if changed:
         text = ngettext("{n:,} row, raised ones and the largest changes first.",
                         "{n:,} rows, raised ones and the largest changes first.", len(changed))  # fmt: skip
@@ -94,17 +158,90 @@ def _list_changes(view: View) -> list[Block]:
         columns = view.columns(
             "item", "floor", "description", "quantity", "formula", "ideal", "adopted_probability", "adopted_class"
         )
-        blocks += [Paragraph(text, "lead-in"), build_table(columns, changed[:LISTED], "pieces")]
+        found += [blocks.Paragraph(text, "lead-in"), build_table(columns, changed[:LISTED], "pieces")]
     else:
-        blocks.append(Paragraph(_("None: every confirmed class is that of the formula.")))
-    blocks.append(Heading(_("Pieces that overturn under the record itself")))
+        found.append(blocks.Paragraph(_("None: every confirmed class is that of the formula.")))
+    found.append(blocks.Heading(_("Pieces that overturn under the record itself")))
     if not fell:
-        return [*blocks, Paragraph(_("None of the simulated pieces, as far as a record is known."))]
+        return [*found, blocks.Paragraph(_("None of the simulated pieces, as far as a record is known."))]
     if len(fell) > LISTED:
         text = _("The first {listed} of {rows}, the worst first; the Excel report lists all.", listed=LISTED,
                  rows=words.plural(len(fell), "row"))  # fmt: skip
-        blocks.append(Paragraph(text, "lead-in"))
-    return [*blocks, build_table(view.columns("risky"), fell[:LISTED], "pieces")]
+        found.append(blocks.Paragraph(text, "lead-in"))
+    return [*found, build_table(view.columns("risky"), fell[:LISTED], "pieces")]
 
 
-PART = Part(key="verification", heading=fill("Verification"), places={"annex": 30, "all": 110}, build=build)
+# ---------------------------------------------------------------- risk over breadth and PFA
+
+
+def build_contours(view: View) -> blocks.Section:
+    """Return the figure; nothing where the pieces have none."""
+    drawn = view.once("contours", lambda: draw_contours(view.run, view.progress))
+    text = _(
+        "The chance of overturning by the formulas for pieces of one height, over Breadth and PFA, with the pieces of "
+        "this building."
+    )
+    return blocks.Section([blocks.Paragraph(text), drawn], "" if view.content.verified.done else "run-on")
+
+
+# ---------------------------------------------------------------- chances a year
+
+
+def build_annual(view: View) -> blocks.Section:
+    """Return what the chances rest on, and the likeliest of each kind."""
+    found, run = view.content.annual, view.run.annual
+    if found is None or run is None:
+        return blocks.Section([])
+    listed: list[blocks.Block] = []
+    if run.is_evaluated:
+        text = _(
+            "These chances count all earthquakes of the site, weak and strong. All other chances in this report are "
+            "those in the scenario."
+        )
+        listed.append(blocks.Paragraph(text, "caution"))
+    listed += [blocks.Paragraph(text, "" if at else "lead") for at, text in enumerate(found.paragraphs)]
+    for one in run.remarks:
+        listed.append(blocks.Paragraph(_("On the hazard curve: {remark}.", remark=_(one)), "caution"))
+    listed += _list_annual(_("Pieces most likely to fall"), _("Piece"), found.pieces, has_what=True)
+    listed += _list_annual(_("Routes: blocked, if all anchors hold"), _("Route"), found.routes)
+    listed += _list_annual(_("Rooms: every exit lost, if all anchors hold"), _("Room"), found.rooms)
+    return blocks.Section(listed)
+
+
+def _list_annual(title: str, name: str, lines: Sequence[AnnualLine], *, has_what: bool = False) -> list[blocks.Block]:
+    if not lines:
+        return []
+    has_fail = any(one.fail for one in lines)
+    heads = blocks.list_columns(
+        (name, "" if has_what else "w24"),
+        *([(_("Description"), "w20")] if has_what else []),
+        (_("Floor, room") if has_what else _("Floor"), ""),
+        (_("Chance a year"), "w10", "num"), (_("Chance in 50 years"), "w10", "num"),
+        (_("Interval (50 years)"), "w18", "num"), (_("Once in [years]"), "w8", "num"),
+        (_("Median ground PGA [g] (dispersion)"), "w12", "num"),
+        *([(_("If anchors fail (50 years)"), "w10", "num")] if has_fail else []),
+    )  # fmt: skip
+    rows: list[list[blocks.Cell | blocks.Words]] = []
+    for one in lines[:LISTED]:
+        row, fail, median = one.row, words.DASH, words.DASH
+        if one.fail is not None:
+            fail = annual.say_share(one.fail.chance_in_50_years, one.fail)
+        if row.median_g is not None and row.dispersion is not None:
+            median = f"{number(row.median_g, '.2f')} ({number(row.dispersion, '.2f')})"
+        rows.append([
+            blocks.head(words.cut(one.name, 30)), *([words.cut(one.what, 40)] if has_what else []),
+            words.cut(one.where, 24), annual.say_share(row.chance_a_year, row),
+            annual.say_share(row.chance_in_50_years, row), annual.say_interval(row), annual.say_years(row), median,
+            *([fail] if has_fail else []),
+        ])  # fmt: skip
+    left = say_left(len(lines) - LISTED, is_likely=True)
+    return [blocks.Heading(title), blocks.table(heads, rows, "annual"), *left]
+
+
+PARTS = (
+    Part(key="verification", heading=fill("Verification"), places={"annex": 30, "all": 110}, build=build),
+    Part(key="contours", heading=fill("Risk over breadth and acceleration"), places={"annex": 40, "all": 120},
+         build=build_contours, is_shown=lambda view: "contours/items" in view.run.series),
+    Part(key="annual", heading=fill("Chances a year"), places={"annex": 20, "all": 70}, build=build_annual,
+         is_shown=lambda view: view.content.annual is not None),
+)  # fmt: skip

@@ -14,8 +14,7 @@ from xlsxwriter.utility import xl_col_to_name
 
 from assess.i18n import gettext as _
 from assess.model import AXES
-from assess.report.content import Content
-from assess.report.row_order import order_floors
+from assess.report.content import Content, order_floors
 from assess.report.say.ground import describe_source, factors
 from assess.report.xlsx import charts
 from assess.report.xlsx.item_formulas import FLOOR_AT, FLOOR_KEYS, edited_motion, top_motion

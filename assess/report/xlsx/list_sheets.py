@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from assess.fields import MOTION_FIELDS
 from assess.i18n import gettext as _
-from assess.report import words
+from assess.report import statements, words
 from assess.report.content import Content
 from assess.report.provenance import say_reference
 from assess.report.say.ground import (
@@ -21,6 +21,7 @@ from assess.report.say.ground import (
     profile_status,
 )
 from assess.report.say.route import list_cautions, list_widths, say_default_width
+from assess.report.say.simulation import describe_trials, list_misfits, list_references
 from assess.report.xlsx.item_formulas import LIMITS as LIMIT_NAMES
 from assess.report.xlsx.pen import COUNT, Column, Pen, of_field, row_height
 from assess.results import MotionRow, Results
@@ -110,7 +111,7 @@ def write_annual(pen: Pen, page: Any, content: Content) -> None:
     points = list(zip(tables.curve_pga_g, tables.curve_rate, strict=True))
     row = pen.below(page, row + 1, _("Hazard curve"), curve, [one.width for one in columns], points)
     as_run = _("All of this is as run: it does not follow when a cell of another sheet is edited.")
-    for at, text in enumerate((*annual.paragraphs, *annual.remarks, as_run), row + 1):
+    for at, text in enumerate((*annual.paragraphs, *map(_, tables.remarks), as_run), row + 1):
         page.write_string(at, 0, text)
     page.freeze_panes(1, 2)
     page.fit_to_pages(1, 0)
@@ -152,9 +153,9 @@ def list_methods(content: Content) -> Listing:
 
 
 def _list_methods(content: Content) -> Iterator[tuple[str, str, str]]:
-    for risk, text in content.class_limits:
+    for risk, text in words.list_limits():
         yield _("Classes"), say_class(risk), text
-    for method in content.methods:
+    for method in content.run.methods:
         yield from _describe(method)
     for profile in content.run.provenance.profiles:
         yield profile.title, _("Clause"), list_clauses(profile)
@@ -164,17 +165,18 @@ def _list_methods(content: Content) -> Iterator[tuple[str, str, str]]:
     yield _("Floor motion by a code's profile"), _("Beware"), _(ENVELOPES)
     done, routes = _("What was done"), _("Evacuation routes")
     yield _("Adopted risk"), done, content.verified.adopted
-    yield from ((_("Verification"), done, text) for text in content.trials.paragraphs)
-    yield from ((_("Verification"), _("Beware"), text) for text in content.trials.misfits)
-    yield from ((_("Marks"), _(flag.replace("_", " ")), meaning) for flag, meaning in content.flags.items())
+    yield from ((_("Verification"), done, text) for text in describe_trials(content.verified))
+    yield from ((_("Verification"), _("Beware"), text) for text in list_misfits(content.run))
+    flags = statements.list_flags(content.run)
+    yield from ((_("Marks"), _(flag.replace("_", " ")), meaning) for flag, meaning in flags.items())
     if content.run.has_routes:
         yield from ((routes, done, text) for text in list_cautions(content.run.route_tables))
         width = _("Required width")
         yield routes, width, say_default_width()
         for source, widths in list_widths():
             yield from ((routes, width, _("{asked} ({source})", asked=text, source=source)) for text in widths)
-    yield from ((_("Limits of the method"), _("Limit"), text) for text in content.limits)
-    yield from ((_("References"), "", text) for text in content.references)
+    yield from ((_("Limits of the method"), _("Limit"), text) for text in statements.list_limits(content.run))
+    yield from ((_("References"), "", text) for text in list_references(content.run))
 
 
 def _describe(method: "MethodInfo") -> Iterator[tuple[str, str, str]]:
@@ -243,7 +245,7 @@ def list_quality(content: Content) -> Listing:
     origin = content.run.provenance
     files = {origin.workbook: origin.sha256, **origin.files, **(origin.suite.files if origin.suite else {})}
     rows += [(_("input"), name, f"SHA-256 {digest}", "") for name, digest in files.items()]
-    rows += [(_("program"), "assess", content.version, ""), (_("program"), _("date"), content.date, "")]
+    rows += [(_("program"), "assess", content.run.provenance.version, ""), (_("program"), _("date"), content.date, "")]
     settings = content.run.settings.as_record() | {"scenario": origin.scenario}
     rows += [(_("setting"), name, str(value), "") for name, value in settings.items()]
     rows += [(_("platform"), name, value, "") for name, value in origin.platform.items()]
@@ -252,7 +254,7 @@ def list_quality(content: Content) -> Listing:
 
 def list_notes(content: Content) -> Listing:
     """Return the notes in the workbook: their sheet, their row and their text."""
-    rows = [(_("Items"), one.item.item, one.item.notes) for one in content.notes]
+    rows = [(_("Items"), one.item.item, one.item.notes) for one in content.results if one.item.notes]
     segments = (one for one in content.run.route_tables.segments if one.notes)
     rows += [(_("Routes"), ", ".join(filter(None, (one.route, one.segment))), one.notes) for one in segments]
     return _of_texts((_("Sheet"), 16), (_("Row"), 30), (_("Note"), 120)), rows

@@ -144,7 +144,7 @@ def _list_outlook(row: type, routes: RouteTables) -> dict[str, Read]:
     said = _list_said(routes)
     return said | {
         **_if_known(row, CHANCES, lambda one: one.state != RouteState.NOT_KNOWN),
-        "under_record": of(lambda one: say.say_recorded(one) if one.under_record is not None else ""),
+        "under_record": of(lambda one: "" if one.under_record is None else say.say_state(one.under_record)),
         "most_likely_piece": of(said["most_likely_piece"]),
         "blocked_is_joint": of(lambda one: say.say_basis(one.blocked)),
     }

@@ -16,10 +16,10 @@ from assess.i18n import gettext as _
 from assess.i18n import ngettext
 from assess.report import words
 from assess.report.content import Content
+from assess.report.say import route
 from assess.report.say.ground import say_ground
-from assess.report.say.route import describe_at_risk
 from assess.report.say.simulation import INTERVAL, say_scenario
-from assess.report.summary import ROUTES
+from assess.report.sections.summary import ROUTES
 from assess.report.xlsx import charts
 from assess.report.xlsx.item_formulas import AT_RUN, literal, sentence
 from assess.report.xlsx.item_values import (
@@ -140,7 +140,7 @@ def _list_lines(
     yield text.format(n=0, file=file), sentence(text, n=again, file=literal(file))
     yield _("Counts and chances follow the sheets Floors, Items and Assumptions when those are edited."), ""
     annual = content.annual.paragraphs[:1] if content.annual else ()
-    yield from ((one, "") for one in (*content.cautions, *annual, *_say_routes(content)))
+    yield from ((one, "") for one in (*(each.text for each in content.cautions), *annual, *_say_routes(content)))
 
 
 def _follow(pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequence[str]) -> Iterator[tuple[str, str]]:
@@ -163,12 +163,13 @@ def _follow(pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequenc
 
 def _say_routes(content: Content) -> Iterator[str]:
     """Yield what the summary says of the routes, and a line for each of those at risk that it names."""
-    summary, found = content.summary, content.summary.routes[:ROUTES]
-    if not summary.of_routes:
+    said, routes = route.say_routes(content.run), content.run.route_tables
+    if not said:
         return
-    yield _("Evacuation routes: {text}", text=" ".join(summary.of_routes))
-    yield from map(describe_at_risk, found)
-    if more := len(summary.routes) - len(found):
+    found = route.list_at_risk(routes)
+    yield _("Evacuation routes: {text}", text=" ".join(said))
+    yield from (route.describe_at_risk(one, routes.risk) for one in found[:ROUTES])
+    if more := len(found[ROUTES:]):
         yield ngettext(
             "{n:,} more route at risk is in the sheet Routes.",
             "{n:,} more routes at risk are in the sheet Routes.",

@@ -11,6 +11,8 @@ from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 
 from assess.fields import schedule_fields
 from assess.i18n import gettext as _
+from assess.natural import natural_key
+from assess.report import words
 from assess.report.content import Content
 from assess.report.say import work as say_work
 from assess.report.say.work import Work
@@ -30,7 +32,7 @@ CHANGE = 7
 def write_work(pen: Pen, page: Any, content: Content) -> None:
     """Write the work of every room, and below it the building before and after."""
     schedule = content.run.schedule
-    works = say_work.list_work(content.summary.fixes, [one.floor.floor for one in content.floors])
+    works = say_work.list_work(content.fixes, [one.floor.floor for one in content.floors])
     columns = widen(_list_columns(schedule), works)
     at = {one.key: place for place, one in enumerate(columns) if one.key}
     page.fit_to_pages(1, 0)  # on A4 across, as every sheet is printed
@@ -94,9 +96,9 @@ def _list_columns(schedule: Schedule) -> list[Column]:
         replace(own["floor"], width=6),
         replace(own["room"], width=12),
         replace(own["pieces"], align="center"),
-        Column(_("Names"), 14, lambda one: one.all_names),
+        Column(_("Names"), 14, lambda one: ", ".join(sorted(one.row.items, key=natural_key))),
         Column(_("Description"), 16, lambda one: one.described),
-        Column(_("Why, as run"), 34, lambda one: f"{one.risk}; {one.chance}; {one.reason}", key="why"),
+        Column(_("Why, as run"), 34, _say_why, key="why"),
         Column(own["detail"].label, 13, lambda one: _(one.detail.title)),
         *(replace(one, label=f"{one.label}: {screening}", format=FORCE) for one in forces),
         replace(own["fixings"], align="center", read=lambda one: say_work.say_fixings(one.row)),
@@ -104,10 +106,20 @@ def _list_columns(schedule: Schedule) -> list[Column]:
         own["cost"],
         of_entry("falls_avoided", 8, only_first=True),
         of_entry("falls_left", 8, only_first=True),
-        Column(_("Remarks on the forces"), 26, lambda one: "; ".join(one.remarks), key="remarks"),
+        Column(_("Remarks on the forces"), 26, _list_remarks, key="remarks"),
         Column(_("Photo"), 10, _name_photos),
         Column(_("Notes"), 18, lambda _one: ""),
     ]
+
+
+def _say_why(work: Work) -> str:
+    first = work.results[0]
+    return f"{words.class_symbol(first)} {words.risk_words(first)}; {work.chance}; {work.reason}"
+
+
+def _list_remarks(work: Work) -> str:
+    """Return what a tension of 0 means, and the marks of what the forces rest on."""
+    return "; ".join(filter(None, (say_work.say_held() if work.is_held_by_weight else "", work.marks)))
 
 
 def _name_photos(work: Work) -> str:
