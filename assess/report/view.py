@@ -185,10 +185,11 @@ class Part:
 
 @cache
 def list_all_parts() -> Sequence[Part]:
-    """Return every section there is: those of the modules in `assess.report.sections`."""
+    """Return every section there is, by key: those of the modules in `assess.report.sections`."""
     sections = importlib.import_module("assess.report.sections")
-    names = sorted(one.name for one in pkgutil.iter_modules(sections.__path__))
-    return [part for name in names for part in importlib.import_module(f"{sections.__name__}.{name}").PARTS]
+    names = [one.name for one in pkgutil.iter_modules(sections.__path__)]
+    parts = [part for name in names for part in importlib.import_module(f"{sections.__name__}.{name}").PARTS]
+    return sorted(parts, key=lambda part: part.key)
 
 
 def say_left(left: int, *, is_likely: bool = False) -> list[Block]:
