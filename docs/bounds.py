@@ -72,7 +72,7 @@ ROWS: tuple[tuple[str, str, str, float, str, str], ...] = (
     ("Fitted models of a run", "assess.cli.command_run", "MOST_METHODS", 1, "{:.0f}", REFUSED),
     ("Simulation: results of one motion on one piece", "assess.pipeline.verify", "MOST_PAIRS", 1e6, "{:.0f} million",
      "refused before the first, with fewer motions as the way out"),
-    ("Report: rows of pieces in the HTML and the PDF", "assess.report.compact", "MOST_LINES", 1, "{:,.0f}",
+    ("Report: rows of pieces in the HTML and the PDF", "assess.report.sections.pieces", "MOST_LINES", 1, "{:,.0f}",
      "left out, noted; the Excel file and results.json hold all"),
 )  # fmt: skip
 """What is bounded; module and name of the constant, its divisor and format; what happens past it."""
