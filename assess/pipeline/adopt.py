@@ -32,26 +32,16 @@ FORMULA, SIMULATED, UNCONFIRMED, CANNOT_ROCK = range(len(BASES))
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Adoption:
-    """The adopted risk of n cases.
+    """The adopted risk of n cases, an array (n,) each.
 
-    Parameters
-    ----------
-    probability : (n,) array
-        [-]
-    low, high : (n,) arrays
-        The sampling interval of a simulated risk [-]; NaN where the formula's is adopted.
-    risk, upper : (n,) integer arrays
-        Class by the probability, and by the upper end of the interval.
-    basis : (n,) integer array
-        Place in `assess.results.BASES`.
-    doubtful : (n,) boolean array
-        Where simulation may not lower a class.
-    ideal_higher : (n,) boolean array
-        Where the class of the piece as given, under exactly this motion, is above the adopted one.
-    either_axis : (n,) boolean array
-        Where it is the chance of a fall along either axis; see `assess.pipeline.either_axis`.
-    rocks_from : (n,) array
-        Share of g b/z that PFA has to reach for the piece to rock in any draw [-].
+    * `probability` [-].
+    * `low`, `high`: the sampling interval of a simulated risk [-]; NaN where the formula's is adopted.
+    * `risk`, `upper`: class by the probability, and by the upper end of the interval.
+    * `basis`: place in `assess.results.BASES`.
+    * `doubtful`: where simulation may not lower a class.
+    * `ideal_higher`: where the class of the piece as given, under exactly this motion, is above the adopted one.
+    * `either_axis`: where it is the chance of a fall along either axis; see `assess.pipeline.either_axis`.
+    * `rocks_from`: share of g b/z that PFA has to reach for the piece to rock in any draw [-].
     """
 
     probability: FloatArray

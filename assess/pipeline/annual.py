@@ -185,7 +185,6 @@ class _Ways:
         return self._find(segments, happens), fails
 
     def _find(self, segments: Collection[int], happens: Happens, *, anchors_fail: bool = False) -> AnnualRow:
-        """Return the annual row of what happens on some segments."""
         every = [(scene, scene.couplings(segments, anchors_fail=anchors_fail)) for scene in self.scenes]
         last, own = every[-1]
         if not happens(last, own.ends):
@@ -213,13 +212,7 @@ MOST_RUNS, LEAST_RUNS = 1000, 50
 
 
 def evaluate_annual(assessment: Assessment, *, jobs: int | None, progress: Progress) -> Annual | None:
-    """Evaluate annual chances; None where the workbook names no hazard file.
-
-    Raises
-    ------
-    CancelledError
-        If the caller stops the work.
-    """
+    """Evaluate annual chances; None where the workbook names no hazard file. CancelledError if it is stopped."""
     curve, ground = assessment.inventory.hazard, find_ground(assessment.inventory)
     if curve is None:
         return None

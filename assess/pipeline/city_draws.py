@@ -18,13 +18,8 @@ MOST_DRAWS = 5000
 def find_earthquakes(inventory: Inventory, settings: Settings) -> Earthquakes:
     """Return by which numbers the draws of an earthquake scale the motions of a building.
 
-    Parameters
-    ----------
-    inventory : Inventory
-        Its place and the shaking of the ground there, as far as they are known.
-    settings : Settings
-        `city`: whether draws differ from place to place. A building whose place is not known takes the common part
-        alone. Scenarios carry the part of the variance that is not the building's own.
+    In a city draws differ from place to place; a building whose place is not known takes the common part alone.
+    Scenarios carry the part of the variance that is not the building's own.
     """
     ground, own = inventory.site_ground, inventory.building.motion_uncertainty or 0.0
     measure: Measure = "PGA" if find_ground(inventory).pgv is None else "PGV"
@@ -41,7 +36,6 @@ def find_earthquakes(inventory: Inventory, settings: Settings) -> Earthquakes:
 
 
 def _find_place(inventory: Inventory, settings: Settings) -> tuple[float, float] | None:
-    """Return latitude and longitude of a building in a city; None elsewhere, and where they are not known."""
     latitude, longitude = inventory.building.latitude, inventory.building.longitude
     return None if latitude is None or longitude is None or not settings.city else (latitude, longitude)
 
@@ -78,20 +72,10 @@ def describe_draws(inventory: Inventory, settings: Settings, earthquakes: Earthq
 
 
 def choose_runs(scenarios: int, runs: int | str | None = None) -> int | str:
-    """Return the number of draws for a number of scenarios, 0 for none.
+    """Return the number of draws for a number of scenarios, 0 for none; `runs` is what was asked for.
 
-    Parameters
-    ----------
-    scenarios : int
-        How many scenarios there are.
-    runs : int or "auto", optional
-        What was asked for. Without it the least multiple of the scenarios that is at least 200, so that each of them
-        counts alike.
-
-    Raises
-    ------
-    InputError
-        If there are more scenarios than draws, if they do not count alike, or if the number of draws is "auto".
+    Without it the least multiple of the scenarios that is at least 200, so that each of them counts alike. Raises
+    InputError if there are more scenarios than draws, if they do not count alike, or if the number of draws is "auto".
     """
     if not scenarios:
         return RUNS if runs is None else runs

@@ -27,14 +27,8 @@ from assess.workbook.schema import ITEMS, LISTS, LIVE
 class Corrected:
     """A corrected workbook.
 
-    Attributes
-    ----------
-    inventory : Inventory
-        What the corrected workbook holds, read with ``strict=False``; its `data` are the corrected bytes.
-    changed : tuple of Correction
-        What was written.
-    kept : tuple of Correction
-        What was not, as the cell holds a formula.
+    * `inventory`: what it holds, read with ``strict=False``; its `data` are the corrected bytes.
+    * `changed`, `kept`: what was written, and what was not, as the cell holds a formula.
     """
 
     inventory: Inventory
@@ -45,17 +39,8 @@ class Corrected:
 def correct_workbook(path: Path, progress: Progress = SILENT) -> Corrected:
     """Read a workbook and write its corrections into a copy of its bytes; no file is written.
 
-    Parameters
-    ----------
-    path : Path
-        The .xlsx or .xlsm; files that it names are looked for in its folder.
-    progress : Progress
-        Reports the stage "reading"; obeys a cancel.
-
-    Raises
-    ------
-    WorkbookError
-        If it cannot be opened, or if a cell cannot be changed with certainty.
+    Files that it names are looked for in its folder. `progress` gets the stage "reading". Raises WorkbookError if it
+    cannot be opened, or if a cell cannot be changed with certainty.
     """
     found = read_inventory(path, strict=False, progress=progress)
     data, name = found.data or b"", path.name
@@ -79,21 +64,11 @@ def correct_workbook(path: Path, progress: Progress = SILENT) -> Corrected:
 
 
 def find_results(data: bytes, inventory: Inventory) -> dict[str, Values]:
-    """Return what the live columns of a workbook have to store, by sheet and cell.
+    """Return what the live columns of a workbook have to store, by sheet and cell, for `patch_workbook`.
 
-    Parameters
-    ----------
-    data : bytes
-        The workbook.
-    inventory : Inventory
-        What it holds.
-
-    Returns
-    -------
-    dict
-        For `assess.workbook.patch.patch_workbook`: the results of the live columns of each item; None, by which every
-        program computes them, for columns that they rest on and for rows that cannot be used. LibreOffice keeps
-        stored results when it opens a workbook, although the workbook asks for recalculation.
+    The results of the live columns of each item; None, by which every program computes them, for columns that they rest
+    on and for rows that cannot be used. LibreOffice keeps stored results when it opens a workbook, although the
+    workbook asks for recalculation.
     """
     with Book(data, inventory.file_name) as book:
         sheets = list(book.sheets)

@@ -44,23 +44,9 @@ def build_demands(
 ) -> dict[tuple[str, Axis], tuple[Demand, ...]]:
     """Return the demands of every floor (by its name) and axis; parallel records give several.
 
-    Parameters
-    ----------
-    inventory : Inventory
-        The floors, and the building with its ground motion.
-    scenario : str
-        One of `assess.settings.SCENARIOS`.
-    ductility_reduction : float
-        R_mu of ASCE 7-22 [-].
-    progress : Progress
-        Checked for a cancel while records are treated.
-
-    Raises
-    ------
-    CancelledError
-        If the caller stops the work.
-    WorkbookError
-        If a floor has no motion of the kind that `scenario` asks for; it names every such floor.
+    `scenario` is one of `assess.settings.SCENARIOS`, `ductility_reduction` R_mu of ASCE 7-22 [-]; `progress` is checked
+    for a cancel while records are treated. Raises WorkbookError that names every floor without a motion of the kind
+    that `scenario` asks for.
     """
     demands, problems = serve_floors(inventory, scenario, ductility_reduction=ductility_reduction, progress=progress)
     if problems:
@@ -172,7 +158,6 @@ def _between(floor: Floor, axis: Axis, known: Iterable[tuple[Demand, ...]]) -> D
 
 
 def _worst(demands: tuple[Demand, ...]) -> tuple[float, float]:
-    """Return the largest PFA and the largest PFV of parallel records."""
     return max(demand.pfa for demand in demands), max(demand.pfv for demand in demands)
 
 
@@ -285,8 +270,6 @@ def _round(value: float | None) -> float | None:
 
 @dataclass(frozen=True, slots=True)
 class _Building:
-    """Serves the floors of a building, of which some have motions of their own."""
-
     inventory: Inventory
     ground: Ground
     own: Mapping[str, _ByAxis]

@@ -52,13 +52,7 @@ class DrawSums:
 
 
 def sum_draws(assessment: Assessment, results: Results, *, progress: Progress = SILENT) -> DrawSums:
-    """Return the sums of a building; `results` are those of the assessment.
-
-    Raises
-    ------
-    CancelledError
-        If `progress` is cancelled.
-    """
+    """Return the sums of a building; `results` are those of the assessment. CancelledError if it is stopped."""
     tables, runs = results.route_tables, assessment.settings.runs
     chances = {
         one.route: one.blocked.probability

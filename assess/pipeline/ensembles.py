@@ -56,12 +56,10 @@ class OpenMotions:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GeneratedEnsemble:
-    """Motions made for the spectrum of one record.
+    """Motions made for the spectrum of the record of a `demand`.
 
-    * `demand`: the floor motion that they stand for.
-    * `grid`: the samples that all floors of the building share, so that motion k is one earthquake.
-    * `seed`: of the phases.
-    * `signs`: by which its phases are turned, 1 or -1 by octave; None where they are not known.
+    On a `grid` that all floors of the building share, so that motion k is one earthquake. `seed` is that of the phases,
+    `signs` those by which they are turned, 1 or -1 by octave; None where they are not known.
     """
 
     demand: Demand
@@ -110,10 +108,7 @@ class GeneratedEnsemble:
 class DrawnEnsemble:
     """Motions of a floor without a record: of drawn buildings on drawn motions of the ground, or on those of a record.
 
-    * `demand`: the floor motion that they stand for.
-    * `drawn`: its own.
-    * `grid`, `seed`: as of `GeneratedEnsemble`.
-    * `signs`: those of the record of the ground.
+    As `GeneratedEnsemble`; `drawn` is the demand's own, `signs` those of the record of the ground.
     """
 
     demand: Demand
@@ -251,18 +246,11 @@ def find_phase_signs(
 ) -> dict[Demand, tuple[int, ...]]:
     """Return the signs of the floor motions that have any, 1 or -1 by octave of `assess.motion.target.octaves`.
 
-    They are relative: those of the strongest motion of an axis are all 1. No factor common to all motions changes them.
-
-    Parameters
-    ----------
-    demands : iterable of Demand
-        All of the building.
-    grid : Grid
-        The samples that its floors share.
-    azimuth : float, optional
-        Of axis X, clockwise from north [deg]. A record that points against its axis is turned before it is compared;
-        one that is more than 15 deg off is not compared. Where it is unknown, the strongest record gives the direction.
-        Records of which none has a direction are taken to point alike.
+    `demands` are all of the building, `grid` the samples that its floors share, `azimuth` that of axis X, clockwise
+    from north [deg]. They are relative: those of the strongest motion of an axis are all 1. No factor common to all
+    motions changes them. A record that points against its axis is turned before it is compared; one that is more than
+    15 deg off is not compared. Where the azimuth is unknown, the strongest record gives the direction. Records of which
+    none has a direction are taken to point alike.
     """
     groups: dict[Any, list[_Recorded]] = {}
     for one in demands:

@@ -72,21 +72,10 @@ class Sweep:
     progress: Progress = SILENT
 
     def rock(self, levels: FloatArray, wanted: BoolArray | None = None) -> list[RockedLevels]:
-        """Return what the cases of each ensemble do at each level.
+        """Return what the cases of each ensemble do at each of some levels (l,).
 
-        Parameters
-        ----------
-        levels : (l,) array
-            Levels.
-        wanted : (n, l) boolean array, optional
-            At which levels each case is rocked; at all by default.
-
-        Raises
-        ------
-        CancelledError
-            If the caller stops the work.
-        InputError
-            If the results would need too much memory.
+        `wanted` (n, l) tells at which levels each case is rocked; at all by default. Raises CancelledError if the
+        caller stops the work; InputError if the results would need too much memory.
         """
         cases, assessment = self.cases, self.assessment
         every = np.ones((cases.breadth.size, levels.size), dtype=np.bool_) if wanted is None else wanted

@@ -40,11 +40,7 @@ def live_values(inventory: Inventory, scenario: str | None = None) -> list[list[
     """Return what the columns `assess.workbook.schema.LIVE` show in the language in use, for each item.
 
     With the workbook's own scenario they equal the results of the formulas, which know the default settings only.
-
-    Raises
-    ------
-    WorkbookError
-        If nothing that the scenario asks for serves a floor.
+    Raises WorkbookError if nothing that the scenario asks for serves a floor.
     """
     settings = Settings()
     kind = scenario or inventory.building.scenario_kind or SCENARIOS[0]
@@ -132,21 +128,10 @@ def _write_unknown(ratio: float, label: str, hint: str) -> list[float | str]:
 
 
 def with_live(content: Content, units: Units = "si", folder: Path | None = None) -> Content:
-    """Return a content with the results of its live columns.
+    """Return a content with the results of its live columns; its own `live` is replaced.
 
-    Parameters
-    ----------
-    content : Content
-        The rows; its own `live` is replaced.
-    units : "si" or "imperial"
-        Of its values.
-    folder : Path, optional
-        The folder of the files that it names, such as records.
-
-    Raises
-    ------
-    WorkbookError
-        If the rows do not make an inventory.
+    `units` are those of its values, `folder` that of the files that it names, such as records. Raises WorkbookError if
+    the rows do not make an inventory.
     """
     return replace(content, live=live_values(_read(content.rows, units, folder)))
 
@@ -154,10 +139,7 @@ def with_live(content: Content, units: Units = "si", folder: Path | None = None)
 def without_shaking(content: Content, units: Units = "si") -> Content:
     """Return a content whose floors have no shaking, with its live columns: B/H, and that shaking is missing.
 
-    Raises
-    ------
-    WorkbookError
-        If the rows lack more than shaking.
+    Raises WorkbookError if the rows lack more than shaking.
     """
     floors = [{**row, "pfa_x": 1.0} for row in content.rows["Floors"]]  # of which no column shows anything
     items = _read({**content.rows, "Floors": floors}, units).items
@@ -173,14 +155,8 @@ def _write_unshaken(item: Item) -> list[float | str]:
 def fill_content(units: Units, use: str, *, is_example: bool) -> Content:
     """Return what a new workbook holds: nothing, the types and a room of a use, or an example that can be run.
 
-    Parameters
-    ----------
-    units : "si" or "imperial"
-        Of the headers.
-    use : str
-        One of `assess.workbook.schema.USES`; blank: every type.
-    is_example : bool
-        Whether it can be run at once: a small office, or the room of `use` with a made-up shaking.
+    `use` is one of `assess.workbook.schema.USES`; blank: every type. The example is a small office, or the room of
+    `use` with a made-up shaking.
     """
     if use and not is_example:
         return without_shaking(room_content(use, units), units)
@@ -208,6 +184,5 @@ def _read(rows: Mapping[str, Rows], units: Units, folder: Path | None = None) ->
 
 
 def _head(sheet: Sheet, row: Mapping[str, Any], units: Units) -> dict[str, Any]:
-    """Return a row by the headers of its columns, which name the units."""
     headers = {column.name: column.header(units) for column in sheet.columns}
     return {headers[name]: value for name, value in row.items()}

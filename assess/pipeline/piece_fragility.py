@@ -173,25 +173,21 @@ def find_piece_fragilities(
     ----------
     assessment : Assessment
         From `assess.pipeline.run.compute`, simulated or not; its settings give the number of draws and their seed.
-    by : "item" or "type"
-        What has one curve.
-    im : "pfa" or "pfv"
-        The intensity measure.
+    by, im : str
+        What has one curve, of `BY`; the intensity measure, of `MEASURES`.
     levels : sequence of float, optional
         Rising levels [m/s2] or [m/s], above 0. By default each curve takes preferred numbers, in g or cm/s, from where
         about nothing falls to where about everything does.
     jobs : int, optional
         Threads; as many as there are processors by default. They do not change a result.
     progress : Progress
-        Receives the stage "rocking", more than once where levels are added.
+        Receives the stage "rocking", more than once where levels are added; obeys a cancel.
 
     Raises
     ------
-    CancelledError
-        If the caller stops the work.
     InputError
-        If `by`, `im` or `levels` cannot be used, the number of motions is "auto", they are the user's own, no piece
-        can rock, or the results may exceed the available memory.
+        If `by`, `im` or `levels` cannot be used, the number of motions is "auto", they are the user's own, no piece can
+        rock, or the results may exceed the available memory.
     """
     settings = assessment.settings
     if settings.runs == AUTO or assessment.suite is not None:

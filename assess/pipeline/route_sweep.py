@@ -125,18 +125,14 @@ def find_fragility(
         PFA on the floors of the routes [m/s2], above 0 and rising.
     most_inserted : int
         How many values are inserted at most, where a chance jumps.
-    jobs : int, optional
-        Threads; as many as there are processors by default. They do not change a result.
-    progress : Progress
-        Receives the stage "rocking", more than once where values are inserted.
+    jobs, progress
+        As in `find_piece_fragilities`.
 
     Raises
     ------
-    CancelledError
-        If the caller stops the work.
     InputError
-        If the number of motions is "auto", if they are the user's own, or if the results may exceed the
-        available memory.
+        If the number of motions is "auto", if they are the user's own, or if the results may exceed the available
+        memory.
     """
     if assessment.settings.runs == AUTO or assessment.suite is not None:
         raise InputError(
@@ -233,7 +229,6 @@ class _Study:
             self.levels[value] = _Level(scene, {name: self._judge(scene, name) for name in self.names})
 
     def _judge(self, scene: Scene, name: str) -> Judgement:
-        """Return the chances that a route is blocked."""
         segments = scene.segments_of(name)
         course = self.find_course(segments)
         return scene.judge(segments, lambda draws: [course.is_blocked(scene.blocked(draws, segments), draws.every)])

@@ -72,16 +72,10 @@ def list_entries(rows: Sequence[ItemResult], routes: Sequence[RouteRow]) -> list
 def fix_first(results: Iterable[ItemResult], needed: Collection[int] = ()) -> list[ItemResult]:
     """Return the free-standing pieces of at least medium class and those that a route needs fixed, in order.
 
-    Sorted by basis, so that those that stand apart come last, then by whether the upper class is high or above, then
-    life safety and routes, then the upper class, then probability times quantity, then name. So a piece of low class
-    that a route needs comes after the urgent pieces of medium class and before those that are not urgent.
-
-    Parameters
-    ----------
-    results : iterable of ItemResult
-        All pieces.
-    needed : collection of int
-        Indices of the pieces that are to be fixed for a route whatever their class.
+    `needed` are the indices of the latter. Sorted by basis, so that those that stand apart come last, then by whether
+    the upper class is high or above, then life safety and routes, then the upper class, then probability times
+    quantity, then name. So a piece of low class that a route needs comes after the urgent pieces of medium class and
+    before those that are not urgent.
     """
     chosen = [
         one

@@ -84,15 +84,7 @@ def build_series(
 
 
 def write_series(path: Path, arrays: Arrays, progress: Progress = SILENT) -> None:
-    """Write the series to `path`.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written.
-    CancelledError
-        If the work was cancelled; no file is left.
-    """
+    """Write the series to `path`; OSError if it cannot be written; CancelledError, and no file, if stopped."""
     try:
         with (
             _CheckedFile(path, progress) as file,

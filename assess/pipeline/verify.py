@@ -119,12 +119,7 @@ def verify(
 ) -> Outcome:
     """Integrate the cases that have motions; `jobs` threads, one for each processor by default.
 
-    Raises
-    ------
-    CancelledError
-        If the caller stops the work.
-    InputError
-        If the results would need too much memory.
+    Raises CancelledError if the caller stops the work; InputError if the results would need too much memory.
     """
     check_pairs(int((cases.ensemble >= 0).sum()), settings)
     chosen = (cases.ensemble >= 0) | (cases.slides_under >= 0)

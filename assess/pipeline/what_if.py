@@ -21,10 +21,7 @@ _FIRST = re.compile(r"\s*first\s*(:|$)", re.IGNORECASE)
 def spell_names(inventory: Inventory, names: Sequence[str]) -> tuple[str, ...]:
     """Return the names of items as the workbook spells them, each once.
 
-    Raises
-    ------
-    SettingsError
-        If there is no item of a name, or a name is meant as ``first:N`` and is not.
+    Raises SettingsError if there is no item of a name, or a name is meant as ``first:N`` and is not.
     """
     known = {key(one.item): one.item for one in inventory.items} if names else {}
     return tuple(dict.fromkeys(known[key(name)] if key(name) in known else _refuse(inventory, name) for name in names))
@@ -45,12 +42,7 @@ def _refuse(inventory: Inventory, name: str) -> NoReturn:
 def anchor_named(inventory: Inventory, names: Sequence[str]) -> Inventory:
     """Return an inventory in which the items of these names are anchored, with brackets that hold.
 
-    Its problems get a note on each that the workbook has as anchored already.
-
-    Raises
-    ------
-    SettingsError
-        If there is no item of a name.
+    Its problems get a note on each that the workbook has as anchored already. Raises SettingsError as `spell_names`.
     """
     if not names:
         return inventory
@@ -65,12 +57,8 @@ def anchor_named(inventory: Inventory, names: Sequence[str]) -> Inventory:
 def anchor_first(assessment: Assessment, rows: Sequence[ScheduleRow]) -> Assessment:
     """Return an assessment in which the pieces of the first entries of its schedule are anchored and hold.
 
-    Nothing is simulated again: whether a piece is anchored changes no motion and no rocking.
-
-    Raises
-    ------
-    SettingsError
-        If the schedule has fewer entries.
+    Nothing is simulated again: whether a piece is anchored changes no motion and no rocking. Raises SettingsError if
+    the schedule has fewer entries.
     """
     wanted = assessment.settings.anchor
     if isinstance(wanted, int) and wanted > len(rows):

@@ -30,22 +30,12 @@ Shown = float | str | bool | None
 class PageColumn:
     """One column of a table, or one line of a form.
 
-    Attributes
-    ----------
-    at : int
-        The column of its values, from 0.
-    row : int
-        Of a line its row; of a column 0.
-    label, unit : str
-        As the header says.
-    column : Column, optional
-        That of the schema, with its label in the workbook's language; None for a column of the user or a live one.
-    live : str
-        Of a column that Excel computes its header, of `assess.workbook.schema.LIVE` or `WORKINGS`; of others blank.
-    is_blind : bool
-        Whether its header lacks a unit that is known, so that its numbers mean nothing.
-    is_hidden : bool
-        Whether the workbook hides it.
+    * `at`, `row`: the column of its values, from 0; of a line its row, of a column 0.
+    * `label`, `unit`: as the header says.
+    * `column`: that of the schema, with its label in the workbook's language; None for one of the user or a live one.
+    * `live`: of a column that Excel computes its header, of `assess.workbook.schema.LIVE` or `WORKINGS`; else blank.
+    * `is_blind`: whether its header lacks a unit that is known, so that its numbers mean nothing.
+    * `is_hidden`: whether the workbook hides it.
     """
 
     at: int
@@ -91,18 +81,11 @@ class PageColumn:
 class PageSheet:
     """One sheet of the schema in a workbook.
 
-    Attributes
-    ----------
-    sheet : Sheet
-        With its English name, by which the page calls it.
-    title, language : str
-        As the workbook calls it, and the language of that.
-    found : bool
-        Whether it can be read and edited: it is there, and so are the headers of a table.
-    header : int
-        The row of the headers, 0 for a form.
-    columns : mapping of int to PageColumn
-        By the column of a table, by the row of a form's line.
+    * `sheet`: with its English name, by which the page calls it.
+    * `title`, `language`: as the workbook calls it, and the language of that.
+    * `found`: whether it can be read and edited: it is there, and so are the headers of a table.
+    * `header`: the row of the headers, 0 for a form.
+    * `columns`: by the column of a table, by the row of a form's line.
     """
 
     sheet: Sheet

@@ -27,14 +27,9 @@ BY_FORMULAS = Settings(verify="none")
 class Evaluation:
     """What is known of the pieces of a workbook by the formulas.
 
-    Parameters
-    ----------
-    assessment : Assessment, optional
-        That of the floors whose motion is known; None where there are none.
-    unserved : frozenset of str
-        The floors whose motion is not known, as names are compared.
-    problems : tuple of Problem
-        Why it is not, and what is to be said of the motions and the walls; not those of the reading.
+    * `assessment`: that of the floors whose motion is known; None where there are none.
+    * `unserved`: the floors whose motion is not known, as names are compared.
+    * `problems`: why it is not, and what is to be said of the motions and the walls; not those of the reading.
     """
 
     assessment: Assessment | None

@@ -103,18 +103,9 @@ class _Asked(threading.Event):
 
 
 class Import:
-    """One file that is read; raises RequestError if there is no place, and then removes the folder.
+    """One file, of a `name`, that a folder holds as `SOURCE` and that is read; then the folder is removed.
 
-    Parameters
-    ----------
-    folder : Path
-        A folder that holds it as `SOURCE`; it is removed once it has been read.
-    name : str
-        How it is called.
-    routes : str
-        Whether routes are drafted.
-    slots : Slots
-        Places of all sessions.
+    Raises RequestError if there is no place among the `slots` of all sessions.
     """
 
     def __init__(self, folder: Path, name: str, routes: Routes, slots: Slots) -> None:

@@ -70,20 +70,10 @@ class Slots:
 
 
 class Job:
-    """One simulation of one version of a workbook, which may be changed meanwhile.
+    """One simulation of one version of a workbook, which may be changed meanwhile, in a folder of its own in `parent`.
 
-    Raises InputError if an option cannot be used, the workbook has errors, or there is no place.
-
-    Parameters
-    ----------
-    book : Book
-        The workbook.
-    body : mapping
-        What the page asked for.
-    parent : Path
-        The folder of the session, in which the job gets one of its own.
-    slots : Slots
-        Places of all sessions.
+    Raises InputError if an option in the `body` of a request cannot be used, the workbook has errors, or there is no
+    place.
     """
 
     def __init__(self, book: "Book", body: Mapping[str, Any], parent: Path, slots: Slots) -> None:

@@ -13,18 +13,9 @@ MOST = 200
 
 
 class RequestError(InputError):
-    """A request is refused.
+    """A request is refused: why, with which status (see docs/page.md), how to fix it where the message does not say it.
 
-    Parameters
-    ----------
-    message : Text
-        Why.
-    status : int
-        Of the answer: see the list in docs/page.md.
-    fix : Text
-        How to fix it; blank where the message says it.
-    more : dict, optional
-        Further entries of the answer.
+    `more` are further entries of the answer.
     """
 
     def __init__(self, message: Text, status: int, fix: Text | str = "", more: dict[str, Any] | None = None) -> None:

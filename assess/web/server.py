@@ -48,16 +48,10 @@ GRACE = 2
 class Place:
     """Where the server listens, and to which names it answers.
 
-    Attributes
-    ----------
-    host, port : str, int
-        The address; port 0 is any that is free.
-    allowed : tuple of str
-        Names by which browsers reach it through a proxy, with a port where that is not the usual one.
-    user_header : str
-        The header in which the proxy names the user; blank on the own machine.
-    language : str
-        Code of the language of the page; blank: the workbook's, else the browser's.
+    * `host`, `port`: the address; port 0 is any that is free.
+    * `allowed`: names by which browsers reach it through a proxy, with a port where that is not the usual one.
+    * `user_header`: the header in which the proxy names the user; blank on the own machine.
+    * `language`: code of the language of the page; blank: the workbook's, else the browser's.
     """
 
     host: str = LOOPBACK
@@ -74,16 +68,10 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Ending:
-    """How a server ended.
+    """How a server ended: the workbook of the disk that holds all changes, blank without one.
 
-    Attributes
-    ----------
-    saved : str
-        The workbook of the disk that holds all changes; blank without one.
-    kept : list of (str, str)
-        Workbooks whose changes could not be saved in them, and the files in which they are kept.
-    lost : list of str
-        Workbooks whose changes are lost.
+    `kept` are workbooks whose changes could not be saved in them, and the files in which they are kept; of those in
+    `lost` the changes are lost.
     """
 
     saved: str = ""

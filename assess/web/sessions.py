@@ -47,18 +47,9 @@ NOTE = "opened.json"
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What one session and all of them may take.
+    """What one session and all of them may take: bytes of the files of one session, sessions and simulations at once.
 
-    Attributes
-    ----------
-    bytes : int
-        Of the files of one session: workbook, what it names, and results.
-    sessions : int
-        At once.
-    jobs : int
-        Simulations at once, of all sessions.
-    idle : float
-        Time without a request of its user after which a session ends [s].
+    `idle` is the time without a request of its user after which a session ends [s].
     """
 
     bytes: int = 1_000_000_000

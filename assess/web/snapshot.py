@@ -20,20 +20,10 @@ T = TypeVar("T")
 
 
 class Snapshot:
-    """One version of a book.
+    """One version of a book: its cells, and its sheets with their columns by their English names.
 
-    Attributes
-    ----------
-    version : int
-        That of the book.
-    cells : HeldSheets
-        Its cells.
-    sheets : mapping of str to PageSheet
-        Its sheets with their columns, by their English names.
-    path : Path
-        The workbook, which may lie in no folder.
-    files : Path
-        The folder in which the files that it names are looked for.
+    * `path`: the workbook, which may lie in no folder.
+    * `files`: the folder in which the files that it names are looked for.
     """
 
     def __init__(
@@ -71,8 +61,7 @@ class Snapshot:
     def find_drawing(self, text: str, width: float | None) -> Drawing | None:
         """Return what is drawn of the plan of a floor, placed or not; None where its file cannot be used.
 
-        `text`: the file as the floor names it.
-        `width`: width of the whole plan [m], where it is filled in.
+        `text` is the file as the floor names it, `width` the width of the whole plan [m], where it is filled in.
         """
         with self._kept.more():
             return PictureReader(self.files, SILENT, self._kept).find_drawing(text, width)

@@ -43,22 +43,10 @@ def find_live(snapshot: Snapshot) -> LiveRows:
 
 
 def write_changes(data: bytes, base: Snapshot, now: Snapshot, different: Iterable[CellPlace], was: LiveRows) -> bytes:
-    """Return the bytes of a workbook after edits.
+    """Return the bytes of a workbook after edits of the cells `different`; `was` is what `find_live` returned before.
 
-    Rows of Items below the last one that has live formulas get none: the program reads them all the same.
-
-    Raises WorkbookError if a cell cannot be changed.
-
-    Parameters
-    ----------
-    data : bytes
-        The workbook before.
-    base, now : Snapshot
-        What it holds before and after.
-    different : iterable of CellPlace
-        The cells that differ.
-    was : mapping of int to list
-        What `find_live` returned before.
+    Rows of Items below the last one that has live formulas get none: the program reads them all the same. Raises
+    WorkbookError if a cell cannot be changed.
     """
     cells = list(different)
     changes: dict[str, dict[str, Value]] = {}

@@ -1,6 +1,5 @@
 """Annual chances of a workbook with a hazard file, held against integrals of their own and against the run itself."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,10 +9,8 @@ import pytest
 from assess.fragility import lognormal_chance
 from assess.hazard import read_hazard
 from assess.motion.suite import read_suite
-from assess.pipeline.annual import evaluate_annual
 from assess.pipeline.levels import Sweep
 from assess.pipeline.run import build_results, compute
-from assess.progress import SILENT
 from assess.rates import integrate_lognormal
 from assess.settings import Settings
 from assess.units import GRAVITY
@@ -136,15 +133,6 @@ def test_the_dispersion_of_a_record_is_always_in_it(tmp_path):
     assert ratio == pytest.approx(np.exp(K**2 * (0.4**2 - 0.01**2) / 2), rel=0.15)
 
 
-def test_no_level_cuts_off_motions_that_are_stronger_than_the_floor(tmp_path):
-    """Where pieces fall at the lowest level, lower ones follow until none does."""
-    assessment = assessed(tmp_path, motion_uncertainty=None)
-    weak = replace(assessment.cases, pfa=assessment.cases.pfa / 5)
-    shifted = evaluate_annual(replace(assessment, cases=weak), jobs=1, progress=SILENT)
-    (row,) = rows_of(assessment)[1]
-    assert shifted.items[0].rate == pytest.approx(row.rate, rel=0.2), "the levels begin five times too high"
-
-
 @pytest.mark.slow
 def test_the_users_own_motions_have_to_be_scaled_to_the_floors(tmp_path):
     (tmp_path / "own").mkdir()
@@ -202,14 +190,6 @@ def test_a_route_and_a_room_are_lost_as_often_as_the_piece_that_blocks_them_fall
     assert route.annual_if_anchors_fail is None
 
 
-def test_a_route_that_anchored_pieces_reach_has_a_rate_if_they_fail(tmp_path):
-    items = {**CABINET, **BLOCKS}, {**CABINET, **BLOCKS, "item": "b", "breadth": 35, "anchored": "yes"}
-    results, rows = rows_of(assessed(tmp_path, *items, routes=True))
-    (route,) = results.route_tables.routes
-    assert route.annual.rate == pytest.approx(rows[0].rate)
-    assert route.annual_if_anchors_fail.rate > rows[1].rate * 0.999
-
-
 def test_rates_are_lower_bounds_where_the_motions_may_be_too_weak(tmp_path):
     results, (row,) = rows_of(assessed(tmp_path, {**CABINET, **BLOCKS}, routes=True, period=None))
     assert row.at_least
@@ -245,8 +225,3 @@ def test_what_is_missing_is_named(tmp_path, building, settings, why):
     else:
         assert why in results.annual.missing
         assert not results.annual.is_evaluated
-
-
-@pytest.mark.slow
-def test_threads_change_nothing(several):
-    assert compute(several.inventory, SETTINGS, jobs=3).annual == compute(several.inventory, SETTINGS, jobs=1).annual

@@ -111,15 +111,6 @@ def test_the_factor_of_typed_floors_goes_on_in_height_and_down_to_the_ground():
     assert _factor(demands, "R", ground) == pytest.approx(second), "above the highest it goes on"
 
 
-def test_beyond_the_highest_record_its_factor_goes_on():
-    """On a known ground; between floors with records it is interpolated as the peaks are."""
-    low, high = (_at(z, name, records=KNOWN) for z, name in ((10.0, "A"), (20.0, "C")))
-    demands = _demands(low, _at(15.0), high, ROOF, ground_pga=3.0, ground_pgv=0.4)
-    assert (_x(demands, "15").source, _x(demands, "15").between) == ("interpolated", ("A", "C"))
-    assert _peaks(_x(demands, "15")) == pytest.approx(_peaks(_x(demands, "A")))
-    assert _factor(demands, "R", (3.0, 0.4)) == pytest.approx(_factor(demands, "C", (3.0, 0.4)))
-
-
 # --- typed peaks
 
 

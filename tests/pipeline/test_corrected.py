@@ -1,7 +1,6 @@
 """The corrected workbook: the cells that were understood, and the results that rest on them."""
 
 import io
-import re
 import tempfile
 from functools import cache
 from pathlib import Path
@@ -18,7 +17,6 @@ from assess.workbook.patch import patch_workbook
 from assess.workbook.read import read_inventory
 from assess.workbook.template import write_workbook
 from tests.recalculate import libreoffice, needs_libreoffice, stored_cells
-from tests.workbook.books import change_parts
 from tests.workbook.test_patch import changed_parts
 from tests.workbooks import address
 
@@ -84,18 +82,6 @@ def test_libreoffice_recalculates_what_rests_on_corrected_cells(tmp_path: Path) 
     }
     head = next(cell for (sheet, cell), value in shown.items() if (sheet, value) == ("Items", "B/H"))
     assert shown["Items", head.replace("1", "2")] == pytest.approx(0.15), "30 cm by 2 m"
-
-
-@pytest.mark.slow
-def test_a_formula_stays_a_formula(tmp_path: Path) -> None:
-    path = example(tmp_path / "book.xlsx", {"Items": {BREADTH: 30}})
-    sheet = f"xl/worksheets/sheet{1 + openpyxl.load_workbook(path).sheetnames.index('Items')}.xml"
-    place = BREADTH.encode()
-    cell = b'<c r="%b" t="str"><f>"30 "&amp;"cm"</f><v>30 cm</v></c>' % place
-    change_parts(path, {sheet: lambda data: re.sub(rb'<c r="%b".*?</c>' % place, cell, data, count=1)})
-    done = correct_workbook(path)
-    assert ([one.cell for one in done.kept], done.changed) == ([BREADTH], ())
-    assert done.inventory.data == path.read_bytes()
 
 
 @pytest.mark.slow

@@ -106,9 +106,3 @@ def test_a_route_with_a_piece_that_is_not_confirmed_has_no_joint_outcome():
     assert "C" in sums.joint_routes
     known = {one.route for one in results.route_tables.routes if one.state != "not known"}
     assert sums.people_not_known == sum({"A": 35, "B": 12, "C": 5}[one] for one in {"A", "B", "C"} - known)
-
-
-def test_a_number_of_draws_of_its_own_for_each_piece_gives_no_sums_by_draw():
-    sums = sum_draws(*assessed(Settings(runs="auto", seed=3)))
-    assert sums.falls is None
-    assert sums.people_expected > 0

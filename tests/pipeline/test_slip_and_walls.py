@@ -109,14 +109,6 @@ def test_slip_grows_with_less_friction_and_with_the_motion(tmp_path):
 # --- walls ---
 
 
-def test_the_one_sided_chance_stands_beside(plain, walled):
-    assert all(one.governing.one_sided is None for one in plain)
-    found = {one.item.item: one.governing.one_sided for one in walled}
-    assert found["stocky 2"] is None
-    assert 0 < found["slender 2"] < walled["slender 2"].adopted.probability
-    assert all(one.item.against_wall and one.item.falls_toward_deg is None for one in walled)
-
-
 def test_the_outline_of_the_room_tells_the_side(tmp_path):
     """Along one wall it falls one way, along the other the other way; in the middle of the room that is not known."""
     at = {"against_wall": "yes", "angle_deg": 90, "x": 4, "room": "Office", "axis": None}

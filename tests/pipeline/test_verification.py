@@ -155,23 +155,6 @@ def test_of_an_unknown_building_a_class_is_simulated_and_unconfirmed(done):
 # --- which pieces, which motions ---
 
 
-@pytest.mark.slow
-def test_high_simulates_only_what_is_high_or_doubtful_or_on_a_route(tmp_path):
-    items = [
-        {"item": "calm", "floor": "calm", "axis": "X", "breadth": 60, "height": 180},
-        {"item": "outside", "floor": "still", "axis": "X", "breadth": 90, "height": 180},
-    ]
-    path = _book(tmp_path, items, [*FLOORS, {"floor": "calm", "pfa_x": 0.12}], motion_uncertainty=0.4)
-    done = _run(tmp_path, path, "--verify", "high", "--runs", 5)
-    calm, outside = done.items["calm"], done.items["outside"]
-    assert (calm["verification"], calm["adopted"]["method"], calm["adopted"]["basis"]) == (
-        None, "proposed_or", "formula",
-    )  # fmt: skip
-    assert calm["adopted"]["probability"] == calm["methods"]["proposed_or"]["value"]
-    assert "extrapolated" in outside["methods"]["proposed_or"]["flags"]
-    assert outside["verification"]["runs"] == 5
-
-
 # --- the same again ---
 
 SMALL = [ITEMS[0], ITEMS[1], {"item": "g", "floor": "given", "axis": "X", "breadth": 40, "height": 180}]

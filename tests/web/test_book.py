@@ -9,7 +9,7 @@ from typing import Any
 import openpyxl
 import pytest
 
-from assess.errors import InputError, WorkbookError
+from assess.errors import InputError
 from assess.pipeline.live_values import with_live
 from assess.web.book import Book, EditsRefused, VersionError
 from assess.workbook.lists import LETTERS, PLACES
@@ -169,19 +169,6 @@ def test_texts_are_taken_as_their_column_asks(book):
             assert type(found[0][3]) is type(kept), (field, typed)
 
 
-def test_texts_of_a_form(book):
-    lines = {one["field"]: one["row"] for one in book.describe()["sheets"][0]["columns"]}
-    typed = {"period": "0,8 s", "report_date": "1 May 2024", "shaking": "mmi 7", "piece_uncertainty": "n",
-             "building": " My hall ", "ground_pga": "25 %g"}  # fmt: skip
-    kept = {
-        one[1]: one[3]
-        for one in edit(book, *(("Building", lines[name], 1, text) for name, text in typed.items()))["cells"]
-    }
-    expected = {"period": 0.8, "report_date": "2024-05-01", "shaking": "MMI VII, very strong",
-                "piece_uncertainty": "no", "building": " My hall ", "ground_pga": 0.25}  # fmt: skip
-    assert kept == {lines[name]: value for name, value in expected.items()}
-
-
 def test_columns_of_the_user(tmp_path):
     path = write_shared(tmp_path / "own.xlsx", {"Items": [["Item", "Floor", "Mine"], ["A1", "1", "mine"]]})
     book = Book.open_disk(path)
@@ -247,16 +234,6 @@ def test_a_workbook_that_cannot_be_changed_at_all(tmp_path, filled):
     book = Book.open_disk(change_parts(path, {"_xmlsignatures/sig1.xml": b"<a/>"}))
     assert "signature" in refusals(book, ("Items", 2, at("breadth"), 50))["Items", 2, at("breadth")]
     assert book.write() == path.read_bytes()
-
-
-def test_what_is_no_edit(book):
-    cells: list[Any] = [["Items", 2, 0], ["Items", "2", 0, 1], ["Items", 2.0, 0, 1], ["Items", True, 0, 1]]
-    cells += [[None, 2, 0, 1], ["Items", 2, 0, [1]], ["Items", 2, 0, {"a": 1}], ["Items", 2, None, 1]]
-    wrong: list[Any] = [None, {}, "x", [1], *([one] for one in cells)]
-    for edits in wrong:
-        with pytest.raises(InputError, match=r"edits? ha(s|ve) to be a list"):
-            book.edit(book.version, edits, "x")
-    assert book.version == 1
 
 
 def test_hostile_texts_stay_texts(book, tmp_path):
@@ -328,21 +305,11 @@ def test_edits_from_many_threads(book):
     assert book.version == 41
 
 
-def test_a_snapshot_stays_as_it_is(book):
-    now = book.snapshot()
-    edit(book, ("Items", 2, at("breadth"), "wrong"))
-    assert book.snapshot() is not now
-    assert now.inventory.items[0].breadth == 0.3
-    assert [item.row for item in book.snapshot().inventory.items] == [3, 4, 5, 6]
-    assert [one.cell for one in book.snapshot().problems if one.severity == "error"] == [
-        f"{LETTERS['Items', 'breadth']}2"
-    ]
-    assert [row.number for row in book.snapshot().tables["Items"].rows] == [2, 3, 4, 5, 6]
-
-
-def test_what_is_no_workbook(tmp_path):
-    for data in (b"", b"hello", b"PK\x03\x04rest"):
-        with pytest.raises(WorkbookError):
-            Book.hold("x.xlsx", data, tmp_path)
-    with pytest.raises(WorkbookError, match="the sheet is missing"):
-        Book.open_disk(write_shared(tmp_path / "other.xlsx", {"Sheet1": [["a"]]}))
+def test_what_is_no_edit(book):
+    cells: list[Any] = [["Items", 2, 0], ["Items", "2", 0, 1], ["Items", 2.0, 0, 1], ["Items", True, 0, 1]]
+    cells += [[None, 2, 0, 1], ["Items", 2, 0, [1]], ["Items", 2, 0, {"a": 1}], ["Items", 2, None, 1]]
+    wrong: list[Any] = [None, {}, "x", [1], *([one] for one in cells)]
+    for edits in wrong:
+        with pytest.raises(InputError, match=r"edits? ha(s|ve) to be a list"):
+            book.edit(book.version, edits, "x")
+    assert book.version == 1

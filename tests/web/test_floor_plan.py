@@ -3,8 +3,6 @@
 import io
 import json
 import re
-import subprocess
-import sys
 from xml.etree import ElementTree
 
 import pytest
@@ -135,20 +133,6 @@ def test_pieces_with_errors_are_still_drawn(path):
     assert len(found["A3"]["fallen"]) == 2
 
 
-def test_an_unknown_width_is_told_and_without_floors_there_is_a_frame(path):
-    """It is drawn as Breadth, as the routes assume it; nobody may take that for what the piece covers."""
-    book = hold(path)
-    edit(book, ("Items", 2, "width", None))
-    (shelves,) = _plan(book, "2")["pieces"]
-    assert (shelves["missing"], shelves["width"]) == (["width"], shelves["breadth"])
-    piece = _plan(book, "1")["pieces"][0]
-    assert (piece["missing"], piece["width"], len(piece["fallen"])) == (["width"], 0.3, 2)
-    edit(book, *(("Floors", row, "floor", None) for row in (2, 3, 4)))
-    plan = _plan(book)
-    assert (plan["floor"], plan["floor_row"], plan["pieces"]) == ("", None, [])
-    assert plan["frame"] == [-BORDER, -BORDER, 12 + BORDER, 8 + BORDER]
-
-
 # ---------------------------------------------------------------- pictures
 
 
@@ -197,34 +181,3 @@ def test_a_picture_that_cannot_be_used_is_none(path):
     for floor in ("1", "2", "3", "none"):
         assert find_picture(book.snapshot(), floor) is None
         assert _plan(book, floor)["picture"] is None
-
-
-FIRST = """
-import sys, threading
-from pathlib import Path
-from types import SimpleNamespace
-from assess.web import endpoints
-from assess.web.book import Book
-sys.setswitchinterval(2e-6)
-asked, faults = SimpleNamespace(book=Book.open_disk(Path(sys.argv[1])), query={}), []
-every = endpoints._describe_plan, endpoints._describe_catalogue, endpoints._describe_routes
-ready = threading.Barrier(len(every))
-def ask(describe):
-    ready.wait()
-    try:
-        describe(asked)
-    except BaseException as fault:
-        faults.append(fault)
-threads = [threading.Thread(target=ask, args=(one,)) for one in every]
-for one in threads: one.start()
-for one in threads: one.join()
-print(faults)
-"""
-
-
-@pytest.mark.slow
-def test_the_first_requests_of_a_page_may_come_at_once(tmp_path):
-    """Each imports what it needs; of modules that import one another one of them would find a half of the other."""
-    write_workbook(tmp_path / "w.xlsx", Content({"Floors": FLOORS, "Items": ITEMS}), spare=3)
-    command = [sys.executable, "-c", FIRST, str(tmp_path / "w.xlsx")]
-    assert subprocess.run(command, capture_output=True, text=True, check=True).stdout == "[]\n"

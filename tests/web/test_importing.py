@@ -9,11 +9,9 @@ import pytest
 import assess
 from assess.bim.import_workbook import ImportedBuilding
 from assess.web import importing
-from assess.web.file_names import clean_name
 from assess.web.guard import MOST_MODEL
-from assess.web.importing import Import, find_free, name_workbook
-from assess.web.jobs import READING, Slots
-from assess.web.request_errors import RequestError
+from assess.web.importing import Import
+from assess.web.jobs import Slots
 from assess.web.sessions import HOSTED
 from assess.workbook.read import read_tables
 from tests.bim import scan_files
@@ -104,16 +102,6 @@ def test_a_second_workbook_of_a_model_replaces_no_file_and_a_third_ends_the_list
 
 
 @pytest.mark.slow
-def test_routes_are_drafted_where_they_are_asked_for(served_here):
-    client = served_here().client
-    office = scan_files.write(scan_files.office())
-    assert _read(client, "office.json", office)["found"]["routes"] == 0
-    assert _read(client, "office.json", office, "&routes=draft")["found"]["routes"] > 0
-    assert client.request("POST", "/api/import?name=a.ifc&routes=all", b"x").status == 422
-    assert client.request("POST", "/api/import?routes=none", b"x").status == 422
-
-
-@pytest.mark.slow
 def test_a_cobie_file_and_a_scan_are_recognised_by_their_content(served, tmp_path):
     server = served()
     path = write_cobie(tmp_path / "handover.xlsx")
@@ -173,16 +161,6 @@ def test_a_reading_can_be_cancelled_and_the_server_answers_meanwhile(served, tmp
 
 @linux
 @pytest.mark.slow
-def test_another_model_takes_the_place_of_one_that_is_being_read(served_here, house):
-    server = served_here()
-    server.client.request("POST", "/api/import?name=large.ifc", LARGE.read_bytes())
-    reader = hold_reader(server)
-    found = _read(server.client, "house.ifc", house)
-    assert (found["state"], found["name"], is_gone(reader)) == ("done", "house.ifc", True)
-
-
-@linux
-@pytest.mark.slow
 def test_the_server_ends_while_a_model_is_read(served, tmp_path):
     server = served()
     server.client.request("POST", "/api/import?name=duplex.ifc", DUPLEX.read_bytes())
@@ -238,19 +216,6 @@ def test_what_is_too_large_is_refused_however_it_is_sent(served_here, tmp_path):
     assert client.get("/api/import").json() == {"import": None, "opened": None, "most": MOST_MODEL}
 
 
-@pytest.mark.slow
-def test_on_a_server_for_several_it_is_held_with_its_plans_for_its_user_alone(served, house):
-    server = served(None, *OPTIONS)
-    ann, _ = _come(server, "ann")
-    ben, _ = _come(server, "ben")
-    assert _read(ann, "house.ifc", house)["state"] == "done"
-    assert ben.get("/api/import").json()["import"] is None
-    book = ann.post("/api/import/open").json()
-    assert (book["name"], book["mode"], book["missing"]) == ("house.xlsx", "held", [])
-    assert ann.get("/api/picture?floor=Level%201").status == 200
-    assert list(server.folder.iterdir()) == []
-
-
 # ---------------------------------------------------------------- without a server
 
 
@@ -266,14 +231,6 @@ def test_a_reading_for_which_nobody_asks_ends(tmp_path, monkeypatch):
     found = _begin(tmp_path, Slots(1), DUPLEX.read_bytes())
     wait_until(lambda: found.state, lambda state: state != "running")
     assert (found.state, list(tmp_path.iterdir())) == ("cancelled", [])
-
-
-def test_without_a_place_nothing_is_kept(tmp_path):
-    slots = Slots(1, READING)
-    slots.take()
-    with pytest.raises(RequestError, match="Other building models are being read"):
-        _begin(tmp_path, slots)
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_plans_get_names_that_no_other_file_and_no_other_plan_has(tmp_path):
@@ -292,15 +249,3 @@ def test_plans_get_names_that_no_other_file_and_no_other_plan_has(tmp_path):
     (tmp_path / "m-EG-2.svg").write_bytes(b"mine, too")
     renamed = importing._rename_files(found, tmp_path)
     assert [renamed.files[row["plan"]] for row in renamed.floors[:4]] == [*plans.values()]
-
-
-def test_names_of_new_workbooks_and_of_models(tmp_path):
-    assert name_workbook("duplex.ifc") == "duplex.xlsx"
-    assert name_workbook("hand.over.XLSX") == "hand.over-inventory.xlsx"
-    assert name_workbook("con.ifc") == "workbook.xlsx"
-    assert find_free("a.xlsx", tmp_path) == "a.xlsx"
-    (tmp_path / "a.xlsx").touch()
-    assert find_free("a.xlsx", tmp_path) == "a-2.xlsx"
-    assert clean_name("C:\\x\\../../b\u202e<1>.ifc") == "b1.ifc"
-    assert (len(clean_name("a" * 300 + ".ifc")), clean_name("a" * 300 + ".ifc")[-5:]) == (120, "a.ifc")
-    assert clean_name("..") == ""

@@ -16,7 +16,7 @@ from tests.waiting import wait_until
 from tests.web.model_reader import find_worker, is_gone, linux
 from tests.web.opened import write_one_floor
 from tests.web.serving import list_named, start, wait_for_job
-from tests.workbooks import ITEMS, write
+from tests.workbooks import write
 
 LONG = {"verify": "all", "runs": 100_000, "formats": ["json"]}
 """A job that takes minutes."""
@@ -158,15 +158,6 @@ def test_what_cannot_be_asked_for_is_refused(running):
     more = {"method": "/tmp/own.toml", "template": "/tmp", "out": "/tmp/out"}
     assert running.client.post("/api/job", {"formats": ["json"], "verify": "none", **more}).status == 200
     assert wait_for_job(running.client)["settings"] == {"verify": "none"}
-
-
-@pytest.mark.slow
-def test_a_workbook_with_errors_is_not_simulated(served, tmp_path):
-    server = served(write(tmp_path / "faulty.xlsx", [*ITEMS, {"item": "B1", "floor": "1", "height": "tall"}]))
-    reply = server.client.post("/api/job", {"verify": "none"})
-    assert reply.status == 422
-    assert any("tall" in one["message"] for one in reply.json()["problems"])
-    assert _list_left(server) == []
 
 
 @pytest.mark.slow

@@ -11,11 +11,9 @@ import pytest
 
 import assess
 from assess.i18n import load_catalogue, speaking
-from assess.pipeline.live_values import live_values
 from assess.report.counts import count
 from assess.risk import RiskClass
 from assess.web.live import LiveView
-from assess.workbook.schema import LIVE
 from assess.workbook.template import Content, write_workbook
 from tests.web.opened import MARKET, edit, hold
 from tests.workbooks import FLOORS, ITEMS, UNVERIFIED, write
@@ -71,19 +69,6 @@ def test_classes_and_chances_are_those_of_the_run(example):
     assert pfa["42"] == pytest.approx((0.2224, 0.1359), abs=1e-4)
 
 
-def test_live_columns_show_what_the_formulas_of_the_sheet_show(tmp_path):
-    book = hold(_write(tmp_path / "w.xlsx", {}))
-    items = _answer(book)["items"]
-    found = {one.label: items["values"][str(at)] for at, one in book.sheets["Items"].columns.items()
-             if one.live in LIVE}  # fmt: skip
-    assert len(found) == len(LIVE)
-    rows = zip(*found.values(), strict=True)
-    order = [LIVE.index(one.live) for one in book.sheets["Items"].columns.values() if one.live in LIVE]
-    for shown, expected in zip(rows, live_values(book.snapshot().inventory), strict=True):
-        for place, value in zip(order, shown, strict=True):
-            assert value == (pytest.approx(expected[place]) if isinstance(expected[place], float) else expected[place])
-
-
 # ---------------------------------------------------------------- words in place of a class
 
 SLIPS = [
@@ -120,18 +105,6 @@ def test_a_row_without_a_class_has_the_word_of_the_class_column(tmp_path, langua
         assert (word if not risk else shown[at]) == shown[at], (at, SLIPS[at - 3] if 2 < at < 12 else "")
     assert (words[2][0], shown[2]) == ("high", {"en": "▲ high", "it": "▲ alto"}[language])
     assert words[max(words)][1] == {"en": "shaking?", "it": "scuotimento?"}[language]
-
-
-def test_a_type_that_is_not_known_is_to_be_checked(tmp_path):
-    """Without sizes of its own the piece has no class for that; one that is only begun is left alone."""
-    items = [{"item": "A1", "floor": "1", "breadth": 40, "height": 180}] * 3
-    book = hold(_write(tmp_path / "w.xlsx", {"Items": items, "Floors": FLOORS}))
-    edit(
-        book,
-        ("Items", 2, "type", "Zorp"),
-        *(("Items", row, name, None) for row in (2, 3) for name in ("breadth", "height")),
-    )
-    assert [word for _, word, *_ in _by_row(_answer(book)).values()] == ["type?", "", "check"]
 
 
 def test_floors_without_shaking_leave_the_others_their_classes(tmp_path):

@@ -6,7 +6,6 @@ import pytest
 import xlsxwriter
 from playwright.sync_api import expect
 
-from tests.web.looking import examine
 from tests.web.opened import write_office
 from tests.web.sheet_page import TWO_FRAMES, opened
 
@@ -185,34 +184,3 @@ def test_widths_are_dragged_fitted_and_kept_and_rows_duplicated_and_cleared(sort
     sheet.select("Item", 3, "Item", 4).page.get_by_role("button", name="Clear rows").click()
     sheet.settle()
     assert sheet.values("Items", "item") == {2: "B", 5: "d", 6: "E", 7: "B 2"}
-
-
-CUT = """all => all.filter((one) => one.scrollHeight > one.clientHeight + 1 || one.scrollWidth > one.clientWidth)
-    .map((one) => one.textContent)"""
-
-
-def test_headers_show_their_units_and_the_tabs_of_the_plan_their_names(page, served_here, tmp_path):
-    server = served_here(write_office(tmp_path / "office.xlsx"))
-    for locale in ("en-GB", "it-IT"):
-        sheet = opened(page, server, width=4000, locale=locale).open("Items")
-        expect(sheet.head("Bracket capacity")).to_contain_text("[kN]")
-        assert sheet.grid.locator(".grid-label").evaluate_all(CUT) == [], locale
-        sheet.page.set_viewport_size({"width": 1400, "height": 900})
-        sheet.page.locator("nav.tabs [data-tab=plan]").click()
-        expect(sheet.page.locator(".plan-tabs")).to_be_visible()
-        assert sheet.page.locator(".plan-tabs, .plan-tabs button").evaluate_all(CUT) == [], locale
-        assert len({one.bounding_box()["y"] for one in sheet.page.locator(".plan-tabs button").all()}) == 1, locale
-
-
-def test_sheets_with_problems_are_accessible(page, served_here, tmp_path):
-    items = [{"item": "A1", "floor": "1", "breadth": "wide", "width": 80, "height": 200}, {"item": "A2", "floor": "9"}]
-    sheet = opened(page, served_here(write_office(tmp_path / "office.xlsx", items)))
-    for theme, width in (("light", 1400), ("dark", 1400), ("light", 390)):
-        sheet.page.emulate_media(color_scheme=theme)
-        sheet.page.set_viewport_size({"width": width, "height": 900})
-        for name in ("Items", "Building"):
-            sheet.open(name).settle()
-            if name == "Items" and width > 900:
-                sheet.select("Type", 2).type("<Alt+ArrowDown>")
-            assert examine(sheet.page) == [], (name, theme, width)
-            sheet.type("<Escape>")

@@ -2,14 +2,12 @@
 
 import re
 from pathlib import Path
-from urllib.parse import urlsplit
 
 import pytest
 from playwright.sync_api import expect
 
 from assess.web.guard import MOST_MODEL
 from tests.bim import scan_files
-from tests.bim.cobie_files import write_cobie
 from tests.waiting import wait_until
 from tests.web.looking import THEMES, examine
 from tests.web.model_reader import hold_reader, is_gone, linux, write_house
@@ -67,19 +65,6 @@ def test_a_dropped_model_shows_what_was_taken_and_becomes_a_workbook(page, serve
     _see_list(found, "scan.json")
     found.get_by_role("link", name="Back to scan.xlsx").click()
     expect(found.locator("#view-sheet")).to_be_visible()
-
-
-def test_what_was_taken_is_shown_after_a_reload(page, served_here, tmp_path):
-    """Which view the address names depends on the import: the page has its answer before it asks for the book."""
-    found = page(served_here())
-    _choose(found, write_cobie(tmp_path / "handover.xlsx"))
-    _see_list(found, "handover.xlsx")
-    seen = []
-    found.on("request", lambda request: seen.append(("asked", urlsplit(request.url).path)))
-    found.on("response", lambda reply: seen.append(("answered", urlsplit(reply.url).path)))
-    found.reload()
-    _see_list(found, "handover.xlsx")
-    assert seen.index(("answered", "/api/import")) < seen.index(("asked", "/api/book"))
 
 
 FORMULAS = ('=HYPERLINK("https://example.org")', "+1", "-1", "@SUM(A1)", "\t=1", " =1", "Desk\t=1", "Desk\n=1", "A=1")
@@ -169,18 +154,6 @@ def test_a_model_dropped_on_an_open_workbook_becomes_another(page, served_here, 
     found.locator(".notice").get_by_role("button", name="Choose the shaking").click()
     expect(found.locator(".sheet-tabs [data-sheet=Building]")).to_have_attribute("aria-selected", "true")
     assert (tmp_path / "office.xlsx").read_bytes() == before
-
-
-def test_a_cobie_file_is_read_and_an_inventory_opened(page, served_here, tmp_path):
-    server = served_here()
-    found = page(server)
-    _choose(found, write_cobie(tmp_path / "handover.xlsx"))
-    shown = _see_list(found, "handover.xlsx")
-    expect(shown).to_contain_text("2 pieces on 2 floors")
-    shown.get_by_text("1 element skipped that is not furniture").click()
-    expect(shown.get_by_role("row", name="Door B 1")).to_be_visible()
-    drop(found, "office.xlsx", write_office(tmp_path / "office.xlsx").read_bytes())
-    expect(found.get_by_role("heading", name="office.xlsx")).to_be_visible()
 
 
 def test_on_a_phone(page, served_here, house):

@@ -1,7 +1,6 @@
 """The frame of the page: every view opens, in both languages and themes, and nothing is lost on the way."""
 
 import gzip
-import os
 import re
 import shutil
 import signal
@@ -101,22 +100,6 @@ def test_every_view_is_accessible_and_asks_no_other_server(page, served_here, ex
             assert examine(found, rules) == [], (view, theme)
     assert len(addresses) > 20
     assert [one for one in addresses if not one.startswith((server.base + "/", "data:", "blob:"))] == []
-
-
-@browsing
-def test_a_view_that_fails_leaves_the_others(page, served_here, office):
-    found = page(served_here(office))
-    found.route(
-        "**/what_if_view.mjs",
-        lambda route: route.fulfill(body="throw new Error('broken')", content_type="text/javascript"),
-    )
-    found.reload()
-    show(found, "what-if")
-    expect(found.locator("#view-what-if").get_by_role("alert")).to_contain_text("other views work")
-    show(found, "simulate")
-    expect(found.get_by_role("button", name="Start the run")).to_be_enabled()
-    assert [one for one in found.errors if "broken" not in one] == []
-    found.errors.clear()
 
 
 @browsing
@@ -286,26 +269,6 @@ def test_what_stands_in_the_way_of_saving_is_told_until_it_is_gone(page, served_
     expect(said).to_have_count(0)
     expect(found.locator(STATE)).to_have_text("All changes saved in office.xlsx")
     assert load_workbook(office)["Items"].cell(2, 4).value == "Attic"
-
-
-@browsing
-@pytest.mark.skipif(os.name == "nt" or not (os.getuid() or shutil.which("setpriv")), reason="needs rights that count")
-def test_a_folder_that_does_not_allow_writing_is_told_at_once(page, office):
-    office.parent.chmod(0o555)
-    rights = () if os.getuid() else ("setpriv", "--bounding-set", "-dac_override")
-    server = start(office, "--no-browser", cwd="/", before=rights)
-    try:
-        found = page(server)
-        said = found.locator(".notice").filter(has_text="The folder of office.xlsx does not allow writing")
-        expect(said).to_be_visible()
-        expect(found.locator(STATE)).to_contain_text("changes can be downloaded, not saved")
-        edit(found, "Items", 2, 3, "Attic")
-        told = found.get_by_role("alert").filter(has_text="does not allow writing")
-        expect(told.get_by_role("button", name="Download my version")).to_be_visible()
-    finally:
-        _, _, err = server.stop()
-        office.parent.chmod(0o755)
-    assert err.startswith("warning  The folder of office.xlsx does not allow writing")
 
 
 DROP = """([name, data]) => {

@@ -64,18 +64,6 @@ def test_a_file_that_another_program_changed_is_not_overwritten(served, tmp_path
 
 
 @pytest.mark.slow
-def test_saving_is_not_put_off_by_one_edit_after_the_other(served, tmp_path):
-    client = served(write(tmp_path / "office.xlsx")).client
-    values = iter(range(60, 10**6))
-
-    def look():
-        _edit(client, next(values))
-        return client.get("/api/state").json()["state"]
-
-    wait_until(look, lambda state: state["saved_version"] > 1)
-
-
-@pytest.mark.slow
 def test_a_workbook_that_another_server_has_open_is_told(served, tmp_path):
     path = write(tmp_path / "office.xlsx")
     first = served(path)
@@ -153,3 +141,15 @@ def test_enter_in_the_terminal_opens_the_page_again(tmp_path):
         process.communicate(timeout=PATIENCE)
         os.close(leader)
         os.close(follower)
+
+
+@pytest.mark.slow
+def test_saving_is_not_put_off_by_one_edit_after_the_other(served, tmp_path):
+    client = served(write(tmp_path / "office.xlsx")).client
+    values = iter(range(60, 10**6))
+
+    def look():
+        _edit(client, next(values))
+        return client.get("/api/state").json()["state"]
+
+    wait_until(look, lambda state: state["saved_version"] > 1)
