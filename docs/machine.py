@@ -1,6 +1,6 @@
 """Which machine a generated page was made on: last digits, and with them verdicts at a limit, depend on it."""
 
-from assess.pipeline.versions import versions
+from assess.version import versions
 
 START = "Made with "
 

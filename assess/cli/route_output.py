@@ -13,13 +13,12 @@ from typing import Any
 from assess.cli.console import count
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.route_sweep import FINEST, JUMP, Fragility, RouteFragility, find_jumps, find_passing
-from assess.pipeline.versions import versions
 from assess.report import words
 from assess.report.data import disarm
 from assess.report.say.route import say_basis
 from assess.route_results import Chance
 from assess.units import GRAVITY
-from assess.version import __version__
+from assess.version import __version__, versions
 
 LEVELS = (0.03, 0.3, 0.5)
 """Chances of blockage whose PFA is given [-]."""

@@ -22,7 +22,7 @@ import numpy as np
 from assess.errors import Gap, Problem, WorkbookError
 from assess.i18n import fill
 from assess.intensity import Shaking
-from assess.model import AXES, Axis, Floor, FloorRecord, Inventory
+from assess.model import AXES, Axis, Floor, Inventory
 from assess.motion import assumed
 from assess.motion.assumed import FloorTarget, Meets
 from assess.motion.floor_medians import find_medians, is_within
@@ -62,7 +62,14 @@ def serve_floors(
     own = {floor.floor: own_demands(floor, scenario, progress) for floor in inventory.floors}
     bases = {axis: _find_basis(ground, own.values(), axis) for axis in AXES}
     building = _Building(inventory, ground, own, bases, scenario, ductility_reduction)
-    problems = list(_check_ground(inventory, scenario, ground))
+    problems: list[Problem] = []
+    if scenario in PROFILES and ground.pga is None:
+        message = fill(
+            "Ground PGA, SDS, ShakeMap file and Shaking are blank; the scenario '{scenario}' needs one of them.",
+            scenario=fill(scenario),
+        )
+        fix = fill("Fill in Ground PGA, choose Shaking, or choose another scenario.")
+        problems.append(Gap("error", "Building", inventory.building.cell("ground_pga"), message, fix))
     demands: dict[tuple[str, Axis], tuple[Demand, ...]] = {}
     for floor in inventory.floors:
         served = building.serve(floor)
@@ -103,19 +110,18 @@ def own_demands(floor: Floor, scenario: str, progress: Progress = SILENT) -> _By
 
 def _on_axis(floor: Floor, axis: Axis, scenario: str, progress: Progress) -> tuple[Demand, ...]:
     if scenario in ("as filled", "recorded") and floor.records.get(axis):
-        return tuple(_recorded(floor, axis, one, progress) for one in floor.records[axis])
+        treated = ((one, treat(one.record, progress=progress)) for one in floor.records[axis])
+        return tuple(
+            Demand(
+                floor=floor, axis=axis, source="record", pfa=motion.pfa, pfv=motion.pfv, name=one.name,
+                record=one.record, motion=motion,
+            )
+            for one, motion in treated
+        )  # fmt: skip
     if scenario in ("as filled", "given") and axis in floor.pfa:
         pfv = floor.pfv.get(axis, math.nan)
         return (Demand(floor=floor, axis=axis, source="given", pfa=floor.pfa[axis], pfv=pfv),)
     return ()
-
-
-def _recorded(floor: Floor, axis: Axis, one: FloorRecord, progress: Progress) -> Demand:
-    motion = treat(one.record, progress=progress)
-    return Demand(
-        floor=floor, axis=axis, source="record", pfa=motion.pfa, pfv=motion.pfv,
-        name=one.name, record=one.record, motion=motion,
-    )  # fmt: skip
 
 
 def _borrow(demands: tuple[Demand, ...], axis: Axis) -> tuple[Demand, ...]:
@@ -202,30 +208,31 @@ class Basis:
             return assumed.Ground(pga=self.record.pfa, pgv=self.record.pfv)
         return self.motion or _UNIT
 
-    def can_serve(self, place: float | None) -> bool:
-        """Return whether a floor at z/h `place` follows: from the ground, or from floors of which peaks are known."""
-        return self.is_known or (place is not None and bool(self.known))
+    def can_serve(self, place: float | None, *, is_between: bool) -> bool:
+        """Return whether a floor at z/h `place` follows from the ground, or from floors of which peaks are known.
 
-    def lies_between(self, place: float | None) -> bool:
-        """Return whether a floor at z/h `place` has floors of which peaks are known at or below and at or above it."""
+        `is_between`: only if such floors or the ground lie at or below, and such floors at or above it.
+        """
         places = [one for one, _ in self.known]
+        if not is_between:
+            return self.is_known or (place is not None and bool(places))
         return place is not None and bool(places) and (self.is_known or min(places) <= place) and place <= max(places)
 
     def find_beam(self, place: float | None) -> tuple[float, float]:
         """Return the median PFA [m/s2] and PFV [m/s] that the beam has at z/h `place`."""
-        if place not in self._found:
-            self._found[place] = self._pass(place)
-        return self._found[place]
-
-    def _pass(self, place: float | None) -> tuple[float, float]:
+        if place in self._found:
+            return self._found[place]
         (pga, pgv), building = self.ground.peaks, self.building
         motion = None if self.record is None else self.record.motion
         if motion is not None and not (place is not None and place <= 0):
             from assess.motion.beam import shake_record
 
-            return shake_record(motion.acceleration, motion.time_step, building, place)
-        by_pga, by_pgv = find_medians(building.period, place, building.structure, self.ground.ratio)
-        return pga * by_pga, pgv * by_pgv
+            found = shake_record(motion.acceleration, motion.time_step, building, place)
+        else:
+            by_pga, by_pgv = find_medians(building.period, place, building.structure, self.ground.ratio)
+            found = pga * by_pga, pgv * by_pgv
+        self._found[place] = found
+        return found
 
     def find_velocity(self, place: float | None) -> float:
         """Return PFV over PFA [s] of a floor of which PFA alone is known."""
@@ -277,11 +284,6 @@ class _Building:
     scenario: str
     ductility_reduction: float
 
-    @property
-    def given(self) -> float | None:
-        """Motion uncertainty [-]."""
-        return self.inventory.building.motion_uncertainty
-
     def serve(self, floor: Floor) -> _ByAxis:
         """Return the motion of a floor; nothing where it has none."""
         own = self.own[floor.floor]
@@ -298,7 +300,8 @@ class _Building:
         """Return a demand with how its draws are made, its PFV and its dispersions."""
         place = self.ground.find_ratio(one.floor)
         if one.motion is not None:
-            spread = MOTION if self.given is None else self.given
+            given = self.inventory.building.motion_uncertainty
+            spread = MOTION if given is None else given
             return replace(one, height_ratio=place, own_dispersion=spread, dispersion=spread)
         basis = self.bases[one.axis]
         is_met = one.pfv > 0
@@ -308,8 +311,8 @@ class _Building:
 
     def _serve_by_beam(self, floor: Floor, axis: Axis) -> Demand | None:
         place, basis = self.ground.find_ratio(floor), self.bases[axis]
-        is_served = basis.can_serve(place) if self.scenario == "as filled" else basis.lies_between(place)
-        if self.scenario in PROFILES or not is_served:
+        is_between = self.scenario != "as filled"
+        if self.scenario in PROFILES or not basis.can_serve(place, is_between=is_between):
             return None
         (pfa, pfv), (pga, _) = basis.find_peaks(place), basis.ground.peaks
         named = _name_ground(self.ground) if basis.record is None else ()
@@ -328,10 +331,9 @@ class _Building:
             flags["unknown_building" if basis.building.period is None else "unknown_height"] = None
         elif one.height_ratio > 0 and not is_within(basis.building.period, basis.ground.ratio):
             flags["beyond_table"] = None
-        is_recorded = basis.is_recorded
-        own = (MOTION if self.given is None else self.given) if is_recorded else self.given or 0.0
-        follows = one.source == "beam" and not is_recorded
-        dispersion = find_dispersion(self.ground, self.given) if follows else own
+        given, is_recorded = self.inventory.building.motion_uncertainty, basis.is_recorded
+        own = (MOTION if given is None else given) if is_recorded else given or 0.0
+        dispersion = find_dispersion(self.ground, given) if one.source == "beam" and not is_recorded else own
         return replace(one, flags=tuple(flags), own_dispersion=own, dispersion=dispersion)
 
 
@@ -384,16 +386,6 @@ def serve_by_profile(floor: Floor, profile: Profile, ground: Ground, ductility_r
 
 
 # ---------------------------------------------------------------- what is missing
-
-
-def _check_ground(inventory: Inventory, scenario: str, ground: Ground) -> Iterable[Problem]:
-    if scenario in PROFILES and ground.pga is None:
-        message = fill(
-            "Ground PGA, SDS, ShakeMap file and Shaking are blank; the scenario '{scenario}' needs one of them.",
-            scenario=fill(scenario),
-        )
-        fix = fill("Fill in Ground PGA, choose Shaking, or choose another scenario.")
-        yield Gap("error", "Building", inventory.building.cell("ground_pga"), message, fix)
 
 
 def _missing(floor: Floor, scenario: str) -> list[Problem]:

@@ -50,13 +50,26 @@ def unite_axes(
     united: dict[int, BoolArray] = {}
     pairs: dict[int, list[int]] = {}
     for index in (at for at, item in enumerate(inventory.items) if is_square(item)):
-        pair = _worst_of_each_axis(range(firsts[index], firsts[index + 1]), case_demand, adoption)
+        every = range(firsts[index], firsts[index + 1])
+        owns = [[case for case in every if case_demand[case].axis == axis] for axis in AXES]
+        pair = [max(own, key=lambda case: adoption.probability[case]) for own in owns if own]
         if len(pair) == len(AXES) and all(case in verdicts for case in pair):
             count = min(verdicts[case].size for case in pair)
             united[index] = np.any([verdicts[case][:count] for case in pair], axis=0)
             pairs[index] = pair
     for index, share in _average(cases, pairs, united).items():
-        _adopt_union(adoption, pairs[index], share, united[index].size, interval_width(settings))
+        pair, runs = pairs[index], united[index].size
+        low, high = wilson_interval(share * runs, runs, interval_width(settings))
+        changed = {
+            "probability": share,
+            "low": low,
+            "high": high,
+            "risk": np.maximum(adoption.risk[pair], classify_all(share)),
+            "upper": np.maximum(adoption.upper[pair], classify_all(high)),
+            "either_axis": True,
+        }
+        for name, value in changed.items():
+            getattr(adoption, name)[pair] = value
     return adoption, united
 
 
@@ -67,24 +80,3 @@ def _average(cases: Cases, pairs: Mapping[int, list[int]], united: Mapping[int, 
     alike = Alike.of(numbers, [cases.quantity[pair[0]] for pair in pairs.values()])
     shares = np.array([united[index].mean() for index in pairs])
     return dict(zip(pairs, alike.average(shares).tolist(), strict=True))
-
-
-def _adopt_union(adoption: Adoption, pair: list[int], share: float, runs: int, z: float) -> None:
-    """Put a share of `runs` draws in place of both chances of a `pair`."""
-    low, high = wilson_interval(share * runs, runs, z)
-    changed = {
-        "probability": share,
-        "low": low,
-        "high": high,
-        "risk": np.maximum(adoption.risk[pair], classify_all(share)),
-        "upper": np.maximum(adoption.upper[pair], classify_all(high)),
-        "either_axis": True,
-    }
-    for name, value in changed.items():
-        getattr(adoption, name)[pair] = value
-
-
-def _worst_of_each_axis(cases: Sequence[int], case_demand: Sequence[Demand], adoption: Adoption) -> list[int]:
-    """Return of each axis the case with the largest chance, the first of several."""
-    owns = [[case for case in cases if case_demand[case].axis == axis] for axis in AXES]
-    return [max(own, key=lambda case: adoption.probability[case]) for own in owns if own]

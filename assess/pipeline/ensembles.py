@@ -229,7 +229,8 @@ def build_ensembles(
     def build(one: Demand) -> GeneratedEnsemble | DrawnEnsemble:
         if one.drawn is None:
             return GeneratedEnsemble(one, grid, seed, signs.get(one))
-        own = one.drawn.of_number(number)
+        building, shaken = replace(one.drawn.building, number=number), replace(one.drawn.ground, number=number)
+        own = replace(one.drawn, building=building, ground=shaken)
         ground = own.record and of_record.get((id(own.record.record), own.record.axis))
         return DrawnEnsemble(one, own, grid, seed, ground or None)
 

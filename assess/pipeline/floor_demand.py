@@ -38,10 +38,6 @@ class Drawn:
         """Whether nothing is known of the building, nor of the floor's height."""
         return self.building.period is None and self.target.place is None
 
-    def of_number(self, number: int) -> "Drawn":
-        """Return it with the draws of the building of a number."""
-        return replace(self, building=replace(self.building, number=number), ground=replace(self.ground, number=number))
-
     def scaled(self, factor: float) -> "Drawn":
         """Return it with every motion multiplied by a factor [-]."""
         target = self.target

@@ -77,16 +77,11 @@ class Ground:
         return assumed, () if assumed is None else ("assumed_elevation",)
 
     def find_ratio(self, floor: Floor) -> float | None:
-        """Return z/h of a floor [-], None where it is not known."""
+        """Return z/h of a floor, 0 at and below grade, at most 1 [-]; None where it is not known."""
         z, _ = self.place(floor)
         if z is None or z <= 0:
             return z if z is None else 0.0
-        return find_height_ratio(z, self.roof) if self.roof else None
-
-
-def find_height_ratio(elevation: float, roof: float) -> float:
-    """Return z/h of a floor, 0 at and below grade, at most 1 [-]; both heights are above the ground [m]."""
-    return min(elevation / roof, 1.0) if elevation > 0 else 0.0
+        return min(z / self.roof, 1.0) if self.roof else None
 
 
 def find_ground(inventory: Inventory) -> Ground:

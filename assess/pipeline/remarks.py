@@ -20,27 +20,18 @@ from assess.pipeline.known_ground import find_ground
 from assess.results import GroundFact, GroundPsa, SiteGroundInfo
 from assess.units import ACCELERATION, GRAVITY, ROUNDING, VELOCITY, to_edge
 
-LOSS_TO_NOTE = 0.02
-"""Where treatment lowers PFA by more than this share, the report says so."""
-
-LOSS_TO_WARN = 0.1
-"""Where it lowers PFA by more than this share, the record may be a corrected one that does not say so."""
-
+LOSS_TO_NOTE, LOSS_TO_WARN = 0.02, 0.1
+"""Where treatment lowers PFA by more than these shares the report says so, and the record may be corrected already."""
 STOREY = (2.5, 6.0)
 """Usual height of a storey [m]."""
-
 FAR_ABOVE = 1.5
 """Height over the highest floor listed, from which the report says which of them a profile takes."""
-
 TIMES_USUAL = (0.3, 4.0)
 """Limits of T1 as multiples of a code's formula."""
-
 LEAST_RATIO, LARGEST_RATIO = 10.0, 600.0
 """Usual limits of PGV over PGA [cm/s per g]."""
-
 ALIKE = 0.01
 """Share up to which Ground PGA and 0.4 SDS count as the same."""
-
 SOURCES = {
     "record": fill("recorded motion"),
     "given": fill("given peaks"),
@@ -66,11 +57,10 @@ def remark(
         yield from _above_roof(inventory, demands)
         yield from _assumed_elevations(inventory, demands)
         yield from _implausible(inventory, demands)
-    by_source = {text: list_floors(demands, source) for source, text in SOURCES.items()}
     used = [
         fill("{source} ({floors})", source=text, floors=", ".join(floors))
-        for text, floors in by_source.items()
-        if floors
+        for source, text in SOURCES.items()
+        if (floors := list_floors(demands, source))
     ]
     if len(used) > 1:
         message = fill("the motion of the floors comes from mixed sources: {sources}.", sources=join("; ", used))
@@ -79,8 +69,7 @@ def remark(
 
 def list_too_low(inventory: Inventory, demands: Demands, scenario: str) -> list[Problem]:
     """Return the warnings that a larger peak is known of a floor, or of the ground, than the one used."""
-    found = _on_shaking(inventory, demands, scenario)
-    return [problem for problem in found if problem.severity == "warning"]
+    return [one for one in _on_shaking(inventory, demands, scenario) if one.severity == "warning"]
 
 
 def _on_shaking(inventory: Inventory, demands: Demands, scenario: str) -> Iterator[Problem]:
@@ -117,45 +106,34 @@ def _losses(demands: Demands) -> Iterator[Problem]:
 def _set_aside(floor: Floor, axis: Axis, demands: Demands, scenario: str) -> Iterator[Problem]:
     """Report the record and the given peaks of a floor that are not used; a warning where they are larger."""
     used = demands[floor.floor, axis]
-    largest = max(one.pfa for one in used)
-    own = {one.source for one in used if not one.is_borrowed}
-    serves = _describe_serving("" if "record" in own else scenario, fill("{pfa:.3f} g", pfa=largest / GRAVITY))
+    own, uses_given = {one.source for one in used if not one.is_borrowed}, fill("Scenario 'given' uses it.")
+    largest, fastest = max(one.pfa for one in used), max(one.pfv for one in used)
+
+    def report(name: str, what: Text, why: Text, unused: float, serving: float, fix: Text | str) -> Problem:
+        message = fill("{what} of floor '{floor}' is not used: {why}.", what=what, floor=floor.floor, why=why)
+        return Problem(_severity(unused, serving), "Floors", floor.cell(f"{name}_{axis.lower()}"), message, fix)
+
+    def serve(peak: Text) -> Text:
+        if "record" in own:
+            return fill("the record is used, with {peak}", peak=peak)
+        return fill("the scenario '{scenario}' uses {peak}", scenario=fill(scenario), peak=peak)
+
+    serves = serve(fill("{pfa:.3f} g", pfa=largest / GRAVITY))
     if floor.records.get(axis) and "record" not in own:
-        recorded = max(treat(one.record).pfa for one in floor.records[axis])
-        text = fill("its PFA is {pfa:.3f} g, {serves}", pfa=recorded / GRAVITY, serves=serves)
-        message = _describe_unused(fill("Record {axis}", axis=axis), floor, text)
-        cell = floor.cell(f"record_{axis.lower()}")
-        yield Problem(_severity(recorded, largest), "Floors", cell, message, fill("Scenario 'recorded' uses it."))
+        pfa, what = max(treat(one.record).pfa for one in floor.records[axis]), fill("Record {axis}", axis=axis)
+        text = fill("its PFA is {pfa:.3f} g, {serves}", pfa=pfa / GRAVITY, serves=serves)
+        yield report("record", what, text, pfa, largest, fill("Scenario 'recorded' uses it."))
     if axis in floor.pfa and "given" not in own:
         what = fill("PFA {axis} {pfa:.3f} g", axis=axis, pfa=floor.pfa[axis] / GRAVITY)
-        cell = floor.cell(f"pfa_{axis.lower()}")
-        message = _describe_unused(what, floor, serves)
-        yield Problem(_severity(floor.pfa[axis], largest), "Floors", cell, message, _USES_GIVEN)
+        yield report("pfa", what, serves, floor.pfa[axis], largest, uses_given)
     if axis in floor.pfv and "given" not in own:
-        fastest = max(one.pfv for one in used)
         what = fill("PFV {axis} {pfv}", axis=axis, pfv=_in_cm_s(floor.pfv[axis]))
-        serves = _describe_serving("" if "record" in own else scenario, _in_cm_s(fastest))
-        cell = floor.cell(f"pfv_{axis.lower()}")
-        fix = _USES_GIVEN if axis in floor.pfa else ""
-        yield Problem(_severity(floor.pfv[axis], fastest), "Floors", cell, _describe_unused(what, floor, serves), fix)
+        fix = uses_given if axis in floor.pfa else ""
+        yield report("pfv", what, serve(_in_cm_s(fastest)), floor.pfv[axis], fastest, fix)
 
 
 def _unused(what: Text, why: Text) -> Text:
     return fill("{what} is not used: {why}.", what=what, why=why)
-
-
-def _describe_unused(what: Text, floor: Floor, why: Text) -> Text:
-    return fill("{what} of floor '{floor}' is not used: {why}.", what=what, floor=floor.floor, why=why)
-
-
-def _describe_serving(scenario: str, peak: Text) -> Text:
-    """Say that the record is used with its peak, or which peak a scenario uses."""
-    if not scenario:
-        return fill("the record is used, with {peak}", peak=peak)
-    return fill("the scenario '{scenario}' uses {peak}", scenario=fill(scenario), peak=peak)
-
-
-_USES_GIVEN = fill("Scenario 'given' uses it.")
 
 
 def _severity(unused: float, used: float) -> Severity:
@@ -197,12 +175,8 @@ def _implausible(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
             message = nfill(
                 "Height {height:g} m over {n} storey is {each:.3g} m a storey, outside {low:g} to {high:g} m.",
                 "Height {height:g} m over {n} storeys is {each:.3g} m a storey, outside {low:g} to {high:g} m.",
-                building.storeys,
-                height=building.height,
-                each=each,
-                low=STOREY[0],
-                high=STOREY[1],
-            )
+                building.storeys, height=building.height, each=each, low=STOREY[0], high=STOREY[1],
+            )  # fmt: skip
             yield Problem("warning", "Building", building.cell("height"), message, fill("Check Height and Storeys."))
     highest = max((z for floor in inventory.floors if (z := ground.place(floor)[0]) is not None), default=0.0)
     if building.height and building.height > FAR_ABOVE * max(highest, 0.0):
@@ -217,13 +191,8 @@ def _implausible(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
         message = fill(
             "Period T1 {period:g} s is outside {low:.3g} to {high:.3g} s, {least:g} to {most:g} times 0.0488 h^0.75 "
             "(ASCE 7-22 Eq. 12.8-7) for a height h of {roof:g} m.",
-            period=building.period,
-            low=low,
-            high=high,
-            least=TIMES_USUAL[0],
-            most=TIMES_USUAL[1],
-            roof=ground.roof,
-        )
+            period=building.period, low=low, high=high, least=TIMES_USUAL[0], most=TIMES_USUAL[1], roof=ground.roof,
+        )  # fmt: skip
         fix = fill("Check Period T1 and Height.")
         yield Problem("warning", "Building", building.cell("period"), message, fix)
 
@@ -267,7 +236,6 @@ def _list_drawn(demands: Demands) -> list[Demand]:
 
 
 def _say_unused(demands: Demands) -> Text:
-    """Return why none does."""
     if any(one.drawn for parallel in demands.values() for one in parallel):
         return fill("the motion at grade is known")
     return fill("every floor has a record")
@@ -339,21 +307,16 @@ def describe_site(building: Building, demands: Demands) -> SiteGroundInfo | None
     site = find_site(demands)
     if site is None:
         return None
+    names = ("kind", "file", "sha256", "dispersion", "dispersion_source", "shared", "cautions")
     return SiteGroundInfo(
-        kind=site.kind,
-        file=site.file,
-        sha256=site.sha256,
+        **{name: getattr(site, name) for name in names},
         pga_g=to_edge(site.pga, ACCELERATION["g"]),
         pgv_cm_s=None if site.pgv is None else to_edge(site.pgv, VELOCITY["cm/s"]),
         psa=tuple(GroundPsa(period_s=period, psa_g=to_edge(value, ACCELERATION["g"])) for period, value in site.psa),
-        dispersion=site.dispersion,
-        dispersion_source=site.dispersion_source,
         own_dispersion=building.motion_uncertainty or 0.0,
-        shared=site.shared,
         distance_km=None if site.distance is None else site.distance / 1000,
         scenarios=len(site.scenarios),
         facts=tuple(GroundFact(label=label, value=value) for label, value in site.facts),
-        cautions=site.cautions,
     )
 
 
@@ -370,8 +333,29 @@ def remark_on_site(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
     if used is None:
         yield Problem("note", "Building", cell, _unused(_name(site), fill("every floor has a motion of its own")))
         return
-    yield Problem("note", "Building", cell, _say_used(building, used, demands))
-    yield from _list_own(demands)
+    message = fill(
+        "{what} gives the ground a PGA of {pga:.3f} g{pgv} at the building. The standard deviation of ln {measure} "
+        "there is {sigma:.3g} ({source}); with {own:.3g}, Motion uncertainty, the dispersion is {motion:.3g}, the root "
+        "of the sum of their squares.",
+        what=_name(used),
+        pga=used.pga / GRAVITY,
+        pgv="" if used.pgv is None else fill(" and a PGV of {pgv:.1f} cm/s", pgv=100 * used.pgv),
+        measure=used.measure,
+        sigma=used.dispersion,
+        source=used.dispersion_source,
+        own=building.motion_uncertainty or 0.0,
+        motion=max(one.dispersion for parallel in demands.values() for one in parallel if one.site),
+    )
+    yield Problem("note", "Building", cell, message)
+    every = {name: {one.source for one in parallel} for (name, _), parallel in demands.items()}
+    own = [name for name, sources in every.items() if not sources & {"profile", "beam"}]
+    if own:
+        message = nfill(
+            "floor {floors} keeps its own motion, which could be that of another earthquake.",
+            "floors {floors} keep their own motions, which could be those of another earthquake.",
+            len(own), floors=", ".join(own),
+        )  # fmt: skip
+        yield Problem("note", "Floors", "", message)
     for caution in used.cautions:
         yield Problem("warning", "Building", cell, fill("{caution}.", caution=caution))
 
@@ -380,36 +364,6 @@ def _name(site: SiteGround) -> Text:
     if site.kind == "shakemap":
         return fill("The ShakeMap {file}", file=site.file)
     return fill("The ground motion of {file}", file=site.file)
-
-
-def _say_used(building: Building, site: SiteGround, demands: Demands) -> Text:
-    return fill(
-        "{what} gives the ground a PGA of {pga:.3f} g{pgv} at the building. The standard deviation of ln {measure} "
-        "there is {sigma:.3g} ({source}); with {own:.3g}, Motion uncertainty, the dispersion is {motion:.3g}, the root "
-        "of the sum of their squares.",
-        what=_name(site),
-        pga=site.pga / GRAVITY,
-        pgv="" if site.pgv is None else fill(" and a PGV of {pgv:.1f} cm/s", pgv=100 * site.pgv),
-        measure=site.measure,
-        sigma=site.dispersion,
-        source=site.dispersion_source,
-        own=building.motion_uncertainty or 0.0,
-        motion=max(one.dispersion for parallel in demands.values() for one in parallel if one.site),
-    )
-
-
-def _list_own(demands: Demands) -> Iterator[Problem]:
-    """Yield a note on the floors that keep a motion of their own."""
-    every = {name: {one.source for one in parallel} for (name, _), parallel in demands.items()}
-    own = [name for name, sources in every.items() if not sources & {"profile", "beam"}]
-    if own:
-        message = nfill(
-            "floor {floors} keeps its own motion, which could be that of another earthquake.",
-            "floors {floors} keep their own motions, which could be those of another earthquake.",
-            len(own),
-            floors=", ".join(own),
-        )
-        yield Problem("note", "Floors", "", message)
 
 
 def remark_on_shaking(inventory: Inventory, demands: Demands) -> Iterator[Problem]:

@@ -41,11 +41,12 @@ from assess.pipeline.tables import (
     build_items,
     build_motions,
     build_provenance,
+    choose_example,
     list_demands,
+    work_example,
 )
 from assess.pipeline.verify import choose_motions, find_peak, find_uncertainty, remark_suite, verify
 from assess.pipeline.what_if import anchor_first, anchor_named, spell_names
-from assess.pipeline.worked import choose_example, work_example
 from assess.progress import SILENT, Listener, Progress
 from assess.results import Results, Series
 from assess.route_results import RouteTables
@@ -277,7 +278,7 @@ def _build_rows(assessment: Assessment, demands: Sequence[Demand], folder: Path,
         problem_rows=assessment.problems,
         underestimates=tuple(problem.message for problem in found),
         methods=tuple(one.info for one in assessment.methods),
-        worked=() if example is None else work_example(example, assessment),
+        worked=() if example is None else tuple(work_example(example, assessment)),
         worked_item=example,
         series=Series(folder / SERIES),
         draws=build_draws(assessment),

@@ -21,7 +21,7 @@ from assess.schedule_results import Schedule, ScheduleRow, State, WorkRow
 APART = ("", "unconfirmed", "formula")
 """The bases in the order of lists: that of the run, and what stands apart."""
 NO_FALLS = 1e-12
-"""Expected number of falls below which a difference is that of rounding."""
+"""Expected number of falls below which what is left is that of rounding, and 0."""
 FILES = ("vertical file", "lateral file", "file cabinet", "filing cabinet", "schedario", "classificatore")
 """Words of a description or type, in every language of the workbook, by which a piece is fixed at its base."""
 
@@ -34,25 +34,19 @@ def build_schedule(
     entries = list_entries(rows, results.route_tables.routes)
     avoided = [sum(map(count_falls, one)) for one in entries]
     total = sum(count_falls(one) for one in rows if not one.is_anchored)
-    left = list(accumulate(avoided, _take_off, initial=total))[1:]
+    left = list(accumulate(avoided, lambda falls, one: falls - one if falls - one >= NO_FALLS else 0.0, initial=total))
     found = ((find_detail(one.detail), one) for one in inventory.costs)
     costs = {detail.key: one for detail, one in found if detail}
     together = _list_together(results.route_tables.routes)
     held = {one.item.index for entry in entries for one in entry}
     return Schedule(
         rows=tuple(
-            _describe(place, entry, costs, together, avoided[place - 1], left[place - 1])
+            _describe(place, entry, costs, together, avoided[place - 1], left[place])
             for place, entry in enumerate(entries, 1)
         ),
         before=_sum_up(rows, results.route_tables, ()),
         after=_sum_up(rows, evaluate(held) if held else results.route_tables, held),
     )
-
-
-def _take_off(falls: float, avoided: float) -> float:
-    """Return the falls that are left; what is left of rounding alone is 0."""
-    left = falls - avoided
-    return left if left >= NO_FALLS else 0.0
 
 
 def count_falls(one: ItemResult) -> float:

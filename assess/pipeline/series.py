@@ -24,7 +24,7 @@ import io
 import math
 import zipfile
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -159,7 +159,10 @@ def _contours(assessment: Assessment, results: Iterable[ItemResult]) -> Iterator
     height = max(counts, key=lambda height: (counts[height], height))  # that most pieces (not rows) share
     near = [one for one in free if abs(one.item.height_cm - height) <= ALIKE * height * (1 + ROUNDING)]
     pieces = sorted(near, key=lambda one: (-one.adopted.upper, -one.adopted.probability, natural_key(one.item.item)))
-    ratio = _velocity_ratio(pieces[0])
+    worst = pieces[0].governing.motion
+    ratio = math.nan  # PFV over PFA [s] of the motion that governs the worst piece
+    if worst.pfv_cm_s and worst.pfa_g:
+        ratio = worst.pfv_cm_s * VELOCITY["cm/s"] / (worst.pfa_g * GRAVITY)
     breadths = [one.item.breadth_cm for one in pieces]
     pfas = [one.governing.motion.pfa_g for one in pieces]
     thinnest, widest = min(SLENDER * height, 0.85 * min(breadths)), max(STOUT * height, 1.1 * max(breadths))
@@ -181,21 +184,7 @@ def _contours(assessment: Assessment, results: Iterable[ItemResult]) -> Iterator
             yield method.key, value.reshape(pfa.size, breadth.size).astype(np.float32)
 
 
-def _velocity_ratio(worst: ItemResult) -> float:
-    """Return PFV over PFA [s] of the motion that governs a piece; NaN where it is not known."""
-    motion = worst.governing.motion
-    if not motion.pfv_cm_s or not motion.pfa_g:
-        return math.nan
-    return motion.pfv_cm_s * VELOCITY["cm/s"] / (motion.pfa_g * GRAVITY)
-
-
 def _round(height: float) -> float:
     """Return a height [cm] rounded to 10 cm, or to 1 cm where it is small; halves go up."""
     step = 10.0 if height >= FINE_BELOW else 1.0
     return math.floor(height / step * (1 + ROUNDING) + 0.5) * step
-
-
-def unpack(series: Mapping[str, NDArray[Any]], motion: int) -> NDArray[np.bool_]:
-    """Return which of the c cases simulated under a motion's ensemble overturned in which of k motions, (c, k)."""
-    packed, count = series[f"motion/{motion}/overturned"], series[f"motion/{motion}/rotation"].shape[1]
-    return np.unpackbits(packed, axis=1, count=count).astype(np.bool_)

@@ -1,6 +1,7 @@
 """From the arrays of an assessment to the rows of `assess.results`: the edge, where units are put into names."""
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, fields, replace
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -8,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from assess.annual_results import AnnualWays
-from assess.methods import Joint, simulation
+from assess.methods import Example, Joint, simulation
 from assess.methods.simulate import LOOKS, interval_width
 from assess.model import AXES, Floor, Inventory, Item
 from assess.motion.record import treatment
@@ -19,7 +20,6 @@ from assess.pipeline.city_draws import describe_draws
 from assess.pipeline.demand import find_shaking
 from assess.pipeline.floor_demand import Demand, Demands
 from assess.pipeline.remarks import describe_site
-from assess.pipeline.versions import versions
 from assess.results import (
     AssumedShaking,
     CaseTable,
@@ -33,10 +33,11 @@ from assess.results import (
     ProfileInfo,
     Provenance,
     SuiteInfo,
+    WorkedMethod,
 )
 from assess.routes.walls import find_walls
 from assess.units import ACCELERATION, FORCE, LENGTH, VELOCITY, to_edge
-from assess.version import __version__, find_code
+from assess.version import __version__, find_code, versions
 
 if TYPE_CHECKING:
     from assess.motion.suite import Suite
@@ -239,6 +240,47 @@ def build_draws(assessment: Assessment) -> DrawTable:
     is_known = falls.stands.copy()
     is_known[list(falls.fell)] = True
     return DrawTable(draws, np.packbits(fell, axis=1), is_known)
+
+
+# ---------------------------------------------------------------- the worked example
+
+
+def choose_example(assessment: Assessment) -> int | None:
+    """Return the index of the piece that is worked through: the worst that is free-standing and simulated.
+
+    A free-standing piece comes before a simulated one, and that before one of a higher risk; None of no pieces.
+    """
+    items = assessment.inventory.items
+    if not items:
+        return None
+    firsts, governing = np.searchsorted(assessment.case_item, np.arange(len(items))), assessment.governing
+    upper = np.maximum.reduceat(assessment.adoption.upper, firsts)
+    is_simulated = ~np.isnan(assessment.outcomes[simulation().key].value[governing])
+    return int(np.lexsort((-assessment.adoption.probability[governing], -upper, ~is_simulated, assessment.held))[0])
+
+
+def work_example(index: int, assessment: Assessment) -> Iterator[WorkedMethod]:
+    """Yield the calculation of every method that was evaluated for a piece, under the motion that governs it."""
+    item, case = assessment.inventory.items[index], int(assessment.governing[index])
+    demand, restitution = assessment.case_demand[case], assessment.inventory.building.restitution
+    for method in assessment.methods:
+        outcome = assessment.outcomes[method.key]
+        value = float(outcome.value[case])
+        if method.steps is None or math.isnan(value):
+            continue
+        example = Example(
+            breadth=to_edge(item.breadth, LENGTH["cm"]),
+            height=to_edge(item.height, LENGTH["cm"]),
+            pfa=demand.pfa / ACCELERATION["cm/s2"],
+            pfv=demand.pfv / VELOCITY["cm/s"],
+            centre=item.centre_of_gravity,
+            restitution=math.nan if restitution is None else restitution,
+            settings=assessment.settings,
+            value=value,
+            detail={name: array[case].item() for name, array in outcome.detail.items()},
+            flags=tuple(flag for flag, array in outcome.flags.items() if array[case]),
+        )
+        yield WorkedMethod(method.key, tuple(method.steps(example)), value)
 
 
 # ---------------------------------------------------------------- provenance
