@@ -17,7 +17,7 @@ import csv
 import hashlib
 import io
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -27,8 +27,8 @@ from numpy.typing import NDArray
 
 from assess.errors import InputError
 from assess.hazard import FAR, find_distance
-from assess.i18n import Text, fill, nfill
-from assess.motion.site_ground import SiteGround, naming, read_again, read_ground_file
+from assess.i18n import fill, nfill
+from assess.motion.site_ground import SiteGround, find_no_number, naming, read_again, read_ground_file
 from assess.units import GRAVITY
 
 FloatArray = NDArray[np.float64]
@@ -49,7 +49,6 @@ LARGEST_PGA = 10.0
 LARGEST_PGV = 1000.0
 """Velocities above this [cm/s] are a slip in the unit."""
 _SA = re.compile(r"gmv_SA\((\d{1,3}(?:\.\d{1,6})?)\)", re.ASCII)
-_BLANK = re.compile(rb"(?:\A|\n|\r)[ \t]*[\r\n](?<!\r\n)")
 _TEXT = "custom_site_id"
 _KEYS = ("site_id", _TEXT)
 
@@ -65,8 +64,7 @@ class GroundScenarios:
     * `path`: the folder.
     * `latitude`, `longitude` (n,): of the sites [deg].
     * `start` (n + 1,): rows of `values` of each site: those of the i-th from ``start[i]`` to ``start[i + 1]``.
-    * `events` (rows,): number of the event, rising within a site.
-    * `values` (rows, measures): by the order of `measures` [g, cm/s].
+    * `values` (rows, measures): by the order of `measures` [g, cm/s]; within a site by event.
     * `measures`: names of the columns: gmv_PGA first.
     * `event_count`: events that have a value anywhere.
     """
@@ -79,7 +77,6 @@ class GroundScenarios:
     latitude: FloatArray
     longitude: FloatArray
     start: NDArray[np.intp]
-    events: NDArray[np.int64]
     values: FloatArray
     measures: tuple[str, ...]
     event_count: int
@@ -91,34 +88,24 @@ class GroundScenarios:
         """
         distances = find_distance(latitude, longitude, self.latitude, self.longitude)
         nearest = int(distances.argmin())
-        if not distances[nearest] <= FARTHEST:
-            raise InputError(self._describe_gap(latitude, longitude, float(distances[nearest])))
-        rows = slice(int(self.start[nearest]), int(self.start[nearest + 1]))
-        place = {"lat": float(self.latitude[nearest]), "lon": float(self.longitude[nearest])}
-        count = rows.stop - rows.start
-        if count < self.event_count:
+        distance = float(distances[nearest])
+        if not distance <= FARTHEST:
+            raise InputError.about(
+                "{file}: the scenarios do not cover latitude {lat:.4f}, longitude {lon:.4f}: their nearest site is "
+                "{km:,.0f} km away, expected at most {most:.0f} km. Check Latitude and Longitude, or compute the "
+                "fields for sites near the building",
+                file=self.file, lat=latitude, lon=longitude, km=distance / 1000, most=FARTHEST / 1000,
+            )  # fmt: skip
+        first, end = self.start[nearest : nearest + 2].tolist()
+        if end - first < self.event_count:
             raise InputError.about(
                 "{file}: the site at latitude {lat:.4f}, longitude {lon:.4f}, nearest to the building, has {count} "
                 "of {events} events: the others lie below the engine's minimum. Compute the fields with "
                 "minimum_intensity 0",
-                file=self.file,
-                count=count,
-                events=self.event_count,
-                **place,
-            )
-        return self._describe(np.log(self.values[rows]), float(distances[nearest]))
-
-    def _describe_gap(self, latitude: float, longitude: float, distance: float) -> Text:
-        return fill(
-            "{file}: the scenarios do not cover latitude {lat:.4f}, longitude {lon:.4f}: their nearest site is "
-            "{km:,.0f} km away, expected at most {most:.0f} km. Check Latitude and Longitude, or compute the fields "
-            "for sites near the building",
-            file=self.file,
-            lat=latitude,
-            lon=longitude,
-            km=distance / 1000,
-            most=FARTHEST / 1000,
-        )
+                file=self.file, count=end - first, events=self.event_count,
+                lat=float(self.latitude[nearest]), lon=float(self.longitude[nearest]),
+            )  # fmt: skip
+        return self._describe(np.log(self.values[first:end]), distance)
 
     def _describe(self, logs: FloatArray, distance: float) -> SiteGround:
         medians = dict(zip(self.measures, np.exp(logs.mean(axis=0)).tolist(), strict=True))
@@ -126,6 +113,14 @@ class GroundScenarios:
         dispersion = float(ruling.std()) if len(logs) > 1 else 0.0
         dispersion = dispersion if dispersion > 1e-9 else 0.0
         numbers = (ruling - ruling.mean()) / dispersion if dispersion else np.zeros(len(logs))
+        cautions = [fill(FAR_CAUTION, km=distance / 1000)] if distance > FAR else []
+        if not dispersion:
+            cautions.append(
+                fill(
+                    "the scenarios do not differ at the building: the motion of the ground is taken as known, so that "
+                    "ranges leave out how much it varies from one earthquake like this one to the next"
+                )
+            )
         return SiteGround(
             kind="scenarios",
             file=self.file,
@@ -141,36 +136,23 @@ class GroundScenarios:
                 file=self.file,
             ),
             distance=distance,
-            scenarios=tuple(float(one) for one in numbers),
+            scenarios=tuple(numbers.tolist()),
             facts=(
                 (fill("Scenarios"), nfill("{n:,} event", "{n:,} events", len(logs))),
                 (fill("Distance to the nearest site"), fill("{km:.1f} km", km=distance / 1000)),
                 (fill("File of sites"), fill("{file}, SHA-256 {sha256}", file=self.sites_file, sha256=self.hashes[1])),
             ),
-            cautions=tuple(_list_cautions(distance, dispersion)),
+            cautions=tuple(cautions),
         )
 
     def __reduce__(self) -> tuple[Any, ...]:
         return read_again, (read_scenarios, self.path, self.sha256)
 
 
-def _list_cautions(distance: float, dispersion: float) -> Iterator[Text]:
-    if distance > FAR:
-        yield fill(FAR_CAUTION, km=distance / 1000)
-    if not dispersion:
-        yield fill(
-            "the scenarios do not differ at the building: the motion of the ground is taken as known, so that ranges "
-            "leave out how much it varies from one earthquake like this one to the next"
-        )
-
-
 def _list_psa(measures: Sequence[str]) -> list[tuple[str, float]]:
     """Return the columns of spectral acceleration with their periods [s], rising."""
     found = ((name, match) for name in measures if (match := _SA.fullmatch(name)))
     return sorted(((name, float(match[1])) for name, match in found), key=lambda one: one[1])
-
-
-# ---------------------------------------------------------------- files
 
 
 def read_scenarios(folder: Path) -> GroundScenarios:
@@ -185,18 +167,45 @@ def read_scenarios(folder: Path) -> GroundScenarios:
         missing = " or ".join(SITES) if (folder / VALUES).is_file() else VALUES
         raise InputError.about("{folder}: the folder has no {file}", folder=folder.name, file=missing)
     texts: dict[str, int] = {}
-    sites, data = _read_table(folder / sites_file, texts), _read_table(folder / VALUES, texts)
+    sites, data = (_read_table(folder / name, texts) for name in (sites_file, VALUES))
     with naming(VALUES):
-        key = _find_key(data, sites, sites_file)
-        pgv = ("gmv_PGV",) if "gmv_PGV" in data.headings else ()
-        measures = ("gmv_PGA", *pgv, *(name for name, _ in _list_psa(data.headings)))
-        _check_values(data, measures)
+        key = next((name for name in _KEYS if name in data.columns and name in sites.columns), None)
+        if key is None:
+            fault = "neither site_id nor custom_site_id is a column of both this file and {file}: one of them has to be"
+            raise InputError.about(fault, file=sites_file)
+        data.require("event_id", "gmv_PGA")
+        pgv = ("gmv_PGV",) if "gmv_PGV" in data.columns else ()
+        measures = ("gmv_PGA", *pgv, *(name for name, _ in _list_psa([*data.columns])))
+        for name in measures:
+            most = LARGEST_PGV if name == "gmv_PGV" else LARGEST_PGA if name == "gmv_PGA" else 3 * LARGEST_PGA
+            values = data.columns[name]
+            if (line := data.find_bad((values > 0) & (values <= most))) is not None:
+                raise InputError.about(
+                    "line {line}: {name} is {value:g}, expected above 0 and at most {most:g} {unit}",
+                    line=data.lines[line], name=name, value=float(values[line]), most=most,
+                    unit="cm/s" if name == "gmv_PGV" else "g",
+                )  # fmt: skip
     with naming(sites_file):
-        names, latitude, longitude = _read_sites(sites, key)
+        sites.require("lon", "lat")
+        names, latitude, longitude = (sites.columns[name] for name in (key, "lat", "lon"))
+        if (line := sites.find_bad((np.abs(latitude) <= 90) & (np.abs(longitude) <= 360))) is not None:
+            raise InputError.about("line {line}: lon and lat are not a place on earth", line=sites.lines[line])
+        if np.unique(names).size < names.size:
+            raise InputError.about("a {key} is there twice", key=key)
+        rising = np.argsort(names)
     with naming(VALUES):
-        rows, order = _sort_rows(data, key, names, sites_file)
-        events = data.numbers[order, data.column("event_id")].astype(np.int64)
-        again = (np.diff(rows) == 0) & (np.diff(events) == 0)
+        events, own = data.columns["event_id"], data.columns[key]
+        is_whole = np.isfinite(events) & (np.abs(events) < 2**53) & (events == np.floor(events))
+        if (line := data.find_bad(is_whole)) is not None:
+            raise InputError.about("line {line}: event_id has to be a whole number", line=data.lines[line])
+        at = np.searchsorted(names[rising], own)
+        if (line := data.find_bad(names[rising][np.minimum(at, names.size - 1)] == own)) is not None:
+            raise InputError.about(
+                "line {line}: its {key} is not in {file}", line=data.lines[line], key=key, file=sites_file
+            )
+        order = np.lexsort((events, at))
+        at, events = at[order], events[order].astype(np.int64)
+        again = (np.diff(at) == 0) & (np.diff(events) == 0)
         if again.any():
             raise InputError.about("event {event} is there twice at a site", event=int(events[int(again.argmax())]))
     hashes = data.sha256, sites.sha256
@@ -206,11 +215,10 @@ def read_scenarios(folder: Path) -> GroundScenarios:
         sites_file=sites_file,
         hashes=hashes,
         path=folder,
-        latitude=latitude,
-        longitude=longitude,
-        start=np.searchsorted(rows, np.arange(len(names) + 1)),
-        events=events,
-        values=data.numbers[np.ix_(order, np.array([data.column(name) for name in measures]))],
+        latitude=latitude[rising],
+        longitude=longitude[rising],
+        start=np.searchsorted(at, np.arange(len(names) + 1)),
+        values=np.column_stack([data.columns[name][order] for name in measures]),
         measures=measures,
         event_count=int(np.unique(events).size),
     )
@@ -218,56 +226,45 @@ def read_scenarios(folder: Path) -> GroundScenarios:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Table:
-    """A CSV file: its headings, its rows of numbers, (rows, columns), and the number of the line of the first.
+    """A CSV file: its columns of numbers (rows,) by their headings, and the numbers of the lines of its rows."""
 
-    `lines` are the numbers of the lines of all rows where blank lines lie between them.
-    """
-
-    headings: tuple[str, ...]
-    numbers: FloatArray
-    first: int
+    columns: Mapping[str, FloatArray]
+    lines: Sequence[int]
     sha256: str
-    lines: NDArray[np.intp] | None = None
 
-    def line(self, row: int) -> int:
-        """Return the number of the line of a row, from 1 on as in the file."""
-        return self.first + row if self.lines is None else int(self.lines[row])
+    def require(self, *names: str) -> None:
+        for name in names:
+            if name not in self.columns:
+                raise InputError.about("the column {name} is missing", name=name)
 
-    def column(self, name: str) -> int:
-        """Return the place of a column."""
-        return self.headings.index(name)
+    def find_bad(self, good: NDArray[np.bool_]) -> int | None:
+        """Return the first row that is not good; None where all are."""
+        return None if good.all() else int(good.argmin())
 
 
 def _read_table(path: Path, texts: dict[str, int]) -> _Table:
     """Return the table of a file; custom_site_id, which is a text, by the number that `texts` gives it."""
     data = read_ground_file(path, LARGEST_FILE)
     with naming(path.name):
-        return _parse_table(data, texts)
-
-
-def _parse_table(data: bytes, texts: dict[str, int]) -> _Table:
-    if len(data) > LARGEST_FILE:
-        raise InputError.about("the file is larger than {most:.0f} MB", most=LARGEST_FILE / 1e6)
-    if b"\0" in data or data.startswith((b"PK", b"\x89HDF", b"\x1f\x8b", b"\xff\xfe", b"\xfe\xff")):
-        raise InputError.about("the file is not plain text. Export it from OpenQuake as CSV")
-    if data.count(b"\n") + data.count(b"\r") > MOST_ROWS:
-        raise InputError.about("the file has more than {most:,} rows: keep fewer events or sites", most=MOST_ROWS)
-    start, head, first = _read_head(data)
-    if len(head) > MOST_COLUMNS or len(set(head)) < len(head):
-        raise InputError.about("the first row has a heading twice, or more than {most} headings", most=MOST_COLUMNS)
-    if not data[start:].strip():
-        raise InputError.about("there are no rows below the headings")
-    if not data.endswith((b"\n", b"\r")):
-        raise InputError.about("the last line has no end: the file is cut off. Export it again")
-    numbers = _parse_rows(data[start:], head, first, lambda text: texts.setdefault(text.strip(), len(texts)))
-    return _Table(head, numbers, first, hashlib.sha256(data).hexdigest(), _number_lines(data[start:], first))
-
-
-def _number_lines(data: bytes, first: int) -> NDArray[np.intp] | None:
-    """Return the number of the line of every row; None where no line is blank, so that they follow one another."""
-    if not _BLANK.search(data):
-        return None
-    return np.array([line for line, row in enumerate(data.splitlines(), first) if row.strip()], dtype=np.intp)
+        if len(data) > LARGEST_FILE:
+            raise InputError.about("the file is larger than {most:.0f} MB", most=LARGEST_FILE / 1e6)
+        if b"\0" in data or data.startswith((b"PK", b"\x89HDF", b"\x1f\x8b", b"\xff\xfe", b"\xfe\xff")):
+            raise InputError(fill("the file is not plain text. Export it from OpenQuake as CSV"))
+        if data.count(b"\n") + data.count(b"\r") > MOST_ROWS:
+            raise InputError.about("the file has more than {most:,} rows: keep fewer events or sites", most=MOST_ROWS)
+        start, head, first = _read_head(data)
+        if len(head) > MOST_COLUMNS or len(set(head)) < len(head):
+            raise InputError.about("the first row has a heading twice, or more than {most} headings", most=MOST_COLUMNS)
+        rows = data[start:]
+        if not rows.strip():
+            raise InputError(fill("there are no rows below the headings"))
+        if not data.endswith((b"\n", b"\r")):
+            raise InputError(fill("the last line has no end: the file is cut off. Export it again"))
+        numbers = _parse_rows(rows, head, first, lambda text: texts.setdefault(text.strip(), len(texts)))
+        lines: Sequence[int] = range(first, first + len(numbers))
+        if len(lines) < rows.count(b"\n"):  # some are blank
+            lines = [line for line, row in enumerate(rows.splitlines(), first) if row.strip()]
+        return _Table(dict(zip(head, numbers.T, strict=True)), lines, hashlib.sha256(data).hexdigest())
 
 
 def _read_head(data: bytes) -> tuple[int, tuple[str, ...], int]:
@@ -278,15 +275,11 @@ def _read_head(data: bytes) -> tuple[int, tuple[str, ...], int]:
         end = len(data) if end < 0 else end
         text, at, line = data[at:end].decode("utf-8-sig", "replace").strip(), end + 1, line + 1
         if text and not text.startswith(("#", '"#')):
-            return at, _split_head(text, line), line + 1
-    raise InputError.about("there is no table")
-
-
-def _split_head(text: str, line: int) -> tuple[str, ...]:
-    try:
-        return tuple(cell.strip() for cell in next(csv.reader([text])))
-    except csv.Error:  # an end of line of its own in the middle
-        raise InputError.about("line {line}: the headings cannot be read", line=line) from None
+            try:
+                return at, tuple(cell.strip() for cell in next(csv.reader([text]))), line + 1
+            except csv.Error:  # an end of line of its own in the middle
+                raise InputError.about("line {line}: the headings cannot be read", line=line) from None
+    raise InputError(fill("there is no table"))
 
 
 def _parse_rows(data: bytes, head: Sequence[str], first: int, number_text: Callable[[str], int]) -> FloatArray:
@@ -300,92 +293,14 @@ def _parse_rows(data: bytes, head: Sequence[str], first: int, number_text: Calla
             return found
     except (ValueError, UnicodeDecodeError):
         pass
-    raise _describe_row(data, len(head), first, texts)
-
-
-def _describe_row(data: bytes, width: int, first: int, texts: Sequence[int]) -> InputError:
-    """Return what is wrong with the first row that has another number of cells, or a cell that is no number."""
     for line, row in enumerate(data.decode("utf-8", "replace").splitlines(), first):
-        cells = row.split(",")
-        if row.strip() and len(cells) != width:
-            return InputError.about(
-                "line {line}: the number of cells is {cells}, but there are {headings} headings",
-                line=line,
-                cells=len(cells),
-                headings=width,
-            )
-        numbers = [cell for at, cell in enumerate(cells) if row.strip() and at not in texts]
-        bad = next((cell for cell in numbers if not _is_number(cell)), None)
-        if bad is not None:
-            return InputError.about("line {line}: {text!r} is not a number", line=line, text=bad.strip()[:40])
-    return InputError.about("the rows cannot be read")
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return True
-
-
-# ---------------------------------------------------------------- tables to scenarios
-
-
-def _find_key(data: _Table, sites: _Table, sites_file: str) -> str:
-    key = next((name for name in _KEYS if name in data.headings and name in sites.headings), None)
-    if key is None:
-        fault = "neither site_id nor custom_site_id is a column of both this file and {file}: one of them has to be"
-        raise InputError.about(fault, file=sites_file)
-    missing = next((name for name in ("event_id", "gmv_PGA") if name not in data.headings), None)
-    if missing is not None:
-        raise InputError.about("the column {name} is missing", name=missing)
-    return key
-
-
-def _read_sites(sites: _Table, key: str) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the numbers of the sites, rising, with latitude and longitude [deg]."""
-    missing = next((name for name in ("lon", "lat") if name not in sites.headings), None)
-    if missing is not None:
-        raise InputError.about("the column {name} is missing", name=missing)
-    names, latitude, longitude = (sites.numbers[:, sites.column(name)] for name in (key, "lat", "lon"))
-    bad = ~((np.abs(latitude) <= 90) & (np.abs(longitude) <= 360))
-    if bad.any():
-        line = sites.line(int(bad.argmax()))
-        raise InputError.about("line {line}: lon and lat are not a place on earth", line=line)
-    if np.unique(names).size < names.size:
-        raise InputError.about("a {key} is there twice", key=key)
-    order = np.argsort(names)
-    return names[order], latitude[order], longitude[order]
-
-
-def _check_values(data: _Table, measures: Sequence[str]) -> None:
-    for name in measures:
-        values = data.numbers[:, data.column(name)]
-        most = LARGEST_PGV if name == "gmv_PGV" else LARGEST_PGA if name == "gmv_PGA" else 3 * LARGEST_PGA
-        bad = ~((values > 0) & (values <= most))  # what is no number is bad, too
-        if bad.any():
-            at = int(bad.argmax())
+        cells = row.split(",") if row.strip() else []
+        if cells and len(cells) != len(head):
             raise InputError.about(
-                "line {line}: {name} is {value:g}, expected above 0 and at most {most:g} {unit}",
-                line=data.line(at),
-                name=name,
-                value=float(values[at]),
-                most=most,
-                unit="cm/s" if name == "gmv_PGV" else "g",
-            )
-
-
-def _sort_rows(data: _Table, key: str, names: FloatArray, sites_file: str) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return the place of the site of each row among `names`, and the rows, in the order of sites and events."""
-    own, events = data.numbers[:, data.column(key)], data.numbers[:, data.column("event_id")]
-    bad = ~(np.isfinite(events) & (np.abs(events) < 2**53) & (events == np.floor(events)))
-    if bad.any():
-        raise InputError.about("line {line}: event_id has to be a whole number", line=data.line(int(bad.argmax())))
-    at = np.searchsorted(names, own)
-    unknown = names[np.minimum(at, names.size - 1)] != own
-    if unknown.any():
-        line = data.line(int(unknown.argmax()))
-        raise InputError.about("line {line}: its {key} is not in {file}", line=line, key=key, file=sites_file)
-    order = np.lexsort((events, at))
-    return at[order], order
+                "line {line}: the number of cells is {cells}, but there are {headings} headings",
+                line=line, cells=len(cells), headings=len(head),
+            )  # fmt: skip
+        numbers = [cell for at, cell in enumerate(cells) if at not in texts]
+        if (bad := find_no_number(numbers)) >= 0:
+            raise InputError.about("line {line}: {text!r} is not a number", line=line, text=numbers[bad].strip()[:40])
+    raise InputError(fill("the rows cannot be read"))

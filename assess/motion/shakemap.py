@@ -17,8 +17,9 @@ Boore DM, Stewart JP, Seyhan E, Atkinson GM (2014): see `assess.motion.spatial_f
 import hashlib
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any
@@ -29,7 +30,7 @@ from numpy.typing import NDArray
 
 from assess.errors import InputError
 from assess.i18n import Text, fill, join, nfill
-from assess.motion.site_ground import SiteGround, naming, read_again, read_ground_file
+from assess.motion.site_ground import SiteGround, find_no_number, naming, read_again, read_ground_file
 from assess.motion.spatial_field import MAGNITUDES, SCATTERS, Measure
 from assess.plain_text import plain_text
 from assess.units import GRAVITY
@@ -60,9 +61,10 @@ LARGEST_PGV = 10.0
 SIGMAS = frozenset({"STDPGA", "STDPGV"})
 PARTS = frozenset({"GMPE_INTER_STDPGA", "GMPE_INTRA_STDPGA", "GMPE_INTER_STDPGV", "GMPE_INTRA_STDPGV"})
 _PSA = re.compile(r"(?:PSA|SA)(\d)(\d)", re.ASCII)
-_PER_CENT_G = frozenset({"", "pctg", "%g", "pct_g", "%_g"})
-_CM_PER_S = frozenset({"", "cms", "cm/s", "cm/sec"})
+_PER_CENT_G = "%g", frozenset({"", "pctg", "%g", "pct_g", "%_g"})
+_CM_PER_S = "cm/s", frozenset({"", "cms", "cm/s", "cm/sec"})
 _LN = frozenset({"", "ln(pctg)", "ln(%g)", "ln(g)", "ln", "ln(cms)", "ln(cm/s)"})
+"""Units, as messages call them and as files spell them."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,6 +84,102 @@ class Grid:
     fields: Mapping[str, FloatArray]
     units: Mapping[str, str]
 
+    @property
+    def event_id(self) -> str:
+        """How its maker numbers the earthquake."""
+        return self.header.get("event_id") or self.event.get("event_id", "")
+
+    @property
+    def magnitude(self) -> float:
+        """The magnitude of the earthquake; infinite where it is not known."""
+        try:
+            magnitude = float(self.event.get("magnitude", ""))
+        except ValueError:
+            return math.inf
+        return magnitude if math.isfinite(magnitude) else math.inf
+
+    @property
+    def psa(self) -> dict[str, float]:
+        """The fields of spectral acceleration with their periods [s], rising: PSA03 is that of 0.3 s."""
+        found = ((name, match) for name in self.fields if (match := _PSA.fullmatch(name)))
+        return dict(sorted(((name, int(match[1] + match[2]) / 10) for name, match in found), key=lambda one: one[1]))
+
+    def keep(self, names: Iterable[str]) -> "Grid":
+        """Return the grid with these fields only, as far as it has them."""
+        return replace(self, fields={name: values for name, values in self.fields.items() if name in {*names}})
+
+    def check(self, name: str, unit: str, units: frozenset[str], most: float) -> None:
+        """Raise InputError where a field has another unit, or a value below 0 or above `most`; NaN is let pass."""
+        own, values = self.units[name], self.fields[name]
+        if own.replace(" ", "").lower() not in units:
+            raise InputError.about(
+                "the field {name} has the unit {own!r}, expected {unit}", name=name, own=own[:40], unit=unit
+            )
+        bad = (values < 0) | (values > most)
+        if bad.any():
+            row, column = divmod(int(bad.argmax()), values.shape[1])
+            place = _describe_place(float(self.latitude[row]), float(self.longitude[column]))
+            raise InputError.about(
+                "the field {name} is {value:g} at {place}, expected 0 to {most:g} {unit}",
+                name=name, value=float(values[row, column]), place=place, most=most, unit=unit,
+            )  # fmt: skip
+
+    def check_sigmas(self, names: frozenset[str]) -> None:
+        """Raise InputError where a standard deviation cannot be one."""
+        for name in sorted(names & self.fields.keys()):
+            self.check(name, "ln(cm/s)" if name.endswith("PGV") else "ln(%g)", _LN, LARGEST_SIGMA)
+
+    def locate(self, latitude: float, longitude: float) -> "_Reading":
+        """Return the fields at a place [deg]; InputError where it lies outside the grid."""
+        south, north, west, east = (float(one[end]) for one in (self.latitude, self.longitude) for end in (0, -1))
+        turned = longitude
+        if math.isfinite(longitude):  # by a multiple of 360 where that lies within the grid
+            turned = longitude + 360 * math.ceil((west - longitude) / 360 - 1e-12)
+            turned = turned if turned <= east else longitude
+        if not (south <= latitude <= north and west <= turned <= east):
+            raise InputError.about(
+                "{place} is outside the map, which covers latitude {south:.4f} to {north:.4f} and longitude {west:.4f} "
+                "to {east:.4f}",
+                place=_describe_place(latitude, longitude), south=south, north=north, west=west, east=east,
+            )  # fmt: skip
+        lower, shares = [], []
+        for points, value in ((self.latitude, latitude), (self.longitude, turned)):
+            low = min(int(np.searchsorted(points, value, side="right")) - 1, points.size - 2)
+            share = float((value - points[low]) / (points[low + 1] - points[low]))
+            lower.append(low)
+            shares.append([1 - share, share])
+        return _Reading(self.fields, lower[0], lower[1], np.outer(*shares))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Reading:
+    """The fields of a grid at one place: its cell, and the weights of the points around it, which add up to 1."""
+
+    fields: Mapping[str, FloatArray]
+    row: int
+    column: int
+    weights: FloatArray
+
+    def __call__(self, name: str, *, logarithmic: bool = False) -> float:
+        """Return a field interpolated linearly, or by its logarithm; NaN where it is not known, or that is of 0."""
+        if name not in self.fields:
+            return math.nan
+        values, counted = self.fields[name][self.row : self.row + 2, self.column : self.column + 2], self.weights > 0
+        values, weights = values[counted], self.weights[counted]
+        if not logarithmic:
+            return float(weights @ values)
+        return math.exp(float(weights @ np.log(values))) if (values > 0).all() else math.nan
+
+
+@lru_cache(maxsize=2)
+def _count_gaps(grid: Grid) -> int:
+    """Return at how many points a field is not a number."""
+    return int(np.logical_or.reduce([np.isnan(values) for values in grid.fields.values()]).sum())
+
+
+def _describe_place(latitude: float, longitude: float) -> Text:
+    return fill("latitude {latitude:.4f}, longitude {longitude:.4f}", latitude=latitude, longitude=longitude)
+
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class ShakeMap:
@@ -96,7 +194,6 @@ class ShakeMap:
     * `uncertainty_file`, `uncertainty_sha256`: name and hash of the file of uncertainties; "" where there is none.
     * `uncertainty`: what that holds.
     * `path`: where the grid was read from.
-    * `gaps`: points of the grid at which a field that is used is not a number.
     """
 
     file: str
@@ -107,22 +204,15 @@ class ShakeMap:
     uncertainty_sha256: str = ""
     uncertainty: Grid | None = None
     path: Path | None = None
-    gaps: int = 0
 
     @property
     def title(self) -> Text:
         """The earthquake in words."""
         event = self.grid.event
-        name = event.get("event_description") or self.event_id or self.file
-        magnitude = event.get("magnitude", "")
-        if not magnitude:
-            return fill("{name}", name=name)
-        return fill("{name}, magnitude {magnitude}", name=name, magnitude=magnitude)
-
-    @property
-    def event_id(self) -> str:
-        """How its maker numbers the earthquake."""
-        return _find_event(self.grid)
+        name = event.get("event_description") or self.grid.event_id or self.file
+        if magnitude := event.get("magnitude", ""):
+            return fill("{name}, magnitude {magnitude}", name=name, magnitude=magnitude)
+        return fill("{name}", name=name)
 
     def at(self, latitude: float, longitude: float) -> SiteGround:
         """Return the shaking at a place [deg].
@@ -131,106 +221,90 @@ class ShakeMap:
         grid.
         """
         with naming(self.file):
-            read = _locate(self.grid, latitude, longitude)
+            read = self.grid.locate(latitude, longitude)
             pga = read("PGA", logarithmic=True)
             if math.isnan(pga):
                 place = _describe_place(latitude, longitude)
                 raise InputError.about("the PGA of the map is 0 or not a number (NaN) at {place}", place=place)
-        return self._describe(read, pga, latitude, longitude)
-
-    def _describe(self, read: "_Reading", pga: float, latitude: float, longitude: float) -> SiteGround:
-        pgv = read("PGV", logarithmic=True) / 100 if "PGV" in self.grid.fields else math.nan
-        psa = ((period, read(name, logarithmic=True) * GRAVITY / 100) for name, period in _list_psa(self.grid))
-        measure: Measure = "PGA" if math.isnan(pgv) else "PGV"
-        sigma, source, shared = self._find_sigma(measure, read, latitude, longitude)
+        beside = None
+        if self.uncertainty is not None:
+            with suppress(InputError):  # it does not reach there
+                beside = self.uncertainty.locate(latitude, longitude)
+        pgv = read("PGV", logarithmic=True) / 100
+        psa = ((period, read(name, logarithmic=True) * GRAVITY / 100) for name, period in self.grid.psa.items())
+        sigma, source, shared = self._find_sigma("PGA" if math.isnan(pgv) else "PGV", read, beside)
         return SiteGround(
-            kind="shakemap",
-            file=self.file,
-            sha256=self.grid_sha256,
-            pga=pga * GRAVITY / 100,
+            kind="shakemap", file=self.file, sha256=self.grid_sha256, pga=pga * GRAVITY / 100,
             pgv=None if math.isnan(pgv) else pgv,
             psa=tuple((period, value) for period, value in psa if not math.isnan(value)),
-            dispersion=sigma,
-            dispersion_source=source,
-            shared=shared,
-            facts=tuple(self._list_facts(read)),
-            cautions=tuple(self._list_cautions(read)),
-        )
+            dispersion=sigma, dispersion_source=source, shared=shared,
+            facts=tuple(self._list_facts(read)), cautions=tuple(self._list_cautions(read)),
+        )  # fmt: skip
 
     def _find_sigma(
-        self, measure: Measure, read: "_Reading", latitude: float, longitude: float
+        self, measure: Measure, read: _Reading, beside: _Reading | None
     ) -> tuple[float, Text, float | None]:
         """Return the standard deviation of ln of a peak [-], where it comes from, and its share common to all places.
 
         That of PGA stands in for that of PGV: both are small near a station, and far from one alike.
         """
-        beside = self._look_beside(latitude, longitude)
-        shared = next((one for name in (measure, "PGA") if (one := _find_shared(beside, name)) is not None), None)
+        shared = None
+        for name in ("PGA", measure) if beside else ():
+            between, within = (beside(f"GMPE_{part}_STD{name}") ** 2 for part in ("INTER", "INTRA"))
+            shared = between / (between + within) if between + within > 0 else shared
         why = fill("the map has none at this place")
         for name in dict.fromkeys((f"STD{measure}", "STDPGA")):
             for reading, file in ((read, self.file), (beside, self.uncertainty_file)):
-                sigma = reading(name) if reading and name in reading.fields else math.nan
+                sigma = reading(name) if reading else math.nan
                 if sigma == 0 and reading and not (reading.fields[name] > 0).any():
                     why = fill("the map's {name} is 0 everywhere", name=name)
                 elif not math.isnan(sigma):
                     return sigma, fill("{name} of {file}", name=name, file=file), shared
-        magnitude = _read_magnitude(self.grid)
+        magnitude = self.grid.magnitude
         between, within = SCATTERS[measure].at(magnitude)
         source = fill("assumed, as {why}: the total of Boore et al. 2014 for this magnitude", why=why)
         if magnitude >= MAGNITUDES[1]:
             source = fill("assumed, as {why}: the total of Boore et al. 2014 for magnitude 5.5 or more", why=why)
         return math.hypot(between, within), source, between**2 / (between**2 + within**2)
 
-    def _look_beside(self, latitude: float, longitude: float) -> "_Reading | None":
-        """Return what uncertainty.xml holds at a place [deg]; None where there is none, or it does not reach there."""
-        if self.uncertainty is None:
-            return None
-        try:
-            return _locate(self.uncertainty, latitude, longitude)
-        except InputError:
-            return None
-
-    def _list_facts(self, read: "_Reading") -> Iterator[tuple[Text, Text]]:
-        header, event = self.grid.header, self.grid.event
+    def _list_facts(self, read: _Reading) -> Iterator[tuple[Text, Text]]:
+        header, event, beside = self.grid.header, self.grid.event, self.uncertainty_file
         version = join(", ", [text for text in (header.get("shakemap_version"), header.get("code_version")) if text])
+        cited = fill("{file}, SHA-256 {sha256}", file=beside, sha256=self.uncertainty_sha256) if beside else ""
         listed = (
             (fill("Earthquake"), self.title),
             (fill("Time of the earthquake"), event.get("event_timestamp", "")),
-            (fill("Event ID"), self.event_id),
+            (fill("Event ID"), self.grid.event_id),
             (fill("Status of the map"), header.get("map_status", "")),
             (fill("Kind of event"), header.get("shakemap_event_type", "")),
             (fill("Version of the map, version of ShakeMap"), version),
             (fill("Map computed"), header.get("process_timestamp", "")),
-            (fill("File of uncertainties"), self._cite_uncertainty()),
+            (fill("File of uncertainties"), cited),
         )
         yield from ((label, fill("{text}", text=text)) for label, text in listed if text)
-        speed = read("SVEL", logarithmic=True) if "SVEL" in self.grid.fields else math.nan
+        speed = read("SVEL", logarithmic=True)
         if speed > 0:
             value = fill("{speed:.0f} m/s; its effect is in the map and is not applied again", speed=speed)
             yield fill("Vs30 of the map at the building"), value
 
-    def _cite_uncertainty(self) -> Text | str:
-        if not self.uncertainty_file:
-            return ""
-        return fill("{file}, SHA-256 {sha256}", file=self.uncertainty_file, sha256=self.uncertainty_sha256)
-
-    def _list_cautions(self, read: "_Reading") -> Iterator[Text]:
+    def _list_cautions(self, read: _Reading) -> Iterator[Text]:
         status = self.grid.header.get("map_status", "").upper()
         if status == "AUTOMATIC":
             yield fill("the ShakeMap is AUTOMATIC: nobody had reviewed it when it was computed; a later one may differ")
         if status in ("CANCELLED", "CANCELED"):
             yield fill("the ShakeMap is marked as {status}: its maker has withdrawn it", status=status)
         missing = [name for name in read.fields if math.isnan(read(name))]
+        gaps = _count_gaps(self.grid)
         if missing:
             yield fill(
                 "the ShakeMap holds no value (NaN) of {fields} next to the building: it is taken as not known there",
                 fields=join(", ", missing),
             )
-        elif self.gaps:
+        elif gaps:
             yield nfill(
                 "{n:,} point of the ShakeMap's grid holds no value (NaN); it is not next to the building",
                 "{n:,} points of the ShakeMap's grid hold no value (NaN); none of them is next to the building",
-                self.gaps,
+                gaps,
             )
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -243,22 +317,8 @@ class ShakeMap:
 # ---------------------------------------------------------------- files
 
 
-def read_shakemap(path: Path) -> ShakeMap:
-    """Read the map of a grid.xml, with the uncertainty.xml in its folder.
-
-    Raises InputError if a file cannot be read or used; the message names it.
-    """
-    path = path.resolve()
-    beside = next(
-        (path.with_name(name) for name in name_uncertainty(path.name) if path.with_name(name).is_file()), None
-    )
-    return parse_shakemap(
-        read_file(path),
-        path.name,
-        uncertainty=None if beside is None else read_file(beside),
-        uncertainty_name="" if beside is None else beside.name,
-        path=path,
-    )
+read_file = partial(read_ground_file, most=LARGEST_FILE)
+"""Returns the bytes of a file; InputError if it cannot be read."""
 
 
 def name_uncertainty(name: str) -> tuple[str, ...]:
@@ -267,9 +327,15 @@ def name_uncertainty(name: str) -> tuple[str, ...]:
     return tuple(one for one in dict.fromkeys((renamed, "uncertainty.xml")) if one != name)
 
 
-def read_file(path: Path) -> bytes:
-    """Return the bytes of a file, but no more than show that it is too large; InputError if it cannot be read."""
-    return read_ground_file(path, LARGEST_FILE)
+def read_shakemap(path: Path) -> ShakeMap:
+    """Read the map of a grid.xml, with the uncertainty.xml in its folder.
+
+    Raises InputError if a file cannot be read or used; the message names it.
+    """
+    path = path.resolve()
+    beside = next((one for name in name_uncertainty(path.name) if (one := path.with_name(name)).is_file()), None)
+    own = {} if beside is None else {"uncertainty": read_file(beside), "uncertainty_name": beside.name}
+    return parse_shakemap(read_file(path), path.name, path=path, **own)  # type: ignore[arg-type]
 
 
 def parse_shakemap(
@@ -283,221 +349,67 @@ def parse_shakemap(
     with naming(name):
         grid = _read_grid(data)
     digest = hashlib.sha256(data).hexdigest()
+    found = ShakeMap(file=name, sha256=digest, grid_sha256=digest, grid=grid, path=path)
     if uncertainty is None:
-        return ShakeMap(file=name, sha256=digest, grid_sha256=digest, grid=grid, path=path, gaps=_count_gaps(grid))
-    beside = _read_uncertainty(
-        uncertainty, grid, uncertainty_name if path is None else str(path.with_name(uncertainty_name)), name
-    )
+        return found
+    try:
+        with naming(uncertainty_name if path is None else str(path.with_name(uncertainty_name))):
+            beside = _parse_grid(uncertainty)
+            if beside.event_id != grid.event_id:
+                raise InputError.about(
+                    "it is of the event {other!r}, but the grid of {own!r}: name the right grid",
+                    own=grid.event_id, other=beside.event_id,
+                )  # fmt: skip
+            beside.check_sigmas(SIGMAS | PARTS)
+    except InputError as error:
+        way = fill(
+            "You can remove the file: the STDPGV or STDPGA of {grid} is then used, or an assumed one where it has none",
+            grid=name,
+        )
+        raise InputError(join(". ", (error.message, way))) from None
     its = hashlib.sha256(uncertainty).hexdigest()
-    return ShakeMap(
-        file=name,
-        sha256=hashlib.sha256((digest + its).encode()).hexdigest(),
-        grid_sha256=digest,
-        grid=grid,
-        uncertainty_file=uncertainty_name,
-        uncertainty_sha256=its,
-        uncertainty=beside,
-        path=path,
-        gaps=_count_gaps(grid),
-    )
-
-
-def _count_gaps(grid: Grid) -> int:
-    return int(np.logical_or.reduce([np.isnan(values) for values in grid.fields.values()]).sum())
+    return replace(
+        found, sha256=hashlib.sha256((digest + its).encode()).hexdigest(), uncertainty_file=uncertainty_name,
+        uncertainty_sha256=its, uncertainty=beside.keep(SIGMAS | PARTS),
+    )  # fmt: skip
 
 
 @lru_cache(maxsize=2)  # workbooks of one folder name the same map
 def _read_grid(data: bytes) -> Grid:
     grid = _parse_grid(data)
     if "PGA" not in grid.fields:
-        raise InputError.about("the field PGA is missing: give the file grid.xml of a ShakeMap")
-    psa = [name for name, _ in _list_psa(grid)]
-    _check_field(grid, "PGA", _PER_CENT_G, "%g", 100 * LARGEST_PGA / GRAVITY)
-    for name in psa:
-        _check_field(grid, name, _PER_CENT_G, "%g", 300 * LARGEST_PGA / GRAVITY)
+        raise InputError(fill("the field PGA is missing: give the file grid.xml of a ShakeMap"))
+    for name in ("PGA", *grid.psa):
+        grid.check(name, *_PER_CENT_G, (100 if name == "PGA" else 300) * LARGEST_PGA / GRAVITY)
     if "PGV" in grid.fields:
-        _check_field(grid, "PGV", _CM_PER_S, "cm/s", 100 * LARGEST_PGV)
-    _check_sigmas(grid, SIGMAS)
-    return _keep(grid, {"PGA", "PGV", *SIGMAS, "SVEL", *psa})
-
-
-def _read_uncertainty(data: bytes, grid: Grid, name: str, grid_name: str) -> Grid:
-    try:
-        with naming(name):
-            return _check_uncertainty(_parse_grid(data), grid)
-    except InputError as error:
-        way = fill(
-            "You can remove the file: the STDPGV or STDPGA of {grid} is then used, or an assumed one where it has none",
-            grid=grid_name,
-        )
-        raise InputError(join(". ", (error.message, way))) from None
-
-
-# ---------------------------------------------------------------- fields
-
-
-def _check_uncertainty(beside: Grid, grid: Grid) -> Grid:
-    own, other = _find_event(grid), _find_event(beside)
-    if own != other:
-        message = fill(
-            "it is of the event {other!r}, but the grid of {own!r}: name the right grid", own=own, other=other
-        )
-        raise InputError(message)
-    _check_sigmas(beside, SIGMAS | PARTS)
-    return _keep(beside, set(SIGMAS | PARTS))
-
-
-def _check_sigmas(grid: Grid, names: frozenset[str]) -> None:
-    for name in sorted(names & grid.fields.keys()):
-        _check_field(grid, name, _LN, "ln(cm/s)" if name.endswith("PGV") else "ln(%g)", LARGEST_SIGMA)
-
-
-def _check_field(grid: Grid, name: str, units: frozenset[str], unit: str, most: float) -> None:
-    own = grid.units[name]
-    if own.replace(" ", "").lower() not in units:
-        message = fill("the field {name} has the unit {own!r}, expected {unit}", name=name, own=own[:40], unit=unit)
-        raise InputError(message)
-    values = grid.fields[name]
-    bad = (values < 0) | (values > most)  # NaN is refused only next to a building
-    if bad.any():
-        row, column = divmod(int(bad.argmax()), values.shape[1])
-        place = _describe_place(float(grid.latitude[row]), float(grid.longitude[column]))
-        value = float(values[row, column])
-        raise InputError.about(
-            "the field {name} is {value:g} at {place}, expected 0 to {most:g} {unit}",
-            name=name,
-            value=value,
-            place=place,
-            most=most,
-            unit=unit,
-        )
-
-
-def _keep(grid: Grid, names: set[str]) -> Grid:
-    fields = {name: values for name, values in grid.fields.items() if name in names}
-    return Grid(grid.header, grid.event, grid.latitude, grid.longitude, fields, grid.units)
-
-
-def _list_psa(grid: Grid) -> list[tuple[str, float]]:
-    """Return the fields of spectral acceleration with their periods [s], rising: PSA03 is that of 0.3 s."""
-    found = [(name, match) for name in grid.fields if (match := _PSA.fullmatch(name))]
-    return sorted(((name, int(match[1] + match[2]) / 10) for name, match in found), key=lambda one: one[1])
-
-
-def _find_event(grid: Grid) -> str:
-    return grid.header.get("event_id") or grid.event.get("event_id", "")
-
-
-def _read_magnitude(grid: Grid) -> float:
-    """Return the magnitude of the earthquake; infinite where it is not known."""
-    try:
-        magnitude = float(grid.event.get("magnitude", ""))
-    except ValueError:
-        return math.inf
-    return magnitude if math.isfinite(magnitude) else math.inf
-
-
-def _find_shared(beside: "_Reading | None", measure: str) -> float | None:
-    parts = f"GMPE_INTER_STD{measure}", f"GMPE_INTRA_STD{measure}"
-    if beside is None or not set(parts) <= beside.fields.keys():
-        return None
-    between, within = (beside(name) ** 2 for name in parts)
-    return between / (between + within) if between + within > 0 else None
-
-
-# ---------------------------------------------------------------- values at a place
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Reading:
-    """The fields of a grid at one place: the weights of the points around it, which add up to 1."""
-
-    fields: Mapping[str, FloatArray]
-    rows: tuple[int, int]
-    columns: tuple[int, int]
-    weights: FloatArray
-
-    def __call__(self, name: str, *, logarithmic: bool = False) -> float:
-        """Return a field interpolated linearly, or by its logarithm; NaN where that is of 0."""
-        values = self.fields[name][np.ix_(self.rows, self.columns)]
-        counted = self.weights > 0
-        values, weights = values[counted], self.weights[counted]
-        if not logarithmic:
-            return float(weights @ values)
-        return math.exp(float(weights @ np.log(values))) if (values > 0).all() else math.nan
-
-
-def _locate(grid: Grid, latitude: float, longitude: float) -> _Reading:
-    """Return the points around a place [deg] with their weights; InputError where it lies outside the grid."""
-    turned = _find_turn(longitude, grid) if math.isfinite(longitude) else math.nan
-    limits = [float(grid.latitude[0]), float(grid.latitude[-1]), float(grid.longitude[0]), float(grid.longitude[-1])]
-    if not (limits[0] <= latitude <= limits[1] and limits[2] <= turned <= limits[3]):
-        place = _describe_place(latitude, longitude)
-        south, north, west, east = limits
-        raise InputError.about(
-            "{place} is outside the map, which covers latitude {south:.4f} to {north:.4f} and longitude {west:.4f} "
-            "to {east:.4f}",
-            place=place,
-            south=south,
-            north=north,
-            west=west,
-            east=east,
-        )
-    rows, north = _find_cell(grid.latitude, latitude)
-    columns, east = _find_cell(grid.longitude, turned)
-    return _Reading(grid.fields, rows, columns, np.outer([1 - north, north], [1 - east, east]))
-
-
-def _find_cell(points: FloatArray, value: float) -> tuple[tuple[int, int], float]:
-    """Return the two points between which a value lies, and how far from the first to the second it is [-]."""
-    lower = min(int(np.searchsorted(points, value, side="right")) - 1, points.size - 2)
-    return (lower, lower + 1), float((value - points[lower]) / (points[lower + 1] - points[lower]))
-
-
-def _find_turn(longitude: float, grid: Grid) -> float:
-    """Return a longitude [deg] by a multiple of 360 where that lies within those of a grid, else as it is."""
-    west, east = float(grid.longitude[0]), float(grid.longitude[-1])
-    turned = longitude + 360 * math.ceil((west - longitude) / 360 - 1e-12)
-    return turned if turned <= east else longitude
-
-
-def _describe_place(latitude: float, longitude: float) -> Text:
-    return fill("latitude {latitude:.4f}, longitude {longitude:.4f}", latitude=latitude, longitude=longitude)
+        grid.check("PGV", *_CM_PER_S, 100 * LARGEST_PGV)
+    grid.check_sigmas(SIGMAS)
+    return grid.keep({"PGA", "PGV", *SIGMAS, "SVEL", *grid.psa})
 
 
 # ---------------------------------------------------------------- the XML of a grid
 
+_HINT = fill("Download grid.xml from the products of the event's ShakeMap at earthquake.usgs.gov")
+
 
 def _parse_grid(data: bytes) -> Grid:
-    """Read a grid from the bytes of its file.
-
-    Raises InputError if it is not XML of ShakeMap, is cut off, claims more points than it has rows or than can be read,
-    declares entities, holds something that is not a number, or its places are not a regular grid.
-    """
     if len(data) > LARGEST_FILE:
         raise InputError.about("the file is larger than {most:.0f} MB", most=LARGEST_FILE / 1e6)
     if not data.strip():
-        raise InputError.about("the file is empty")
+        raise InputError(fill("the file is empty"))
     if data.startswith(_FOREIGN):
         raise InputError.about("the file is not XML. {hint}", hint=_HINT)
     reader = _Reader()
     try:
         reader.parser.Parse(data, True)
     except (expat.ExpatError, ValueError, LookupError) as error:  # an encoding that is not known
-        raise _damaged(error, reader) from None
+        line = getattr(error, "lineno", None)
+        if not reader.found:
+            raise InputError.about("the file is not the XML of a ShakeMap. {hint}", hint=_HINT) from None
+        if line is None:
+            raise InputError(fill("the XML cannot be read. Download it again")) from None
+        raise InputError.about("line {line}: the XML is damaged or cut off. Download it again", line=line) from None
     return _build(reader)
-
-
-_HINT = fill("Download grid.xml from the products of the event's ShakeMap at earthquake.usgs.gov")
-
-
-def _damaged(error: Exception, reader: "_Reader") -> InputError:
-    line = getattr(error, "lineno", None)
-    if not reader.is_shakemap:
-        return InputError.about("the file is not the XML of a ShakeMap. {hint}", hint=_HINT)
-    if line is None:
-        return InputError.about("the XML cannot be read. Download it again")
-    return InputError.about("line {line}: the XML is damaged or cut off. Download it again", line=line)
 
 
 class _Reader:
@@ -508,7 +420,6 @@ class _Reader:
         self.parser.buffer_text, self.parser.buffer_size = True, _PIECE
         self.parser.StartElementHandler, self.parser.EndElementHandler = self._enter, self._leave
         self.parser.CharacterDataHandler, self.parser.EntityDeclHandler = self._take, self._refuse
-        self.is_shakemap = False
         self.found: dict[str, dict[str, str]] = {}
         self.names: list[tuple[str, str, str]] = []
         self.texts: list[str] = []
@@ -517,9 +428,9 @@ class _Reader:
     def _enter(self, tag: str, attributes: dict[str, str]) -> None:
         name, self._elements = tag.rpartition(":")[2], self._elements + 1
         if self._elements == 1 and name != "shakemap_grid":
-            text = fill("its first element is {name}, expected shakemap_grid. {hint}", name=_shorten(name), hint=_HINT)
-            raise InputError(text)
-        self.is_shakemap = True
+            raise InputError.about(
+                "its first element is {name}, expected shakemap_grid. {hint}", name=_shorten(name), hint=_HINT
+            )
         if self._elements > MOST_ELEMENTS:
             raise InputError.about("the file has more than {most:,} elements", most=MOST_ELEMENTS)
         clean = {key: _shorten(value) for key, value in attributes.items()}
@@ -546,50 +457,40 @@ def _shorten(text: str) -> str:
     return plain_text(" ".join(text.split()))[:_LONGEST]
 
 
-# ---------------------------------------------------------------- elements to arrays
-
-
 def _build(reader: _Reader) -> Grid:
     for name in ("event", "grid_specification", "grid_data"):
         if name not in reader.found:
             raise InputError.about("the element {name} is missing", name=name)
-    names = _name_fields(reader.names)
+    units = _name_fields(reader.names)
     columns, rows = (_read_count(reader.found["grid_specification"], name) for name in ("nlon", "nlat"))
     if columns * rows > MOST_POINTS:
         raise InputError.about(
             "grid_specification: {columns:,} x {rows:,} points are more than {most:,}",
-            columns=columns,
-            rows=rows,
-            most=MOST_POINTS,
-        )
-    table = _read_numbers(reader.texts, len(names), rows * columns)
-    fields = {name: table[:, at] for at, (name, _) in enumerate(names)}
+            columns=columns, rows=rows, most=MOST_POINTS,
+        )  # fmt: skip
+    fields = dict(zip(units, _read_numbers(reader.texts, len(units), rows * columns).T, strict=True))
     latitude, longitude, order = _arrange(fields.pop("LAT"), fields.pop("LON"), rows, columns)
     return Grid(
-        header=reader.found["shakemap_grid"],
-        event=reader.found["event"],
-        latitude=latitude,
-        longitude=longitude,
-        fields={name: values[order].reshape(rows, columns) for name, values in fields.items()},
-        units=dict(names),
-    )
+        reader.found["shakemap_grid"], reader.found["event"], latitude, longitude,
+        {name: values[order].reshape(rows, columns) for name, values in fields.items()}, units,
+    )  # fmt: skip
 
 
-def _name_fields(listed: Sequence[tuple[str, str, str]]) -> list[tuple[str, str]]:
+def _name_fields(listed: Sequence[tuple[str, str, str]]) -> dict[str, str]:
+    """Return the units of the fields by their names, in the order of their columns."""
     if len(listed) > MOST_FIELDS:
         raise InputError.about("the file has more than {most} fields", most=MOST_FIELDS)
-    indices = [index for index, *_ in listed]
-    if sorted(indices) != sorted(str(at + 1) for at in range(len(listed))):
-        raise InputError.about("the fields (grid_field) are not numbered from 1 on, each once")
-    names = [(name.upper(), unit) for _, name, unit in sorted(listed, key=lambda one: int(one[0]))]
-    spelt = [name for name, _ in names]
-    twice = next((name for name in spelt if spelt.count(name) > 1), None)
-    if twice is not None:
-        raise InputError.about("the field {name} is there twice", name=twice)
-    missing = next((name for name in ("LON", "LAT") if name not in spelt), None)
-    if missing is not None:
-        raise InputError.about("the field {name} is missing", name=missing)
-    return names
+    if sorted(index for index, *_ in listed) != sorted(str(at + 1) for at in range(len(listed))):
+        raise InputError(fill("the fields (grid_field) are not numbered from 1 on, each once"))
+    units: dict[str, str] = {}
+    for _, name, unit in sorted(listed, key=lambda one: int(one[0])):
+        if name.upper() in units:
+            raise InputError.about("the field {name} is there twice", name=name.upper())
+        units[name.upper()] = unit
+    for name in ("LON", "LAT"):
+        if name not in units:
+            raise InputError.about("the field {name} is missing", name=name)
+    return units
 
 
 def _read_count(specification: Mapping[str, str], name: str) -> int:
@@ -600,53 +501,32 @@ def _read_count(specification: Mapping[str, str], name: str) -> int:
 
 
 def _read_numbers(texts: Sequence[str], width: int, rows: int) -> FloatArray:
-    found = np.empty(rows * width)
-    at = 0
-    for cells in _split(texts):
+    """Return the numbers of the grid, (rows, width), text by text, so that few are words at a time."""
+    found, at, rest = np.empty(rows * width), 0, ""
+    for text in (*texts, " "):
+        if len(rest) > _LONGEST or "_" in text or not text.isascii():
+            raise InputError(fill("grid_data holds something that is not a number"))
+        cells = (rest + text).split()
+        rest = cells.pop() if cells and not text[-1].isspace() else ""  # it goes on in the next text
         if at + len(cells) > found.size:
             raise InputError.about("there are more than {rows:,} rows, which nlon x nlat gives", rows=rows)
         try:
             found[at : at + len(cells)] = np.fromiter(map(float, cells), dtype=float, count=len(cells))
         except ValueError:
-            raise _describe_text(cells, at, width) from None
+            bad = find_no_number(cells)
+            row, column = divmod(at + bad, width)
+            raise InputError.about(
+                "grid_data, row {row:,}: number {column} is {text!r}, which is not a number",
+                row=row + 1, column=column + 1, text=_shorten(cells[bad])[:40],
+            ) from None  # fmt: skip
         at += len(cells)
     if at < found.size:
         raise InputError.about(
-            "there are {found:,} whole rows of {width} numbers, expected {rows:,} (nlon x nlat): the file is cut "
-            "off or damaged. Download it again",
-            found=at // width,
-            width=width,
-            rows=rows,
-        )
+            "there are {found:,} whole rows of {width} numbers, expected {rows:,} (nlon x nlat): the file is cut off "
+            "or damaged. Download it again",
+            found=at // width, width=width, rows=rows,
+        )  # fmt: skip
     return found.reshape(rows, width)
-
-
-def _split(texts: Sequence[str]) -> Iterator[list[str]]:
-    """Yield the cells of the texts, none cut in two."""
-    rest = ""
-    for text in texts:
-        if len(rest) > _LONGEST or "_" in text or not text.isascii():
-            raise InputError.about("grid_data holds something that is not a number")
-        cells = (rest + text).split()
-        rest = cells.pop() if cells and not text[-1].isspace() else ""
-        yield cells
-    yield rest.split()
-
-
-def _describe_text(cells: Sequence[str], at: int, width: int) -> InputError:
-    for place, cell in enumerate(cells, at):
-        try:
-            float(cell)
-        except ValueError:
-            row, column = divmod(place, width)
-            places = {"row": row + 1, "column": column + 1, "text": _shorten(cell)[:40]}
-            return InputError.about(
-                "grid_data, row {row:,}: number {column} is {text!r}, which is not a number", **places
-            )
-    return InputError.about("the XML cannot be read. Download it again")  # pragma: no cover - one is not a number
-
-
-# ---------------------------------------------------------------- places
 
 
 def _arrange(
@@ -660,24 +540,17 @@ def _arrange(
         raise InputError.about(
             "grid_data, row {row:,}: LON {lon:g} and LAT {lat:g} are not a place on earth", row=row + 1, **places
         )
-    longitudes = _unwrap(longitudes)
+    if np.ptp(longitudes) > 180:  # beyond the date line they go on rising
+        eastern = np.where(longitudes < 0, longitudes + 360, longitudes)
+        longitudes = eastern if np.ptp(eastern) < np.ptp(longitudes) else longitudes
     order = np.lexsort((longitudes, latitudes))
     north, east = (values[order].reshape(rows, columns) for values in (latitudes, longitudes))
     is_regular = (north == north[:, :1]).all() and (east == east[:1]).all()
     if not (is_regular and _is_even(north[:, 0]) and _is_even(east[0])):
-        raise InputError.about("LON and LAT are not those of a regular grid of nlon x nlat points")
+        raise InputError(fill("LON and LAT are not those of a regular grid of nlon x nlat points"))
     return north[:, 0].copy(), east[0].copy(), order
 
 
-def _unwrap(longitudes: FloatArray) -> FloatArray:
-    """Return longitudes [deg] of which those beyond the date line go on rising."""
-    if np.ptp(longitudes) <= 180:
-        return longitudes
-    eastern = np.where(longitudes < 0, longitudes + 360, longitudes)
-    return eastern if np.ptp(eastern) < np.ptp(longitudes) else longitudes
-
-
 def _is_even(values: FloatArray) -> bool:
-    steps = np.diff(values)
     step = float(values[-1] - values[0]) / (values.size - 1)
-    return step > 0 and bool((np.abs(steps - step) <= _ROUND + 0.01 * step).all())
+    return step > 0 and bool((np.abs(np.diff(values) - step) <= _ROUND + 0.01 * step).all())

@@ -1,6 +1,6 @@
 """How strongly the ground shakes at a place: what a ShakeMap and computed scenarios have in common."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
@@ -83,6 +83,16 @@ def read_again(read: Callable[[Path], Field], path: Path, sha256: str) -> Field:
     if found.sha256 != sha256:
         raise InputError.about("{file} has changed since the run began: start it again.", file=path.name)
     return found
+
+
+def find_no_number(cells: Sequence[str]) -> int:
+    """Return the place of the first cell that is no number; -1 where all are."""
+    for place, cell in enumerate(cells):
+        try:
+            float(cell)
+        except ValueError:
+            return place
+    return -1
 
 
 @contextmanager

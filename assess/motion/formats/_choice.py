@@ -1,7 +1,7 @@
 """Which channel of a file is meant: the part after # where a user writes ``file#channel``."""
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from assess.errors import RecordError
@@ -25,16 +25,26 @@ def select(records: Sequence[Record], channel: str | None = None) -> Record:
 
     Raises RecordError if no channel, or more than one, is meant; the message lists them.
     """
+    file, addresses = records[0].file.split("/")[0], list_addresses(records)
     if channel is None or not channel.strip():
         if len(records) == 1:
             return records[0]
-        raise _unnamed(records)
-    wanted = channel.strip().casefold()
+        raise RecordError.about(
+            "{file} holds {count} channels: {names}. Name one of them, such as {file}#{first}",
+            file=file, count=len(records), names=_list(addresses), first=addresses[0],
+        )  # fmt: skip
+    channel = channel.strip()
+    wanted = channel.casefold()
     # The whole path of a member comes first: the same file may lie in a folder, too.
-    whole = [record for record in records if wanted in _whole(record)]
-    named = whole or [record for record in records if wanted in _spellings(record)]
+    spelt = [(record, _list_ways(record)) for record in records]
+    whole = [record for record, ways in spelt if "/" in record.file and wanted in _spell(ways[-1:], record)]
+    named = whole or [record for record, ways in spelt if wanted in _spell(ways, record)]
     if len(named) > 1:
-        raise _ambiguous(records, channel, named)
+        raise RecordError.about(
+            "{file} has {count} channels named {channel!r}. Name one of them: {names}",
+            file=file, count=len(named), channel=channel,
+            names=_list([own for own, record in zip(addresses, records, strict=True) if record in named]),
+        )  # fmt: skip
     if named:
         return named[0]
     # Names come first: a channel may be called by its azimuth, "45". Where some are numbers, a number is a name.
@@ -42,39 +52,9 @@ def select(records: Sequence[Record], channel: str | None = None) -> Record:
     is_archive = any("/" in record.file for record in records)  # where a damaged member would shift the numbers
     if numbered and (len(records) == 1 or not (is_archive or any(one.channel.isdecimal() for one in records))):
         return numbered[0]
-    names = _list(list_addresses(records))
     raise RecordError.about(
-        "{file} has no channel {channel!r}. It holds: {names}",
-        file=_name_file(records),
-        channel=channel.strip(),
-        names=names,
+        "{file} has no channel {channel!r}. It holds: {names}", file=file, channel=channel, names=_list(addresses)
     )
-
-
-def _unnamed(records: Sequence[Record]) -> RecordError:
-    names = list_addresses(records)
-    return RecordError.about(
-        "{file} holds {count} channels: {names}. Name one of them, such as {file}#{first}",
-        file=_name_file(records),
-        count=len(records),
-        names=_list(names),
-        first=names[0],
-    )
-
-
-def _ambiguous(records: Sequence[Record], channel: str, named: Sequence[Record]) -> RecordError:
-    addresses = zip(list_addresses(records), records, strict=True)
-    return RecordError.about(
-        "{file} has {count} channels named {channel!r}. Name one of them: {names}",
-        file=_name_file(records),
-        count=len(named),
-        channel=channel.strip(),
-        names=_list([address for address, record in addresses if record in named]),
-    )
-
-
-def _name_file(records: Sequence[Record]) -> str:
-    return records[0].file.split("/")[0]
 
 
 def rename_duplicates(records: Sequence[Record]) -> tuple[Record, ...]:
@@ -88,33 +68,23 @@ def rename_duplicates(records: Sequence[Record]) -> tuple[Record, ...]:
     return tuple(renamed)
 
 
-def _ways(record: Record) -> Iterator[str]:
-    yield record.channel
+def _list_ways(record: Record) -> list[str]:
+    """Return how a record can be addressed, the shortest way first."""
     parts = record.file.split("/")[1:]
-    for first in reversed(range(len(parts))):
-        yield "/".join([*parts[first:], record.channel])
+    return ["/".join([*parts[first:], record.channel]) for first in reversed(range(len(parts) + 1))]
 
 
-def _spellings(record: Record) -> set[str]:
-    return {spelling for way in _ways(record) for spelling in _short(way, record)}
-
-
-def _whole(record: Record) -> set[str]:
-    return _short(list(_ways(record))[-1], record) if "/" in record.file else set()
-
-
-def _short(way: str, record: Record) -> set[str]:
-    spelt, channel = way.casefold(), f"/{record.channel.casefold()}"
-    return {spelt, spelt.removesuffix(channel)}
+def _spell(ways: Sequence[str], record: Record) -> set[str]:
+    """Return ways in small letters, and each without the channel."""
+    end = f"/{record.channel.casefold()}"
+    return {spelt for way in ways for spelt in (way.casefold(), way.casefold().removesuffix(end))}
 
 
 def list_addresses(records: Sequence[Record]) -> list[str]:
     """Return for each channel of one file the shortest text after # that means no other."""
-    meanings = Counter(spelling for record in records for spelling in _spellings(record))
-    return [
-        next((way for way in _ways(record) if meanings[way.casefold()] == 1), list(_ways(record))[-1])
-        for record in records
-    ]
+    every = [(_list_ways(record), record) for record in records]
+    meanings = Counter(spelling for ways, record in every for spelling in _spell(ways, record))
+    return [next((way for way in ways if meanings[way.casefold()] == 1), ways[-1]) for ways, _ in every]
 
 
 def _list(names: Sequence[str]) -> str:

@@ -10,8 +10,8 @@ Source: International Federation of Digital Seismograph Networks (2012). SEED re
 
 import re
 import struct
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 
 import numpy as np
@@ -45,27 +45,15 @@ _HEADER_FROM, _HEADER_TO = 20, 48
 _TAKEN = fill('the file does not give its unit: taken as m/s2, which ObsPy\'s remove_response(output="ACC") leaves')
 
 
-_Names = tuple[str, str, str, str]
-"""Network, station, location and channel."""
-
-
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """The samples of one record; none where they are not real numbers."""
+    """The samples of one record of a channel, named by network, station, location and code; none where not real."""
 
-    names: _Names
+    names: tuple[str, ...]
     start: datetime
     rate: float
     encoding: int
     samples: FloatArray
-
-    @property
-    def id(self) -> str:
-        return ".".join(self.names)
-
-    @property
-    def code(self) -> str:
-        return self.names[3]
 
 
 def recognises(head: bytes) -> bool:
@@ -74,25 +62,29 @@ def recognises(head: bytes) -> bool:
 
 
 def read(data: bytes, file: str) -> tuple[Record, ...]:
-    """Read every channel of a miniSEED file.
-
-    Raises RecordError if no channel holds accelerations, or the file is damaged.
-    """
-    channels: dict[str, list[_Part]] = {}
-    skipped, names = 0, dict[bytes, _Names]()
-    for number, part in enumerate(_read_parts(data, names)):
-        if isinstance(part, int):
-            skipped += part
-        else:
-            channels.setdefault(part.id, []).append(part)
+    """Read every channel of a miniSEED file; RecordError if no channel holds accelerations, or the file is damaged."""
+    channels: dict[tuple[str, ...], list[_Part]] = {}
+    at, count, skipped = 0, 0, 0
+    names: dict[bytes, tuple[str, ...]] = {}  # of many parts, once
+    while at < len(data):
+        order = _byte_order(data, at)
+        found = _read_part(data, at, order, names) if order else None
+        if found is None:
+            skipped, at = skipped + min(SHORTEST, len(data) - at), at + SHORTEST
+            continue
+        part, length = found
+        at += length
+        if part is not None:
+            channels.setdefault(part.names, []).append(part)
             check_channels(len(channels))
-            if number >= MOST_PARTS:
+            count += 1
+            if count > MOST_PARTS:
                 raise RecordError.about(
                     "the file has more than {most:,} records of miniSEED: cut it to the shaking", most=MOST_PARTS
                 )
     if not channels:
-        raise RecordError.about("the file has no complete miniSEED record. Get the file again")
-    codes = [parts[0].code for parts in channels.values()]
+        raise RecordError(fill("the file has no complete miniSEED record. Get the file again"))
+    codes = [own[-1] for own in channels]
     note = nfill(
         "{n} byte that is no whole record of miniSEED was left out",
         "{n} bytes that are no whole records of miniSEED were left out",
@@ -100,7 +92,8 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
     )
     notes = (note,) if skipped else ()
     return keep_readable(
-        channels.items(), lambda parts: _read_channel(file, parts, notes, codes.count(parts[0].code) > 1)
+        ((".".join(own), parts) for own, parts in channels.items()),
+        lambda parts: _read_channel(file, parts, notes, codes.count(parts[0].names[-1]) > 1),
     )
 
 
@@ -115,32 +108,23 @@ def _byte_order(data: bytes, at: int) -> str | None:
     return None
 
 
-def _read_parts(data: bytes, names: dict[bytes, _Names]) -> Iterator[_Part | int]:
-    """Yield the parts of a file in their order; for what is none, the number of bytes."""
-    at = 0
-    while at < len(data):
-        order = _byte_order(data, at)
-        found = _read_part(data, at, order, names) if order else None
-        if found is None:
-            yield min(SHORTEST, len(data) - at)
-            at += SHORTEST
-        else:
-            part, length = found
-            at += length
-            if part is not None:
-                yield part
-
-
-def _read_part(data: bytes, at: int, order: str, names: dict[bytes, _Names]) -> tuple[_Part | None, int] | None:
+def _read_part(
+    data: bytes, at: int, order: str, names: dict[bytes, tuple[str, ...]]
+) -> tuple[_Part | None, int] | None:
     """Return the part whose record is at a place, None if it has no samples, and the record's length [bytes].
 
-    Parts of one channel share what `names` holds by the bytes of it. None where the record is damaged, cut short, or
-    does not name how its samples are encoded.
+    None where the record is damaged, cut short, or does not name how its samples are encoded.
     """
     year, day, hour, minute, second, _, ticks, count, factor, multiplier, flags, _, _, _, correction, begin, place = (
         struct.unpack_from(f"{order}{_HEADER}", data, at + _HEADER_FROM)
     )
-    blockettes = dict(_list_blockettes(data, at, place, order))
+    blockettes: dict[int, int] = {}  # where what follows the header of each is
+    while place >= _HEADER_TO and at + place + 4 <= len(data):
+        kind, following = struct.unpack_from(f"{order}HH", data, at + place)
+        blockettes[kind] = at + place + 4
+        if following <= place:
+            break
+        place = following
     try:
         encoding, big, power = struct.unpack_from("BBB", data, blockettes[ENCODING])
         length = 1 << power if power < 32 else 0
@@ -163,18 +147,11 @@ def _read_part(data: bytes, at: int, order: str, names: dict[bytes, _Names]) -> 
         if not _HEADER_TO <= begin <= length - count * int(form[1]):
             return None
         samples = np.frombuffer(data, f"{'>' if big else '<'}{form}", count, at + begin)
-    own = names.setdefault(data[at + 8 : at + 20], _read_names(data, at))
-    return _Part(own, start, rate, encoding, samples), length
-
-
-def _list_blockettes(data: bytes, at: int, place: int, order: str) -> Iterator[tuple[int, int]]:
-    """Yield the type of each blockette of a record, and the place of what follows its own header [bytes]."""
-    while place >= _HEADER_TO and at + place + 4 <= len(data):
-        kind, following = struct.unpack_from(f"{order}HH", data, at + place)
-        yield kind, at + place + 4
-        if following <= place:
-            return
-        place = following
+    text = data[at + 8 : at + 20]
+    if text not in names:
+        own = text.decode("latin-1").replace("\0", " ")
+        names[text] = tuple(own[part].strip() for part in (slice(10, 12), slice(5), slice(5, 7), slice(7, 10)))
+    return _Part(names[text], start, rate, encoding, samples), length
 
 
 def _nominal_rate(factor: int, multiplier: int) -> float:
@@ -184,55 +161,49 @@ def _nominal_rate(factor: int, multiplier: int) -> float:
     return rate * multiplier if multiplier > 0 else -rate / multiplier
 
 
-def _read_names(data: bytes, at: int) -> _Names:
-    text = data[at + 8 : at + 20].decode("latin-1").replace("\0", " ")
-    return text[10:12].strip(), text[:5].strip(), text[5:7].strip(), text[7:10].strip()
-
-
 def _read_channel(file: str, parts: Sequence[_Part], notes: Sequence[str], whole_name: bool) -> Record:
-    first = parts[0]
-    network, station, location, code = first.names
-    _check_samples_type(code, parts)
-    series, own = _join(parts, notes)
-    return build_record(
-        TITLE,
-        file,
-        series,
-        own=own,
-        corrected=False,
-        channel=first.id if whole_name else code,
-        direction=read_direction(code, bare_degrees=False),
-        location=location,
-        station=".".join(filter(None, (network, station))),
-        start=f"{first.start.isoformat(sep=' ', timespec='milliseconds')} UTC",
-        has_offset=True,
-        notes=(_TAKEN,),
-    )
-
-
-def _check_samples_type(code: str, parts: Sequence[_Part]) -> None:
+    network, station, location, code = parts[0].names
     encodings = {part.encoding for part in parts}
     if encodings - {TEXT, *REALS}:
-        raise RecordError.about(
-            "the channel holds raw counts, not accelerations. Remove the instrument's response with ObsPy "
-            '(stream.remove_response(inventory, output="ACC")) and save the result as miniSEED, or as plain CSV in '
-            "m/s2"
+        raise RecordError(
+            fill(
+                "the channel holds raw counts, not accelerations. Remove the instrument's response with ObsPy "
+                '(stream.remove_response(inventory, output="ACC")) and save the result as miniSEED, or as plain CSV in '
+                "m/s2"
+            )
         )
     if TEXT in encodings:
-        raise RecordError.about("the channel holds no numbers. Give a channel of an accelerometer")
+        raise RecordError(fill("the channel holds no numbers. Give a channel of an accelerometer"))
     if code[1:2] != "N":
         raise RecordError.about(
             "the channel's code {code!r} is not that of an accelerometer (such as HNE). Save the accelerations as "
             "plain CSV in m/s2",
             code=code,
         )
+    series, own = _join(parts)
+    return build_record(
+        TITLE,
+        file,
+        replace(series, notes=(*notes, *series.notes)),
+        own=own,
+        corrected=False,
+        channel=".".join(parts[0].names) if whole_name else code,
+        direction=read_direction(code, bare_degrees=False),
+        location=location,
+        station=".".join(filter(None, (network, station))),
+        start=f"{parts[0].start.isoformat(sep=' ', timespec='milliseconds')} UTC",
+        has_offset=True,
+        notes=(_TAKEN,),
+    )
 
 
-def _join(parts: Sequence[_Part], notes: Sequence[str]) -> tuple[Series, FloatArray]:
+def _join(parts: Sequence[_Part]) -> tuple[Series, FloatArray]:
     """Return the channel's samples [m/s2] evenly spaced, and as they are in the file."""
     runs: list[list[_Part]] = []
     for part in parts:
-        if runs and _follows(runs[-1][-1], part):
+        last = runs[-1][-1] if runs else None
+        passed = 0.0 if last is None else (part.start - last.start).total_seconds()
+        if last and part.rate == last.rate and abs(passed * part.rate - last.samples.size) <= JOINED:
             runs[-1].append(part)
         else:
             runs.append([part])
@@ -241,16 +212,10 @@ def _join(parts: Sequence[_Part], notes: Sequence[str]) -> tuple[Series, FloatAr
     check_count(sum(run.size for run in values))
     own, steps = np.concatenate(values), [1 / run[0].rate for run in runs]
     if len(runs) == 1:
-        return even_series(own, steps[0], notes), own
+        return even_series(own, steps[0]), own
     starts = [(run[0].start - parts[0].start).total_seconds() for run in runs]
     times = [start + np.arange(run.size) * step for start, run, step in zip(starts, values, steps, strict=True)]
-    series = build_series(np.concatenate(times), own)
-    return Series(series.time_step, series.values, (*notes, *series.notes)), own
-
-
-def _follows(before: _Part, part: _Part) -> bool:
-    passed = (part.start - before.start).total_seconds()
-    return part.rate == before.rate and abs(passed * part.rate - before.samples.size) <= JOINED
+    return build_series(np.concatenate(times), own), own
 
 
 FORMAT = Format(key="miniseed", title=TITLE, recognises=recognises, read=read)

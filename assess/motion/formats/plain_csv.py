@@ -9,8 +9,9 @@ Comments come first, then the row of headings. The bracket is the unit; what sta
 Cells are separated by commas, semicolons or tabs; with the last two, numbers may have a decimal comma.
 """
 
+import io
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -43,25 +44,20 @@ MOST_HEAD = 2**19
 
 _ANSWERS = {"yes": True, "true": True, "no": False, "false": False, "": False}
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
-_PLAIN = b"0123456789+-.eE,; \t\n"
-"""With no other signs than these, float() takes what _NUMBER takes."""
+_PLAIN = b'0123456789+-.eE,; \t\n"'
+"""With no other signs than these, numpy takes what _NUMBER takes."""
 _LINE_END = re.compile(rb"\r\n?|\n")
 
 
 @dataclass(frozen=True, slots=True)
-class _Column:
-    """One channel's heading: its name, and the factor from its unit to m/s2."""
-
-    name: str
-    factor: float
-
-
-@dataclass(frozen=True, slots=True)
 class _Table:
-    """What a file says of its samples, and where they begin: the byte, and the line [-], counted from 1."""
+    """What a file says of its samples, and where they begin: the byte, and the line [-], counted from 1.
+
+    `columns` are the factors to m/s2 by the names of the channels.
+    """
 
     comments: Mapping[str, str]
-    columns: Sequence[_Column]
+    columns: Mapping[str, float]
     separator: str
     start: int
     first: int
@@ -72,7 +68,8 @@ def recognises(head: bytes) -> bool:
     # UTF-16 and binary files have zeros; text has none.
     if b"\0" in head:
         return False
-    first = re.split(r"[,;\t]", _heading_line(split_text(decode(head)))[1], maxsplit=1)[0].strip(' \t"').lower()
+    lines = (line for line in split_text(decode(head)) if not (is_comment(line) or _is_blank(line)))
+    first = re.split(r"[,;\t]", next(lines, ""), maxsplit=1)[0].strip(' \t"').lower()
     return first.startswith("time") and first[4:].lstrip()[:1] in {"", "["}
 
 
@@ -85,10 +82,10 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
     values = _read_values(data, table)
     directions = _read_directions(table)
     times, records = values.pop(0), []
-    for column in table.columns:
+    for name, factor in table.columns.items():
         with np.errstate(over="ignore"):  # what becomes infinite is refused further on
-            own = values.pop(0) * column.factor
-        records.append(_build_record(file, table, column, directions[column.name], times, own))
+            own = values.pop(0) * factor
+        records.append(_build_record(file, table, name, directions[name], times, own))
     return tuple(records)
 
 
@@ -110,24 +107,36 @@ def _is_blank(line: str) -> bool:
     return all(mark in ',;"' or mark.isspace() for mark in line)
 
 
-def _heading_line(lines: Sequence[str]) -> tuple[int, str]:
-    """Return the first line that is neither blank nor a comment, and its place; (-1, "") where there is none."""
-    return next(
-        ((place, line) for place, line in enumerate(lines) if not (is_comment(line) or _is_blank(line))), (-1, "")
-    )
-
-
 def _read_head(data: bytes) -> _Table:
     lines, start = _split_head(data)
     separator = next((mark for mark in "\t;" if mark in lines[-1]), ",")
-    headings = _cells(lines[-1], separator)
+    headings, line = _cells(lines[-1], separator), len(lines)
     check_channels(len(headings) - 1)
-    columns = _read_columns(headings, len(lines))
-    comments = dict(filter(None, (_read_comment(line) for line in lines[:-1])))
-    return _Table(comments, columns, separator, start, len(lines) + 1)
+    if _take_unit(headings[0])[1] not in TIME:
+        raise RecordError.about(
+            "line {line}: {heading!r} needs its unit, seconds: time [s]", line=line, heading=headings[0][:80]
+        )
+    found = [_read_column(heading, line) for heading in headings[1:]]
+    columns, names = dict(found), [name.casefold() for name, _ in found]
+    twice = next((name for name, _ in found if names.count(name.casefold()) > 1), None)
+    if twice is not None:
+        raise RecordError.about(
+            "line {line}: two channels are called {name!r}. Give each its own name", line=line, name=twice[:80]
+        )
+    if not columns:
+        raise RecordError.about(
+            "line {line}: there is no channel next to time. Add one, such as: north [cm/s2]", line=line
+        )
+    comments = {}
+    for text in lines[:-1]:
+        key, colon, value = text.strip(' \t"').lstrip("#").partition(":")
+        if colon:
+            comments[key.strip().lower()] = value.strip(' \t,;"')
+    return _Table(comments, columns, separator, start, line + 1)
 
 
 def _split_head(data: bytes) -> tuple[list[str], int]:
+    """Return the lines down to the headings, and where the next line starts [bytes]."""
     head, start, line = data[:MOST_HEAD], 0, 1
     for end in _LINE_END.finditer(head if len(data) > MOST_HEAD else head + b"\n"):
         own = decode(head[start : end.start()])
@@ -136,7 +145,7 @@ def _split_head(data: bytes) -> tuple[list[str], int]:
         start, line = end.end(), line + 1
     if len(data) > MOST_HEAD:
         raise _too_long(line)
-    raise RecordError.about("there is no row of headings. Add one, such as: time [s], north [cm/s2]")
+    raise RecordError(fill("there is no row of headings. Add one, such as: time [s], north [cm/s2]"))
 
 
 def _too_long(line: int) -> RecordError:
@@ -149,38 +158,14 @@ def _too_long(line: int) -> RecordError:
 
 
 def _cells(line: str, separator: str) -> list[str]:
+    """Return the cells of a line, without the empty ones that spreadsheets leave at its end."""
     cells = [cell.strip().strip('"').strip() for cell in line.split(separator)]
     while cells and not cells[-1]:
         cells.pop()
     return cells
 
 
-def _read_comment(line: str) -> tuple[str, str] | None:
-    key, colon, value = line.strip(' \t"').lstrip("#").partition(":")
-    return (key.strip().lower(), value.strip(' \t,;"')) if colon else None
-
-
-def _read_columns(headings: Sequence[str], line: int) -> tuple[_Column, ...]:
-    if _take_unit(headings[0])[1] not in TIME:
-        heading = headings[0][:80]
-        raise RecordError.about(
-            "line {line}: {heading!r} needs its unit, seconds: time [s]", line=line, heading=heading
-        )
-    columns = tuple(_read_column(heading, line) for heading in headings[1:])
-    names = [column.name.casefold() for column in columns]
-    if not columns:
-        raise RecordError.about(
-            "line {line}: there is no channel next to time. Add one, such as: north [cm/s2]", line=line
-        )
-    twice = next((column.name for column in columns if names.count(column.name.casefold()) > 1), None)
-    if twice is not None:
-        raise RecordError.about(
-            "line {line}: two channels are called {name!r}. Give each its own name", line=line, name=twice[:80]
-        )
-    return columns
-
-
-def _read_column(heading: str, line: int) -> _Column:
+def _read_column(heading: str, line: int) -> tuple[str, float]:
     name, unit = _take_unit(heading)
     if unit not in ACCELERATION:
         raise RecordError.about(
@@ -191,10 +176,11 @@ def _read_column(heading: str, line: int) -> _Column:
             units=UNITS,
             name=name[:60],
         )
-    return _Column(name or "acceleration", ACCELERATION[unit])
+    return name or "acceleration", ACCELERATION[unit]
 
 
 def _take_unit(heading: str) -> tuple[str, str]:
+    """Split ``name [unit]``; the unit is "" where there are no brackets."""
     name, bracket, unit = heading.rpartition("[")
     if not bracket or not unit.endswith("]"):
         return heading, ""
@@ -203,20 +189,19 @@ def _take_unit(heading: str) -> tuple[str, str]:
 
 def _read_values(data: bytes, table: _Table) -> list[FloatArray]:
     """Return the numbers below the headings, (n,) for time and for each channel; read block by block."""
-    width, rows = 1 + len(table.columns), 0
-    columns: list[list[FloatArray]] = [[] for _ in range(width)]
+    columns: list[list[FloatArray]] = [[] for _ in range(1 + len(table.columns))]
+    rows = 0
     for block, line in _blocks(data, table):
         numbers = _read_block(block, table, line)
-        rows += len(numbers) // width
+        rows += len(numbers)
         if rows > MOST_SAMPLES:
             raise RecordError.about("the file has more than {most:,} rows: cut it to the shaking", most=MOST_SAMPLES)
-        if rows * width > MOST_VALUES:
+        if rows * len(columns) > MOST_VALUES:
             raise too_many_values()
-        found = np.array(numbers).reshape(-1, width)
-        for column, own in zip(columns, found.T, strict=True):
+        for column, own in zip(columns, numbers.T, strict=True):
             column.append(own.copy())
     if not rows:
-        raise RecordError.about("there are no rows below the headings. Add the samples")
+        raise RecordError(fill("there are no rows below the headings. Add the samples"))
     whole = []
     while columns:  # each is let go as it is joined
         whole.append(np.concatenate(columns.pop(0)))
@@ -238,72 +223,48 @@ def _blocks(data: bytes, table: _Table) -> Iterator[tuple[bytes, int]]:
         start, line = end, line + block.count(b"\n")
 
 
-def _read_block(block: bytes, table: _Table, first: int) -> list[float]:
-    """Return the numbers of some lines, of which `first` is the number of the first."""
+def _read_block(block: bytes, table: _Table, first: int) -> FloatArray:
+    """Return the numbers of some lines (n, columns), of which `first` is the number of the first."""
     check_waits()
-    separator, width = table.separator.encode(), 1 + len(table.columns)
-    marked = block if separator == b"," else block.replace(b",", b".")
-    if not block.translate(None, _PLAIN) and _is_even(block, ord(separator), width):
+    separator, width = table.separator, 1 + len(table.columns)
+    if not block.translate(None, _PLAIN):
+        marked = block if separator == "," else block.replace(b",", b".")
+        whole = re.sub(rb"[ \t%s]+(?=\n|\Z)" % separator.encode(), b"", marked)  # spreadsheets leave cells at the end
         try:
-            return [*map(float, marked.removesuffix(b"\n").replace(b"\n", separator).split(separator))]
+            if whole.strip():
+                found = np.loadtxt(io.BytesIO(whole), delimiter=separator, comments=None, quotechar='"', ndmin=2)
+                if found.shape[1] == width:
+                    return np.asarray(found, np.float64)
         except ValueError:
             pass
-    return _read_lines(block.removesuffix(b"\n").split(b"\n"), table, first)
-
-
-def _is_even(block: bytes, separator: int, width: int) -> bool:
-    """Return whether each line of a block has `width` cells; the last line may end without a line feed."""
-    signs = np.frombuffer(block if block.endswith(b"\n") else block + b"\n", dtype=np.uint8)
-    ends = signs[(signs == separator) | (signs == ord("\n"))] == ord("\n")
-    if ends.size % width:
-        return False
-    cells = ends.reshape(-1, width)
-    return bool(cells[:, -1].all() and not cells[:, :-1].any())
-
-
-def _read_lines(lines: Sequence[bytes], table: _Table, first: int) -> list[float]:
-    """Do what `_read_block` does, line by line: blank ones, comments, quotes and cells left over at the ends."""
-    separator, width, numbers = table.separator.encode(), 1 + len(table.columns), list[float]()
-    tail = separator + b" \t"
-    for line, text in enumerate(lines, start=first):
+    numbers: list[float] = []
+    for line, text in enumerate(map(decode, block.removesuffix(b"\n").split(b"\n")), start=first):
         if line % CHECKED_EVERY == 0:
             check_waits()
-        cells = (text if separator == b"," else text.replace(b",", b".")).rstrip(tail).split(separator)
-        if len(cells) == width and not text.translate(None, _PLAIN + b'"'):
-            try:
-                numbers += [*map(float, (cell.strip(b' \t"') for cell in cells) if b'"' in text else cells)]
-                continue
-            except ValueError:
-                pass
-        own = decode(text)
-        if not (is_comment(own) or _is_blank(own)):
-            numbers += _read_row(_cells(own, table.separator), table, line)
-    return numbers
+        if not (is_comment(text) or _is_blank(text)):
+            numbers += _read_row(_cells(text, separator), table, line)
+    return np.array(numbers).reshape(-1, width)
 
 
-def _read_row(cells: Sequence[str], table: _Table, line: int) -> list[float]:
-    width = 1 + len(table.columns)
-    if len(cells) != width:
+def _read_row(cells: list[str], table: _Table, line: int) -> list[float]:
+    numbers = cells if table.separator == "," else [cell.replace(",", ".") for cell in cells]
+    if len(cells) != 1 + len(table.columns):
         raise RecordError.about(
             "line {line}: the number of cells is {cells}, but there are {headings} headings",
             line=line,
             cells=len(cells),
-            headings=width,
+            headings=1 + len(table.columns),
         )
-    return [_read_number(cell, table.separator, line) for cell in cells]
-
-
-def _read_number(cell: str, separator: str, line: int) -> float:
-    text = cell if separator == "," else cell.replace(",", ".")
-    if not _NUMBER.fullmatch(text):
-        raise RecordError.about("line {line}: {text!r} is not a number", line=line, text=cell[:40])
-    return float(text)
+    for cell, number in zip(cells, numbers, strict=True):
+        if not _NUMBER.fullmatch(number):
+            raise RecordError.about("line {line}: {text!r} is not a number", line=line, text=cell[:40])
+    return [*map(float, numbers)]
 
 
 def _read_directions(table: _Table) -> dict[str, Direction]:
     """Return for each channel its direction: that of the comments, else what its name tells."""
-    given = {column.name.casefold(): column.name for column in table.columns}
-    directions = {column.name: read_direction(column.name, bare_degrees=False) for column in table.columns}
+    given = {name.casefold(): name for name in table.columns}
+    directions = {name: read_direction(name, bare_degrees=False) for name in table.columns}
     parts = [part for part in re.split("[,;]", table.comments.get("azimuth", "")) if part.strip()]
     for part in parts:
         name, equals, value = part.rpartition("=")
@@ -335,12 +296,12 @@ def _read_azimuth(text: str) -> Direction:
 
 
 def _build_record(
-    file: str, table: _Table, column: _Column, direction: Direction, times: FloatArray, own: FloatArray
+    file: str, table: _Table, name: str, direction: Direction, times: FloatArray, own: FloatArray
 ) -> Record:
     try:
         series = build_series(times, own)
     except RecordError as error:
-        raise RecordError.about("channel {name!r}: {why}", name=column.name, why=error.message) from None
+        raise RecordError.about("channel {name!r}: {why}", name=name, why=error.message) from None
     comments = table.comments
     answer = comments.get("corrected", "").lower()
     if answer not in _ANSWERS:
@@ -353,7 +314,7 @@ def _build_record(
         replace(series, notes=(*((note,) if unknown else ()), *series.notes)),
         own=own,
         corrected=_ANSWERS[answer],
-        channel=column.name,
+        channel=name,
         direction=direction,
         location=comments.get("location", ""),
         station=comments.get("station", ""),
