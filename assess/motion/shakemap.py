@@ -142,13 +142,15 @@ class Grid:
                 "to {east:.4f}",
                 place=_describe_place(latitude, longitude), south=south, north=north, west=west, east=east,
             )  # fmt: skip
-        lower, shares = [], []
-        for points, value in ((self.latitude, latitude), (self.longitude, turned)):
-            low = min(int(np.searchsorted(points, value, side="right")) - 1, points.size - 2)
-            share = float((value - points[low]) / (points[low + 1] - points[low]))
-            lower.append(low)
-            shares.append([1 - share, share])
-        return _Reading(self.fields, lower[0], lower[1], np.outer(*shares))
+        (row, rows), (column, columns) = _find_cell(self.latitude, latitude), _find_cell(self.longitude, turned)
+        return _Reading(self.fields, row, column, np.outer(rows, columns))
+
+
+def _find_cell(points: FloatArray, value: float) -> tuple[int, tuple[float, float]]:
+    """Return the point below a value, and the weights of that and of the next one [-]."""
+    low = min(int(np.searchsorted(points, value, side="right")) - 1, points.size - 2)
+    share = float((value - points[low]) / (points[low + 1] - points[low]))
+    return low, (1 - share, share)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -249,9 +251,10 @@ class ShakeMap:
         That of PGA stands in for that of PGV: both are small near a station, and far from one alike.
         """
         shared = None
-        for name in ("PGA", measure) if beside else ():
-            between, within = (beside(f"GMPE_{part}_STD{name}") ** 2 for part in ("INTER", "INTRA"))
-            shared = between / (between + within) if between + within > 0 else shared
+        if beside:
+            for own in ("PGA", measure):
+                between, within = (beside(f"GMPE_{part}_STD{own}") ** 2 for part in ("INTER", "INTRA"))
+                shared = between / (between + within) if between + within > 0 else shared
         why = fill("the map has none at this place")
         for name in dict.fromkeys((f"STD{measure}", "STDPGA")):
             for reading, file in ((read, self.file), (beside, self.uncertainty_file)):

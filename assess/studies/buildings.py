@@ -6,7 +6,7 @@ kept as soon as it is known, so that an interrupted run continues from there.
 """
 
 import hashlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -70,11 +70,6 @@ class Building:
     event: str
     channels: tuple[Channel, ...]
 
-    @property
-    def levels(self) -> tuple[str, ...]:
-        """Its floors with a channel, the lowest first."""
-        return tuple(dict.fromkeys(one.level for one in self.channels))
-
 
 MARKET = (
     ("ground", "Y", "k"), ("25th floor", "X", "g"), ("25th floor", "X", "h"), ("25th floor", "Y", "i"),
@@ -100,17 +95,19 @@ BUILDINGS = (
 def all_buildings() -> tuple[Building, ...]:
     """Return the three buildings; InputError if a record is missing."""
     return tuple(
-        Building(name, place, event, tuple(_find_channels(name, pattern, rows)))
+        Building(
+            name, place, event, tuple(Channel(name, *row, find_record(pattern.format(row[-1]), name)) for row in rows)
+        )
         for name, place, event, pattern, rows in BUILDINGS
     )
 
 
-def _find_channels(building: str, pattern: str, rows: Sequence[tuple[str, str, str]]) -> Iterator[Channel]:
-    for level, axis, name in rows:
-        file = record(pattern.format(name))
-        if not file.is_file():
-            raise InputError(f"{file} is missing: the records of {building} are part of the package. Install it again.")
-        yield Channel(building, level, axis, name, file)
+def find_record(name: str, site: str) -> Path:
+    """Return the file of a record; InputError if it is missing."""
+    file = record(name)
+    if not file.is_file():
+        raise InputError(f"{file} is missing: the records of {site} are part of the package. Install it again.")
+    return file
 
 
 def find_levels(building: Building) -> dict[Channel, list[float]]:
@@ -171,10 +168,10 @@ class Trials:
         )  # fmt: skip
 
 
-def build_blocks() -> tuple[FloatArray, FloatArray]:
+def build_blocks(ratios: Sequence[float] = RATIOS, heights: Sequence[float] = HEIGHTS) -> tuple[FloatArray, FloatArray]:
     """Return breadths and heights of the blocks [m]: each height with every B/H."""
-    heights, ratios = np.meshgrid(HEIGHTS, RATIOS, indexing="ij")
-    return (ratios * heights).ravel(), heights.ravel()
+    tall, slender = np.meshgrid(heights, ratios, indexing="ij")
+    return (slender * tall).ravel(), tall.ravel()
 
 
 def rock_building(building: Building, levels: Mapping[Channel, Sequence[float]], options: Options) -> list[Trials]:

@@ -20,7 +20,7 @@ PARTS = "parts"
 """Folder of kept results, within that of a study's files."""
 SOURCES = (
     "motion", "rocking", "compiled.py", "units.py", "methods/simulate.py", "studies/buildings.py",
-    "studies/calibration/floor_motions.py",
+    "studies/calibration.py",
 )  # fmt: skip
 """The code that kept results depend on: if it changes, they are computed again."""
 MARK = "made_of"
