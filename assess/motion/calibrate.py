@@ -168,53 +168,27 @@ class Bench:
         return np.asarray(np.abs(self.watch(sweep, motions)[0]).mean(axis=0, dtype=np.float64))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Filtering:
-    """What the rounds of filtering match: `wanted` (m,) [m/s2] at `periods` (m,) [s], each with its weight."""
-
-    wanted: FloatArray
-    periods: FloatArray
-    weight: FloatArray
-    matrix: FloatArray
-    sweep: Sweep
-    frequencies: FloatArray
-
-    @classmethod
-    def of(cls, target: Target, recipe: Recipe) -> "Filtering":
-        """Return it for a target on the grid of a recipe."""
-        places, step = choose_periods(target), recipe.grid.time_step
-        periods = target.periods[places]
-        farthest = BEYOND**2 * matched_to(periods, target.pseudo[places])
-        return cls(
-            wanted=target.pseudo[places], periods=periods, weight=np.where(periods > farthest, FAINT, 1.0),
-            matrix=response_matrix(periods, step), sweep=Sweep.of(periods, step, recipe.grid.count),
-            frequencies=find_rates(recipe.grid).frequencies,
-        )  # fmt: skip
-
-    def gains(self, power: FloatArray) -> Single:
-        """Return the filter of this power (m,)."""
-        return gains_of(power, self.periods, self.frequencies)
-
-
 def find_filter(target: Target, recipe: Recipe, noise: Sequence[Transforms], bench: Bench) -> tuple[Recipe, Single]:
     """Return the recipe with filter and bending, and all its motions.
 
     `noise` holds the groups of the realisations by which everything is set.
     """
-    work = Filtering.of(target, recipe)
-    power = guess_power(work.matrix, work.periods, work.wanted)
+    places, grid, frequencies = choose_periods(target), recipe.grid, find_rates(recipe.grid).frequencies
+    periods, wanted = target.periods[places], target.pseudo[places]
+    weight = np.where(periods > BEYOND**2 * matched_to(periods, wanted), FAINT, 1.0)
+    matrix, sweep = response_matrix(periods, grid.time_step), Sweep.of(periods, grid.time_step, grid.count)
+    power = guess_power(matrix, periods, wanted)
     for number, size in enumerate(ROUNDS):
-        recipe = replace(recipe, gains=work.gains(power))
+        recipe = replace(recipe, gains=gains_of(power, periods, frequencies))
         motions, peaks = bench.shape(recipe, noise, size)
         if number == 0:  # the level first: only then can peaks be judged, and nothing has been bent by them yet
-            ratio = float(np.median(work.wanted / bench.mean(work.sweep, motions)))
+            ratio = float(np.median(wanted / bench.mean(sweep, motions)))
             motions, peaks, power = motions * np.float32(ratio), peaks * ratio, power * ratio**2
         _bend(motions, peaks[:, 1], target.pfa, bench, is_last=False)
-        error = np.log(work.wanted / bench.mean(work.sweep, motions))
-        power = improve(work.matrix, power, error, work.weight)
-        wanted = bend_to(peaks[:, 0], target.pfv, MOST_SHARPENED, PFV_LOW, PFV_HIGH)
-        recipe = replace(recipe, by_pfv=recipe.by_pfv + TURNED * (wanted - recipe.by_pfv))
-    recipe = replace(recipe, gains=work.gains(power))
+        power = improve(matrix, power, np.log(wanted / bench.mean(sweep, motions)), weight)
+        by_pfv = bend_to(peaks[:, 0], target.pfv, MOST_SHARPENED, PFV_LOW, PFV_HIGH)
+        recipe = replace(recipe, by_pfv=recipe.by_pfv + TURNED * (by_pfv - recipe.by_pfv))
+    recipe = replace(recipe, gains=gains_of(power, periods, frequencies))
     motions, peaks = bench.shape(recipe, noise, GROUP * len(noise))
     bending = _bend(motions, peaks[:, 1], target.pfa, bench)
     return replace(recipe, steps=(bending,)), motions

@@ -86,16 +86,11 @@ def draw_bands(grid: Grid, seed: int, axis: str, group: int, progress: Progress,
     """Return white noise of random phases, the same on all floors, and how the time of each motion is stretched.
 
     Where a floor has `signs`, its phases are turned by them; with 1 in every octave the noise is that of all floors.
-
     Raises KeyError if the axis is not "X" or "Y".
     """
-    signs = signs if signs is not None and min(signs) < 0 else None
-    key = (grid, seed, _AXES[axis], group, signs)
-    bands = KEPT.find(key)
-    if bands is None:
-        bands = _draw(grid, seed, _AXES[axis], group, progress, signs)
-        KEPT.keep(key, bands)
-    return bands
+    number, turned = _AXES[axis], signs if signs is not None and min(signs) < 0 else None
+    key = (grid, seed, number, group, turned)
+    return KEPT.find_or_make(key, lambda: _draw(grid, seed, number, group, progress, turned), progress)
 
 
 def _draw(grid: Grid, seed: int, axis: int, group: int, progress: Progress, signs: Signs | None) -> Bands:

@@ -233,12 +233,19 @@ def treat(record: Record, baseline: Baseline = "standard", *, progress: Progress
 
 def _treat(record: Record, baseline: Baseline, progress: Progress) -> Motion:
     values, step = record.acceleration, record.time_step
+    own = slice(None)
     if not record.corrected:
         values = values - values.mean()
         if baseline == "standard":
-            return _high_pass(values, step, progress)
+            pad = math.ceil(PAD / step)
+            own = slice(pad, pad + values.size)
+            values = high_pass_both_ways(values, step, CORNER, pad, progress)
     velocity = _integral(values, step)
-    return Motion(values, velocity, _integral(velocity, step), step)
+    displacement = _integral(velocity, step)
+    if own == slice(None):
+        return Motion(values, velocity, displacement, step)
+    # Copies, or each motion would keep its two minutes of pads in memory.
+    return Motion(values[own].copy(), velocity[own].copy(), displacement[own].copy(), step)
 
 
 def scale(motion: Motion, factor: float) -> Motion:
@@ -262,16 +269,6 @@ def treatment(record: Record, baseline: Baseline = "standard") -> Text:
         in_effect=PASS_ORDER * PASSES,
         pad=PAD,
     )
-
-
-def _high_pass(values: FloatArray, time_step: float, progress: Progress) -> Motion:
-    pad = math.ceil(PAD / time_step)
-    filtered = high_pass_both_ways(values, time_step, CORNER, pad, progress)
-    velocity = _integral(filtered, time_step)
-    own = slice(pad, pad + values.size)
-    # Copies, or each motion would keep its two minutes of pads in memory.
-    displacement = _integral(velocity, time_step)
-    return Motion(filtered[own].copy(), velocity[own].copy(), displacement[own].copy(), time_step)
 
 
 def _integral(values: FloatArray, time_step: float) -> FloatArray:
@@ -300,8 +297,24 @@ def build_series(times: FloatArray, values: FloatArray) -> Series:
         time = float(times[place])
         raise RecordError.about("the time of sample {number} is {time:g} s: correct it", number=place + 1, time=time)
     forward = np.append(True, times[1:] > np.maximum.accumulate(times)[:-1])
-    notes = _note_left_out(times.size - int(forward.sum()), times.size)
-    times, values = times[forward], values[forward]
+    left_out = times.size - int(forward.sum())
+    if left_out > MOST_LEFT_OUT * times.size:
+        raise RecordError(
+            nfill(
+                "{n} of {count} samples is no later than one before it: times must increase down the file, and be "
+                "printed with enough digits",
+                "{n} of {count} samples are no later than one before them: times must increase down the file, and be "
+                "printed with enough digits",
+                left_out,
+                count=times.size,
+            )
+        )
+    note = nfill(
+        "{n} sample that is no later than one before it was left out",
+        "{n} samples that are no later than one before them were left out",
+        left_out,
+    )
+    times, values, notes = times[forward], values[forward], (note,) if left_out else ()
     step = float(f"{(times[-1] - times[0]) / (times.size - 1):.12g}")
     if np.abs(times - times[0] - np.arange(times.size) * step).max() <= EVEN_WITHIN * step:
         check_time_step(step)
@@ -310,10 +323,10 @@ def build_series(times: FloatArray, values: FloatArray) -> Series:
 
 
 def _even_out(times: FloatArray, values: FloatArray, notes: tuple[str, ...]) -> Series:
-    median = float(np.median(np.diff(times)))
+    steps, span = np.diff(times), float(times[-1] - times[0])
+    median = float(np.median(steps))
     check_time_step(median)
-    if times[-1] - times[0] > MOST_SAMPLES * RESAMPLED_STEP:
-        span = float(times[-1] - times[0])
+    if span > MOST_SAMPLES * RESAMPLED_STEP:
         raise RecordError.about("the times span {span:.6g} s: cut the record to the shaking", span=span)
     resampled = resample(times, values, RESAMPLED_STEP)
     note = fill(
@@ -323,43 +336,15 @@ def _even_out(times: FloatArray, values: FloatArray, notes: tuple[str, ...]) -> 
         step=RESAMPLED_STEP,
         change=100 * (peak(resampled) / peak(values) - 1),
     )
-    return Series(RESAMPLED_STEP, resampled, (*notes, note, *_note_gaps(times, median)))
-
-
-def _note_left_out(left_out: int, count: int) -> tuple[str, ...]:
-    if left_out > MOST_LEFT_OUT * count:
-        raise RecordError(
-            nfill(
-                "{n} of {count} samples is no later than one before it: times must increase down the file, and be "
-                "printed with enough digits",
-                "{n} of {count} samples are no later than one before them: times must increase down the file, and be "
-                "printed with enough digits",
-                left_out,
-                count=count,
-            )
-        )
-    note = nfill(
-        "{n} sample that is no later than one before it was left out",
-        "{n} samples that are no later than one before them were left out",
-        left_out,
-    )
-    return (note,) if left_out else ()
-
-
-def _note_gaps(times: FloatArray, median: float) -> tuple[str, ...]:
-    steps = np.diff(times)
-    gaps = int((steps > max(GAP, 2 * median)).sum())
-    if not gaps:
-        return ()
-    longest = int(steps.argmax())
-    note = nfill(
+    gaps, longest = int((steps > max(GAP, 2 * median)).sum()), int(steps.argmax())
+    bridged = nfill(
         "a gap of {long:.3g} s at {at:.5g} s is bridged by a straight line",
         "{n} gaps, the longest of {long:.3g} s at {at:.5g} s, are bridged by straight lines",
         gaps,
         long=float(steps[longest]),
         at=float(times[longest]),
     )
-    return (note,)
+    return Series(RESAMPLED_STEP, resampled, (*notes, note, *((bridged,) if gaps else ())))
 
 
 def check_count(count: int) -> None:

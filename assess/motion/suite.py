@@ -92,19 +92,38 @@ def read_suite(folder: Path | str, *, progress: Progress = SILENT) -> Suite:
 
 
 def _read_suite(folder: Path, paths: list[Path], progress: Progress) -> Suite:
-    found = {path: _read(path, progress) for path in paths}
+    found: dict[Path, tuple[Record, ...]] = {}
+    for path in paths:
+        try:
+            found[path] = read_records(path, progress=progress)
+        except RecordError as error:
+            raise RecordError.about("{why}. Correct it, or move it out of the folder", why=error.message) from None
     settled = iter(settle_directions([record for records in found.values() for record in records]))
     found = {path: tuple(islice(settled, len(records))) for path, records in found.items()}
-    motions = [one for path, records in found.items() for one in _horizontal(path, records, progress)]
-    notes = tuple(_note_directions(found))
+    motions = []
+    for path, records in found.items():
+        for record in records:
+            progress.check()
+            if record.vertical is False:
+                name = f"{path.name}#{record.channel}" if len(records) > 1 else path.name
+                motions.append((name, treat(record)))
+    notes = list(_note_directions(found))
     if not motions:
         why = fill("{folder}: the folder holds no horizontal channel. Put floor records into it", folder=folder)
         raise RecordError(join("; ", (why, *notes)))
+    if len(motions) < FEW:
+        notes.append(
+            nfill(
+                "only {n} motion: the probabilities have wide intervals",
+                "{n} motions are few: the probabilities have wide intervals",
+                len(motions),
+            )
+        )
     return Suite(
         folder=folder.name,
         motions=tuple(sorted(motions, key=lambda one: (one[1].time_step, one[0]))),
         files={path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in found},
-        notes=(*notes, *_note_few(len(motions))),
+        notes=tuple(notes),
     )
 
 
@@ -119,26 +138,3 @@ def _note_directions(found: Mapping[Path, tuple[Record, ...]]) -> Iterator[str]:
             "them as plain CSV, with x or y as the heading)",
             channels=", ".join(unknown),
         )
-
-
-def _note_few(count: int) -> Iterator[str]:
-    if count < FEW:
-        yield nfill(
-            "only {n} motion: the probabilities have wide intervals",
-            "{n} motions are few: the probabilities have wide intervals",
-            count,
-        )
-
-
-def _read(path: Path, progress: Progress) -> tuple[Record, ...]:
-    try:
-        return read_records(path, progress=progress)
-    except RecordError as error:
-        raise RecordError.about("{why}. Correct it, or move it out of the folder", why=error.message) from None
-
-
-def _horizontal(path: Path, records: tuple[Record, ...], progress: Progress) -> Iterator[tuple[str, Motion]]:
-    for record in records:
-        progress.check()
-        if record.vertical is False:
-            yield (f"{path.name}#{record.channel}" if len(records) > 1 else path.name), treat(record)

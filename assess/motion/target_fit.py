@@ -58,12 +58,6 @@ class Spectra:
         return replace(self, ordinates=self.ordinates[:count])
 
 
-def velocities(acceleration: NDArray[Any], time_step: float) -> FloatArray:
-    """Return velocity [m/s] of motions (k, n) [m/s2] that start at rest."""
-    steps = (acceleration[:, 1:] + acceleration[:, :-1]) * (time_step / 2)
-    return np.pad(np.cumsum(steps, axis=1, dtype=np.float64), ((0, 0), (1, 0)))
-
-
 def measure_peaks(acceleration: NDArray[Any], time_step: float) -> FloatArray:
     """Return PFA [m/s2] and PFV [m/s] of motions (k, n) [m/s2] that start at rest, (k, 2)."""
     from assess.motion.recipe import measure_rows
@@ -96,22 +90,10 @@ def measure_match(
 
     run_groups(measure, len(motions), threads, progress)
     wanted = target.ordinates(periods, time_step)
-    deviation = pseudo.mean(axis=0, dtype=np.float64) / wanted - 1
-    fit = _summarise(target, wanted_to, periods, pseudo, deviation, peaks)
-    return fit, Spectra(periods=periods, ordinates=pseudo, target=wanted)
-
-
-def _summarise(
-    target: Target,
-    wanted_to: float,
-    periods: FloatArray,
-    pseudo: NDArray[np.float32],
-    deviation: FloatArray,
-    peaks: FloatArray,
-) -> Fit:
-    worst, mean = int(np.abs(deviation).argmax()), pseudo.mean(axis=0, dtype=np.float64)
-    pfa, pfv, end = peaks.T
-    return Fit(
+    mean = pseudo.mean(axis=0, dtype=np.float64)
+    deviation = mean / wanted - 1
+    worst, (pfa, pfv, end) = int(np.abs(deviation).argmax()), peaks.T
+    fit = Fit(
         count=len(pseudo),
         matched_to=wanted_to,
         mean_deviation=float(np.abs(deviation).mean()),
@@ -124,3 +106,4 @@ def _summarise(
         spectrum_scatter=float((pseudo.std(axis=0, dtype=np.float64) / mean).mean()),
         drift=float((np.abs(end) / pfv).max()),
     )
+    return fit, Spectra(periods=periods, ordinates=pseudo, target=wanted)

@@ -11,7 +11,7 @@ from assess.motion.drawn_ground import AMPLIFIED, build_beam_grid, draw_ground, 
 from assess.motion.record import FloatArray
 from assess.motion.rows import GROUP
 from assess.motion.sweep import Single, Sweep
-from assess.motion.target_fit import measure_peaks, velocities
+from assess.motion.target_fit import measure_peaks
 from assess.progress import SILENT
 
 GRID = build_beam_grid(None)
@@ -51,7 +51,7 @@ def test_they_start_and_end_almost_at_rest(ground: Ground) -> None:
     motions = make(ground)
     first = np.abs(motions[:, 0]) / np.abs(motions).max(axis=1)
     assert first.max() < 0.03
-    speeds = velocities(motions, GRID.time_step)
+    speeds = np.cumsum((motions[:, 1:] + motions[:, :-1]) * (GRID.time_step / 2), axis=1, dtype=np.float64)
     left = np.abs(speeds[:, -1]) / np.abs(speeds).max(axis=1)
     assert np.median(left) < 0.05
     assert left.max() < 0.15
