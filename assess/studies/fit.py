@@ -468,7 +468,9 @@ def fit_all(compared: Sequence[Compared], options: Options) -> Fits:
     )
 
 
-def fit_alternative(counts: Counts, group: NDArray[np.str_], *, with_pfv: bool, check: Check) -> Alternative:
+def fit_alternative(
+    counts: Counts, group: NDArray[np.str_], *, with_pfv: bool = True, check: Check = lambda: None
+) -> Alternative:
     """Fit a probit to all, and to all but each building."""
     without: list[Probit] = []
 

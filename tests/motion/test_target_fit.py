@@ -7,7 +7,7 @@ import pytest
 
 from assess.motion.spectrum import pseudo_acceleration, response_spectrum
 from assess.motion.target import Envelopes, Target
-from assess.motion.target_fit import measure_match, velocities
+from assess.motion.target_fit import measure_match
 
 STEP = 0.005
 MOTIONS = np.array([[0.0, 2.0, 0.0, -1.0, 0.0, 0.0], [0.0, -1.0, 4.0, 0.0, -3.0, 0.0]])
@@ -23,11 +23,6 @@ TARGET = Target(
     acceleration=np.array([0.0, 0.0, 3.0, 0.0, -2.0, 0.0]),
 )
 WANTED = response_spectrum(TARGET.acceleration, STEP, BETWEEN).pseudo
-
-
-def test_velocities_by_hand() -> None:
-    expected = np.array([[0, 1, 2, 1.5, 1, 1], [0, -0.5, 1, 3, 1.5, 0]]) * 2 * STEP / 2
-    np.testing.assert_allclose(velocities(MOTIONS, STEP), expected, atol=1e-15)
 
 
 def test_peaks_and_their_scatter() -> None:

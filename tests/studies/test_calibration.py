@@ -14,20 +14,18 @@ from assess.studies import calibration
 from assess.studies.buildings import all_buildings
 from assess.studies.calibration import (
     BEAMS,
+    BLOCKS,
+    LEVELS,
     RECORDED,
     Outcomes,
+    Tried,
     by_chance,
     by_class,
     calibrate,
     collect,
+    draw_seed,
     find_error,
     find_score,
-)
-from assess.studies.calibration.floor_motions import (
-    LEVELS,
-    Tried,
-    build_blocks,
-    draw_seed,
     list_beams,
     list_recorded,
     try_floors,
@@ -165,9 +163,9 @@ def test_cases_are_of_their_floor_and_of_its_site_and_axis():
 def test_floors_are_all_channels_of_the_buildings_and_beams_on_every_ground_motion():
     channels = [one for building in all_buildings() for one in building.channels]
     floors, beams = list_recorded(), list_beams()
-    assert [(one.file, one.axis) for one in floors] == [(one.file, one.axis) for one in channels]
+    assert [(one.channel.file, one.channel.axis) for one in floors] == [(one.file, one.axis) for one in channels]
     assert floors[3].read().pfa == channels[3].read().pfa
-    grounds = {one.file.name for one in beams}
+    grounds = {one.channel.file.name for one in beams}
     assert len(beams) == len(set(map(str, beams))) == 8 * len(grounds)
     assert grounds == {
         "891018_1.cra-1.0210k.smc", "1103.HN2.NP.BE_a.smc", "1103.HN2.NP.BW_a.smc", "1103.HN3.NP.BE_a.smc",
@@ -183,7 +181,7 @@ def test_floors_of_beams_swing_on_after_the_ground_motion():
     """T1 of 4 s: 20 s longer than the record, and what swings on does so at an odd multiple of 1/T1."""
     (beam,) = (
         one for one in list_beams()
-        if one.file.name == "np01002p_4225a_a.smc" and (one.beam.period, one.beam.place) == (4.0, 1.0)
+        if one.channel.file.name == "np01002p_4225a_a.smc" and (one.beam.period, one.beam.place) == (4.0, 1.0)
     )  # fmt: skip
     floor, ground = beam.read(), replace(beam, beam=None).read()
     assert floor.acceleration.size * floor.time_step == pytest.approx(ground.acceleration.size * 0.005 + 20, abs=0.02)
@@ -211,13 +209,14 @@ def pick():
 @pytest.mark.slow
 def test_what_falls_is_that_of_the_scaled_motions(kept):
     """One block on both floors, by hand."""
-    breadth, height = build_blocks()
+    breadth, height = BLOCKS
     at = 5
     for tried in kept[1]:
         motion = tried.floor.read()
         grid = build_grid([motion])
         seed = draw_seed(tried.floor, 3)
-        made = build_generator(recorded_target(motion, grid), grid, seed=seed, axis=tried.floor.axis).realise(0, 4)
+        target, axis = recorded_target(motion, grid), tried.floor.channel.axis
+        made = build_generator(target, grid, seed=seed, axis=axis).realise(0, 4)
         for level, pfa in enumerate(LEVELS):
             factor = pfa * GRAVITY / motion.pfa
             alone = rock_blocks(breadth[at], height[at], factor * made, grid.time_step)

@@ -10,8 +10,7 @@ from assess.methods import Cases
 from assess.methods.fitted import read_model, write_model
 from assess.settings import Settings
 from assess.studies import fit
-from assess.studies.fit.fits import find_errors, fit_all
-from assess.studies.fit.surfaces import EQUATION_8
+from assess.studies.fit import EQUATION_8, find_errors, fit_all
 from assess.studies.study import Options
 from assess.units import ACCELERATION, GRAVITY
 from tests.studies.made_up import make_compared

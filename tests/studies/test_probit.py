@@ -12,7 +12,7 @@ from scipy.stats import norm
 from assess.errors import InputError
 from assess.methods import Cases
 from assess.methods.fitted import Probit, find_groups
-from assess.studies.fit.fits import Counts, design, find_left_out, fit_probit, fit_without, loss
+from assess.studies.fit import Counts, design, fit_alternative, fit_probit, loss
 from assess.units import GRAVITY
 
 RUNS = 100
@@ -119,16 +119,16 @@ def test_nothing_falls_where_nothing_moves_and_an_unknown_velocity_stays_unknown
 
 def test_left_out_errors_are_small_for_its_own_kind_and_large_for_another_building():
     group = np.repeat([0, 1, 2], GIVEN.fallen.size // 3)
-    alike = find_left_out(GIVEN, group, fit_without(GIVEN, group))
+    alike = fit_alternative(GIVEN, group).left_out
     assert alike.error < 0.06  # the scatter of a share of 100: at most 0.05
     other = dataclasses.replace(GIVEN, fallen=np.where(group == 2, GIVEN.runs - GIVEN.fallen, GIVEN.fallen))
-    assert find_left_out(other, group, fit_without(other, group)).error > 3 * alike.error
+    assert fit_alternative(other, group).left_out.error > 3 * alike.error
 
 
 def test_a_fit_without_a_group_is_that_to_the_others():
     group = np.repeat(["a", "b", "c"], GIVEN.fallen.size // 3)
     names = [one.name for one in dataclasses.fields(GIVEN)]
-    for one, probit in zip("abc", fit_without(GIVEN, group), strict=True):
+    for one, probit in zip("abc", fit_alternative(GIVEN, group).without, strict=True):
         others = Counts(**{name: getattr(GIVEN, name)[group != one] for name in names})
         assert probit == fit_probit(others)
 

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.signal import StateSpace, lsim
 
-from assess.studies.calibration.floor_motions import DAMPING, HIGHEST, count_modes, find_shares, shake_beam
+from assess.studies.calibration import DAMPING, HIGHEST, count_modes, find_shares, shake_beam
 
 STEP = 0.005
 TIMES = np.arange(2001) * STEP

@@ -9,8 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from assess.studies.solver import STUDY, follow_near, pulses, sample, tabulate_histories
-from assess.studies.solver.pulses import (
+from assess.studies.solver import (
     ALPHA,
     ETA,
     EXACT,
@@ -18,8 +17,10 @@ from assess.studies.solver.pulses import (
     LOOSE,
     NEAR,
     ODE23S,
+    POINT,
     RK45,
     SIDE,
+    STUDY,
     TIGHT,
     Case,
     Limit,
@@ -28,8 +29,11 @@ from assess.studies.solver.pulses import (
     Solver,
     find_limit,
     follow,
+    follow_near,
     read_limits,
+    sample,
     solve_half_sine,
+    tabulate_histories,
 )  # fmt: skip
 from assess.studies.study import Options, render_block
 from tests.rocking.reference import Block, integrate
@@ -141,7 +145,7 @@ def test_free_motion_of_the_linear_equation():
     response = follow(LINEAR, 2.5, EXACT, until=4.0)
     signs = np.sign(response.theta)
     inside = np.flatnonzero((response.times > LINEAR.end) & (signs != 0))
-    h = pulses.POINT
+    h = POINT
     checked = 0
     for at in inside[1:-1]:
         steps = np.diff(response.times[at - 1 : at + 2])

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from assess.errors import InputError
 from assess.methods import Cases, proposed_or
 from assess.methods.fitted import expand
-from assess.studies.fit.surfaces import (
+from assess.studies.fit import (
     CANDIDATES,
     CONSTANT,
     EQUATION_8,

@@ -19,9 +19,17 @@ from assess.rocking.response import follow_block
 from assess.studies import run_study
 from assess.studies.studied_methods import SHORT_TITLES, evaluate_formulas
 from assess.studies.study import Options
-from assess.studies.table1 import STUDY, climb_buildings, count_classes
-from assess.studies.table1.records_folder import evaluate_folder, quote, read_folder
-from assess.studies.table1.tower import climb, climb_all, read_stations
+from assess.studies.table1 import (
+    STUDY,
+    climb,
+    climb_all,
+    climb_buildings,
+    count_classes,
+    evaluate_folder,
+    quote,
+    read_folder,
+    read_stations,
+)
 from assess.units import GRAVITY
 
 SAMPLES = Path(__file__).parents[2] / "samples"

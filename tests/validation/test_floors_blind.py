@@ -24,7 +24,7 @@ from assess.motion.target_fit import measure_peaks
 from assess.progress import SILENT
 from assess.settings import Settings
 from assess.studies.study import read_facts
-from assess.studies.table1.tower import read_stations
+from assess.studies.table1 import read_stations
 from assess.units import GRAVITY
 from docs.motions import BLIND, RECORDS
 
