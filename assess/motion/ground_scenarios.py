@@ -186,20 +186,14 @@ def read_scenarios(folder: Path) -> GroundScenarios:
                     unit="cm/s" if name == "gmv_PGV" else "g",
                 )  # fmt: skip
     with naming(sites_file):
-        sites.require("lon", "lat")
-        names, latitude, longitude = (sites.columns[name] for name in (key, "lat", "lon"))
-        if (line := sites.find_bad((np.abs(latitude) <= 90) & (np.abs(longitude) <= 360))) is not None:
-            raise InputError.about("line {line}: lon and lat are not a place on earth", line=sites.lines[line])
-        if np.unique(names).size < names.size:
-            raise InputError.about("a {key} is there twice", key=key)
-        rising = np.argsort(names)
+        names, latitude, longitude = _read_sites(sites, key)
     with naming(VALUES):
         events, own = data.columns["event_id"], data.columns[key]
         is_whole = np.isfinite(events) & (np.abs(events) < 2**53) & (events == np.floor(events))
         if (line := data.find_bad(is_whole)) is not None:
             raise InputError.about("line {line}: event_id has to be a whole number", line=data.lines[line])
-        at = np.searchsorted(names[rising], own)
-        if (line := data.find_bad(names[rising][np.minimum(at, names.size - 1)] == own)) is not None:
+        at = np.searchsorted(names, own)
+        if (line := data.find_bad(names[np.minimum(at, names.size - 1)] == own)) is not None:
             raise InputError.about(
                 "line {line}: its {key} is not in {file}", line=data.lines[line], key=key, file=sites_file
             )
@@ -215,13 +209,25 @@ def read_scenarios(folder: Path) -> GroundScenarios:
         sites_file=sites_file,
         hashes=hashes,
         path=folder,
-        latitude=latitude[rising],
-        longitude=longitude[rising],
+        latitude=latitude,
+        longitude=longitude,
         start=np.searchsorted(at, np.arange(len(names) + 1)),
         values=np.column_stack([data.columns[name][order] for name in measures]),
         measures=measures,
         event_count=int(np.unique(events).size),
     )
+
+
+def _read_sites(sites: "_Table", key: str) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the numbers of the sites, rising, with latitude and longitude [deg]."""
+    sites.require("lon", "lat")
+    names, latitude, longitude = (sites.columns[name] for name in (key, "lat", "lon"))
+    if (line := sites.find_bad((np.abs(latitude) <= 90) & (np.abs(longitude) <= 360))) is not None:
+        raise InputError.about("line {line}: lon and lat are not a place on earth", line=sites.lines[line])
+    if np.unique(names).size < names.size:
+        raise InputError.about("a {key} is there twice", key=key)
+    rising = np.argsort(names)
+    return names[rising], latitude[rising], longitude[rising]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
