@@ -2,8 +2,6 @@
 
 from pathlib import Path
 
-import pytest
-
 from assess.workbook.patch import patch_workbook
 from assess.workbook.read import read_inventory
 from tests.cli.calling import error, run
@@ -11,7 +9,6 @@ from tests.workbooks import ITEMS, RECORDS, address, write
 
 BREADTH = address("breadth", 2)
 HEIGHTS = [address("height", row) for row in (2, 3, 4, 5)]
-WAYS = ("Hazard map", "ShakeMap of a past", "Records", "Shaking in Building, such as 'MMI VII, very strong'")
 LACKING = [{"floor": "1", "elevation": 0}, {"floor": "2", "elevation": 4}]
 
 
@@ -56,13 +53,6 @@ def test_the_problems_are_those_that_a_check_of_the_copy_names(tmp_path):
     assert not any("left out" in line for line in shown)
 
 
-def test_nothing_is_written_where_nothing_is_to_be_corrected(tmp_path):
-    done = run("check", write(tmp_path / "book.xlsx"), "--fix", tmp_path / "out.xlsx")
-    assert done.exit_code == 0
-    assert done.stdout.startswith(f"book.xlsx: no cell to correct; {tmp_path / 'out.xlsx'} was not written.\n")
-    assert not (tmp_path / "out.xlsx").exists()
-
-
 def test_the_workbook_itself_is_never_written(tmp_path):
     path = habits(tmp_path / "book.xlsx", "30 cm")
     (tmp_path / "linked.xlsx").hardlink_to(path)
@@ -70,25 +60,6 @@ def test_the_workbook_itself_is_never_written(tmp_path):
     for out in (path, tmp_path / "." / "book.xlsx", tmp_path / "linked.xlsx"):
         assert "is the workbook itself" in error(run("check", path, "--fix", out, "--force"))
     assert path.read_bytes() == before
-
-
-@pytest.mark.slow
-def test_an_existing_file_is_replaced_on_demand_only(tmp_path):
-    path = habits(tmp_path / "book.xlsx", "30 cm")
-    (tmp_path / "out.xlsx").write_text("mine")
-    done = run("check", path, "--fix", tmp_path / "out.xlsx")
-    assert (done.exit_code, done.stdout) == (1, "")
-    assert "already exists: add --force" in done.stderr
-    assert (tmp_path / "out.xlsx").read_text() == "mine"
-    assert run("check", path, "--fix", tmp_path / "out.xlsx", "--force").exit_code == 0
-    assert read_inventory(tmp_path / "out.xlsx").items[0].breadth == 0.3
-
-
-def test_a_copy_that_cannot_be_written_is_refused_before_the_work(tmp_path):
-    path = habits(tmp_path / "book.xlsx", "30 cm")
-    for out in ("out.xlsm", "out", "missing/out.xlsx", "x" * 300 + ".xlsx", "."):
-        assert "copy" in error(run("check", path, "--fix", tmp_path / out))
-    assert [one.name for one in tmp_path.iterdir()] == ["book.xlsx"]
 
 
 def test_files_that_the_workbook_names_are_looked_for_next_to_it(tmp_path):
@@ -103,14 +74,6 @@ def test_files_that_the_workbook_names_are_looked_for_next_to_it(tmp_path):
 
 
 # ---------------------------------------------------------------- what lacks the shaking
-
-
-def test_a_run_without_shaking_is_an_error_with_the_same_help(tmp_path):
-    done = run("run", write(tmp_path / "w.xlsx", floors=LACKING), "--out", tmp_path / "out")
-    assert done.exit_code == 2
-    assert all(done.stderr.count(way) == 1 for way in WAYS)
-    assert "2 errors; nothing was written." in done.stderr
-    assert not (tmp_path / "out").exists()
 
 
 def test_what_is_wrong_stays_an_error_next_to_what_is_missing(tmp_path):

@@ -1,13 +1,12 @@
 """`assess compare`: two runs of a small workbook through the real commands, and every bad input."""
 
 import json
-import re
 import shlex
 
 import pytest
 
 import assess.version
-from tests.cli.calling import error, run
+from tests.cli.calling import run
 from tests.workbooks import write
 
 QUICK = ("--runs", "60", "--formats", "json")
@@ -55,33 +54,6 @@ def test_before_and_after_equal_what_each_run_says(folder, tmp_path):
         for one in record["items"]:
             assert one[side]["probability"] == adopted[one["item"]]["probability"]
             assert one[side]["class"] == adopted[one["item"]]["class"]
-
-
-@pytest.mark.slow
-def test_files_go_to_the_current_folder_by_default(folder, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    _compare(folder, "base", "strong")
-    names = {path.name for path in (tmp_path / "compare").iterdir()}
-    assert names == {"compare.html", "compare.pdf", "compare.xlsx", "compare.json"}
-
-
-def test_bad_input_ends_with_an_error_and_nothing_is_written(folder, tmp_path, monkeypatch):
-    (tmp_path / "here").mkdir()
-    monkeypatch.chdir(tmp_path / "here")
-    _compare(folder, "base", "strong", "--out", tmp_path, "--formats", "json")
-    for words, message in (
-        (("none", "base"), r"error +\S*none does not exist: name a results\.json, or the folder that holds it"),
-        (("hall.xlsx", "base"), r"hall\.xlsx is not a JSON file: name a results\.json written by assess"),
-        (("base", "."), r"contains no results\.json"),
-        (("base", tmp_path / "compare.json"), "is a comparison, not a run"),
-        (("base", "base", "--formats", "pdf,docx"), r"--formats: 'docx' is an unknown format; expected some of: html"),
-        (("base", "base", "--formats", ""), r"--formats: no format is named"),
-        (("base", "base", "--language", "xx"), r"--language 'xx' is unknown"),
-        (("base", "base", "--out", folder / "hall.xlsx"), r"--out: \S*hall\.xlsx is a file; name a folder"),
-    ):
-        before, after, *options = words
-        assert re.search(message, error(run("compare", folder / before, folder / after, *options))), words
-        assert list((tmp_path / "here").iterdir()) == []
 
 
 def test_the_files_speak_the_language_of_the_workbook_or_the_one_asked_for(folder, tmp_path):

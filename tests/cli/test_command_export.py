@@ -1,9 +1,6 @@
 """``assess export``: what users see of it, and what they find in the folder."""
 
-import os
 import re
-import subprocess
-import sys
 import zipfile
 from pathlib import Path
 
@@ -125,23 +122,9 @@ def refuse(results: Path, *words: object) -> str:
     return message
 
 
-def test_what_cannot_be_written_leaves_the_folder_as_it_was(results):
+def test_what_cannot_be_read_leaves_the_folder_as_it_was(results):
     model, out, bcf = (results.with_name(name) for name in ("model.ifc", "o.ifc", "t.bcfzip"))
-    model.write_bytes(DUPLEX.read_bytes())
-    results.with_name("taken").write_bytes(b"file")
-    for words, message in (
-        (("--ifc", DUPLEX), "nothing is to be written: add --out MODEL.ifc"),
-        (("-o", out), "--ifc"),
-        *((("--ifc", DUPLEX, option, results.with_name(name)), "unsupported file type")
-          for option, name in (("-o", "o.xlsx"), ("-o", "o"), ("--bcf", "t.zip"), ("--bcf", "t.ifc"))),
-        *((("--ifc", model, "-o", model, *forced), "model.ifc is read for this: name another file")
-          for forced in ((), ("--force",))),
-        (("--ifc", DUPLEX, "-o", out, "--bcf", out), "name the same file"),
-        (("--ifc", OFFICE, "-o", out), "is that of an element of LargeBuilding.ifc. Name the model that"),
-        (("--ifc", DUPLEX, "-o", out, "--bcf", results.parent / "taken" / "t.bcfzip"),
-         "name a file in a folder that exists"),
-    ):  # fmt: skip
-        assert message in refuse(results, *words), words
+    assert "is that of an element of LargeBuilding.ifc" in refuse(results, "--ifc", OFFICE, "-o", out)
     for data, message in (
         (b"", "model.ifc .* is empty"),
         (DUPLEX.read_bytes()[: 2 * DUPLEX.stat().st_size // 3], "END-ISO-10303-21;, is missing"),
@@ -150,25 +133,8 @@ def test_what_cannot_be_written_leaves_the_folder_as_it_was(results):
     ):
         model.write_bytes(data)
         assert re.search(message, refuse(results, "--ifc", model, "-o", out, "--bcf", bcf))
-    earlier = results.read_text(encoding="utf-8").replace('"source_id":', '"source_is":')
-    for text, message in (
-        (earlier, "holds no Source ID, by which a piece is found in the model"),
-        ("{}", "results.json was not written by assess"),
-    ):
-        results.write_text(text, encoding="utf-8")
-        assert message in refuse(results, "--ifc", DUPLEX, "-o", out)
-    assert "gone.json does not exist" in refuse(results.with_name("gone.json"), "--ifc", DUPLEX, "-o", out)
-
-
-@pytest.mark.parametrize(("option", "name"), [("-o", "o.ifc"), ("--bcf", "t.bcfzip")])
-def test_an_existing_file_stays_unless_forced(results, option, name):
-    out = results.with_name(name)
-    out.write_bytes(b"mine")
-    done = run("export", results, "--ifc", DUPLEX, option, out)
-    assert (done.exit_code, done.stdout, out.read_bytes()) == (1, "", b"mine")
-    assert f"{name} already exists: add --force" in " ".join(done.stderr.split())
-    assert run("export", results, "--ifc", DUPLEX, option, out, "--force").exit_code == 0
-    assert out.read_bytes() != b"mine"
+    results.write_text("{}", encoding="utf-8")
+    assert "results.json was not written by assess" in refuse(results, "--ifc", DUPLEX, "-o", out)
 
 
 def test_a_model_that_was_exported_before(results):
@@ -176,23 +142,3 @@ def test_a_model_that_was_exported_before(results):
     run("export", results, "--ifc", DUPLEX, "-o", first)
     message = refuse(results, "--ifc", first, "-o", results.with_name("second.ifc"))
     assert "first.ifc holds Assess_OverturningRisk already, on 4 of the pieces" in message
-
-
-WITHOUT = """
-import sys
-sys.modules["ifcopenshell"] = None
-from assess.__main__ import main
-main()
-"""
-
-
-def test_without_the_extra_one_line_tells_what_to_install(results):
-    command = [sys.executable, "-c", WITHOUT, "export", str(results), "--ifc", str(DUPLEX), "-o",
-               str(results.with_name("o.ifc"))]  # fmt: skip
-    done = subprocess.run(command, capture_output=True, text=True, check=False, env=os.environ | {"COLUMNS": "400"})
-    assert (done.returncode, done.stdout) == (2, "")
-    said = " ".join(done.stderr.split())
-    assert "need the library ifcopenshell. Install it from the folder of the source code of assess" in said
-    assert "'.[ifc]'" in said
-    assert "Traceback" not in said
-    assert files(results.parent) == ["results.json"]

@@ -162,37 +162,6 @@ def test_the_figure_holds_the_shares_and_the_fits():
 # --- what is wrong ---
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (("--levels", "1:0.5"), "--levels is 1 to 0.5 g, expected above 0, LOW first, and at most 20 g."),
-        (("--levels", "9:5", "--im", "pfv"), "--levels is 9 to 5 cm/s, expected above 0, LOW first, and at most 5000"),
-        (("--im", "psa"), "'psa' is not one of 'pfa', 'pfv'"),
-        (("--by", "room"), "'room' is not one of 'item', 'type'"),
-        (("--runs", "auto"), "--runs: auto is for assess run, as every level uses the same motions. Give a number."),
-        (
-            ("--formats", "csv,nrlm"),
-            "--formats: 'nrlm' is an unknown format; expected some of: csv, json, pelicun, nrml",
-        ),
-        (("--formats", ","), "--formats: no format is named; expected some of: csv, json, pelicun, nrml"),
-        (("--out", "w.xlsx"), "--out: w.xlsx is a file; name a folder"),
-        (("--plot", "x.gif"), "the figure x.gif has an unsupported file type: end its name in .png, .svg or .pdf"),
-        (("--scenario", "recorded"), "Floors!H3: floor '2' has no record"),
-    ],
-)
-def test_bad_options_are_named(tmp_path, monkeypatch, words, message):
-    path = write(tmp_path)
-    monkeypatch.chdir(tmp_path)
-    assert message in error(run("fragility", path.name, *words))
-    assert sorted(one.name for one in tmp_path.iterdir()) == ["slow.csv", "w.xlsx"]
-
-
-def test_a_workbook_in_which_nothing_can_rock(tmp_path):
-    text = error(run("fragility", write(tmp_path, Items=ITEMS[3:]), "--out", tmp_path / "out"))
-    assert "no piece can rock: all are too stocky, or there are none." in text
-    assert not (tmp_path / "out").exists()
-
-
 def test_files_appear_all_or_none(tmp_path, monkeypatch):
     """The second file cannot be written: the first one is as it was."""
     path, out = write(tmp_path), tmp_path / "out"
@@ -237,17 +206,6 @@ def test_files_for_pelicun_and_openquake(tmp_path):
     assert taxonomies == [
         ("Shelf|1", "continuous"), ("Shelf|2", "continuous"), ("60_x_180_cm|1", "discrete"),
     ]  # fmt: skip
-
-
-def test_nrml_needs_the_ground_and_pfa(tmp_path):
-    """It is refused before anything is rocked."""
-    path = write(tmp_path)
-    text = error(run("fragility", path, "--formats", "nrml", "--out", tmp_path / "out"))
-    assert "--formats: nrml relates each floor to the ground, whose peak acceleration in this scenario is not " in text
-    assert "Fill in Ground PGA in the sheet Building" in text
-    text = error(run("fragility", path, "--im", "pfv", "--formats", "nrml", "--out", tmp_path / "out"))
-    assert "--formats: OpenQuake computes accelerations of the ground" in text
-    assert not (tmp_path / "out").exists()
 
 
 def test_nothing_is_written_where_a_format_has_no_curve_at_all(tmp_path):

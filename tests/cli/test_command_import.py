@@ -12,7 +12,6 @@ from assess.workbook.read import read_inventory, read_tables
 from tests.bim.cobie_files import COMPONENTS, TYPES, one_type, write_cobie
 from tests.bim.model_here import models_read_here
 from tests.cli.calling import error, run
-from tests.workbooks import write
 
 MODELS = Path(__file__).parents[2] / "samples" / "models"
 DUPLEX = MODELS / "duplex.ifc"
@@ -56,37 +55,6 @@ def test_furniture_that_was_left_out_is_named_and_ends_with_1(tmp_path):
         "2 pieces left out (no NominalHeight): Bookcase A (2).",
     ]
     assert (tmp_path / "b.xlsx").exists()
-
-
-def test_files_of_another_kind(tmp_path):
-    write(tmp_path / "inventory.xlsx")
-    for name, message in (
-        *((name, f"{name} does not exist.") for name in ("model.ifc", "scan.json", "missing.xlsx")),
-        ("inventory.xlsx", "inventory.xlsx is an inventory workbook already, not a COBie file."),
-    ):
-        assert message in error(run("import", tmp_path / name, "-o", tmp_path / "b.xlsx"))
-        assert not (tmp_path / "b.xlsx").exists()
-
-
-def test_an_existing_workbook_stays_unless_forced(cobie):
-    out = cobie.with_name("building.xlsx")
-    out.write_bytes(b"mine")
-    done = run("import", cobie, "-o", out)
-    assert (done.exit_code, done.stdout) == (1, "")
-    assert "already exists: add --update to take the changes of the model into it, --force to replace it" in done.stderr
-    assert out.read_bytes() == b"mine"
-    assert run("import", cobie, "-o", out, "--force").exit_code == 0
-    assert out.read_bytes().startswith(b"PK")
-
-
-def test_the_file_itself_is_never_replaced(cobie):
-    before = cobie.read_bytes()
-    assert "is the file to import" in error(run("import", cobie, "-o", cobie, "--force"))
-    assert cobie.read_bytes() == before
-
-
-def test_the_workbook_has_to_end_in_xlsx(cobie):
-    assert "does not end in .xlsx: name it b.xlsx" in error(run("import", cobie, "-o", cobie.with_name("b.csv")))
 
 
 @pytest.mark.parametrize("share", [0.2, 0.95])
@@ -277,20 +245,6 @@ def test_an_update_writes_no_plan_over_one_of_people_that_the_workbook_does_not_
     before = duplex.read_bytes()
     assert "is up to date" in run("import", model, "-o", duplex, "--update").stdout
     assert duplex.read_bytes() == before
-
-
-def test_choices_that_do_not_fit(tmp_path):
-    for arguments, message in (
-        (("--update", "--force"), "--update keeps what is in the workbook, --force replaces it: give one of them."),
-        (("--update", "--routes", "draft"), "routes are drafted into a new workbook only: leave out one of the two."),
-        (("--update",), "b.xlsx does not exist: name the workbook of an earlier import, or leave it out."),
-        (("--also", "IfcTable2"), "IfcTable2 is not a class of IFC2X3."),
-        (("--routes", "some"), "'some' is not one of 'none', 'draft'"),
-    ):
-        done = run("import", MODELS / "LargeBuilding.ifc", "-o", tmp_path / "b.xlsx", *arguments)
-        assert done.exit_code == 2
-        assert message in done.stderr.replace("\n", " ")
-        assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.slow

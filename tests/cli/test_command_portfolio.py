@@ -12,8 +12,8 @@ import pytest
 from typer.testing import CliRunner
 
 from assess.cli.app import app
-from assess.cli.command_portfolio import FORMATS, _say_repeat, describe_city
-from assess.portfolio import example_city, run_portfolio
+from assess.cli.command_portfolio import _say_repeat, describe_city
+from assess.portfolio import example_city
 from assess.portfolio.city_tables import read_table
 from assess.portfolio.example_city import BUILDINGS, write_example_city
 from assess.portfolio.run_portfolio import PortfolioResult
@@ -74,28 +74,6 @@ def test_the_same_command_goes_on_from_what_is_there(tmp_path):
     )
 
 
-def test_bad_usage_is_named_with_its_option_and_writes_nothing(tmp_path, monkeypatch):
-    assert FORMATS == run_portfolio.FORMATS
-    monkeypatch.chdir(tmp_path)
-    _write(tmp_path, 1)
-    for words, message in (
-        (["--scheduler", "banana"], r"^error  --scheduler is 'banana', expected tcp://HOST:PORT, such as .*\)$"),
-        (["--scheduler", "http://127.0.0.1:1"], "--scheduler is 'http://127.0.0.1:1', expected tcp://HOST:PORT"),
-        (["--jobs", "2", "--scheduler", "tcp://127.0.0.1:1"], "--jobs: the workers of --scheduler do the work"),
-        (["--ideal"], "--ideal is about the simulation"),
-        (["--runs", "auto", "--verify", "all"], "--runs is auto: all buildings of a city need the same draws"),
-        (["--formats", "csv"], "--formats: 'csv' is an unknown format"),
-        (["--scale", "0"], "--scale is 0"),
-        (["--background", "none.geojson"], "none.geojson"),
-        (["--shakemap", "none.xml"], "none.xml"),
-        (["--out", "city"], "--out: .*holds the workbooks"),
-    ):
-        result = run(app, ["portfolio", "city", "--verify", "none", *words])
-        assert result.exit_code == 2, words
-        assert re.search(message, result.stderr), words
-        assert [path.name for path in tmp_path.iterdir()] == ["city"]
-
-
 @pytest.mark.slow
 def test_runs_that_do_not_fit_the_scenarios_are_refused_and_leave_the_results(tmp_path):
     city = write_city(tmp_path / "city", [40.0])
@@ -112,17 +90,6 @@ def test_runs_that_do_not_fit_the_scenarios_are_refused_and_leave_the_results(tm
     said = "error  --runs is 12, expected a multiple of 5, the number of scenarios: each has to count alike."
     assert said in result.stderr
     assert {path: path.read_bytes() for path in out.rglob("*") if path.is_file()} == before
-
-
-def test_an_example_is_written_to_a_new_folder_alone(tmp_path):
-    city = _write(tmp_path, 1)
-    result = _call(city, "--example", "--out", tmp_path / "out")
-    assert result.exit_code == 2
-    assert "is not empty, and not the worked city as it was written; name a folder that does not exist" in result.stderr
-    assert [path.name for path in city.iterdir()] == ["b00.xlsx"]
-    result = _call(tmp_path / "new", "--example", "--out", tmp_path / "new" / "out")
-    assert "lies in the folder of the example; name another one" in result.stderr
-    assert not (tmp_path / "new").exists()
 
 
 def test_an_extra_that_is_missing_is_told_before_the_example_is_written(tmp_path, monkeypatch):

@@ -13,14 +13,13 @@ from matplotlib.figure import Figure
 
 import assess
 from assess.cli.command_routes import PFA
-from assess.cli.curve_figures import MOST_ROUTE_PANELS, ROUTES_A_PANEL, choose_routes, draw_routes, paint_routes
+from assess.cli.curve_figures import MOST_ROUTE_PANELS, ROUTES_A_PANEL, choose_routes, paint_routes
 from assess.cli.route_output import Sweep
-from assess.delivery.deliver import Written
 from assess.pipeline.route_sweep import Fragility, RouteFragility
 from assess.rocking.draws import Uncertainty
 from assess.route_results import Chance, PieceRef
 from assess.units import GRAVITY
-from tests.cli.calling import error, run
+from tests.cli.calling import run
 from tests.shaking import write_records
 from tests.workbooks import write_sheets
 
@@ -202,18 +201,6 @@ def test_it_is_what_a_run_finds_at_the_floors_own_pfa(swept):
     assert 0 < at["blocked"] < 1
 
 
-@pytest.mark.slow
-def test_the_figure_is_the_same_twice_and_of_each_kind(swept):
-    folder, _ = swept
-    assert (folder / "f.png").read_bytes().startswith(b"\x89PNG")
-    for kind, magic in (("svg", b"<?xml"), ("pdf", b"%PDF")):
-        (data, left), again = (draw_routes(swept_with([0.0, 0.1, 0.9], 0.05), kind) for _ in range(2))
-        assert (data, left) == again
-        assert left == 0
-        assert data.startswith(magic)
-        assert len(data) > 10_000
-
-
 def test_the_figure_draws_what_can_be_blocked_eight_a_panel():
     (route,) = swept_with([0.0], 0.1).fragility.routes
     live = [replace(route, route=str(at)) for at in range(70)]
@@ -266,50 +253,4 @@ def test_values(text, values):
     assert PFA.read(text) == values
 
 
-def test_bad_options_are_named(swept, tmp_path, monkeypatch):
-    folder, _ = swept
-    monkeypatch.chdir(tmp_path)
-    for words, message in (
-        (("--pfa=1:0",), "--pfa is 1 to 0 g, expected above 0, LOW first, and at most 5 g."),
-        (("--runs", "auto"), "--runs: auto is for assess run, as every value uses the same motions. Give a number."),
-        (("--runs", "0"), "--runs is '0', expected 1 to 100,000"),
-        (("--seed", "-1"), "--seed is -1, expected a whole number, 0 or above"),
-        (("--scenario", "ASCE 7-10"), "--scenario is 'ASCE 7-10', expected one of: as filled"),
-        (("--scenario", "recorded"), "Floors!H3: floor '2' has no record"),
-        (("--plot", "x.gif"), "the figure x.gif has an unsupported file type: end its name in .png, .svg or .pdf"),
-        (("--plot", "none/x.png"), "cannot be written there: name a file in a folder that exists"),
-        (("--csv", "x.txt"), "the table x.txt has an unsupported file type: end its name in .csv"),
-        (("--csv", "none/x.csv"), "the table none/x.csv cannot be written there: name a file in a folder that exists"),
-        (("--csv", "n" * 300 + "/x.csv"), "cannot be written there"),
-    ):
-        assert message in error(run("routes", folder / "w.xlsx", *words)), words
-        assert list(tmp_path.iterdir()) == []
-
-
-def test_a_workbook_without_routes(tmp_path):
-    items = [{"item": "a", "floor": "1", "breadth": 40, "height": 180}]
-    path = write(tmp_path, Items=items, Routes=[])
-    assert "w.xlsx has no routes: fill in the sheet Routes." in error(run("routes", path))
-
-
 # --- the option of assess run, and the help ---
-
-
-def test_a_risk_of_routes_that_is_none(swept, tmp_path):
-    for text in ("0", "1", "-0.1", "3", "nan"):
-        done = run("run", swept[0] / "w.xlsx", "--route-risk", text, "--out", tmp_path / "out")
-        assert f"--route-risk is {float(text)}, expected above 0 and below 1 (write 3 % as 0.03)" in error(done)
-
-
-def test_a_risk_of_routes_is_used(tmp_path, monkeypatch):
-    used = []
-
-    def note(results, *_, **__):
-        used.append(results.settings.route_risk)
-        return Written({})
-
-    monkeypatch.setattr("assess.report.write_reports", note)
-    path = write(tmp_path, Items=ITEMS[:1])
-    for words in ((), ("--route-risk", 0.2)):
-        assert run("run", path, "--verify", "none", "--out", tmp_path / "out", *words).exit_code == 0
-    assert used == [0.03, 0.2]

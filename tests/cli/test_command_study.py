@@ -5,11 +5,9 @@ import os
 import signal
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
-from assess.cli import command_study
 from assess.errors import OutputError
 from assess.resources import record
 from assess.studies import PAGE, PARTS, Finding, Options, Study, all_studies, check_folder, run_study, write_files
@@ -51,13 +49,6 @@ def test_all_studies_are_there_with_what_they_take():
     assert taken == {"table1": {"records", "breadth", "height"}, "table2": {"breadth", "height"}}
 
 
-def test_the_help_names_every_study_and_the_sizes_that_are_used():
-    assert sorted(command_study.NAMES.split(", ")) == sorted(NAMES)
-    told, given = " ".join(study("--help").stdout.split()), Options(out=Path("unused"))
-    assert all(f"[default: ({100 * size:g})]" in told for size in (given.breadth, given.height))
-    assert f"table2, contours, fit, calibration. [default: {given.runs}; 20<=x<=1000]" in told
-
-
 # ---------------------------------------------------------------- files
 
 
@@ -93,15 +84,6 @@ def test_all_of_them_have_one_page(tmp_path):
     assert {file.name for file in tmp_path.iterdir()} == {"first.md", "second.md", PAGE}
     assert found.stderr == f"wrote {tmp_path / PAGE}\n"
     assert "0.3" in (tmp_path / "first.md").read_text(encoding="utf-8").split()
-
-
-@pytest.mark.usefixtures("two")
-def test_names_are_taken_in_any_case_and_what_is_kept_is_told(tmp_path):
-    assert [study(name, "--out", tmp_path).exit_code for name in ("FIRST", "All")] == [0, 0]
-    assert (tmp_path / PAGE).is_file()
-    (tmp_path / PARTS).mkdir()
-    found = study("second", "--out", tmp_path)
-    assert f"second.md; {tmp_path / PARTS} keeps the long integrations for the next run" in found.stderr
 
 
 def test_files_appear_whole_or_not_at_all(tmp_path):
@@ -141,40 +123,6 @@ def test_two_commands_at_once_in_a_new_folder(tmp_path):
 
 
 # ---------------------------------------------------------------- bad input
-
-
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        (("table1", "--records", ""), "--records is empty: name a folder, or leave out --records"),
-        (("table2", "--runs", "19"), "'--runs'"),
-        (("table9",), "'table9' is an unknown study; expected one of: calibration, contours, fit,"),
-        (("table1", "--breadth", "90", "--height", "80"), "--breadth is 90 cm, expected at most the height, 80 cm"),
-        (("table1", "--breadth", "170"), "--breadth is 170 cm, expected at most the height, 160 cm"),
-        (("table1", "--breadth", "nan"), "--breadth is nan cm, expected 5 to 600 cm"),
-        (("table1", "--records", "nowhere"), "nowhere: there is no such folder. Name a folder of floor records"),
-        (("table3", "--records", "."), "--records does not apply to table3, only to table1 and all: leave it out"),
-        (("solver", "--height", "200"), "--height does not apply to solver, only to table1, table2 and all: leave"),
-        (("fit", "--breadth", "20"), "--breadth does not apply to fit, only to table1, table2 and all: leave it out"),
-    ],
-)  # fmt: skip
-def test_bad_input_writes_nothing(tmp_path, words, told):
-    found = study(*words, "--out", tmp_path / "out")
-    assert found.exit_code == 2
-    assert told in found.stderr
-    assert not (tmp_path / "out").exists()
-
-
-def test_folders_that_cannot_be_meant(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    for words, told in (
-        (("table3", "--out", ""), "--out is empty: name a folder, or leave out --out"),
-        (("table1", "--records", tmp_path, "--out", tmp_path / "x" / ".."),
-         "--records and --out are the same folder: name another one for the files with --out"),
-    ):  # fmt: skip
-        found = study(*words)
-        assert (found.exit_code, told in found.stderr) == (2, True)
-        assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("below", ["", "further/down"])

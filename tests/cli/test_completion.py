@@ -11,7 +11,7 @@ from unittest.mock import patch
 
 import pytest
 
-from assess.cli import command_fragility
+from assess.cli import command_compare, command_fragility, command_portfolio
 from assess.cli.app import ASKED, app, list_names
 from assess.i18n import LANGUAGES
 from assess.settings import SCENARIOS, VERIFY, Settings
@@ -79,8 +79,12 @@ def test_a_scenario_is_understood_as_it_is_completed():
 
 def test_the_formats_are_those_that_can_be_written():
     from assess.cli.fragility_output import FORMATS
+    from assess.compare import comparison_files
+    from assess.portfolio import run_portfolio
 
     assert set(command_fragility.KNOWN) == set(FORMATS) > set(command_fragility.DEFAULT.split(","))
+    assert command_portfolio.FORMATS == run_portfolio.FORMATS
+    assert (*comparison_files.FORMATS, "json") == command_compare.FORMATS
 
 
 def test_zsh_and_fish_get_help_whole_on_one_line():

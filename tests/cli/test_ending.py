@@ -10,9 +10,12 @@ import pytest
 import assess
 from assess.cli.app import find_blank
 from assess.errors import InputError
+from assess.extras import say_install
 from assess.report.provenance import report_time
+from tests.bim.export_runs import DUPLEX, write_results
 from tests.cli.calling import run
 from tests.shaking import write_records
+from tests.waiting import PATIENCE
 from tests.workbooks import write
 
 LONG = "x" * 300
@@ -75,6 +78,26 @@ def test_a_blank_folder_is_not_the_one_that_one_is_in(tmp_path):
     text = one_line(call(tmp_path, "run", "book.xlsx", "--verify", "none", "--out="), 2)
     assert text == "error  --out is blank: fill it in, or leave it out."
     assert [one.name for one in tmp_path.iterdir()] == ["book.xlsx"]
+
+
+@pytest.mark.parametrize(
+    ("module", "words", "status", "said"),
+    [
+        ("ifcopenshell", "export . --ifc model.ifc -o new.ifc", 2, "need the library ifcopenshell. Install it"),
+        ("uvicorn", "open", 1, f"error  the page needs uvicorn, which is not installed. {say_install('web')}"),
+    ],
+)
+def test_without_an_extra_one_line_tells_what_to_install(tmp_path, module, words, status, said):
+    write_results(tmp_path)
+    (tmp_path / "model.ifc").write_bytes(DUPLEX.read_bytes())
+    code = f"import sys\nsys.modules[{module!r}] = None\nfrom assess.__main__ import main\nmain()"
+    command = [sys.executable, "-c", code, *words.split()]
+    done = subprocess.run(
+        command, capture_output=True, text=True, check=False, cwd=tmp_path, timeout=PATIENCE, env=os.environ | ROOT
+    )
+    assert said in one_line(done, status)
+    assert done.stdout == ""
+    assert not (tmp_path / "new.ifc").exists()
 
 
 # ---------------------------------------------------------------- the date

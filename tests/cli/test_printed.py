@@ -1,11 +1,14 @@
-"""What commands print and write: words exactly, numbers within their error.
+"""What commands print and write: words exactly, numbers within their error; and what they refuse, in one message.
 
-``python -m tests.cli.test_printed`` writes it anew after a change that is meant; git shows the difference.
+``python -m tests.cli.test_printed`` writes it anew after a change that is meant; git shows the difference. What is
+refused is a line ``$ assess ...`` of `shown/refused.txt`.
 """
 
 import contextlib
 import json
+import math
 import re
+import shlex
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -85,6 +88,12 @@ WRITTEN = {
 }
 
 
+RECORDS = {
+    "floor.smc": FLOOR.name, "sweep.csv": SWEEP.name, "upright.smc": "1103.HNZ.NP.BE_a.smc",
+    "velocity.smc": "1103.HN2.NP.RE_v.smc", "README.md": "README.md",
+}  # fmt: skip
+
+
 def make(folder: Path) -> None:
     """Write what the calls name."""
     write_records(folder, "slow")
@@ -97,6 +106,42 @@ def make(folder: Path) -> None:
     habits = {address("breadth", 2): "30 cm", address("height", 2): "2 m", address("anchored", 4): "N"}
     typed = write(folder / "typed.xlsx")
     typed.write_bytes(patch_workbook(typed.read_bytes(), {"Items": habits}).data)
+
+
+def make_refused(folder: Path) -> None:
+    """Write what the calls name that are refused."""
+    folder.mkdir(exist_ok=True)
+    make(folder)
+    write(folder / "book.xlsx")
+    write(folder / "stranger.xlsx", [{"item": "a", "floor": "9", "breadth": 30, "height": 180}])
+    write(folder / "stout.xlsx", [{"item": "a", "floor": "1", "breadth": 160, "width": 160, "height": 110}])
+    for name in ("taken.xlsx", "taken.ifc"):
+        (folder / name).write_text("mine")
+    for name, sample in RECORDS.items():
+        (folder / name).write_bytes((SAMPLES / "records" / sample).read_bytes())
+    (folder / "model.ifc").write_bytes((SAMPLES / "models" / "duplex.ifc").read_bytes())
+    rows = [f"{at / 100}, {math.sin(at / 10):.4f}, {math.cos(at / 10):.4f}" for at in range(1201)]
+    for name, heads in (("level.csv", "north [g], east [g]"), ("double.csv", "up [g], down [g]")):
+        (folder / name).write_text("\n".join([f"time [s], {heads}", *rows]), encoding="utf-8")
+    with contextlib.chdir(folder):
+        run("run", "book.xlsx", "--verify", "none", "--formats", "json", "--out", "base")
+        run("compare", "base", "base", "--formats", "json", "--out", "compared")
+
+
+def refuse() -> list[str]:
+    """Return the calls that are refused with their messages; nothing is printed to be kept, and no file changes."""
+    lines: list[str] = []
+    there = {path: path.stat().st_mtime_ns for path in Path().rglob("*")}
+    for call in (SHOWN / "refused.txt").read_text(encoding="utf-8").splitlines():
+        if call.startswith("$ assess "):
+            done = run(*shlex.split(call)[2:])
+            assert done.exit_code in (1, 2), call
+            assert (done.stdout, type(done.exception)) == ("", SystemExit), call
+            assert {path: path.stat().st_mtime_ns for path in Path().rglob("*")} == there, call
+            said = [line for line in done.stderr.splitlines() if not line.startswith(("Usage: ", "Try "))]
+            said = [line.replace(f"{Path.cwd()}", "here") for line in said if line]
+            lines += [call, *said, *([f"[{done.exit_code}]"] if done.exit_code != 2 else [])]
+    return lines
 
 
 def read(path: Path) -> Iterator[str]:
@@ -142,8 +187,13 @@ def test_commands_print_what_they_printed(folder, monkeypatch, name):
         assert differences(now, kept) == []
 
 
+def test_what_is_refused_is_named_and_nothing_is_written(tmp_path, monkeypatch):
+    make_refused(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    assert refuse() == (SHOWN / "refused.txt").read_text(encoding="utf-8").splitlines()
+
+
 if __name__ == "__main__":
-    SHOWN.mkdir(exist_ok=True)
     with (
         tempfile.TemporaryDirectory() as box, contextlib.chdir(box), pytest.MonkeyPatch.context() as patch
     ):  # fmt: skip
@@ -151,3 +201,6 @@ if __name__ == "__main__":
         make(Path(box))
         for name in CALLS:
             (SHOWN / f"{name}.txt").write_text("\n".join(show(name)) + "\n", encoding="utf-8")
+        make_refused(Path(box) / "refused")
+        with contextlib.chdir("refused"):
+            (SHOWN / "refused.txt").write_text("\n".join(refuse()) + "\n", encoding="utf-8")
