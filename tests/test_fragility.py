@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.optimize import minimize
 from scipy.stats import binom, norm
 
@@ -26,6 +28,38 @@ def test_a_known_fragility_is_found_again(median, dispersion):
     assert fit.dispersion == pytest.approx(dispersion, rel=1e-6)
     assert fit.misfit == pytest.approx(0, abs=1e-7)
     assert fit.is_lognormal
+
+
+def test_drawn_counts_scatter_about_the_known_fragility():
+    rng, found = np.random.default_rng(5), []
+    for _ in range(200):
+        fit = fit_fragility(LEVELS, rng.binomial(200, expected(0.4, 0.5, trials=1)), np.full(12, 200))
+        found.append((math.log(fit.median), fit.dispersion))
+    mean, scatter = np.mean(found, axis=0), np.std(found, axis=0)
+    assert abs(mean[0] - math.log(0.4)) < 4 * scatter[0] / math.sqrt(200)
+    assert abs(mean[1] - 0.5) < 4 * scatter[1] / math.sqrt(200) + 0.005  # likelihood is biased a little
+    assert scatter[0] < 0.04
+
+
+@given(
+    st.lists(st.tuples(st.floats(0.05, 3), st.integers(1, 60), st.floats(0, 1)), min_size=2, max_size=10),
+)
+def test_no_other_parameters_are_likelier(rows):
+    im = np.array([row[0] for row in rows])
+    trials = np.array([row[1] for row in rows], dtype=float)
+    fallen = np.round(trials * np.array([row[2] for row in rows]))
+    fit = fit_fragility(im, fallen, trials)
+    if fit.kind != "fitted":
+        assert math.isnan(fit.median)
+        return
+
+    def likelihood(theta, beta):
+        return binom.logpmf(fit.fallen, fit.trials, norm.cdf(np.log(fit.levels / theta) / beta)).sum()
+
+    best = likelihood(fit.median, fit.dispersion)
+    for less in (0.99, 1.01):
+        assert likelihood(fit.median * less, fit.dispersion) <= best + 1e-9
+        assert likelihood(fit.median, fit.dispersion * less) <= best + 1e-9
 
 
 def test_it_is_the_optimum_that_another_search_finds():
@@ -99,6 +133,13 @@ def test_data_without_a_fit_say_so(fallen, kind):
         assert math.isnan(fit.dispersion)
         assert math.isnan(fit.misfit)
         assert not fit.is_lognormal
+
+
+def test_levels_without_trials_are_left_out():
+    fit = fit_fragility([0.1, 0.2, 0.4, 0.8], [1, 0, 5, 9], [10, 0, 10, 10])
+    np.testing.assert_array_equal(fit.levels, [0.1, 0.4, 0.8])
+    assert fit.kind == "fitted"
+    assert fit_fragility([0.1, 0.2], [4, 0], [10, 0]).kind == "one level"
 
 
 def test_the_chance_of_a_lognormal():

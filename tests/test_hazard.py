@@ -51,6 +51,12 @@ def test_tables_as_people_write_them(text):
     assert not curve.is_far
 
 
+def test_tables_in_latin_1_and_with_level_rates():
+    assert parse_hazard("# sito: città\n".encode("latin-1") + PLAIN.encode(), "x.csv").rate.size == 3
+    level = parse("pga_g,annual_rate\n0.01,0.02\n0.1,0.02\n0.4,0.002\n").rate
+    np.testing.assert_array_equal(level, [0.02, 0.02, 0.002])
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -196,6 +202,13 @@ def test_several_sites_need_a_place():
 
 
 # --- files and distances ---
+
+
+def test_files_that_cannot_be_read(tmp_path):
+    with pytest.raises(InputError, match=r"none\.csv: the file cannot be read \(No such file"):
+        read_hazard(tmp_path / "none.csv")
+    with pytest.raises(InputError, match="the file cannot be read"):
+        read_hazard(tmp_path)
 
 
 def test_distances():

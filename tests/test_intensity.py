@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from assess.intensity import MIDORIKAWA, SHAKINGS, WORDEN, WORDEN_PGA, WORDEN_PGV, invert_jma, name_mmi
+from assess.intensity import MIDORIKAWA, RATIO, SHAKINGS, WORDEN, WORDEN_PGA, WORDEN_PGV, invert_jma, name_mmi
 from assess.units import GRAVITY
 
 LEGEND = {
@@ -59,12 +59,33 @@ def test_pga_of_a_jma_class_follows_from_pgv():
     assert [one.name for one in SHAKINGS.values() if one.is_derived] == [one for one in BY_NAME if "JMA" in one]
 
 
+def test_the_ratio_of_pgv_to_pga_is_that_between_soil_and_rock_of_newmark_and_hall():
+    """122 and 91 cm/s per g: their geometric mean is 105.4."""
+    found = 100 * RATIO * GRAVITY
+    assert found == pytest.approx(math.sqrt(122 * 91), rel=0.005)
+
+
+def test_an_open_class_does_not_stand_for_its_lower_limit():
+    """JMA 7 begins at 6.5, where PGV is 166 cm/s; MMI X at 9.5."""
+    seven, ten = BY_NAME["JMA 7"], BY_NAME["MMI X"]
+    assert (seven.is_open, seven.intensity, ten.is_open, ten.intensity) == (True, 7.0, True, 10.0)
+    assert 100 * seven.pgv > 1.9 * LIMITS[6.5]
+    assert [one.name for one in SHAKINGS.values() if one.is_open] == ["MMI X", "JMA 7"]
+
+
 def test_pgv_decides_on_the_class_and_what_is_weak_or_beyond_has_the_nearest_word():
     """New York: 0.547 g would be MMI VIII or more; 13.6 cm/s is VI."""
     assert name_mmi(0.547 * GRAVITY, 0.136) == "MMI VI, strong"
     assert name_mmi(0.547 * GRAVITY, None) == "MMI VIII, severe"
     assert name_mmi(0.005 * GRAVITY, 0.005) == ""
     assert name_mmi(3 * GRAVITY, 6.0) == "MMI X, extreme"
+
+
+def test_the_scatter_is_the_published_one_of_pgv():
+    """0.38 log10 units given MMI, rounded up."""
+    for shaking in SHAKINGS.values():
+        if not shaking.is_derived:
+            assert 0 <= shaking.scatter - 0.38 * math.log(10) < 0.01
 
 
 def test_the_scatter_of_a_jma_class_adds_its_width_to_that_of_the_equation():

@@ -1,6 +1,7 @@
 """Pictures that users hand over: measured before they are decoded, decoded before a report needs them."""
 
 import io
+import struct
 from itertools import product
 
 import numpy as np
@@ -37,6 +38,14 @@ def test_sound_pictures_are_embedded_as_they_are() -> None:
         check_picture(data)
         assert count_pixels(data) == 1200
         assert prepare_picture(data) == (data, "image/png" if data.startswith(b"\x89PNG") else "image/jpeg")
+
+
+def test_the_size_of_a_jpeg_stands_behind_other_segments() -> None:
+    padded = (
+        JPEG[:2] + b"\xff\xff\xff\xe1" + struct.pack(">H", 12) + b"\xff\xc0\0\x0b\x08\xff\xff\xff\xff\x03" + JPEG[2:]
+    )
+    assert count_pixels(padded) == 1200
+    check_picture(padded)
 
 
 WRONG = [
@@ -97,6 +106,14 @@ def test_large_pictures_are_made_smaller(monkeypatch: pytest.MonkeyPatch) -> Non
     data, kind = prepare_picture(picture("JPEG", "RGB", (5000, 300)))
     assert (read(data).format, kind) == ("JPEG", "image/jpeg")
     assert max(read(data).size) <= SHOWN
+
+
+def test_sixteen_bits_of_grey_become_eight() -> None:
+    deep = Image.new("I;16", (20, 10), 30_000)
+    target = io.BytesIO()
+    deep.save(target, "PNG")
+    data, _ = prepare_picture(target.getvalue())
+    assert Image.open(io.BytesIO(data)).getpixel((3, 3)) == (117, 117, 117)
 
 
 def _with_marks(kind: str, orientation: int | None = None) -> bytes:

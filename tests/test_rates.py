@@ -12,7 +12,7 @@ from scipy.stats import norm
 from assess.fragility import fit_fragility, lognormal_chance
 from assess.hazard import HazardCurve, read_hazard
 from assess.i18n import Text
-from assess.rates import evaluate_rate, integrate_lognormal, integrate_table, list_remarks
+from assess.rates import AnnualRate, evaluate_rate, integrate_lognormal, integrate_table, list_remarks
 from assess.units import GRAVITY as G
 
 DATA = Path(__file__).parent / "data" / "hazard"
@@ -37,6 +37,13 @@ def test_cornell_2002_closed_form(beta, rate, points):
     assert found.rate == pytest.approx(closed, rel=1e-6)
     assert found.rate == pytest.approx(rate, rel=5e-6)
     assert found.below < 1e-4
+
+
+def test_cornell_2002_in_50_years():
+    found = integrate_lognormal(power_law(20), median=0.5 * G, dispersion=0.5)
+    assert found.chance_within(50) == pytest.approx(0.1233, abs=5e-5)
+    assert found.chance_within(0) == 0
+    assert AnnualRate(rate=1e-12, most=0, beyond=0, below=0).chance_within(1) == pytest.approx(1e-12, rel=1e-9)
 
 
 def by_quadrature(curve, density, points=()):
@@ -83,6 +90,28 @@ def test_a_table_on_a_real_curve_by_quadrature(name):
     assert found.rate == pytest.approx(first + by_quadrature(curve, density, levels), rel=1e-9)
 
 
+def test_by_the_definition_summed_up():
+    """P times the rates of narrow classes of shaking, as a check on the integration by parts."""
+    curve = power_law(8, low=0.02, high=2.0)
+    edges = np.geomspace(0.02, 2.0, 200_001) * G
+    rates = np.exp(np.interp(np.log(edges), np.log(curve.pga), np.log(curve.rate)))
+    levels, shares = np.array([0.1, 0.4, 1.0]) * G, np.array([0.05, 0.3, 0.9])
+    middle = np.sqrt(edges[1:] * edges[:-1])
+    for chance, found in (
+        (lognormal_chance(middle, 0.4 * G, 0.5), integrate_lognormal(curve, median=0.4 * G, dispersion=0.5)),
+        (np.interp(middle, [0, *levels], [0, *shares]), integrate_table(curve, levels, shares)),
+    ):
+        last = rates[-1] * chance[-1]
+        assert found.rate == pytest.approx((chance * -np.diff(rates)).sum() + last, rel=1e-6)
+        assert found.beyond == pytest.approx(last / found.rate, rel=1e-4)
+
+
+def test_a_table_of_many_points_tends_to_its_lognormal():
+    curve, levels = power_law(12, low=0.01, high=3), np.geomspace(0.01, 5, 3000) * G
+    table = integrate_table(curve, levels, lognormal_chance(levels, 0.5 * G, 0.4))
+    assert table.rate == pytest.approx(integrate_lognormal(curve, median=0.5 * G, dispersion=0.4).rate, rel=1e-5)
+
+
 def test_a_narrow_lognormal_tends_to_a_step():
     curve = read_hazard(DATA / "oq-case44-hazard_curve-mean-PGA.csv")
     step = integrate_lognormal(curve, median=0.3 * G, dispersion=0)
@@ -110,6 +139,15 @@ def test_steep_and_level_segments():
     assert table[0] == pytest.approx(table[1], rel=1e-12)
 
 
+def test_what_falls_more_often_has_a_larger_rate():
+    curve = read_hazard(DATA / "oq-case44-hazard_curve-mean-PGA.csv")
+    rates = [integrate_lognormal(curve, median=theta * G, dispersion=0.5).rate for theta in (0.1, 0.2, 0.5, 2)]
+    assert rates == sorted(rates, reverse=True)
+    # The dispersion counts: without it the rate comes out 2.2 times too low.
+    both = [integrate_lognormal(power_law(20), median=0.5 * G, dispersion=beta).rate for beta in (0.0, 0.5)]
+    assert both[1] / both[0] == pytest.approx(math.exp(0.5**2 * 2.5**2 / 2), rel=1e-5)
+
+
 def test_the_ends_of_the_curve():
     curve = power_law(6, low=0.2, high=0.6)
     found = integrate_lognormal(curve, median=0.5 * G, dispersion=0.5)
@@ -121,6 +159,14 @@ def test_the_ends_of_the_curve():
     chance = norm.cdf(math.log(0.6 / 0.5) / 0.5)
     assert found.beyond == pytest.approx(last * chance / found.rate, rel=1e-9)
     assert found.most == pytest.approx(found.rate + last * (1 - chance), rel=1e-9)
+
+
+def test_nothing_falls():
+    curve = power_law(5, low=0.01, high=1)
+    found = integrate_table(curve, np.array([0.1, 1.0, 2.0]) * G, [0.0, 0.0, 0.0])
+    assert (found.rate, found.beyond, found.below) == (0, 0, 0)
+    assert found.chance_within(50) == 0
+    assert found.most == pytest.approx(curve.rate[-1])
 
 
 # --- a fragility ---

@@ -59,3 +59,9 @@ def test_a_file_that_cannot_be_used_is_an_error_at_its_cell(tmp_path):
         assert (one.sheet, one.cell[0], bool(one.fix)) == ("Building", "B", True)
         assert words in one.message
         assert name in one.message
+
+
+def test_many_sites_need_the_buildings_place(tmp_path):
+    lines = SITES.read_text(encoding="utf-8").splitlines()
+    (tmp_path / "map.csv").write_text("\n".join([*lines, "1" + lines[-1]]), encoding="utf-8")
+    assert "latitude and longitude are needed" in fault(tmp_path, hazard="map.csv").message

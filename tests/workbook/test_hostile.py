@@ -10,7 +10,8 @@ import openpyxl
 import openpyxl.utils
 import pytest
 
-from tests.workbook.books import change_parts, errors_of, replace, write, write_shared
+from assess.workbook.read import read_inventory
+from tests.workbook.books import ITEMS, change_parts, errors_of, replace, write, write_shared
 from tests.workbook.raw import (
     FIRST,
     HEADER,
@@ -69,6 +70,27 @@ def test_relations_that_lead_outside(tmp_path: Path) -> None:
             change = replace('Target="/xl/worksheets/sheet1.xml"', f'Target="{target}"{mode}')
             (error,) = errors_of(change_parts(write(tmp_path), {RELATIONS: change}))
             assert "Items: the sheet is missing." in error or "is damaged" in error
+
+
+def test_relations_of_every_spelling(tmp_path: Path) -> None:
+    for target in ("worksheets/sheet1.xml", "../xl/worksheets/sheet1.xml", "./worksheets/sheet1.xml"):
+        path = change_parts(write(tmp_path), {RELATIONS: replace("/xl/worksheets/sheet1.xml", target)})
+        assert len(read_inventory(path).items) == 1
+
+
+def test_sheet_that_is_a_chart(tmp_path: Path) -> None:
+    book = openpyxl.Workbook()
+    book.create_chartsheet("Items")
+    book.save(tmp_path / "book.xlsx")
+    missing = "the sheet is missing. Add it, or start from a workbook made with `assess new`."
+    assert errors_of(tmp_path / "book.xlsx") == {f"Items: {missing}", f"Floors: {missing}"}
+
+
+def test_dimension_that_lies(tmp_path: Path) -> None:
+    items = [ITEMS[0], *([f"A{n}", "1", 40, 180] for n in range(5))]
+    path = write(tmp_path, items)
+    change_parts(path, {SHEET: replace('<dimension ref="A1:D6"', '<dimension ref="A1"')})
+    assert len(read_inventory(path).items) == 5
 
 
 ROWS_BELOW = "a value far below the table; at most 100,000 rows are read. Delete the rows below the table."
@@ -150,6 +172,14 @@ def test_rows_out_of_order(tmp_path: Path) -> None:
         path = add_part(write(tmp_path), SHEET, sheet_of(iter([HEADER.encode(), rows.encode()])))
         assert errors_of(path) == {
             f"the workbook is damaged: the rows of {SHEET} are out of order. Open it in Excel and save it again."
+        }
+
+
+def test_row_numbers_that_are_none(tmp_path: Path) -> None:
+    for number in ("x", "-3", "1e3", "99999999", ""):
+        row = f'<row r="{number}"><c t="inlineStr"><is><t>A2</t></is></c></row>'.encode()
+        assert errors_of(add_part(write(tmp_path), SHEET, sheet_of(iter([TABLE, row])))) == {
+            f"the workbook is damaged: {SHEET} has a row numbered {number}. Open it in Excel and save it again."
         }
 
 

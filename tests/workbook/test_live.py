@@ -16,7 +16,7 @@ from openpyxl.formula.translate import Translator
 
 from assess.errors import WorkbookError
 from assess.i18n import gettext, load_catalogue, speaking
-from assess.pipeline.live_values import live_values
+from assess.pipeline.live_values import live_values, without_shaking
 from assess.units import QUANTITIES
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.lists import LETTERS, PLACES
@@ -591,3 +591,115 @@ def test_a_piece_that_the_slower_motion_alone_can_start_is_not_called_low(tmp_pa
     check(path)
     shown = by_formualizer(path)
     assert [shown[row][5] for row in range(2, 7)] == ["◇ medium", "○ low", "◇ medium", "○ low", "◇ medium"]
+
+
+GROUND = {"period": 2.5, "ground_pga": 0.14, "ground_pgv": 28.0}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("header", "value"), [("Ground PGV [in/s]", 28 / 2.54), ("Ground PGV [m/s]", 0.28)])
+def test_the_ground_follows_the_unit_of_its_line(tmp_path: Path, header: str, value: float) -> None:
+    path = fill(tmp_path / "book.xlsx", GRID, FLOORS, GROUND)
+    plain = by_formualizer(poison(path))
+    retype_ground_velocity(path, header, value)
+    check(path)
+    assert by_formualizer(path)[2] == pytest.approx(plain[2])
+
+
+def retype_ground_velocity(path: Path, header: str, value: float) -> None:
+    book = openpyxl.load_workbook(path)
+    (row,) = [row for row in book["Building"].iter_rows() if str(row[0].value).startswith("Ground PGV")]
+    row[0].value, row[1].value = header, value
+    book.save(path)
+
+
+@pytest.mark.parametrize(("pga", "shown"), [(0.14, "unit?"), (None, 0.3)])
+def test_a_ground_velocity_with_an_unreadable_unit_shows_no_class_where_it_counts(
+    tmp_path: Path, pga: float | None, shown: Any
+) -> None:
+    """Without Ground PGA the ratio of both does not depend on it. The program refuses the unit."""
+    floors, item = [{"floor": "1", "pfa_x": 0.3}], {"item": "A1", "floor": "1", "breadth": 40, "height": 180}
+    path = fill(tmp_path / "book.xlsx", [item], floors, GROUND | {"ground_pga": pga})
+    retype_ground_velocity(path, "Ground PGV [knots]", 28.0)
+    assert by_formualizer(poison(path))[2][1] == shown
+
+
+def shown_of(
+    folder: Path, item: dict[str, Any], floors: Rows | None = None, catalogue: Rows | None = None, **building: Any
+) -> Live:
+    return shown_rows(folder, [item], floors, catalogue, **building)[0]
+
+
+def test_recorded_floors_without_a_record_show_no_class(tmp_path: Path) -> None:
+    """They may be interpolated, which is the program's task."""
+    assert shown_of(tmp_path, {}, scenario_kind="recorded")[1:] == ["shaking?"] * 7
+    floors: Rows = [{"floor": "1", "pfa_x": 0.5, "elevation": 4}, *({"floor": f"r{z}", "elevation": z} for z in (0, 8))]
+    between = [floors[0], *({**floor, "record_x": "roof.csv"} for floor in floors[1:])]
+    (tmp_path / "between").mkdir()
+    assert shown_of(tmp_path / "between", {}, between, scenario_kind="recorded")[1:] == ["run assess"] * 7
+
+
+def test_a_row_without_a_name_serves_no_floor(tmp_path: Path) -> None:
+    """Rows without a name are no floors, whatever else they hold; nor is a blank name theirs."""
+    floors = [{"floor": "1", "elevation": 4}, {"pfa_x": 0.3, "elevation": 0}, {"pfa_x": 0.3, "elevation": 8}]
+    named, blank = shown_rows(tmp_path, [{}, {"floor": None}], floors)
+    assert (named[1:], blank[1:]) == (["shaking?"] * 7, ["floor?"] * 7)
+
+
+@pytest.mark.parametrize("kind", ["ASCE 7-22", "ASCE 7-16", "EN 1998-1", "NTC 2018"])
+def test_a_profile_serves_floors_with_a_pfa_too(tmp_path: Path, kind: str) -> None:
+    floors = [{"floor": "1", "pfa_x": 0.5, "elevation": 3}]
+    items: Rows = [{}, {"axis": "X"}, {"axis": "Y"}]
+    shown = shown_rows(tmp_path, items, floors, scenario_kind=kind, ground_pga=0.2)
+    assert [row[1:] for row in shown] == [["run assess"] * 7] * 3
+
+
+def test_floors_beside_one_with_nothing_of_its_own_keep_theirs(tmp_path: Path) -> None:
+    floors = [{"floor": "0", "elevation": 0}, {"floor": "1", "pfa_x": 0.5, "elevation": 4}]
+    assert shown_of(tmp_path, {}, floors, ground_pga=0.2)[1] == 0.5
+
+
+def test_sorting_floors_and_inserting_rows_moves_no_reference(tmp_path: Path) -> None:
+    """The floors' helper rows find their row by number, not by a reference that sorting would drag along."""
+    path = fill(tmp_path / "book.xlsx", GRID, list(reversed(FLOORS)), {})
+    check(path)
+
+
+@pytest.mark.parametrize("anchored", ["no", "yes", "partly", "unknown"])
+def test_the_class_of_what_is_anchored_equals_the_program(tmp_path: Path, anchored: str) -> None:
+    floors = [{"floor": "1", "pfa_x": 0.5}]
+    row = {"item": "A1", "floor": "1", "breadth": 40, "height": 180, "anchored": anchored}
+    check(fill(tmp_path / "book.xlsx", [row], floors, {}))
+    with speaking(load_catalogue("it")):
+        check(fill(tmp_path / "libro.xlsx", [row], floors, {}))
+
+
+def test_an_anchored_piece_of_an_unknown_floor_still_says_so(tmp_path: Path) -> None:
+    assert shown_of(tmp_path, {"anchored": "yes", "floor": "9"})[5] == "floor?"
+    assert shown_of(tmp_path, {"anchored": "yes"}, [{"floor": "1", "record_x": "roof.csv"}])[1:] == [
+        *["run assess"] * 4, *["anchored"] * 2, "run assess",
+    ]  # fmt: skip
+    (tmp_path / "none").mkdir()
+    assert shown_of(tmp_path / "none", {"anchored": "yes"}, [{"floor": "1"}])[1:] == [
+        *["shaking?"] * 4, *["anchored"] * 2, "shaking?",
+    ]  # fmt: skip
+
+
+def test_a_typed_capacity_is_left_to_the_program_without_shaking(tmp_path: Path) -> None:
+    held = {"anchored": "yes", "bracket_capacity": 2.0}
+    assert shown_of(tmp_path, held, [{"floor": "1"}])[1:] == [
+        *["shaking?"] * 4, *["run assess"] * 2, "shaking?",
+    ]  # fmt: skip
+    unshaken = without_shaking(Content({"Items": [{"item": "A1", "floor": "1", "breadth": 40, "height": 180, **held}],
+                                        "Floors": [{"floor": "1"}], "Building": [{}]}))  # fmt: skip
+    assert [row[5] for row in unshaken.live or ()] == ["run assess"]
+
+
+def test_whether_it_can_rock_rests_on_numbers_alone(tmp_path: Path) -> None:
+    catalogue: Rows = [{"type": "light", "centre_of_gravity": 1}, {"type": "text", "centre_of_gravity": "40 %"}]
+    items: Rows = [{}, {"centre_of_gravity": 0.6}, {"centre_of_gravity": "60"}, {"type": "light"}, {"type": "text"}]
+    good, *others = shown_rows(tmp_path, [{"breadth": 150, **item} for item in items], catalogue=catalogue)
+    assert good[7] in ("yes", "no")
+    assert [row[7] for row in others] == ["check"] * 4
+    for uncertainty in ("0,4", -1):
+        assert shown_of(tmp_path, {"breadth": 150}, motion_uncertainty=uncertainty)[7] == "check"

@@ -3,17 +3,20 @@
 They are the program's numbers to 1e-9, or a word in place of a class.
 """
 
+import csv
 from collections.abc import Iterable
 from itertools import product
 from pathlib import Path
 from typing import Any
 
+import formualizer
 import openpyxl
 import pytest
 
 from assess.i18n import load_catalogue, speaking
 from assess.intensity import SHAKINGS
 from assess.model import STRUCTURES
+from assess.motion.floor_medians import TABLE
 from assess.units import GRAVITY
 from assess.workbook.template import Units
 from tests.workbook.test_live import Rows, by_formualizer, check, fill, poison
@@ -366,3 +369,91 @@ def test_on_the_ground_a_piece_can_rock_by_the_scatter_of_what_is_known(
 
 
 # ---------------------------------------------------------------- the lists
+
+
+def show_velocity(folder: Path, floors: Rows, **building: Any) -> dict[str, Any]:
+    """Return the PFV [cm/s] that the sheet Lists finds on X of each floor."""
+    show(folder, floors, **building)
+    book = openpyxl.load_workbook(folder / "book.xlsx")
+    places = {cell.value: cell.column for cell in book["Lists"][1]}
+    return {one["floor"]: _read(folder / "book.xlsx", row, places["floor_pfv_x"]) for row, one in enumerate(floors, 2)}
+
+
+def _read(path: Path, row: int, column: int) -> Any:
+    book = formualizer.load_workbook(str(path))
+    book.evaluate_all()
+    return book.get_value("Lists", row, column)
+
+
+@pytest.mark.parametrize(("structure", "place"), [("frame", 0.6), ("walls", 1.0), ("dual", 0.15)])
+def test_a_floor_shows_the_entry_of_the_table(tmp_path: Path, structure: str, place: float) -> None:
+    """T1 of 1.0 s, 105 cm/s per g and these z/h are entries, between which nothing is interpolated."""
+    with TABLE.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    (row,) = [
+        one for one in rows
+        if one["structure"] == structure and one["T1 [s]"] == "1.0"
+        and float(one["PGV/PGA [s]"]) * 980.665 == pytest.approx(105, abs=0.1)
+    ]  # fmt: skip
+    floors = [{"floor": "a", "elevation": 20 * place}, {"floor": "b", "elevation": 20}]
+    building = {"ground_pga": 0.4, "ground_pgv": 42.0, "period": 1.0, "height": 20, "structure": structure}
+    shown = show(tmp_path, floors, **building)
+    assert shown["a"][1] == pytest.approx(0.4 * float(row[f"PFA/PGA at {place}"]))
+    velocity = show_velocity(tmp_path, floors, **building)
+    assert velocity["a"] == pytest.approx(42 * float(row[f"PFV/PGV at {place}"]))
+
+
+def test_without_t1_it_comes_by_height(tmp_path: Path) -> None:
+    """T1 = 1.4 x 0.0488 x 20^0.75 = 0.6461 s."""
+    floors: Rows = [{"floor": "a", "elevation": 20}]
+    typed, by_height = (show(tmp_path / str(at), floors, ground_pga=0.2, **one)["a"] for at, one in enumerate(
+        ({"period": 1.4 * 0.0488 * 20**0.75}, {})
+    ))  # fmt: skip
+    assert by_height[:5] == pytest.approx(typed[:5])
+
+
+@pytest.mark.parametrize("z", [0, -3])
+def test_a_floor_at_or_below_grade_has_the_motion_of_the_ground(tmp_path: Path, z: float) -> None:
+    floors: Rows = [{"floor": "a", "elevation": z}, {"floor": "b", "elevation": 12}]
+    building = {"ground_pga": 0.2, "ground_pgv": 31.0, "period": 0.5}
+    assert show(tmp_path, floors, **building)["a"][1] == pytest.approx(0.2)
+    assert show_velocity(tmp_path, floors, **building)["a"] == pytest.approx(31)
+
+
+def test_pfv_of_a_typed_pfa_has_the_ratio_of_a_typed_ground(tmp_path: Path) -> None:
+    """At grade PFV/PFA is that of the ground; a typed motion there comes before Ground PGA and Ground PGV."""
+    floors: Rows = [{"floor": "g", "elevation": 0, "pfa_x": 0.2, "pfv_x": 30}, {"floor": "b", "elevation": -3,
+                    "pfa_x": 0.1}]  # fmt: skip
+    assert show_velocity(tmp_path, floors, ground_pga=0.2, ground_pgv=99)["b"] == pytest.approx(15)
+    assert show_velocity(tmp_path, floors[1:], ground_pga=0.2, ground_pgv=99)["b"] == pytest.approx(10.5), "no PFV"
+    assert show_velocity(tmp_path, [{"floor": "b", "pfa_x": 0.1, "elevation": 8}, *floors[:1]])["b"] > 0
+
+
+def test_a_typed_pfa_is_shown_as_typed_whatever_the_ground(tmp_path: Path) -> None:
+    floors: Rows = [{"floor": "a", "elevation": 6, "pfa_x": 0.35}]
+    for at, building in enumerate(AROUND):
+        assert show(tmp_path / str(at), floors, **building)["a"][1] == 0.35
+
+
+@pytest.mark.parametrize("ground", [{"ground_pga": 0.2}, {"sds": 0.5}])
+def test_where_the_ground_is_typed_the_map_changes_nothing(tmp_path: Path, ground: dict[str, Any]) -> None:
+    with_map, without = (show(tmp_path / str(at), FLOORS, **one) for at, one in enumerate((PLACED | ground, ground)))
+    assert with_map == without
+    assert all(isinstance(one[1], float) for one in without.values())
+
+
+@pytest.mark.parametrize("kind", ["given", "recorded"])
+def test_where_only_own_motions_count_the_ground_serves_no_floor(tmp_path: Path, kind: str) -> None:
+    shown = show(tmp_path, FLOORS[:3], shaking="MMI VII, very strong", scenario_kind=kind)
+    assert [one[1:] for one in shown.values()] == [["shaking?"] * 7] * 3
+
+
+def test_above_the_ground_the_peak_is_drawn_too(tmp_path: Path) -> None:
+    """Its scatter is 0.35 there: e^(3 x 0.368) = 3.02 in place of e^(3 x 0.1136) = 1.41."""
+    floors: Rows = [{"floor": "g", "elevation": 0}, {"floor": "1", "elevation": 6}]
+    building = {"ground_pga": 0.05, "period": 0.5}
+    pfa = show(tmp_path / "shown", floors, **building)["1"][1]
+    limit = 180 * pfa * 3.0163 / 0.65
+    items: Rows = [{"item": str(one), "floor": "1", "breadth": one, "height": 180} for one in (limit - 1, limit + 1)]
+    path = fill(tmp_path / "book.xlsx", items, floors, building)
+    assert [by_formualizer(poison(path))[row][7] for row in (2, 3)] == ["yes", "no"]

@@ -55,6 +55,15 @@ def test_truncated(tmp_path: Path) -> None:
         assert errors_of(path) == {"book.xlsx is damaged: its zip cannot be read. Open it in Excel and save it again."}
 
 
+def test_password_of_the_zip(tmp_path: Path) -> None:
+    path = write(tmp_path)
+    data = bytearray(path.read_bytes())
+    place = data.index(b"PK\x01\x02")
+    data[place + 8] |= 1
+    path.write_bytes(data)
+    assert errors_of(path) == {"book.xlsx is protected by a password. Save it without a password."}
+
+
 def test_strict_open_xml(tmp_path: Path) -> None:
     strict = replace(MAIN, "http://purl.oclc.org/ooxml/spreadsheetml/main")
     path = change_parts(write(tmp_path), {WORKBOOK: strict, SHEET: strict})

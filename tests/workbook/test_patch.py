@@ -11,6 +11,8 @@ from typing import Any
 import openpyxl
 import pytest
 import xlsxwriter
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from assess.errors import WorkbookError
 from assess.workbook.held import list_formulas
@@ -390,3 +392,39 @@ def test_a_signed_workbook_is_refused() -> None:
         "workbook.xlsx is digitally signed; a change would break the signature. Save it from Excel without the "
         "signature."
     }
+
+
+def test_characters_that_xml_lacks_are_coded() -> None:
+    after = patch_workbook(minimal("<sheetData/>"), {"Items": {"A1": "a\x07b\uffff\ud800"}}).data
+    assert b">a_x0007_b_xFFFF__xD800_</t>" in parts_of(after)[SHEET]
+
+
+@given(
+    old=st.dictionaries(
+        st.tuples(st.integers(1, 12), st.integers(1, 30)), st.one_of(st.integers(-9, 9), st.text("ab <&é", max_size=5))
+    ),
+    new=st.dictionaries(
+        st.tuples(st.integers(1, 14), st.integers(1, 34)),
+        st.one_of(
+            st.none(),
+            st.booleans(),
+            st.floats(-1e300, 1e300),
+            st.text(st.characters(exclude_categories=["Cs", "Cc"], exclude_characters="\ufffe\uffff"), max_size=20),
+        ),
+    ),
+)
+@settings(max_examples=60, deadline=None)
+@pytest.mark.slow
+def test_any_sheet(old: dict[tuple[int, int], Any], new: dict[tuple[int, int], Any]) -> None:
+    """What is read afterwards is what was there, with the changes in it."""
+    packed = io.BytesIO()
+    with xlsxwriter.Workbook(packed, {"strings_to_formulas": False}) as book:
+        page = book.add_worksheet("Items")
+        for (column, row), value in old.items():
+            page.write(row - 1, column - 1, value)
+    changes = {f"{column_letters(column - 1)}{row}": value for (column, row), value in new.items()}
+    before = packed.getvalue()
+    after = patch_workbook(before, {"Items": changes}).data
+    expected = {cell: value for cell, value in (own_values(before) | changes).items() if value not in (None, "")}
+    assert {cell: value for cell, value in own_values(after).items() if value != ""} == expected
+    assert patch_workbook(after, {"Items": changes}).data == after

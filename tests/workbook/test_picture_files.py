@@ -7,8 +7,9 @@ import pytest
 
 import assess
 from assess.model import FloorPlan, Inventory
+from assess.plans import Drawing, read_plan
 from assess.plans.linework import unpack
-from assess.workbook import kept_files
+from assess.workbook import kept_files, picture_files
 from assess.workbook.read import read_inventory
 from assess.workbook.template import Units
 from tests.pictures import picture
@@ -99,6 +100,14 @@ def test_errors_by_cell(folder: Path) -> None:
         assert error.startswith(f"{_cell(cell)}: {message.format(value)}")
 
 
+def test_what_is_left_out_is_noted(folder: Path) -> None:
+    (folder / "x.dxf").write_bytes(dxf(xref=True))
+    inventory = _read(folder, {"plan": "x.dxf", **PLACED})
+    assert f"{_cell('plan')}: of the plan the lines alone are drawn; left out: 1 TEXT, 1 XREF OTHER." in remarks(
+        inventory, "note"
+    )
+
+
 def test_pieces_outside_the_plan(folder: Path) -> None:
     items = [{**PIECE, "item": f"B{n}", "x": x, "y": 5.0} for n, x in enumerate((0.9, 1.1, 17.1, 40.0, -3.0, 16.9))]
     (warning,) = remarks(_read(folder, {"plan": "p.png", **PLACED}, *items), "warning")
@@ -119,6 +128,24 @@ def _write_floors(folder: Path, plans: list[str]) -> Path:
         for n, plan in enumerate(plans, start=1)
     ]
     return write(folder / "w.xlsx", [PIECE], floors)
+
+
+def test_a_drawing_is_read_once_whatever_its_widths_and_a_picture_for_each(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    done: list[float | None] = []
+
+    def count(data: bytes, width: float | None) -> Drawing:
+        done.append(width)
+        return read_plan(data, width)
+
+    monkeypatch.setattr(picture_files, "read_plan", count)
+    floors = read_inventory(_write_floors(folder, ["p.svg"] * 4 + ["p.png"] * 2)).floors
+    assert [floor.plan.width for floor in floors if floor.plan] == [11, 12, 13, 14, 15, 16]
+    assert done == [11, 15, 16]
+    done.clear()
+    assert len(errors_of(_write_floors(folder, ["text.png"] * 3))) == 3, "an error at every cell, of one reading"
+    assert done == [11]
 
 
 @pytest.mark.parametrize(("name", "most"), [("MOST_DRAWINGS", 1), ("MOST_DRAWING_BYTES", len(PLAN_SVG) + 9)])

@@ -9,13 +9,14 @@ import pandas as pd
 import pytest
 
 from assess.errors import CancelledError, InputError, WorkbookError
+from assess.i18n import gettext, load_catalogue, speaking
 from assess.model import Inventory
 from assess.progress import Progress, Report
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.example import example_content
 from assess.workbook.read import read_inventory
 from assess.workbook.template import write_workbook
-from tests.workbook.books import FLOORS, ITEMS, Sheet, problems_of, write
+from tests.workbook.books import FLOORS, ITEMS, Sheet, problems_of, write, write_book
 from tests.workbook.test_records import floors_with, write_record
 
 CODE: dict[str, Any] = {
@@ -170,3 +171,17 @@ def test_reading_reports_and_obeys_a_cancel(tmp_path: Path) -> None:
 
     with pytest.raises(CancelledError):
         read_inventory(path, progress=Progress(stop, cancel))
+
+
+def test_errors_can_be_said_in_italian(tmp_path: Path) -> None:
+    floors: Sheet = [["Piano", "PFA X [g]"], ["1", 0.5]]
+    items: Sheet = [["Elemento", "Piano", "Profondità [cm]", "Altezza [cm]"], ["A1", "9", 40, 1.8]]
+    with pytest.raises(WorkbookError) as caught:
+        read_inventory(write_book(tmp_path / "cartella.xlsx", {"Piani": floors, "Arredi": items}))
+    assert caught.value.language == "it"
+    with speaking(load_catalogue("it")):
+        said = [f"{gettext(one.message)} {gettext(one.fix)}" for one in caught.value.problems]
+    assert said == [
+        "Altezza è 1,8 cm, atteso da 5 a 600 cm. Si intendeva 1,8 m = 180 cm?",
+        "Piano '9' non è nel foglio Piani. Scegliere una voce del foglio Piani, oppure aggiungerla lì.",
+    ]

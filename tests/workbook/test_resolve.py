@@ -146,3 +146,29 @@ def test_cells_of_a_row_that_contradict_each_other_are_warned_of(tmp_path: Path)
     assert [one.startswith("Items!H3: Bracket capacity is given, but Anchored is no.") for one in messages[1:]] == [
         True
     ]
+
+
+def test_no_assumption_where_all_is_given(tmp_path: Path) -> None:
+    header = ["Type", "Breadth [cm]", "Width [cm]", "Height [cm]", "Quantity", "Anchored", "Friction", "Axis"]
+    found = read_item(tmp_path, header, ["Locker", 40, 60, 200, 2, "no", 0.4, "X"], Catalogue=TYPES)
+    assert (found.assumed, found.friction, found.quantity) == ((), 0.4, 2)
+
+
+def test_a_type_without_that_size(tmp_path: Path) -> None:
+    path = write(tmp_path, [["Item", "Floor", "Type"], ["A1", "1", "Shelf"]],
+                 Catalogue=[["Type", "Breadth [cm]"], ["Shelf", 30]])  # fmt: skip
+    assert errors_of(path) == {
+        "Items!A1: the column Height [cm] is missing, and row 2 has no Type that gives it. Add the column, or give those rows such a Type."
+    }
+
+
+def test_a_centre_of_gravity_needs_its_unit(tmp_path: Path) -> None:
+    known = "the column '{}' is not known. Did you mean Centre of gravity [%]?"
+    for header, message in {
+        "Centre of gravity": "Centre of gravity has no unit. Write the unit that the numbers are in",
+        "Centre of gravity [cm]": "the unit 'cm' of Centre of gravity is not known. Write the unit that the numbers",
+        "Centre of gravity %": known,
+        "Center of gravity [%]": known,
+    }.items():
+        (error,) = errors_of(write(tmp_path, [[*ITEMS[0], header], [*ITEMS[1], 45]]))
+        assert error.startswith(f"Items!E1: {message.format(header)}")

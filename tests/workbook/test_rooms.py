@@ -36,6 +36,13 @@ def test_what_is_no_slip_of_a_segments_room(tmp_path: Path) -> None:
     assert told(tmp_path, ("2", "Coridor", None)) == [], "on another floor it keeps nothing away"
 
 
+def test_rooms_of_like_names_are_told_apart_by_their_words(tmp_path: Path) -> None:
+    for room in ("South office; Corridor", "Corridor; South office"):
+        assert told(tmp_path, ("1", "South office", None), ("1", "North office", None), room=room) == []
+        (one,) = told(tmp_path, ("1", "South office", None), ("1", "Sout office", None), room=room)
+        assert "Did you mean South office?" in one
+
+
 def test_a_slip_of_the_segment_is_told_there_alone(tmp_path: Path) -> None:
     (one,) = told(tmp_path, ("1", "Open office", None), room="Open ofice; Hall")
     assert one.startswith("warning Routes!F2: no piece is in room 'Open ofice'")

@@ -167,6 +167,15 @@ def test_floor_names_of_every_kind(tmp_path: Path) -> None:
         assert inventory.items[0].floor == inventory.floors[0].floor == name
 
 
+def test_names_are_compared_without_letter_case(tmp_path: Path) -> None:
+    floors = [FLOORS[0], ["Ground", 0.5], ["GROUND ", 0.6]]
+    assert errors_of(write(tmp_path, [ITEMS[0], ["A1", "ground", 40, 180], ["A2", "Grond", 40, 180]], floors)) == {
+        "Floors!A3: duplicate Floor 'GROUND', also in A2. Give each its own name.",
+        "Items!B3: Floor 'Grond' is not in the Floors sheet. "
+        "Choose one of the Floors sheet, or add it there. Did you mean Ground?",
+    }
+
+
 TEXTS = [
     ("bell\x07", "bell\ufffd", 1),
     ("_x0007_", "\ufffd", 1),
@@ -230,3 +239,8 @@ def test_formulas_without_a_saved_result(tmp_path: Path, prefix: str) -> None:
         path.write_bytes(sound)
         change_parts(path, {SHEET: replace("<v>180</v>", formula)})
         assert errors_of(change_parts(path, {SHEET: rename})) == expected, formula
+
+
+def test_a_formula_without_result_or_address_is_reported_where_it_stands(tmp_path: Path) -> None:
+    path = change_parts(write(tmp_path), {SHEET: replace('<c r="D2" t="n"><v>180</v>', "<c><f>2*90</f>")})
+    assert errors_of(path) == {f"Items!D2: {NO_VALUE}"}
