@@ -31,7 +31,6 @@ from assess.plain_text import plain_line
 from assess.settings import ROUTE_RISK, Settings
 
 if TYPE_CHECKING:
-    from assess.portfolio.city import Group
     from assess.portfolio.run_portfolio import PortfolioResult
 
 ORDER = 3.5
@@ -141,7 +140,7 @@ def command(
         except (KeyboardInterrupt, CancelledError):
             kept = f"the buildings that are done are kept in {plain_line(str(folder))}; the same command goes on"
             raise InterruptedWorkError(kept) from None
-    _tell(result, settings)
+    _tell(result)
 
 
 def _prepare_example(
@@ -183,11 +182,11 @@ def _quote(path: Path) -> str:
 # ---------------------------------------------------------------- what is printed at the end
 
 
-def _tell(result: "PortfolioResult", settings: Settings) -> None:
+def _tell(result: "PortfolioResult") -> None:
     """Print what was found; exit status 1 where a building was skipped."""
     from assess.portfolio.city_words import name_skipped
 
-    for line in describe_city(result, settings):
+    for line in describe_city(result):
         say(line)
     say_written(result.files, result.removed)
     names = {row["path"]: row["building"] for row in result.city.skipped}
@@ -200,52 +199,18 @@ def _tell(result: "PortfolioResult", settings: Settings) -> None:
         raise typer.Exit(1)
 
 
-def describe_city(result: "PortfolioResult", settings: Settings) -> Iterator[str]:
-    """Yield what was assessed, what is expected to fall, apart by inventory and basis, and what was skipped."""
-    from assess.portfolio.city_words import list_copies, list_ground_cautions, list_setting_cautions, say_ground
+def describe_city(result: "PortfolioResult") -> Iterator[str]:
+    """Yield what was assessed and skipped, what to know before, and what is expected, apart by inventory and basis."""
+    from assess.portfolio.city_words import list_cautions, list_group_lines, name_group, say_ground
 
     earlier = f" ({result.kept:,} of them by an earlier run)" if result.kept else ""
     city = result.city
     skipped = len(city.skipped)
     yield f"{count(len(city.ranked) - skipped, 'building')} assessed{earlier}, {skipped:,} skipped."
-    if city.is_made_up:
-        yield "All buildings are made up: their places, furniture, routes, people and costs are random numbers."
     yield say_ground(city)
-    yield from list_ground_cautions(city)
-    yield from list_setting_cautions(city)
-    yield from list_copies(city)
+    yield from list_cautions(city)
     for group in city.groups:
-        yield from _describe_group(group)
+        yield f"{name_group(group)}: {count(group.pieces, 'piece')}, {group.anchored:,} anchored."
+        yield from (f"  {line}" for line in list_group_lines(group))
     if city.groups:
         yield "Falls and people are expected numbers in this scenario, not per year."
-    if settings.verify == "none" and city.groups:
-        yield "Not simulated: the formula takes the median of the ground motion, and no ranges over the city are known."
-
-
-_BASES = {"simulated": "simulated", "formula": "by formula"}
-_INVENTORIES = {"surveyed": "surveyed", "handover": "from handover files (COBie)", "assumed": "inventory assumed"}
-
-
-def _describe_group(group: "Group") -> Iterator[str]:
-    falls, people = group.falls, group.people
-    span = "" if falls.low is None else f" ({falls.low:,.0f} to {falls.high:,.0f} in 90 % of the draws)"
-    yield (
-        f"{_INVENTORIES[group.inventory]}, {_BASES[group.basis]}: {count(group.buildings, 'building')}, "
-        f"{count(group.pieces, 'piece')}; {falls.expected:,.1f} expected to fall{span}."
-    )
-    if group.falls_low_inventory is not None and group.falls_high_inventory is not None:
-        low, high = group.falls_low_inventory, group.falls_high_inventory
-        yield f"  With few or many pieces in all of them: {low:,.1f} to {high:,.1f}."
-    if group.people_known:
-        left = f"; {group.people_not_known:,} more on routes that are not known" if group.people_not_known else ""
-        yield f"  People whose route is blocked: {people.expected:,.1f} expected, of {group.people_known:,}{left}."
-    elif group.occupants:
-        yield f"  People whose route is blocked: not known; {group.occupants:,} on routes that are not known."
-    if group.own_motions:
-        buildings = count(group.own_motions, "building")
-        yield f"  With motions of their own, which may not be of this earthquake: {buildings}, in the sums above."
-    if apart := [f"{number:,} {what}" for number, what in (
-        (group.unconfirmed, "unconfirmed"), (group.by_formula, "by formula only"), (group.anchored, "anchored"),
-        (group.left_out, "left out of the COBie files")
-    ) if number]:  # fmt: skip
-        yield f"  Not counted above: {', '.join(apart)}."

@@ -34,9 +34,8 @@ _Past = TypeVar("_Past", PastPiece, PastState)
 class Direction(StrEnum):
     """Where a row goes from BEFORE to AFTER; the order is that of lists.
 
-    Worse and better: to another class or state, or from and to anchored. Rises and falls: the chance within one class
-    or state. Unclear: the chances rest on different bases, or a state is not known. Added and removed: the row is in
-    one run alone.
+    Worse and better are to another class or state, or from and to anchored; it rises and falls within one. It is
+    unclear where chances rest on different bases, or a state is not known; added and removed are rows of one run alone.
     """
 
     WORSE = "worse"
@@ -241,12 +240,7 @@ _Changed = TypeVar("_Changed", PieceChange, StateChange)
 
 def _arrange(changes: Sequence[_Changed], rank: Callable[[_Changed], tuple[float, str]]) -> tuple[_Changed, ...]:
     """Return changes by their direction, then by a number and a name."""
-
-    def place(one: _Changed) -> tuple[object, ...]:
-        number, name = rank(one)
-        return ORDER.index(one.direction), number, natural_key(name)
-
-    return tuple(sorted(changes, key=place))
+    return tuple(sorted(changes, key=lambda one: (ORDER.index(one.direction), rank(one)[0], natural_key(rank(one)[1]))))
 
 
 # ---------------------------------------------------------------- one row
@@ -352,19 +346,22 @@ def lies_within(before: PastChance, after: PastChance) -> bool | None:
 
 def _add_up(before: Sequence[PastPiece], after: Sequence[PastPiece], is_comparable: bool) -> Total:
     """Return the expected falls of pieces; the ends of their intervals add up, as one earthquake shakes them all."""
-    was, now = _sum(before), _sum(after)
-    is_within = lies_within(was, now) if is_comparable else None
-    return Total(was.probability, now.probability, is_comparable, is_within)
 
+    def add(pieces: Sequence[PastPiece], values: Sequence[float | None]) -> float | None:
+        if None in values:
+            return None
+        return math.fsum(one.quantity * (value or 0.0) for one, value in zip(pieces, values, strict=True))
 
-def _sum(pieces: Sequence[PastPiece]) -> PastChance:
-    def total(read: Callable[[PastChance], float | None]) -> float | None:
-        values = [(one.quantity, read(one.chance)) for one in pieces]
-        known = [quantity * value for quantity, value in values if value is not None]
-        return math.fsum(known) if len(known) == len(values) else None
-
-    expected = total(lambda one: one.probability) or 0.0
-    return PastChance(expected, total(lambda one: one.low), total(lambda one: one.high))
+    sums = [
+        PastChance(
+            add(pieces, [one.chance.probability for one in pieces]) or 0.0,
+            add(pieces, [one.chance.low for one in pieces]),
+            add(pieces, [one.chance.high for one in pieces]),
+        )
+        for pieces in (before, after)
+    ]
+    is_within = lies_within(*sums) if is_comparable else None
+    return Total(sums[0].probability, sums[1].probability, is_comparable, is_within)
 
 
 def count_states(before: Iterable[PastState], after: Iterable[PastState]) -> dict[str, tuple[int, int]]:

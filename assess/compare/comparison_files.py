@@ -28,12 +28,7 @@ from assess.version import __version__
 
 SCHEMA = "1.1"
 """Version of the shape of compare.json."""
-FILES: Mapping[str, str] = {
-    "xlsx": "compare.xlsx",
-    "html": "compare.html",
-    "json": "compare.json",
-    "pdf": "compare.pdf",
-}
+FILES: Mapping[str, str] = {name: f"compare.{name}" for name in ("xlsx", "html", "json", "pdf")}
 """The formats in the order in which they are written: compare.json lists the others, and the PDF carries it."""
 FORMATS = ("html", "pdf", "xlsx")
 """The formats that are written where none are asked for, beside compare.json."""
@@ -47,25 +42,10 @@ def write_comparison(
     *,
     progress: Progress = SILENT,
 ) -> Written:
-    """Write the files of a comparison.
+    """Write the files of a comparison into a folder, which is made where it is missing; compare.json is always written.
 
-    Parameters
-    ----------
-    comparison : Comparison
-        From `assess.compare.changes.compare`.
-    folder : str or Path
-        Where to; made where it is missing. Files of an earlier comparison in it are replaced or removed, others stay.
-    formats : sequence of str
-        Of "html", "pdf", "xlsx", "json"; compare.json is always written.
-    options : ReportOptions, optional
-        Language and kind of PDF.
-    progress : Progress, optional
-        Notified of how far the work is; once it is cancelled, nothing is written.
-
-    Returns
-    -------
-    Written
-        The file of each format, and what was removed.
+    `formats` are of "html", "pdf", "xlsx", "json"; `options` language and kind of PDF. Files of an earlier comparison
+    in the folder are replaced or removed, others stay. Returns the file of each format, and what was removed.
 
     Raises
     ------

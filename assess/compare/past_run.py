@@ -39,10 +39,9 @@ class PastChance:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PastPiece:
-    """One row of furniture.
+    """One row of furniture with what was adopted for it; one that `is_held` counts as anchored, and has no class.
 
-    `is_held`: it counts as anchored, and so has no class. `basis` is one of `assess.results.BASES`; `risk` and
-    `chance` are those adopted. `inputs` is what the run was given or used for it, by the fields of `INPUTS`.
+    `inputs` is what the run was given or used for it, by the fields of `INPUTS`.
     """
 
     item: str
@@ -59,10 +58,9 @@ class PastPiece:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PastState:
-    """A route (`floor` is "") or a room.
+    """A route (`floor` is "") or a room, whose state is that of its best way to the street.
 
-    `state` is that of the route, or of the best way from the room to the street, in the words of its run; `chance`
-    that of being blocked, or of losing every exit, None where that was not evaluated.
+    `chance` is that of being blocked, or of losing every exit, None where that was not evaluated.
     """
 
     name: str
@@ -75,34 +73,12 @@ class PastState:
 class PastRun:
     """One run, as its results.json has it.
 
-    Parameters
-    ----------
-    path, sha256, written
-        Its results.json, the hash of that file, and when it was last changed, in UTC.
-    schema, version, code : str
-        Of results.json and of the program; SHA-256 of its code, "" where an earlier version did not write it.
-    platform : mapping of str to str
-        Versions of Python and its packages, system and processor.
-    settings, building, uncertainty : mapping of str to object
-        Settings as given, lines of the sheet Building, and what the draws of the simulation vary.
-    shaking : str
-        Name of an assumed intensity; "" where none is assumed.
-    site_ground : str
-        File, PGA at the building and hash of a ShakeMap or of scenarios; "" where the motion rests on none.
-    workbook, workbook_sha256 : str
-        Name and hash of the inventory.
-    motions : mapping of str to str
-        Hashes of the recorded motions, by the names of their files.
-    is_simulated : bool
-        Whether any piece was simulated: then pieces by formula alone stand outside its classes.
-    route_risk : float
-        Limit on the chance that a route is blocked [-].
-    blocked_routes, cut_off_rooms : float
-        Expected number of routes that are blocked and of rooms that lose every exit, among those known.
-    unknown_routes, unknown_rooms : int
-        Those that are not known.
-    unjoined_rooms : tuple of str
-        Rooms that no segment joins to an exit or a stair.
+    `sha256` is that of the file, `written` when it was last changed, in UTC; `code` the SHA-256 of the program's code,
+    "" where an earlier version did not write it. `uncertainty` is what the draws of the simulation vary, `shaking` the
+    name of an assumed intensity, `site_ground` file, PGA and hash of a ShakeMap or of scenarios, "" where there is
+    none; `motions` are hashes of the recorded motions by the names of their files. Where any piece was simulated, those
+    by formula alone stand outside the classes. Expected numbers of routes and rooms are of those that are known; a room
+    that no segment joins to an exit or a stair is unjoined.
     """
 
     path: Path

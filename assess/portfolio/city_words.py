@@ -229,8 +229,16 @@ def list_cautions(city: City) -> Iterator[str]:
     if len(city.groups) > 1:
         yield _("Surveyed, handed-over and assumed inventories, and simulated and formula results, are not added up: "
                 "their uncertainties differ.")  # fmt: skip
-    yield from list_setting_cautions(city)
-    yield from list_copies(city)
+    if city.settings.scale != 1:
+        yield _("The motion of every floor is multiplied by {scale:g}.", scale=city.settings.scale)
+    if city.settings.scenario:
+        yield _("The motion of every floor follows {scenario}, as the settings ask.", scenario=city.settings.scenario)
+    if city.settings.ideal:
+        yield _("The uncertainty of the earthquake and of the pieces is left out, as the settings ask.")
+    if copies := int(city.buildings["same_as"].notna().sum()):
+        yield ngettext("{n:,} workbook has the same content as another; it is counted as a building of its own.",
+                       "{n:,} workbooks have the same content as others; each is counted as a building of its own.",
+                       copies)  # fmt: skip
     if own := sum(group.own_motions for group in city.groups):
         yield ngettext("{n:,} building has floors with a record or a PFA of their own, which may not be of this "
                        "earthquake; its falls are in the sums.",
@@ -257,25 +265,6 @@ def list_ground_cautions(city: City) -> Iterator[str]:
             "their ground motion is that of another place.",
             len(far), limit=number(FAR / 1000, "g"), most=number(float(far.max()), ".0f"),
         )  # fmt: skip
-
-
-def list_setting_cautions(city: City) -> Iterator[str]:
-    """Yield what the settings of the run change in every number."""
-    if city.settings.scale != 1:
-        yield _("The motion of every floor is multiplied by {scale:g}.", scale=city.settings.scale)
-    if city.settings.scenario:
-        yield _("The motion of every floor follows {scenario}, as the settings ask.", scenario=city.settings.scenario)
-    if city.settings.ideal:
-        yield _("The uncertainty of the earthquake and of the pieces is left out, as the settings ask.")
-
-
-def list_copies(city: City) -> Iterator[str]:
-    """Yield how many workbooks have the same content as another one: their pieces and people are counted again."""
-    copies = int(city.buildings["same_as"].notna().sum())
-    if copies:
-        yield ngettext("{n:,} workbook has the same content as another; it is counted as a building of its own.",
-                       "{n:,} workbooks have the same content as others; each is counted as a building of its own.",
-                       copies)  # fmt: skip
 
 
 # ---------------------------------------------------------------- rows

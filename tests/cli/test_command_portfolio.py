@@ -12,14 +12,12 @@ import pytest
 from typer.testing import CliRunner
 
 from assess.cli.app import app
-from assess.cli.command_portfolio import _say_repeat, describe_city
+from assess.cli.command_portfolio import _say_repeat
 from assess.portfolio import example_city
 from assess.portfolio.city_tables import read_table
 from assess.portfolio.example_city import BUILDINGS, write_example_city
-from assess.portfolio.run_portfolio import PortfolioResult
 from assess.settings import Settings
 from tests.portfolio.staged import write_building, write_city
-from tests.portfolio.test_city import view
 from tests.waiting import PATIENCE, wait_until
 
 run = CliRunner().invoke
@@ -38,10 +36,9 @@ def test_a_folder_is_assessed_and_told_in_words(tmp_path):
     result = _call(_write(tmp_path), "--out", tmp_path / "out")
     assert result.exit_code == 0
     assert result.stdout.startswith("2 buildings assessed, 0 skipped.\nEvery building has the ground motion of its own")
-    assert "surveyed, by formula: 2 buildings, 10 pieces; " in result.stdout
+    assert "Surveyed buildings, by formula only: 10 pieces, 2 anchored." in result.stdout
     expected = read_table(tmp_path / "out", "buildings")["expected_falls"].sum()
-    assert f"10 pieces; {expected:.1f} expected to fall." in result.stdout
-    assert "Not counted above: 2 anchored." in result.stdout
+    assert f"Expected to overturn: {expected:.1f} of 8 free-standing pieces in 2 buildings." in result.stdout
     assert "not per year" in result.stdout
     assert "1 workbook has the same content as another; it is counted as a building of its own." in result.stdout
     assert read_table(tmp_path / "out", "buildings")["same_as"].tolist() == [None, "b00.xlsx"]
@@ -177,22 +174,3 @@ def test_the_line_that_repeats_a_building_names_what_differs_from_the_defaults()
     assert _say_repeat(Path("index.csv"), given, Path("my grid.xml"), None) == (
         "assess run ./{path} --city --shakemap 'my grid.xml' --verify none --seed 3 --scenario 'NTC 2018' --ideal"
     )
-
-
-BUILDING = {"path": "a.xlsx", "building": "Home (made up)", "own_motions": 1}
-
-
-@pytest.mark.parametrize(
-    ("unknown", "said"),
-    [
-        (30, "6.0 expected, of 20; 30 more on routes that are not known."),
-        (50, "not known; 50 on routes that are not known."),
-    ],
-)
-def test_the_terminal_tells_what_is_not_known_of_people_and_motions(unknown, said):
-    city = view([BUILDING | {"people_not_known": unknown}])
-    result = PortfolioResult(folder=Path("out"), files=(), removed=(), kept=0, skipped=(), city=city)
-    lines = [line.strip() for line in describe_city(result, Settings())]
-    assert f"People whose route is blocked: {said}" in lines
-    assert "With motions of their own, which may not be of this earthquake: 1 building, in the sums above." in lines
-    assert lines[1].startswith("All buildings are made up")

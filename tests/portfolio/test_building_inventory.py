@@ -6,20 +6,14 @@ from assess.portfolio.building_inventory import _is_near, read_building
 from assess.portfolio.index_file import IndexRow
 from assess.portfolio.sources import Source
 from assess.workbook.read import read_inventory
-from tests.bim.cobie_files import COMPONENTS, TYPES, one_type, write_cobie
-from tests.workbooks import write, write_sheets
+from tests.bim.cobie_files import one_type, write_cobie
+from tests.workbooks import write_sheets
 
 SHAKEN = IndexRow(path="c.xlsx", ground_pga_g=0.3)
 
 
 def _read(source, file=None):
     return read_building(source, None if file is None else file.read_bytes(), None)
-
-
-def test_a_workbook_is_surveyed(tmp_path):
-    path = write(tmp_path / "w.xlsx")
-    origin, inventory = _read(Source(path="w.xlsx", file=path), path)
-    assert (origin.inventory, origin.low, len(inventory.items)) == ("surveyed", None, 5)
 
 
 def test_a_cobie_file_is_handed_over_and_says_what_was_left_out(tmp_path):
@@ -30,14 +24,6 @@ def test_a_cobie_file_is_handed_over_and_says_what_was_left_out(tmp_path):
     messages = [one.message for one in inventory.problems]
     assert "1 component left out (AssetType is Fixed): Door B (1)." in messages
     assert origin.left_out == 0, "a door is no furniture"
-
-
-def test_furniture_without_sizes_in_a_cobie_file_is_counted(tmp_path):
-    desk = {"Name": "Desk", "AssetType": "Moveable", "NominalLength": 900, "NominalWidth": 600}
-    desks = [{"Name": f"Desk:{at}", "TypeName": "Desk", "Space": "G01"} for at in (1, 2, 3)]
-    path = write_cobie(tmp_path / "c.xlsx", types=(*TYPES, desk), components=(*COMPONENTS, *desks))
-    origin, inventory = _read(Source(path="c.xlsx", file=path, index=SHAKEN), path)
-    assert (origin.left_out, len(inventory.items)) == (3, 2)
 
 
 def test_a_cobie_file_is_as_its_imported_workbook(tmp_path):

@@ -13,8 +13,6 @@ from assess.motion.site_ground import SiteGround
 from assess.portfolio.background import Background
 from assess.portfolio.building_signs import (
     BY_CLASS,
-    BY_ROUTES,
-    BY_SHARE,
     find_share,
     say_sign,
     sign_of_class,
@@ -22,7 +20,6 @@ from assess.portfolio.building_signs import (
     sign_of_share,
 )
 from assess.portfolio.city_map import GROUND, SEA, Isoline, MapPoint, build_frame, draw_map, find_bar, list_isolines
-from assess.portfolio.city_page import list_legend, list_points
 from assess.units import GRAVITY
 from tests.portfolio.city_samples import NASTY, make_view
 
@@ -87,14 +84,6 @@ def test_one_building_anywhere_has_a_map_with_a_round_scale_and_none_gives_no_ma
     assert drawn.count(GROUND) == 2, "the map, and what lies beside it when it is moved"
 
 
-def test_every_sign_has_a_shape_of_its_own():
-    for signs in (BY_CLASS, BY_SHARE, BY_ROUTES):
-        looks = {(one.path, one.is_open, one.is_dashed, one.key == "anchored" and one.fill) for one in signs.values()}
-        assert len(looks) == len(signs)
-        order = [one.severity for one in signs.values()]
-        assert order == sorted(set(order))
-
-
 @pytest.mark.parametrize(
     ("changes", "kind", "state"),
     [
@@ -103,7 +92,6 @@ def test_every_sign_has_a_shape_of_its_own():
         ({"unconfirmed": 1, "by_formula": 1, "routes_not_known": 1, "routes_doubtful": 1}, "unconfirmed", "not-known"),
         ({"by_formula": 1, "routes_blocked": 1, "routes_not_known": 1}, "by-formula", "blocked"),
         ({"anchored": 4}, "anchored", "no-routes"),
-        ({}, "none", "no-routes"),
         ({"status": "skipped", "very_high": None}, "skipped", "skipped"),
     ],
 )
@@ -162,22 +150,6 @@ def test_lines_of_equal_shaking_carry_their_value_and_names_are_escaped():
     svg = _draw([_point(0, 37.0, -122.3, name=NASTY), _point(1, 37.4, -121.9)], isolines=[line])
     assert [one.text for one in svg.iter(f"{SVG}text") if one.get("class") == "isoline"] == ["0.2 g"]
     assert NASTY in [one.text for one in svg.iter(f"{SVG}title")]
-
-
-def test_buildings_of_a_view_are_marked_by_their_sums():
-    city = make_view(24, draws=20)
-    points = list_points(city)
-    placed = [row for row in city.ranked if row["latitude"] is not None]
-    assert len(points) == len(placed) == 24 - 2 - 1  # two skipped without a place, one assessed without
-    for legend in (list_legend(city, key) for key in ("share", "kind", "state")):
-        assert sum(count for _sign, count in legend) == 24
-        assert legend[-1][0].key == "skipped"
-    for point in points:
-        row = city.ranked[point.at]
-        share = row["expected_falls"] / (row["low"] + row["medium"] + row["high"] + row["very_high"])
-        band = sum(share >= limit for limit in (0.03, 0.3, 0.7))
-        assert point.sign.key == ("share-low", "share-medium", "share-high", "share-very-high")[band]
-    assert len({point.sign.key for point in points}) > 1
 
 
 # ---------------------------------------------------------------- lines of equal PGA

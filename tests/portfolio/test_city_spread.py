@@ -56,14 +56,6 @@ def city():
     return places, draw(places)
 
 
-def test_variance_of_a_sum_of_numbers_is_that_of_both_parts(city):
-    places, numbers = city
-    wanted = (SHARED + (1 - SHARED) * correlate(find_distances(places))).sum()
-    found = numbers.sum(axis=0).var()
-    assert found == pytest.approx(wanted, rel=4 * math.sqrt(2 / DRAWS))
-    assert wanted > 30 * len(places)  # what independent buildings would have is 1/30 of it, or less
-
-
 def test_variance_of_a_sum_of_falls_is_that_of_both_parts(city):
     """All pieces of a building fall in half of the draws: their covariance is asin(correlation)/2π."""
     places, numbers = city

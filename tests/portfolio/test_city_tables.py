@@ -7,7 +7,6 @@ import pytest
 
 from assess.errors import InputError
 from assess.portfolio import city_tables
-from assess.portfolio.building_rows import to_row
 from assess.portfolio.building_task import Part
 from assess.portfolio.city_tables import build_frame, check_tables, find_files, read_table, write_tables
 from assess.portfolio.table_schemas import TABLES
@@ -59,13 +58,6 @@ def test_the_same_rows_give_the_same_bytes(tmp_path):
     assert (tmp_path / "one" / path.name).read_bytes() == path.read_bytes()
 
 
-def test_a_folder_whose_name_is_no_sql_is_read(tmp_path):
-    folder = tmp_path / "it's; DROP"
-    folder.mkdir()
-    _write("routes", [], folder)
-    assert read_table(folder, "routes").empty
-
-
 def test_what_cannot_be_read_is_named(tmp_path):
     with pytest.raises(InputError, match="'rooms' is an unknown table; expected one of: buildings, pieces"):
         read_table(tmp_path, "rooms")
@@ -82,8 +74,3 @@ def test_without_duckdb_one_line_says_what_to_install(monkeypatch):
         InputError, match=r"needs duckdb, which is not installed. Install it from .*pip install '\.\[parquet\]'"
     ):
         check_tables()
-
-
-def test_a_row_of_unknown_columns_is_a_fault_of_ours():
-    with pytest.raises(ValueError, match="the table routes has no column colour"):
-        to_row("routes", {"colour": "red"})

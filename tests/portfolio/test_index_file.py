@@ -23,12 +23,6 @@ def test_a_row_fills_in_the_sheet_building(tmp_path):
     }  # fmt: skip
 
 
-def test_columns_stand_in_any_order_and_blanks_are_not_known(tmp_path):
-    one, other = _read(tmp_path, "# made by hand\n\nLatitude,PATH,longitude\n37.8,a.xlsx,-122\n,b.xlsx,\n")
-    assert (one.latitude, one.line) == (37.8, 4)
-    assert other.as_building() == {}
-
-
 def test_semicolons_and_tabs_go_with_decimal_commas_and_latin_1_is_read(tmp_path):
     text = "path|latitude|longitude|building\na.xlsx|37,8|-122,4|Rossi, Café\n"
     for mark in (";", "\t"):
@@ -45,22 +39,17 @@ def test_semicolons_and_tabs_go_with_decimal_commas_and_latin_1_is_read(tmp_path
         ("latitude,longitude\n1,2\n", "line 1: expected the column path, or building"),
         ("path\n", "no building is listed below the headings"),
         ("", r"index.csv: the index is empty\. Its first line holds the names of the columns"),
-        ("\n# a comment\n", "the index is empty"),
         ("path,latitude,longitude\na.xlsx,91,0\n", "line 2: latitude is 91, expected -90 to 90"),
         ("path,latitude,longitude\na.xlsx,nan,0\n", "line 2: latitude is 'nan', not a number"),
-        ("path,latitude,longitude\na.xlsx,1e999,0\n", "line 2: latitude is inf"),
         ("path,latitude\na.xlsx,1\n", "line 2: give both latitude and longitude, or neither"),
         ("path,storeys\na.xlsx,2.5\n", "line 2: storeys is 2.5, expected a whole number"),
-        ("path,storeys\na.xlsx,0\n", "line 2: storeys is 0, expected 1 to 300"),
         ("path,ground_pga_g\na.xlsx,40\n", "line 2: ground_pga_g is 40, expected"),
-        ("path,floor_area_m2\na.xlsx,-5\n", "line 2: floor_area_m2 is -5"),
         ("path\na.xlsx,b\n", "line 2: there are more cells than headings"),
         ("path,use\n,office\n", "line 2: give a path, or the name of a building without a survey"),
         (
             "path\na.xlsx\n./a.xlsx\n",
             r"^index\.csv: lines 2 and 3 list the same workbook, a\.xlsx: keep one of them\.$",
         ),
-        ("path\na.xlsx\nb.xlsx\na.xlsx\n\na.xlsx\n", r"lines 2, 4 and 6 list the same workbook, a\.xlsx"),
         ("path\n" + 13 * "a.xlsx\n", r"lines 2, 3, 4, 5, 6, 7, 8, 9, 10, 11 and 3 more list the same workbook"),
         ("building\nHall\nHall\n", "lines 2 and 3 list the same building without a workbook, Hall: keep one of them"),
         ("path,building\na.xlsx,\n,a.xlsx\n", "line 3: 'a.xlsx' is also the path of a workbook"),
@@ -77,10 +66,8 @@ def test_a_slip_is_named_with_its_line(tmp_path, text, message):
     ("text", "message"),
     [
         ('path,building\na.xlsx,"Old town hall\nb.xlsx,Library\n', "line 2: a quotation mark is not closed"),
-        ('path,building\na.xlsx,"Old\nb.xlsx,"Library"\n', "line 2: a quotation mark is not closed"),
         ('path,building\na.xlsx,x\nb.xlsx,"Old\ntown hall"\n', "line 3: .* a cell cannot hold a line break"),
         ('path,building\r\na.xlsx,"Old\rtown"\r\n', "line 2: .* a cell cannot hold a line break"),
-        ('"path\na.xlsx\n', r"^index\.csv: line 1: a quotation mark is not closed\. Close it on the same line"),
         ('path,building\na.xlsx,"Old" hall\n', "line 2: characters follow a closing quotation mark. Write a quotation"),
         ("path\n" + "x" * 200_000, "line 2 cannot be read: field larger"),
     ],
@@ -109,14 +96,10 @@ def test_a_number_that_can_be_read_in_two_ways_is_refused_with_both(tmp_path):
     ("name", "typed", "number"),
     [
         ("latitude", "37.789", 37.789),
-        ("longitude", "-122,419", -122.419),
         ("longitude", "\u2212122,419", -122.419),
         ("ground_pga_g", "0,150", 0.15),
-        ("ground_pga_g", "1.250", 1.25),
         ("height_m", "10.500", 10.5),
         ("height_m", "1.050,5", None),
-        ("floor_area_m2", "25.1250", 25.125),
-        ("floor_area_m2", "1250.125", 1250.125),
         ("floor_area_m2", "25.000,5", 25000.5),
         ("floor_area_m2", "1.250.000", 1250000.0),
         ("floor_area_m2", "25 000", 25000.0),
@@ -133,14 +116,6 @@ def test_a_number_that_can_be_read_in_one_way_within_the_range_is_read(tmp_path,
         assert getattr(_read(tmp_path, text)[0], name) == number
 
 
-def test_all_slips_are_named_at_once_up_to_a_limit(tmp_path):
-    with pytest.raises(InputError) as caught:
-        _read(tmp_path, "path,storeys\n" + "".join(f"{at}.xlsx,x\n" for at in range(30)))
-    assert str(caught.value).count("not a number") == 20
-    assert str(caught.value).endswith("and 10 more.")
-    assert _read(tmp_path, "path;building\na.xlsx;12,5\n")[0].building == "12,5", "a name stays as it is"
-
-
 def test_a_slip_is_told_once_and_together_with_those_of_names(tmp_path):
     with pytest.raises(InputError) as caught:
         _read(tmp_path, "path,latitude,longitude\na.xlsx,95,10\na.xlsx,x,10\n,,\n,1,2\n")
@@ -150,5 +125,7 @@ def test_a_slip_is_told_once_and_together_with_those_of_names(tmp_path):
         "line 5: give a path, or the name of a building without a survey.",
         "lines 2 and 3 list the same workbook, a.xlsx: keep one of them.",
     ]
+    with pytest.raises(InputError, match=r"and 10 more\.$"):
+        _read(tmp_path, "path,storeys\n" + "".join(f"{at}.xlsx,x\n" for at in range(30)))
     with pytest.raises(InputError, match=r"gone\.csv: the index cannot be read: No such file"):
         read_index(tmp_path / "gone.csv")

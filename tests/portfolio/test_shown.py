@@ -19,21 +19,12 @@ from assess.portfolio.run_portfolio import PortfolioResult
 from assess.report.report_options import ReportOptions
 from assess.settings import Settings
 from tests.nets.lines import flatten, read_excel, read_html, read_pdf
-from tests.portfolio.city_samples import NASTY, frame
+from tests.portfolio.city_samples import BUILDING, NASTY, PIECE, frame
 
 SHOWN = Path(__file__).parent / "shown"
 DATE = "1767225600"
 LANGUAGES = ("en", "it")
 RENDERERS = {"html": (render_page, read_html), "xlsx": (render_ranking, read_excel), "pdf": (render_summary, read_pdf)}
-BUILDING = {
-    "status": "assessed", "inventory": "surveyed", "basis": "simulated", "draws": 20, "pieces": 12, "low": 3,
-    "medium": 2, "high": 2, "very_high": 1, "cannot_rock": 1, "unconfirmed": 0, "by_formula": 0, "anchored": 2,
-    "expected_falls": 1.9, "falls_p05": 0.0, "falls_p95": 5.0, "falls_avoided": 1.4, "works": 4,
-    "works_without_cost": 0, "cost": 1250.0, "is_placed": True, "latitude": 37.8, "longitude": -122.3, "use": "Office",
-    "storeys": 3, "height_m": 11.4, "floor_area_m2": 900.0, "ground_source": "shakemap", "ground_pga_g": 0.21,
-    "ground_pgv_cm_s": 23.4, "own_motions": 0, "largest_pfa_g": 0.345, "motion_uncertainty": 0.62, "routes": 0,
-    "routes_open": 0, "routes_doubtful": 0, "routes_blocked": 0, "routes_not_known": 0, "warnings": 0,
-}  # fmt: skip
 BUILDINGS = (
     {"path": "a/school.xlsx", "building": "School", "use": "School", "unconfirmed": 1, "by_formula": 1, "routes": 3,
      "routes_open": 1, "routes_blocked": 1, "routes_not_known": 1, "occupants": 90, "people_not_known": 30,
@@ -53,12 +44,6 @@ BUILDINGS = (
      "latitude": None, "longitude": None},
     {"path": "gone.xlsx", "status": "skipped", "inventory": None, "basis": None, "latitude": None, "longitude": None},
 )  # fmt: skip
-PIECE = {
-    "inventory": "surveyed", "basis": "simulated", "floor": "1", "room": "Hall", "type": "Bookcase tall",
-    "quantity": 2, "breadth_cm": 38.0, "width_cm": 80.0, "height_cm": 195.5, "axis": "X", "anchored": "no",
-    "is_held": False, "importance": "property", "probability": 0.25, "probability_low": 0.18, "probability_high": 0.34,
-    "risk_class": "medium", "risk_class_upper": "high",
-}  # fmt: skip
 PIECES = (
     {"item": "A1", "work_place": 1, "detail": "L-bracket to studs", "unit_cost": 90.0, "route": "East"},
     {"item": "A2", "risk_class": "very high", "risk_class_upper": "very high", "probability": 0.95, "work_place": 2,
@@ -116,7 +101,7 @@ def show(kind: str, language: str, folder: Path) -> list[str]:
     city = build_city()
     if kind == "txt":
         result = PortfolioResult(folder=folder, files=(), removed=(), kept=1, skipped=(), city=city)
-        return list(describe_city(result, city.settings))
+        return list(describe_city(result))
     render, read = RENDERERS[kind]
     path = folder / f"city.{kind}"
     more = {"repeat": "assess run {path} --city", "indexed": {"formula.xlsx"}} if kind == "html" else {}
