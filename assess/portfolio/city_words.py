@@ -10,8 +10,7 @@ from assess.methods import adopted_formula
 from assess.motion.ground_scenarios import FAR_CAUTION
 from assess.motion.spatial_field import SCATTERS, Measure
 from assess.plain_text import plain_text
-from assess.portfolio.city import PEOPLE_RULE, City, Group, Row
-from assess.portfolio.city_spread import Spread
+from assess.portfolio.city import PEOPLE_RULE, City, Group, Row, Spread
 from assess.report import words
 from assess.report.provenance import say_reference
 from assess.report.say.route import say_state

@@ -12,8 +12,8 @@ from assess.environment import find_source_date
 from assess.i18n import fill
 from assess.i18n import gettext as _
 from assess.portfolio import city_words as say
-from assess.portfolio.building_signs import find_share, say_sign, sign_of_class
 from assess.portfolio.city import BUILDING_RULE, TYPE_RULE, City, Group, Row
+from assess.portfolio.city_map import find_share, say_sign, sign_of_class
 from assess.progress import SILENT, Progress
 from assess.report import words
 from assess.report.report_options import ReportOptions

@@ -105,7 +105,7 @@ def run_portfolio(
     ground : GroundField, optional
         A ShakeMap, or computed scenarios: they take the place of the ground motions of the workbooks.
     jobs : int, optional
-        Processes; as many as there are processors by default. They do not change a result.
+        Processes, as many as there are processors by default: they do not change a result.
     scheduler : str, optional
         Address of a dask scheduler whose workers do the work.
     formats : sequence of str

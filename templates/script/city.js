@@ -3,7 +3,8 @@
   "use strict";
   const byId = (id) => document.getElementById(id);
   const data = JSON.parse(byId("data").textContent);
-  const { buildings, texts, tables, styles } = data;
+  const texts = byId("texts").dataset;
+  const { buildings, tables, styles } = data;
   const language = document.documentElement.lang || "en";
   const whole = (value) => value.toLocaleString(language);
   const write = (text, values) => text.replace(/\{(\w+)\}/g, (all, name) => values[name] ?? all);

@@ -1,9 +1,16 @@
 """Sums over a city: never over inventories or bases that differ, with what a reader has to know beside them."""
 
+import math
+import re
+from pathlib import Path
+
+import numpy as np
 import pytest
 
-from assess.portfolio.city import FIRST, City
+from assess.motion.spatial_field import EARTH, SCATTERS, correlate
+from assess.portfolio.city import FIRST, City, build_spread, find_sampling
 from assess.risk import RiskClass
+from assess.rocking.draws import Earthquakes
 from assess.route_results import RouteState
 from assess.settings import Settings
 from tests.portfolio.city_samples import frame
@@ -147,3 +154,114 @@ def test_a_city_is_made_up_where_all_its_names_say_so():
 def test_buildings_of_one_name_are_named_with_their_files():
     city = view([{"path": "a", "building": "School"}, {"path": "b", "building": "School"}, {"path": "c"}])
     assert [city.name_building(row) for row in city.ranked] == ["School (a)", "School (b)", "c"]
+
+
+SHARED = SCATTERS["PGA"].shared
+RUNS = 2048
+DOCS = Path(__file__).parents[2] / "docs"
+
+
+def grid(count, step_km=4.0):
+    """Return places on a square grid around San Francisco Bay [deg], (count, 2)."""
+    side = math.ceil(math.sqrt(count))
+    rows, columns = np.divmod(np.arange(count), side)
+    degree = EARTH * math.pi / 180
+    latitude = 37.3 + rows * step_km / degree
+    return np.stack([latitude, -122.4 + columns * step_km / (degree * np.cos(np.radians(latitude)))], axis=1)
+
+
+def find_distances(places):
+    """Return the distances of places from each other [km], (n, n)."""
+    phi, lam = np.radians(places).T
+    points = EARTH * np.stack([np.cos(phi) * np.cos(lam), np.cos(phi) * np.sin(lam), np.sin(phi)], axis=1)
+    return np.linalg.norm(points[:, None] - points[None], axis=2)
+
+
+def draw(places, runs=RUNS, seed=1):
+    """Return the numbers of each place and draw, (n, runs)."""
+    return np.array([Earthquakes(place=(float(lat), float(lon))).draw(seed, 0, runs) for lat, lon in places])
+
+
+def tabulate(falls, names=None):
+    """Return the table draws of buildings whose pieces fall so, (n, runs)."""
+    names = names or [f"{at:03d}.xlsx" for at in range(len(falls))]
+    rows = [
+        {"path": name, "draw": k, "falls": int(n), "people_blocked": 0, "routes_blocked": 0}
+        for name, own in zip(names, falls, strict=True)
+        for k, n in enumerate(own)
+    ]
+    return frame("draws", rows)
+
+
+@pytest.fixture(scope="module")
+def city():
+    """250 buildings, 60 km across, and their numbers."""
+    places = grid(250)
+    return places, draw(places)
+
+
+def test_variance_of_a_sum_of_falls_is_that_of_both_parts(city):
+    """All pieces of a building fall in half of the draws: their covariance is asin(correlation)/2π."""
+    places, numbers = city
+    quantity = 1 + np.arange(len(places)) % 20
+    falls = quantity[:, None] * (numbers > 0)
+    correlation = np.minimum(1, SHARED + (1 - SHARED) * correlate(find_distances(places)))
+    wanted = quantity @ (np.arcsin(correlation) / (2 * math.pi)) @ quantity
+    assert falls.sum(axis=0).var() == pytest.approx(wanted, rel=4 * math.sqrt(2 / RUNS))
+
+
+def test_one_more_building_changes_no_draw_of_another(city):
+    places, numbers = city
+    more = draw(np.concatenate([places[:50], [[37.8, -122.27]], places[50:60]]), 300)
+    assert more[:50].tobytes() == numbers[:50, :300].tobytes()
+    assert more[51:].tobytes() == numbers[50:60, :300].tobytes()
+
+
+def test_a_sum_over_buildings_is_made_draw_by_draw_in_any_order_of_rows():
+    spread = build_spread(tabulate(np.array([[0, 1, 2, 3], [0, 10, 20, 30]])), "falls", 16.5, 100)
+    assert (spread.low, spread.high, spread.draws) == (0, 33, 4)
+    assert (spread.expected, spread.apart) == (16.5, 0)
+    table = tabulate(np.random.default_rng(1).poisson(3, (5, 50)))
+    shuffled = table.sample(frac=1, random_state=3)
+    assert build_spread(shuffled, "falls", 15.0, 100) == build_spread(table, "falls", 15.0, 100)
+
+
+def test_what_has_no_draws_stands_apart():
+    assert build_spread(tabulate([]), "falls", 7.5, 10).apart == 7.5
+    assert build_spread(tabulate([]), "falls", 7.5, 10).low is None
+    assert build_spread(tabulate([[2, 4]]), "falls", 5.0, 10).apart == pytest.approx(2)
+
+
+def test_the_interval_of_the_expected_number_is_that_of_a_mean():
+    falls = np.random.default_rng(1).poisson(50, (1, 400))
+    spread = build_spread(tabulate(falls), "falls", float(falls.mean()), 1000)
+    half = 1.96 * falls.std(ddof=1) / 20
+    assert spread.sampling_high - spread.sampling_low == pytest.approx(2 * half, rel=0.001)
+
+
+def test_no_falls_in_any_draw_do_not_show_that_nothing_falls():
+    """Of 200 draws none: Wilson's upper end is 1.88 %, and in such a draw every piece could fall."""
+    assert find_sampling(np.zeros(200), 1000) == pytest.approx((0.0, 18.8), abs=0.1)
+    rare = np.zeros(200)
+    rare[7] = 30
+    assert find_sampling(rare, 1000) == pytest.approx((0.0, 30 * 0.0278), rel=0.01)
+
+
+def test_draws_that_differ_between_buildings_are_refused():
+    table = tabulate([[1, 2], [3, 4]])
+    for one in (table.iloc[:3], table.assign(draw=[0, 1, 0, 2])):
+        with pytest.raises(ValueError, match="does not hold the same draws for all buildings"):
+            build_spread(one, "falls", 1.0, 10)
+
+
+def test_the_range_of_the_docs_is_that_of_this_city():
+    """250 buildings of 20 pieces with a chance of 0.1, 200 draws: the range, and the one if buildings were alone."""
+    falls = 20 * (draw(grid(250), 200) > 1.2816)
+    spread = build_spread(tabulate(falls), "falls", float(falls.sum(axis=0).mean()), 5000)
+    assert spread.high > 3 * spread.independent_high - 2 * spread.expected
+    text = " ".join((DOCS / "methods.md").read_text(encoding="utf-8").split())
+    said = r"5 to 95 % of the earthquakes bring ([\d,]+) to ([\d,]+) falls.* it would be ([\d,]+) to ([\d,]+)"
+    found = re.search(said, text)
+    assert found is not None
+    numbers = [int(one.replace(",", "")) for one in found.groups()]
+    assert numbers == [spread.low, spread.high, spread.independent_low, spread.independent_high]

@@ -11,15 +11,22 @@ from assess.errors import InputError
 from assess.i18n import fill
 from assess.motion.site_ground import SiteGround
 from assess.portfolio.background import Background
-from assess.portfolio.building_signs import (
+from assess.portfolio.city_map import (
     BY_CLASS,
+    GROUND,
+    SEA,
+    Isoline,
+    MapPoint,
+    build_frame,
+    draw_map,
+    find_bar,
     find_share,
+    list_isolines,
     say_sign,
     sign_of_class,
     sign_of_routes,
     sign_of_share,
 )
-from assess.portfolio.city_map import GROUND, SEA, Isoline, MapPoint, build_frame, draw_map, find_bar, list_isolines
 from assess.units import GRAVITY
 from tests.portfolio.city_samples import NASTY, make_view
 

@@ -154,7 +154,7 @@ class TestInBrowser:
         assert "What to fix first" in page.locator("#one").inner_text()
         assert page.locator("#one pre").inner_text() == data["buildings"][4]["command"]
         page.get_by_role("button", name="Back to all buildings").click()
-        assert page.locator("#all").is_visible()
+        expect(page.locator("#all")).to_be_visible()
         assert page.evaluate("document.activeElement.textContent") == data["buildings"][4]["name"]
         mark = page.locator(".marks > g").last
         at = int(mark.get_attribute("data-at"))

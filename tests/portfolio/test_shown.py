@@ -4,8 +4,10 @@ After a change that is meant, ``python -m tests.portfolio.test_shown`` writes th
 """
 
 import difflib
+import html
 import json
 import os
+import re
 from pathlib import Path
 
 import pytest
@@ -108,9 +110,11 @@ def show(kind: str, language: str, folder: Path) -> list[str]:
     path.write_bytes(render(city, options=ReportOptions(language=language), **more))
     if kind != "html":
         return read(path)
-    data = json.loads(path.read_text(encoding="utf-8").split('id="data">')[1].split("</script>")[0])
+    page = path.read_text(encoding="utf-8")
+    data = json.loads(page.split('id="data">')[1].split("</script>")[0])
+    texts = dict(re.findall(r'  data-(\w+)="(.*?)"', html.unescape(page.split('id="texts"')[1].split("</div>")[0])))
     data["tables"] = {name: dict(_unpack(table)) for name, table in data["tables"].items()}
-    return [*read(path), *flatten(data, "")]
+    return [*read(path), *flatten(data | {"texts": texts}, "")]
 
 
 def _unpack(table):
