@@ -1,6 +1,5 @@
 """One building: its rows are those of its results, and whatever goes wrong is a reason to skip it."""
 
-import hashlib
 import shutil
 from dataclasses import replace
 
@@ -14,7 +13,6 @@ from assess.portfolio.building_task import (
     Task,
     find_key,
     find_place,
-    is_done,
     read_part,
     run_task,
     write_part,
@@ -234,17 +232,3 @@ def test_a_part_of_other_columns_or_of_another_key_is_none(tmp_path):
     other.parent.mkdir(parents=True)
     other.write_bytes(find_place(tmp_path, KEY).read_bytes())
     assert read_part(tmp_path, "0" * 64) is None
-
-
-def test_a_part_is_done_while_the_files_that_its_workbook_names_are_what_they_were(tmp_path):
-    (tmp_path / "sub").mkdir()
-    (tmp_path / "sub" / "motion.txt").write_bytes(b"1")
-    part = Part(path="a", key=KEY, status="assessed", tables=PART.tables,
-                files={"sub/motion.txt": hashlib.sha256(b"1").hexdigest()})  # fmt: skip
-    assert is_done(part, tmp_path)
-    (tmp_path / "sub" / "motion.txt").write_bytes(b"2")
-    assert not is_done(part, tmp_path)
-    (tmp_path / "sub" / "motion.txt").unlink()
-    assert not is_done(part, tmp_path)
-    assert not is_done(Part(path="a", key=KEY, status="skipped", tables=PART.tables), tmp_path)
-    assert not is_done(None, tmp_path)

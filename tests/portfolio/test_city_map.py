@@ -13,6 +13,7 @@ from assess.motion.site_ground import SiteGround
 from assess.portfolio.background import Background
 from assess.portfolio.city_map import (
     BY_CLASS,
+    BY_SHARE,
     GROUND,
     SEA,
     Isoline,
@@ -20,7 +21,6 @@ from assess.portfolio.city_map import (
     build_frame,
     draw_map,
     find_bar,
-    find_share,
     list_isolines,
     say_sign,
     sign_of_class,
@@ -91,48 +91,24 @@ def test_one_building_anywhere_has_a_map_with_a_round_scale_and_none_gives_no_ma
     assert drawn.count(GROUND) == 2, "the map, and what lies beside it when it is moved"
 
 
-@pytest.mark.parametrize(
-    ("changes", "kind", "state"),
-    [
-        ({"low": 3, "very_high": 1, "routes_open": 2}, "very-high", "open"),
-        ({"low": 3, "unconfirmed": 9, "routes_doubtful": 1, "routes_open": 1}, "low", "doubtful"),
-        ({"unconfirmed": 1, "by_formula": 1, "routes_not_known": 1, "routes_doubtful": 1}, "unconfirmed", "not-known"),
-        ({"by_formula": 1, "routes_blocked": 1, "routes_not_known": 1}, "by-formula", "blocked"),
-        ({"anchored": 4}, "anchored", "no-routes"),
-        ({"status": "skipped", "very_high": None}, "skipped", "skipped"),
-    ],
-)
-def test_the_sign_of_a_building_is_that_of_its_worst(changes, kind, state):
-    assert sign_of_class(ROW | changes).key == kind
-    assert sign_of_routes(ROW | changes).key == state
-
-
-@pytest.mark.parametrize(
-    ("changes", "key", "said"),
-    [
-        ({"low": 99, "very_high": 1, "expected_falls": 1.5}, "share-low", "below 3 % of its pieces expected to fall"),
-        ({"low": 97, "high": 3, "expected_falls": 3.0}, "share-medium", "3 to 30 % of its pieces expected to fall"),
-        ({"high": 10, "expected_falls": sum([0.3] * 10)}, "share-high", "30 to 70 % of its pieces expected to fall"),
-        ({"high": 5, "very_high": 5, "unconfirmed": 90, "anchored": 90, "expected_falls": 7.0}, "share-very-high",
-         "70 % or more of its pieces expected to fall"),
-        ({"very_high": 2, "expected_falls": 2.0000000000000004}, "share-very-high",
-         "70 % or more of its pieces expected to fall"),
-    ],
-)  # fmt: skip
-def test_the_sign_by_share_is_the_band_of_expected_falls_over_pieces_in_the_classes(changes, key, said):
-    sign = sign_of_share(ROW | changes)
-    assert sign.key == key
-    assert say_sign(sign) == said
-    like = BY_CLASS[key.removeprefix("share-")]
-    assert (sign.path, sign.fill, sign.symbol) == (like.path, like.fill, like.symbol)
-
-
-def test_a_building_with_nothing_in_the_classes_has_the_same_sign_in_both_views():
-    unknown = dict.fromkeys(("low", "medium", "high", "very_high", "expected_falls"))
-    for changes in ({"unconfirmed": 1, "by_formula": 1}, {"by_formula": 1, "anchored": 3}, {"anchored": 4}, {},
-                    {"status": "skipped", **unknown}):  # fmt: skip
-        assert find_share(ROW | changes) is None
-        assert sign_of_share(ROW | changes) == sign_of_class(ROW | changes)
+def test_the_sign_of_a_building_is_that_of_its_worst_or_by_the_share_that_falls():
+    for changes, share, kind, state in (
+        ({"low": 99, "very_high": 1, "expected_falls": 1.5, "routes_open": 2}, "share-low", "very-high", "open"),
+        ({"low": 97, "high": 3, "expected_falls": 3.0, "routes_doubtful": 1, "routes_open": 1},
+         "share-medium", "high", "doubtful"),
+        ({"high": 10, "expected_falls": sum([0.3] * 10), "routes_not_known": 1, "routes_doubtful": 1},
+         "share-high", "high", "not-known"),
+        ({"very_high": 2, "expected_falls": 2.0000000000000004, "routes_blocked": 1, "routes_not_known": 1},
+         "share-very-high", "very-high", "blocked"),
+        ({"unconfirmed": 1, "by_formula": 1}, "unconfirmed", "unconfirmed", "no-routes"),
+        ({"by_formula": 1, "anchored": 3}, "by-formula", "by-formula", "no-routes"),
+        ({"anchored": 4}, "anchored", "anchored", "no-routes"),
+        ({}, "none", "none", "no-routes"),
+        ({"status": "skipped", "very_high": None, "expected_falls": None}, "skipped", "skipped", "skipped"),
+    ):  # fmt: skip
+        found = [find(ROW | changes).key for find in (sign_of_share, sign_of_class, sign_of_routes)]
+        assert found == [share, kind, state]
+    assert say_sign(BY_SHARE["share-high"]) == "30 to 70 % of its pieces expected to fall"
 
 
 def test_the_background_is_cut_to_what_is_shown():

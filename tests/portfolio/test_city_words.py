@@ -28,15 +28,6 @@ def _method(city):
 # ---------------------------------------------------------------- sums
 
 
-def test_a_city_says_in_its_title_and_before_its_numbers_what_it_is():
-    city = view([{"path": "a", "building": "Home (made up)"}], draws={"a": DRAWS})
-    assert say.say_title(city) == "Furniture in an earthquake: 1 made-up building"
-    assert next(say.list_cautions(city)).startswith("All buildings are made up")
-    real = view([{"path": "a", "building": "Home"}], draws={"a": DRAWS})
-    assert say.say_title(real) == "Furniture in an earthquake: 1 building"
-    assert not any("made up" in text for text in say.list_cautions(real))
-
-
 def test_ranges_say_what_they_are_over():
     city = view([{"path": "a"}], draws={"a": DRAWS})
     ideal = replace(city, settings=Settings(city=True, ideal=True), ground=GROUND)
@@ -65,17 +56,6 @@ def test_no_fall_seen_is_not_said_to_be_none_expected():
 # ---------------------------------------------------------------- method
 
 
-def test_the_formula_is_named_and_cited_with_the_pieces_that_cannot_rock():
-    city = view([{"path": "a", "basis": "formula", "draws": 0, "cannot_rock": 4}])
-    assert "chances by FEMA P-58 contents, under the median of the ground motion" in _method(city)
-    assert "FEMA P-58" in list_references(city)[0]
-    asked = replace(city, settings=Settings(city=True, class_by="proposed OR"))
-    assert "chances by Proposed OR formula, under" in _method(asked)
-    assert "Overturning Risk of Furniture" in list_references(asked)[0]
-    assert any("4 of the pieces are low as they cannot rock" in one for one in _answer(city))
-    assert "leaves its uncertainty out" in _answer(city)[0]
-
-
 def test_the_range_of_independent_buildings_is_left_out_where_it_is_the_same():
     one = view([{"path": "a"}], draws={"a": DRAWS})
     same = view([{"path": "a"}, {"path": "b"}], draws={"a": [(2, 0)] * 4, "b": [(1, 0)] * 4})
@@ -91,19 +71,6 @@ def _run(tmp_path, latitudes, ground):
     write_city(tmp_path / "city", latitudes)
     settings = Settings(verify="none", city=True)
     return run_portfolio(tmp_path / "city", tmp_path / "out", settings, ground=ground, jobs=1, formats=()).city
-
-
-def test_buildings_far_from_the_sites_of_scenarios_are_counted():
-    for distances, said in (
-        ((None, 9.9), []),
-        ((1.0, 12.4), ["1 building is farther than 10 km from the nearest site of the scenarios, 12 km: its"]),
-        ((31.0, 12.4), ["2 buildings are farther than 10 km from the nearest site of the scenarios, 31 km at most:"]),
-    ):
-        rows = [{"path": f"b{at}", "ground_distance_km": one} for at, one in enumerate(distances)]
-        city = view(rows, draws={row["path"]: DRAWS for row in rows})
-        found = list(say.list_ground_cautions(city))
-        assert [text[: len(start)] for text, start in zip(found, said, strict=True)] == said
-        assert found == [text for text in say.list_cautions(city) if "km from" in text]
 
 
 @pytest.mark.slow

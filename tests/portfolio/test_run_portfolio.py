@@ -20,7 +20,6 @@ from assess.portfolio.building_task import FOLDER, Task, run_task
 from assess.portfolio.city_tables import read_table
 from assess.portfolio.run_portfolio import run_portfolio
 from assess.portfolio.sources import find_sources
-from assess.progress import Report
 from assess.settings import Settings
 from tests.portfolio.staged import FILLS, HOLDS, KILLS, KILLS_ONCE, StagedGround, read_results, write_city
 from tests.waiting import wait_until
@@ -161,21 +160,6 @@ def test_a_cancel_writes_nothing_and_keeps_what_is_done(tmp_path):
 # ---------------------------------------------------------------- what is in the folders
 
 
-@pytest.mark.slow
-def test_bad_workbooks_are_named_and_the_others_assessed(tmp_path):
-    write_city(tmp_path / "city", [40.0] * 4)
-    (tmp_path / "city" / "cut.xlsx").write_bytes((tmp_path / "city" / "b00.xlsx").read_bytes()[:5000])
-    (tmp_path / "city" / "text.xlsx").write_text("no workbook", encoding="utf-8")
-    reports: list[Report] = []
-    result = _run(tmp_path, progress=reports.append)
-    assert [path for path, _ in result.skipped] == ["cut.xlsx", "text.xlsx"]
-    assert list(read_table(tmp_path / "out", "buildings")["status"]).count("assessed") == 4
-    details = [one.detail for one in reports if one.stage == "buildings"]
-    assert details[0] == "0 of 6 buildings; 0 skipped"
-    assert details[-1] == "6 of 6 buildings; 2 skipped"
-    assert sum(read_table(tmp_path / "out", "pieces").groupby("path").size() == 3) == 4
-
-
 @posix
 @pytest.mark.slow
 def test_names_that_attack_are_data_in_every_result_and_reports_of_an_earlier_run_go(tmp_path):
@@ -240,21 +224,6 @@ def test_two_runs_into_one_folder_do_not_mix(tmp_path):
     with pytest.raises(OutputError, match="is in use: another run is writing to it"):
         run_portfolio(city, tmp_path / "out", FORMULAS, formats=("parquet",))
     lock.release()
-
-
-@pytest.mark.slow
-def test_an_index_adds_a_building_without_a_survey(tmp_path):
-    write_city(tmp_path, [40.0])
-    text = "path,building,use,storeys,height_m,floor_area_m2,latitude,longitude\nb00.xlsx,,,,,,,\n"
-    (tmp_path / "index.csv").write_text(f"{text},Tower,office,4,15,1000,40,10\n,School,school,2,8,1000,40,10\n")
-    result = run_portfolio(
-        tmp_path / "index.csv", tmp_path / "out", FORMULAS, ground=StagedGround(tmp_path), formats=("parquet",), jobs=1
-    )
-    rows = read_table(tmp_path / "out", "buildings").set_index("path")
-    assert list(rows["inventory"]) == ["assumed", "assumed", "surveyed"]
-    assert [path for path, _ in result.skipped] == ["School"]
-    assert rows.loc["Tower", "falls_low_inventory"] < rows.loc["Tower", "expected_falls"]
-    assert rows.loc["Tower", "expected_falls"] < rows.loc["Tower", "falls_high_inventory"]
 
 
 @pytest.mark.slow
