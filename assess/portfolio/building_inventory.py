@@ -179,7 +179,7 @@ class _Kind:
         return Quantity(low, max(median, min(high, 1)), high)
 
 
-def build_assumed(row: IndexRow) -> tuple[Origin, Rows, tuple[Problem, ...]]:
+def build_assumed(row: IndexRow) -> tuple[Origin, Mapping[str, Sequence[Mapping[str, Any]]], tuple[Problem, ...]]:
     """Return the furniture that is assumed of a building of an index, by its use, storeys and floor area.
 
     Returns its 10 % and 90 % quantities by item, its rows by sheet with the 50 % quantity, and what is said of that:
@@ -217,7 +217,7 @@ def build_assumed(row: IndexRow) -> tuple[Origin, Rows, tuple[Problem, ...]]:
                     "type": kind.type, "quantity": one.median, **kind.sizes,
                     "notes": f"inventory assumed: {_SOURCE}; {one.low} to {one.high}",
                 })  # fmt: skip
-    rows: Rows = {
+    rows: dict[str, Sequence[Mapping[str, Any]]] = {
         "Building": [{"building": row.building or row.path, **row.as_building(), "height": height}],
         "Floors": [
             {"floor": str(level), "elevation": round((level - 1) * height / storeys, 4)}

@@ -1,5 +1,7 @@
 """A made-up city as tables: what the outputs are tested on, without assessing hundreds of buildings."""
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 
@@ -40,7 +42,7 @@ def frame(name, rows):
 def make_view(count=40, *, draws=200):
     """Return a city of `count` buildings: some assumed, skipped, without a place, with a nasty name."""
     random = np.random.default_rng(1)
-    tables = {name: [] for name in TABLES}
+    tables: dict[str, list[dict[str, Any]]] = {name: [] for name in TABLES}
     for at, one in enumerate(list_buildings(count)):
         path = one.path or one.name
         if at % 11 == 10:

@@ -74,3 +74,10 @@ def test_without_duckdb_one_line_says_what_to_install(monkeypatch):
         InputError, match=r"needs duckdb, which is not installed. Install it from .*pip install '\.\[parquet\]'"
     ):
         check_tables()
+
+
+def test_a_folder_whose_name_is_no_sql_is_read(tmp_path):
+    folder = tmp_path / "it's; DROP"
+    folder.mkdir()
+    _write("routes", [], folder)
+    assert read_table(folder, "routes").empty

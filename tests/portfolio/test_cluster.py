@@ -29,7 +29,7 @@ from assess.portfolio.run_portfolio import run_portfolio
 from assess.portfolio.sources import find_sources
 from assess.settings import Settings
 from tests.portfolio.staged import HOLDS, KILLS, KILLS_ONCE, StagedGround, read_results, write_city
-from tests.waiting import wait_until
+from tests.waiting import PATIENCE, wait_until
 
 pytest.importorskip("distributed")
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")]
@@ -121,6 +121,23 @@ def test_a_worker_that_dies_changes_no_byte_and_a_building_that_kills_workers_is
     assert read_results(tmp_path / "cluster") == read_results(tmp_path / "process")
 
 
+def test_a_client_that_is_killed_is_followed_by_one_that_goes_on(tmp_path, address, monkeypatch):
+    write_city(tmp_path / "city", [40.0] * 8 + [HOLDS])
+    (tmp_path / "hold").touch()
+    code = (
+        "from pathlib import Path\nfrom tests.portfolio import test_cluster as t\n"
+        f"t._run(Path({str(tmp_path)!r}), 'out', {address!r})"
+    )
+    parts = tmp_path / "out" / FOLDER
+    with subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, env=os.environ | QUIET) as client:
+        wait_until(lambda: len(list(parts.glob("*/*.part"))) == 8 and list(tmp_path.glob("held-*")))
+        client.send_signal(signal.SIGKILL)
+    (tmp_path / "hold").unlink()
+    assert _run(tmp_path, "out", address).kept >= 8
+    _run(tmp_path, "process")
+    assert read_results(tmp_path / "out") == read_results(tmp_path / "process")
+
+
 def test_a_scheduler_that_dies_is_told_and_what_is_done_is_kept(tmp_path, monkeypatch):
     write_city(tmp_path / "city", [40.0] * 8 + [HOLDS])
     (tmp_path / "hold").touch()
@@ -166,9 +183,37 @@ def _serving(data):
 HTTP = b"HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\n\r\n"
 
 
+def _fail(tmp_path, scheduler):
+    """Return what the command prints where no scheduler is; besides progress one line."""
+    write_city(tmp_path / "city", [40.0])
+    words = (tmp_path / "city", "--verify", "none", "--formats", "html", "--out", tmp_path / "out")
+    command = [sys.executable, "-m", "assess", "portfolio", *map(str, words), "--scheduler", scheduler]
+    done = subprocess.run(command, check=False, cwd=ROOT, capture_output=True, text=True, timeout=PATIENCE)
+    assert (done.returncode, done.stdout) == (2, "")
+    progress = ("Working, ", "Assessing 0 of 1 buildings")
+    lines = [line for line in done.stderr.splitlines() if not line.startswith(progress)]
+    assert len(lines) == 1, done.stderr
+    assert not (tmp_path / "out" / "city.html").exists()
+    return lines[0]
+
+
+def test_what_is_not_a_scheduler_is_told_in_one_line(tmp_path):
+    """A server of the web, and a worker."""
+    said = "what is there does not answer as a dask scheduler"
+    with _serving(HTTP) as address:
+        line = _fail(tmp_path, address)
+    assert line.startswith(f"error  --scheduler {address}: {said}")
+    assert line.endswith("a scheduler prints its address when it starts.")
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    with _scheduler() as (_, found), _workers(found, 1, *ALONE, "--worker-port", str(port)):
+        wait_until(lambda: _answers(port))
+        assert said in _fail(tmp_path, f"tcp://127.0.0.1:{port}")
+
+
 def test_a_server_that_says_nothing_or_nothing_readable_and_nobody_are_told(tmp_path):
     write_city(tmp_path / "city", [40.0])
-    for data in (HTTP, bytes(2000), b""):
+    for data in (bytes(2000), b""):
         with _serving(data) as address, pytest.raises(InputError, match="what is there does not answer as a dask"):
             _run(tmp_path, "out", address)
     with pytest.raises(InputError, match=r"127\.0\.0\.1:1 cannot be reached: .*\. Is it running\?"):
