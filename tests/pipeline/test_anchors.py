@@ -47,12 +47,6 @@ def test_the_base_of_a_low_bracket_carries_what_it_takes_too_much():
     assert found.needed_friction == pytest.approx(0.25)
 
 
-def test_the_scatter_of_pfa():
-    found = anchor_of(assess_one({"motion_uncertainty": 0.4}))
-    for k, tension in ((0.6 * 0.670320, found.tension_low_kn), (0.6 * 1.491825, found.tension_high_kn)):
-        assert tension == pytest.approx(1.2 * (k * 0.9 - 0.2) / 1.7, abs=1e-5)
-
-
 @pytest.mark.parametrize(
     ("building", "elevation", "share", "up"),
     [

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from assess.fragility import lognormal_chance
 from assess.hazard import read_hazard
 from assess.motion.suite import read_suite
 from assess.pipeline.levels import Sweep
@@ -96,17 +95,6 @@ def test_at_the_scenarios_own_ground_pga_it_is_what_the_run_finds(several):
     np.testing.assert_array_equal(found.own, joint.cases)
     np.testing.assert_array_equal(found.fell[1], joint.fell)
     assert found.fell[0].sum() < joint.fell.sum()
-
-
-@pytest.mark.slow
-def test_scatter_of_the_motion_is_averaged_over_as_if_it_were_drawn(tmp_path):
-    """The share at the ground PGA of the scenario is the chance that the run finds by drawing the scale."""
-    runs = 400
-    assessment = assessed(tmp_path, settings=Settings(seed=3, runs=runs))
-    (row,) = rows_of(assessment)[1]
-    by_curve = lognormal_chance(0.15, row.median_g, row.dispersion)
-    chance = assessment.adoption.probability[0]
-    assert by_curve == pytest.approx(chance, abs=0.02 + 2 * np.sqrt(chance * (1 - chance) / runs))
 
 
 @pytest.mark.slow

@@ -3,8 +3,7 @@
 import pytest
 
 from assess.intensity import SHAKINGS
-from assess.motion.floor_medians import find_medians
-from assess.pipeline.demand import build_demands, find_shaking
+from assess.pipeline.demand import build_demands
 from assess.pipeline.known_ground import find_ground
 from assess.pipeline.run import compute
 from assess.units import GRAVITY
@@ -12,7 +11,6 @@ from tests.pipeline.rows import read
 from tests.workbooks import UNVERIFIED
 
 CHOICE = "MMI VII, very strong"
-SEVEN = SHAKINGS[CHOICE]
 FLOORS = [{"floor": "1", "elevation": 0}, {"floor": "2", "elevation": 12}]
 
 
@@ -21,29 +19,11 @@ def _read(floors=FLOORS, folder=None, **building):
     return read(items, floors, folder, **{"shaking": CHOICE} | building)
 
 
-def test_every_floor_follows_a_beam_on_its_median_pga_and_pgv():
-    inventory = _read()
-    demands = build_demands(inventory, "as filled")
-    ground, roof = demands["1", "X"][0], demands["2", "Y"][0]
-    assert (ground.pfa, ground.pfv) == pytest.approx((SEVEN.pga, SEVEN.pgv))
-    by_pga, by_pgv = find_medians(find_ground(inventory).building.period, 1.0, "unknown", SEVEN.pgv / SEVEN.pga)
-    assert (roof.pfa, roof.pfv) == pytest.approx((by_pga * SEVEN.pga, by_pgv * SEVEN.pgv))
-    assert {one.label for parallel in demands.values() for one in parallel} == {"Shaking MMI VII, beam"}
-    assert roof.flags == ("drawn_building", "assumed_shaking")
-    assert find_shaking(demands) is SEVEN
-
-
 def test_a_jma_class_gives_pgv_and_pga_is_drawn():
     inventory = _read(shaking="JMA 5+, upper")
     motion, shaking = find_ground(inventory).motion, SHAKINGS["JMA 5+, upper"]
     assert (motion.pga, motion.pgv) == (None, shaking.pgv)
     assert build_demands(inventory, "as filled")["1", "X"][0].pfa == pytest.approx(shaking.pga)
-
-
-def test_a_chosen_code_starts_from_it_too():
-    demands = build_demands(_read(), "NTC 2018")
-    assert demands["2", "X"][0].pfa == pytest.approx(2 * SEVEN.pga)
-    assert demands["2", "X"][0].label == "Shaking MMI VII, NTC 2018"
 
 
 @pytest.mark.parametrize(

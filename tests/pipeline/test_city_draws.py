@@ -41,12 +41,6 @@ def assessed(settings=CITY, **building):
 # --- which earthquake ---
 
 
-def test_a_building_of_a_city_draws_by_its_place():
-    found = find_earthquakes(inventory(**PLACE), CITY)
-    assert found.place == (37.79, -122.40)
-    assert find_earthquakes(inventory(), CITY).place is None
-
-
 def test_the_share_of_all_places_is_that_of_the_map_where_it_tells():
     found = find_earthquakes(inventory(MAP, **PLACE), CITY)
     assert found == Earthquakes(place=(37.79, -122.40), shared=0.2)

@@ -1,6 +1,5 @@
 """The corrected workbook: the cells that were understood, and the results that rest on them."""
 
-import io
 import tempfile
 from functools import cache
 from pathlib import Path
@@ -10,11 +9,10 @@ import openpyxl
 import pytest
 
 from assess.pipeline.corrected import Corrected, correct_workbook
-from assess.pipeline.live_values import live_values, with_live
+from assess.pipeline.live_values import with_live
 from assess.workbook.example import example_content
 from assess.workbook.held import list_formulas
 from assess.workbook.patch import patch_workbook
-from assess.workbook.read import read_inventory
 from assess.workbook.template import write_workbook
 from tests.recalculate import libreoffice, needs_libreoffice, stored_cells
 from tests.workbook.test_patch import changed_parts
@@ -82,21 +80,3 @@ def test_libreoffice_recalculates_what_rests_on_corrected_cells(tmp_path: Path) 
     }
     head = next(cell for (sheet, cell), value in shown.items() if (sheet, value) == ("Items", "B/H"))
     assert shown["Items", head.replace("1", "2")] == pytest.approx(0.15), "30 cm by 2 m"
-
-
-@pytest.mark.slow
-def test_an_italian_workbook(tmp_path: Path) -> None:
-    from assess.i18n import load_catalogue, speaking
-
-    path = tmp_path / "edificio.xlsx"
-    with speaking(load_catalogue("it")):
-        write_workbook(path, with_live(example_content()))
-    (sheet,) = (name for english, name in read_inventory(path).sheets.items() if english == "Items")
-    path.write_bytes(patch_workbook(path.read_bytes(), {sheet: {BREADTH: "30 cm"}}).data)
-    done = correct_workbook(path)
-    assert [one.value for one in done.changed] == [30]
-    with speaking(load_catalogue("it")):
-        expected = live_values(done.inventory)[0]
-    page = openpyxl.load_workbook(io.BytesIO(done.inventory.data or b""), data_only=True)[sheet]
-    row = [cell.value for cell in page[2]]
-    assert set(expected) <= set(row)

@@ -6,10 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import assess
-from assess.model import AXES, Building, Floor, FloorRecord, Inventory
+from assess.model import Building, Floor, FloorRecord, Inventory
 from assess.motion.formats import read_records
 from assess.motion.record import treat
-from assess.pipeline.demand import _interpolate, build_demands
+from assess.pipeline.demand import build_demands
 from assess.pipeline.floor_demand import Demand
 from tests.workbooks import RECORDS
 
@@ -50,13 +50,6 @@ def test_one_axis_serves_both_and_says_so():
     borrowed = _one(demands, "1", "X")
     assert (borrowed.axis, borrowed.pfa, borrowed.pfv, borrowed.flags) == ("X", 2.0, 0.3, ("one_axis_only",))
     assert _one(demands, "1", "Y").flags == ()
-
-
-def test_parallel_records_all_stand():
-    floor = Floor(row=2, floor="1", records={"X": (_record(SMC), _record(CORRECTED))})
-    demands = build_demands(_inventory(floor), "as filled")
-    assert [demand.name for demand in demands["1", "X"]] == [SMC.name, CORRECTED.name]
-    assert [demand.flags for demand in demands["1", "Y"]] == [("one_axis_only",)] * 2
 
 
 @pytest.mark.parametrize(
@@ -203,18 +196,3 @@ def test_by_a_code_pfa_never_falls_with_height_nor_with_the_ground(heights, pga,
     assert found == sorted(found)
     assert found[0] >= pga
     assert all(high >= low for low, high in zip(found, peaks(pga * more), strict=True))
-
-
-@given(lower=st.floats(0.1, 10), upper=st.floats(0.1, 10), share=st.floats(0, 1))
-def test_an_interpolated_floor_lies_between_its_neighbours(lower, upper, share):
-    places = (0.0, 7 * share, 7.0)
-    floors = [Floor(row=row, floor=name, elevation=z) for row, (name, z) in enumerate(zip("ABC", places, strict=True))]
-
-    def record(floor, axis, pfa):
-        return (Demand(floor=floor, axis=axis, source="record", pfa=pfa, pfv=pfa / 9),)
-
-    peaks = ((floors[0], lower), (floors[2], upper))
-    known = [{axis: record(floor, axis, pfa) for axis in AXES} for floor, pfa in peaks]
-    found = _interpolate(floors[1], known)["X"][0]
-    assert min(lower, upper) - 1e-12 <= found.pfa <= max(lower, upper) + 1e-12
-    assert found.pfv == pytest.approx(found.pfa / 9)

@@ -62,15 +62,6 @@ def test_other_pieces_keep_what_they_and_those_alike_have(done):
             assert done.adoption.probability[case] == pytest.approx(np.mean(shares))
 
 
-def test_two_alike_have_one_chance_of_a_fall_along_either_axis():
-    found = compute(read({"item": "a", "width": 35}, {"item": "b", "width": 35, "quantity": 3}), SETTINGS)
-    assert list(found.either_axis) == [0, 1]
-    shares = [found.either_axis[at].mean() for at in (0, 1)]
-    assert shares[0] != shares[1], "which of them fall together is each one's own"
-    chances = found.adoption.probability[found.governing]
-    assert chances == pytest.approx([np.average(shares, weights=[1, 3])] * 2)
-
-
 @pytest.mark.slow
 def test_without_any_uncertainty_it_is_nearly_the_product():
     """Phases of the two axes are independent: 1 - (1 - P_X)(1 - P_Y), where nothing is drawn."""

@@ -13,7 +13,6 @@ from assess.motion.target import octaves, put_on_grid
 from assess.pipeline.demand import build_demands, scale_demands
 from assess.pipeline.ensembles import build_ensembles, find_clock, find_phase_signs
 from tests.conftest import EXAMPLE
-from tests.motion.test_generate import measure
 from tests.pipeline.rows import read
 from tests.shaking import RECORDS, TIMES
 
@@ -72,21 +71,6 @@ def test_motions_of_floors_42_and_34_move_against_each_other_as_their_records_do
     assert means[clear] == pytest.approx(own[clear], abs=0.2)
 
 
-@pytest.mark.long
-def test_turned_phases_meet_the_spectrum_as_others_do():
-    """The worst ordinate is a matter of the draw: over eight seeds it is 6 to 11 % of floor 34, turned or not."""
-    generator = build("d")
-    assert min(market()["d"].signs) == -1
-    first, both = (measure(generator.target, generator.realise(0, count)) for count in (100, 200))
-    assert first.mean_deviation < 0.03
-    assert first.worst_deviation < 0.115
-    assert first.pfa_ratio == pytest.approx(1, abs=0.02)
-    assert first.pfv_ratio == pytest.approx(1, abs=0.12)
-    assert both.mean_deviation < 0.03
-    assert both.worst_deviation < 0.13
-    np.testing.assert_array_equal(build("d", threads=2).realise(95, 30), generator.realise(95, 30))
-
-
 # --- which records are compared ---
 
 
@@ -136,17 +120,6 @@ def test_a_floor_on_the_record_of_the_ground_has_its_signs(tmp_path, factor):
     assert ground.signs is not None
     assert ground.signs[AT[0.8]] == -1
     assert above.signs == ground.signs
-
-
-def test_files_that_show_no_common_clock_have_no_sign(tmp_path):
-    """Two recorders may start seconds apart, and a start to the minute does not tell."""
-    for name, values in AGAINST.items():
-        write_table(tmp_path / f"{name}.csv", {"a": values}, "# start: 2020-01-01 10:20", "# event: one")
-    floors = [{"floor": "2", "record_x": "top.csv"}, {"floor": "1", "record_x": "middle.csv"}]
-    assert set(small(tmp_path, floors)[1].values()) == {None}
-    for name, values in AGAINST.items():
-        write_table(tmp_path / f"{name}.csv", {"a": values}, "# start: 2020-01-01 10:20:30.00", "# event: one")
-    assert small(tmp_path, floors)[1]["1", "X"][AT[0.8]] == -1
 
 
 def test_one_floor_alone_has_no_sign(tmp_path):

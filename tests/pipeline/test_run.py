@@ -38,15 +38,6 @@ def test_the_worst_of_parallel_records_governs_and_all_are_kept():
     assert one.governing.motion.pfa_g < max(case.motion.pfa_g for case in one.cases)
 
 
-def test_an_assessment_without_items_is_empty(tmp_path):
-    inventory = assess.read_inventory(write(tmp_path / "w.xlsx"))
-    results = assess.run(replace(inventory, items=()), UNVERIFIED)
-    assert len(results) == 0
-    assert list(results) == []
-    written = assess.write_reports(results, tmp_path / "out", ("html", "xlsx", "json", "csv"))
-    assert all(path.stat().st_size for path in written.values())
-
-
 def test_what_to_fix_first():
     safety, thin = {"importance": "life safety"}, {"floor": "1", "breadth": 28, "height": 200}
     items = [

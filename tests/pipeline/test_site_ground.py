@@ -1,7 +1,6 @@
 """A ShakeMap or scenarios: which floors follow them, how uncertain the motion is, and what is said of it."""
 
 import math
-import shutil
 
 import pytest
 
@@ -9,13 +8,11 @@ import assess
 from assess.motion.floor_medians import find_medians
 from assess.motion.ground_scenarios import read_scenarios
 from assess.motion.shakemap import parse_shakemap, read_shakemap
-from assess.pipeline.annual import evaluate_annual
 from assess.pipeline.demand import build_demands, find_site
 from assess.pipeline.known_ground import find_ground
 from assess.pipeline.run import compute
 from assess.settings import Settings
 from assess.units import GRAVITY
-from tests.hazards import write_hazard
 from tests.motion.grids import BAY, build_grid
 from tests.pipeline.rows import read
 from tests.workbooks import UNVERIFIED
@@ -79,18 +76,6 @@ def test_what_is_used_is_told_with_where_its_scatter_comes_from_and_an_automatic
     assert any("AUTOMATIC: nobody had reviewed it" in one for one in _messages(automatic, "warning"))
     (text,) = (one for one in _messages(automatic) if "gives" in one)
     assert "0.605 (assumed, as the map has none at this place: the total of Boore et al. 2014" in text
-
-
-@pytest.mark.slow
-def test_annual_chances_go_by_the_pga_and_leave_its_scatter_out(tmp_path):
-    write_hazard(tmp_path)
-    shutil.copy(BAY, tmp_path)
-    inventory = _read(folder=tmp_path, hazard="hazard.csv")
-    settings = Settings(runs=25)
-    found = evaluate_annual(compute(inventory, settings), jobs=1, progress=assess.progress.SILENT)
-    assert found is not None
-    assert found.tables.ground_pga_g == pytest.approx(0.1525, rel=1e-3)
-    assert found.tables.motion_dispersion == 0
 
 
 def test_the_chances_of_a_simulation_hold_the_scatter():

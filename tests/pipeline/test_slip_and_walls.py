@@ -93,19 +93,6 @@ def test_slip_is_of_those_that_may_slide_alone(plain, smooth, tmp_path):
     assert {one.governing.sliding.slip_84_cm for one in rough} == {None}
 
 
-def test_slip_grows_with_less_friction_and_with_the_motion(tmp_path):
-    items = [
-        one | {"item": f"{at}", "friction": mu} for at, mu in enumerate((0.1, 0.2, 0.3)) for one in pieces("2")[2:3]
-    ]
-    weak, strong = (run(tmp_path, items, settings=replace(SETTINGS, scale=scale)) for scale in (1.0, 1.5))
-    for results in (weak, strong):
-        slips = [one.governing.sliding.slip_median_cm for one in results]
-        assert slips == sorted(slips, reverse=True)
-        assert slips[0] > slips[2]
-    for before, after in zip(weak, strong, strict=True):
-        assert after.governing.sliding.slip_median_cm > before.governing.sliding.slip_median_cm
-
-
 # --- walls ---
 
 

@@ -9,7 +9,7 @@ from assess.model import Inventory
 from assess.pipeline import verify as verification
 from assess.pipeline.run import compute
 from assess.progress import Progress, Report
-from assess.settings import CPU_QUOTA, Settings, count_processors
+from assess.settings import Settings
 from assess.workbook.read import read_inventory
 
 FLOORS = [{"floor": "1", "pfa_x": 0.3, "pfv_x": 40}, {"floor": "2", "pfa_x": 0.4, "pfv_x": 60}]
@@ -62,14 +62,3 @@ def test_more_results_than_the_memory_holds_are_refused(inventory, monkeypatch):
     monkeypatch.setattr(verification, "MOST_PAIRS", 100)
     with pytest.raises(InputError, match=r"runs is 101: 606 results .* expected at most 100\. Use fewer motions"):
         compute(inventory, Settings(verify="all", runs=101))
-
-
-def test_processors_are_limited_by_the_quota_of_a_container(tmp_path, monkeypatch):
-    quota = tmp_path / "cpu.max"
-    monkeypatch.setattr("assess.settings.CPU_QUOTA", quota)
-    every = count_processors()
-    assert every >= 1
-    for text, expected in (("50000 100000", 1), ("150000 100000", min(2, every)), ("max 100000", every), ("", every)):
-        quota.write_text(text, encoding="ascii")
-        assert count_processors() == expected
-    assert CPU_QUOTA.name == "cpu.max"
