@@ -2,24 +2,18 @@
 
 import re
 import shutil
-from dataclasses import replace
 
-import numpy as np
 import pypdfium2
 import pytest
 
 import assess
-from assess.cli.command_run import describe_result
 from assess.report.content import Content
 from assess.report.counts import count
-from assess.report.figures.bars import draw_bars
-from assess.report.figures.plan import build_plan
-from assess.report.say.piece import list_apart, list_risky, list_ways_to_settle
+from assess.report.say.piece import list_apart, list_risky
 from assess.results import BASES
-from assess.risk import RiskClass, classify
+from assess.risk import RiskClass
 from assess.settings import Settings
-from tests.report.reading import read_text, render
-from tests.report.test_verified import _pulses
+from tests.report.reading import render
 from tests.shaking import RECORDS as SHAKING
 from tests.shaking import write_record
 from tests.workbooks import RECORDS, write
@@ -83,14 +77,6 @@ def test_classes_count_simulated_pieces_alone(mixed):
     assert count("simulated", [mixed["felled"]]).falls == counts.falls.partition(" and")[0]
 
 
-def test_a_piece_that_cannot_rock_counts_as_low(mixed):
-    still = mixed["still"]
-    assert classify(still.governing.methods[mixed.paper_formula.key].value) > RiskClass.LOW
-    assert (still.formula_class, still.paper_class) == (RiskClass.LOW, RiskClass.LOW)
-    assert (still.adopted.risk, still.adopted.upper, still.apart) == (RiskClass.LOW, RiskClass.LOW, "")
-    assert not still.adopted.can_rock
-
-
 def test_lists_never_rank_what_stands_apart_among_simulated_pieces(mixed):
     content = Content(mixed)
     assert [one.item.item for one in list_apart(mixed, "")] == ["felled", "still"]
@@ -100,18 +86,6 @@ def test_lists_never_rank_what_stands_apart_among_simulated_pieces(mixed):
     assert [one.apart for one, _share in fixes] == sorted((one.apart for one, _share in fixes), key=bool)
     assert [one.item.item for one, share in fixes if share is None] == ["wide", "broad", "calm"]
     assert [share for one, share in fixes if not one.apart][-1] == pytest.approx(1.0)
-
-
-def test_bars_and_plans_give_them_no_class(mixed):
-    content = Content(mixed)
-    floor = next(one for one in content.floors if one.floor.floor == "2")
-    counts = floor.counts
-    bars = draw_bars([counts], "Bars")
-    assert bars
-    assert re.findall(">([^<>]+)</text>", bars[0].source) == ["Floor 2", "◌ 4", "ƒ 1", "⚓ 1", "6"]
-    (piece,) = build_plan(floor, mixed).pieces
-    assert (piece.symbol, piece.class_name, piece.upper, piece.marks) == ("◌", "apart-unconfirmed", None, "")
-    assert piece.fill not in {risk.fill for risk in RiskClass}
 
 
 # ---------------------------------------------------------------- pages
@@ -133,39 +107,7 @@ def test_a_class_of_the_table_of_all_pieces_never_mixes_bases(mixed, page):
     }  # fmt: skip
 
 
-def test_weak_motions_are_settled_by_stronger_ones(tmp_path):
-    inventory = assess.read_inventory(write(tmp_path / "w.xlsx", ITEMS[3:4], FLOORS[1:2], period=1.0))
-    results = assess.run(inventory, Settings(), suite=_pulses(*[0.01] * 20), jobs=1)
-    (one,) = results
-    assert one.apart == "unconfirmed"
-    (way,) = list_ways_to_settle([one])
-    assert way.startswith("To settle this, simulate under stronger motions: records of your own")
-    assert "--motions" in " ".join(describe_result(results))
-
-
 # ---------------------------------------------------------------- what was assumed
-
-
-def _tried(results, **chances):
-    """Return results whose simulated chances at other dispersions are these, of all pieces alike."""
-    table = results.cases_table
-    outcome = table.outcomes[results.simulation.key]
-    known = ~np.isnan(outcome.value)
-    detail = {f"dispersion_{one}": np.where(known, chance, np.nan) for one, chance in chances.items()}
-    changed = replace(outcome, detail=outcome.detail | detail)
-    return replace(results, cases_table=replace(table, outcomes=table.outcomes | {results.simulation.key: changed}))
-
-
-def test_the_summary_says_what_other_dispersions_change(mixed):
-    text = read_text(render(_tried(mixed, **{"0.2": 0.0, "0.6": 1.0})))
-    felled, still = mixed["felled"], mixed["still"]
-    assert felled.fell_in_record, "so that it is high at least"
-    assert not still.adopted.can_rock, "so that it is low at any of them"
-    is_high = felled.adopted.risk == RiskClass.HIGH
-    down = "no piece would change class" if is_high else "1 piece would be in a lower class"
-    assert f"With a dispersion of 0.2, {down}." in text
-    up = "1 piece would be in a higher class" if is_high else "no piece would change class"
-    assert f"With a dispersion of 0.6, {up}." in text
 
 
 CONDITIONS = ("Assumed: exactly this motion, and every piece exactly as given", "Every floor's motion times 1.2")

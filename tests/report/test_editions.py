@@ -1,20 +1,15 @@
 """The edition for the client and the annex: their pages, what each holds, and that no page is half empty."""
 
 import re
-from dataclasses import replace
 
 import numpy as np
 import pypdfium2
 import pytest
 
-import assess
 from assess.report.content import Content
-from assess.report.sections.methods import list_facts
-from assess.report.sections.pieces import choose_groups, say_chances
 from assess.report.view import View, list_all_parts
 from tests.pictures import picture
-from tests.report.reading import changed, read_text, render
-from tests.shaking import write_records
+from tests.report.reading import render
 from tests.workbooks import ITEMS, assessed
 
 MOST_PAGES = 12
@@ -59,11 +54,6 @@ def results(tmp_path_factory):
     return assessed(folder / "w.xlsx", [*items, *ITEMS[1:]], **EVERY)
 
 
-@pytest.fixture(scope="module")
-def written(results, tmp_path_factory):
-    return assess.write_reports(results, tmp_path_factory.mktemp("out"), ("pdf", "annex", "json"))
-
-
 @pytest.mark.slow
 def test_every_section_is_shown_in_its_order_and_no_two_have_a_place(results):
     both = {key for edition in ("client", "annex") for key in _keys(edition)}
@@ -82,93 +72,10 @@ def _keys(edition):
     return {part.key for part in list_all_parts() if edition in part.places}
 
 
-@pytest.mark.slow
-def test_the_client_reads_no_more_pages_than_a_client_reads(results, written):
-    pages, toc = _read(written["pdf"])
-    assert len(pages) <= MOST_PAGES + len(Content(results).shown_floors)
-    parts = [title for level, title, _page in toc if level == 0]
-    assert parts[0] == "Summary"
-    assert parts[-3:] == ["How the chances were computed", "Limits of the methods", "Assumptions and defaults"]
-    starts = {title: page for level, title, page in toc if level == 0}
-    assert starts["Summary"] == 1, "the cover is one page"
-    assert min(page for page in starts.values() if page > 1) == 2, "the summary is one page"
-    for text in ("Contents", "Prepared by", "Checked by", "Approved by", "Annex, on request"):
-        assert text in pages[0]
-
-
-@pytest.mark.slow
-def test_both_carry_workbook_and_results_and_are_known_when_they_change(results, written):
-    for name in ("pdf", "annex"):
-        document = pypdfium2.PdfDocument(written[name])
-        names = [document.get_attachment(at).get_name() for at in range(document.count_attachments())]
-        assert names == ["results.json", "w.xlsx"]
-        assert document.is_tagged()
-        document.close()
-    written["annex"].write_bytes(written["annex"].read_bytes() + b"\n% mine\n")
-    with pytest.raises(assess.InputError, match=r"changed after they were written, .*: annex\.pdf\. Move"):
-        assess.write_reports(results, written["pdf"].parent, ("json",))
-    assert written["pdf"].is_file()
-
-
-# ---------------------------------------------------------------- one number and its source
-
-GRADE = [
-    {"floor": "G", "elevation": 0.0, "pfa_x": 0.135, "pfa_y": 0.12},
-    {"floor": "1", "elevation": 4.0, "pfa_x": 0.2, "pfa_y": 0.2},
-]
-RECORDED = [{"floor": "1", "elevation": 4.0, "record_x": "slow.csv"}]
-OF_ANCHORS, KNOWN = "used for the code's force on anchors only", "the motion at grade is known"
-
-
-@pytest.mark.parametrize(
-    ("floors", "building", "pga", "sds"),
-    [
-        (GRADE, {"sds": 0.4}, f"0.135 g on floor G, given PFA; 0.139 g of the workbook is not used: {KNOWN}",
-         f"0.4 g, {OF_ANCHORS}: {KNOWN}"),
-        (GRADE[1:], {"sds": 0.4}, "0.139 g", f"0.4 g, {OF_ANCHORS}: Ground PGA is given"),
-        (RECORDED, {}, f"0.139 g, {OF_ANCHORS}: every floor has a record", None),
-        (RECORDED, {"sds": 0.4}, "0.139 g in the workbook, not used: every floor has a record", None),
-    ],
-)  # fmt: skip
-def test_a_ground_motion_that_is_not_used_says_what_is(tmp_path, floors, building, pga, sds):
-    write_records(tmp_path, "slow")
-    results = assessed(tmp_path / "w.xlsx", [dict(ITEMS[0], floor="1")], floors, ground_pga=0.139, **building)
-    rows = list_facts(View(content=Content(results))).groups[0]
-    said = {row.cells[0].words: row.cells[1] for row in rows}
-    assert said["Ground PGA"] == pga
-    assert sds is None or said["SDS"] == sds
-
-
-# ---------------------------------------------------------------- alike pieces
-
-
-def test_alike_pieces_are_one_row(results):
-    listed = render(results, for_print=True, edition="client").partition('<section id="pieces">')[2]
-    text = read_text(listed)
-    assert "A-01 to A-07 (7)" in text
-    assert "A-03" not in text
-
-
-def test_a_group_shows_the_chances_of_all_its_rows(results):
-    one = next(iter(results))
-    other = changed(one, adopted=replace(one.adopted, probability=0.5, low=0.4, high=0.6))
-    simulated = changed(one, adopted=replace(one.adopted, probability=0.2, low=0.1, high=0.3))
-    assert say_chances([simulated, other]).replace("\xa0", " ") == "20.0 to 50.0 % (10.0 to 60.0 %)"
-    assert say_chances([one, other]).count("(") == 0, "one of them has no interval"
-
-
-def test_of_too_many_groups_the_worst_are_shown_in_their_order(results):
-    groups = [[one] for one in results]
-    (worst,) = choose_groups(groups, 1)
-    assert worst[0].adopted.upper == max(one.adopted.upper for one in results)
-    shown = choose_groups(groups, 3)
-    assert shown == [group for group in groups if group in shown]
-
-
 # ---------------------------------------------------------------- the worked example
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_worked_example_has_its_pages_and_none_is_half_empty(verified_example, samples_now):
     pages, toc = _read(samples_now["pdf"])
     plans = [

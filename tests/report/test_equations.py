@@ -9,8 +9,8 @@ from assess.cache_folder import examine_folder
 from assess.i18n import gettext, load_catalogue, speaking
 from assess.methods import all_methods
 from assess.motion.scenario import PROFILES
-from assess.report.blocks import Equation, lower_indices
-from assess.report.equations import NotationError, Part, split_line, write_tex
+from assess.report.blocks import Equation
+from assess.report.equations import NotationError, split_line, write_tex
 from assess.report.figures import math_figures
 from assess.report.figures.math_figures import draw_math
 from assess.report.html_blocks import HtmlWriter
@@ -61,29 +61,6 @@ def test_what_is_no_equation(plain):
         write_tex(plain)
 
 
-@pytest.mark.parametrize(
-    ("line", "equations"),
-    [
-        ("Rocking starts where |a_g|/g > B/H", ["|a_g|/g > B/H"]),
-        ("R = k/N   (5), PFA in cm/s²", ["R = k/N"]),
-        ("Possibile dove PFA > g·(B/H) e PFV > 10·B/√H (cm, cm/s)", ["PFA > g·(B/H)", "PFV > 10·B/√H"]),
-        ("a = 0,5, b = N(0; 1); c = 2", ["a = 0,5", "b = N(0; 1)", "c = 2"]),
-        ("B/H = 28/202 = 0.13861", ["B/H = 28/202", "= 0.13861"]),
-        ("PFA is not above PFA*: it is used as it is.", []),
-        ("It overturned in 144 of 200 draws of a motion.", []),
-        ("The piece (see a) has 2 sides; k of them", []),
-    ],
-)
-def test_equations_of_a_line(line, equations):
-    parts = split_line(line)
-    assert [one.text for one in parts if one.tex] == equations
-    assert "".join(one.text for one in parts) == line
-
-
-def test_parts_are_words_and_equations():
-    assert split_line("so a = b.") == [Part("so "), Part("a = b", "a = b"), Part(".")]
-
-
 @pytest.mark.parametrize("code", ["en", "it"])
 @pytest.mark.slow
 def test_every_equation_of_a_method_is_typeset_in_every_language(code):
@@ -99,15 +76,6 @@ def test_every_equation_of_a_method_is_typeset_in_every_language(code):
             drawn = draw_math(one.tex)
             assert drawn.letters
             assert drawn.box[2] > 10
-
-
-def test_words_left_of_an_equation_have_no_signs_of_one():
-    """What is not typeset is words, units and numbers of equations: no relation and no product."""
-    left = {one.text for line in LINES for one in split_line(line) if not one.tex}
-    assert sorted(text for text in left if re.search("[=<>≤≥·√^]", text)) == [
-        ", z_c/H = N(as given, 0.05), restitution = N(as given or as above, 0.04)",
-        "Risk = overturned / N; interval: ",
-    ]
 
 
 def _read(tex):
@@ -128,21 +96,6 @@ def _symbols(text):
 # ---------------------------------------------------------------- on a page
 
 
-@pytest.mark.parametrize(
-    ("text", "html"),
-    [
-        ("F_f = PFA/(2π PFV)", "F<sub>f</sub> = PFA/(2π PFV)"),
-        ("15.6/√H (1 + B/H)^-1.5", "15.6/√H (1 + B/H)<sup>-1.5</sup>"),
-        ("15,6/√202·(1 + 0,1386)^(-1,5) = 0,9", "15,6/√202·(1 + 0,1386)<sup>-1,5</sup> = 0,9"),
-        ("θ″ = -p²·(a_g/g)", "θ″ = -p²·(a<sub>g</sub>/g)"),
-        ("λ_A < ζ_V & x", "λ<sub>A</sub> &lt; ζ<sub>V</sub> &amp; x"),
-        ("a_1<b>", "a<sub>1</sub>&lt;b&gt;"),
-    ],
-)
-def test_indices(text, html):
-    assert HtmlWriter(for_print=True).words(lower_indices(text)) == html
-
-
 def test_an_equation_is_a_picture_with_the_plain_text_as_its_alternative():
     html = HtmlWriter(for_print=True).words(Equation('Rocking where |a_g|/g > B/H & "so" <on>'))
     head, picture, rest = re.fullmatch(r"(.*?)<img (.*?)>(.*)", html).groups()
@@ -150,17 +103,6 @@ def test_an_equation_is_a_picture_with_the_plain_text_as_its_alternative():
     assert 'alt="|a_g|/g &gt; B/H"' in picture
     assert picture.startswith('class="math" src="data:image/svg+xml,')
     assert rest == " &amp; &#34;so&#34; &lt;on&gt;"
-
-
-def test_a_page_holds_each_letter_of_its_equations_once():
-    writer = HtmlWriter(for_print=False)
-    lines = [writer.words(Equation(text)) for text in ("B/H = 0.5", "B/H = 0.25")]
-    used = [re.findall(r'href="#([^"]+)"', line) for line in lines]
-    assert [len(one) for one in used] == [6, 7]
-    assert set(writer.letters) == {name for one in used for name in one}
-    assert len(writer.letters) == 7  # B H = 0 . 5 2
-    assert all('role="img"' in line for line in lines)
-    assert 'aria-label="B/H = 0.25"' in lines[1]
 
 
 def test_what_is_drawn_is_kept_and_drawn_anew_where_that_is_damaged(monkeypatch, tmp_path):

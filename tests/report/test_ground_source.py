@@ -1,16 +1,12 @@
 """What reports say of the motion of the ground: of a ShakeMap, an assumed intensity, and drawn earthquakes."""
 
 import json
-import shutil
 from dataclasses import replace
 
 import openpyxl
 import pytest
 
-from assess.report.data import describe_run
-from assess.report.say.ground import say_ground, say_ground_source
-from assess.report.say.simulation import say_draws, say_source
-from assess.results import EarthquakeDraws
+from assess.report.say.simulation import say_draws
 from assess.settings import Settings
 from tests.cli.calling import run
 from tests.motion.grids import BAY
@@ -66,34 +62,6 @@ def test_reports_name_source_scatter_and_provenance_where_the_numbers_are(writte
     assert "ShakeMap grid.xml" in (book["Summary"].oddHeader.center.text or "")
 
 
-def test_where_motion_uncertainty_is_blank_the_scatter_of_the_map_alone_is_drawn(tmp_path):
-    shutil.copy(BAY, tmp_path / "grid.xml")
-    results = assessed(
-        tmp_path / "w.xlsx", floors=FLOORS, shakemap="grid.xml", period=0.4, settings=Settings(runs=25), **PLACE
-    )
-    assert results.provenance.uncertainty.motion == pytest.approx(0.0904, rel=1e-3)
-    assert say_ground_source(results).endswith(
-        "The standard deviation of ln PGV there is 0.0904 (STDPGA of grid.xml), which is drawn."
-    )
-    assert say_source(results) == "the standard deviation of ln PGV at the building"
-
-
-@pytest.mark.parametrize(
-    ("building", "text"),
-    [
-        ({"ground_pga": 0.3}, "PGA 0.300 g as filled in, taken as from an earthquake of magnitude 6.5 to 7.5. By"),
-        ({"sds": 0.75}, "Ground motion: PGA 0.300 g as filled in"),
-        ({"ground_pga": 0.3, "ground_pgv": 12}, "PGV 12.0 cm/s as filled in. By its PGV that is about MMI VI, strong"),
-        ({"ground_pga": 0.005, "ground_pgv": 0.5}, "By its PGV that is weaker than MMI IV (Worden et al. 2012)."),
-    ],
-)  # fmt: skip
-def test_typed_peaks_of_the_ground_are_told_as_an_intensity(tmp_path, building, text):
-    results = assessed(tmp_path / "w.xlsx", floors=FLOORS, **building)
-    assert text in say_ground(results)
-    assert say_ground(results) == say_ground(results, shortly=True)
-    assert say_ground_source(results) == ""
-
-
 def test_options_that_contradict_or_cannot_be_used(tmp_path):
     path = write(tmp_path / "w.xlsx", floors=FLOORS, **PLACE)
     both = run("run", path, "--shakemap", BAY, "--ground-motions", tmp_path)
@@ -105,24 +73,10 @@ def test_options_that_contradict_or_cannot_be_used(tmp_path):
     assert not (tmp_path / "out").exists()
 
 
-def test_scenarios_set_the_number_of_draws(tmp_path):
-    """Three scenarios: 201 draws, the least multiple from 200 on, so that each counts alike."""
-    (tmp_path / "sites.csv").write_text("site_id,lon,lat\n0,-122.4008,37.7893\n", encoding="utf-8")
-    rows = "".join(f"0,{at},{value}\n" for at, value in enumerate((0.1, 0.2, 0.4)))
-    (tmp_path / "gmf-data.csv").write_text(f"site_id,event_id,gmv_PGA\n{rows}", encoding="utf-8")
-    path = write(tmp_path / "w.xlsx", [{"item": "A", "floor": "1", "breadth": 40, "height": 190}], FLOORS, **PLACE)
-    done = run("run", path, "--ground-motions", tmp_path, "--out", tmp_path / "out", "--formats", "json")
-    assert done.exit_code == 0, done.stderr
-    found = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
-    assert found["assess"]["settings"]["runs"] == 201
-    assert found["assess"]["site_ground"]["scenarios"] == 3
-
-
 # ---------------------------------------------------------------- drawn earthquakes
 
 ITEMS = [{"item": "A", "floor": "1", "axis": "X", "breadth": 40, "width": 90, "height": 180}]
 SETTINGS = Settings(city=True, runs=20)
-JAYARAM, BOORE = "doi:10.1002/eqe.922", "doi:10.1193/070113EQS184M"
 
 
 @pytest.fixture(scope="module")
@@ -132,23 +86,7 @@ def placed(tmp_path_factory):
                     latitude=37.79, longitude=-122.4)  # fmt: skip
 
 
-def alone(results):
-    """Return the results as of a building alone."""
-    return replace(results, provenance=replace(results.provenance, earthquakes=None))
-
-
 def test_nothing_is_said_of_draws_that_were_not_made(placed):
     assert say_draws(replace(placed, settings=replace(SETTINGS, ideal=True))) == ""
     fixed = replace(placed.provenance, uncertainty=replace(placed.provenance.uncertainty, motion=0.0))
     assert say_draws(replace(placed, provenance=fixed)) == ""
-
-
-def test_results_json_holds_how_earthquakes_were_drawn(placed):
-    found = describe_run(placed)["assess"]
-    assert found["settings"]["city"] is True
-    assert found["earthquakes"] == {
-        "is_city": True, "is_placed": True, "shared": pytest.approx(0.3308, abs=1e-4), "is_shared_given": False,
-        "measure": "PGA", "range_km": 40.7, "scenarios": 0, "scenario_share": 0.0,
-    }  # fmt: skip
-    assert describe_run(alone(placed))["assess"]["earthquakes"] is None
-    assert EarthquakeDraws(**found["earthquakes"]) == placed.provenance.earthquakes

@@ -14,7 +14,7 @@ from assess.i18n import load_catalogue
 from assess.report.report_options import ReportOptions
 from tests.nets.nets import find_shown
 from tests.pictures import picture
-from tests.report.reading import read_text, render
+from tests.report.reading import render
 from tests.workbooks import assessed, write
 
 HEAD = """msgid ""
@@ -48,11 +48,6 @@ def test_cover_order_and_choice_of_sections_can_be_the_firms_own(assessment, tmp
     assert '<div title="Limits of the methods">' in html
     assert "Every piece is a rigid block" in html
     assert "Data-quality log" not in html
-
-
-@pytest.mark.slow
-def test_a_style_of_the_firms_own_stands_in(assessment, tmp_path):
-    assert "h1 { color: teal; }" in render(assessment, own(tmp_path, "style/screen.css", "h1 { color: teal; }"))
 
 
 def test_texts_of_the_firms_own_come_first(assessment, tmp_path):
@@ -91,14 +86,6 @@ def test_what_cannot_be_read_is_told_before_the_work(tmp_path, name, text, told)
     assert done.exit_code == 2
     assert told in done.stderr
     assert not (tmp_path / "o").exists()
-
-
-@pytest.mark.slow
-def test_a_fault_in_a_template_writes_nothing(assessment, tmp_path):
-    look = own(tmp_path / "firm", "cover.html.j2", "{{ nothing }}")
-    with pytest.raises(InputError, match="'nothing' is undefined"):
-        assess.write_reports(assessment, tmp_path / "out", ("json", "html"), look)
-    assert [path.name for path in tmp_path.iterdir()] == ["firm"]
 
 
 @pytest.mark.parametrize(
@@ -147,11 +134,6 @@ def test_the_files_for_programs_are_the_same_in_every_language(assessment, tmp_p
     italian = assess.write_reports(assessment, tmp_path / "it", formats, ReportOptions(language="it"))
     for name in formats:
         assert english[name].read_bytes() == italian[name].read_bytes()
-
-
-def test_a_long_list_is_cut_with_a_word(assessment, monkeypatch):
-    monkeypatch.setattr("assess.report.sections.pieces.MOST_ROWS", 3)
-    assert "5 rows, the first 3 of which are shown: the Excel report holds all" in read_text(render(assessment))
 
 
 @pytest.mark.slow

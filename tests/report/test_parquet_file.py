@@ -62,13 +62,6 @@ def test_the_types_are_those_of_the_fields_whatever_is_filled_in(tmp_path):
     assert len(rows) == 3
 
 
-def test_a_run_writes_it_and_lists_it(tmp_path):
-    files = assess.write_reports(assess_rows(*FULL), tmp_path / "out", ("parquet",))
-    assert {one.name for one in (tmp_path / "out").iterdir()} == {"items.parquet", "results.json"}
-    assert '"items.parquet"' in files["json"].read_text(encoding="utf-8")
-    assert "parquet" not in assess.write_reports(assess_rows(*FULL), tmp_path / "more", ("csv",))
-
-
 def test_without_its_package_it_says_what_to_install(monkeypatch, tmp_path):
     find = util.find_spec
     monkeypatch.setattr(util, "find_spec", lambda name, *rest: None if name == "duckdb" else find(name, *rest))

@@ -2,22 +2,17 @@
 
 import itertools
 import re
-from dataclasses import replace
-from xml.etree import ElementTree
 
-import pypdfium2
 import pytest
 
 import assess
 from assess.report.content import Content
-from assess.report.figures.labels import bounds, overlap, place_labels
+from assess.report.figures.labels import overlap
 from assess.report.figures.plan import build_plan, fallen, rectangle
-from assess.report.figures.ways import build_stretches, list_styles
-from assess.route_results import MissingRow, RouteState
+from assess.report.figures.ways import build_stretches
 from tests.report.reading import render
 from tests.workbooks import FLOORS, UNVERIFIED, write_sheets
 
-SVG = "{http://www.w3.org/2000/svg}"
 PIECES = [
     {"item": "A1", "floor": "1", "breadth": 30, "width": 80, "height": 200, "x": 2.0, "y": 3.0, "angle_deg": 90},
     {"item": "A2", "floor": "1", "breadth": 40, "width": 90, "height": 180, "x": 5.0, "y": 3.0, "angle_deg": 30,
@@ -97,25 +92,6 @@ def test_pieces_with_a_position_are_drawn_and_those_that_may_fall_are_hatched(as
     assert plan.north == 45
 
 
-def test_y_points_upwards(assessment):
-    plan, _second = _plans(assessment)
-    assert plan.y(plan.high[1]) == 0
-    assert plan.y(4.0) < plan.y(3.0) < plan.size[1]
-    assert plan.x(3.0) - plan.x(2.0) == pytest.approx(1 / plan.unit, abs=0.02)
-    assert plan.y(2.0) - plan.y(3.0) == pytest.approx(1 / plan.unit, abs=0.02)
-    assert plan.outline([(plan.low[0], plan.high[1]), (plan.high[0], plan.high[1])]).startswith("M26 0L")
-    for piece in plan.pieces:
-        for corners in (piece.corners, *piece.fallen):
-            assert all(plan.low[0] < x < plan.high[0] and plan.low[1] < y < plan.high[1] for x, y in corners)
-
-
-def test_names_of_places_cover_neither_pieces_nor_each_other(tmp_path):
-    places = [{"place": f"Place {at}", "floor": "1", "x": 3.0 + 0.01 * at, "y": 6.0} for at in range(3)]
-    plan = _plans(_assess(tmp_path / "w.xlsx", PIECES, places, ()))[0]
-    assert len({(spot.label, spot.is_before) for spot in plan.places}) == 3
-    assert plan.ways == ()
-
-
 def test_labels_lie_inside_on_no_piece_and_not_on_each_other(tmp_path):
     pieces = [
         {"item": f"Shelf-{at}", "floor": "1", "breadth": 30, "width": 80, "height": 200, "x": 0.35 * (at % 10),
@@ -132,19 +108,6 @@ def test_labels_lie_inside_on_no_piece_and_not_on_each_other(tmp_path):
     assert any(label.lead for label in plan.labels)
 
 
-def test_a_label_goes_where_it_covers_nothing():
-    piece, beside = (0.0, 0.0, 1.0, 1.0), (1.0, -5.0, 9.0, 5.0)
-    (free,) = place_labels([("A1", piece)], [piece], (-9, -9, 9, 9), 0.02)
-    (moved,) = place_labels([("A1", piece)], [piece, beside], (-9, -9, 9, 9), 0.02)
-    assert free.box[0] > piece[2]
-    assert overlap(moved.box, beside) == overlap(moved.box, piece) == 0
-    assert free.lead is moved.lead is None
-
-
-def _drawings(html):
-    return [ElementTree.fromstring(text) for text in re.findall(r'<svg[^>]*class="floor-plan".*?</svg>', html, re.S)]
-
-
 def test_ids_are_unique_and_links_lead_somewhere(html):
     ids = re.findall(r'\bid="([^"]+)"', html)
     assert len(ids) == len(set(ids))
@@ -152,21 +115,6 @@ def test_ids_are_unique_and_links_lead_somewhere(html):
     assert {"piece-1", "piece-2", "piece-3", "piece-5", "row-1", "row-5"} <= set(ids)
     assert "piece-4" not in ids
     assert set(re.findall(r"url\(#([^)]+)\)", html)) <= set(ids)
-
-
-@pytest.mark.slow
-def test_the_pdf_draws_the_plan_without_links(assessment, tmp_path):
-    html = render(assessment, for_print=True)
-    assert not any(list(drawing.iter(f"{SVG}a")) for drawing in _drawings(html))
-    path = assess.write_reports(assessment, tmp_path, "pdf")["pdf"]
-    document = pypdfium2.PdfDocument(path)
-    texts = [document[at].get_textpage().get_text_range() for at in range(len(document))]
-    (page,) = (document[at] for at, text in enumerate(texts) if "Stair <2>" in text and "X [m]" in text)
-    colours = {colour for _count, colour in page.render(scale=2).to_pil().getcolors(1 << 20)}
-    document.close()
-    fill = assess.risk.RiskClass.VERY_HIGH.fill
-    assert tuple(int(fill[at : at + 2], 16) for at in (1, 3, 5)) in colours
-    assert (0xD0, 0xD0, 0xD0) in colours
 
 
 # ---------------------------------------------------------------- routes
@@ -211,81 +159,3 @@ def test_segments_are_bands_to_scale_that_go_on_round_a_bend(routed):
     _near(ways["hall"].corners, [(11.5, -0.6), (11.5, 8.3), (8.5, 8.3), (8.5, -0.6)])
     for one in plan.ways:
         assert all(plan.low[0] < x < plan.high[0] and plan.low[1] < y < plan.high[1] for x, y in one.corners)
-
-
-def test_states_are_told_by_colour_line_and_sign(routed):
-    ways = _ways(_plans(routed)[0])
-    assert {name: one.style.name for name, one in ways.items()} == {
-        "<i>aisle</i>": "blocked", "hall": "open", "gap": "standing", "lane": "open"
-    }  # fmt: skip
-    styles = list(list_styles().values())
-    assert len({(one.symbol, one.ground) for one in styles}) == len({(one.dash, one.width) for one in styles}) == 5
-    assert len({one.dash for one in styles}) == 4
-    assert {one.fill for one in styles} == {state.fill for state in RouteState}
-    greys = sorted(sum(int(fill[at : at + 2], 16) for at in (1, 3, 5)) for fill in {state.fill for state in RouteState})
-    assert all(darker + 90 < lighter for darker, lighter in itertools.pairwise(greys))
-
-
-def test_what_is_not_known_has_a_style_and_says_what_to_fill_in(routed):
-    *others, lane, flight, roof = routed.route_tables.segments
-    assert lane.segment == "lane"
-    missing = (MissingRow(what="positions", names=("A-1",), cells=("Items!N7",)),)
-    unsure = replace(lane, state=RouteState.NOT_KNOWN, missing=missing)
-    changed = replace(routed, route_tables=replace(routed.route_tables, segments=(*others, unsure, flight, roof)))
-    (way,) = (one for one in _plans(changed)[0].ways if one.name == "lane")
-    assert (way.style.name, way.style.symbol) == ("unknown", "?")
-    assert way.title.endswith("; fill in X and Y, or the Route, of A-1 (Items!N7)")
-
-
-def test_names_of_segments_cover_neither_pieces_nor_signs(routed):
-    plan, _second = _plans(routed)
-    assert {label.text for label in plan.names} <= set(_ways(plan))
-    assert "lane" in {label.text for label in plan.names}
-    boxes = [label.box for label in (*plan.names, *plan.labels)]
-    assert all(overlap(one, other) < 0.01 for one, other in itertools.combinations(boxes, 2))
-
-
-def test_a_floor_with_routes_and_no_pieces_has_a_plan(tmp_path):
-    rooms = [{"place": "Foot", "floor": "2", "x": 10.0, "y": 8.0}, {"place": "Roof", "floor": "2", "x": 0.0, "y": 8.0}]
-    ways = [{"route": "Up", "segment": "roof", "floor": "2", "start": "Foot", "end": "Roof", "clear_width": 1.0}]
-    assessment = _assess(tmp_path / "w.xlsx", PIECES[:2], rooms, ways)
-    content = Content(assessment)
-    assert [page.floor.floor for page in content.shown_floors] == ["1", "2"]
-    html = render(assessment)
-    assert len(_drawings(html)) == 2
-    assert "Plan: this floor has no pieces." in html
-
-
-# ---------------------------------------------------------------- many places, as drafts from a building model have
-
-CROWD = [
-    {"place": f"{kind or 'point'} {at}", "floor": "1", "x": 1.0 + 2.0 * at, "y": 5.0 + 3.0 * row, "kind": kind}
-    for row, kind in enumerate(("room", "door", ""))
-    for at in range(14)
-]
-DRAFTED = [
-    {"route": "To Exit 1 (draft)", "segment": str(at), "floor": "1", "start": f"room {at}", "end": f"door {at}",
-     "clear_width": 0.9}
-    for at in range(14)
-]  # fmt: skip
-
-
-@pytest.fixture(scope="module")
-def crowded(tmp_path_factory):
-    walked = {"route": "Walked", "segment": "x", "floor": "1", "start": "door 0", "end": "point 0"}
-    return _assess(tmp_path_factory.mktemp("crowd") / "w.xlsx", PIECES[:3], CROWD, [*DRAFTED, walked])
-
-
-def test_names_cover_nothing_where_places_are_many(crowded):
-    """Points of routes keep their dots without names, and doors that have no room are in no list below the plan."""
-    plan = _plans(crowded)[0]
-    named = {spot.name for spot in plan.places} | {key.name for key in plan.keys}
-    assert not [name for name in named if name.startswith("point")]
-    assert {f"room {at}" for at in range(14)} <= named
-    assert len(plan.places) == len(CROWD)
-    doors = [spot for spot in plan.places if spot.kind == "door" and spot.name]
-    others = [spot.box for spot in plan.places if spot.name and spot.kind != "door"]
-    assert not [1 for one, box in itertools.product(doors, others) if overlap(one.box, box)]
-    assert not [key for key in plan.keys if key.name.startswith("door")]
-    shapes = [bounds(one.corners) for one in plan.pieces]
-    assert not [1 for box, shape in itertools.product(plan.boxes, shapes) if overlap(box, shape)]

@@ -2,16 +2,9 @@
 
 import re
 
-import openpyxl
-import pytest
-
-import assess
-from assess.report.report_options import ReportOptions
 from tests.cli.calling import run
 from tests.nets.nets import SHOWN
-from tests.report.reading import read_text, render
 from tests.report.routed import FLOORS, ITEMS, PLACES, ROUTES, write_routed
-from tests.workbooks import UNVERIFIED
 
 NOUNS = (
     "anchors|axes|cases|cautions|cells|channels|characters|checks|columns|corners|curves|draws|errors|exits|falls|files|"
@@ -29,11 +22,6 @@ ONLY = {
     "Places": [PLACES[0], {"place": "Street", "floor": "1", "x": 10.0, "y": 0.0, "kind": "exit"}],
     "Routes": [ROUTES[0] | {"end": "Street", "route": "Yard", "segment": "lane", "room": "Office"}],
 }  # fmt: skip
-ALONE = {"item": "away", "floor": "1", "breadth": 30, "width": 80, "height": 200, "anchored": "no"}
-BUILDINGS = {
-    "one of everything": (ONLY, UNVERIFIED),
-    "one anchored, one free, one left out": (ONLY | {"Items": [TALL, HELD, ALONE]}, assess.Settings(runs=1)),
-}
 
 
 def find_wrong(text):
@@ -41,46 +29,6 @@ def find_wrong(text):
     return [
         text[max(0, found.start() - 40) : found.end() + 10] for rule in (ONE, VERB) for found in rule.finditer(text)
     ]
-
-
-def test_what_is_looked_for():
-    assert len(find_wrong("There is 1 rows. 1 route segments; of which 1 are blocked; 21 rows, 0.1 points, 1 row")) == 3
-
-
-@pytest.fixture(scope="module", params=BUILDINGS, ids=str)
-def building(request, tmp_path_factory):
-    sheets, settings = BUILDINGS[request.param]
-    folder = tmp_path_factory.mktemp("one")
-    path = write_routed(folder / "w.xlsx", **sheets)
-    results = assess.run(assess.read_inventory(path), settings)
-    return path, folder, results
-
-
-@pytest.mark.slow
-def test_reports_count_one_as_one(building):
-    _path, _folder, results = building
-    english = ReportOptions(language="en")
-    for for_print in (False, True):
-        assert find_wrong(read_text(render(results, english, for_print=for_print))) == []
-
-
-def test_the_excel_report_counts_one_as_one(building):
-    _path, folder, results = building
-    book = openpyxl.load_workbook(assess.write_reports(results, folder / "out", ("xlsx",))["xlsx"], read_only=True)
-    texts = [
-        cell for sheet in book for row in sheet.iter_rows(values_only=True) for cell in row if isinstance(cell, str)
-    ]
-    book.close()
-    assert len(texts) > 100
-    assert [wrong for text in texts for wrong in find_wrong(text)] == []
-
-
-def test_messages_count_one_as_one(building):
-    path, _folder, results = building
-    assert [wrong for one in results.problem_rows for wrong in find_wrong(str(one))] == []
-    assert find_wrong(repr(results)) == find_wrong(results._repr_html_()) == []
-    inventory = assess.read_inventory(path)
-    assert find_wrong(repr(inventory)) == find_wrong(inventory._repr_html_()) == []
 
 
 def test_outputs_that_are_held_count_one_as_one():

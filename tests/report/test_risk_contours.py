@@ -3,14 +3,11 @@
 import base64
 import xml.etree.ElementTree as ET
 
-import numpy as np
 import pytest
 
-from assess.i18n import Catalogue, speaking
 from assess.methods import Cases, all_methods
-from assess.report.figures.draw import draw
 from assess.report.figures.risk_contours import draw_contours
-from assess.report.figures.risk_map import GAP, LETTER, LINE, LINES, MOST_NAMES, box_around, find_clearest, find_room
+from assess.report.figures.risk_map import LINES, MOST_NAMES
 from assess.settings import Settings
 from assess.units import GRAVITY
 from tests.workbooks import assessed
@@ -80,48 +77,4 @@ def test_one_piece_and_many(tmp_path):
     assert len(draw_contours(many).image.source) < 340_000
 
 
-@pytest.mark.slow
-def test_a_strange_name_and_a_chance_that_is_everywhere_one(tmp_path):
-    size = {"item": "棚 $x$ \u0628", "breadth": 5, "height": 300}
-    assert _ids(_choose(tmp_path, size, floors=[{"floor": "1", "pfa_x": 4.0, "pfv_x": 900}]), "piece") == [3]
-
-
-@pytest.mark.parametrize("shares", [False, True])
-def test_ticks_are_written_once_with_the_decimal_sign_of_the_language(shares):
-    found = []
-
-    def paint(figure):
-        panels = figure.subplots(1, 2, sharey=shares)
-        for axes in panels:
-            axes.plot([0, 1], [0, 0.5])
-        panels[1].set_xticks([0, 1], ["J.P. Room", "1,5"])
-        found.append(panels)
-
-    with speaking(Catalogue("it", decimal=",", group=".")):
-        draw(4, 2, paint)
-        labels = [[text.get_text() for text in axes.get_yticklabels()] for axes in found[0]]
-        assert "0,2" in labels[0]
-        assert not any("." in text for one in labels for text in one)
-        assert [text.get_text() for text in found[0][1].get_xticklabels()] == ["J.P. Room", "1,5"]
-
-
 # --- where texts go ---
-
-
-def test_a_text_goes_beside_its_symbol_where_there_is_room():
-    panel, wide = (100.0, 50.0), LETTER * 3
-    first = find_room((50, 25), "abc", panel, [])
-    assert first is not None
-    assert first == pytest.approx((50 + GAP, 25 - LINE / 2, 50 + GAP + wide, 25 + LINE / 2))
-    second = find_room((50, 25), "abc", panel, [first])
-    assert second == pytest.approx((50 - GAP - wide, 25 - LINE / 2, 50 - GAP, 25 + LINE / 2))
-    assert find_room((99, 25), "abc", panel, []) == pytest.approx((99 - GAP - wide, 21.5, 99 - GAP, 28.5))
-    assert find_room((50, 25), "abc", panel, [box_around(50, 25, 90, 60)]) is None
-
-
-def test_the_clearest_place_on_a_line():
-    line = np.column_stack([np.linspace(0, 100, 11), np.full(11, 20.0)])
-    assert find_clearest(line, (100.0, 50.0), np.array([[20.0, 20.0]]), 10) == 9
-    assert find_clearest(line, (100.0, 50.0), np.array([[20.0, 20.0], [90.0, 20.0]]), 10) in (5, 6)
-    assert find_clearest(line, (100.0, 50.0), np.empty((0, 2)), 10) == 1
-    assert find_clearest(line, (100.0, 50.0), np.empty((0, 2)), 25) is None

@@ -1,13 +1,10 @@
 """The schedule in words: names, work by room, forces, marks, costs, before and after, on the page and in the sheet."""
 
-from dataclasses import replace
-
 import pytest
 
 import assess
 from assess.report.content import Content
 from assess.report.say import work as say
-from assess.report.say.work import RouteStep, say_effect
 from assess.report.words import say_bracket
 from assess.settings import Settings
 from tests.workbooks import write_sheets
@@ -49,11 +46,6 @@ def content(results):
     return Content(results)
 
 
-@pytest.fixture(scope="module")
-def works(content):
-    return {", ".join(sorted(one.row.items)): one for one in say.list_work(content.fixes, ["2", "1"])}
-
-
 # ---------------------------------------------------------------- names
 
 
@@ -72,43 +64,7 @@ def test_names_are_shortened(names, short):
     assert say.join_names(say.shorten_names(names)) == short
 
 
-def test_a_part_of_an_entry_names_the_others_that_it_needs(content):
-    first, second, *_ = content.fixes
-    row = replace(first.row, is_together=True, works=(*first.row.works, *second.row.works))
-    entry = replace(first, row=row, results=[*first.results, *second.results])
-    parts = sorted(say.list_work([entry], ["2", "1"]), key=lambda one: not one.is_first)
-    names = [say.join_names(say.shorten_names(one.row.items)) for one in parts]
-    for one, other in zip(parts, reversed(names), strict=True):
-        assert one.reason.endswith(f"only together with {other}")
-    assert [one.is_first for one in parts] == [True, False]
-
-
-def test_steps_of_a_route_that_are_one_entry_have_one_effect():
-    first = RouteStep("West", 0, 1, 3, 0.5, 0.4, 0.0)
-    second, third = first._replace(place=2, before=0.4, after=0.1), first._replace(place=3, before=0.1, after=0.0)
-    assert say_effect([first]) == "route West: 50.0 % → 40.0 % (step 1 of 3)"
-    assert say_effect([first, second]) == "route West: 50.0 % → 10.0 % (steps 1 to 2 of 3)"
-    assert say_effect([first, third]) == "route West: 50.0 % → 0.0 % (with all 3 steps)"
-
-
 # ---------------------------------------------------------------- work
-
-
-def test_work_stands_by_floor_and_room_and_there_by_urgency(content):
-    works = say.list_work(content.fixes, ["2", "1"])
-    rooms = [("2", "Alpha"), ("2", "Beta"), ("2", "Gamma"), ("1", "Alpha")]
-    places = [(rooms.index((one.row.floor, one.row.room)), one.entry.row.place) for one in works]
-    assert places == sorted(places)
-
-
-def test_a_bracket_that_fails_is_named(results, works):
-    reasons = {name: one.reason.replace("\N{NO-BREAK SPACE}", " ") for name, one in works.items()}
-    assert reasons["weak"] == "bracket fails at PFA: counts as free-standing"
-    assert reasons["part"] == "bracket fails at 84 % of PFA: counts as free-standing"
-    assert reasons["file"] == "–"
-    assert "firm" not in works
-    assert results["firm"].is_anchored
-    assert not results["weak"].is_anchored
 
 
 @pytest.mark.parametrize(("anchored", "counts"), [("yes", "anchored"), ("partly", "free-standing")])
@@ -140,6 +96,3 @@ def test_an_anchored_piece_whose_bracket_may_fail_is_named(tmp_path, anchored, c
     assert say_bracket(results["firm"]) == words
     said = "1 anchored piece has a bracket that fails at 84 % of PFA or by the code: firm."
     assert (say.say_doubtful_brackets(results) == [said]) is bool(words)
-
-
-# ---------------------------------------------------------------- sums

@@ -28,15 +28,3 @@ def test_no_source_is_vague():
     assert len(list_sources()) > 20
     assert not [one for one in list_sources() if VAGUE.search(one)]
     assert UNVERIFIED.startswith("assumed")
-
-
-def test_what_was_not_compared_with_its_publication_is_marked_assumed():
-    texts = [one for one in list_sources() if "not compared" in one]
-    assert len(texts) >= 3
-    assert all("Assumed: " in one for one in texts)
-
-
-def test_a_detail_without_a_source_says_so():
-    for one in DETAILS.values():
-        assert re.search(r"\d{4}|Alliance|assumed", str(one.source)), one.key
-        assert one.capacity is None or "kN" in str(one.fixing)

@@ -1,6 +1,5 @@
 """What lies under a plan: the user's drawing, outlines of rooms, the building's edge; names that do not overlap."""
 
-import importlib.util
 import itertools
 import re
 from pathlib import Path
@@ -15,8 +14,7 @@ from assess.report.content import Content
 from assess.report.embedded import Photos
 from assess.report.figures.labels import overlap
 from assess.report.figures.plan import Plan, build_plan
-from assess.report.figures.plan_names import Names
-from assess.report.figures.underlay import cut_falls, find_edge, list_rooms, widen
+from assess.report.figures.underlay import cut_falls, find_edge, list_rooms
 from assess.report.figures.ways import build_stretches
 from tests.pictures import picture
 from tests.plans.drawings import PLAN_SVG
@@ -84,22 +82,6 @@ def test_a_drawing_is_lines_in_the_places_metres(tmp_path):
     assert path.get("fill") == "none"
 
 
-def test_a_far_larger_plan_does_not_make_pieces_specks(tmp_path):
-    pieces = [{**PIECE, "item": f"A{n}", "x": 100 + 5.0 * n, "y": 100.0} for n in range(2)]
-    (plan,) = _plans(_assess(tmp_path, pieces, plan="p.svg", **FRAME | {"plan_width": 500.0}))
-    assert plan.high[0] - plan.low[0] < 60
-    assert all(plan.x(plan.low[0]) - 0.1 <= float(x) <= plan.x(plan.high[0]) + 0.1
-               for x in re.findall(r"[ML]([-\d.]+) ", plan.linework))  # fmt: skip
-    assert widen((0, 0, 10, 2), [(-100, -1), (12, -1), (12, 5), (-100, 5)]) == (-20, -1, 12, 5)
-
-
-def test_plans_without_their_series_are_left_out(tmp_path):
-    results = _assess(tmp_path, plan="p.png", **FRAME)
-    results.series.path.unlink()
-    (plan,) = _plans(results)
-    assert plan.underlay is None
-
-
 # ---------------------------------------------------------------- rooms and falls
 
 
@@ -118,12 +100,6 @@ def test_falls_end_at_the_outlines_but_not_at_inner_walls(tmp_path):
     assert areas == pytest.approx([1.6, 0.85 * 0.8, 1.6, 1.6])  # 0.85 m to the wall; through the wall at 7.8 m
     assert (plan.low, plan.high) == ((-0.4, -0.4), (16.4, 12.4))
     assert "Hatching ends at the outlines of the floor" in render(results)
-
-
-def test_falls_stay_whole_where_a_piece_stands_outside_every_outline(tmp_path):
-    (plan,) = _plans(_assess(tmp_path, [PIECE, {**PIECE, "item": "A2", "x": 12.0}], ROOMS[:1]))
-    assert plan.cut_at == ""
-    assert [one.area for one in _covered(plan)] == pytest.approx([1.6] * 4)
 
 
 def test_falls_end_at_the_frame_of_a_plan_where_no_outlines_are_known(tmp_path):
@@ -172,25 +148,6 @@ def _overlaps(plan: Plan) -> int:
     return sum(overlap(one, other) > 0 for one, other in itertools.combinations(plan.boxes, 2))
 
 
-@pytest.mark.slow
-def test_no_two_names_overlap_on_the_floors_of_the_worked_example(tmp_path):
-    path = Path(__file__).parents[2] / "inventories" / "market_street.py"
-    spec = importlib.util.spec_from_file_location("market_street", path)
-    script = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(script)
-    content = script.content()
-    floors = [{"floor": one["floor"], "pfa_x": 0.4} for one in content.rows["Floors"]]
-    write_sheets(tmp_path / "w.xlsx", content.rows | {"Floors": floors})
-    plans = _plans(assess.run(assess.read_inventory(tmp_path / "w.xlsx"), UNVERIFIED))
-    assert len(plans) == 4
-    for plan in plans:
-        assert len(plan.boxes) > 30
-        assert _overlaps(plan) == 0
-        assert plan.cut_at == "outlines"
-        assert len(plan.rooms) >= 9
-        assert (plan.low, plan.high) == ((-0.4, -0.4), (32.4, 24.4))  # nothing beyond the walls
-
-
 def test_names_without_room_have_a_number_and_a_key(tmp_path):
     places = [
         {"place": f"Meeting room number {n}", "floor": "1", "x": 4 + 0.05 * n, "y": 4.0, "kind": "room"}
@@ -207,14 +164,6 @@ def test_names_without_room_have_a_number_and_a_key(tmp_path):
     assert len(plan.keys) + len([name for name in shown if name.startswith("Meeting")]) == 40
     html = render(results)
     assert f"<strong>1</strong> {plan.keys[0].name} (" in html
-
-
-def test_where_even_a_number_has_no_room_the_key_has_the_position_alone():
-    names = Names((0, 0, 1, 1), 0.01)
-    names.boxes = [(0, 0, 1, 1)]
-    assert names.place([("A", (0.4, 0.4, 0.6, 0.6))], ()) == [None]
-    (key,) = names.keys
-    assert (key.number, key.name, key.at) == (None, "A", (0.5, 0.5))
 
 
 # ---------------------------------------------------------------- photos
@@ -235,20 +184,3 @@ def test_photos_by_item_and_no_more_than_a_report_holds(tmp_path):
     photos.left = 10
     assert photos.photo_of(1) == ""
     assert Photos(_assess(tmp_path, [PIECE])).photo_of(0) == ""
-
-
-@pytest.mark.slow
-def test_the_pdf_shows_the_picture_and_no_hatching_beyond_the_frame(tmp_path):
-    """Where a picture under a scaling transform is drawn as a speck, the page has no grey of it."""
-    import pypdfium2
-
-    results = _assess(tmp_path, plan="p.png", **FRAME)
-    path = assess.write_reports(results, tmp_path / "out", "pdf")["pdf"]
-    document = pypdfium2.PdfDocument(path)
-    counts = [0] * len(document)
-    for at in range(len(document)):
-        image = np.asarray(document[at].render(scale=1).to_pil().convert("L"))
-        # a quarter of the picture is of luminance 81, at 0.45 over white: 177
-        counts[at] = int((np.abs(image.astype(int) - 177) <= 3).sum())
-    document.close()
-    assert max(counts) > 20_000

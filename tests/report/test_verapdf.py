@@ -14,7 +14,6 @@ from pathlib import Path
 import pytest
 import weasyprint
 
-import assess
 from assess.compare.changes import compare
 from assess.compare.comparison_files import write_comparison
 from assess.compare.read_results import read_run
@@ -31,7 +30,6 @@ from tests.workbooks import UNVERIFIED, assessed
 HERE = Path(__file__).parents[1] / "verapdf"
 ROOT = HERE.parents[1]
 JARS = ROOT / "build" / "verapdf"
-
 DRAWS_EQUATIONS = True
 pytestmark = [pytest.mark.verapdf, pytest.mark.slow]
 
@@ -100,11 +98,6 @@ def _write_each(results, folder, kinds=EVERY_KIND, **more):
     ]
 
 
-def _small(folder, kinds=EVERY_KIND):
-    results = assessed(folder / "w.xlsx", building="Town hall", scenario="A test", prepared_by="A. Engineer")
-    return _write_each(results, folder / "small", kinds)
-
-
 def _strange(folder, kinds=EVERY_KIND):
     """In Italian, with signs that the fonts lack and with pictures of the user's."""
     (folder / "p.png").write_bytes(picture("PNG", "RGBA", (1600, 1200)))
@@ -124,12 +117,6 @@ def _comparison(folder, kinds=(("en", "3u"), ("it", "3u"), ("en", "ua1"))):
     return pairs
 
 
-def _example(folder):
-    return _write_each(
-        assess.run(assess.read_inventory(ROOT / "inventories" / "market-street.xlsx"), UNVERIFIED), folder
-    )
-
-
 def test_reports_are_valid_and_the_validator_can_say_no(tmp_path, jars):
     """Comparisons too; all are validated by one start of Java."""
     strange = _strange(tmp_path, [("client", "3u"), ("annex", "ua1")])
@@ -140,10 +127,3 @@ def test_reports_are_valid_and_the_validator_can_say_no(tmp_path, jars):
     assert found == [""] * 4
     assert re.search(r"^  5 test 1: .*PDF/UA", archival_as_accessible)
     assert "6.6" in plain_as_archival
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("write", [_small, _strange, _comparison, _example])
-def test_every_edition_in_every_kind_is_valid(tmp_path, jars, write):
-    files = write(tmp_path)
-    assert _validate(jars, *files) == [""] * len(files)

@@ -1,6 +1,5 @@
 """The Word edition: the client's report as headings, paragraphs, tables and pictures of Word."""
 
-import base64
 import re
 import zipfile
 from importlib import util
@@ -14,12 +13,9 @@ import assess
 from assess.errors import CancelledError, InputError
 from assess.extras import say_install
 from assess.progress import Progress
-from assess.report.blocks import Image
 from assess.report.content import Content
 from assess.report.pages.html import render
 from assess.report.report_options import ReportOptions
-from assess.report.word import drawings
-from assess.report.word.writer import SPACE, _fit
 from assess.settings import Settings
 from tests.cli.calling import run
 from tests.workbooks import assessed, write
@@ -70,46 +66,12 @@ def test_every_page_says_the_condition_and_its_number(written):
     assert fields == ["PAGE", "NUMPAGES"]
 
 
-def test_heads_repeat_and_rows_stay_whole(written):
-    *_, document = written
-    table = next(one for one in document.tables if len(one.rows) > 3 and one._tbl.xpath(".//w:tblHeader"))
-    assert table._tbl.tr_lst[0].xpath("./w:trPr/w:tblHeader")
-    assert all(row.xpath("./w:trPr/w:cantSplit") for row in table._tbl.tr_lst)
-
-
 def test_the_contents_lead_to_the_headings(written):
     *_, document = written
     targets = {one.get(f"{{{one.nsmap['w']}}}anchor") for one in document.element.iter("{*}hyperlink")}
     places = {one.get(f"{{{one.nsmap['w']}}}name") for one in document.element.iter("{*}bookmarkStart")}
     assert targets
     assert targets <= places
-
-
-def test_it_says_what_it_is(written):
-    *_, document = written
-    told = document.core_properties
-    assert told.title.startswith("Furniture in earthquakes: ")
-    assert told.language == "en"
-    assert f"{told.created:%Y-%m-%d}" == "2023-11-14"
-
-
-def test_columns_fit_the_page_and_hold_their_words():
-    assert _fit([100.0, 66.0], [10.0, 10.0]) == [100.0, 66.0]
-    widths = _fit([150.0, 16.0], [20.0, 40.0])
-    assert sum(widths) == pytest.approx(SPACE)
-    assert widths[1] >= 40
-    crowded = _fit([SPACE / 4] * 4, [100.0, 100.0, 100.0, 32.0])
-    assert sum(crowded) == pytest.approx(SPACE)
-    assert crowded[0] > crowded[3]
-
-
-def test_a_drawing_has_its_size_and_its_words():
-    inner = '<svg viewBox="0 0 300 150"><title>out</title><svg x="1"><rect/></svg></svg>'
-    coded = base64.b64encode(b'<svg width="72pt" height="36pt"/>').decode()
-    found = [drawings.measure(Image(inner)), drawings.measure(Image(f"data:image/svg+xml;base64,{coded}", "say"))]
-    assert [one.alternative for one in found] == ["out", "say"]
-    assert (found[0].width, found[0].height) == pytest.approx((166, 83))
-    assert (found[1].width, found[1].height) == pytest.approx((25.4, 12.7))
 
 
 def test_without_its_packages_it_says_what_to_install(monkeypatch, tmp_path):
