@@ -7,15 +7,13 @@ import pytest
 from openpyxl import load_workbook
 
 from assess.bim import cobie_sheets
-from assess.bim.cobie import convert, is_cobie, read_cobie
+from assess.bim.cobie import convert, read_cobie
 from assess.bim.import_workbook import ImportedBuilding
 from assess.errors import WorkbookError
 from assess.workbook.read import read_inventory
-from tests.bim.cobie_files import COMPONENTS, FLOORS, TYPES, make_sheets, one_type, write_cobie
+from tests.bim.cobie_files import COMPONENTS, FLOORS, make_sheets, one_type, write_cobie
 from tests.workbook.books import write_book, write_shared
 from tests.workbooks import write as write_inventory
-
-SHAKEN = {"ground_pga": 0.3}
 
 
 def _read(folder: Path, **rows: Any) -> ImportedBuilding:
@@ -83,11 +81,6 @@ def test_a_unit_in_which_no_size_can_be_is_refused_with_its_cell(
     assert caught.value.problems[0].place == "Facility!G2"
 
 
-def test_pieces_that_no_unit_makes_furniture_are_left_out_and_the_unit_is_not_doubted(tmp_path: Path) -> None:
-    found = _read(tmp_path, **one_type(NominalLength=30_000, NominalWidth=1, NominalHeight=0.001))
-    assert [one.type for one in found.skipped] == ["Bookcase A"]
-
-
 BLANK, ODD = "AssetType is blank, so that it is not known whether they are furniture", "expected 50 to 6000 mm"
 LEFT_OUT: list[tuple[dict[str, Any], str]] = [
     *(({"NominalHeight": blank}, "no NominalHeight") for blank in ("n/a", None, "", 0, "0.0", "N/A", "-")),
@@ -118,11 +111,6 @@ def test_a_type_that_cannot_be_taken_is_named_with_its_number_and_the_reason(
     assert (found.items, found.is_complete) == ([], False)
 
 
-def test_spellings_of_moveable(tmp_path: Path) -> None:
-    for typed in ("Movable", "MOVEABLE", " moveable "):
-        assert len(_read(tmp_path, **one_type(AssetType=typed)).items) == 1
-
-
 # ---------------------------------------------------------------- components, spaces and floors
 
 
@@ -141,12 +129,6 @@ def test_components_that_lead_nowhere_are_reported(tmp_path: Path, change: Any, 
     assert (own, number, is_furniture) == (kind, 1, True)
     assert why.startswith(reason)
     assert len(found.items) == 1
-
-
-def test_of_several_spaces_the_first_known_is_taken_and_said(tmp_path: Path) -> None:
-    found = _read(tmp_path, components=({**COMPONENTS[0], "Space": "Site, U01, G01"},))
-    assert found.items[0]["floor"] == "Upper"
-    assert "1 piece names several spaces; the first that is known was taken." in found.remarks
 
 
 def test_elevations_from_another_datum_and_basements_are_kept_and_warned_of(tmp_path: Path) -> None:
@@ -172,11 +154,6 @@ def test_an_elevation_that_is_missing_or_wrong_stays_blank(tmp_path: Path, eleva
     assert len(found.warnings) == count
 
 
-def test_thin_pieces_are_named_as_what_may_hang_on_a_wall(tmp_path: Path) -> None:
-    found = _read(tmp_path, **one_type(NominalWidth=60))
-    assert any("Thinner than 10 cm" in text and "Bookcase A" in text for text in found.remarks)
-
-
 def test_components_of_one_name_are_told_apart_and_names_compared_without_letter_case(tmp_path: Path) -> None:
     components = tuple({**COMPONENTS[0], "ExtIdentifier": f"id{at}"} for at in range(3))
     other = {**COMPONENTS[1], "TypeName": "BOOKCASE  a", "Space": "g01"}
@@ -185,24 +162,6 @@ def test_components_of_one_name_are_told_apart_and_names_compared_without_letter
     assert [one["item"] for one in found.items] == names
     assert [one["source_id"] for one in found.items[:3]] == ["id0", "id1", "id2"]
     assert {(one["type"], one["room"]) for one in found.items} == {("Bookcase A", "G01")}
-
-
-def test_a_type_named_as_one_of_the_catalogue_takes_its_place(tmp_path: Path) -> None:
-    types = ({**TYPES[0], "Name": "Sideboard"},)
-    path = write_cobie(tmp_path / "c.xlsx", types=types, components=({**COMPONENTS[0], "TypeName": "Sideboard"},))
-    inventory = read_inventory(convert(path.read_bytes()), building=SHAKEN)
-    (kind,) = (one for one in inventory.catalogue if one.type == "Sideboard")
-    assert kind.breadth == pytest.approx(0.303)
-    assert kind.source == "COBie file COBie.xlsx, sheet Type: nominal sizes"
-
-
-def test_a_file_without_furniture_and_with_several_facilities_gives_its_floors(tmp_path: Path) -> None:
-    sheets = make_sheets(types=(), components=())
-    sheets["Facility"].append(sheets["Facility"][1])
-    path = write_book(tmp_path / "c.xlsx", sheets)
-    found = read_cobie(path, path.name)
-    assert (len(found.floors), found.items, found.is_complete) == (2, [], False)
-    assert found.remarks[0] == "The sheet Facility has 2 rows; the first was taken."
 
 
 # ---------------------------------------------------------------- the sheets
@@ -247,19 +206,6 @@ def test_sheets_as_programs_write_them(tmp_path: Path, change: Callable[[Sheets]
         ("Bookcase A:1", "Ground", 200.0), ("Bookcase A:2", "Upper", 200.0),
     ]  # fmt: skip
     assert found.building["building"] == "East wing"
-
-
-def test_a_cobie_file_is_known_by_its_sheets(tmp_path: Path) -> None:
-    cobie = write_cobie(tmp_path / "c.xlsx")
-    inventory = write_inventory(tmp_path / "w.xlsx")
-    (tmp_path / "t.xlsx").write_bytes(b"PK\x03\x04 not a zip")
-    assert is_cobie(cobie)
-    assert is_cobie(cobie.read_bytes())
-    assert not is_cobie(inventory)
-    assert not is_cobie(inventory.read_bytes())
-    assert not is_cobie(tmp_path / "t.xlsx")
-    assert not is_cobie(tmp_path / "missing.xlsx")
-    assert not is_cobie(b"")
 
 
 # ---------------------------------------------------------------- of another kind

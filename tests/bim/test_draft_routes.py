@@ -20,11 +20,9 @@ from assess.bim.draft_routes import DraftRoutes, draft_routes, measure_gap
 from assess.bim.import_workbook import build_workbook
 from assess.bim.model_rows import list_building
 from assess.bim.plan_shapes import box_at, direction_of, to_polygon
-from assess.i18n import load_catalogue, speaking
 from assess.model import Inventory
 from assess.results import Results
-from assess.route_results import RouteState
-from assess.workbook.draft_names import LONGEST, is_draft
+from assess.workbook.draft_names import is_draft
 from assess.workbook.names import key
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import DEFAULT_WIDTH
@@ -117,33 +115,6 @@ def test_every_room_is_joined_to_an_exit(drafted):
 # ---------------------------------------------------------------- routes
 
 
-def test_one_route_for_each_exit_and_stair(duplex, of_duplex):
-    assert (len(duplex.spaces), len(of_duplex.unreached)) == (21, 1)
-    assert len({row["route"] for row in of_duplex.routes}) == 6  # four exits and two stairs
-    pairs = [frozenset((row["start"], row["end"])) for row in of_duplex.routes]
-    assert len(pairs) == len(set(pairs))
-    assert len(pairs) < 4 * len(duplex.spaces)
-
-
-def test_rows_grow_with_the_rooms_not_with_their_ways():
-    found = draft(model := build_office(2, 15))
-    assert (len(model.spaces), found.unreached) == (62, ())
-    assert len(found.routes) < 3 * len(model.spaces)
-
-
-@pytest.mark.slow
-def test_a_route_to_a_stair_ends_with_its_flight():
-    found = draft(build_office(1, 3, storeys=2))
-    (flight,) = [row for row in found.routes if "floor" not in row]
-    assert (flight["route"], flight["start"], flight["end"]) == (
-        "To Stair 1 s0, head (draft)", "Stair 1 s0, head", "Stair 1 s0, foot",
-    )  # fmt: skip
-    assert flight["notes"] == "Stair: fill in Clear width."
-    assert "clear_width" not in flight
-    starts = {row["start"] for row in found.routes if row["route"].startswith("To Door")}
-    assert "Stair 1 s0, foot" in starts  # from where the route of the ground storey goes on
-
-
 def test_rooms_of_a_basement_go_up():
     office = build_office(1, 3, storeys=3)
     lowered = replace(office, storeys=tuple(replace(one, elevation=one.elevation - 3.5) for one in office.storeys))
@@ -187,14 +158,6 @@ def test_widths_are_known_at_doors_and_in_corridors_alone():
             assert row.keys().isdisjoint({"clear_width", "required_width", "notes"})
 
 
-def test_a_door_that_states_no_width_is_as_wide_as_its_opening():
-    office = build_office(1, 3)
-    bare = replace(office, doors=tuple(replace(one, overall=0.0, width=1.2) for one in office.doors))
-    widths = {row.get("clear_width") for row in draft(bare).routes}
-    assert widths <= {1.1, 2.0, None}
-    assert 1.1 in widths
-
-
 def test_a_room_open_to_another_names_both(duplex, of_duplex):
     """Furniture of either may fall into the segment."""
     names = name_all(duplex)
@@ -218,16 +181,6 @@ def test_names_are_each_their_own_and_one_with_a_semicolon_leaves_the_room_blank
     assert [row.get("room") for row in found.routes if row["start"] == "Room 0 c0 r;0"] == [None]
 
 
-def test_every_route_is_marked_and_short_in_any_language():
-    office = build_office(1, 4)
-    names = {one: f"{'x' * 70} {name}" for one, name in name_all(office).items()}
-    for language in ("en", "it"):
-        with speaking(load_catalogue(language)):
-            routes = {row["route"] for row in draft_routes(office, names).routes}
-        assert len(routes) == 2
-        assert all(is_draft(name) and len(name) <= LONGEST for name in routes)
-
-
 # ---------------------------------------------------------------- remarks
 
 
@@ -246,20 +199,6 @@ def test_remarks_tell_what_is_assumed(duplex, of_duplex):
     assert "are narrower than 0.9 m: their Required width is their Clear width." in said[2]
     roof = name_all(duplex)[next(one.key for one in duplex.spaces if one.title == "Roof")]
     assert said[3] == f"No way out of 1 room was found in the model: {roof}."
-
-
-def test_balconies_are_no_exits():
-    office = build_office(1, 3, storeys=2)
-    upstairs = replace(office, doors=(*office.doors, door("balcony", 16.0, 18.0, 0.0, "1"),
-                                      door("terrace", -0.05, 6.1, 0.0, "1")))  # fmt: skip
-    assert "1 door of other storeys has a room on one side only: it does not count as an exit." in say(draft(upstairs))
-
-
-def test_storeys_without_walls_are_named():
-    office = replace(build_office(1, 3), walls={})
-    found = draft(office)
-    assert found.unreached == ()
-    assert "No walls on Level 0: openings without doors, of 0.6 m and more, are not found there." in say(found)
 
 
 def test_without_rooms_or_ways_out_there_is_no_draft():
@@ -386,18 +325,6 @@ def test_of_the_stated_width_of_a_door_and_its_opening_the_smaller_counts(stated
     assert link.clear == pytest.approx(clear)
 
 
-def test_the_door_bounds_its_segment():
-    for leaf, clear, words in (
-        (EXIT, 1.2, "the door's 1.30 m"),
-        (replace(EXIT, width=0.9, overall=1.8), 0.8, "the door's 0.90 m in the model less 0.1 m"),
-    ):
-        (row,) = draft_routes(hall(doors=(leaf,)), name_all(hall())).routes
-        assert row["clear_width"] == pytest.approx(clear)
-        assert row["notes"].startswith(f"Clear width: {words}")
-    assert row["required_width"] == 0.8
-    assert measure_in(hall(), (4.0, 3.0), (10.05, 3.0)) == pytest.approx(1.3)
-
-
 def test_two_columns_before_an_exit_bound_the_segment_to_it():
     """The exit is 1.3 m wide, the columns stand 0.8 m apart."""
     for x in (6.0, 9.0, 9.7):
@@ -459,43 +386,3 @@ def test_a_draft_is_a_workbook_without_errors(published, tmp_path):
     assert len(inventory.routes) > 0
     drafted = [one for one in inventory.problems if "drafted from a building model" in one.message]
     assert [one.severity for one in drafted] == ["warning"]
-
-
-def test_every_segment_on_a_storey_is_on_the_plan_and_no_piece_stands_in_it(results):
-    segments = results.route_tables.segments
-    flights = [one for one in segments if one.floor is None]
-    assert len(flights) == 2
-    for one in segments:
-        assert (one.length_m is None) == (one in flights), one.segment
-        assert one in flights or 0 < one.length_m < 12
-        assert not one.is_blocked_standing
-    assert not any("with nothing fallen" in one for one in results.problems["message"])
-    assert any(one.pieces for one in segments)
-
-
-def test_rooms_of_both_storeys_have_a_way_to_an_exit(results):
-    rooms = {one.room: one for one in results.route_tables.rooms}
-    assert not any(one.by_stairs for one in rooms.values())
-    assert all(one.exits for one in rooms.values())
-    upstairs = next(one for name, one in rooms.items() if "A203" in name)
-    assert upstairs.exits == ("Exit A101",)
-    assert results.route_tables.unjoined_rooms == ("R301 Roof",)
-    assert len(results.route_tables.routes) == 6
-    assert all(one.route.endswith(" (draft)") for one in results.route_tables.routes)
-    assert {one.state for one in results.route_tables.routes} <= set(RouteState)
-
-
-@pytest.mark.slow
-def test_rooms_upstairs_are_not_known_until_the_width_of_the_stair_is_filled_in(tmp_path):
-    """The model does not tell it; all else of their ways is."""
-    inventory = build(build_office(1, 3, storeys=2), tmp_path)
-    upstairs = [one.place for one in inventory.places if one.kind == "room" and one.floor == "Level 1"]
-    assert len(upstairs) == 7
-
-    def find_unknown(inventory: Inventory) -> set[str]:
-        rooms = assess.run(inventory, UNVERIFIED).route_tables.rooms
-        return {one.room for one in rooms if "clear_width" in {lack.what for lack in one.missing}}
-
-    assert find_unknown(inventory) >= set(upstairs)
-    filled = tuple(one if one.floor else replace(one, clear_width=1.2) for one in inventory.routes)
-    assert find_unknown(replace(inventory, routes=filled)) == set()

@@ -1,16 +1,10 @@
-import pytest
-
-from assess.bim.building_model import LONGEST_NAME, Skipped
+from assess.bim.building_model import LONGEST_NAME
 from assess.bim.import_workbook import (
     ImportedBuilding,
     build_workbook,
-    list_remarks,
     list_rows,
     name_apart,
-    say_skipped,
 )
-from assess.errors import WorkbookError
-from assess.i18n import fill, load_catalogue, speaking
 from assess.workbook.read import read_inventory
 
 PIECE = {"item": "A1", "floor": "1", "type": "Desk", "breadth": 60.0, "width": 120.0, "height": 75.0, "source_id": "g1"}
@@ -21,11 +15,6 @@ SHAKEN = {"ground_pga": 0.3}
 def _building(**more: object) -> ImportedBuilding:
     rows = {"source": "model.x", "floors": [{"floor": "1", "elevation": 0.0}], "items": [PIECE]}
     return ImportedBuilding(**(rows | more))
-
-
-@pytest.mark.slow
-def test_the_same_import_gives_the_same_bytes() -> None:
-    assert build_workbook(_building()) == build_workbook(_building())
 
 
 def test_rows_of_every_sheet_come_back() -> None:
@@ -47,38 +36,11 @@ def test_rows_of_every_sheet_come_back() -> None:
     assert len(inventory.catalogue) > 100
 
 
-def test_the_workbook_speaks_the_language_in_use() -> None:
-    with speaking(load_catalogue("it")):
-        data = build_workbook(_building(types=[{"type": "Desk", "breadth": 60.0, "height": 75.0}]))
-    assert read_inventory(data, building=SHAKEN).language == "it"
-
-
 def test_long_names_and_those_alike_in_another_letter_case_are_told_apart() -> None:
     first, second = name_apart(["x" * 500] * 2)
     assert (len(first), len(second)) == (LONGEST_NAME, LONGEST_NAME)
     assert second.endswith("x (2)")
     assert name_apart(["Desk", "desk", "Desk (2)", "Desk"]) == ["Desk", "desk (2)", "Desk (2) (2)", "Desk (3)"]
-
-
-@pytest.mark.slow
-def test_without_items_the_workbook_lacks_furniture() -> None:
-    with pytest.raises(WorkbookError, match="the table has no rows") as caught:
-        read_inventory(build_workbook(_building(items=[])))
-    assert caught.value.is_incomplete
-
-
-def test_remarks_for_many_buildings_put_left_out_furniture_first() -> None:
-    skipped = (Skipped("Door", 3, fill("Fixed"), is_furniture=False), Skipped("Shelf", 2, fill("no NominalHeight")))
-    found = list_remarks(_building(skipped=skipped, warnings=(fill("datum"),), remarks=(fill("hint"),)))
-    assert [(one.severity, one.message) for one in found] == [
-        ("warning", "2 pieces left out (no NominalHeight): Shelf (2)."), ("warning", "datum"), ("note", "hint"),
-        ("note", "3 components left out (Fixed): Door (3)."),
-    ]  # fmt: skip
-
-
-def test_of_many_types_the_first_are_named_and_the_rest_counted() -> None:
-    group = [Skipped(f"T{at}", 1, fill("Fixed"), is_furniture=False) for at in range(7)]
-    assert say_skipped(group, 2) == "7 components left out (Fixed): T0 (1), T1 (1) and 5 more types."
 
 
 def test_the_rooms_of_a_segment_are_not_cut():
