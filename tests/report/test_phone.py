@@ -9,7 +9,7 @@ import assess
 from docs.screenshot import find_browser
 
 AXE = Path(__file__).parents[1] / "data" / "axe-core" / "axe.min.js"
-PHONE = 390
+PHONE, DESK = 390, 1400
 
 pytestmark = [
     pytest.mark.browser,
