@@ -1,5 +1,6 @@
 """Annual chances of a workbook with a hazard file, held against integrals of their own and against the run itself."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -8,8 +9,10 @@ import pytest
 
 from assess.hazard import read_hazard
 from assess.motion.suite import read_suite
+from assess.pipeline.annual import evaluate_annual
 from assess.pipeline.levels import Sweep
 from assess.pipeline.run import build_results, compute
+from assess.progress import SILENT
 from assess.rates import integrate_lognormal
 from assess.settings import Settings
 from assess.units import GRAVITY
@@ -213,3 +216,66 @@ def test_what_is_missing_is_named(tmp_path, building, settings, why):
     else:
         assert why in results.annual.missing
         assert not results.annual.is_evaluated
+
+
+def test_drawn_motions_scatter_by_themselves(tmp_path):
+    """They need no dispersion to differ; a typed one is averaged over, but for what a fitted lognormal changes."""
+    blank, given = (assessed(tmp_path, motion_uncertainty=beta, piece_uncertainty="no") for beta in (None, 0.4))
+    assert [one.annual.tables.motion_dispersion for one in (blank, given)] == [0, 0.4]
+    ratio = rows_of(given)[1][0].rate / rows_of(blank)[1][0].rate
+    assert ratio == pytest.approx(np.exp(K**2 * 0.4**2 / 2), rel=0.25)
+
+
+@pytest.mark.slow
+def test_a_square_piece_falls_along_either_axis(tmp_path):
+    square = {**CABINET, "width": 45, "axis": None}
+    x, y, either = (
+        rows_of(assessed(tmp_path, one))[1][0].rate for one in (square | {"axis": "X"}, square | {"axis": "Y"}, square)
+    )
+    assert 1.02 * max(x, y) < either < x + y
+
+
+@pytest.mark.slow
+def test_where_motions_serve_slip_alone_nothing_is_rocked(tmp_path):
+    """A floor whose only piece is too stocky to rock, but slides."""
+    floors = [*FLOORS, {"floor": "2", "pfa_x": 0.5, "pfa_y": 0.5}]
+    block = {"item": "z", "floor": "2", "breadth": 145, "width": 145, "height": 100, "friction": 0.2}
+    results, rows = rows_of(assessed(tmp_path, CABINET, block, floors=floors))
+    assert rows[0].rate == pytest.approx(rows_of(assessed(tmp_path, CABINET))[1][0].rate, rel=0.15)
+    assert rows[1] is None
+    assert (results.annual.pieces, results.annual.cannot_rock) == (1, 1)
+
+
+def test_no_level_cuts_off_motions_that_are_stronger_than_the_floor(tmp_path):
+    """Where pieces fall at the lowest level, lower ones follow until none does."""
+    assessment = assessed(tmp_path, motion_uncertainty=None)
+    weak = replace(assessment.cases, pfa=assessment.cases.pfa / 5)
+    shifted = evaluate_annual(replace(assessment, cases=weak), jobs=1, progress=SILENT)
+    (row,) = rows_of(assessment)[1]
+    assert shifted.items[0].rate == pytest.approx(row.rate, rel=0.2), "the levels begin five times too high"
+
+
+def test_where_all_pieces_are_anchored_nothing_is_counted(tmp_path):
+    write_hazard(tmp_path, 0.01, 0.3)
+    results, (row,) = rows_of(assessed(tmp_path, {**CABINET, "anchored": "yes", "importance": "life safety"}))
+    found = results.annual
+    assert row.rate > 0
+    assert (found.pieces, found.expected_falls, found.expected_low, found.life_safety) == (0, 0, None, None)
+    assert found.remarks == ()
+
+
+def test_a_route_that_anchored_pieces_reach_has_a_rate_if_they_fail(tmp_path):
+    items = {**CABINET, **BLOCKS}, {**CABINET, **BLOCKS, "item": "b", "breadth": 35, "anchored": "yes"}
+    results, rows = rows_of(assessed(tmp_path, *items, routes=True))
+    (route,) = results.route_tables.routes
+    assert route.annual.rate == pytest.approx(rows[0].rate)
+    assert route.annual_if_anchors_fail.rate > rows[1].rate * 0.999
+
+
+def test_what_cannot_fall_within_the_curve_has_a_rate_of_0(tmp_path):
+    write_hazard(tmp_path, 0.001, 0.004, 5)
+    results, (row,) = rows_of(assessed(tmp_path))
+    assert (row.rate, row.low, row.high, row.fit) == (0, None, None, "table")
+    assert row.at_least, "beyond the end of the curve it may fall"
+    assert results.annual.expected_falls == 0
+    assert results.annual.expected_high is None

@@ -2,15 +2,20 @@
 
 import pytest
 
+import assess
 from assess.intensity import SHAKINGS
-from assess.pipeline.demand import build_demands
+from assess.motion.floor_medians import find_medians
+from assess.pipeline.demand import build_demands, find_shaking
 from assess.pipeline.known_ground import find_ground
 from assess.pipeline.run import compute
+from assess.settings import Settings
 from assess.units import GRAVITY
+from tests.hazards import write_hazard
 from tests.pipeline.rows import read
 from tests.workbooks import UNVERIFIED
 
 CHOICE = "MMI VII, very strong"
+SEVEN = SHAKINGS[CHOICE]
 FLOORS = [{"floor": "1", "elevation": 0}, {"floor": "2", "elevation": 12}]
 
 
@@ -19,11 +24,39 @@ def _read(floors=FLOORS, folder=None, **building):
     return read(items, floors, folder, **{"shaking": CHOICE} | building)
 
 
+def test_every_floor_follows_a_beam_on_its_median_pga_and_pgv():
+    inventory = _read()
+    demands = build_demands(inventory, "as filled")
+    ground, roof = demands["1", "X"][0], demands["2", "Y"][0]
+    assert (ground.pfa, ground.pfv) == pytest.approx((SEVEN.pga, SEVEN.pgv))
+    by_pga, by_pgv = find_medians(find_ground(inventory).building.period, 1.0, "unknown", SEVEN.pgv / SEVEN.pga)
+    assert (roof.pfa, roof.pfv) == pytest.approx((by_pga * SEVEN.pga, by_pgv * SEVEN.pgv))
+    assert {one.label for parallel in demands.values() for one in parallel} == {"Shaking MMI VII, beam"}
+    assert roof.flags == ("drawn_building", "assumed_shaking")
+    assert find_shaking(demands) is SEVEN
+
+
 def test_a_jma_class_gives_pgv_and_pga_is_drawn():
     inventory = _read(shaking="JMA 5+, upper")
     motion, shaking = find_ground(inventory).motion, SHAKINGS["JMA 5+, upper"]
     assert (motion.pga, motion.pgv) == (None, shaking.pgv)
     assert build_demands(inventory, "as filled")["1", "X"][0].pfa == pytest.approx(shaking.pga)
+
+
+def test_a_chosen_code_starts_from_it_too():
+    demands = build_demands(_read(), "NTC 2018")
+    assert demands["2", "X"][0].pfa == pytest.approx(2 * SEVEN.pga)
+    assert demands["2", "X"][0].label == "Shaking MMI VII, NTC 2018"
+
+
+@pytest.mark.parametrize(("known", "pga"), [({"ground_pga": 0.1}, 0.1), ({"sds": 0.5}, 0.2)])
+def test_what_is_known_of_the_ground_comes_first(known, pga):
+    inventory = _read(**known)
+    ground, demands = find_ground(inventory), build_demands(inventory, "as filled")
+    assert ground.pga == pytest.approx(pga * GRAVITY)
+    assert ground.shaking is None
+    assert find_shaking(demands) is None
+    assert "assumed_shaking" not in demands["1", "X"][0].flags
 
 
 @pytest.mark.parametrize(
@@ -38,6 +71,14 @@ def test_where_it_serves_no_floor_it_changes_no_uncertainty_and_a_note_says_so(u
         assert f"Shaking is not used: {why}." in _notes(inventory)
 
 
+@pytest.mark.parametrize(("given", "used"), [(None, 0.0), (0.3, 0.3)])
+def test_chances_a_year_leave_out_the_scatter_of_pgv_given_an_intensity(tmp_path, given, used):
+    """A hazard curve is of PGA itself: its chances hold at a PGA, not at an intensity; drawn motions scatter alone."""
+    hazard = write_hazard(tmp_path).name
+    inventory = _read(FLOORS[:1], tmp_path, hazard=hazard, period=0.5, motion_uncertainty=given)
+    assert compute(inventory, Settings(runs=20)).annual.tables.motion_dispersion == used
+
+
 def _notes(inventory):
     return {one.message for one in compute(inventory, UNVERIFIED).problems if one.severity == "note"}
 
@@ -46,6 +87,12 @@ def test_a_smaller_motion_uncertainty_is_not_used_and_the_log_says_so():
     wanted = "Motion uncertainty 0.3 is not used: 0.88, the scatter of ln PGV given the assumed intensity, is larger."
     assert wanted in _notes(_read(motion_uncertainty=0.3))
     assert not [one for one in _notes(_read(motion_uncertainty=0.9)) if one.startswith("Motion uncertainty")]
+
+
+@pytest.mark.parametrize("typed", ["mmi vii, very strong", "MMI VII", " JMA 5- ", "JMA 5+, upper"])
+def test_a_choice_as_people_type_it(typed):
+    wanted = {"J": SHAKINGS["JMA 5-, lower" if "-" in typed else "JMA 5+, upper"]}.get(typed.strip()[0].upper(), SEVEN)
+    assert find_ground(_read(shaking=typed)).shaking is wanted
 
 
 # ---------------------------------------------------------------- a town, storeys and a height
@@ -80,6 +127,15 @@ def test_a_ground_floor_at_0_begins_the_numbers_of_the_others():
     assert "counted from the ground floor as 1, are assumed" in note
 
 
+def test_a_new_template_needs_no_elevations_beside_height_and_storeys():
+    """Found by a first user: the Elevation of 0 that the template fills in made all others necessary."""
+    floors = [{"floor": "1", "elevation": 0, "pfa_x": 0.2}, {"floor": "2"}]
+    served = _read(floors, height=12, storeys=4, shaking=None)
+    assert build_demands(served, "as filled")["2", "X"][0].height_ratio == pytest.approx(0.25)
+    with pytest.raises(assess.WorkbookError, match="floor '2' has neither a record nor a PFA, no Elevation"):
+        build_demands(_read([floors[0] | {"elevation": 4}, floors[1]], height=12, storeys=4, shaking=None), "as filled")
+
+
 @pytest.mark.parametrize(
     ("floors", "building"),
     [
@@ -92,3 +148,8 @@ def test_else_its_height_is_drawn(floors, building):
     inventory = _read(floors, **building)
     one = build_demands(inventory, "as filled")[floors[0]["floor"], "X"][0]
     assert (one.height_ratio, one.flags) == (None, ("drawn_building", "assumed_shaking", "unknown_height"))
+
+
+def test_the_choices_of_shaking_hold_commas_and_are_told_apart():
+    with pytest.raises(assess.WorkbookError, match=r"expected one of: MMI IV, light; MMI V, moderate; MMI VI, strong;"):
+        _read(shaking="MMI 3")

@@ -111,6 +111,24 @@ def test_the_factor_of_typed_floors_goes_on_in_height_and_down_to_the_ground():
     assert _factor(demands, "R", ground) == pytest.approx(second), "above the highest it goes on"
 
 
+def test_beyond_the_highest_record_its_factor_goes_on():
+    """On a known ground; between floors with records it is interpolated as the peaks are."""
+    low, high = (_at(z, name, records=KNOWN) for z, name in ((10.0, "A"), (20.0, "C")))
+    demands = _demands(low, _at(15.0), high, ROOF, ground_pga=3.0, ground_pgv=0.4)
+    assert (_x(demands, "15").source, _x(demands, "15").between) == ("interpolated", ("A", "C"))
+    assert _peaks(_x(demands, "15")) == pytest.approx(_peaks(_x(demands, "A")))
+    assert _factor(demands, "R", (3.0, 0.4)) == pytest.approx(_factor(demands, "C", (3.0, 0.4)))
+
+
+def test_without_a_ground_a_floor_follows_from_another_by_the_beam_alone():
+    known = _at(20.0, pfa={"X": 4.0})
+    demands = _demands(known, _at(10.0), ROOF)
+    for name, place in (("10", 0.25), ("R", 1.0)):
+        times = _find(place, (1.0, RATIO)) / _find(0.5, (1.0, RATIO))
+        assert _peaks(_x(demands, name)) == pytest.approx(_peaks(_x(demands, "20")) * times)
+    assert _x(demands, "R").amplification is None
+
+
 # --- typed peaks
 
 
@@ -178,6 +196,12 @@ def test_of_an_unknown_building_everything_is_drawn():
 def test_by_how_much_a_floor_scatters(floors, building, given, used):
     """Drawn motions scatter by themselves; what gives the ground adds its own."""
     assert _x(_demands(*floors, motion_uncertainty=given, **building), "R").dispersion == used
+
+
+@pytest.mark.parametrize("given", [None, 0.2])
+def test_by_a_code_a_floor_does_not_scatter_unless_told(given):
+    one = _x(_demands(ROOF, scenario="NTC 2018", ground_pga=3.0, motion_uncertainty=given), "R")
+    assert one.dispersion == (given or 0.0)
 
 
 # --- what is said of the ground, and what comes of it

@@ -10,7 +10,7 @@ from assess.i18n import fill
 from assess.motion.ground_scenarios import read_scenarios
 from assess.motion.site_ground import SiteGround
 from assess.motion.spatial_field import SCATTERS
-from assess.pipeline.city_draws import choose_runs, find_earthquakes, number_pieces
+from assess.pipeline.city_draws import check_draws, choose_runs, find_earthquakes, number_pieces
 from assess.pipeline.draw_sums import sum_draws
 from assess.pipeline.run import build_results, compute
 from assess.rocking.draws import Earthquakes
@@ -41,6 +41,17 @@ def assessed(settings=CITY, **building):
 # --- which earthquake ---
 
 
+def test_a_building_alone_takes_one_number_for_every_place():
+    found = find_earthquakes(inventory(**PLACE), Settings())
+    assert found == Earthquakes(place=None, shared=SCATTERS["PGA"].shared)
+
+
+def test_a_building_of_a_city_draws_by_its_place():
+    found = find_earthquakes(inventory(**PLACE), CITY)
+    assert found.place == (37.79, -122.40)
+    assert find_earthquakes(inventory(), CITY).place is None
+
+
 def test_the_share_of_all_places_is_that_of_the_map_where_it_tells():
     found = find_earthquakes(inventory(MAP, **PLACE), CITY)
     assert found == Earthquakes(place=(37.79, -122.40), shared=0.2)
@@ -54,6 +65,13 @@ def test_scenarios_carry_the_variance_of_the_ground_and_the_building_s_own_is_dr
     found = find_earthquakes(inventory(SCENARIOS, motion_uncertainty=0.4, **PLACE), settings)
     assert found.given == (-1.0, 0.0, 1.0)
     assert found.given_share == pytest.approx(0.3**2 / (0.4**2 + 0.3**2))
+
+
+@pytest.mark.parametrize("own", [{}, {"motion_uncertainty": 0.0}], ids=["blank", "none"])
+def test_scenarios_of_a_building_without_uncertainty_of_its_own_decide_alone(own):
+    found = find_earthquakes(inventory(SCENARIOS, **own, **PLACE), CITY)
+    assert found.given_share == 1
+    assert found.draw(1, 0, 4).tolist() == [-1, 0, 1, -1]
 
 
 def test_scenarios_that_serve_no_floor_decide_nothing():
@@ -90,6 +108,15 @@ def test_more_scenarios_than_draws_are_refused():
         choose_runs(5001)
 
 
+def test_a_run_refuses_draws_that_do_not_fit():
+    several = inventory(SCENARIOS, **PLACE)
+    with pytest.raises(InputError, match=r"runs is 40, expected a multiple of 3"):
+        compute(several, CITY)
+    with pytest.raises(InputError, match=r"all buildings of a city need the same draws\. Set runs to a number"):
+        compute(inventory(), Settings(city=True, runs="auto"))
+    check_draws(several, replace(CITY, verify="none"))
+
+
 # --- numbers ---
 
 
@@ -108,6 +135,12 @@ def test_a_building_has_the_same_draws_alone_and_after_others():
     again = sum_draws(*assessed(**PLACE)).falls
     assert before.tobytes() == again.tobytes()
     assert not np.array_equal(before, other)
+
+
+def test_a_place_changes_what_is_drawn_but_a_building_alone_ignores_it():
+    alone = [assessed(replace(CITY, city=False), **place)[1]["A"] for place in (PLACE, OTHER)]
+    assert alone[0].adopted == alone[1].adopted
+    assert sum_draws(*assessed(**PLACE)).falls.sum() > 0
 
 
 def test_draw_k_takes_scenario_k_and_again_from_the_first(tmp_path):

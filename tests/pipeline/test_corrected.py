@@ -1,5 +1,7 @@
 """The corrected workbook: the cells that were understood, and the results that rest on them."""
 
+import io
+import re
 import tempfile
 from functools import cache
 from pathlib import Path
@@ -9,12 +11,15 @@ import openpyxl
 import pytest
 
 from assess.pipeline.corrected import Corrected, correct_workbook
-from assess.pipeline.live_values import with_live
+from assess.pipeline.live_values import live_values, with_live
 from assess.workbook.example import example_content
 from assess.workbook.held import list_formulas
 from assess.workbook.patch import patch_workbook
+from assess.workbook.read import read_inventory
+from assess.workbook.schema import LIVE
 from assess.workbook.template import write_workbook
 from tests.recalculate import libreoffice, needs_libreoffice, stored_cells
+from tests.workbook.books import change_parts
 from tests.workbook.test_patch import changed_parts
 from tests.workbooks import address
 
@@ -63,6 +68,30 @@ def test_the_corrections_are_in_the_workbook_and_nothing_else_is(tmp_path: Path)
     assert changed_parts(path.read_bytes(), done.inventory.data or b"") == numbers
 
 
+@pytest.mark.slow
+def test_corrected_once_there_is_nothing_left_to_correct(tmp_path: Path) -> None:
+    done = correct_workbook(example(tmp_path / "book.xlsx", HABITS))
+    (tmp_path / "out.xlsx").write_bytes(done.inventory.data or b"")
+    again = correct_workbook(tmp_path / "out.xlsx")
+    assert (again.changed, again.kept) == ((), ())
+    assert again.inventory.data == done.inventory.data
+    assert again.inventory.items == done.inventory.items
+    assert again.inventory.sha256 == done.inventory.sha256
+
+
+@pytest.mark.slow
+def test_the_live_columns_store_what_they_show(tmp_path: Path) -> None:
+    done = correct_workbook(example(tmp_path / "book.xlsx", {**HABITS, "Items": {BREADTH: "30 cm", HEIGHT: "2 m"}}))
+    page = openpyxl.load_workbook(io.BytesIO(done.inventory.data or b""), data_only=True)["Items"]
+    places = {cell.value: cell.column for cell in page[1]}
+    expected = live_values(done.inventory)
+    found = [[page.cell(item.row, places[head]).value for head in LIVE[:5]] for item in done.inventory.items]
+    assert found == [row[:5] for row in expected]
+    assert page.cell(2, places["B/H"]).value == 0.15
+    assert page.cell(2, places["Class (formula)"]).value in expected[0]
+    assert page.cell(2, places["Height used [cm]"]).value is None, "computed by every program on opening"
+
+
 @needs_libreoffice
 @pytest.mark.libreoffice
 @pytest.mark.slow
@@ -80,3 +109,33 @@ def test_libreoffice_recalculates_what_rests_on_corrected_cells(tmp_path: Path) 
     }
     head = next(cell for (sheet, cell), value in shown.items() if (sheet, value) == ("Items", "B/H"))
     assert shown["Items", head.replace("1", "2")] == pytest.approx(0.15), "30 cm by 2 m"
+
+
+@pytest.mark.slow
+def test_a_formula_stays_a_formula(tmp_path: Path) -> None:
+    path = example(tmp_path / "book.xlsx", {"Items": {BREADTH: 30}})
+    sheet = f"xl/worksheets/sheet{1 + openpyxl.load_workbook(path).sheetnames.index('Items')}.xml"
+    place = BREADTH.encode()
+    cell = b'<c r="%b" t="str"><f>"30 "&amp;"cm"</f><v>30 cm</v></c>' % place
+    change_parts(path, {sheet: lambda data: re.sub(rb'<c r="%b".*?</c>' % place, cell, data, count=1)})
+    done = correct_workbook(path)
+    assert ([one.cell for one in done.kept], done.changed) == ([BREADTH], ())
+    assert done.inventory.data == path.read_bytes()
+
+
+@pytest.mark.slow
+def test_an_italian_workbook(tmp_path: Path) -> None:
+    from assess.i18n import load_catalogue, speaking
+
+    path = tmp_path / "edificio.xlsx"
+    with speaking(load_catalogue("it")):
+        write_workbook(path, with_live(example_content()))
+    (sheet,) = (name for english, name in read_inventory(path).sheets.items() if english == "Items")
+    path.write_bytes(patch_workbook(path.read_bytes(), {sheet: {BREADTH: "30 cm"}}).data)
+    done = correct_workbook(path)
+    assert [one.value for one in done.changed] == [30]
+    with speaking(load_catalogue("it")):
+        expected = live_values(done.inventory)[0]
+    page = openpyxl.load_workbook(io.BytesIO(done.inventory.data or b""), data_only=True)[sheet]
+    row = [cell.value for cell in page[2]]
+    assert set(expected) <= set(row)

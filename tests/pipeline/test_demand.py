@@ -6,13 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import assess
-from assess.model import Building, Floor, FloorRecord, Inventory
+from assess.model import AXES, Building, Floor, FloorRecord, Inventory
 from assess.motion.formats import read_records
 from assess.motion.record import treat
-from assess.pipeline.demand import build_demands
+from assess.pipeline.demand import _interpolate, build_demands
 from assess.pipeline.floor_demand import Demand
 from tests.workbooks import RECORDS
 
+G = 9.80665
 SMC = RECORDS / "0165a_u.smc"
 CORRECTED = RECORDS / "np01002p_4225a_a.smc"
 
@@ -44,12 +45,33 @@ def test_given_peaks_are_used_as_they_are_and_a_record_comes_before_them():
     assert _one(demands, "1", "Y").source == "given"
 
 
+@pytest.mark.parametrize(("scenario", "source"), [("recorded", "record"), ("given", "given"), ("as filled", "record")])
+def test_the_scenario_chooses_the_source(scenario, source):
+    floor = Floor(row=2, floor="1", pfa={"X": 3.0}, records={"X": (_record(SMC),)})
+    demands = build_demands(_inventory(floor), scenario)
+    assert _one(demands, "1", "X").source == source
+
+
 def test_one_axis_serves_both_and_says_so():
     floor = Floor(row=2, floor="1", elevation=3.0, pfa={"Y": 2.0}, pfv={"Y": 0.3})
     demands = build_demands(_inventory(floor), "as filled")
     borrowed = _one(demands, "1", "X")
     assert (borrowed.axis, borrowed.pfa, borrowed.pfv, borrowed.flags) == ("X", 2.0, 0.3, ("one_axis_only",))
     assert _one(demands, "1", "Y").flags == ()
+
+
+def test_parallel_records_all_stand():
+    floor = Floor(row=2, floor="1", records={"X": (_record(SMC), _record(CORRECTED))})
+    demands = build_demands(_inventory(floor), "as filled")
+    assert [demand.name for demand in demands["1", "X"]] == [SMC.name, CORRECTED.name]
+    assert [demand.flags for demand in demands["1", "Y"]] == [("one_axis_only",)] * 2
+
+
+def test_a_corrected_record_loses_nothing():
+    floor = Floor(row=2, floor="1", records={"X": (_record(CORRECTED),)})
+    demand = _one(build_demands(_inventory(floor), "as filled"), "1", "X")
+    assert demand.loss == pytest.approx(0, abs=1e-12)
+    assert np.array_equal(demand.motion.acceleration, demand.record.acceleration)
 
 
 @pytest.mark.parametrize(
@@ -95,6 +117,13 @@ def test_a_floor_between_two_records_is_interpolated_over_elevation(scenario):
         assert _peaks(one) == pytest.approx(low + 0.4 * (high - low))
     assert (x.label, y.is_borrowed) == ("interpolated between A and C", False)
     assert (x.drawn.target.meets, x.dispersion) == ("peaks", 0.4), "met in every draw, which scatter as records do"
+
+
+def test_the_nearest_known_floors_serve_and_the_order_of_rows_does_not_matter():
+    far = Floor(row=5, floor="D", elevation=30.0, pfa={"X": 9.0})
+    unplaced = Floor(row=6, floor="E", pfa={"X": 9.0})
+    demands = build_demands(_inventory(far, UPPER, unplaced, BETWEEN, LOWER), "as filled")
+    assert _one(demands, "B", "X").between == ("A", "C")
 
 
 def test_of_floors_at_one_height_the_worse_serves():
@@ -167,6 +196,21 @@ def test_a_given_period_changes_the_profile():
     assert assumed.pfa == pytest.approx(7.0)
 
 
+def test_by_a_code_pfv_is_pfa_times_the_beams_ratio_of_the_two():
+    ground = {"period": 1.0, "ground_pga": 2.0, "ground_pgv": 0.3}
+    by_code, by_beam = (
+        _one(build_demands(_inventory(ROOF, **ground), scenario), "R", "X") for scenario in ("ASCE 7-22", "as filled")
+    )
+    assert by_code.pfv / by_code.pfa == pytest.approx(by_beam.pfv / by_beam.pfa)
+
+
+def test_a_profile_serves_every_floor():
+    floor = Floor(row=2, floor="1", elevation=0.0, pfa={"X": 9.0}, records={"Y": (_record(SMC),)})
+    demands = build_demands(_inventory(floor, ROOF, ground_pga=2.0), "ASCE 7-16")
+    assert {one.source for ones in demands.values() for one in ones} == {"profile"}
+    assert (_one(demands, "1", "X").pfa, _one(demands, "R", "Y").pfa) == pytest.approx((2.0, 6.0))
+
+
 @pytest.mark.parametrize(
     ("z", "height", "ratio"),
     [(10.0, None, 0.25), (40.0, None, 1.0), (10.0, 50.0, 0.2), (-3.0, 50.0, 0.0), (40.0, 30.0, 1.0), (0.0, 30.0, 0.0)],
@@ -175,6 +219,29 @@ def test_height_ratio(z, height, ratio):
     """The roof is Height, else the highest floor, here 40 m; below the ground 0, above the roof 1."""
     inventory = _inventory(Floor(row=2, floor="1", elevation=z), ROOF, height=height, ground_pga=1.0)
     assert _one(build_demands(inventory, "ASCE 7-16"), "1", "X").height_ratio == pytest.approx(ratio)
+
+
+def test_a_building_of_the_ground_floor_alone():
+    inventory = _inventory(Floor(row=2, floor="G", elevation=0.0), ground_pga=2.0)
+    assert _one(build_demands(inventory, "as filled"), "G", "X").pfa == 2.0
+
+
+def test_ductility_reduces_asce_7_22_alone():
+    inventory = _inventory(ROOF, ground_pga=1.0)
+    found = [
+        _one(build_demands(inventory, scenario, ductility_reduction=1.4), "R", "X").pfa
+        for scenario in ("ASCE 7-22", "ASCE 7-16")
+    ]
+    assert found == pytest.approx([2.5, 3.0])
+
+
+def test_every_floor_that_nothing_serves_is_named():
+    floors = [Floor(row=row, floor=f"F{row}", cells={"pfa_x": f"D{row}", "elevation": f"C{row}"}) for row in (2, 3)]
+    assert build_demands(_inventory(*floors, ground_pga=1.0), "as filled")
+    with pytest.raises(assess.WorkbookError, match=r"Floors!D2: floor 'F2'(.|\n)*Floors!D3: floor 'F3'"):
+        build_demands(_inventory(*floors), "as filled")
+    with pytest.raises(assess.WorkbookError, match=r"Floors!C2: floor 'F2'(.|\n)*Floors!C3: floor 'F3'"):
+        build_demands(_inventory(*floors, ground_pga=1.0), "NTC 2018")
 
 
 @given(
@@ -196,3 +263,18 @@ def test_by_a_code_pfa_never_falls_with_height_nor_with_the_ground(heights, pga,
     assert found == sorted(found)
     assert found[0] >= pga
     assert all(high >= low for low, high in zip(found, peaks(pga * more), strict=True))
+
+
+@given(lower=st.floats(0.1, 10), upper=st.floats(0.1, 10), share=st.floats(0, 1))
+def test_an_interpolated_floor_lies_between_its_neighbours(lower, upper, share):
+    places = (0.0, 7 * share, 7.0)
+    floors = [Floor(row=row, floor=name, elevation=z) for row, (name, z) in enumerate(zip("ABC", places, strict=True))]
+
+    def record(floor, axis, pfa):
+        return (Demand(floor=floor, axis=axis, source="record", pfa=pfa, pfv=pfa / 9),)
+
+    peaks = ((floors[0], lower), (floors[2], upper))
+    known = [{axis: record(floor, axis, pfa) for axis in AXES} for floor, pfa in peaks]
+    found = _interpolate(floors[1], known)["X"][0]
+    assert min(lower, upper) - 1e-12 <= found.pfa <= max(lower, upper) + 1e-12
+    assert found.pfv == pytest.approx(found.pfa / 9)

@@ -1,8 +1,9 @@
 """What happens draw by draw in a building: its mean is what reports expect, and only joint outcomes are in it."""
 
+import numpy as np
 import pytest
 
-from assess.pipeline.draw_sums import sum_draws
+from assess.pipeline.draw_sums import count_people, sum_draws
 from assess.pipeline.run import build_results, compute
 from assess.report.counts import count
 from assess.settings import Settings
@@ -88,6 +89,11 @@ def test_routes_and_their_people_are_counted_in_each_draw(run):
     assert (sums.people_apart, sums.routes_apart, sums.people_not_known) == (0, 0, 0)
 
 
+def test_people_of_a_route_are_the_most_of_any_segment_not_their_sum(run):
+    tables = run[1].route_tables
+    assert [count_people(tables, one) for one in tables.routes] == [35, 12, 5]
+
+
 def test_without_simulation_there_are_no_draws_but_expected_numbers():
     assessment, results = assessed(Settings(verify="none"))
     sums, tables = sum_draws(assessment, results), results.route_tables
@@ -106,3 +112,16 @@ def test_a_route_with_a_piece_that_is_not_confirmed_has_no_joint_outcome():
     assert "C" in sums.joint_routes
     known = {one.route for one in results.route_tables.routes if one.state != "not known"}
     assert sums.people_not_known == sum({"A": 35, "B": 12, "C": 5}[one] for one in {"A", "B", "C"} - known)
+
+
+def test_a_number_of_draws_of_its_own_for_each_piece_gives_no_sums_by_draw():
+    sums = sum_draws(*assessed(Settings(runs="auto", seed=3)))
+    assert sums.falls is None
+    assert sums.people_expected > 0
+
+
+def test_ideal_runs_count_verdicts_without_uncertainty():
+    assessment, results = assessed(Settings(runs=RUNS, seed=3, ideal=True))
+    sums = sum_draws(assessment, results)
+    assert sums.falls.mean() == pytest.approx(count("", tuple(results)).expected, rel=1e-12)
+    assert np.array_equal(sums.falls, np.round(sums.falls))

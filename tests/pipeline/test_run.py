@@ -7,10 +7,19 @@ import pytest
 import assess
 from assess.pipeline.schedule import fix_first
 from assess.risk import RiskClass, classify
+from tests.motion.motions import MARKET
 from tests.pipeline import rows
 from tests.workbooks import RECORDS, UNVERIFIED, write
 
 PIECE = {"floor": "1", "breadth": 40, "width": 90, "height": 180}
+
+
+def test_an_axis_alone_or_the_one_of_the_larger_probability():
+    items = [{"item": "x", "axis": "X", **PIECE}, {"item": "y", "axis": "Y", **PIECE}, {"item": "both", **PIECE}]
+    results = rows.assessed(items, [{"floor": "1", "pfa_x": 0.2, "pfa_y": 0.4}])
+    assert [[one.motion.axis for one in each.cases] for each in results] == [["X"], ["Y"], ["X", "Y"]]
+    assert results["both"].governing.motion.axis == "Y"
+    assert results["both"].adopted.probability == results["both"].worst("fema_p58")
 
 
 def test_the_larger_velocity_governs_a_blank_axis_and_by_the_papers_formula_the_larger_acceleration():
@@ -29,6 +38,16 @@ def test_the_option_comes_before_the_workbook(tmp_path):
     assert assess.run(path, UNVERIFIED, class_by="best formula")["a"].adopted.method == "fema_p58"
 
 
+def test_at_equal_probability_the_larger_pfa_governs_then_x():
+    """Both PFA lie past the peak of the formula, where its value is held: the probabilities are equal."""
+    floors = [{"floor": "1", "pfa_x": 1.1, "pfa_y": 1.4}, {"floor": "2", "pfa_x": 1.2, "pfa_y": 1.2}]
+    items = [{"item": "a", **PIECE}, {"item": "b", **PIECE, "floor": "2"}]
+    results = rows.assessed(items, floors, class_by="proposed OR")
+    assert results["a"].governing.motion.axis == "Y"
+    assert results["b"].governing.motion.axis == "X"
+    assert {case.methods["proposed_or"].value for case in results["a"].cases} == {results["a"].adopted.probability}
+
+
 def test_the_worst_of_parallel_records_governs_and_all_are_kept():
     floors = [{"floor": "1", "record_x": "np01002p_4225a_a.smc; 0165a_u.smc"}]
     one = rows.assessed([{"item": "a", "axis": "X", **PIECE}], floors, RECORDS)["a"]
@@ -36,6 +55,41 @@ def test_the_worst_of_parallel_records_governs_and_all_are_kept():
     assert one.governing.motion.pfv_cm_s == max(case.motion.pfv_cm_s or 0.0 for case in one.cases)
     assert one.governing.motion.record == "np01002p_4225a_a.smc"
     assert one.governing.motion.pfa_g < max(case.motion.pfa_g for case in one.cases)
+
+
+def test_treatment_that_takes_over_two_percent_of_the_peak_is_told():
+    floors = [{"floor": "1", "record_x": "891018_1.cra-1.0210a.smc"}]
+    results = rows.assessed([{"item": "a", **PIECE}], floors, MARKET)
+    (note,) = [one for one in results.problem_rows if "treatment lowers the PFA" in one.message]
+    assert note.severity == "note"
+    assert "from the file's 0.233 g to 0.222 g (4.5%)" in note.message
+
+
+def test_an_assessment_without_items_is_empty(tmp_path):
+    inventory = assess.read_inventory(write(tmp_path / "w.xlsx"))
+    results = assess.run(replace(inventory, items=()), UNVERIFIED)
+    assert len(results) == 0
+    assert list(results) == []
+    written = assess.write_reports(results, tmp_path / "out", ("html", "xlsx", "json", "csv"))
+    assert all(path.stat().st_size for path in written.values())
+
+
+def test_flags_of_piece_and_motion_reach_the_adopted_risk():
+    floors = [{"floor": "1", "pfa_x": 0.95}]
+    items = [
+        {"item": "stocky", "floor": "1", "breadth": 150, "height": 100, "axis": "Y"},
+        {"item": "slippery", "floor": "1", "breadth": 60, "height": 120, "friction": 0.3, "axis": "X"},
+        {"item": "thin", "floor": "1", "breadth": 10, "height": 150, "axis": "X"},
+    ]
+    results = rows.assessed(items, floors, period=1.0)
+    flags = {one.item.item: set(one.adopted.flags) for one in results}
+    assert flags["stocky"] >= {"does_not_rock", "one_axis_only", "unknown_height"}
+    assert (results["stocky"].adopted.basis, results["stocky"].adopted.risk) == ("cannot rock", RiskClass.LOW)
+    assert results["stocky"].governing.methods["fema_p58"].value is None
+    assert flags["slippery"] >= {"slides", "unknown_height"}
+    assert "extrapolated" in flags["thin"]
+    by_paper = rows.assessed(items, floors, period=1.0, class_by="proposed OR")
+    assert {"thin", "held", "extrapolated"} <= set(by_paper["thin"].adopted.flags)
 
 
 def test_what_to_fix_first():

@@ -78,6 +78,24 @@ def test_floors_without_a_record_share_their_beams_and_each_is_as_alone(swung):
 
 
 @pytest.mark.slow
+def test_another_building_before_changes_nothing(swung):
+    first = chances(read({"floor": "1", "pfa_x": 0.4}))
+    beam_motions.KEPT.forget()
+    chances(read({"floor": "9", "pfa_x": 0.8}, period=1.0))
+    np.testing.assert_array_equal(chances(read({"floor": "1", "pfa_x": 0.4})), first)
+
+
+@pytest.mark.slow
+def test_t1_is_not_rounded_into_one(swung):
+    chances(read({"floor": "1", "pfa_x": 0.4}))
+    once = len(swung)
+    chances(read({"floor": "1", "pfa_x": 0.8}))
+    assert len(swung) == once
+    chances(read({"floor": "1", "pfa_x": 0.4}, period=0.5001))
+    assert len(swung) == 2 * once
+
+
+@pytest.mark.slow
 def test_a_scaled_record_has_the_motions_of_the_record(built):
     inventory = read({"floor": "1", "record_x": CHANNEL})
     for scale in (1.0, 1.3, 0.7):

@@ -1,6 +1,7 @@
 """A ShakeMap or scenarios: which floors follow them, how uncertain the motion is, and what is said of it."""
 
 import math
+import shutil
 
 import pytest
 
@@ -8,11 +9,14 @@ import assess
 from assess.motion.floor_medians import find_medians
 from assess.motion.ground_scenarios import read_scenarios
 from assess.motion.shakemap import parse_shakemap, read_shakemap
+from assess.pipeline.annual import evaluate_annual
 from assess.pipeline.demand import build_demands, find_site
 from assess.pipeline.known_ground import find_ground
+from assess.pipeline.live_values import live_values
 from assess.pipeline.run import compute
 from assess.settings import Settings
 from assess.units import GRAVITY
+from tests.hazards import write_hazard
 from tests.motion.grids import BAY, build_grid
 from tests.pipeline.rows import read
 from tests.workbooks import UNVERIFIED
@@ -41,6 +45,19 @@ def test_floors_follow_a_beam_on_the_median_of_the_map():
     assert (roof.pfa, roof.pfv) == pytest.approx((by_pga * ground.pfa, by_pgv * ground.pfv))
     assert {one.label for parallel in demands.values() for one in parallel} == {"ShakeMap, beam"}
     assert roof.flags == ("drawn_building", "shakemap")
+
+
+def test_it_comes_after_sds_and_before_shaking():
+    assert find_ground(_read(sds=1.0)).site is None
+    with_both = _read(shaking="MMI X, extreme")
+    assert find_ground(with_both).shaking is None
+    assert find_ground(with_both).pga == pytest.approx(PGA, rel=1e-3)
+    assert "Shaking is not used: a ShakeMap gives the ground motion." in _messages(with_both)
+
+
+def test_a_ground_pgv_comes_before_its_own():
+    ground = find_ground(_read(ground_pgv=10)).motion
+    assert (ground.pga, ground.pgv) == pytest.approx((PGA, 0.1), rel=1e-3)
 
 
 @pytest.mark.parametrize(("own", "expected"), [(None, 0.0), (0.0, 0.0), (0.3, 0.3)])
@@ -76,6 +93,29 @@ def test_what_is_used_is_told_with_where_its_scatter_comes_from_and_an_automatic
     assert any("AUTOMATIC: nobody had reviewed it" in one for one in _messages(automatic, "warning"))
     (text,) = (one for one in _messages(automatic) if "gives" in one)
     assert "0.605 (assumed, as the map has none at this place: the total of Boore et al. 2014" in text
+
+
+@pytest.mark.slow
+def test_annual_chances_go_by_the_pga_and_leave_its_scatter_out(tmp_path):
+    write_hazard(tmp_path)
+    shutil.copy(BAY, tmp_path)
+    inventory = _read(folder=tmp_path, hazard="hazard.csv")
+    settings = Settings(runs=25)
+    found = evaluate_annual(compute(inventory, settings), jobs=1, progress=assess.progress.SILENT)
+    assert found is not None
+    assert found.tables.ground_pga_g == pytest.approx(0.1525, rel=1e-3)
+    assert found.tables.motion_dispersion == 0
+
+
+def test_live_columns_leave_it_to_the_program():
+    """A PFV that is not typed follows from the map, too."""
+    own = FLOORS[0] | {"pfa_x": 0.4}
+    one, two = live_values(_read([own | {"pfv_x": 40}, FLOORS[1]]))
+    assert one[1] == pytest.approx(0.4), "the floor's own PFA"
+    assert "run assess" not in one
+    assert two[1:] == ["run assess"] * (len(two) - 1)
+    one, _ = live_values(_read([own, FLOORS[1]]))
+    assert one[1:] == ["run assess"] * (len(one) - 1)
 
 
 def test_the_chances_of_a_simulation_hold_the_scatter():

@@ -73,6 +73,19 @@ def test_sliding_and_walls_change_no_probability_and_no_class(plain, smooth, wal
     assert smooth.settings.slide_coefficient == 1
 
 
+@pytest.mark.parametrize("options", [{"ideal": True}, {"verify": "none"}, {"runs": "auto"}])
+def test_nor_in_other_runs(tmp_path, options):
+    settings = replace(SETTINGS, **options)
+    items = pieces("2")[2:3]
+    before = run(tmp_path, items, settings=settings)
+    after = run(tmp_path, [one | {"against_wall": "yes"} for one in items], settings=settings, friction=0.15)
+    assert without_beside(before) == without_beside(after)
+    assert [one.governing.sliding.branch for one in after] == ["slide"]
+    has_motions = options.get("verify") != "none"
+    assert {one.governing.sliding.slip_84_cm is not None for one in after} == {has_motions}
+    assert {one.governing.one_sided is not None for one in after} == {has_motions}
+
+
 def test_branch_at_the_floors_pfa_and_its_flag(smooth):
     """Shenton 1996 at 0.40 g: B/H 1/6 slides and rocks at a friction of 0.2 (mu* 0.23), B/H 1/4 and more slide."""
     found = {name: smooth[f"{name} 2"] for name in SIZES}
@@ -81,6 +94,13 @@ def test_branch_at_the_floors_pfa_and_its_flag(smooth):
     ]  # fmt: skip
     assert all("slides" in one.adopted.flags for one in found.values())
     assert [name for name, one in found.items() if "shenton_extended" in one.adopted.flags] == ["top-heavy"]
+
+
+def test_rest_and_rock_are_not_flagged(tmp_path):
+    items = pieces("2", friction=0.5)
+    found = list(run(tmp_path, items, settings=Settings(verify="none")))
+    assert [one.governing.sliding.branch for one in found] == ["rock", "rock", "rest", "rest", "rock"]
+    assert not any("slides" in one.adopted.flags for one in found)
 
 
 def test_slip_is_of_those_that_may_slide_alone(plain, smooth, tmp_path):
@@ -93,7 +113,36 @@ def test_slip_is_of_those_that_may_slide_alone(plain, smooth, tmp_path):
     assert {one.governing.sliding.slip_84_cm for one in rough} == {None}
 
 
+def test_slip_grows_with_less_friction_and_with_the_motion(tmp_path):
+    items = [
+        one | {"item": f"{at}", "friction": mu} for at, mu in enumerate((0.1, 0.2, 0.3)) for one in pieces("2")[2:3]
+    ]
+    weak, strong = (run(tmp_path, items, settings=replace(SETTINGS, scale=scale)) for scale in (1.0, 1.5))
+    for results in (weak, strong):
+        slips = [one.governing.sliding.slip_median_cm for one in results]
+        assert slips == sorted(slips, reverse=True)
+        assert slips[0] > slips[2]
+    for before, after in zip(weak, strong, strict=True):
+        assert after.governing.sliding.slip_median_cm > before.governing.sliding.slip_median_cm
+
+
+def test_slip_does_not_depend_on_other_pieces_and_needs_no_simulation(smooth, tmp_path):
+    alone = run(tmp_path, pieces("2")[3:4], friction=0.2)
+    (one,) = alone
+    assert one.governing.sliding == smooth["stocky 2"].governing.sliding
+    assert one.governing.sliding.slip_84_cm > 1
+    assert (one.governing.simulation, alone.has_simulated) == (None, False)
+
+
 # --- walls ---
+
+
+def test_the_one_sided_chance_stands_beside(plain, walled):
+    assert all(one.governing.one_sided is None for one in plain)
+    found = {one.item.item: one.governing.one_sided for one in walled}
+    assert found["stocky 2"] is None
+    assert 0 < found["slender 2"] < walled["slender 2"].adopted.probability
+    assert all(one.item.against_wall and one.item.falls_toward_deg is None for one in walled)
 
 
 def test_the_outline_of_the_room_tells_the_side(tmp_path):

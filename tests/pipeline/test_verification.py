@@ -2,6 +2,7 @@
 
 import io
 import json
+import re
 import shutil
 from pathlib import Path
 from types import SimpleNamespace
@@ -12,11 +13,14 @@ import pytest
 
 import assess
 import assess.report
+from assess.motion.spectrum import pseudo_acceleration
+from assess.pipeline.run import compute
 from assess.report.data import SCHEMA
 from assess.risk import RiskClass, classify
+from assess.settings import Settings
 from tests.cli.calling import run
 from tests.shaking import RECORDS, TIMES, write_record, write_records
-from tests.workbooks import write
+from tests.workbooks import assessed, write
 
 SAMPLES = Path(__file__).parents[2] / "samples" / "records"
 
@@ -100,6 +104,16 @@ def test_every_piece_that_rocks_is_counted_with_its_interval(done):
         assert done.items["usual"][name] == done.items["twin"][name]
 
 
+def test_ensembles_tell_how_they_meet_their_spectrum(done):
+    for floor in done.found["floors"]:
+        along_x = [one["ensemble"] for one in floor["demands"] if one["axis"] == "X"]
+        assert [one["ensemble"] for one in floor["demands"] if one["axis"] == "Y"] == [None] * len(along_x)
+        is_drawn = floor["floor"] == "given"
+        for one in along_x:
+            assert (one["motions"], one["assumed_motion"], one["bands"] is None) == (100, is_drawn, not is_drawn)
+            assert one["fit"] is None if is_drawn else 0.9 < one["fit"]["pfa_ratio"] < 1.1
+
+
 def test_where_nothing_rocks_none_of_n_overturns(done):
     """Of 100, none cannot show "low"; that it cannot rock does."""
     item = done.items["stands"]
@@ -135,6 +149,17 @@ def test_of_parallel_records_the_worst_governs_and_lowered_is_held_against_the_h
 # --- lowered, and never lowered ---
 
 
+def test_every_lowered_class_is_marked(done, results):
+    lowered = {one.item.item: one.adopted.lowered_from for one in results if one.adopted.lowered_from}
+    assert {"parallel", "usual", "twin"} <= set(lowered)
+    assert not {"falls", "stocky", "stands"} & set(lowered)
+    for one in results:
+        highest = RiskClass(max(int(classify(case.methods["proposed_or"].value)) for case in one.cases))
+        is_lower = one.adopted.risk < highest and one.adopted.can_rock and not one.adopted.is_unconfirmed
+        assert one.adopted.lowered_from == (highest if is_lower else None)
+    assert re.search(rf"; class lowered: \d+ pieces in {len(lowered)} rows; unconfirmed: ", done.stdout)
+
+
 def test_of_an_unknown_building_a_class_is_simulated_and_unconfirmed(done):
     for name in ("thin", "broad"):
         item = done.items[name]
@@ -148,6 +173,55 @@ def test_of_an_unknown_building_a_class_is_simulated_and_unconfirmed(done):
 
 
 # --- which pieces, which motions ---
+
+
+@pytest.mark.slow
+def test_high_simulates_only_what_is_high_or_doubtful_or_on_a_route(tmp_path):
+    items = [
+        {"item": "calm", "floor": "calm", "axis": "X", "breadth": 60, "height": 180},
+        {"item": "outside", "floor": "still", "axis": "X", "breadth": 90, "height": 180},
+    ]
+    path = _book(tmp_path, items, [*FLOORS, {"floor": "calm", "pfa_x": 0.12}], motion_uncertainty=0.4)
+    done = _run(tmp_path, path, "--verify", "high", "--runs", 5)
+    calm, outside = done.items["calm"], done.items["outside"]
+    assert (calm["verification"], calm["adopted"]["method"], calm["adopted"]["basis"]) == (
+        None, "proposed_or", "formula",
+    )  # fmt: skip
+    assert calm["adopted"]["probability"] == calm["methods"]["proposed_or"]["value"]
+    assert "extrapolated" in outside["methods"]["proposed_or"]["flags"]
+    assert outside["verification"]["runs"] == 5
+
+
+@pytest.mark.slow
+def test_a_borrowed_motion_has_phases_of_its_own(tmp_path):
+    write_records(tmp_path, "slow")
+    items = [{"item": "a", "floor": "1", "breadth": 30, "height": 180}]
+    settings = Settings(verify="all", runs=60)
+    results = assessed(tmp_path / "w.xlsx", items, [{"floor": "1", "record_x": "slow.csv"}], settings=settings)
+    one, other = (case.motion for case in results["a"].cases)
+    assert (one.axis, other.axis, one.pfa_g) == ("X", "Y", other.pfa_g)
+    for name in ("rotation", "example/0"):
+        assert not np.array_equal(*(results.series[f"motion/{motion.index}/{name}"] for motion in (one, other)))
+    assert "one_axis_only" in other.flags
+
+
+def test_the_spectra_of_each_floor_are_kept(inventory):
+    """Those of the examples, worked out alone; the target of a recorded floor is the record's own spectrum."""
+    for demand, joint in compute(inventory, Settings(verify="all", runs=100)).joints.items():
+        spectra = joint.spectra
+        assert (spectra is None) == (demand.motion is None)
+        if spectra is None:
+            continue
+        assert spectra.ordinates.shape == (100, spectra.periods.size)
+        for (motion, step), ordinates in zip(joint.examples, spectra.ordinates, strict=False):
+            expected = pseudo_acceleration(motion, step, spectra.periods)
+            # They are found in single precision and on fewer samples where periods are long.
+            np.testing.assert_allclose(ordinates, expected, rtol=0.01, atol=0.005 * expected.max())
+        deviation = spectra.ordinates.mean(axis=0) / spectra.target - 1
+        assert np.abs(deviation).mean() == pytest.approx(joint.fit.mean_deviation, abs=1e-5)
+        assert deviation[np.abs(deviation).argmax()] == pytest.approx(joint.fit.worst_deviation, abs=1e-5)
+        own = pseudo_acceleration(demand.motion.acceleration, demand.motion.time_step, spectra.periods)
+        np.testing.assert_allclose(spectra.target, own, rtol=0.02)
 
 
 # --- the same again ---
@@ -257,6 +331,15 @@ def test_motions_of_ones_own(tmp_path, suite, scaled):
     assert still == 0 if scaled else still > 0, "scaled to the 0.05 g of its floor, nothing rocks"
 
 
+def test_a_suite_that_cannot_be_read_ends_the_run(tmp_path, suite):
+    (suite / "bad.csv").write_text("nothing of use", encoding="utf-8")
+    path = _book(tmp_path)
+    done = run("run", str(path), "--out", str(tmp_path / "out"), "--motions", str(suite))
+    assert done.exit_code == 2
+    assert re.search(r"error .*bad\.csv", done.stderr)
+    assert not (tmp_path / "out").exists()
+
+
 @pytest.mark.parametrize(
     ("peak", "period", "more"),
     [(0.002, 1.0, []), (0.4, 0.05, ["--scale-motions"])],
@@ -289,3 +372,12 @@ def test_what_a_piece_does_along_the_other_axis_is_not_lost(tmp_path):
     assert item["axes"][0]["verification"]["record"]["overturned"] is True
     assert "fell_in_record" in item["adopted"]["flags"]
     assert item["adopted"]["class"] in ("high", "very high")
+
+
+def test_a_folder_that_cannot_be_written_is_reported_before_the_long_work(tmp_path, monkeypatch):
+    monkeypatch.setattr("assess.pipeline.run.compute", lambda *_, **__: pytest.fail("the work has begun"))
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    path = write(tmp_path / "w.xlsx")
+    done = run("run", str(path), "--out", str(tmp_path / "file" / "out"))
+    assert done.exit_code == 1
+    assert f"cannot be written to: {tmp_path / 'file'} is a file. Name another folder." in done.stderr
