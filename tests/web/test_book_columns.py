@@ -6,10 +6,10 @@ import json
 import pytest
 
 from assess.i18n import load_catalogue, speaking
-from assess.model import ANCHORED
 from assess.web.book import Book, EditsRefused
+from assess.web.columns import show
+from assess.workbook.open import UNSAVED, Percent
 from assess.workbook.read import read_inventory
-from assess.workbook.schema import LIVE, SHEETS, WORKINGS
 from assess.workbook.template import Content, write_workbook
 from tests.workbook.books import write_shared
 from tests.workbooks import FLOORS, ITEMS
@@ -25,33 +25,6 @@ def describe(book):
 
 def columns(sheet):
     return {one["field"]: one for one in sheet["columns"] if one["field"]}
-
-
-def test_every_sheet_and_column_of_the_template(tmp_path):
-    write_workbook(tmp_path / "book.xlsx", Content(ROWS), spare=3)
-    sheets = describe(Book.open_disk(tmp_path / "book.xlsx"))[1]
-    assert list(sheets) == [one.name for one in SHEETS]
-    for sheet in SHEETS:
-        found = sheets[sheet.name]
-        assert found["found"]
-        assert found["layout"] == sheet.layout
-        assert [one["field"] for one in found["columns"] if one["field"] not in ("", "class")] == [
-            one.name for one in sheet.columns
-        ]
-    items = sheets["Items"]
-    assert (items["header_row"], items["last_row"], items["frozen"]) == (1, 6, 2)
-    assert [one["label"] for one in items["columns"] if one["kind"] == "live"] != []
-    assert sum(one["kind"] == "live" for one in items["columns"]) == len(LIVE) + len(WORKINGS)
-    assert columns(items)["class"]["at"] == 1
-    breadth = columns(items)["breadth"]
-    assert (breadth["unit"], breadth["factor"], breadth["kind"], breadth["required"]) == ("cm", 0.01, "number", False)
-    assert columns(items)["floor"]["source"] == "Floors"
-    assert columns(items)["anchored"]["choices"] == list(ANCHORED)
-    assert items["rows"][0] == [2, ["A1", None, "1", "Hall", "Bookcase", None, None, 30, 80, 200]]
-    assert len(items["rows"]) == len(ITEMS)  # rows that hold formulas alone are none
-    form = sheets["Building"]
-    assert all(one["at"] == 1 and one["row"] == at for at, one in enumerate(form["columns"], 1))
-    assert form["rows"][0][1][:2] == ["Building", "Hall"]
 
 
 def test_an_italian_workbook_round_trips(tmp_path):
@@ -122,3 +95,29 @@ def test_a_date_in_a_cell(tmp_path):
     # the cells hold dates again
     assert describe(Book.open_disk(path))[1]["Items"]["rows"] == [[2, ["A1", "1", "2024-05-01"]]]
     assert read_inventory(path, strict=False).building.report_date == "2024-06-01"
+
+
+def test_an_imperial_workbook_round_trips(tmp_path):
+    floors = [{"floor": "1", "pfa_x": 0.3, "elevation": 10}]
+    items = [{"item": "A1", "floor": "1", "breadth": 16, "height": 72, "x": 3}]
+    write_workbook(tmp_path / "book.xlsx", Content({"Floors": floors, "Items": items}), "imperial", spare=3)
+    book = Book.open_disk(tmp_path / "book.xlsx")
+    found, sheets = describe(book)
+    assert found["units"] == "imperial"
+    height, x = columns(sheets["Items"])["height"], columns(sheets["Items"])["x"]
+    assert (height["unit"], height["factor"], x["unit"], x["factor"]) == ("in", 0.0254, "ft", 0.3048)
+    edits = [["Items", 2, height["at"], "2 m"], ["Items", 2, x["at"], "4"]]
+    assert [one[3] for one in book.edit(1, edits, "x")["cells"]] == [78.7402, 4]
+    book.save()
+    again = read_inventory(tmp_path / "book.xlsx", strict=False).items[0]
+    assert again.height == pytest.approx(2, rel=1e-5)
+    assert again.x == pytest.approx(4 * 0.3048)
+
+
+def test_cells_as_json_has_them():
+    for value, shown in (
+        (None, None), (UNSAVED, None), (Percent(0.25), 0.25), (datetime.datetime(2024, 5, 1), "2024-05-01"),
+        (datetime.datetime(2024, 5, 1, 12), "2024-05-01T12:00:00"), (datetime.timedelta(hours=30), "1 day, 6:00:00"),
+        (float("inf"), "inf"), (True, True), (0, 0), ("text", "text"),
+    ):  # fmt: skip
+        assert (show(value), type(show(value))) == (shown, type(shown))

@@ -164,3 +164,11 @@ def test_strange_requests_are_never_an_error_of_the_server(running, client):
         assert client.request(method, "/api/state").status == 405, method
     assert client.get("/api/live?since=%C2%B2").status == 404  # no workbook is open
     assert client.get("/api/state").status == 200
+
+
+def test_what_is_no_workbook_is_refused_with_its_problems(client):
+    for data in (b"", b"junk", b"PK\x03\x04" + b"\0" * 400):
+        reply = client.send("/api/upload", "../../a.xlsx", data)
+        assert reply.status == 422
+        assert reply.json()["problems"][0]["message"]
+    assert client.get("/api/state").json()["state"] is None

@@ -9,9 +9,11 @@ import pytest
 import assess
 from assess.bim.import_workbook import ImportedBuilding
 from assess.web import importing
+from assess.web.file_names import clean_name
 from assess.web.guard import MOST_MODEL
-from assess.web.importing import Import
-from assess.web.jobs import Slots
+from assess.web.importing import Import, find_free, name_workbook
+from assess.web.jobs import READING, Slots
+from assess.web.request_errors import RequestError
 from assess.web.sessions import HOSTED
 from assess.workbook.read import read_tables
 from tests.bim import scan_files
@@ -116,8 +118,10 @@ def test_a_cobie_file_and_a_scan_are_recognised_by_their_content(served, tmp_pat
     assert server.client.post("/api/import/open").json()["name"] == "handover-inventory.xlsx"
     office = write(tmp_path / "mine.xlsx")
     assert server.client.send("/api/upload", "mine.xlsx", office.read_bytes()).json()["name"] == "mine.xlsx"
-    found = _read(server.client, "office.ifc", scan_files.write(scan_files.office()))  # a scan, by its content
-    assert (found["state"], found["found"]["floors"]) == ("done", 1)
+    scan = scan_files.write(scan_files.office())  # by its content
+    assert _read(server.client, "office.ifc", scan)["found"]["routes"] == 0
+    found = _read(server.client, "office.ifc", scan, "&routes=draft")
+    assert (found["state"], found["found"]["floors"], found["found"]["routes"] > 0) == ("done", 1, True)
     assert server.client.post("/api/import/open").json()["name"] == "office.xlsx"
 
 
@@ -142,7 +146,7 @@ def test_what_cannot_be_read_is_said_and_not_kept_and_a_second_try_works(served,
 
 @linux
 @pytest.mark.slow
-def test_a_reading_can_be_cancelled_and_the_server_answers_meanwhile(served, tmp_path):
+def test_a_reading_ends_where_it_is_cancelled_replaced_or_the_server_ends(served, house, tmp_path):
     server = served()
     client = server.client
     assert client.request("POST", "/api/import?name=duplex.ifc", DUPLEX.read_bytes()).status == 200
@@ -155,15 +159,12 @@ def test_a_reading_can_be_cancelled_and_the_server_answers_meanwhile(served, tmp
     wait_until(lambda: _list_left(tmp_path), lambda left: left == [])
     wait_until(lambda: list_named(tmp_path / "tmp", "assess-model-"), lambda left: left == [])
     assert client.post("/api/import/open").status == 404
-    assert _read(client, "duplex.ifc", DUPLEX.read_bytes())["state"] == "done"
+    client.request("POST", "/api/import?name=large.ifc", LARGE.read_bytes())
+    reader = hold_reader(server)
+    found = _read(client, "house.ifc", house)
+    assert (found["state"], found["name"], is_gone(reader)) == ("done", "house.ifc", True)
     assert client.post("/api/import/cancel").json()["import"] is None  # what was read is dropped
-
-
-@linux
-@pytest.mark.slow
-def test_the_server_ends_while_a_model_is_read(served, tmp_path):
-    server = served()
-    server.client.request("POST", "/api/import?name=duplex.ifc", DUPLEX.read_bytes())
+    client.request("POST", "/api/import?name=duplex.ifc", DUPLEX.read_bytes())
     reader = hold_reader(server)
     assert server.stop()[::2] == (0, "Stopped.\n")
     assert is_gone(reader)
@@ -190,10 +191,17 @@ def test_one_model_is_sent_at_a_time_and_a_client_that_goes_away_leaves_nothing(
 
 
 @pytest.mark.slow
-def test_on_a_server_for_several_a_model_of_no_known_length_is_counted_as_it_is_saved(served, tmp_path):
+def test_on_a_server_for_several_a_model_is_its_users_alone_and_counted_as_it_is_saved(served, house, tmp_path):
     server = served(None, *OPTIONS)
     ann, _ = _come(server, "ann")
     (folder,) = (tmp_path / "tmp").rglob("session-*")
+    assert _read(ann, "house.ifc", house)["state"] == "done"
+    ben, _ = _come(server, "ben")
+    assert ben.get("/api/import").json()["import"] is None
+    book = ann.post("/api/import/open").json()
+    assert (book["name"], book["mode"], book["missing"]) == ("house.xlsx", "held", [])
+    assert ann.get("/api/picture?floor=Level%201").status == 200
+    assert list(server.folder.iterdir()) == []
     with (folder / "results").open("wb") as file:
         file.truncate(HOSTED.bytes - 2**20)
     part = b"x" * 2**18
@@ -212,7 +220,6 @@ def test_what_is_too_large_is_refused_however_it_is_sent(served_here, tmp_path):
         body = (part for _ in range(MOST_MODEL // 2**20 + 1))
         assert client.request("POST", "/api/import?name=a.ifc", body, headers).status == 413
         assert _list_left(tmp_path) == []
-    assert client.request("POST", "/api/upload?name=a.xlsx", b"x" * (65 * 2**20)).status == 413
     assert client.get("/api/import").json() == {"import": None, "opened": None, "most": MOST_MODEL}
 
 
@@ -249,3 +256,23 @@ def test_plans_get_names_that_no_other_file_and_no_other_plan_has(tmp_path):
     (tmp_path / "m-EG-2.svg").write_bytes(b"mine, too")
     renamed = importing._rename_files(found, tmp_path)
     assert [renamed.files[row["plan"]] for row in renamed.floors[:4]] == [*plans.values()]
+
+
+def test_without_a_place_nothing_is_kept(tmp_path):
+    slots = Slots(1, READING)
+    slots.take()
+    with pytest.raises(RequestError, match="Other building models are being read"):
+        _begin(tmp_path, slots)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_names_of_new_workbooks_and_of_models(tmp_path):
+    assert name_workbook("duplex.ifc") == "duplex.xlsx"
+    assert name_workbook("hand.over.XLSX") == "hand.over-inventory.xlsx"
+    assert name_workbook("con.ifc") == "workbook.xlsx"
+    assert find_free("a.xlsx", tmp_path) == "a.xlsx"
+    (tmp_path / "a.xlsx").touch()
+    assert find_free("a.xlsx", tmp_path) == "a-2.xlsx"
+    assert clean_name("C:\\x\\../../b\u202e<1>.ifc") == "b1.ifc"
+    assert (len(clean_name("a" * 300 + ".ifc")), clean_name("a" * 300 + ".ifc")[-5:]) == (120, "a.ifc")
+    assert clean_name("..") == ""

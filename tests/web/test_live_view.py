@@ -11,9 +11,11 @@ import pytest
 
 import assess
 from assess.i18n import load_catalogue, speaking
+from assess.pipeline.live_values import live_values
 from assess.report.counts import count
 from assess.risk import RiskClass
 from assess.web.live import LiveView
+from assess.workbook.schema import LIVE
 from assess.workbook.template import Content, write_workbook
 from tests.web.opened import MARKET, edit, hold
 from tests.workbooks import FLOORS, ITEMS, UNVERIFIED, write
@@ -187,32 +189,6 @@ def test_the_changes_make_up_the_whole(tmp_path):
 # ---------------------------------------------------------------- problems
 
 
-def test_problems_of_one_habit_are_one_with_every_cell(tmp_path):
-    items = [{"item": f"A{at}", "floor": "1", "breadth": 40, "height": 180} for at in range(12)]
-    book = hold(write(tmp_path / "w.xlsx", items=items))
-    edit(book, *(("Items", row, "quantity", f"some {row}") for row in range(3, 11)))
-    (found,) = [one for one in _answer(book)["problems"] if one["severity"] == "error"]
-    at = book.sheets["Items"].field("quantity").at
-    assert found["cells"] == [[row, at] for row in range(3, 11)]
-    assert (found["count"], found["row"], found["at"], found["sheet"]) == (8, 3, at, "Items")
-    assert found["cell"] == f"{chr(ord('A') + at)}3"
-    assert [f"'some {row}'" in message for row, (message, _) in enumerate(found["own"], 3)] == [True] * 8
-
-
-def test_problems_are_in_the_language_of_the_workbook(tmp_path):
-    path = _write(tmp_path / "w.xlsx", {"Building": [{"height": 12}]}, "it")
-    book = hold(path)
-    edit(book, ("Items", 2, "height", "alto"), ("Items", 3, "anchored", None), ("Building", 0, "height", "alto"))
-    answer = _answer(book)
-    errors = [one for one in answer["problems"] if one["severity"] == "error"]
-    height, line = [one for one in errors if "Altezza" in one["message"]]
-    height, line = sorted((height, line), key=lambda one: one["sheet"] == "Building")
-    assert (height["sheet"], line["sheet"]) == ("Items", "Building"), "sheets are named in English"
-    assert (line["row"], line["at"]) == book.sheets["Building"].place("height", 0), "a form's values are in column 1"
-    assert _by_row(answer)[2][1] == "controllare"
-    assert _by_row(answer)[5][1] == "ancorato"
-
-
 @pytest.mark.slow
 def test_sessions_of_two_languages_do_not_mix(tmp_path):
     def words(language):
@@ -224,17 +200,29 @@ def test_sessions_of_two_languages_do_not_mix(tmp_path):
         assert list(pool.map(words, ["en", "it"] * 3)) == [{"anchored"}, {"ancorato"}] * 3
 
 
-@pytest.mark.parametrize("sheet", ["Items", "Floors"])
-def test_a_workbook_without_a_sheet_is_answered(tmp_path, sheet):
+def test_a_workbook_without_a_sheet_is_answered(tmp_path):
     path = write(tmp_path / "w.xlsx")
     renamed = io.BytesIO()
     with zipfile.ZipFile(path) as old, zipfile.ZipFile(renamed, "w") as new:
         for name in old.namelist():
             data = old.read(name)
             if name == "xl/workbook.xml":
-                data = data.replace(f'name="{sheet}"'.encode(), b'name="Mine"')
+                data = data.replace(b'name="Floors"', b'name="Mine"')
             new.writestr(name, data)
     path.write_bytes(renamed.getvalue())
     answer = _answer(hold(path))
-    assert any(one["sheet"] == sheet and one["row"] is None for one in answer["problems"])
+    assert any(one["sheet"] == "Floors" and one["row"] is None for one in answer["problems"])
     assert not any(answer["items"]["class"])
+
+
+def test_live_columns_show_what_the_formulas_of_the_sheet_show(tmp_path):
+    book = hold(_write(tmp_path / "w.xlsx", {}))
+    items = _answer(book)["items"]
+    found = {one.label: items["values"][str(at)] for at, one in book.sheets["Items"].columns.items()
+             if one.live in LIVE}  # fmt: skip
+    assert len(found) == len(LIVE)
+    rows = zip(*found.values(), strict=True)
+    order = [LIVE.index(one.live) for one in book.sheets["Items"].columns.values() if one.live in LIVE]
+    for shown, expected in zip(rows, live_values(book.snapshot().inventory), strict=True):
+        for place, value in zip(order, shown, strict=True):
+            assert value == (pytest.approx(expected[place]) if isinstance(expected[place], float) else expected[place])

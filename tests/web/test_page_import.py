@@ -9,11 +9,11 @@ from playwright.sync_api import expect
 from assess.web.guard import MOST_MODEL
 from tests.bim import scan_files
 from tests.waiting import wait_until
-from tests.web.looking import THEMES, examine
+from tests.web.looking import examine
 from tests.web.model_reader import hold_reader, is_gone, linux, write_house
 from tests.web.opened import write_office
 from tests.web.sheet_page import CLASS, SheetPage
-from tests.web.test_page_phone import HEIGHT, OVER_THE_EDGE, WIDTH
+from tests.web.test_page_phone import OVER_THE_EDGE, WIDTH
 from tests.web.test_page_shell import drop
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -54,6 +54,9 @@ def test_a_dropped_model_shows_what_was_taken_and_becomes_a_workbook(page, serve
     assert rows == ["1"]
     expect(shown.get_by_role("heading", name="What to check")).to_be_visible()
     assert examine(found) == []
+    found.set_viewport_size({"width": WIDTH, "height": 844})
+    assert found.evaluate(OVER_THE_EDGE, WIDTH) == []
+    found.set_viewport_size({"width": 1280, "height": 900})
     found.reload()
     _see_list(found, "scan.json")
     shown.get_by_label("Shaking of the ground").select_option(label="MMI VIII, severe")
@@ -154,15 +157,3 @@ def test_a_model_dropped_on_an_open_workbook_becomes_another(page, served_here, 
     found.locator(".notice").get_by_role("button", name="Choose the shaking").click()
     expect(found.locator(".sheet-tabs [data-sheet=Building]")).to_have_attribute("aria-selected", "true")
     assert (tmp_path / "office.xlsx").read_bytes() == before
-
-
-def test_on_a_phone(page, served_here, house):
-    found = page(served_here(), width=WIDTH, height=HEIGHT, has_touch=True)
-    for show in (lambda: None, lambda: (_choose(found, house), _see_list(found, house.name))):
-        show()
-        for theme, rules in THEMES:
-            found.emulate_media(color_scheme=theme)
-            assert found.evaluate(OVER_THE_EDGE, WIDTH) == [], theme
-            assert examine(found, rules) == [], theme
-    found.get_by_role("button", name="Open the workbook").click()
-    expect(found.get_by_role("heading", name="house.xlsx")).to_be_visible()

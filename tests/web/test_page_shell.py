@@ -1,6 +1,7 @@
 """The frame of the page: every view opens, in both languages and themes, and nothing is lost on the way."""
 
 import gzip
+import os
 import re
 import shutil
 import signal
@@ -17,7 +18,6 @@ from tests.conftest import EXAMPLE
 from tests.web.looking import THEMES, VIEWS, examine, note_requests, show
 from tests.web.opened import write_office
 from tests.web.serving import start
-from tests.workbooks import ITEMS
 
 PAGE = Path(assess.web.__file__).with_name("page")
 MOST_BYTES = 150_000
@@ -100,25 +100,6 @@ def test_every_view_is_accessible_and_asks_no_other_server(page, served_here, ex
             assert examine(found, rules) == [], (view, theme)
     assert len(addresses) > 20
     assert [one for one in addresses if not one.startswith((server.base + "/", "data:", "blob:"))] == []
-
-
-@browsing
-def test_the_address_holds_the_tab_and_a_new_tab_shows_the_same(page, served_here, office):
-    found = page(served_here(office))
-    found.get_by_role("link", name="Simulate and report").click()
-    expect(found.locator("#view-simulate")).to_be_visible()
-    edit(found, "Items", 2, 3, "Attic")
-    expect(found.locator(STATE)).to_have_text("All changes saved in office.xlsx")
-    other = found.context.new_page()
-    other.goto(found.url)
-    found.close()
-    expect(other.locator("#view-simulate")).to_be_visible()
-    expect(other.get_by_role("link", name="Simulate and report")).to_have_attribute("aria-current", "page")
-    assert value(other, "Items", 2, 3) == "Attic"
-    other.get_by_role("button", name="Undo").click()
-    expect(other.get_by_role("button", name="Redo")).to_be_enabled()
-    assert value(other, "Items", 2, 3) == ITEMS[0].get("room")
-    expect(other.locator(".undone")).to_have_text("Undone: Items!D2")
 
 
 @browsing
@@ -332,3 +313,23 @@ def test_a_held_workbook_asks_before_it_is_left(page, served_here, office, tmp_p
     assert (path.name, load_workbook(path)["Items"].cell(2, 4).value) == ("mine.xlsx", "Attic")
     drop(found, "other.xlsx", office.read_bytes())
     expect(found.get_by_role("heading", name="other.xlsx")).to_be_visible()
+
+
+@browsing
+@pytest.mark.skipif(os.name == "nt" or not (os.getuid() or shutil.which("setpriv")), reason="needs rights that count")
+def test_a_folder_that_does_not_allow_writing_is_told_at_once(page, office):
+    office.parent.chmod(0o555)
+    rights = () if os.getuid() else ("setpriv", "--bounding-set", "-dac_override")
+    server = start(office, "--no-browser", cwd="/", before=rights)
+    try:
+        found = page(server)
+        said = found.locator(".notice").filter(has_text="The folder of office.xlsx does not allow writing")
+        expect(said).to_be_visible()
+        expect(found.locator(STATE)).to_contain_text("changes can be downloaded, not saved")
+        edit(found, "Items", 2, 3, "Attic")
+        told = found.get_by_role("alert").filter(has_text="does not allow writing")
+        expect(told.get_by_role("button", name="Download my version")).to_be_visible()
+    finally:
+        _, _, err = server.stop()
+        office.parent.chmod(0o755)
+    assert err.startswith("warning  The folder of office.xlsx does not allow writing")

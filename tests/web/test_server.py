@@ -29,7 +29,7 @@ def _read(path, at):
 
 
 @posix
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGHUP])
 @pytest.mark.slow
 def test_a_signal_ends_it_after_the_last_edit_is_saved(served, tmp_path, number):
     path = write(tmp_path / "office.xlsx")

@@ -6,8 +6,7 @@ import pytest
 
 import assess
 from assess.web import texts
-from assess.web.starting import ROOMS
-from assess.workbook.schema import USES
+from assess.web.file_names import make_safe
 
 ASKED = {
     "kind": "template", "name": "ufficio", "use": "Office", "building": "Sede", "town": "Avellino", "language": "it",
@@ -68,21 +67,6 @@ def test_a_new_workbook_replaces_no_file_and_leaves_its_folder_by_no_name(served
 
 
 @pytest.mark.slow
-def test_every_use_offers_rooms_and_types_and_the_worked_example_has_its_records(served):
-    server = served()
-    found = server.client.get("/api/start").json()
-    assert [use for use, _ in found["uses"]] == list(USES) == list(ROOMS)
-    assert all(found["rooms"][use] and len(found["types"][use]) > 5 for use in USES)
-    assert all(one["breadth"] < 3 for use in USES for one in found["types"][use])
-    book = server.client.post("/api/start", {"kind": "example"}).json()
-    assert (book["name"], book["missing"]) == ("market-street.xlsx", [])
-    inventory = assess.read_inventory(server.folder / "market-street.xlsx")
-    assert sum(one.records != {} for one in inventory.floors) >= 3
-    assert server.client.post("/api/start", {"kind": "example"}).status == 409
-    assert server.client.post("/api/start", {"kind": "example", "name": "market-street-2.xlsx"}).status == 200
-
-
-@pytest.mark.slow
 def test_every_text_of_the_page_is_found_where_its_modules_name_it(served):
     """A call of `t` or `tn` with anything but plain literals would stay English in every language."""
     called = sum(
@@ -95,3 +79,10 @@ def test_every_text_of_the_page_is_found_where_its_modules_name_it(served):
     assert (italian["decimal"], italian["group"], italian["texts"]["low"]) == (",", ".", "basso")
     many = [one for one, other, _ in found if other]
     assert all(len(italian["texts"][one]) == 2 for one in many)
+
+
+def test_names_that_were_sent_are_made_safe():
+    assert make_safe("office.xlsx") == "office.xlsx"
+    assert make_safe("../../etc/Büro 2.XLSM") == "Büro 2.XLSM"
+    assert make_safe("C:\\Users\\a\\b?.xlsx") == "b.xlsx"
+    assert {make_safe(name) for name in ("", "..", "\0", "con.xlsx", ".xlsx")} == {"workbook.xlsx"}
