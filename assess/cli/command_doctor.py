@@ -68,8 +68,16 @@ def examine() -> Iterator[Finding]:
     fonts = [path.name for path in resources.fonts().values()]
     fix = "pip install --force-reinstall assess matplotlib"
     yield Finding("fonts", len(fonts) == FONTS, ", ".join(fonts) if len(fonts) == FONTS else fix)
-    yield _examine_pdf()
-    yield _examine_cache()
+    from assess.report.pages.pdf import find_weasyprint
+
+    try:
+        yield Finding("PDF", True, f"WeasyPrint {find_weasyprint()} with its native libraries")
+    except PdfUnavailableError as error:
+        yield Finding("PDF", False, str(error))
+    folder, fault = choose_folder()  # one that others can write to is not used
+    used = f"kept in {folder}" if folder else "not kept: every run compiles anew, which takes half a minute"
+    fix = "Give the folder to yourself alone (chmod go-w), or name another one with NUMBA_CACHE_DIR"
+    yield Finding("compiled code", not fault, f"{fault}. {used}. {fix}" if fault else used)
 
 
 def list_requirements() -> list[Requirement]:
@@ -111,23 +119,3 @@ def _numbers(version: str) -> tuple[int, ...]:
     while numbers and numbers[-1] == 0:
         numbers.pop()
     return tuple(numbers)
-
-
-def _examine_pdf() -> Finding:
-    from assess.report.pages.pdf import find_weasyprint
-
-    try:
-        version = find_weasyprint()
-    except PdfUnavailableError as error:
-        return Finding("PDF", False, str(error))
-    return Finding("PDF", True, f"WeasyPrint {version} with its native libraries")
-
-
-def _examine_cache() -> Finding:
-    """Return where compiled code is kept; a folder that others can write to is not used."""
-    folder, fault = choose_folder()
-    used = f"kept in {folder}" if folder else "not kept: every run compiles anew, which takes half a minute"
-    if not fault:
-        return Finding("compiled code", True, used)
-    fix = "Give the folder to yourself alone (chmod go-w), or name another one with NUMBA_CACHE_DIR"
-    return Finding("compiled code", False, f"{fault}. {used}. {fix}")

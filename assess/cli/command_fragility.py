@@ -7,23 +7,8 @@ from typing import Annotated, Literal
 
 import typer
 
+from assess.cli import options
 from assess.cli.console import print_warnings, say, show_progress
-from assess.cli.options import (
-    AsJson,
-    Draws,
-    Jobs,
-    Scenario,
-    Seed,
-    Span,
-    Workbook,
-    check_file,
-    check_out,
-    list_of,
-    plot_of,
-    read_draw_settings,
-    read_formats,
-    write_files,
-)
 
 ORDER = 4
 EXAMPLES = (
@@ -37,13 +22,13 @@ DEFAULT, KNOWN = "csv,json", ("csv", "json", "pelicun", "nrml")
 
 
 SPANS = {
-    "pfa": Span("--levels", "g", step="0.05", most=20, examples="0.1:1.0 or 0.1:1.0:0.05"),
-    "pfv": Span("--levels", "cm/s", step="5", most=5000, examples="10:200 or 10:200:10"),
+    "pfa": options.Span("--levels", "g", step="0.05", most=20, examples="0.1:1.0 or 0.1:1.0:0.05"),
+    "pfv": options.Span("--levels", "cm/s", step="5", most=5000, examples="10:200 or 10:200:10"),
 }
 
 
 def command(
-    path: Workbook,
+    path: options.Workbook,
     by: Annotated[
         Literal["item", "type"],
         typer.Option(help="One curve for each row of Items, or for all rows of a Type (without one: of a size)."),
@@ -62,7 +47,7 @@ def command(
         typer.Option(
             help="Files to write, separated by commas: csv, json, pelicun, nrml.",
             show_default=DEFAULT,
-            autocompletion=list_of(KNOWN),
+            autocompletion=options.list_of(KNOWN),
         ),
     ] = None,
     out: Annotated[
@@ -71,15 +56,15 @@ def command(
             help="Folder of the files; with --json none are written by default.", show_default="NAME-fragility"
         ),
     ] = None,
-    runs: Draws = None,
-    seed: Seed = None,
-    scenario: Scenario = None,
+    runs: options.Draws = None,
+    seed: options.Seed = None,
+    scenario: options.Scenario = None,
     ideal: Annotated[
         bool, typer.Option("--ideal", help="Every piece exactly as filled in, whatever Piece uncertainty says.")
     ] = False,
-    jobs: Jobs = None,
-    as_json: AsJson = False,
-    plot: Annotated[Path | None, plot_of("the curves")] = None,
+    jobs: options.Jobs = None,
+    as_json: options.AsJson = False,
+    plot: Annotated[Path | None, options.plot_of("the curves")] = None,
 ) -> None:
     """Fit the chance that a piece overturns to the PFA or PFV of its floor.
 
@@ -94,7 +79,7 @@ def command(
     status 1.
     """
     span = None if levels is None else SPANS[im].read(levels)
-    settings = read_draw_settings("level", runs=runs, seed=seed, scenario=scenario, ideal=ideal)
+    settings = options.read_draw_settings("level", runs=runs, seed=seed, scenario=scenario, ideal=ideal)
     from assess.cli.curve_figures import draw_curves
     from assess.cli.fragility_output import FORMATS, Curves, say_left_out
     from assess.pipeline.piece_fragility import UNITS, find_piece_fragilities
@@ -103,11 +88,11 @@ def command(
     from assess.workbook.read import read_inventory
 
     is_written = not as_json or formats is not None or out is not None
-    wanted = list(dict.fromkeys(read_formats(formats or DEFAULT, FORMATS))) if is_written else []
+    wanted = list(dict.fromkeys(options.read_formats(formats or DEFAULT, FORMATS))) if is_written else []
     folder = out or Path(f"{path.stem}-fragility")
     if wanted:
-        check_out(folder)
-    check_file(plot, "figure")
+        options.check_out(folder)
+    options.check_file(plot, "figure")
     with show_progress() as progress:
         inventory = replace(read_inventory(path, progress=progress), routes=())  # they play no part
         assessment = compute(inventory, settings, progress=progress)
@@ -120,7 +105,7 @@ def command(
     written = [FORMATS[one](curves) for one in wanted]
     say(curves.to_json() if as_json else curves.to_text())
     files = {folder / name: data for one in written for name, data in one.files.items()}
-    write_files(files, plot, partial(draw_curves, curves), "curve")
+    options.write_files(files, plot, partial(draw_curves, curves), "curve")
     lines = [line for one in written for line in say_left_out(one)]
     for line in lines:
         say(line, err=True)

@@ -119,23 +119,23 @@ def _check_place(place: "Place", path: Path | None) -> None:
 
 def _welcome(server: "Server", place: "Place", no_browser: bool) -> None:
     """Print the address, open it in the browser, and do so again at each Enter."""
-    _show(server.issue_address(), no_browser or place.is_hosted)
+
+    def show() -> None:
+        address = server.issue_address()
+        say(address)
+        sys.stdout.flush()
+        if not (no_browser or place.is_hosted):
+            from assess.cli.opening import open_address
+
+            threading.Thread(target=open_address, args=(address,), name="assess-browser", daemon=True).start()
+
+    def repeat() -> None:
+        for _ in sys.stdin:
+            show()
+
+    show()
     if place.is_hosted:
         say(f"Behind the proxy of {', '.join(place.allowed)}. Ctrl-C or SIGTERM ends it.", err=True)
     elif sys.stdin is not None and sys.stdin.isatty():
         say("Ctrl-C here ends it; Enter opens the page again.", err=True)
-        threading.Thread(target=_repeat, args=(server, no_browser), name="assess-enter", daemon=True).start()
-
-
-def _show(address: str, no_browser: bool) -> None:
-    say(address)
-    sys.stdout.flush()
-    if not no_browser:
-        from assess.cli.opening import open_address
-
-        threading.Thread(target=open_address, args=(address,), name="assess-browser", daemon=True).start()
-
-
-def _repeat(server: "Server", no_browser: bool) -> None:
-    for _ in sys.stdin:
-        _show(server.issue_address(), no_browser)
+        threading.Thread(target=repeat, name="assess-enter", daemon=True).start()

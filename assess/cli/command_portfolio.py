@@ -7,24 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from assess.cli import options
 from assess.cli.console import InterruptedWorkError, count, print_error, say, say_written, show_progress
-from assess.cli.options import (
-    ClassBy,
-    GroundMotions,
-    Ideal,
-    Runs,
-    Scale,
-    Scenario,
-    Seed,
-    ShakeMapFile,
-    Verify,
-    fit_runs,
-    language_of,
-    list_of,
-    read_formats,
-    read_ground,
-    read_run_settings,
-)
 from assess.errors import CancelledError, InputError
 from assess.i18n import LANGUAGES, find_language
 from assess.plain_text import plain_line
@@ -60,15 +44,15 @@ def command(
         ),
     ],
     out: Annotated[Path | None, typer.Option(help="Folder of the results.", show_default="NAME-portfolio")] = None,
-    shakemap: ShakeMapFile = None,
-    ground_motions: GroundMotions = None,
-    verify: Verify = "all",
-    runs: Runs = None,
-    seed: Seed = None,
-    scenario: Scenario = None,
-    class_by: ClassBy = None,
-    scale: Scale = 1.0,
-    ideal: Ideal = False,
+    shakemap: options.ShakeMapFile = None,
+    ground_motions: options.GroundMotions = None,
+    verify: options.Verify = "all",
+    runs: options.Runs = None,
+    seed: options.Seed = None,
+    scenario: options.Scenario = None,
+    class_by: options.ClassBy = None,
+    scale: options.Scale = 1.0,
+    ideal: options.Ideal = False,
     route_risk: Annotated[
         float, typer.Option(help="Limit on the chance that an evacuation route is blocked, above 0 and below 1.")
     ] = ROUTE_RISK,
@@ -81,7 +65,7 @@ def command(
         typer.Option(
             help="Results to write, separated by commas: parquet are the tables, xlsx the ranking, html the page with "
             "a map, pdf the summary.",
-            autocompletion=list_of(FORMATS),
+            autocompletion=options.list_of(FORMATS),
         ),
     ] = ",".join(FORMATS),
     jobs: Annotated[
@@ -96,7 +80,7 @@ def command(
             show_default=False,
         ),
     ] = None,
-    language: Annotated[str, language_of("the reports")] = LANGUAGES[0],
+    language: Annotated[str, options.language_of("the reports")] = LANGUAGES[0],
     example: Annotated[
         bool,
         typer.Option(
@@ -110,11 +94,11 @@ def command(
     What is done is kept: a run that was interrupted goes on when the same command is given again. A building that
     cannot be assessed is named and skipped.
     """
-    wanted = read_formats(formats, FORMATS)
+    wanted = options.read_formats(formats, FORMATS)
     code = find_language(language)
     if scheduler is not None and jobs is not None:
         raise InputError("--jobs: the workers of --scheduler do the work; leave out one of them.")
-    settings = read_run_settings(
+    settings = options.read_run_settings(
         verify=verify, runs=runs, seed=seed, scenario=scenario, scale=scale, ideal=ideal, route_risk=route_risk,
         class_by=class_by,
     )  # fmt: skip
@@ -124,9 +108,9 @@ def command(
 
         check_extras(wanted, scheduler)
         source, shakemap, background = _prepare_example(source, folder, shakemap, ground_motions, background)
-    ground = read_ground(shakemap, ground_motions)
+    ground = options.read_ground(shakemap, ground_motions)
     if runs is None:
-        settings = fit_runs(settings, getattr(ground, "event_count", 0))
+        settings = options.fit_runs(settings, getattr(ground, "event_count", 0))
     with show_progress() as progress:
         try:
             from assess.portfolio.background import read_background
@@ -167,10 +151,10 @@ def _say_repeat(source: Path, settings: Settings, shakemap: Path | None, ground_
            for name in ("verify", "runs", "seed", "scenario", "scale", "route_risk", "class_by")
            if getattr(settings, name) != getattr(default, name)},
     }  # fmt: skip
-    options = [f"{option} {value}" for option, value in named.items() if value is not None]
-    if any("{path}" in one for one in (folder, *options)):
+    given = [f"{option} {value}" for option, value in named.items() if value is not None]
+    if any("{path}" in one for one in (folder, *given)):
         return ""
-    return " ".join([f"assess run {folder}{{path}} --city", *options, *(["--ideal"] if settings.ideal else [])])
+    return " ".join([f"assess run {folder}{{path}} --city", *given, *(["--ideal"] if settings.ideal else [])])
 
 
 def _quote(path: Path) -> str:

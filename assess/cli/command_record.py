@@ -123,7 +123,9 @@ def list_lines(document: dict[str, Any]) -> Iterator[str]:
     yield f"{document['file']}: {document['format']}, {count(len(document['channels']), 'channel')}"
     for one in document["channels"]:
         yield ""
-        yield f"  {one['name']}{_where(one)}"
+        direction = _say_direction(one["vertical"], one["azimuth_deg"], " deg")
+        where = ", ".join(filter(None, (f"channel {one['channel']}", one["location"], direction)))
+        yield f"  {one['name']} ({where})"
         known = [part for part in (one["station"], one["event"], one["start"]) if part]
         if known:
             yield f"    {'; '.join(known)}"
@@ -137,12 +139,6 @@ def list_lines(document: dict[str, Any]) -> Iterator[str]:
         yield "    5 % spectrum  T [s]  " + "".join(f"{period:>7g}" for period in spectrum["periods_s"])
         yield "                  PSA [g]" + "".join(f"{value:>7.3f}" for value in spectrum["pseudo_acceleration_g"])
         yield from (f"    note: {note}" for note in one["notes"])
-
-
-def _where(one: dict[str, Any]) -> str:
-    direction = _say_direction(one["vertical"], one["azimuth_deg"], " deg")
-    parts = [part for part in (f"channel {one['channel']}", one["location"], direction) if part]
-    return f" ({', '.join(parts)})"
 
 
 def _say_direction(vertical: bool | None, azimuth_deg: float | None, sign: str) -> str:

@@ -6,20 +6,8 @@ from typing import Annotated
 
 import typer
 
+from assess.cli import options
 from assess.cli.console import print_warnings, say, show_progress
-from assess.cli.options import (
-    AsJson,
-    Draws,
-    Jobs,
-    Scenario,
-    Seed,
-    Span,
-    Workbook,
-    check_file,
-    plot_of,
-    read_draw_settings,
-    write_files,
-)
 from assess.errors import InputError
 from assess.units import GRAVITY
 
@@ -31,23 +19,23 @@ EXAMPLES = (
     "assess routes building.xlsx --pfa 0.02:0.4:0.02",
 )
 
-PFA = Span("--pfa", "g", step="0.05", most=5, examples="0.1:1.0 or 0.1:1.0:0.05")
+PFA = options.Span("--pfa", "g", step="0.05", most=5, examples="0.1:1.0 or 0.1:1.0:0.05")
 
 
 def command(
-    path: Workbook,
+    path: options.Workbook,
     pfa: Annotated[
         str, typer.Option(metavar="LOW:HIGH[:STEP]", help="PFA on the routes' floors [g]: both ends, steps of 0.05.")
     ] = "0.1:1.0",
-    runs: Draws = None,
-    seed: Seed = None,
-    scenario: Scenario = None,
-    jobs: Jobs = None,
-    as_json: AsJson = False,
+    runs: options.Draws = None,
+    seed: options.Seed = None,
+    scenario: options.Scenario = None,
+    jobs: options.Jobs = None,
+    as_json: options.AsJson = False,
     csv: Annotated[
         Path | None, typer.Option(help="Write a table to this .csv, one line for each route and PFA.")
     ] = None,
-    plot: Annotated[Path | None, plot_of("the chances")] = None,
+    plot: Annotated[Path | None, options.plot_of("the chances")] = None,
 ) -> None:
     """Show the chance that each evacuation route is blocked.
 
@@ -64,9 +52,9 @@ def command(
     Rocking is not monotone: a piece may stand in a stronger motion and overturn in a weaker one, so a chance may fall.
     Ranges are 95 % sampling intervals, for the number of draws only.
     """
-    values, settings = PFA.read(pfa), read_draw_settings("value", runs=runs, seed=seed, scenario=scenario)
-    check_file(csv, "table", (".csv",))
-    check_file(plot, "figure")
+    values, settings = PFA.read(pfa), options.read_draw_settings("value", runs=runs, seed=seed, scenario=scenario)
+    options.check_file(csv, "table", (".csv",))
+    options.check_file(plot, "figure")
     from assess.cli.curve_figures import draw_routes
     from assess.cli.route_output import Sweep
     from assess.pipeline.route_sweep import MOST_INSERTED, find_fragility
@@ -85,4 +73,4 @@ def command(
     say(sweep.to_json() if as_json else sweep.to_text())
     print_warnings(assessment.problems)
     files = {} if csv is None else {csv: sweep.to_csv().encode("utf-8-sig")}
-    write_files(files, plot, partial(draw_routes, sweep), "route")
+    options.write_files(files, plot, partial(draw_routes, sweep), "route")

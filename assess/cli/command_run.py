@@ -6,35 +6,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from assess.cli import options
 from assess.cli.console import print_warnings, say, say_written, show_progress
 from assess.cli.opening import open_file
-from assess.cli.options import (
-    ClassBy,
-    GroundMotions,
-    Ideal,
-    Jobs,
-    Runs,
-    Scale,
-    Scenario,
-    Seed,
-    ShakeMapFile,
-    Verify,
-    Workbook,
-    check_out,
-    fit_runs,
-    language_of,
-    list_of,
-    read_formats,
-    read_ground,
-    read_run_settings,
-)
 from assess.errors import InputError
 from assess.progress import Progress
 from assess.report_formats import ALL, DEFAULT, FILES
 from assess.settings import ROUTE_RISK
 
 if TYPE_CHECKING:
-    from assess.report.report_options import ReportOptions
     from assess.results import Results
     from assess.route_results import RouteTables
 
@@ -65,11 +45,11 @@ UNCONFIRMED = "nothing is known of the building, or the motions may be too weak 
 
 
 def command(
-    path: Workbook,
+    path: options.Workbook,
     out: Annotated[Path | None, typer.Option(help="Folder of the reports.", show_default="NAME-report")] = None,
-    verify: Verify = "all",
-    runs: Runs = None,
-    seed: Seed = None,
+    verify: options.Verify = "all",
+    runs: options.Runs = None,
+    seed: options.Seed = None,
     motions: Annotated[
         Path | None,
         typer.Option(help="Folder of your own floor records, in place of generated motions.", show_default=False),
@@ -77,11 +57,11 @@ def command(
     scale_motions: Annotated[
         bool, typer.Option("--scale-motions", help="Scale the records of --motions to each floor's PFA.")
     ] = False,
-    shakemap: ShakeMapFile = None,
-    ground_motions: GroundMotions = None,
-    scenario: Scenario = None,
-    class_by: ClassBy = None,
-    scale: Scale = 1.0,
+    shakemap: options.ShakeMapFile = None,
+    ground_motions: options.GroundMotions = None,
+    scenario: options.Scenario = None,
+    class_by: options.ClassBy = None,
+    scale: options.Scale = 1.0,
     anchor: Annotated[
         str | None,
         typer.Option(
@@ -90,7 +70,7 @@ def command(
             show_default=False,
         ),
     ] = None,
-    ideal: Ideal = False,
+    ideal: options.Ideal = False,
     city: Annotated[
         bool,
         typer.Option(
@@ -117,11 +97,11 @@ def command(
         typer.Option(
             help="Files to write, comma-separated: pdf is the report for the client; also annex, its details, docx, "
             "the report in Word, npz, the result of every motion, parquet, the items typed; or all.",
-            autocompletion=list_of((*FILES, ALL)),
+            autocompletion=options.list_of((*FILES, ALL)),
         ),
     ] = ",".join(DEFAULT),
-    jobs: Jobs = None,
-    language: Annotated[str | None, language_of("the reports", "the workbook's")] = None,
+    jobs: options.Jobs = None,
+    language: Annotated[str | None, options.language_of("the reports", "the workbook's")] = None,
     templates: Annotated[
         Path | None,
         typer.Option(
@@ -146,21 +126,29 @@ def command(
         )
     if scale_motions and motions is None:
         raise InputError("--scale-motions: there are no motions to scale; name their folder with --motions")
-    settings = read_run_settings(
+    settings = options.read_run_settings(
         verify=verify, runs=runs, seed=seed, scenario=scenario, scale=scale, ideal=ideal, scale_motions=scale_motions,
         route_risk=route_risk, anchor=anchor, city=city, class_by=class_by,
     )  # fmt: skip
-    check_out(folder, wanted)
-    options = _read_options(language, templates, accessible)
+    options.check_out(folder, wanted)
+    from assess.i18n import find_language
+    from assess.report import write_reports
+    from assess.report.report_options import ReportOptions
+
+    code = find_language(language) if language else ""
+    style = ReportOptions(language=code, templates=templates, accessible=accessible)
+    if templates is not None:
+        from assess.report.templates import check_templates
+
+        check_templates(style)
     with show_progress() as progress:
         from assess.pipeline.run import run
-        from assess.report import write_reports
         from assess.workbook.read import read_inventory
 
-        ground = read_ground(shakemap, ground_motions)
+        ground = options.read_ground(shakemap, ground_motions)
         inventory = read_inventory(path, ground=ground, progress=progress)
         if not (runs or motions or inventory.site_ground is None):
-            settings = fit_runs(settings, len(inventory.site_ground.scenarios))
+            settings = options.fit_runs(settings, len(inventory.site_ground.scenarios))
         own, figures = _read_methods(methods or (), motions, progress), not set(wanted) <= PLAIN
         results = run(inventory, settings, **own, jobs=jobs, figures=figures, progress=progress)
         print_warnings(results.problem_rows)
@@ -168,7 +156,7 @@ def command(
             from assess.report.pages.pdf import list_problems
 
             print_warnings(list_problems(results))
-        written = write_reports(results, folder, wanted, options, progress=progress)
+        written = write_reports(results, folder, wanted, style, progress=progress)
     for line in describe_result(results):
         say(line)
     say_written(written.values(), written.removed)
@@ -198,28 +186,13 @@ def _read_methods(models: Sequence[Path], motions: Path | None, progress: Progre
 def _read_formats(formats: str, verify: str, open_report: bool) -> list[str]:
     from assess.report import list_formats
 
-    named = read_formats(formats, (*FILES, ALL))
+    named = options.read_formats(formats, (*FILES, ALL))
     wanted = [one for one in list_formats(named) if one != "npz" or verify != "none" or "npz" in named]
     if "npz" in named and verify == "none":
         raise InputError("--formats: npz holds results of the simulation: leave out npz or --verify none.")
     if open_report and not set(wanted) & set(OPENED):
         raise InputError(f"--open opens a report: write one of {', '.join(OPENED)} with --formats.")
     return wanted
-
-
-def _read_options(language: str | None, templates: Path | None, accessible: bool) -> "ReportOptions":
-    """Return how the reports are written; errors in these options are found before the work."""
-    from assess.i18n import find_language
-    from assess.report.report_options import ReportOptions
-
-    options = ReportOptions(
-        language=find_language(language) if language else "", templates=templates, accessible=accessible
-    )
-    if templates is not None:
-        from assess.report.templates import check_templates
-
-        check_templates(options)
-    return options
 
 
 # ---------------------------------------------------------------- what is printed at the end

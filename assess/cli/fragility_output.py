@@ -193,17 +193,18 @@ class Curves:
 
     def to_text(self) -> str:
         """Return what a person reads."""
-        return "\n".join(self._lines())
+        return "\n".join(self._list_lines())
 
-    def _lines(self) -> Iterator[str]:
+    def _list_lines(self) -> Iterator[str]:
         found = self.found
         yield f"{say_run(self.assessment, found.runs, found.seed)}; against the floor's {self.measure}"
         yield ""
-        rows = [self._cells(one) for one in found.curves[:MOST_LINES]]
-        yield from _align(
-            [found.by, "pieces", "floors", "B/H", f"median [{LABELS[found.im]}]", "beta", "misfit", "PFV/PFA [s]", ""],
-            rows,
-        )
+        heads = [found.by, "pieces", "floors", "B/H", f"median [{LABELS[found.im]}]", "beta", "misfit", "PFV/PFA [s]"]
+        rows = [[*heads, ""], *(self._cells(one) for one in found.curves[:MOST_LINES])]
+        wide = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        for first, *middle, last in rows:  # the first and the last to the left, the others to the right
+            numbers = (f"{text:>{width}}" for text, width in zip(middle, wide[1:-1], strict=True))
+            yield "  ".join([f"{first:<{wide[0]}}", *numbers, last]).rstrip()
         if len(found.curves) > MOST_LINES:
             yield f"... and {len(found.curves) - MOST_LINES:,} more, which files and --json hold."
         for paragraph in (*self.cautions(), *self.say()):
@@ -225,11 +226,8 @@ class Curves:
 
 
 def _write_csv(curves: Curves) -> Exchange:
-    files = {
-        "fragility.csv": curves.to_csv().encode("utf-8-sig"),
-        "fragility_table.csv": curves.to_table().encode("utf-8-sig"),
-    }
-    return Exchange(files, ())
+    tables = {"fragility.csv": curves.to_csv(), "fragility_table.csv": curves.to_table()}
+    return Exchange({name: text.encode("utf-8-sig") for name, text in tables.items()}, ())
 
 
 FORMATS: Mapping[str, Callable[[Curves], Exchange]] = {
@@ -282,11 +280,3 @@ def _describe_motions(one: FloorMotions) -> dict[str, Any]:
 def _spread(values: Sequence[float]) -> str:
     low, high = f"{min(values):.2f}", f"{max(values):.2f}"
     return low if low == high else f"{low}-{high}"
-
-
-def _align(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[str]:
-    """Yield lines of columns: the first and the last to the left, the others to the right."""
-    wide = [max(len(row[at]) for row in (heads, *rows)) for at in range(len(heads))]
-    for row in (heads, *rows):
-        middle = (f"{text:>{width}}" for text, width in zip(row[1:-1], wide[1:-1], strict=True))
-        yield "  ".join([f"{row[0]:<{wide[0]}}", *middle, row[-1]]).rstrip()

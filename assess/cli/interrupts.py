@@ -101,7 +101,8 @@ def cancel_by_signal(cancel: threading.Event) -> Iterator[None]:
 
     def stop(number: int, _frame: object = None) -> None:
         _heard.append(number)
-        if _is_moving():
+        traces = sys.modules.get("assess.delivery.traces")
+        if traces is not None and traces.is_moving():
             return
         if cancel.is_set():
             raise KeyboardInterrupt
@@ -120,11 +121,6 @@ def cancel_by_signal(cancel: threading.Event) -> Iterator[None]:
             signal.signal(number, before[number])
         done.set()
         signalled.set()
-
-
-def _is_moving() -> bool:
-    traces = sys.modules.get("assess.delivery.traces")
-    return traces is not None and bool(traces.is_moving())
 
 
 def _insist(signalled: threading.Event, done: threading.Event) -> None:

@@ -6,9 +6,9 @@ import json
 import math
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, astuple, dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 from assess.cli.console import count
 from assess.pipeline.assessment import Assessment
@@ -63,21 +63,11 @@ NOTES = (
 
 @dataclass(frozen=True, eq=False)
 class Verdict:
-    """What a sweep comes to, at the values of PFA that were evaluated.
+    """What a sweep comes to, at the values of PFA that were evaluated; a value is None where there is none [g].
 
-    Parameters
-    ----------
-    evaluated, not_evaluated : list of RouteFragility
-        The routes that can be judged: all their segments are evaluated, or those that are reach the limit; the others.
-    below_up_to_g, reached_at_g : float, optional
-        The last value up to which the chances of all routes are below the limit, and the next one [g]; None where it
-        is none.
-    first : list of RouteFragility
-        The routes whose chance is not below the limit there, the largest chance first.
-    anchored_at_g, anchored : float, optional, and list of RouteFragility
-        The same if anchors fail, where that is at a smaller value [g].
-    reaching : int
-        Routes whose chance is not below the limit at any value.
+    A route can be judged if all its segments are evaluated, or those that are reach the limit. The chances of all these
+    are below the limit up to `below_up_to_g`; at `reached_at_g` that of `first` is not, the largest chance first. If
+    anchors fail this may be at a smaller value. `reaching` counts the routes that reach the limit at any value.
     """
 
     fragility: Fragility
@@ -120,9 +110,9 @@ class Verdict:
 
     def say(self) -> str:
         """Return it in a sentence or two, with what decides how far it can be relied on."""
-        return " ".join(self._sentences())
+        return " ".join(self._list_sentences())
 
-    def _sentences(self) -> Iterator[str]:
+    def _list_sentences(self) -> Iterator[str]:
         level = f"{100 * self.fragility.limit:g} %"
         if self.evaluated:
             yield from self._say_reached(level)
@@ -200,17 +190,16 @@ def judge(fragility: Fragility, pfa_g: Sequence[float]) -> Verdict:
 
 def _blame(route: RouteFragility) -> str:
     """Return the pieces that cause it; fixing none would help a route that is blocked with nothing fallen."""
-    if not route.causes:
-        return "blocked with nothing fallen"
-    return f"because of {_name([one.item for one in route.causes], VERDICT_PIECES)}"
-
-
-def _quote(name: str) -> str:
-    return repr(words.cut(name, LONGEST))
+    named = _name([one.item for one in route.causes], VERDICT_PIECES)
+    return f"because of {named}" if route.causes else "blocked with nothing fallen"
 
 
 def _name(names: Sequence[str], most: int) -> str:
     return words.name_first([_quote(name) for name in names], most)
+
+
+def _quote(name: str) -> str:
+    return repr(words.cut(name, LONGEST))
 
 
 def _name_part(route: RouteFragility) -> str:
@@ -293,42 +282,43 @@ class Sweep:
     def _describe(self, one: RouteFragility) -> dict[str, Any]:
         anchored = one.if_anchors_fail or (None,) * len(one.blocked)
         pairs = zip(self.pfa_g, one.blocked, anchored, self._inserted, strict=True)
-        peaks = one.scenario_pfa
         return {
             "route": one.route,
             "floors": list(one.floors),
-            "scenario_pfa_g": None if peaks is None else [_in_g(peak) for peak in peaks],
+            "scenario_pfa_g": one.scenario_pfa and [_in_g(peak) for peak in one.scenario_pfa],
             "evaluated": one.is_evaluated,
             "unevaluated_segments": list(one.unevaluated),
             "doubtful_pieces": one.doubtful,
             "causes": _list_causes(one),
             "chances": [
-                {"pfa_g": pfa, "inserted": inserted, **_chance(chance, fails)}
+                {"pfa_g": pfa, "inserted": inserted, **_describe_chance(chance, fails)}
                 for pfa, chance, fails, inserted in pairs
                 if one.is_evaluated
             ],
-            "passes": [self._pass(one.blocked, level) for level in LEVELS if one.is_evaluated],
-            "passes_if_anchors_fail": one.if_anchors_fail
-            and [self._pass(one.if_anchors_fail, level) for level in LEVELS],
+            "passes": self._describe_passing(one.blocked) if one.is_evaluated else [],
+            "passes_if_anchors_fail": one.if_anchors_fail and self._describe_passing(one.if_anchors_fail),
         }
 
     @property
     def _inserted(self) -> list[bool]:
         return [value in self.fragility.inserted for value in self.fragility.values]
 
-    def _pass(self, chances: Sequence[Chance], level: float) -> dict[str, Any]:
-        found = self._passing(chances, level)
+    def _describe_passing(self, chances: Sequence[Chance]) -> list[dict[str, Any]]:
         sides = {-math.inf: "below", math.inf: "above"}
-        return {
-            "chance": level,
-            "where": sides.get(found.low, "between"),
-            "pfa_g": None if found.is_jump else finite(found.low),
-            "between_g": [found.low, found.high] if found.is_jump else None,
-            "earliest_g": finite(found.earliest),
-            "latest_g": finite(found.latest),
-        }
+        return [
+            {
+                "chance": level,
+                "where": sides.get(found.low, "between"),
+                "pfa_g": None if found.is_jump else finite(found.low),
+                "between_g": [found.low, found.high] if found.is_jump else None,
+                "earliest_g": finite(found.earliest),
+                "latest_g": finite(found.latest),
+            }
+            for level in LEVELS
+            for found in (self._find_passing(chances, level),)
+        ]
 
-    def _passing(self, chances: Sequence[Chance], level: float) -> "_Passing":
+    def _find_passing(self, chances: Sequence[Chance], level: float) -> "_Passing":
         ways = [[getattr(chance, end) for chance in chances] for end in ("probability", "high", "low")]
         (low, high), first, last = (find_passing(self.pfa_g, way, level) for way in ways)
         return _Passing(low, high, min(low, first[0]), max(high, last[1]))
@@ -342,10 +332,9 @@ class Sweep:
         rows: list[dict[str, Any]] = []
         for one in self.describe()["routes"]:
             own = {"route": one["route"], "floors": one["floors"]}
-            rows += [at | own for at in one["chances"]] if one["evaluated"] else [own]
-        for row in rows:
-            fails = row.get("if_anchors_fail")
-            row["if_anchors_fail"] = fails and fails["blocked"]
+            for at in one["chances"] if one["evaluated"] else ({},):
+                fails = at.get("if_anchors_fail")
+                rows.append(own | at | {"if_anchors_fail": fails and fails["blocked"]})
         return write_rows([{name: row.get(name) for name in HEADS} for row in rows])
 
     def to_text(self) -> str:
@@ -371,7 +360,7 @@ class Sweep:
         if self.fragility.inserted:
             yield inserted
         every = [way for one in self.fragility.routes for way in (one.blocked, one.if_anchors_fail) if way]
-        passed = [self._passing(way, level) for way in every for level in LEVELS]
+        passed = (self._find_passing(way, level) for way in every for level in LEVELS)
         if any(one.is_jump and one.high - one.low >= FINEST * one.high for one in passed):
             yield finer
         yield always
@@ -406,18 +395,24 @@ class Sweep:
             yield f"  if anchors fail, {self._describe_levels(one.if_anchors_fail)}"
 
     def _describe_levels(self, chances: Sequence[Chance]) -> str:
-        return "; ".join(self._describe_level(chances, level) for level in LEVELS)
+        texts = []
+        for level in LEVELS:
+            found = self._find_passing(chances, level)
+            low, high, first, last = (self._format_pfa(one) for one in found)
+            spread = "" if first == last or (first, last) == (low, high) else f" ({first} to {last})"
+            at = f"between {low} and {high}" if found.is_jump else f"at {low}" if math.isfinite(found.low) else low
+            texts.append(f"{100 * level:g} % {at} g{spread}")
+        return "; ".join(texts)
 
-    def _describe_level(self, chances: Sequence[Chance], level: float) -> str:
-        found = self._passing(chances, level)
-        low, high, first, last = (_format_pfa(one, self.pfa_g) for one in astuple(found))
-        spread = "" if first == last or (first, last) == (low, high) else f" ({first} to {last})"
-        at = f"between {low} and {high}" if found.is_jump else f"at {low}" if math.isfinite(found.low) else low
-        return f"{100 * level:g} % {at} g{spread}"
+    def _format_pfa(self, value: float) -> str:
+        """Return a PFA [g], or on which side of the values it lies; one of the values as it was typed."""
+        values = self.pfa_g
+        if math.isfinite(value):
+            return f"{value:.4g}" if value in values else f"{value:.2f}"
+        return f"below {values[0]:g}" if value < 0 else f"above {values[-1]:g}"
 
 
-@dataclass(frozen=True, slots=True)
-class _Passing:
+class _Passing(NamedTuple):
     """Between which PFA a chance reaches a level, and the earliest and latest by the ends of its range [g]."""
 
     low: float
@@ -437,24 +432,18 @@ def _list_causes(one: RouteFragility) -> list[dict[str, Any]]:
 def _describe_pieces(one: RouteFragility) -> str:
     if not one.is_evaluated:
         return "not evaluated: the workbook places no furniture there"
-    if not one.unevaluated:
-        return _describe_known(one)
-    named = _name(one.unevaluated, MOST_CAUSES)
-    return f"{_describe_known(one)}; without segments that are not evaluated: {named}"
-
-
-def _describe_known(one: RouteFragility) -> str:
     first = one.blocked[0]
     if first.pieces:
         doubtful = f"; at least, as the motions of {count(one.doubtful, 'piece')} may be too weak"
-        return f"{count(first.pieces, 'piece')}; {say_basis(first)}{doubtful if one.doubtful else ''}"
-    if first.probability > 0:
-        return "blocked before any shaking"
-    return (
-        "0 %: no piece can obstruct it"
-        if one.if_anchors_fail is None
-        else "0 % if the anchors hold: no other piece can obstruct it"
-    )
+        known = f"{count(first.pieces, 'piece')}; {say_basis(first)}{doubtful if one.doubtful else ''}"
+    elif first.probability > 0:
+        known = "blocked before any shaking"
+    elif one.if_anchors_fail is None:
+        known = "0 %: no piece can obstruct it"
+    else:
+        known = "0 % if the anchors hold: no other piece can obstruct it"
+    named = _name(one.unevaluated, MOST_CAUSES)
+    return f"{known}; without segments that are not evaluated: {named}" if one.unevaluated else known
 
 
 # ---------------------------------------------------------------- what `assess fragility` has as well
@@ -504,21 +493,6 @@ def name_floors(floors: Sequence[str]) -> str:
     return f"{'floor' if len(floors) == 1 else 'floors'} {named}"
 
 
-def _format_pfa(value: float, values: Sequence[float]) -> str:
-    """Return a PFA [g], or on which side of the values it lies; one of the values as it was typed."""
-    if math.isfinite(value):
-        return f"{value:.4g}" if value in values else f"{value:.2f}"
-    return f"below {values[0]:g}" if value < 0 else f"above {values[-1]:g}"
-
-
-def finite(value: float) -> float | None:
-    """Return a number, None for what is not finite."""
-    return value if math.isfinite(value) else None
-
-
-# ---------------------------------------------------------------- lines
-
-
 def _grid(rows: dict[str, list[str]]) -> Iterator[str]:
     wide = 1 + max(len(text) for row in rows.values() for text in row)
     for start in range(0, len(rows["PFA [g]"]), A_LINE):
@@ -526,11 +500,16 @@ def _grid(rows: dict[str, list[str]]) -> Iterator[str]:
             yield f"  {label:<16}" + "".join(f"{text:>{wide}}" for text in row[start : start + A_LINE])
 
 
-def _chance(chance: Chance, fails: Chance | None) -> dict[str, Any]:
+def _describe_chance(chance: Chance, fails: Chance | None) -> dict[str, Any]:
     own = ("low", "high", "joint", "independent", "correlated", "is_joint", "pieces", "unverified", "runs")
     found = {"blocked": chance.probability, **{name: getattr(chance, name) for name in own}}
-    return found | {"if_anchors_fail": None if fails is None else _chance(fails, None)}
+    return found | {"if_anchors_fail": None if fails is None else _describe_chance(fails, None)}
 
 
 def _in_g(value: float) -> float:
     return round(value / GRAVITY, 12)
+
+
+def finite(value: float) -> float | None:
+    """Return a number, None for what is not finite."""
+    return value if math.isfinite(value) else None

@@ -68,7 +68,12 @@ CALLS: dict[str, list[tuple[Any, ...]]] = {
         ("fragility", "routed.xlsx", "--levels", "20:200:60", "--im", "pfv", "--ideal", *SMALL),
     ],
     "check": [("check", f"{name}.xlsx") for name in ("unshaken", "unfurnished", "assumed", "not-placed", "routed")]
-    + [("check", "typed.xlsx", "--fix", "corrected.xlsx")],
+    + [("check", "typed.xlsx", "--fix", "corrected.xlsx", *forced) for forced in ((), ("--force",))]
+    + [("check", "before.xlsx", "--fix", "unchanged.xlsx")],
+    "new": [
+        ("new", "a b.xlsx"), ("new", "a b.xlsx", "--force"), ("new", "c.xlsx", "--example", "--units", "imperial"),
+        ("new", "clinica.xlsx", "--for", "hospital", "--language", "it"), ("check", "clinica.xlsx"),
+    ],
     "compare": [
         ("run", "before.xlsx", "--verify", "none", "--formats", "json", "--out", "before"),
         ("run", "before.xlsx", "--verify", "none", "--formats", "json", "--scale", 1.5, "--anchor", "A1,A3",
