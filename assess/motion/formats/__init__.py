@@ -2,6 +2,7 @@
 
 import importlib
 import pkgutil
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -103,18 +104,15 @@ def parse_records(data: bytes, name: str, *, progress: Progress = SILENT) -> tup
             return settle_directions(rename_duplicates(read_archive(data, name, _read_member, progress)))
         found = _find_format(data[:HEAD])
         if found is None:
-            raise _unsupported(data)
+            why = next((reason for start, reason in _FOREIGN.items() if data.startswith(start)), _PLAIN_CSV)
+            raise RecordError.about(
+                "the file format is not supported (supported: {known}; also in zip archives). {why}",
+                known=", ".join(candidate.title for candidate in all_formats()),
+                why=why,
+            )
         return settle_directions(rename_duplicates(found.read(data, name)))
     except RecordError as error:
         raise RecordError(join(": ", (name, error.message))) from error
-
-
-def _unsupported(data: bytes) -> RecordError:
-    why = next((reason for start, reason in _FOREIGN.items() if data.startswith(start)), _PLAIN_CSV)
-    known = ", ".join(candidate.title for candidate in all_formats())
-    return RecordError.about(
-        "the file format is not supported (supported: {known}; also in zip archives). {why}", known=known, why=why
-    )
 
 
 def _read_member(data: bytes, file: str) -> tuple[Record, ...]:
@@ -163,14 +161,8 @@ def read_channel(name: str, baseline: Baseline = "standard") -> Channel:
 
 def _split(name: str) -> tuple[Path, str | None]:
     """Return the file and the channel that a name means: a file may have a # in its own name."""
-    if "#" not in name or _is_there(Path(name)):
-        return Path(name), None
-    file, _, channel = name.partition("#")
+    file, hash_sign, channel = name.partition("#")
+    with suppress(OSError):  # a name that is too long
+        if not hash_sign or Path(name).exists():
+            return Path(name), None
     return Path(file), channel
-
-
-def _is_there(path: Path) -> bool:
-    try:
-        return path.exists()
-    except OSError:  # a name that is too long
-        return False

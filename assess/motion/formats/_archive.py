@@ -35,34 +35,19 @@ _OFFICE = ("[Content_Types].xml", "META-INF/manifest.xml")
 ReadMember = Callable[[bytes, str], tuple[Record, ...]]
 
 
-@dataclass(slots=True)
-class _Found:
-    """What has been found so far, and how much was unpacked for that [bytes]."""
-
-    records: list[Record] = field(default_factory=list)
-    reasons: list[Text] = field(default_factory=list)
-    unpacked: int = 0
-    members: int = 0
-    values: int = 0
-
-
 def is_archive(head: bytes) -> bool:
     """Return whether a file that starts with `head` is a zip archive (or a workbook, which is one, too)."""
     return head.startswith(_STARTS)
 
 
 def read_archive(data: bytes, file: str, read: ReadMember, progress: Progress = SILENT) -> tuple[Record, ...]:
-    """Read every channel of every member that `read` can read, inner archives included.
+    """Read every channel of every member that `read` can read from its bytes and name, inner archives included.
 
-    * `data`: the archive.
-    * `file`: its name; that of a member's record is ``file/inner.zip/folder/member``.
-    * `read`: reads the bytes of one member, given its name.
-    * `progress`: asked before each member whether to stop.
-
-    Raises RecordError if nothing in it can be read, it is locked, or it unpacks to more than a set of records can have.
+    The name of a member's record is ``file/inner.zip/folder/member``. Raises RecordError if nothing in it can be read,
+    it is locked, or it unpacks to more than a set of records can have.
     """
-    found = _Found()
-    _read_members(data, file, read, found, progress, depth=1)
+    found = _Walk(read, progress)
+    found.enter(data, file, depth=1)
     listed, more = join("; ", found.reasons[:LISTED]), len(found.reasons) - LISTED
     if found.records and not found.reasons:
         return tuple(found.records)
@@ -81,102 +66,104 @@ class _BombError(RecordError):
     """About an archive of which nothing further is read."""
 
 
-def _read_members(data: bytes, file: str, read: ReadMember, found: _Found, progress: Progress, depth: int) -> None:
-    if depth > DEEPEST:
-        raise RecordError.about("the zip archives are nested more than {most} deep: unpack them", most=DEEPEST)
-    with _open(data) as archive:
-        for member in _list_members(archive, found):
-            progress.check()
-            name = clean_name(member)
-            try:
-                content, place = _unpack(archive, member, found), f"{file}/{name}"
-                if is_archive(content):
-                    _read_members(content, place, read, found, progress, depth + 1)
-                else:
-                    _keep(read(content, name), place, found)
-            except _BombError:
-                raise
-            except RecordError as error:
-                found.reasons.append(fill("{member}: {why:.160}", member=name, why=error.message))
-
-
-def _keep(records: Iterable[Record], place: str, found: _Found) -> None:
-    for record in records:
-        found.records.append(replace(record, file=place))
-        found.values += record.acceleration.size
-    if found.values > MOST_VALUES:
-        raise _BombError(too_many_values().message)
-
-
 def clean_name(member: zipfile.ZipInfo) -> str:
     """Return how a member is called: its path with signs that cannot be printed exchanged; never empty."""
     name = "".join(sign if sign.isprintable() else "\N{REPLACEMENT CHARACTER}" for sign in member.filename)
     return name.replace("\\", "/")[:LONGEST_NAME] or fill("member without a name")
 
 
-def _open(data: bytes) -> zipfile.ZipFile:
-    # Counted before the directory is read: each of its entries takes a hundred times its bytes in memory.
-    if data.count(_ENTRY) > MOST_MEMBERS:
-        raise _too_many()
-    try:
-        return zipfile.ZipFile(io.BytesIO(data))
-    except Exception as error:  # what zipfile raises of damaged archives is any of ten kinds
-        raise RecordError.about("the zip archive is damaged: its directory cannot be read. Get it again") from error
+@dataclass(slots=True)
+class _Walk:
+    """Goes through an archive; what it has found so far, and how much was unpacked for that [bytes]."""
 
+    read: ReadMember
+    progress: Progress
+    records: list[Record] = field(default_factory=list)
+    reasons: list[Text] = field(default_factory=list)
+    unpacked: int = 0
+    members: int = 0
+    values: int = 0
 
-def _too_many() -> _BombError:
-    return _BombError.about("the zip archive has more than {most:,} members: unpack it", most=MOST_MEMBERS)
+    def enter(self, data: bytes, file: str, depth: int) -> None:
+        if depth > DEEPEST:
+            raise RecordError.about("the zip archives are nested more than {most} deep: unpack them", most=DEEPEST)
+        self._count(data.count(_ENTRY))  # before the directory is read: an entry takes a hundred times its bytes then
+        try:
+            archive = zipfile.ZipFile(io.BytesIO(data))
+        except Exception as error:  # what zipfile raises of damaged archives is any of ten kinds
+            raise RecordError.about("the zip archive is damaged: its directory cannot be read. Get it again") from error
+        with archive:
+            for member in self._list_members(archive):
+                self.progress.check()
+                name = clean_name(member)
+                try:
+                    content, place = self._unpack(archive, member), f"{file}/{name}"
+                    if is_archive(content):
+                        self.enter(content, place, depth + 1)
+                    else:
+                        self._keep(self.read(content, name), place)
+                except _BombError:
+                    raise
+                except RecordError as error:
+                    self.reasons.append(fill("{member}: {why:.160}", member=name, why=error.message))
 
+    def _count(self, members: int) -> None:
+        if members > MOST_MEMBERS:
+            raise _BombError.about("the zip archive has more than {most:,} members: unpack it", most=MOST_MEMBERS)
 
-def _list_members(archive: zipfile.ZipFile, found: _Found) -> list[zipfile.ZipInfo]:
-    # Python 3.11's is_dir() fails where the name is empty.
-    members = [member for member in archive.infolist() if not member.filename.endswith("/")]
-    found.members += len(members)
-    if found.members > MOST_MEMBERS:
-        raise _too_many()
-    if any(member.filename in _OFFICE for member in members):
-        raise RecordError.about("the file is a workbook or another office file, not a record: save the sheet as CSV")
-    locked = next((clean_name(member) for member in members if member.flag_bits & _LOCKED), None)
-    if locked is not None:
-        raise _BombError.about(
-            "{member} is locked with a password: unpack the archive, and name the file of the channel", member=locked
-        )
-    return members
+    def _keep(self, records: Iterable[Record], place: str) -> None:
+        for record in records:
+            self.records.append(replace(record, file=place))
+            self.values += record.acceleration.size
+        if self.values > MOST_VALUES:
+            raise _BombError(too_many_values().message)
 
+    def _list_members(self, archive: zipfile.ZipFile) -> list[zipfile.ZipInfo]:
+        # Python 3.11's is_dir() fails where the name is empty.
+        members = [member for member in archive.infolist() if not member.filename.endswith("/")]
+        self.members += len(members)
+        self._count(self.members)
+        for member in members:
+            if member.filename in _OFFICE:
+                raise RecordError.about(
+                    "the file is a workbook or another office file, not a record: save the sheet as CSV"
+                )
+        for member in members:
+            if member.flag_bits & _LOCKED:
+                raise _BombError.about(
+                    "{member} is locked with a password: unpack the archive, and name the file of the channel",
+                    member=clean_name(member),
+                )
+        return members
 
-def _unpack(archive: zipfile.ZipFile, member: zipfile.ZipInfo, found: _Found) -> bytes:
-    """Unpack one member, whatever size the archive gives it, no further than the limits."""
-    _check_member(member)
-    room = min(LARGEST_MEMBER, MOST_UNPACKED - found.unpacked)
-    why = fill("the file is damaged: its header and the directory of the zip archive differ. Get it again")
-    try:
-        with archive.open(member) as file:
-            why = fill("the file is damaged: its data cannot be unpacked. Get it again")
-            # Of a member that is larger than its directory entry, no more than that is unpacked.
-            content = file.read(min(room, member.file_size) + 1)
-    except Exception as error:  # see above
-        raise RecordError(why) from error
-    found.unpacked += len(content)
-    if len(content) > room:
-        raise _BombError.about(
-            "the zip archive holds more than {most:.0f} MB, or {largest:.0f} MB in one member: unpack it, and name "
-            "the file of the channel",
-            most=MOST_UNPACKED / 1e6,
-            largest=LARGEST_MEMBER / 1e6,
-        )
-    return content
-
-
-def _check_member(member: zipfile.ZipInfo) -> None:
-    """Raise RecordError for a member that is not to be unpacked, going by its directory entry."""
-    if member.compress_type not in _METHODS:
-        raise RecordError.about(
-            "the file is compressed by a method that is not supported ({method}): unpack the archive",
-            method=member.compress_type,
-        )
-    if member.file_size > max(RATIO_FROM, MOST_RATIO * member.compress_size):
-        raise _BombError.about(
-            "{member} unpacks to more than {most} times its size, which no record does. Get the archive again",
-            member=clean_name(member),
-            most=MOST_RATIO,
-        )
+    def _unpack(self, archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> bytes:
+        """Unpack one member, whatever size the archive gives it, no further than the limits."""
+        if member.compress_type not in _METHODS:
+            raise RecordError.about(
+                "the file is compressed by a method that is not supported ({method}): unpack the archive",
+                method=member.compress_type,
+            )
+        if member.file_size > max(RATIO_FROM, MOST_RATIO * member.compress_size):
+            raise _BombError.about(
+                "{member} unpacks to more than {most} times its size, which no record does. Get the archive again",
+                member=clean_name(member),
+                most=MOST_RATIO,
+            )
+        room = min(LARGEST_MEMBER, MOST_UNPACKED - self.unpacked)
+        why = fill("the file is damaged: its header and the directory of the zip archive differ. Get it again")
+        try:
+            with archive.open(member) as file:
+                why = fill("the file is damaged: its data cannot be unpacked. Get it again")
+                # Of a member that is larger than its directory entry, no more than that is unpacked.
+                content = file.read(min(room, member.file_size) + 1)
+        except Exception as error:  # see above
+            raise RecordError(why) from error
+        self.unpacked += len(content)
+        if len(content) > room:
+            raise _BombError.about(
+                "the zip archive holds more than {most:.0f} MB, or {largest:.0f} MB in one member: unpack it, and name "
+                "the file of the channel",
+                most=MOST_UNPACKED / 1e6,
+                largest=LARGEST_MEMBER / 1e6,
+            )
+        return content

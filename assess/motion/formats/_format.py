@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from assess.errors import RecordError
-from assess.i18n import Text, fill, join, nfill
+from assess.i18n import fill, join, nfill
 from assess.motion.formats._direction import UNKNOWN, Direction
 from assess.motion.record import FloatArray, Record, Series, check_samples, check_time_step, peak
 
@@ -67,6 +67,15 @@ def build_record(
     """
     own = series.values if own is None else own
     file_pfa = peak(own - own.mean() if has_offset else own)
+    notes = [*series.notes, *notes]
+    if header_pfa is not None and abs(header_pfa - file_pfa) > HEADER_PEAK_WITHIN * file_pfa:
+        notes.append(
+            fill(
+                "the header prints a peak of {printed:.4g} cm/s2, the data have {found:.4g} cm/s2",
+                printed=100 * header_pfa,
+                found=100 * file_pfa,
+            )
+        )
     return Record(
         file=file,
         format=title,
@@ -82,20 +91,9 @@ def build_record(
         acceleration=series.values,
         file_pfa=file_pfa,
         header_pfa=header_pfa,
-        notes=(*series.notes, *notes, *_note_peak(header_pfa, file_pfa)),
+        notes=tuple(notes),
         recorder=recorder,
     )
-
-
-def _note_peak(header_pfa: float | None, file_pfa: float) -> tuple[Text, ...]:
-    if header_pfa is None or abs(header_pfa - file_pfa) <= HEADER_PEAK_WITHIN * file_pfa:
-        return ()
-    note = fill(
-        "the header prints a peak of {printed:.4g} cm/s2, the data have {found:.4g} cm/s2",
-        printed=100 * header_pfa,
-        found=100 * file_pfa,
-    )
-    return (note,)
 
 
 def even_series(values: FloatArray, time_step: float, notes: Sequence[str] = ()) -> Series:

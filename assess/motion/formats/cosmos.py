@@ -8,12 +8,11 @@ version 1.20.
 """
 
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 from assess.errors import RecordError
 from assess.i18n import fill
-from assess.motion.formats._direction import Direction, read_direction
+from assess.motion.formats._direction import read_direction
 from assess.motion.formats._format import build_record, even_series
 from assess.motion.formats._text import (
     LONGEST_TEXT,
@@ -26,7 +25,7 @@ from assess.motion.formats._text import (
     text_format,
 )
 from assess.motion.formats._values import NUMBER, read_acceleration_unit, read_peak
-from assess.motion.record import Record, Series
+from assess.motion.record import Record
 from assess.units import ACCELERATION, GRAVITY
 
 TITLE = "COSMOS"
@@ -59,15 +58,6 @@ _BLOCK = re.compile(r"\s*(?P<count>\d{1,6})\s+(?P<what>integer|real)[- ]header v
 _DATA = re.compile(r"\s*(?P<count>\d{1,9})\s+\D.*\bunits\s*=\s*(?P<unit>[^,(]*)\((?P<code>\d{1,4})\)", re.IGNORECASE)
 
 
-@dataclass(frozen=True, slots=True)
-class _Numbers:
-    """The numbers of one channel's header; `data` is the place [-] of the line before its data, None without one."""
-
-    integers: Sequence[float]
-    reals: Sequence[float]
-    data: int | None
-
-
 def _choose(sections: list[Section]) -> list[Section]:
     found = [_START.match(section.lines[0]) for section in sections]
     kinds = [hit["kind"].strip() if hit else "" for hit in found]
@@ -80,45 +70,37 @@ def _choose(sections: list[Section]) -> list[Section]:
     return wanted
 
 
-def _read_numbers(section: Section) -> _Numbers:
+def _read_channel(section: Section, file: str) -> Record:
     numbers: dict[str, Sequence[float]] = {"integer": (), "real": ()}
     for place, line in enumerate(section.lines[: 10 * TEXT]):
-        found = _BLOCK.match(line)
-        if found:
+        if found := _BLOCK.match(line):
             what = found["what"].lower()
-            columns = read_format(line, BLOCKS[what])
-            numbers[what] = list(read_columns(section, place + 1, int(found["count"]), columns))
+            numbers[what] = list(read_columns(section, place + 1, int(found["count"]), read_format(line, BLOCKS[what])))
+    integers, reals = numbers["integer"], numbers["real"]
     # Comments may hold any text, but start with "|" and not with a number.
     after = enumerate(section.lines[TEXT:], start=TEXT)
-    data = next((place for place, line in after if _DATA.match(line[:LONGEST_TEXT].strip())), None)
-    return _Numbers(numbers["integer"], numbers["real"], data)
-
-
-def _read_data(section: Section, header: _Numbers) -> Series:
-    title = section.text(header.data or 0)
-    found = _DATA.match(title)
-    if header.data is None or found is None or len(header.integers) <= AZIMUTH or len(header.reals) <= STEP:
-        raise RecordError.about("the header is incomplete. Get the file again")
-    factor = _factor(found["unit"].strip(), int(found["code"]))
-    columns = read_format(title, Columns(8, 10))
-    values = read_columns(section, header.data + 1, int(found["count"]), columns, factor)
+    titles = ((place, found) for place, line in after if (found := _DATA.match(line[:LONGEST_TEXT].strip())))
+    at, title = next(titles, (0, None))
+    if title is None or len(integers) <= AZIMUTH or len(reals) <= STEP:
+        raise RecordError(fill("the header is incomplete. Get the file again"))
+    factor, columns = _factor(title["unit"].strip(), int(title["code"])), read_format(section.text(at), Columns(8, 10))
+    values = read_columns(section, at + 1, int(title["count"]), columns, factor)
     # The second is that of the data [ms], the first that of the recorder [s]: they differ where data are resampled.
-    step = header.reals[STEP] / 1000 if header.reals[STEP] > 0 else header.reals[RAW_STEP]
-    return even_series(values, step)
-
-
-def _read_channel(section: Section, file: str) -> Record:
-    numbers = _read_numbers(section)
-    series = _read_data(section, numbers)
+    step = reals[STEP] / 1000 if reals[STEP] > 0 else reals[RAW_STEP]
     header = read_fields(section, HEADER)
+    azimuth, vertical = read_direction(header["direction"])
+    if vertical is None and 400 <= integers[AZIMUTH] <= 402:
+        azimuth, vertical = None, True
+    elif azimuth is None and not vertical and 1 <= integers[AZIMUTH] <= 360:
+        azimuth, vertical = integers[AZIMUTH], False
     code = header["code"] or header["number"]
     return build_record(
         TITLE,
         file,
-        series,
-        corrected=numbers.integers[STAGE] == CORRECTED,
+        even_series(values, step),
+        corrected=integers[STAGE] == CORRECTED,
         channel=header["channel"] and (header["channel"].lstrip("0") or "0"),
-        direction=_read_direction(header, numbers.integers[AZIMUTH]),
+        direction=(azimuth, vertical),
         location=header["location"],
         station=f"{header['station']} ({code})" if code else "",
         event=" ".join(header["event"].split()),
@@ -143,15 +125,6 @@ def _factor(unit: str, code: int) -> float:
             code=code,
         )
     return factor
-
-
-def _read_direction(header: Mapping[str, str], code: float) -> Direction:
-    azimuth, vertical = read_direction(header["direction"])
-    if vertical is None and 400 <= code <= 402:
-        return None, True
-    if azimuth is None and not vertical and 1 <= code <= 360:
-        return code, False
-    return azimuth, vertical
 
 
 FORMAT = text_format(

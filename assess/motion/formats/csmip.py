@@ -73,35 +73,28 @@ _SPECTRA = re.compile(r"\s*response and fourier", re.IGNORECASE)
 
 
 def _read_v1(section: Section, file: str) -> Record:
-    own, series = _read_data_v1(section)
+    title = read_fields(section, TITLE_V1)
+    if title["count"]:
+        rate, factor = read_finite(title["rate"]), read_acceleration_unit(title["unit"])
+        if not rate or factor is None:
+            line = section.number(DATA_V1)
+            raise RecordError.about(
+                "line {line}: the sampling rate or the unit cannot be read. Get the file again", line=line
+            )
+        columns = read_format(section.text(DATA_V1), EVEN)
+        own = read_columns(section, DATA_V1 + 1, int(title["count"]), columns, factor)
+        series = even_series(own, 1 / rate)
+    else:
+        header = "\n".join(section.lines[:TEXT_V1])
+        points, unit = _COUNT.search(header), _UNIT.search(header)
+        if not points or not unit:
+            raise RecordError(fill("the header does not give the number of points, or their unit. Get the file again"))
+        pairs = read_columns(section, DATA_V1, 2 * int(points[1]), PAIRS)
+        with np.errstate(over="ignore"):  # what becomes infinite is refused where samples are checked
+            own = pairs[1::2] * (read_acceleration_unit(unit[1]) or np.nan)
+        series = build_series(pairs[0::2], own)
     header_pfa = read_peak(read_fields(section, PEAK_V1)["peak"], GRAVITY)
     return _build(V1, file, read_fields(section, TEXT), series, own, header_pfa)
-
-
-def _read_data_v1(section: Section) -> tuple[FloatArray, Series]:
-    title = read_fields(section, TITLE_V1)
-    if not title["count"]:
-        return _read_pairs(section)
-    rate, factor = read_finite(title["rate"]), read_acceleration_unit(title["unit"])
-    if not rate or factor is None:
-        line = section.number(DATA_V1)
-        raise RecordError.about(
-            "line {line}: the sampling rate or the unit cannot be read. Get the file again", line=line
-        )
-    columns = read_format(section.text(DATA_V1), EVEN)
-    own = read_columns(section, DATA_V1 + 1, int(title["count"]), columns, factor)
-    return own, even_series(own, 1 / rate)
-
-
-def _read_pairs(section: Section) -> tuple[FloatArray, Series]:
-    header = "\n".join(section.lines[:TEXT_V1])
-    points, unit = _COUNT.search(header), _UNIT.search(header)
-    if not points or not unit:
-        raise RecordError.about("the header does not give the number of points, or their unit. Get the file again")
-    numbers = read_columns(section, DATA_V1, 2 * int(points[1]), PAIRS)
-    with np.errstate(over="ignore"):  # what becomes infinite is refused where samples are checked
-        own = numbers[1::2] * (read_acceleration_unit(unit[1]) or np.nan)
-    return own, build_series(numbers[0::2], own)
 
 
 def _read_v2(section: Section, file: str) -> Record:

@@ -10,7 +10,7 @@ Source: U.S. Geological Survey, National Strong-Motion Project, the SMC format; 
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -33,7 +33,7 @@ from assess.motion.formats._text import (
     too_long,
 )
 from assess.motion.formats._values import NUMBER, read_peak
-from assess.motion.record import FloatArray, Record, Series, build_series
+from assess.motion.record import FloatArray, Record, build_series
 from assess.units import ACCELERATION
 
 TITLE = "USGS SMC"
@@ -63,46 +63,11 @@ _REFUSED = {
 _LOCATION = re.compile(r"<loclbl=>(.*?)<end>")
 
 
-@dataclass(frozen=True, slots=True)
-class _Numbers:
-    """The blocks between text and data; None where a number is unknown."""
-
-    integers: Sequence[int | None]
-    sampling_rate: float | None
-    comments: Sequence[str]
-
-
 def _read_channel(section: Section, file: str) -> Record:
-    kind = _KIND.match(section.lines[0])
-    if not kind:
-        raise RecordError.about("the first line names no type of SMC file. Get the file again")
-    header = read_fields(section, HEADER)
-    numbers = _read_numbers(section, kind[1], header["title"])
-    own, series = _read_series(section, numbers)
-    direction, notes = _orientation(header["component"], numbers)
-    number = numbers.integers[RECORDER]
-    record = build_record(
-        TITLE,
-        file,
-        series,
-        own=own,
-        corrected=kind[1] == "2",
-        channel=header["component"],
-        direction=direction,
-        location=_location(numbers),
-        station=header["station"] or header["bare_station"].strip(" *"),
-        event=header["event"] if header["year"] else header["earthquake"].strip(" *"),
-        start=_start(header),
-        header_pfa=read_peak(header["peak"], CM_S2),
-        notes=notes,
-        recorder="" if number is None else str(number),
-    )
-    if numbers.integers[PROBLEM] != 1:
-        return record
-    return replace(record, notes=(*record.notes, fill("the header flags a problem with the data: read its comments")))
-
-
-def _read_numbers(section: Section, kind: str, title: str) -> _Numbers:
+    found = _KIND.match(section.lines[0])
+    if not found:
+        raise RecordError(fill("the first line names no type of SMC file. Get the file again"))
+    kind, header = found[1], read_fields(section, HEADER)
     if len(section.lines) <= COMMENTS:
         raise RecordError.about(
             "the file is cut short: its header takes {header} lines, the file has {lines}. Get the file again",
@@ -114,11 +79,50 @@ def _read_numbers(section: Section, kind: str, title: str) -> _Numbers:
             "the file holds {kind} ({title}), not accelerations. Give the acceleration file of the same channel "
             "(type 1 or 2)",
             kind=_REFUSED[kind],
-            title=title[:40],
+            title=header["title"][:40],
         )
     integers = _read_integers(section)
     comments = _read_comments(section.lines, integers[COMMENT_LINES])
-    return _Numbers(integers, _read_sampling_rate(section), comments)
+    rate = _read_sampling_rate(section)
+    numbers, notes = _read_data(section, integers[DATA_COUNT] or 0, COMMENTS + len(comments))
+    if rate is not None:
+        own = numbers * CM_S2
+        series = even_series(own, 1 / rate, notes)
+    elif numbers.size % 2:
+        raise RecordError.about(
+            "the number of data values is {count}, which is odd: they cannot be pairs of time and acceleration. "
+            "Get the file again",
+            count=numbers.size,
+        )
+    else:
+        own = numbers[1::2] * CM_S2
+        series = build_series(numbers[0::2], own)
+        series = replace(series, notes=(*notes, *series.notes))
+    direction, notes = _orientation(header["component"], integers[VERTICAL_ANGLE], integers[AZIMUTH])
+    place, floor, number = _LOCATION.search("\n".join(comments)), integers[FLOOR], integers[RECORDER]
+    start = ""
+    if header["year"]:  # the earthquake's time, UTC as the format has it
+        date = f"{header['year']}-{int(header['month']):02d}-{int(header['day']):02d}"
+        start = f"{date} {header['hour']}:{header['minute']} UTC"
+    record = build_record(
+        TITLE,
+        file,
+        series,
+        own=own,
+        corrected=kind == "2",
+        channel=header["component"],
+        direction=direction,
+        location=place[1].strip() if place else "" if floor is None else f"floor {floor}",
+        station=header["station"] or header["bare_station"].strip(" *"),
+        event=header["event"] if header["year"] else header["earthquake"].strip(" *"),
+        start=start,
+        header_pfa=read_peak(header["peak"], CM_S2),
+        notes=notes,
+        recorder="" if number is None else str(number),
+    )
+    if integers[PROBLEM] != 1:
+        return record
+    return replace(record, notes=(*record.notes, fill("the header flags a problem with the data: read its comments")))
 
 
 def _read_integers(section: Section) -> list[int | None]:
@@ -165,25 +169,8 @@ def _read_sampling_rate(section: Section) -> float | None:
     return rate
 
 
-def _read_series(section: Section, header: _Numbers) -> tuple[FloatArray, Series]:
-    numbers, notes = _read_data(section, header)
-    if header.sampling_rate is not None:
-        own = numbers * CM_S2
-        return own, even_series(own, 1 / header.sampling_rate, notes)
-    if numbers.size % 2:
-        raise RecordError.about(
-            "the number of data values is {count}, which is odd: they cannot be pairs of time and acceleration. "
-            "Get the file again",
-            count=numbers.size,
-        )
-    own = numbers[1::2] * CM_S2
-    series = build_series(numbers[0::2], own)
-    return own, replace(series, notes=(*notes, *series.notes))
-
-
-def _read_data(section: Section, header: _Numbers) -> tuple[FloatArray, tuple[str, ...]]:
-    """Return as many numbers as the header announces, and a note on those beyond."""
-    announced, first = header.integers[DATA_COUNT] or 0, COMMENTS + len(header.comments)
+def _read_data(section: Section, announced: int, first: int) -> tuple[FloatArray, tuple[str, ...]]:
+    """Return as many numbers as the header announces, from a line on, and a note on those beyond."""
     if announced <= 0:
         raise RecordError.about(
             "the number of data values is {announced} in the header. Get the file again", announced=announced
@@ -203,25 +190,8 @@ def _read_data(section: Section, header: _Numbers) -> tuple[FloatArray, tuple[st
     return values, note_beyond(there - announced, announced)
 
 
-def _start(header: dict[str, str]) -> str:
-    """Return the earthquake's time (UTC, as the format has it)."""
-    if not header["year"]:
-        return ""
-    date = f"{header['year']}-{int(header['month']):02d}-{int(header['day']):02d}"
-    return f"{date} {header['hour']}:{header['minute']} UTC"
-
-
-def _location(header: _Numbers) -> str:
-    found = _LOCATION.search("\n".join(header.comments))
-    if found:
-        return found[1].strip()
-    floor = header.integers[FLOOR]
-    return "" if floor is None else f"floor {floor}"
-
-
-def _orientation(component: str, header: _Numbers) -> tuple[Direction, tuple[str, ...]]:
-    """Return its direction, and a note where text and numbers disagree."""
-    upright, number = header.integers[VERTICAL_ANGLE], header.integers[AZIMUTH]
+def _orientation(component: str, upright: int | None, number: int | None) -> tuple[Direction, tuple[str, ...]]:
+    """Return the direction of a component, and a note where text and numbers disagree."""
     text, vertical = read_direction(component)
     if vertical or (not component and upright in {0, 180}):
         return (None, True), ()
