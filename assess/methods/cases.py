@@ -32,26 +32,21 @@ class Ensemble(Protocol):
     @property
     def is_assumed(self) -> bool:
         """Whether ground motion and building are drawn, of a floor without a record."""
-        ...
 
     @property
     def is_unknown(self) -> bool:
         """Whether nothing is known of the building, nor of the floor's height."""
-        ...
 
     @property
     def signs(self) -> tuple[int, ...] | None:
         """By which the phases that all floors share are turned, 1 or -1 by octave; None where they are not known."""
-        ...
 
     @property
     def record(self) -> tuple[FloatArray, float] | None:
         """The recorded motion (n,) [m/s2] and its time step [s], where one is known."""
-        ...
 
     def open(self, threads: int, progress: Progress = SILENT) -> "Motions":
         """Prepare the motions; their memory is released with the result."""
-        ...
 
 
 class Motions(Protocol):
@@ -60,26 +55,21 @@ class Motions(Protocol):
     @property
     def fit(self) -> "Fit | None":
         """How they meet the spectrum that they were made for; None for motions that were given."""
-        ...
 
     @property
     def spectra(self) -> "Spectra | None":
         """Response spectra of the first of them, and the one that they were made for; None where unknown."""
-        ...
 
     @property
     def is_weak(self) -> bool:
         """Whether they are weaker than the floor's motion."""
-        ...
 
     @property
     def bands(self) -> tuple[float, float] | None:
         """Factors above and below the corner by which drawn motions are brought to the floor's peaks [-]."""
-        ...
 
     def realise(self, first: int, count: int) -> list[tuple[NDArray[Any], float]]:
         """Return motions `first` to `first + count - 1` in batches: (k, n) [m/s2], and their time step [s]."""
-        ...
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -31,7 +31,21 @@ from assess.errors import InputError
 from assess.i18n import Text, fill, join
 from assess.methods.cases import Cases
 from assess.methods.expression import localise, normal_cdf, show_pfa, show_ratio
-from assess.methods.method import PFV_FLAGS, Column, Example, FittedOn, Method, Outcome, Range, Reason, Reference
+from assess.methods.method import (
+    BLOCK,
+    BY_RATIO,
+    BY_SIZE,
+    CLIPPED,
+    PFV_FLAGS,
+    Column,
+    Example,
+    FittedOn,
+    Method,
+    Outcome,
+    Range,
+    Reason,
+    Reference,
+)
 from assess.rocking.block import frequency_parameter
 from assess.settings import Settings
 from assess.units import ACCELERATION, GRAVITY, LENGTH, VELOCITY
@@ -185,7 +199,7 @@ def build_method(model: Fitted, source: str) -> Method:
         short_title=model.title,
         kind="probability",
         order=LAST,
-        predicts=PREDICTS_BY_SIZE if is_probit else PREDICTS,
+        predicts=BY_SIZE if is_probit else BY_RATIO,
         reference=Reference(authors="", year="", title=model.title, source=source, remark=_describe(fitted)),
         needs=frozenset({"breadth", "height", "pfa", *(("pfv",) if is_probit else ())}),
         valid={QUANTITIES[key].name: _round(one) for key, one in model.ranges.items()},
@@ -194,7 +208,7 @@ def build_method(model: Fitted, source: str) -> Method:
         columns=(Column("raw", "Unbounded value"),),
         equations=equations,
         assumptions=(_judge(fitted), COMPARED, *(OF_PROBIT if is_probit else OF_POLYNOMIAL), BLOCK),
-        flags=FLAGS | (FLAGS_OF_PROBIT if is_probit else FLAGS_OF_POLYNOMIAL),
+        flags={"clipped": CLIPPED} | (FLAGS_OF_PROBIT if is_probit else FLAGS_OF_POLYNOMIAL),
         reasons=_list_reasons(fitted),
         fitted=fitted,
     )
@@ -206,19 +220,6 @@ def _work(equations: Sequence[str], example: Example) -> list[str]:
     return [show_ratio(example), show_pfa(example), *velocity, *equations, result]
 
 
-PREDICTS = (
-    "The chance that a free-standing piece overturns, from its breadth-to-height ratio and the peak floor "
-    "acceleration alone."
-)
-PREDICTS_BY_SIZE = (
-    "The chance that a free-standing piece overturns, from its size and the peak acceleration and velocity "
-    "of the floor."
-)
-BLOCK = (
-    "The piece is free-standing, rigid and homogeneous, its centroid at mid-height; it does not slide; vertical motion "
-    "is left out."
-)
-"""Texts that published methods have as well."""
 COMPARED = fill("A model of the user's own, no published method: shown for comparison, it counts for no adopted risk.")
 OF_PROBIT = (
     fill("The ranges given are those of the data that it was fitted to; outside them it is marked as extrapolated."),
@@ -234,7 +235,6 @@ OF_POLYNOMIAL = (
     ),
     fill("A surface, not a law: it ignores size, and may fall where the motion grows or the piece gets thinner."),
 )
-FLAGS = {"clipped": "the formula gave less than 0 or more than 1, and was set to 0 or 1"}
 FLAGS_OF_POLYNOMIAL = {
     "extrapolated": fill("outside the data that it was fitted to, or PFV is unknown, so that it may be outside")
 }
@@ -390,8 +390,9 @@ def _read_text(path: Path) -> str:
         with path.open("rb") as file:
             data = file.read(MOST_BYTES + 1)
     except (OSError, ValueError) as error:
-        text = fill("{path}: the file cannot be read: {why}. Check its permissions.", path=path, why=str(error))
-        raise InputError(text) from None
+        raise InputError.about(
+            "{path}: the file cannot be read: {why}. Check its permissions.", path=path, why=str(error)
+        ) from None
     if len(data) > MOST_BYTES:
         raise InputError.about(
             "{path}: the file is larger than {most} kB, the limit for a fitted model. Name another file.",
@@ -401,8 +402,9 @@ def _read_text(path: Path) -> str:
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError:
-        text = fill("{path}: the file is not a UTF-8 text. Name the .toml file that a study wrote.", path=path)
-        raise InputError(text) from None
+        raise InputError.about(
+            "{path}: the file is not a UTF-8 text. Name the .toml file that a study wrote.", path=path
+        ) from None
 
 
 def parse_model(text: str, file: str) -> Fitted:
@@ -411,12 +413,11 @@ def parse_model(text: str, file: str) -> Fitted:
         found = tomllib.loads(text.removeprefix("\ufeff"))
     except (ValueError, RecursionError) as error:  # also: a number of thousands of digits
         detail = str(error).partition(";")[0]
-        message = fill(
+        raise InputError.about(
             "{file}: the file is not valid TOML: {why}. Correct the line, or have the study write the file again.",
             file=file,
             why=detail,
-        )
-        raise InputError(message) from None
+        ) from None
     if found.get("format") != FORMAT or isinstance(found.get("format"), bool):
         given = _show(found["format"]) if "format" in found else fill("missing")
         raise InputError.about(

@@ -17,7 +17,7 @@ import numpy as np
 from assess.i18n import Text, fill
 from assess.methods.cases import Cases
 from assess.methods.expression import G, normal_cdf, number, show, show_pfa, show_ratio
-from assess.methods.method import Column, Example, LiveCells, Method, Outcome, Parameter, Reason, Reference
+from assess.methods.method import BY_SIZE, Column, Example, LiveCells, Method, Outcome, Parameter, Reason, Reference
 from assess.methods.simulate import SLIDING, find_branch
 from assess.settings import Settings
 from assess.units import ACCELERATION, LENGTH, ROUNDING, VELOCITY
@@ -154,8 +154,7 @@ METHOD = Method(
     kind="probability",
     order=20,
     selects=True,
-    predicts="The chance that a free-standing piece overturns, from its size and the peak acceleration and velocity "
-    "of the floor.",
+    predicts=BY_SIZE,
     reference=Reference(
         authors="Kaneko M, Hayashi Y",
         year="2004",

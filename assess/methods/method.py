@@ -112,6 +112,20 @@ FACTS: Mapping[str, str] = {
 """Numbers of a piece and its motion that a `Reason` may name, and their formats; ``pfa_to_start`` is PFA/(g·B/H)."""
 
 
+BLOCK = (
+    "The piece is free-standing, rigid and homogeneous, its centroid at mid-height; it does not slide; vertical motion "
+    "is left out."
+)
+BY_RATIO = (
+    "The chance that a free-standing piece overturns, from its breadth-to-height ratio and the peak floor "
+    "acceleration alone."
+)
+BY_SIZE = (
+    "The chance that a free-standing piece overturns, from its size and the peak acceleration and velocity "
+    "of the floor."
+)
+CLIPPED = "the formula gave less than 0 or more than 1, and was set to 0 or 1"
+"""What several methods assume, predict, and flag."""
 PFV_FLAGS: Mapping[str, str] = {
     "pfv_unknown": "not evaluated: it needs the peak floor velocity, which is unknown here",
 }

@@ -16,7 +16,19 @@ import numpy as np
 from assess.i18n import Text, fill
 from assess.methods.cases import Cases
 from assess.methods.expression import G, localise, number, plain, show, show_pfa, show_ratio
-from assess.methods.method import Column, Example, LiveCells, Method, Outcome, Range, Reason, Reference
+from assess.methods.method import (
+    BLOCK,
+    BY_RATIO,
+    CLIPPED,
+    Column,
+    Example,
+    LiveCells,
+    Method,
+    Outcome,
+    Range,
+    Reason,
+    Reference,
+)
 from assess.settings import Settings
 from assess.units import ACCELERATION
 
@@ -162,8 +174,7 @@ METHOD = Method(
     order=10,
     selects=True,
     selecting_flags=("extrapolated",),
-    predicts="The chance that a free-standing piece overturns, from its breadth-to-height ratio and the peak floor "
-    "acceleration alone.",
+    predicts=BY_RATIO,
     reference=Reference(
         authors="",
         year="",
@@ -204,8 +215,7 @@ METHOD = Method(
         ),
     ),
     assumptions=(
-        "The piece is free-standing, rigid and homogeneous, its centroid at mid-height; it does not slide; vertical "
-        "motion is left out.",
+        BLOCK,
         "Size is not considered: two pieces of the same B/H have the same risk, though a larger one is harder to "
         "overturn.",
         "A surface fitted to computed overturning ratios, not a law: with no shaking at all it still gives 0.28 at "
@@ -228,6 +238,6 @@ METHOD = Method(
         "used",
         "thin": "thinner than the printed formula can tell, which would call it safer: evaluated at the B/H of "
         "largest risk",
-        "clipped": "the formula gave less than 0 or more than 1, and was set to 0 or 1",
+        "clipped": CLIPPED,
     },
 )

@@ -18,7 +18,6 @@ class Sized(Protocol):
     @property
     def nbytes(self) -> int:
         """Bytes."""
-        ...
 
 
 Made = TypeVar("Made", bound=Sized)

@@ -61,16 +61,13 @@ class GroundField(Protocol):
     @property
     def file(self) -> str:
         """Name of its file, as shown to people."""
-        ...
 
     @property
     def sha256(self) -> str:
         """Hash of its bytes."""
-        ...
 
     def at(self, latitude: float, longitude: float) -> SiteGround:
         """Return the shaking at a place [deg]; InputError where it does not cover the place."""
-        ...
 
 
 Field = TypeVar("Field", bound=GroundField)

@@ -95,11 +95,10 @@ def parse_records(data: bytes, name: str, *, progress: Progress = SILENT) -> tup
         if not data:
             raise RecordError.about("the file is empty. Get it again")
         if len(data) > LARGEST_FILE:
-            text = fill(
+            raise RecordError.about(
                 "the file is larger than {most:.0f} MB. Cut it to the shaking, or split its channels",
                 most=LARGEST_FILE / 1e6,
             )
-            raise RecordError(text)
         if is_archive(data):
             return settle_directions(rename_duplicates(read_archive(data, name, _read_member, progress)))
         found = _find_format(data[:HEAD])

@@ -132,12 +132,11 @@ def _read_integers(section: Section) -> list[int | None]:
         try:
             numbers.append(int(text))
         except ValueError:
-            message = fill(
+            raise RecordError.about(
                 "line {line}: {text!r} is not a whole number. Get the file again",
                 line=section.number(INTEGERS + place // INTEGER.per_line),
                 text=text.strip(),
-            )
-            raise RecordError(message) from None
+            ) from None
     return [None if number == numbers[0] else number for number in numbers]
 
 
