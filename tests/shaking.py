@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from assess.motion.record import FloatArray
+from assess.arrays import FloatArray
 
 STEP = 0.01
 TIMES = np.arange(0, 10, STEP)

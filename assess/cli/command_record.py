@@ -14,8 +14,9 @@ from assess.errors import InputError
 from assess.units import GRAVITY
 
 if TYPE_CHECKING:
+    from assess.arrays import FloatArray
     from assess.motion.formats import Channel
-    from assess.motion.record import FloatArray, Motion, Record
+    from assess.motion.record import Motion, Record
 
 ORDER = 6
 EXAMPLES = (

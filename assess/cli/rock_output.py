@@ -8,11 +8,12 @@ from typing import Any, cast, get_args
 
 import numpy as np
 
+from assess.arrays import FloatArray
 from assess.cli.options import check_size
 from assess.errors import InputError
 from assess.i18n import count
 from assess.motion.formats import Channel, read_channel, read_channels
-from assess.motion.record import MOST_ACCELERATION, Baseline, FloatArray, Motion, treat, treatment
+from assess.motion.record import MOST_ACCELERATION, Baseline, Motion, treat, treatment
 from assess.report.figures.draw import draw, thin_out
 from assess.rocking.block import MIDDLE, threshold
 from assess.rocking.planar import Away, Body, follow_body

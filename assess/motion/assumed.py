@@ -20,8 +20,9 @@ from typing import Literal
 
 import numpy as np
 
+from assess.arrays import FloatArray
 from assess.intensity import RATIO
-from assess.motion.stratified import FloatArray, draw_normal, draw_uniform
+from assess.motion.stratified import draw_normal, draw_uniform
 
 RATIO_SCATTER = 0.40
 """Standard deviation of ln PGV/PGA from one earthquake to another [-]: assumed; the same components have 0.37."""

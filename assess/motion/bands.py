@@ -3,12 +3,9 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from assess.arrays import FloatArray, Single
 from assess.compiled import compiled, compiled_into
-from assess.motion.record import FloatArray
-
-Single = NDArray[np.float32]
 
 ROUNDS = 12
 """Turns of finding the factor of the lower band, each followed by one on the whole motion."""

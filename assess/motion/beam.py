@@ -17,13 +17,10 @@ import math
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from assess.arrays import FloatArray, Single
 from assess.compiled import compiled
 from assess.motion.assumed import Building, draw_places
-from assess.motion.record import FloatArray
-
-Single = NDArray[np.float32]
 
 DAMPING = 0.05
 """Share of critical damping of every mode [-]: assumed. 575 Market Street would want less, Berkeley 8 to 10 %."""

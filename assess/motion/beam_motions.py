@@ -18,13 +18,12 @@ from functools import partial
 
 import numpy as np
 
+from assess.arrays import FloatArray, Single
 from assess.motion.assumed import Building, FloorTarget, draw_places
 from assess.motion.bands import find_common, meet_peaks, split_bands
 from assess.motion.beam import find_shares, swing_modes
 from assess.motion.kept import Kept
-from assess.motion.record import FloatArray
 from assess.motion.rows import GROUP, make_groups
-from assess.motion.sweep import Single
 from assess.motion.target import Grid
 from assess.progress import Progress
 

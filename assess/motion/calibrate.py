@@ -16,12 +16,13 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
+from assess.arrays import FloatArray, Single
 from assess.motion.noise import Transforms, find_rates
 from assess.motion.recipe import Bending, Recipe, bend_to
-from assess.motion.record import CORNER, FloatArray
+from assess.motion.record import CORNER
 from assess.motion.rows import GROUP, run_groups
 from assess.motion.spectrum import DAMPING
-from assess.motion.sweep import Single, Sweep
+from assess.motion.sweep import Sweep
 from assess.motion.target import JUDGED_FROM, Grid, Target, matched_to
 from assess.motion.wavelets import Correction, build_wavelets
 from assess.progress import Progress

@@ -19,13 +19,12 @@ from functools import lru_cache
 
 import numpy as np
 
+from assess.arrays import FloatArray, Single
 from assess.motion.assumed import Ground
 from assess.motion.bands import meet_peaks, split_bands
 from assess.motion.noise import draw_noise, find_rates
-from assess.motion.record import FloatArray
 from assess.motion.rows import GROUP
 from assess.motion.stratified import draw_normal
-from assess.motion.sweep import Single
 from assess.motion.target import LOWEST, TIME_STEP, Envelopes, Grid
 from assess.progress import Progress
 

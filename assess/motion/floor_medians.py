@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from assess.motion.record import FloatArray
+from assess.arrays import FloatArray
 from assess.units import GRAVITY
 
 TABLE = Path(__file__).with_name("floor_table.csv")

@@ -20,7 +20,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from assess.motion.record import FloatArray
+from assess.arrays import FloatArray
 from assess.motion.target import PAD, husid_envelopes, octaves, split
 
 DEVIATIONS = 2.0

@@ -23,11 +23,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from assess.arrays import Single
 from assess.motion.calibrate import Bench, find_corrections, find_filter
 from assess.motion.noise import Signs, Transforms, draw_noise
 from assess.motion.recipe import Recipe
 from assess.motion.rows import GROUP, make_groups, run_rows
-from assess.motion.sweep import Single
 from assess.motion.target import Grid, Target
 from assess.motion.target_fit import Fit, Spectra, measure_match
 from assess.progress import SILENT, Progress

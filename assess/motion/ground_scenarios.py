@@ -25,13 +25,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.arrays import FloatArray
 from assess.errors import InputError
 from assess.hazard import FAR, find_distance
 from assess.i18n import fill, nfill
 from assess.motion.site_ground import SiteGround, find_no_number, naming, read_again, read_ground_file
 from assess.units import GRAVITY
-
-FloatArray = NDArray[np.float64]
 
 VALUES = "gmf-data.csv"
 SITES = ("sitemesh.csv", "sites.csv")

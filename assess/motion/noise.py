@@ -12,15 +12,14 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.arrays import FloatArray, Single
 from assess.compiled import compiled
 from assess.motion.floor_signs import turn_phases
 from assess.motion.kept import Kept
-from assess.motion.record import FloatArray
 from assess.motion.rows import GROUP
 from assess.motion.target import PAD, STRETCH, Envelopes, Grid, octaves, split
 from assess.progress import Progress
 
-Single = NDArray[np.float32]
 Transforms = NDArray[np.complex64]
 
 DEEPEST = 64

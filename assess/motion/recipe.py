@@ -10,10 +10,9 @@ from functools import lru_cache
 
 import numpy as np
 
+from assess.arrays import FloatArray, Single
 from assess.compiled import compiled
 from assess.motion.noise import Transforms, find_rates
-from assess.motion.record import FloatArray
-from assess.motion.sweep import Single
 from assess.motion.target import Grid, Target
 from assess.motion.wavelets import Correction
 from assess.progress import Progress

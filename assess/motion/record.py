@@ -13,15 +13,13 @@ from typing import Literal
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import NDArray
 
+from assess.arrays import FloatArray
 from assess.errors import RecordError
 from assess.i18n import Text, fill, nfill
 from assess.plain_text import plain_line
 from assess.progress import SILENT, Progress
 from assess.units import GRAVITY
-
-FloatArray = NDArray[np.float64]
 
 PASS_ORDER = 2
 """Order of the Butterworth filter in each pass."""

@@ -28,14 +28,13 @@ from xml.parsers import expat
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.arrays import FloatArray
 from assess.errors import InputError
 from assess.i18n import Text, fill, join, nfill
 from assess.motion.site_ground import SiteGround, find_no_number, naming, read_again, read_ground_file
 from assess.motion.spatial_field import MAGNITUDES, SCATTERS, Measure
 from assess.plain_text import plain_text
 from assess.units import GRAVITY
-
-FloatArray = NDArray[np.float64]
 
 LARGEST_FILE = 64_000_000
 """Bytes; a grid of 241 x 193 points takes 3 million."""

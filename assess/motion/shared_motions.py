@@ -14,11 +14,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from assess.arrays import Single
 from assess.motion.generate import Generator, build_generator
 from assess.motion.kept import Kept, waiting
 from assess.motion.noise import Signs
 from assess.motion.rows import GROUP
-from assess.motion.sweep import Single
 from assess.motion.target import Grid, Target
 from assess.motion.target_fit import Fit, Spectra
 from assess.progress import SILENT, Progress

@@ -23,9 +23,8 @@ from functools import lru_cache
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from assess.arrays import FloatArray
 
 Measure = Literal["PGA", "PGV"]
 MAGNITUDES = 4.5, 5.5

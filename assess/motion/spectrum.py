@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.arrays import FloatArray
 from assess.compiled import compiled
-from assess.motion.record import FloatArray
 from assess.motion.rows import run_rows
 from assess.progress import SILENT, Progress
 

@@ -6,9 +6,8 @@ Draw k of a stream is the same whatever else is drawn, and however many draws th
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from assess.arrays import FloatArray
 
 BLOCK, BLOCKS = 25, 8
 """Draws among which each part of equal chance of the distribution comes once, and how many such blocks in turn divide

@@ -8,10 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
+from assess.arrays import FloatArray
 from assess.errors import RecordError
 from assess.i18n import fill, join, nfill
 from assess.motion.formats import read_records, settle_directions
-from assess.motion.record import FloatArray, Motion, Record, treat
+from assess.motion.record import Motion, Record, treat
 from assess.motion.target_fit import Spectra
 from assess.progress import SILENT, Progress
 

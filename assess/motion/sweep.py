@@ -12,11 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.arrays import FloatArray, Single
 from assess.compiled import compiled, compiled_into
-from assess.motion.record import FloatArray
 from assess.motion.spectrum import oscillator_step
-
-Single = NDArray[np.float32]
 
 FEWEST = 20
 """Samples in a period at least, where motions are halved [-]: a peak between samples is missed by 0.4 % on average."""

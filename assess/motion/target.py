@@ -16,7 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from assess.motion.record import FloatArray, Motion, resample
+from assess.arrays import FloatArray
+from assess.motion.record import Motion, resample
 
 LOWEST, HIGHEST = 0.1, 25.6
 """Centres of the first and last octave [Hz]; the first reaches down to 0, the last up to the Nyquist frequency."""

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.motion.record import FloatArray
+from assess.arrays import FloatArray
 from assess.motion.rows import run_groups
 from assess.motion.target import JUDGED_FROM, Target, matched_to
 from assess.progress import SILENT, Progress

@@ -14,10 +14,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.arrays import Single
 from assess.compiled import compiled
 from assess.motion.sweep import Sweep
-
-Single = NDArray[np.float32]
 
 CYCLES = 1.2
 """Width of the taper in periods [-]: the wavelet is cos(w t) exp(-(t/CYCLES T)**2)."""

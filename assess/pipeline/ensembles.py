@@ -20,8 +20,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.arrays import FloatArray
 from assess.model import NEAR_AXIS, Building, angle_between
-from assess.motion.record import FloatArray, Motion, Record, treat
+from assess.motion.record import Motion, Record, treat
 from assess.motion.rows import GROUP
 from assess.pipeline.floor_demand import Demand, Demands, Drawn
 from assess.progress import SILENT, Progress

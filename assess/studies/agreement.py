@@ -7,9 +7,10 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.arrays import BoolArray, FloatArray
 from assess.risk import classify_all, wilson_interval
 from assess.studies.buildings import LEVELS, RECORDED, Building, Trials, all_buildings, find_levels, rock_building
-from assess.studies.studied_methods import BoolArray, FloatArray, evaluate_formulas
+from assess.studies.studied_methods import evaluate_formulas
 from assess.studies.study import Options
 
 

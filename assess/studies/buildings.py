@@ -14,12 +14,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.arrays import FloatArray
 from assess.errors import InputError
 from assess.motion.formats import read_records
 from assess.motion.record import Motion, treat
 from assess.motion.target import Grid, build_grid, recorded_target
 from assess.resources import record
-from assess.studies.studied_methods import Cases, FloatArray, rock_draws
+from assess.studies.studied_methods import Cases, rock_draws
 from assess.studies.study import Options
 from assess.studies.study_files import PARTS, Arrays, load_or_compute
 from assess.units import GRAVITY

@@ -35,6 +35,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.arrays import BoolArray, FloatArray
 from assess.compiled import compiled
 from assess.motion.record import Motion
 from assess.motion.spectrum import oscillator_step
@@ -42,7 +43,6 @@ from assess.motion.target import build_grid, put_on_grid, recorded_target
 from assess.report.figures.draw import draw
 from assess.risk import LIMITS, RiskClass, classify_all
 from assess.studies.buildings import Channel, all_buildings, build_blocks, find_record
-from assess.studies.studied_methods import BoolArray, FloatArray
 from assess.studies.study import Finding, Options, Row, Study, Table, write_finding
 from assess.studies.study_files import PARTS, Arrays, load_or_compute
 from assess.units import GRAVITY, LENGTH

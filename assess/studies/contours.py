@@ -10,22 +10,13 @@ from typing import Any
 
 import numpy as np
 
+from assess.arrays import FloatArray
 from assess.report.figures.draw import draw
 from assess.report.figures.risk_map import paint_checked, paint_legend, paint_risk
 from assess.settings import Settings
 from assess.studies.agreement import Compared, by_building, rock_all
 from assess.studies.buildings import LEVELS, RECORDED
-from assess.studies.studied_methods import (
-    FORMULAS,
-    INTEGRATION,
-    KANEKO,
-    METHODS,
-    OR,
-    PRINTED,
-    Cases,
-    FloatArray,
-    evaluate_formulas,
-)
+from assess.studies.studied_methods import FORMULAS, INTEGRATION, KANEKO, METHODS, OR, PRINTED, Cases, evaluate_formulas
 from assess.studies.study import Finding, Options, Row, Study, Table, write_finding
 from assess.units import GRAVITY, LENGTH
 

@@ -29,7 +29,7 @@ import numpy as np
 from scipy.integrate import DenseOutput, OdeSolver
 from scipy.linalg.lapack import dgetrf, dgetrs
 
-from assess.studies.studied_methods import FloatArray
+from assess.arrays import FloatArray
 
 D, E32 = 1 / (2 + math.sqrt(2)), 6 + math.sqrt(2)
 SAFETY, SHRINK, GROW = 0.8, 0.1, 5.0

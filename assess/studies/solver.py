@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 
+from assess.arrays import FloatArray
 from assess.report.figures.draw import draw
-from assess.studies.studied_methods import FloatArray
 from assess.studies.study import Finding, Options, Row, Study, Table, read_facts, write_finding
 from assess.units import GRAVITY
 

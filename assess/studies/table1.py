@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from assess.arrays import FloatArray
 from assess.errors import InputError, RecordError
 from assess.intensity import RATIO
 from assess.motion.assumed import CODE_FACTOR, CODE_POWER, LONGER, UNKNOWN, estimate_period
@@ -32,7 +33,6 @@ from assess.studies.studied_methods import (
     SHORT_TITLES,
     STATIC,
     Cases,
-    FloatArray,
     evaluate_formulas,
 )
 from assess.studies.study import Finding, Options, Row, Study, Table, read_facts, write_finding

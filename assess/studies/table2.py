@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from assess.arrays import BoolArray
 from assess.report.figures.draw import draw
 from assess.risk import LIMITS, classify_all
 from assess.rocking.draws import BASE, Uncertainty
@@ -28,18 +29,7 @@ from assess.studies.agreement import (
     rock_all,
 )
 from assess.studies.buildings import FIRST_TOGETHER, HEIGHTS, LEVELS, RATIOS, RECORDED, TOGETHER
-from assess.studies.studied_methods import (
-    CRITERIA,
-    FEMA,
-    FORMULAS,
-    INTEGRATION,
-    JAPAN,
-    KANEKO,
-    METHODS,
-    OR,
-    STATIC,
-    BoolArray,
-)
+from assess.studies.studied_methods import CRITERIA, FEMA, FORMULAS, INTEGRATION, JAPAN, KANEKO, METHODS, OR, STATIC
 from assess.studies.study import Finding, Options, Row, Study, Table, read_facts, write_finding
 from assess.units import GRAVITY, LENGTH, ROUNDING
 

@@ -13,10 +13,11 @@ from typing import Any
 
 import numpy as np
 
+from assess.arrays import FloatArray
 from assess.report.figures.draw import draw
 from assess.risk import RiskClass, classify
 from assess.studies.agreement import correlate_ranks
-from assess.studies.studied_methods import KANEKO, METHODS, OR, STATIC, Cases, FloatArray
+from assess.studies.studied_methods import KANEKO, METHODS, OR, STATIC, Cases
 from assess.studies.study import Finding, Options, Row, Study, Table, read_facts, write_finding
 from assess.units import GRAVITY
 

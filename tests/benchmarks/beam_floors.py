@@ -8,13 +8,13 @@ import numpy as np
 from scipy.fft import irfft
 from scipy.signal import lfilter
 
+from assess.arrays import Single
 from assess.motion import beam_motions, noise
 from assess.motion.assumed import Building, FloorTarget, Ground
 from assess.motion.beam import DAMPING, MODES, solve_beam
 from assess.motion.beam_motions import Beams, open_floor
 from assess.motion.drawn_ground import build_beam_grid, draw_ground, fit_noise
 from assess.motion.floor_medians import find_medians
-from assess.motion.sweep import Single
 from assess.progress import SILENT
 from tests.benchmarks.measuring import compare, spent
 

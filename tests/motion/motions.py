@@ -3,8 +3,9 @@
 from functools import cache
 from pathlib import Path
 
+from assess.arrays import FloatArray
 from assess.motion.formats import read_records
-from assess.motion.record import FloatArray, Motion, treat
+from assess.motion.record import Motion, treat
 from tests.motion.test_record import make_record
 
 ROOT = Path(__file__).parents[2]

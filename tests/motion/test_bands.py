@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
+from assess.arrays import FloatArray, Single
 from assess.motion.bands import NEAR, find_common, meet_peaks, split_bands
-from assess.motion.record import FloatArray
-from assess.motion.sweep import Single
 from assess.motion.target_fit import measure_peaks
 
 STEP, COUNT = 0.005, 4000

@@ -7,9 +7,9 @@ import pytest
 from scipy.optimize import brentq
 from scipy.signal import StateSpace, lsim
 
+from assess.arrays import FloatArray
 from assess.motion.assumed import Building
 from assess.motion.beam import DAMPING, MODES, find_shares, shake_record, solve_beam, swing_modes
-from assess.motion.record import FloatArray
 from tests.motion.motions import make_motion
 
 STEP = 0.005

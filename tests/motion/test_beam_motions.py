@@ -6,14 +6,13 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
+from assess.arrays import FloatArray, Single
 from assess.motion import beam_motions
 from assess.motion.assumed import Building, FloorTarget, Ground, Meets
 from assess.motion.beam_motions import Beams, FloorMotions, open_floor
 from assess.motion.drawn_ground import build_beam_grid, draw_ground
 from assess.motion.floor_medians import find_medians
-from assess.motion.record import FloatArray
 from assess.motion.rows import GROUP
-from assess.motion.sweep import Single
 from assess.motion.target_fit import measure_peaks
 from assess.progress import SILENT
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from assess.arrays import FloatArray
 from assess.motion.calibrate import MOST_SHARPENED
 from assess.motion.recipe import (
     MOST_BENT,
@@ -14,7 +15,6 @@ from assess.motion.recipe import (
     measure_rows,
     shape_rows,
 )
-from assess.motion.record import FloatArray
 from assess.motion.target import Grid
 from tests.motion.motions import GROUND, TWELFTH, read_motion
 

@@ -5,12 +5,12 @@ from functools import cache
 import numpy as np
 import pytest
 
+from assess.arrays import FloatArray, Single
 from assess.intensity import RATIO
 from assess.motion.assumed import ALONG, CUT, RATIO_SCATTER, Building, Ground, draw_places, estimate_period
 from assess.motion.drawn_ground import AMPLIFIED, build_beam_grid, draw_ground, find_shape
-from assess.motion.record import FloatArray
 from assess.motion.rows import GROUP
-from assess.motion.sweep import Single, Sweep
+from assess.motion.sweep import Sweep
 from assess.motion.target_fit import measure_peaks
 from assess.progress import SILENT
 

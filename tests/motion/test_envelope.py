@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from assess.motion.record import FloatArray
+from assess.arrays import FloatArray
 from assess.motion.target import husid_envelopes, octaves, split
 from tests.motion.motions import read_motion
 

@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
+from assess.arrays import FloatArray
 from assess.errors import CancelledError
 from assess.motion import noise
 from assess.motion.generate import CALIBRATED, Generator, build_generator
-from assess.motion.record import FloatArray, Motion
+from assess.motion.record import Motion
 from assess.motion.rows import GROUP
 from assess.motion.spectrum import response_spectrum
 from assess.motion.target import Target, build_grid, matched_to, recorded_target

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from assess.arrays import FloatArray
 from assess.motion import noise
 from assess.motion.kept import Kept
 from assess.motion.noise import draw_bands, draw_noise, find_rates
-from assess.motion.record import FloatArray
 from assess.motion.rows import GROUP
 from assess.motion.target import STRETCH, Envelopes, Grid, octaves
 from assess.progress import SILENT

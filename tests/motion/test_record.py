@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 from scipy.signal import butter, sosfiltfilt
 
+from assess.arrays import FloatArray
 from assess.errors import CancelledError, RecordError
 from assess.motion.formats import read_records
 from assess.motion.record import (
     CORNER,
     FEWEST_SAMPLES,
     RESAMPLED_STEP,
-    FloatArray,
     Record,
     build_series,
     resample,

@@ -8,12 +8,12 @@ from functools import cache
 import numpy as np
 import pytest
 
+from assess.arrays import Single
 from assess.errors import CancelledError
 from assess.motion import shared_motions
 from assess.motion.generate import CALIBRATED, build_generator
 from assess.motion.kept import Kept
 from assess.motion.shared_motions import SharedMotions, share_motions
-from assess.motion.sweep import Single
 from assess.motion.target import Grid, Target, recorded_target
 from assess.progress import Progress
 from tests.motion.motions import cut

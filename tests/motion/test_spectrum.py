@@ -8,7 +8,7 @@ from eqsig import sdof
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from assess.motion.record import FloatArray
+from assess.arrays import FloatArray
 from assess.motion.rows import run_rows
 from assess.motion.spectrum import build_periods, oscillator_step, response_spectrum
 from assess.progress import SILENT

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from assess.motion.record import FloatArray
+from assess.arrays import FloatArray
 from assess.motion.spectrum import response_spectrum
 from assess.motion.sweep import FEWEST, Sweep, halve
 from tests.motion.motions import GROUND, ROOF, TWELFTH, read_motion

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from assess.motion.record import FloatArray
+from assess.arrays import FloatArray
 from assess.motion.spectrum import response_spectrum
 from assess.motion.sweep import Sweep
 from assess.motion.wavelets import Correction, build_wavelets

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from assess.motion.record import FloatArray
+from assess.arrays import FloatArray
 from assess.units import GRAVITY
 
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import assess
+from assess.arrays import Single
 from assess.intensity import RATIO
 from assess.methods import Cases, all_methods
 from assess.motion.assumed import UNKNOWN, Building, FloorTarget, Ground, estimate_period
@@ -19,7 +20,6 @@ from assess.motion.drawn_ground import build_beam_grid, draw_ground
 from assess.motion.floor_medians import find_medians
 from assess.motion.formats import read_records
 from assess.motion.record import treat
-from assess.motion.sweep import Single
 from assess.motion.target_fit import measure_peaks
 from assess.progress import SILENT
 from assess.settings import Settings

@@ -4,10 +4,11 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
+from assess.arrays import FloatArray
 from assess.errors import RecordError
 from assess.i18n import fill, join, nfill
 from assess.motion.formats._direction import UNKNOWN, Direction
-from assess.motion.record import FloatArray, Record, Series, check_samples, check_time_step, peak
+from assess.motion.record import Record, Series, check_samples, check_time_step, peak
 
 T = TypeVar("T")
 

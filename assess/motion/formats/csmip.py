@@ -19,13 +19,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from assess.arrays import FloatArray
 from assess.errors import RecordError
 from assess.i18n import fill
 from assess.motion.formats._direction import read_direction
 from assess.motion.formats._format import build_record, even_series
 from assess.motion.formats._text import Columns, Section, fields, read_columns, read_fields, read_format, text_format
 from assess.motion.formats._values import NUMBER, read_acceleration_unit, read_finite, read_peak
-from assess.motion.record import FloatArray, Record, Series, build_series
+from assess.motion.record import Record, Series, build_series
 from assess.units import ACCELERATION, GRAVITY
 
 V1, V2 = "CSMIP V1", "CSMIP V2"

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from assess.arrays import FloatArray
 from assess.errors import RecordError
 from assess.i18n import fill
 from assess.motion.formats._direction import UNKNOWN, Direction, read_direction
@@ -27,7 +28,7 @@ from assess.motion.formats._format import (
     check_channels,
     too_many_values,
 )
-from assess.motion.record import MOST_SAMPLES, FloatArray, Record, build_series
+from assess.motion.record import MOST_SAMPLES, Record, build_series
 from assess.plain_text import split_text
 from assess.progress import check_waits
 from assess.units import ACCELERATION, TIME, read_unit

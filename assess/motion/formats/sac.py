@@ -17,12 +17,13 @@ from datetime import datetime, timedelta
 
 import numpy as np
 
+from assess.arrays import FloatArray
 from assess.errors import RecordError
 from assess.i18n import fill
 from assess.motion.formats._direction import Direction, read_direction
 from assess.motion.formats._format import Format, build_record, even_series
 from assess.motion.formats._values import read_acceleration_unit
-from assess.motion.record import FloatArray, Record, check_count, peak
+from assess.motion.record import Record, check_count, peak
 
 TITLE = "SAC"
 

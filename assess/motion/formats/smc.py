@@ -14,6 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from assess.arrays import FloatArray
 from assess.errors import RecordError
 from assess.i18n import fill
 from assess.motion.formats._direction import Direction, read_direction
@@ -33,7 +34,7 @@ from assess.motion.formats._text import (
     too_long,
 )
 from assess.motion.formats._values import NUMBER, read_peak
-from assess.motion.record import FloatArray, Record, build_series
+from assess.motion.record import Record, build_series
 from assess.units import ACCELERATION
 
 TITLE = "USGS SMC"
