@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
+from assess.arrays import FloatArray  # noqa: E402
 from assess.intensity import RATIO  # noqa: E402
 from assess.motion.floor_medians import find_medians  # noqa: E402
 from assess.motion.generate import build_generator  # noqa: E402
-from assess.arrays import FloatArray  # noqa: E402
 from assess.motion.target import TIME_STEP, build_grid, recorded_target  # noqa: E402
 from assess.motion.target_fit import measure_peaks  # noqa: E402
 from assess.risk import classify_all  # noqa: E402
