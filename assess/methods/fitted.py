@@ -193,6 +193,7 @@ def build_method(model: Fitted, source: str) -> Method:
     """Return a model as a method; `source` says where it comes from."""
     is_probit = isinstance(model.formula, Probit)
     fitted, equations = model.fitted, _write_equations(model.formula)
+    no_better = [Reason(NO_BETTER)] if fitted.is_no_better else []
     return Method(
         key=model.key,
         title=fill("{name} (fitted on {data})", name=model.title, data=_shorten(fitted.data)),
@@ -209,7 +210,7 @@ def build_method(model: Fitted, source: str) -> Method:
         equations=equations,
         assumptions=(_judge(fitted), COMPARED, *(OF_PROBIT if is_probit else OF_POLYNOMIAL), BLOCK),
         flags={"clipped": CLIPPED} | (FLAGS_OF_PROBIT if is_probit else FLAGS_OF_POLYNOMIAL),
-        reasons=_list_reasons(fitted),
+        reasons=(Reason(APPROXIMATES), *no_better, Reason(BEYOND, flag="extrapolated")),
         fitted=fitted,
     )
 
@@ -254,11 +255,6 @@ NO_BETTER = (
 BEYOND = "The piece or its motion lies outside the data that the model was fitted to, or PFV is unknown."
 REASONS = (APPROXIMATES, NO_BETTER, BEYOND)
 """Texts of reasons, for the catalogues."""
-
-
-def _list_reasons(fitted: FittedOn) -> tuple[Reason, ...]:
-    no_better = [Reason(NO_BETTER)] if fitted.is_no_better else []
-    return (Reason(APPROXIMATES), *no_better, Reason(BEYOND, flag="extrapolated"))
 
 
 def _shorten(data: str) -> str:
@@ -444,7 +440,9 @@ def _build(file: str, found: dict[str, Any], kind: str) -> Fitted:
     return Fitted(
         key=_read_key(top),
         title=top.text("title", LONGEST_TITLE),
-        formula=_read_polynomial(formula) if kind == "polynomial" else _read_probit(formula),
+        formula=_read_polynomial(formula)
+        if kind == "polynomial"
+        else Probit(formula.number("b0"), formula.number("b1", 0.0), formula.number("b2", 0.0)),
         fitted=FittedOn(data=top.text("fitted_on", LONGEST_DATA), **numbers),
         ranges={name: limits.ends(name, one.unit) for name, one in QUANTITIES.items()},
     )
@@ -521,10 +519,6 @@ def _read_key(top: _Table) -> str:
         text = fill("is {value}, the key of a published method. Choose another.", value=_show(key))
         raise top.fault("key", text)
     return key
-
-
-def _read_probit(table: _Table) -> Probit:
-    return Probit(table.number("b0"), table.number("b1", 0.0), table.number("b2", 0.0))
 
 
 def _read_polynomial(table: _Table) -> Polynomial:

@@ -243,7 +243,12 @@ def _is_open(fallen: FloatArray, runs: int, settings: Settings) -> BoolArray:
 
 def steps(example: Example) -> list[Text]:
     """Work the numbers of the block, then the share of motions that overturn it, and its interval."""
-    return [*_work_block(example), *_work_share(example), *_work_record(example)]
+    fell, record = example.number("record_overturned"), list[Text]()
+    if fell == 1:
+        record = [fill("Under the recorded motion itself it overturns, so its class is at least high.")]
+    elif fell == 0:
+        record = [fill("Under the recorded motion itself it does not overturn.")]
+    return [*_work_block(example), *_work_share(example), *record]
 
 
 def _work_block(example: Example) -> list[Text]:
@@ -330,15 +335,6 @@ def _work_ideal(example: Example, runs: int) -> list[Text]:
             runs, k=int(fallen),
         )
     ]  # fmt: skip
-
-
-def _work_record(example: Example) -> list[Text]:
-    fell = example.number("record_overturned")
-    if math.isnan(fell):
-        return []
-    if fell:
-        return [fill("Under the recorded motion itself it overturns, so its class is at least high.")]
-    return [fill("Under the recorded motion itself it does not overturn.")]
 
 
 METHOD = Method(

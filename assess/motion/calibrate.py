@@ -5,8 +5,8 @@ the oscillators' own frequencies. The variance of an oscillator's response is a 
 its peak goes with the root: so the share of each part in the variance is half the slope of the logarithm of the peak,
 which a step inverts for all oscillators at once.
 
-Source of the idea: Gasparini DA, Vanmarcke EH (1976). Simulated earthquake motions compatible with prescribed response
-spectra. MIT, Department of Civil Engineering, R76-4 (peak factors, here without time; the inversion is ours)
+The idea and the peak factors, here without time, are those of Gasparini and Vanmarcke (1976), see
+`assess.motion.generate`; the inversion is ours.
 """
 
 from collections.abc import Callable, Sequence

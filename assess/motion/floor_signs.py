@@ -15,7 +15,7 @@ deviation of the correlation of unrelated noise of bandwidth B over a time T is 
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -101,7 +101,9 @@ def _weigh(count: int, time_step: float) -> tuple[int, FloatArray]:
 def _join(coherence: FloatArray, is_clear: NDArray[np.bool_], peaks: FloatArray) -> NDArray[np.int64]:
     """Return the signs (k,) of floors in one octave; `coherence` and `is_clear` are (k, k), `peaks` (k,)."""
     signs, groups = np.ones(len(peaks), dtype=np.int64), np.arange(len(peaks))
-    for one, other in _by_coherence(coherence):
+    ones, others = np.triu_indices(len(coherence), 1)
+    order = np.argsort(-np.abs(coherence[ones, others]), kind="stable")  # the most coherent two first
+    for one, other in zip(ones[order].tolist(), others[order].tolist(), strict=True):
         if is_clear[one, other] and groups[one] != groups[other]:
             joined = groups == groups[other]
             if signs[one] * signs[other] * coherence[one, other] < 0:
@@ -111,12 +113,6 @@ def _join(coherence: FloatArray, is_clear: NDArray[np.bool_], peaks: FloatArray)
         members = np.flatnonzero(groups == group)
         signs[members] *= signs[members[peaks[members].argmax()]]
     return signs
-
-
-def _by_coherence(coherence: FloatArray) -> Iterator[tuple[int, int]]:
-    ones, others = np.triu_indices(len(coherence), 1)
-    order = np.argsort(-np.abs(coherence[ones, others]), kind="stable")
-    yield from zip(ones[order].tolist(), others[order].tolist(), strict=True)
 
 
 def turn_phases(frequencies: FloatArray, signs: Sequence[int] | ArrayLike) -> NDArray[np.complex128]:

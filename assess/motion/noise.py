@@ -128,10 +128,8 @@ def draw_noise(
 
     `stretches` (GROUP,) of the time of each motion are drawn unless they are given [-].
 
-    Returns
-    -------
-    (GROUP, f) complex array
-        Fourier transforms of realisations `group` x GROUP and following, at the frequencies of `find_rates`.
+    Returned (GROUP, f): Fourier transforms of realisations `group` x GROUP and following, at the frequencies of
+    `find_rates`.
     """
     from scipy.fft import rfft
 

@@ -168,10 +168,7 @@ class Recipe:
     def shape(self, noise: Transforms, motions: Single) -> FloatArray:
         """Fill `motions` (k, n) with filtered noise whose velocity is bent and tapered.
 
-        Returns
-        -------
-        (k, 2) array
-            PFV before it is bent [m/s], and PFA after [m/s2].
+        Returned (k, 2): PFV before it is bent [m/s], and PFA after [m/s2].
         """
         from scipy.fft import irfft
 

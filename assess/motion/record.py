@@ -210,11 +210,9 @@ def treat(record: Record, baseline: Baseline = "standard", *, progress: Progress
     * `baseline`: "standard"; "none" leaves out the filter, not the removal of an uncorrected record's mean.
     * `progress`: asked often whether to stop; CancelledError then.
 
-    Returns
-    -------
-    Motion
-        With as many samples as `record`. Velocity and displacement start from zero: at the first sample, or, where
-        filtered, at the start of the zeros put before it, so that the pass backward in time leaves no false offset.
+    Returned: with as many samples as `record`. Velocity and displacement start from zero: at the first sample, or,
+    where filtered, at the start of the zeros put before it, so that the pass backward in time leaves no false
+    offset.
     """
     if baseline != "standard":
         return _treat(record, baseline, progress)

@@ -50,11 +50,14 @@ class Suite:
 
         Shorter ones are followed by rest. Where a `pfa` [m/s2] is given each is scaled to it.
         """
-        chosen = [motion for _, motion in self.motions[first : first + count]]
-        return [
-            (_stack([motion.acceleration * (1.0 if pfa is None else pfa / motion.pfa) for motion in alike]), step)
-            for step, alike in groupby(chosen, key=lambda motion: motion.time_step)
-        ]
+        chosen, batches = [motion for _, motion in self.motions[first : first + count]], []
+        for step, group in groupby(chosen, key=lambda motion: motion.time_step):
+            alike = list(group)
+            batch = np.zeros((len(alike), max(motion.acceleration.size for motion in alike)))
+            for row, motion in zip(batch, alike, strict=True):
+                row[: motion.acceleration.size] = motion.acceleration * (1.0 if pfa is None else pfa / motion.pfa)
+            batches.append((batch, step))
+        return batches
 
     def scaled_spectra(self, pfa: float | None = None, *, progress: Progress = SILENT) -> Spectra:
         """Return the spectra of the first 100 motions, each scaled to a `pfa` [m/s2] where one is given."""
@@ -69,13 +72,6 @@ class Suite:
         if pfa is not None:
             ordinates = ordinates * np.array([[pfa / motion.pfa] for _, motion in self.motions[:MOST_SPECTRA]])
         return Spectra(periods=periods, ordinates=ordinates.astype(np.float32))
-
-
-def _stack(rows: list[FloatArray]) -> FloatArray:
-    stacked = np.zeros((len(rows), max(row.size for row in rows)))
-    for at, row in enumerate(rows):
-        stacked[at, : row.size] = row
-    return stacked
 
 
 def read_suite(folder: Path | str, *, progress: Progress = SILENT) -> Suite:

@@ -3,8 +3,7 @@
 A filter that all realisations share cannot make a narrow dip between two modes, where the response is what the
 neighbours leave: a wavelet placed at the peak response of each realisation can.
 
-Source of the form: Al Atik L, Abrahamson N (2010). An improved method for nonstationary spectral matching. Earthquake
-Spectra 26(3):601-617. doi:10.1193/1.3459159 (tapered cosine; we change the mean of an ensemble with it)
+Their form is the tapered cosine of Al Atik and Abrahamson (2010), see `assess.motion.generate`.
 """
 
 import math

@@ -165,10 +165,8 @@ def draw_bodies(
     * `seed`, `first`, `count`: draws `first` to `first + count - 1`.
     * `scanned` (m,): which sizes were measured by a scan; None: none. The draws of the others do not depend on it.
 
-    Returns
-    -------
-    DrawnBodies
-        (m, count) each. Where nearly every restitution would be negative, of a body about too stocky to rock, it is 0.
+    Returned: (m, count) each. Where nearly every restitution would be negative, of a body about too stocky to rock,
+    it is 0.
     """
     every, which = np.unique(np.asarray(names), return_inverse=True)
     drawn = [_uniform([seed, _PIECE, int(one)], first, count, 4) for one in every]

@@ -16,9 +16,6 @@ done lane by lane. A pair at rest takes no steps: it goes on where the motion ne
 nothing can start it again its lane takes up the next pair. What happens in a lane does not depend on its neighbours.
 
 Time is counted in samples here: a velocity is an angle per sample. Angles are in rad, accelerations in g.
-
-Reference: Housner G (1963). The behavior of inverted pendulum structures during earthquakes. Bulletin of the
-Seismological Society of America 53(2):403-417.
 """
 
 import math
@@ -96,10 +93,7 @@ def rock(
     * `trace` (t, 3): filled with time [samples], theta [rad] and impacts so far after each step of the first lane;
       empty for none.
 
-    Returns
-    -------
-    int
-        Steps taken by all lanes.
+    Returned: steps taken by all lanes.
     """
     state, count = np.zeros(ROWS * LANES), np.zeros(COUNTERS * LANES, dtype=np.int64)
     crests, samples = _find_crests(motions, first, last), motions.ravel()

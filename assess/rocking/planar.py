@@ -4,13 +4,8 @@
 is found beside a wall stands next to its results and lowers none: the wall's own motion and pounding feed in energy
 that is left out here. Importing this imports numba: do so where bodies are to be rocked.
 
-References
-----------
-Housner G (1963). The behavior of inverted pendulum structures during earthquakes. Bulletin of the Seismological Society
-of America 53(2):403-417.
-
-Sorrentino L, AlShawa O, Decanini LD (2011). The relevance of energy damping in unreinforced masonry rocking mechanisms.
-Experimental and analytic investigations. Bulletin of Earthquake Engineering 9(5):1617-1642.
+Reference: Sorrentino L, AlShawa O, Decanini LD (2011). The relevance of energy damping in unreinforced masonry rocking
+mechanisms. Experimental and analytic investigations. Bulletin of Earthquake Engineering 9(5):1617-1642.
 doi:10.1007/s10518-011-9291-1. The restitution of the one-sided motion is assumed: not compared with the printed paper.
 """
 

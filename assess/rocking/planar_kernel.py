@@ -12,15 +12,6 @@ from the other; steps end at samples, are at most `LONGEST_STEP` / p long, and a
 polynomial rises or falls throughout, so that no peak, impact or fall within a step is missed.
 
 Time is in s, angles in rad, accelerations in g.
-
-References
-----------
-Housner G (1963). The behavior of inverted pendulum structures during earthquakes. Bulletin of the Seismological Society
-of America 53(2):403-417.
-
-Sorrentino L, AlShawa O, Decanini LD (2011). The relevance of energy damping in unreinforced masonry rocking mechanisms.
-Experimental and analytic investigations. Bulletin of Earthquake Engineering 9(5):1617-1642.
-doi:10.1007/s10518-011-9291-1 (the one-sided motion)
 """
 
 import math

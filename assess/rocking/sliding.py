@@ -55,10 +55,7 @@ def critical_friction(
     * `acceleration` (n,): of the floor, of either sign [m/s2].
     * `centre` (n,): height of the centre of gravity over `height` [-].
 
-    Returns
-    -------
-    (n,) array
-        NaN where the acceleration does not lift an edge, and where a number is unknown.
+    Returned (n,): NaN where the acceleration does not lift an edge, and where a number is unknown.
     """
     b, z = np.asarray(breadth) / 2, np.asarray(centre) * np.asarray(height)
     a = np.abs(acceleration) / GRAVITY
@@ -80,10 +77,8 @@ def branch(
     * `breadth`, `height`, `acceleration`, `centre`: as of `critical_friction`.
     * `friction` (n,): coefficient of friction [-]; resting and sliding friction are taken to be equal.
 
-    Returns
-    -------
-    (n,) integer array
-        `Branch`, or `UNKNOWN` where a number is NaN. `is_outside_shenton` tells where it goes beyond the publication.
+    Returned (n,): `Branch`, or `UNKNOWN` where a number is NaN. `is_outside_shenton` tells where it goes beyond the
+    publication.
     """
     given = np.broadcast_arrays(*np.atleast_1d(breadth, height, friction, acceleration, centre))
     B, H, mu, a, share = (np.asarray(values, dtype=np.float64) for values in given)
@@ -124,10 +119,7 @@ def peak_slip(
     * `threads`: motions are shared out among as many; they do not change a result.
     * `progress`: asked before each motion whether to stop.
 
-    Returns
-    -------
-    (m, k) array
-        Of each friction under each motion [m].
+    Returned (m, k): of each friction under each motion [m].
 
     Raises CancelledError if the caller stops the work; ValueError if a coefficient of friction is not above 0, or the
     motions, their scale or their time step are not finite numbers of that shape.

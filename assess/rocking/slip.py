@@ -1,11 +1,8 @@
-"""Newmark's sliding block under a motion that is linear between samples, compiled.
+"""Newmark's sliding block (see `assess.rocking.sliding`) under a motion that is linear between samples, compiled.
 
 While a body slides in the direction s its velocity along s, w >= 0, is quadratic in time within a sample: w' is
 -s a_g - mu g. It stops where w comes back to zero, rests while |a_g| <= mu g, and starts again against a_g where that
 is exceeded. All three instants are solved for in closed form. Importing this imports numba.
-
-Reference: Newmark NM (1965). Effects of earthquakes on dams and embankments. Géotechnique 15(2):139-160.
-doi:10.1680/geot.1965.15.2.139
 """
 
 import math

@@ -2,12 +2,8 @@
 
 The measured rotations are not part of the package: what stands here is computed, and compared with nothing.
 
-References
-----------
-Cocuzza Avellino G, Cannizzaro F, Impollonia N (2022). Shaking table seismic experimental investigation of lightweight
-rigid bodies. Buildings 12(7):915. doi:10.3390/buildings12070915.
-Housner G (1963). The behavior of inverted pendulum structures during earthquakes. Bulletin of the Seismological Society
-of America 53(2):403-417.
+Reference: Cocuzza Avellino G, Cannizzaro F, Impollonia N (2022). Shaking table seismic experimental investigation of
+lightweight rigid bodies. Buildings 12(7):915. doi:10.3390/buildings12070915.
 """
 
 import math

@@ -50,10 +50,7 @@ def read_direction(text: str, *, bare_degrees: bool = True) -> Direction:
     * `bare_degrees`: whether a number alone, or at the end of a station's code, is an azimuth and not the number of the
       channel.
 
-    Returns
-    -------
-    Direction
-        Not known where no word of it tells a direction, or where two of them contradict each other.
+    Returned: not known where no word of it tells a direction, or where two of them contradict each other.
     """
     text = text.strip()
     quadrant, degrees = _QUADRANT.fullmatch(text), _DEGREES.search(text)

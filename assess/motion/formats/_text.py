@@ -305,7 +305,12 @@ def convert(
         except ValueError:
             texts = here if isinstance(here, list) else decode(here)
             place = next((place for place, text in enumerate(texts) if read_real(text) is None), 0)
-            raise _no_number(texts[place].strip(), done + place, section, start, per_line) from None
+            text, number = texts[place].strip(), done + place
+            what = fill("{text!r} is not a number", text=text[:40]) if text else fill("a number is missing")
+            where = fill("number {number} of the data", number=number + 1)
+            if per_line is not None:
+                where = fill("line {line}", line=section.number(start + number // per_line))
+            raise RecordError.about("{where}: {what}. Get the file again", where=where, what=what) from None
         done += len(here)
         if done == count:
             break
@@ -326,11 +331,3 @@ def _convert(block: Cells | list[str]) -> FloatArray:
 def decode(cells: Cells) -> list[str]:
     """Return the texts of cells."""
     return [cell.tobytes().decode("latin-1") for cell in cells]
-
-
-def _no_number(text: str, place: int, section: Section, start: int, per_line: int | None) -> RecordError:
-    what = fill("{text!r} is not a number", text=text[:40]) if text else fill("a number is missing")
-    where = fill("number {number} of the data", number=place + 1)
-    if per_line is not None:
-        where = fill("line {line}", line=section.number(start + place // per_line))
-    return RecordError.about("{where}: {what}. Get the file again", where=where, what=what)

@@ -45,8 +45,11 @@ def _read_channel(section: Section, file: str) -> Record:
             "line {line} does not give the number of points and their time step. Get the file again", line=DATA
         )
     values, notes = read_words(section, DATA, int(count), factor)
-    event, station, component = _read_title(header["title"])
-    component = component.split("(")[0].strip()
+    # "event, date, station, component"; older titles have the date within the event.
+    event, *others = [part.strip() for part in header["title"].split(",")]
+    if others and _YEAR.fullmatch(others[0]):
+        event = f"{event}, {others.pop(0)}"
+    component = others.pop().split("(")[0].strip() if others else ""
     return build_record(
         TITLE,
         file,
@@ -54,18 +57,9 @@ def _read_channel(section: Section, file: str) -> Record:
         corrected=True,
         channel=component,
         direction=read_direction(component),
-        station=station,
+        station=", ".join(others),
         event=event,
     )
-
-
-def _read_title(line: str) -> tuple[str, str, str]:
-    """Split "event, date, station, component"; older titles have the date within the event."""
-    event, *others = [part.strip() for part in line.split(",")]
-    if others and _YEAR.fullmatch(others[0]):
-        event = f"{event}, {others.pop(0)}"
-    component = others.pop() if others else ""
-    return event, ", ".join(others), component
 
 
 FORMAT = text_format(

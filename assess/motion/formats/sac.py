@@ -20,7 +20,7 @@ import numpy as np
 from assess.arrays import FloatArray
 from assess.errors import RecordError
 from assess.i18n import fill
-from assess.motion.formats._direction import Direction, read_direction
+from assess.motion.formats._direction import read_direction
 from assess.motion.formats._format import Format, build_record, even_series
 from assess.motion.formats._values import read_acceleration_unit
 from assess.motion.record import Record, check_count, peak
@@ -83,13 +83,19 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
         samples = np.frombuffer(data, f"{header.order}f4", header.integers["count"], HEADER).astype(np.float64)
         factor, note = _read_unit(header, samples)
         series = even_series(samples * factor, float(f"{header.reals['delta'] or 0.0:.7g}"), (note,))
+    azimuth, tilt = header.reals["azimuth"], header.reals["tilt"]
+    direction = read_direction(header.texts["channel"], bare_degrees=False)
+    if tilt in {0.0, 180.0}:
+        direction = None, True
+    elif tilt == 90.0 and azimuth is not None and 0 <= azimuth <= 360:
+        direction = azimuth, False
     record = build_record(
         TITLE,
         file,
         series,
         corrected=False,
         channel=header.texts["channel"],
-        direction=_read_direction(header),
+        direction=direction,
         location=header.texts["place"],
         station=".".join(filter(None, (header.texts["network"], header.texts["station"]))),
         event=header.texts["event"],
@@ -152,15 +158,6 @@ def _read_unit(header: _Header, values: FloatArray) -> tuple[float, str]:
             fix=_FIX,
         )
     return NM_S2, fill("the unit is nm/s2, what the type of the samples (IDEP) means")
-
-
-def _read_direction(header: _Header) -> Direction:
-    azimuth, tilt = header.reals["azimuth"], header.reals["tilt"]
-    if tilt in {0.0, 180.0}:
-        return None, True
-    if tilt == 90.0 and azimuth is not None and 0 <= azimuth <= 360:
-        return azimuth, False
-    return read_direction(header.texts["channel"], bare_degrees=False)
 
 
 def _read_start(header: _Header) -> str:
