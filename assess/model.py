@@ -373,21 +373,12 @@ class Cost:
 class Inventory:
     """A building's furniture, its floors and how they shake.
 
-    * `source`: The workbook.
-    * `sha256`: Hash of the workbook's bytes.
-    * `building`, `floors`, `items`, `places`, `routes`, `catalogue`, `costs`: The sheets.
-    * `problems`: Warnings and notes; errors as well where it was read with ``strict=False``.
-    * `extra_columns`: Headers of the columns of Items that `assess` does not know.
-    * `hazard`: How often a year the ground shakes; compared by the hash of its file.
-    * `site_ground`: How the ground shakes at its place by a ShakeMap or in computed scenarios.
-    * `photos`: Photos of pieces as small JPEGs, by what the field `photo` in `Item.more` names.
-    * `files`: Hashes (SHA-256) of the recorded motions, of the hazard curve and of the ShakeMap, by name.
-    * `language`: Code of the workbook's language: that of more than half of the sheets it has, by their names; else
-      English.
-    * `sheets`: The workbook's own names of its sheets, by the English ones.
-    * `letters`: In which column of a sheet a field stands: letters by field, by the English name of the sheet.
-    * `corrections`: Cells that were understood although they are not typed as their column asks.
-    * `data`: The workbook's bytes; neither compared nor pickled.
+    `problems` holds warnings and notes, errors as well where it was read with ``strict=False``; `corrections` cells
+    that were understood although they are not typed as their column asks. `hazard` tells how often a year the ground
+    shakes, `site_ground` how it does by a ShakeMap or scenarios; `photos` are small JPEGs by what `photo` in
+    `Item.more` names, `files` SHA-256 hashes by name. `language` is that of more than half of the sheets by their
+    names, else English; `sheets` are their own names by the English ones, `letters` the columns of fields by sheet.
+    `data`, the workbook's bytes, is neither compared nor pickled.
     """
 
     source: Path

@@ -1177,18 +1177,14 @@ class Provenance:
 
     * `version`, `code`, `platform`: Of `assess`, the SHA-256 of its code, and versions of what the numbers were
       computed with.
-    * `workbook`, `sha256`: Name and hash of the workbook.
-    * `files`: Hashes (SHA-256) of the recorded motions, of the hazard curve and of the ShakeMap, by name.
+    * `workbook`, `sha256`, `files`: The workbook, its hash, and the hashes of the other files by name.
     * `scenario`: Where the floor motion came from, one of `assess.settings.SCENARIOS`.
-    * `uncertainty`: What was drawn of the earthquake and of the pieces.
-    * `earthquakes`: How draws of the earthquake depend on the place and on scenarios; None where they do not.
-    * `shaking`: The intensity that was assumed; None where no floor rests on one.
-    * `site_ground`: The ShakeMap or the scenarios at the building; None where no floor rests on them.
-    * `suite`: The user's own motions.
-    * `language`: Code of the language that reports are written in where none is asked for.
-    * `sheets`: The workbook's own names of its sheets, by the English ones.
-    * `letters`: In which column of a sheet a field stands.
-    * `extra_columns`: Headers of the columns of Items that `assess` does not know.
+    * `uncertainty`: What was drawn of the earthquake and of the pieces; `earthquakes` how that depends on the place and
+      on scenarios, None where it does not.
+    * `shaking`, `site_ground`, `suite`: The intensity that was assumed, the ShakeMap or scenarios, and the user's own
+      motions; None where nothing rests on them.
+    * `sheets`, `letters`: The workbook's own names of its sheets by the English ones, and in which column a field
+      stands.
     * `interval_z`: Half width of the sampling intervals, in standard deviations [-].
     * `looks`: Numbers of motions at which "auto" looks whether a class is resolved.
     * `profiles`: Every code's design profile, used or not.
@@ -1237,20 +1233,14 @@ class Results:
     `floors`, `segments`, `routes`, `rooms` and `problems` are pandas tables with the columns of items.csv, for
     notebooks.
 
-    * `settings`, `provenance`: How it was assessed, and from what.
-    * `building`: The building (SI units).
-    * `floor_rows`, `motions`, `item_rows`, `cases_table`: Floors, their motions, the furniture, and every piece under
-      every motion of its axis, or of both where its axis is blank.
+    * `cases_table`: Every piece under every motion of its axis, or of both where its axis is blank; `draws` tells in
+      which draws each row falls.
     * `route_tables`: Evacuation routes; its tables are empty where the workbook names none.
     * `annual`: What annual chances rest on, and those of the building; None where the workbook names no hazard file.
-    * `places`, `catalogue`: As the workbook has them.
-    * `problem_rows`: Warnings and notes about the input.
-    * `underestimates`: Warnings that more shaking is known than is used.
-    * `methods`: The methods, in the order of reports.
-    * `worked`: The worked example: what each method computes for the piece `worked_item` (its index), step by step.
+    * `problem_rows`: Warnings and notes about the input; `underestimates` warn that more shaking is known than is used.
+    * `worked`: What each method computes for the piece `worked_item` (its index), step by step.
     * `series`: Where series for figures lie.
     * `schedule`: What to fix, with what, and what is to be expected before and after.
-    * `draws`: In which draws each row falls.
     """
 
     settings: Settings

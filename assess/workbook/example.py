@@ -121,12 +121,9 @@ SHAKING = {"pfa_x": 0.3, "pfa_y": 0.25, "pfv_x": 28, "pfv_y": 24}
 
 
 def room_content(use: str, units: Units = "si", *, is_shaken: bool = False) -> Content:
-    """Return the types of a use and its example room, in the language in use.
+    """Return the types of a use, one of `USES`, and its example room, in the language in use.
 
-    * `use`: One of `assess.workbook.schema.USES`.
-    * `units` ("si" or "imperial"): Of the headers.
-    * `is_shaken`: Whether the floor gets a made-up shaking, so that the workbook can be run; otherwise shaking is all
-      it lacks.
+    Unless `is_shaken`, by which the floor gets a made-up shaking, shaking is all that the workbook lacks.
     """
     building = {"use": use} | ({"scenario": SCENARIO} if is_shaken else {})
     floor = FLOOR | (SHAKING if is_shaken else {})

@@ -44,9 +44,8 @@ def write_plainly(page: Any) -> None:
 def write_live(method: Method, cells: Mapping[str, str], parameters: Mapping[str, str]) -> dict[str, str]:
     """Return the formulas of a live method, without ``=``: its "value", and those of its columns that are live.
 
-    * `method`: One of `LIVE_METHODS`.
-    * `cells`: References by the names of `assess.methods.LiveCells`: breadth_to_height, height_cm, pfa_g, pfv_cm_s.
-    * `parameters`: References or numbers by the settings that the method reads.
+    `cells` are references by the names of `assess.methods.LiveCells`, `parameters` by the settings that the method
+    reads.
     """
     if method.live is None:
         raise ValueError(f"{method.key} has no live formula")

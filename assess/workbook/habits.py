@@ -86,11 +86,8 @@ class CellError(Exception):
 class Remark:
     """What is remarkable about a cell that can be read.
 
-    * `message`, `fix`: As in a `Problem`.
-    * `severity`: A note where the cell was merely typed otherwise than asked for.
-    * `habit`: Key of the habit, "" for none.
-    * `value`: What belongs into the cell instead, as in a `Correction`; None where nothing is to be corrected.
-    * `why`: What the correction does.
+    `severity` is a note where it was merely typed otherwise than asked for, by a `habit`, "" for none. `value` belongs
+    into the cell instead, as in a `Correction`, which `why` tells; None where nothing is to be corrected.
     """
 
     message: Text
@@ -104,11 +101,8 @@ class Remark:
 def note(habit: str, column: Text | str, text: str, value: object, corrected: float | str) -> Remark:
     """Return the note on a cell that shows a habit.
 
-    * `habit`: Key of the habit.
-    * `column`: Header of the column, with its unit.
-    * `text`: What the cell holds, in quotes.
-    * `value`: What it is read as, as the note shows it.
-    * `corrected`: What belongs into the cell.
+    `column` is its header with the unit, `text` what it holds in quotes, `value` what it is read as and `corrected`
+    what belongs into it.
     """
     said, why = _HABITS[habit]
     message = nfill(said.template, said.many, 1, **{**_BLANK, "column": column, "text": text, "value": value})

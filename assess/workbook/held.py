@@ -112,11 +112,8 @@ class HeldCells:
 class HeldSheets:
     """The sheets of a workbook that are read, by their English names; those of one's own are left out.
 
-    * `name`: How messages call the workbook.
-    * `cells`: The sheets that it has.
-    * `languages`: Codes of the languages of their names.
-    * `language`: That of the workbook.
-    * `problems`: Sheets that are missing, there twice or hidden.
+    `name` is how messages call it, `languages` those of the names of its sheets, `problems` sheets that are missing,
+    there twice or hidden.
     """
 
     name: str

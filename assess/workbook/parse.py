@@ -100,16 +100,13 @@ class Table:
     """One sheet as it was read; a form is a table of one row.
 
     * `sheet`: With the names that the workbook gives it and its columns; `language` is that of its own name.
-    * `found`: Whether the workbook has the sheet.
     * `places`: In which column of the sheet a field stands, from 0; in which row, for a form.
-    * `rows`: Those that hold anything.
-    * `extra`: Headers of the unknown columns.
-    * `blind`: Fields whose header gives no known unit, which has been reported.
+    * `rows`: Those that hold anything; `extra` are the headers of unknown columns, `header` is the row of the headers,
+      0 where none was found and in a form.
+    * `blind`: Fields whose header gives no known unit, which has been reported; `units` are those of the others.
     * `failed`: Addresses of the cells that have been reported as wrong.
     * `corrections`: Cells that were understood although they are not typed as their column asks.
     * `source`: Knows how messages call a cell.
-    * `header`: The row of the headers, 0 where none was found; of a form 0.
-    * `units`: Of the numbers, by field, as the headers name them; "" where a field has none.
     """
 
     sheet: Sheet
@@ -209,13 +206,7 @@ Tables = Mapping[str, Table]
 
 
 def parse_sheet(english: Sheet, own: Sheet, language: str, source: Source) -> tuple[Table, list[Problem]]:
-    """Read a sheet.
-
-    * `english`, `own`: With its English names, and with the name that the workbook gives it and labels in that
-      language.
-    * `language`: Code of the language of its name.
-    * `source`: Its cells.
-    """
+    """Read a sheet: `english` with its English names, `own` with the name and the labels of its `language`."""
     parser = _Parser(english, own, source)
     table = Table(sheet=own, language=language, found=True, source=source)
     read = parser.read_form() if own.layout == "form" else parser.read_table()

@@ -35,12 +35,8 @@ Taken = TypeVar("Taken")
 class PictureReader:
     """Reads the pictures that a workbook names, each once, and checks them as the functions of `check` do.
 
-    `folder`: where they are; None where the workbook was read without one.
-    `kept`: what earlier readings of the workbook made of its files.
-
-    * `logo`: The building's logo.
-    * `plans`: The plans of the floors that are drawn, by the number of their row.
-    * `photos`: The photos of the pieces as small JPEGs, by the text of their cell.
+    `folder` is where they are, None where the workbook was read without one. What is found: the `logo`, the `plans`
+    that are drawn by the row of their floor, and `photos` as small JPEGs by the text of their cell.
     """
 
     def __init__(self, folder: Path | None, progress: Progress, kept: KeptFiles | None = None) -> None:

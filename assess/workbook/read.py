@@ -174,11 +174,8 @@ def build_held(
 ) -> Inventory:
     """Return the inventory of tables that `parse_held` returned, as ``read_inventory(strict=False)`` does.
 
-    * `tables`, `problems`: What `parse_held` returned.
-    * `path`: The workbook; it is not read.
-    * `records`: The files that it names, or the folder in which they are.
-    * `progress`: Checked before every file.
-    * `kept`: What earlier readings made of those files.
+    The workbook, `path`, is not read. `records` are the files that it names or their folder, `kept` what earlier
+    readings made of them.
     """
     reader = FileReader(records, progress, kept)
     pictures = PictureReader(reader.folder, progress, kept)

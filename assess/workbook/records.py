@@ -101,15 +101,9 @@ Files = Mapping[str, bytes] | Path | None
 class FileReader:
     """Reads the files that a workbook names, each once, and checks them as the functions of `check` do.
 
-    * `files`: The files by name, or the folder in which they are.
-    * `progress`: Checked before every file, and every member of an archive.
-    * `kept`: What earlier readings of the workbook made of its files.
-    * `ground`: The ground motion of the run, in place of the workbook's own.
-
-    * `hashes`: SHA-256 of the recorded motions, of the hazard curve and of the ShakeMap, by the name of the file.
-    * `hazard`: The hazard curve of the site.
-    * `site_ground`: How the ground shakes at the building by a ShakeMap or scenarios.
-    * `records`: The recorded motions of the floors, by the number of their row and axis.
+    They are in `files` by name, or in that folder; `kept` is what earlier readings made of them, `ground` the ground
+    motion of the run, in place of the workbook's own. What is found: `hashes` (SHA-256) by the name of the file, the
+    `hazard` curve, `site_ground` by a ShakeMap or scenarios, and the `records` of floors by row and axis.
     """
 
     def __init__(

@@ -60,15 +60,10 @@ def is_free(column: Column) -> bool:
 def understand(column: Column, value: object, unit: str, quote: Quote) -> tuple[object, Remark | None]:
     """Return what belongs into a cell, and the note on that where it is not what the cell holds.
 
+    The value is a number in the unit of the header, a choice, a date or a name; `value` itself where nothing else can
+    be meant. `quote` returns a value as messages quote it.
+
     Raises CellError if the cell can be read in two ways, or holds a day that does not exist.
-
-    * `column`: Its column.
-    * `value`: What it holds, if that is not a plain number.
-    * `unit`: That of the header: numbers are returned in it.
-    * `quote`: Returns a value as messages quote it.
-
-    * `value`: A number, a choice, a date or a name; `value` itself where nothing else can be meant.
-    * `remark`: The note.
     """
     take = _TAKERS.get(column.kind)
     return take(column, value, unit, quote) if take else (value, None)
