@@ -46,20 +46,19 @@ def duplicates(table: Table, *names: str) -> Iterator[tuple[Row, Row]]:
             yield row, before
 
 
-def check_unique(table: Table) -> Iterator[Problem]:
-    """Report every name that the first column of a table defines a second time."""
+def check_unique(table: Table, *, is_looked_up: bool = False) -> Iterator[Problem]:
+    """Report every name that the first column of a table defines a second time.
+
+    Where spreadsheets look names up, warn of those that they take for patterns: a live column may take another row.
+    """
     name = table.sheet.columns[0].name
     for row, before in duplicates(table, name):
-        cell = table.cell(name, before.number)
-        values = {"label": table.label(name), "name": row.quote(name), "cell": cell}
-        message = fill("duplicate {label} {name}, also in {cell}.", **values)
+        message = fill(
+            "duplicate {label} {name}, also in {cell}.",
+            label=table.label(name), name=row.quote(name), cell=table.cell(name, before.number),
+        )  # fmt: skip
         yield table.problem(name, row, message, fill("Give each its own name."))
-
-
-def check_wildcards(table: Table) -> Iterator[Problem]:
-    """Warn of names that a spreadsheet's look-up takes for patterns, so that a live column may take another row."""
-    name = table.sheet.columns[0].name
-    for row in table.with_all(name):
+    for row in table.with_all(name) if is_looked_up else ():
         if any(sign in row.get(name) for sign in "*?~"):
             values = {"column": fill(table.label(name)), "name": row.quote(name)}
             message = fill("{column} {name} holds *, ? or ~, which Excel's look-ups read as patterns.", **values)
@@ -76,22 +75,21 @@ def check_references(
     once for the whole column. A name that `is_spare`, by table, field and row, is warned of.
     """
     for column in table.sheet.columns:
-        name = column.name
-        if column.source:
-            source, named = tables[column.source], table.with_all(name)
-            if source.found and source.sheet.columns[0].name in source.places:
-                known = defined(source)
-                unknown = [row for row in named if key(row.get(name)) not in known]
-                slips = {key(row.get(name)) for row in unknown}
-                near = {slip: known.get(find_near_name(slip, known) or "") for slip in slips}
-                for row in unknown:
-                    names = source.sheet.name, near[key(row.get(name))]
-                    yield _unknown(table, name, row, *names, is_spare=is_spare(table, name, row))
-            elif named and not source.found and not source.sheet.required:
-                spare = [row for row in named if is_spare(table, name, row)]
-                needed = [row for row in named if not is_spare(table, name, row)] if spare else named
-                yield from (_lacks_sheet(table, name, rows, source.sheet.name) for rows in (needed,) if rows)
-                yield from (_lacks_spare_sheet(table, name, rows, source.sheet.name) for rows in (spare,) if rows)
+        if not column.source:
+            continue
+        name, source, named = column.name, tables[column.source], table.with_all(column.name)
+        if source.found and source.sheet.columns[0].name in source.places:
+            known = defined(source)
+            unknown = [row for row in named if key(row.get(name)) not in known]
+            slips = {key(row.get(name)) for row in unknown}
+            near = {slip: known.get(find_near_name(slip, known) or "") for slip in slips}
+            for row in unknown:
+                meant = near[key(row.get(name))]
+                yield _unknown(table, name, row, source.sheet.name, meant, is_spare=is_spare(table, name, row))
+        elif not source.found and not source.sheet.required:
+            for wanted in (False, True):
+                if rows := [row for row in named if is_spare(table, name, row) is wanted]:
+                    yield _lacks_sheet(table, name, rows, source.sheet.name, is_spare=wanted)
 
 
 def _unknown(table: Table, name: str, row: Row, sheet: str, near: str | None, *, is_spare: bool) -> Problem:
@@ -107,23 +105,23 @@ def _unknown(table: Table, name: str, row: Row, sheet: str, near: str | None, *,
     return table.habit(name, row, fill("{label} {name} is not in the {sheet} sheet.", **values), fix)
 
 
-def _lacks_sheet(table: Table, name: str, named: Sequence[Row], sheet: str) -> Problem:
+def _lacks_sheet(table: Table, name: str, named: Sequence[Row], sheet: str, *, is_spare: bool) -> Problem:
+    values = {"label": fill(table.label(name)) if is_spare else table.label(name)}
+    values |= {"name": named[0].quote(name), "sheet": sheet}
     message = nfill(
         "{label} {name} is named, but there is no {sheet} sheet.",
         "{label} {name} and others are named in {n:,} rows, but there is no {sheet} sheet.",
-        len(named), label=table.label(name), name=named[0].quote(name), sheet=sheet,
+        len(named), **values,
     )  # fmt: skip
-    return table.problem(name, named[0], message, fill("Add the sheet, or clear the column."))
-
-
-def _lacks_spare_sheet(table: Table, name: str, named: Sequence[Row], sheet: str) -> Problem:
-    message = nfill(
-        "{label} {name} is named, but there is no {sheet} sheet; the sizes typed in its row are used.",
-        "{label} {name} and others are named in {n:,} rows, but there is no {sheet} sheet; the sizes typed in those "
-        "rows are used.",
-        len(named), label=fill(table.label(name)), name=named[0].quote(name), sheet=sheet,
-    )  # fmt: skip
-    return table.problem(name, named[0], message, fill("Add the sheet, or clear the column."), "warning")
+    if is_spare:
+        message = nfill(
+            "{label} {name} is named, but there is no {sheet} sheet; the sizes typed in its row are used.",
+            "{label} {name} and others are named in {n:,} rows, but there is no {sheet} sheet; the sizes typed in "
+            "those rows are used.",
+            len(named), **values,
+        )  # fmt: skip
+    fix = fill("Add the sheet, or clear the column.")
+    return table.problem(name, named[0], message, fix, "warning" if is_spare else "error")
 
 
 # ---------------------------------------------------------------- catalogue and floors
@@ -132,8 +130,7 @@ def _lacks_spare_sheet(table: Table, name: str, named: Sequence[Row], sheet: str
 def check_catalogue(tables: Tables) -> Iterator[Problem]:
     """Check the types of furniture."""
     table = tables["Catalogue"]
-    yield from check_unique(table)
-    yield from check_wildcards(table)
+    yield from check_unique(table, is_looked_up=True)
     for row in table.rows:
         yield from _check_plan_sides(table, row, row.get("breadth"), row.get("width"))
 
@@ -176,8 +173,7 @@ def check_floors(tables: Tables, *, is_shaken: bool = False) -> Iterator[Problem
     `is_shaken`: whether the ground's motion is given for the run.
     """
     table = tables["Floors"]
-    yield from check_unique(table)
-    yield from check_wildcards(table)
+    yield from check_unique(table, is_looked_up=True)
     building = tables["Building"]  # what is filled in there counts, be it usable or not
     has_ground = is_shaken or any(building.says(row, *SHAKEN) for row in building.rows)
     if not has_ground:
@@ -237,10 +233,10 @@ def check_velocities(tables: Tables) -> Iterator[Problem]:
     table = tables["Floors"]
     for row in table.with_all("floor"):
         for axis in AXES:
-            name, letter = f"pfv_{axis.lower()}", axis.lower()
-            if row.get(name) is not None and not table.says(row, f"pfa_{letter}", f"record_{letter}"):
+            pfa, pfv, record = (f"{what}_{axis.lower()}" for what in ("pfa", "pfv", "record"))
+            if row.get(pfv) is not None and not table.says(row, pfa, record):
                 message = fill("PFV {axis} is filled in without PFA {axis} and would not be used.", axis=axis)
-                yield table.habit(name, row, message, fill("Fill in PFA {axis}, or clear PFV {axis}.", axis=axis))
+                yield table.habit(pfv, row, message, fill("Fill in PFA {axis}, or clear PFV {axis}.", axis=axis))
 
 
 # ---------------------------------------------------------------- furniture

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import hypot, inf
+from math import hypot
 
 from assess.errors import Problem
 from assess.i18n import fill, nfill
@@ -23,23 +23,21 @@ MOST_NAMED = 3
 """So many rooms are named in one sentence."""
 
 
-def check_places(tables: Tables) -> Iterator[Problem]:
-    """Check the names and the floors of places."""
-    yield from check_unique(tables["Places"])
-    yield from check_references(tables["Places"], tables)
-
-
 # ---------------------------------------------------------------- segments
 
 
-def check_segment_names(tables: Tables) -> Iterator[Problem]:
-    """Check that segments name floors and places that are there, and that no route has two of one name."""
+def check_names(tables: Tables) -> Iterator[Problem]:
+    """Check that places and segments name what is there, and that none is there twice."""
     table = tables["Routes"]
+    yield from check_unique(tables["Places"])
+    yield from check_references(tables["Places"], tables)
     yield from check_references(table, tables)
     for row, before in duplicates(table, "route", "segment"):
-        values = {"label": table.label("segment"), "segment": row.quote("segment"), "other": table.label("route")}
-        values |= {"route": row.quote("route"), "cell": table.cell("segment", before.number)}
-        message = fill("duplicate {label} {segment} of {other} {route}, also in {cell}.", **values)
+        message = fill(
+            "duplicate {label} {segment} of {other} {route}, also in {cell}.",
+            label=table.label("segment"), segment=row.quote("segment"), other=table.label("route"),
+            route=row.quote("route"), cell=table.cell("segment", before.number),
+        )  # fmt: skip
         yield table.problem("segment", row, message, fill("Give each its own name."))
 
 
@@ -130,19 +128,14 @@ def _check_widths(table: Table, row: Row) -> Iterator[Problem]:
 
 def _check_length(table: Table, row: Row, start: Row, end: Row) -> Iterator[Problem]:
     labels = {"one": table.label("start"), "other": table.label("end")}
+    ends = [(start.get(name), end.get(name)) for name in ("x", "y")]
+    is_placed = start.get("floor") == end.get("floor") and all(None not in pair for pair in ends)
     if start is end:
         message = fill("{one} and {other} are the same place: the segment has no length.", **labels)
         yield table.problem("end", row, message, fill("Choose another place, or delete the row."))
-    elif start.get("floor") == end.get("floor") and hypot(*_apart(start, end)) <= SAME_POINT:
+    elif is_placed and hypot(*(other - one for one, other in ends)) <= SAME_POINT:
         message = fill("{one} and {other} are at the same point of the plan: the segment has no length.", **labels)
         yield table.problem("end", row, message, fill("Correct their positions in Places, or choose another place."))
-
-
-def _apart(start: Row, end: Row) -> Iterator[float]:
-    """Yield the distances of two places along X and Y [m]; endless where one has no position."""
-    for name in ("x", "y"):
-        one, other = start.get(name), end.get(name)
-        yield inf if one is None or other is None else other - one
 
 
 def _check_floor(table: Table, row: Row, floors: Sequence[str | None]) -> Iterator[Problem]:
@@ -172,29 +165,21 @@ def check_network(tables: Tables) -> Iterator[Problem]:
         return
     known = places.with_all("place")
     ends = {key(row.get(name) or "") for row in table.rows for name in ("start", "end")}
-    yield from _warn_unjoined(
-        places, [row for row in known if row.get("kind") == "room" and key(row.get("place")) not in ends]
-    )
-    joined = table.with_all("start", "end")
-    ends = {key(row.get(name)) for row in joined for name in ("start", "end")}
-    kinds = {
-        OUT[0] if places.spoilt("kind", row) else row.get("kind") for row in known if key(row.get("place")) in ends
-    }
-    if joined and not kinds & {*OUT}:
-        message = fill("no place of Kind exit or stair is joined by any segment, so no room is evaluated.")
-        yield table.problem("end", joined[0], message, fill("Fill in the Kind of the places that lead out."), "warning")
-
-
-def _warn_unjoined(places: Table, rooms: Sequence[Row]) -> Iterator[Problem]:
+    rooms = [row for row in known if row.get("kind") == "room" and key(row.get("place")) not in ends]
     if rooms:
         message = nfill(
             "the room {rooms} is not on any route: whether it keeps an exit is not evaluated.",
             "{n} rooms are not on any route, such as {rooms}: whether they keep an exit is not evaluated.",
-            len(rooms),
-            rooms=", ".join(row.quote("place") for row in rooms[:MOST_NAMED]),
-        )
+            len(rooms), rooms=", ".join(row.quote("place") for row in rooms[:MOST_NAMED]),
+        )  # fmt: skip
         fix = fill("Let a segment begin or end at every room, or leave it out of Places.")
         yield places.problem("place", rooms[0], message, fix, "warning")
+    joined = table.with_all("start", "end")
+    ends = {key(row.get(name)) for row in joined for name in ("start", "end")}
+    own = [row for row in known if key(row.get("place")) in ends]
+    if joined and not any(places.spoilt("kind", row) or row.get("kind") in OUT for row in own):
+        message = fill("no place of Kind exit or stair is joined by any segment, so no room is evaluated.")
+        yield table.problem("end", joined[0], message, fill("Fill in the Kind of the places that lead out."), "warning")
 
 
 # ---------------------------------------------------------------- furniture next to routes
@@ -221,18 +206,19 @@ def _check_segment(items: Table, row: Row, routes: Table, segments: Segments) ->
         yield items.problem("segment", row, message, fill("Fill in {whole}.", whole=whole))
     elif own and segment and key(segment) in own:
         yield from _check_item_floor(items, row, "segment", {routes.sound("floor", own[key(segment)])})
-    elif own and segment and not _has_unnamed(routes, route):
+    elif (
+        own
+        and segment
+        and not any(
+            row.get("segment") is None for row in routes.with_all("route") if key(row.get("route")) == key(route)
+        )
+    ):
         values = {"label": items.label("route"), "route": shorten(route), "segment": shorten(segment)}
         message = fill("{label} {route} has no segment {segment}.", **values)
         fix = fill("Add it to {sheet}, or clear the cell.", sheet=routes.sheet.name)
         yield items.problem("segment", row, message, fix)
     elif own and not segment and not items.spoilt("segment", row):
         yield from _check_item_floor(items, row, "route", {routes.sound("floor", one) for one in own.values()})
-
-
-def _has_unnamed(routes: Table, route: str) -> bool:
-    own = (row for row in routes.with_all("route") if key(row.get("route")) == key(route))
-    return any(row.get("segment") is None for row in own)
 
 
 def _check_item_floor(items: Table, row: Row, name: str, floors: set[str | None]) -> Iterator[Problem]:
@@ -267,9 +253,26 @@ def check_positions(tables: Tables) -> Iterator[Problem]:
     for floor in dict.fromkeys(one.floor for one in segments):
         rows = [row for row in items.rows if items.sound("floor", row) == floor]
         free = [row for row in rows if items.lacks(row, "route")]
-        yield from _warn_unplaced(items, floor, rows, [row for row in free if not items.says(row, "x", "y")])
-        if not any(one.may_be_drawn for one in segments if one.floor == floor):
-            yield from _warn_no_plan(items, floor, [row for row in free if _is_placed(items, row)])
+        if lost := [row for row in free if not items.says(row, "x", "y")]:
+            message = nfill(
+                "{n} of {total} pieces of floor {floor} has neither a position nor a Route: whether it falls onto a "
+                "route is not known, and it is not counted.",
+                "{n} of {total} pieces of floor {floor} have neither a position nor a Route: whether they fall onto a "
+                "route is not known, and they are not counted.",
+                _count_pieces(lost), total=_count_pieces(rows), floor=shorten(floor),
+            )  # fmt: skip
+            yield items.problem("x", lost[0], message, fill("Fill in X, Y and Angle, or name the Route."), "warning")
+        placed = [row for row in free if _is_placed(items, row)]
+        if placed and not any(one.may_be_drawn for one in segments if one.floor == floor):
+            message = nfill(
+                "{n} piece of floor {floor} has a position, but no segment of that floor has both its places placed, "
+                "and it names no Route: it is not counted.",
+                "{n} pieces of floor {floor} have a position, but no segment of that floor has both its places "
+                "placed, and they name no Route: they are not counted.",
+                _count_pieces(placed), floor=shorten(floor),
+            )  # fmt: skip
+            fix = fill("Fill in X and Y of the places, or name the Route.")
+            yield items.problem("x", placed[0], message, fix, "warning")
     yield from _note_undrawn(tables, segments)
 
 
@@ -284,7 +287,7 @@ def _on_plan(tables: Tables) -> Iterator[_OnPlan]:
         floor = routes.sound("floor", row) or (min(on) if len(on) == 1 else None)
         if floor is not None and len(on) <= 1 and not routes.spoilt("floor", row):
             wrong = {name for name in names if routes.spoilt(name, row)}
-            drawn = {name for name, place in own.items() if _says_all(places, place)}
+            drawn = {name for name, place in own.items() if places.says(place, "x") and places.says(place, "y")}
             yield _OnPlan(row, own, floor, len(wrong | drawn) == len(names))
 
 
@@ -292,44 +295,15 @@ def _is_placed(table: Table, row: Row) -> bool:
     return table.sound("x", row) is not None and table.sound("y", row) is not None
 
 
-def _says_all(table: Table, row: Row) -> bool:
-    return table.says(row, "x") and table.says(row, "y")
-
-
 def _count_pieces(rows: Iterable[Row]) -> int:
     return sum(row.get("quantity") or 1 for row in rows)
-
-
-def _warn_unplaced(items: Table, floor: str, rows: Sequence[Row], lost: Sequence[Row]) -> Iterator[Problem]:
-    if lost:
-        message = nfill(
-            "{n} of {total} pieces of floor {floor} has neither a position nor a Route: whether it falls onto a route "
-            "is not known, and it is not counted.",
-            "{n} of {total} pieces of floor {floor} have neither a position nor a Route: whether they fall onto a "
-            "route is not known, and they are not counted.",
-            _count_pieces(lost), total=_count_pieces(rows), floor=shorten(floor),
-        )  # fmt: skip
-        yield items.problem("x", lost[0], message, fill("Fill in X, Y and Angle, or name the Route."), "warning")
-
-
-def _warn_no_plan(items: Table, floor: str, lost: Sequence[Row]) -> Iterator[Problem]:
-    if lost:
-        message = nfill(
-            "{n} piece of floor {floor} has a position, but no segment of that floor has both its places placed, and "
-            "it names no Route: it is not counted.",
-            "{n} pieces of floor {floor} have a position, but no segment of that floor has both its places placed, "
-            "and they name no Route: they are not counted.",
-            _count_pieces(lost),
-            floor=shorten(floor),
-        )
-        yield items.problem("x", lost[0], message, fill("Fill in X and Y of the places, or name the Route."), "warning")
 
 
 def _note_undrawn(tables: Tables, segments: Sequence[_OnPlan]) -> Iterator[Problem]:
     items, routes, places = (tables[name] for name in ("Items", "Routes", "Places"))
     drawn = {items.sound("floor", row) for row in items.rows if _is_placed(items, row)}
     for one in segments:
-        lack = [name for name, place in one.places.items() if not _says_all(places, place)]
+        lack = [name for name, place in one.places.items() if not (places.says(place, "x") and places.says(place, "y"))]
         if lack and len(one.places) == 2 and one.floor in drawn:
             message = fill(
                 "{place} has no position in Places: pieces count beside this segment only where they name it.",
