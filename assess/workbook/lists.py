@@ -120,12 +120,27 @@ class ListsWriter:
     def write(self) -> None:
         """Write everything, one block beside the other."""
         self.page.write_string(0, 0, gettext(LISTS_NOTE), self.title)
-        at = self._write_columns(0, _list_choices())
-        at = self._write_columns(at + 1, _list_shakings())
+        chosen = {one.name: one for sheet in SHEETS for one in sheet.columns if one.choices or one.offered}
+        at = self._write_columns(0, [
+            (f"list_{name}", gettext(column.label), [gettext(text) for text in column.choices or column.offered])
+            for name, column in chosen.items()
+        ])  # fmt: skip
+        # of every choice of Shaking PGA [g], PGV [cm/s], its scatter, and whether PGA is derived
+        shakings = [(one.pga / GRAVITY, 100 * one.pgv, one.scatter, int(one.is_derived)) for one in SHAKINGS.values()]
+        at = self._write_columns(at + 1, [
+            (f"shakings_{name}", f"shaking {name}", [row[place] for row in shakings])
+            for place, name in enumerate(("pga", "pgv", "scatter", "derived"))
+        ])  # fmt: skip
         at = self._write_floor_table(at + 1)
         at = self._write_units(at + 1)
         at = self._write_definitions(at + 1)
-        at = self._write_columns(at + 1, _list_nodes())
+        # what a floor has of the ground's PFA and PFV at each z/h of the table, by axis
+        nodes = {axis: [f"={one}" for one in live_ground.list_nodes(axis)] for axis in "xy"}
+        at = self._write_columns(at + 1, [
+            (f"nodes_{axis}_{peak}", f"nodes_{axis}_{peak}", own)
+            for axis, every in nodes.items()
+            for peak, own in (("a", every[: len(every) // 2]), ("v", every[len(every) // 2 :]))
+        ])  # fmt: skip
         at = self._write_rows(at + 1, "Floors", "floor", _FLOOR_HELPERS, _of_floor)
         self._write_rows(at + 1, "Catalogue", "type", _TYPE_HELPERS, _of_type)
         for name in ("Floors", "Catalogue", "Places", "Routes"):
@@ -169,11 +184,16 @@ class ListsWriter:
 
     def _write_definitions(self, at: int) -> int:
         self.page.write_row(2, at, (gettext("header"), gettext("factor")))
-        letter, rows = xl_col_to_name(at + 1), [*self._list_factors(), *_list_words()]
+        letter, rows = xl_col_to_name(at + 1), [*self._list_factors()]
+        for name, label, words in (
+            ("anchored_words", gettext("words for anchored"), list_words(ANCHORED, YES)),
+            ("scanned_words", gettext("words for sizes by a scan"), list_words(SIZES_FROM, SCANNED)),
+        ):
+            rows.append((name, label, f'"{words}"', words))
         rows += _list_scenario(*(f"${letter}${4 + len(rows) + line}" for line in range(2)))
         building = {column.name: f"{gettext(BUILDING.name)}!$B${_line(column.name)}" for column in BUILDING.columns}
-        words = (f'"{gettext(one)}"' for one in (RUN_ASSESS, WRONG))
-        rows += [(name, name, formula, "") for name, formula in live_ground.list_names(building, *words)]
+        said = (f'"{gettext(one)}"' for one in (RUN_ASSESS, WRONG))
+        rows += [(name, name, formula, "") for name, formula in live_ground.list_names(building, *said)]
         for row, (name, label, formula, value) in enumerate(rows, 4):
             self.page.write_string(row - 1, at, label)
             self.page.write_formula(row - 1, at + 1, f"={formula}", None, value)
@@ -214,36 +234,6 @@ class ListsWriter:
         for name in _TYPED[sheet]:
             self._name(f"typed_{name}", sheet, LETTERS[sheet, name], 1, last)
         return at + len(names)
-
-
-def _list_choices() -> Iterator[tuple[str, str, list[str]]]:
-    chosen = {one.name: one for sheet in SHEETS for one in sheet.columns if one.choices or one.offered}
-    for name, column in chosen.items():
-        yield f"list_{name}", gettext(column.label), [gettext(text) for text in column.choices or column.offered]
-
-
-def _list_shakings() -> Iterator[tuple[str, str, list[float]]]:
-    """Yield PGA [g], PGV [cm/s], scatter, and whether PGA is derived, of every choice."""
-    values = [(one.pga / GRAVITY, 100 * one.pgv, one.scatter, int(one.is_derived)) for one in SHAKINGS.values()]
-    for place, name in enumerate(("pga", "pgv", "scatter", "derived")):
-        yield f"shakings_{name}", f"shaking {name}", [row[place] for row in values]
-
-
-def _list_nodes() -> Iterator[tuple[str, str, list[str]]]:
-    for axis in "xy":
-        every = [f"={one}" for one in live_ground.list_nodes(axis)]
-        half = len(every) // 2
-        for peak, formulas in (("a", every[:half]), ("v", every[half:])):
-            yield f"nodes_{axis}_{peak}", f"nodes_{axis}_{peak}", formulas
-
-
-def _list_words() -> Iterator[Definition]:
-    for name, label, choices, choice in (
-        ("anchored_words", gettext("words for anchored"), ANCHORED, YES),
-        ("scanned_words", gettext("words for sizes by a scan"), SIZES_FROM, SCANNED),
-    ):
-        words = list_words(choices, choice)
-        yield name, label, f'"{words}"', words
 
 
 def _list_scenario(typed: str, kind: str) -> Iterator[Definition]:
