@@ -30,12 +30,12 @@ from assess.errors import Problem, WorkbookError
 from assess.i18n import Text, fill, nfill
 from assess.progress import SILENT, Progress
 from assess.units import LENGTH, read_unit
-from assess.workbook.habits import CellError
+from assess.workbook.habits import CellError, shorten
 from assess.workbook.names import key
 from assess.workbook.open import UNSAVED
 from assess.workbook.ranges import is_within
 from assess.workbook.schema import BUILDING, CATALOGUE, FLOORS, Column
-from assess.workbook.values import read_cell, shorten
+from assess.workbook.values import read_cell
 
 __all__ = ["convert", "is_cobie", "read_cobie"]
 

@@ -19,10 +19,10 @@ from assess.pipeline.live_values import store_live
 from assess.plain_text import plain_text
 from assess.version import __version__
 from assess.workbook.catalogue import read_catalogue
+from assess.workbook.habits import clean
 from assess.workbook.names import key
 from assess.workbook.schema import SHEETS
 from assess.workbook.template import Content, Rows, write_workbook
-from assess.workbook.values import clean
 
 LONGEST_CELL = 32_767
 """Characters that a spreadsheet takes in a cell."""

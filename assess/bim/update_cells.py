@@ -10,6 +10,7 @@ from typing import Any, Literal
 from assess.errors import Problem
 from assess.i18n import Text, fill, nfill
 from assess.units import QUANTITIES
+from assess.workbook.habits import shorten
 from assess.workbook.held import HeldCells
 from assess.workbook.names import is_live, key, say_choices, split_header
 from assess.workbook.open import MAX_ROWS, UNSAVED, Percent, Place
@@ -18,7 +19,7 @@ from assess.workbook.parse import Row, Table
 from assess.workbook.patch import Value
 from assess.workbook.plain_rows import column_letters, split_range
 from assess.workbook.schema import NO, YES, Column
-from assess.workbook.values import is_blank, read_text, shorten
+from assess.workbook.values import is_blank, read_text
 
 Rows = Sequence[Mapping[str, Any]]
 Kind = Literal["changed", "added", "missing", "kept", "left_out"]

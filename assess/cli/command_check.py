@@ -110,7 +110,7 @@ def _write_corrected(path: Path, out: Path, *, replaces: bool) -> "Inventory":
 def _describe(done: "Corrected", path: Path, out: Path) -> Iterator[str]:
     """Yield what was changed, and what was not."""
     from assess.pipeline.corrected import group_corrections
-    from assess.workbook.values import shorten
+    from assess.workbook.habits import shorten
 
     if done.changed:
         yield f"wrote {out}: {count(len(done.changed), 'cell')} corrected."
@@ -128,7 +128,7 @@ def _describe(done: "Corrected", path: Path, out: Path) -> Iterator[str]:
 
 def _describe_group(group: "Sequence[Correction]") -> str:
     """Return the first corrections of one kind, and how many there are."""
-    from assess.workbook.values import shorten
+    from assess.workbook.habits import shorten
 
     shown = []
     for one in group[:MOST_SHOWN]:

@@ -72,7 +72,7 @@ def read_size(text: str | float) -> float:
     except ValueError:
         pass
     try:
-        found = understand(ITEMS.column("breadth"), str(text), "cm", repr)[0]
+        found = understand(ITEMS.column("breadth"), str(text), "cm")[0]
     except CellError as error:
         raise typer.BadParameter(f"{error.message} {error.fix}".strip()) from None
     if not isinstance(found, int | float):

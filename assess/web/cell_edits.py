@@ -15,7 +15,7 @@ from assess.workbook.open import MAX_COLUMNS, MAX_ROWS, Area
 from assess.workbook.patch import LARGEST_NUMBER, LONGEST_TEXT, Value, find_headers, read_back
 from assess.workbook.plain_rows import split_range
 from assess.workbook.typed import is_converted, is_free, understand
-from assess.workbook.values import is_blank, shorten
+from assess.workbook.values import is_blank
 
 MOST_STEPS, MOST_CELLS = 200, 1_000_000
 """Steps, and cells of all of them together, that are kept; the oldest are forgotten first."""
@@ -221,7 +221,7 @@ def _take_value(column: PageColumn, value: Value) -> Value:
     if is_free(known) or (isinstance(value, bool) and known.kind not in ("choice", "flag")):
         return value
     try:
-        meant, remark = understand(known, value, column.unit, shorten)
+        meant, remark = understand(known, value, column.unit)
     except CellError:
         return value
     if known.kind in ("choice", "flag"):

@@ -12,11 +12,11 @@ from assess.i18n import Text, fill, join, nfill
 from assess.model import AXES, MEASURED, CatalogueType
 from assess.motion.assumed import find_lowest_number, find_storey
 from assess.units import ROUNDING
+from assess.workbook.habits import shorten
 from assess.workbook.names import find_near_name, key
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.resolve import build_catalogue, defined, filled_sizes, turned_axis
 from assess.workbook.schema import SHAKEN
-from assess.workbook.values import shorten
 
 Check = Callable[[Tables], Iterable[Problem]]
 

@@ -9,11 +9,11 @@ from assess.i18n import fill, nfill
 from assess.model import split_names
 from assess.natural import natural_key
 from assess.workbook.check import check_references, check_unique, duplicates
+from assess.workbook.habits import shorten
 from assess.workbook.names import find_near_name, key
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.resolve import Segments, defined, defined_by, list_segments, places_by_name
 from assess.workbook.schema import DEFAULT_WIDTH
-from assess.workbook.values import shorten
 
 SAME_POINT, SAME_WIDTH = 0.01, 1e-6
 """Up to these distances [m] two places are at one point, and two widths are the same."""

@@ -9,10 +9,10 @@ from functools import cache
 
 from assess.errors import Problem
 from assess.i18n import LANGUAGES, fill, gettext, load_catalogue, nfill
+from assess.workbook.habits import shorten
 from assess.workbook.names import key
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.schema import DEFAULT_WIDTH
-from assess.workbook.values import shorten
 
 DRAFT = fill("(draft)")
 """The mark, in English; it is known in every language."""

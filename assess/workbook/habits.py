@@ -7,7 +7,11 @@ from typing import Any
 
 from assess.errors import Gap, Problem, Severity
 from assess.i18n import Text, fill, nfill
+from assess.plain_text import UNCLEAN, plain_text
 
+SHOWN = 60
+"""Characters of a value that its message quotes."""
+_ESCAPE = re.compile(r"_x(00[01][0-9A-Fa-f])_")  # how a workbook writes control characters
 SHOWN_CELLS = 3
 """Cells of a group that its message names."""
 
@@ -72,6 +76,24 @@ _HABITS: Mapping[str, tuple[Text, Text]] = {
     ),
 }  # fmt: skip
 """By habit: what is said of one cell and of many, and what a correction says was done."""
+
+
+def shorten(value: object) -> str:
+    """Return a value as it may be quoted in a message: clean, in quotes, at most 60 characters."""
+    text = clean(str(value))[0]
+    return f"'{text[:SHOWN]}…'" if len(text) > SHOWN else f"'{text}'"
+
+
+def clean(text: str) -> tuple[str, int]:
+    """Take out of a text what is not text, and count it.
+
+    Control characters become the replacement character; unseen marks, such as those that turn the direction of
+    writing, are left out, since they make a text show other than it reads. Line breaks and tabs stay.
+    """
+    if text.isascii() and text.isprintable() and "_x0" not in text:
+        return text, 0
+    text = _ESCAPE.sub(lambda match: chr(int(match[1], 16)), text).replace("\r\n", "\n").replace("\r", "\n")
+    return plain_text(text), len(UNCLEAN.findall(text))
 
 
 class CellError(Exception):

@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from assess.errors import Correction, FurnitureGap, Gap, Problem, Severity
 from assess.i18n import Text, fill, join, nfill
 from assess.units import QUANTITIES, read_unit
-from assess.workbook.habits import CellError
+from assess.workbook.habits import CellError, shorten
 from assess.workbook.names import ENGLISH, find_column, find_near_column, is_live, plain, split_header, versions
 from assess.workbook.open import HEADER_ROWS, MAX_COLUMNS, MAX_ROWS, UNSAVED, Cells, SheetCells
 from assess.workbook.plain_rows import column_letters, split_range
 from assess.workbook.schema import Column, Sheet
-from assess.workbook.values import ERRORS, CellReader, cell_reader, is_blank, read_text, shorten
+from assess.workbook.values import ERRORS, CellReader, cell_reader, is_blank, read_text
 
 if TYPE_CHECKING:
     from assess.workbook.held import HeldCells

@@ -14,11 +14,10 @@ from assess.model import FloorPlan
 from assess.pictures import PictureError, check_picture, count_pixels, prepare_photo
 from assess.plans import MOST_FILE, Drawing, count_side, is_picture, read_plan
 from assess.progress import Progress
-from assess.workbook.habits import CellError
+from assess.workbook.habits import CellError, shorten
 from assess.workbook.kept_files import Allowance, KeptFiles, find_key
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.records import find_file
-from assess.workbook.values import shorten
 
 PLACED = ("plan_left", "plan_bottom", "plan_width")
 """What a plan is placed by."""

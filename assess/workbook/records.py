@@ -27,11 +27,10 @@ from assess.motion.shakemap import ShakeMap, name_uncertainty, parse_shakemap
 from assess.motion.shakemap import read_file as read_grid_file
 from assess.motion.site_ground import GroundField, SiteGround
 from assess.progress import Progress
-from assess.workbook.habits import CellError
+from assess.workbook.habits import CellError, shorten
 from assess.workbook.kept_files import Allowance, KeptFiles, find_key
 from assess.workbook.parse import CodeCells, Row, Table, Tables, parse_sheet
 from assess.workbook.schema import BUILDING
-from assess.workbook.values import shorten
 
 STRONGER = ("ground_pga", "sds")
 """Fields of Building that come before its ShakeMap."""

@@ -25,11 +25,10 @@ from assess.model import (
     Segment,
     axis_of,
 )
-from assess.workbook.habits import note
+from assess.workbook.habits import note, shorten
 from assess.workbook.names import key
 from assess.workbook.parse import Row, Table, Tables, row_numbers
 from assess.workbook.schema import PICTURE_FIELDS, SHEETS, Column
-from assess.workbook.values import shorten
 
 _ITEM_FIELDS = frozenset(field.name for field in fields(Item))
 _DEFINED_BY = {sheet.name: sheet.columns[0].name for sheet in SHEETS if sheet.layout == "table"}

@@ -13,13 +13,11 @@ from functools import lru_cache
 
 from assess.i18n import LANGUAGES, Text, fill
 from assess.units import GRAVITY, QUANTITIES, read_unit
-from assess.workbook.habits import CellError, Remark, note
+from assess.workbook.habits import CellError, Remark, note, shorten
 from assess.workbook.names import DASHES, ENGLISH, find_choice, plain, say_choices
 from assess.workbook.open import Percent
 from assess.workbook.ranges import is_within
 from assess.workbook.schema import NO, YES, Column
-
-Quote = Callable[[object], str]
 
 LONGEST = 60
 """Characters of a text that may be a number or a date."""
@@ -57,16 +55,16 @@ def is_free(column: Column) -> bool:
     return column.kind == "text" and not (column.required or column.source)
 
 
-def understand(column: Column, value: object, unit: str, quote: Quote) -> tuple[object, Remark | None]:
+def understand(column: Column, value: object, unit: str) -> tuple[object, Remark | None]:
     """Return what belongs into a cell, and the note on that where it is not what the cell holds.
 
     The value is a number in the unit of the header, a choice, a date or a name; `value` itself where nothing else can
-    be meant. `quote` returns a value as messages quote it.
+    be meant.
 
     Raises CellError if the cell can be read in two ways, or holds a day that does not exist.
     """
     take = _TAKERS.get(column.kind)
-    return take(column, value, unit, quote) if take else (value, None)
+    return take(column, value, unit) if take else (value, None)
 
 
 def _name_column(column: Column, unit: str = "") -> Text:
@@ -77,7 +75,7 @@ def _name_column(column: Column, unit: str = "") -> Text:
 # ---------------------------------------------------------------- numbers
 
 
-def _take_number(column: Column, value: object, unit: str, quote: Quote) -> tuple[object, Remark | None]:
+def _take_number(column: Column, value: object, unit: str) -> tuple[object, Remark | None]:
     if isinstance(value, Percent) and column.quantity == "share" and is_within(column, 100 * value, unit):
         shown = fill("{number:g}{unit}", number=100 * value, unit=f" {unit}")
         found = note("percent", _name_column(column, unit), f"{value:.3%}", shown, 100 * value)
@@ -86,19 +84,19 @@ def _take_number(column: Column, value: object, unit: str, quote: Quote) -> tupl
         return value, None
     if (length := _read_feet(column, value, unit)) is not None:
         typed = fill("{number:g}{unit}", number=length, unit=f" {unit}")
-        return length, note("unit", _name_column(column, unit), quote(value), typed, length)
+        return length, note("unit", _name_column(column, unit), shorten(value), typed, length)
     match = _NUMBER.fullmatch(straighten(value).removeprefix("'").lstrip())  # the sign by which programs enter a text
     factor = _find_factor(match["unit"].strip(), column, unit) if match else None
     if match is None or factor is None:
         return value, None
     readings = [_convert(match, digits, factor) for digits in read_digits(match["digits"].rstrip())]
     if len(readings) == 2:
-        raise _describe_two(column, unit, quote(value), readings)
+        raise _describe_two(column, unit, shorten(value), readings)
     if not readings or not math.isfinite(readings[0]):
         return value, None
     number = readings[0]
     typed = fill("{number:g}{unit}", number=number, unit=f" {unit}" if unit else "")
-    return number, note(_find_habit(column, value, match), _name_column(column, unit), quote(value), typed, number)
+    return number, note(_find_habit(column, value, match), _name_column(column, unit), shorten(value), typed, number)
 
 
 def is_converted(column: Column, value: object, unit: str) -> bool:
@@ -181,7 +179,7 @@ def _describe_two(column: Column, unit: str, shown: str, readings: list[float]) 
 # ---------------------------------------------------------------- choices
 
 
-def _take_choice(column: Column, value: object, unit: str, quote: Quote) -> tuple[object, Remark | None]:
+def _take_choice(column: Column, value: object, unit: str) -> tuple[object, Remark | None]:
     if isinstance(value, bool):
         if column.kind == "flag" or not {YES, NO} <= {*column.choices}:
             return value, None
@@ -194,7 +192,7 @@ def _take_choice(column: Column, value: object, unit: str, quote: Quote) -> tupl
         if found is None or not word:
             return value, None
         choice = found
-    return choice, note("choice", _name_column(column), quote(value), word, word)
+    return choice, note("choice", _name_column(column), shorten(value), word, word)
 
 
 @lru_cache(maxsize=4096)  # the same choices stand in row after row
@@ -236,23 +234,23 @@ def _find_short(typed: str, choices: tuple[str, ...], language: str) -> str | No
 # ---------------------------------------------------------------- dates and names
 
 
-def _take_date(column: Column, value: object, unit: str, quote: Quote) -> tuple[object, Remark | None]:
+def _take_date(column: Column, value: object, unit: str) -> tuple[object, Remark | None]:
     if not isinstance(value, str):
         return value, None
     text = straighten(value[:LONGEST])
-    date = read_date(column.label, text, quote(value))
+    date = read_date(column.label, text, shorten(value))
     if date is None and not is_month(text):
         message = fill(
             "{label} is {text}, which is not read as a date; it is shown as typed.",
-            label=_name_column(column), text=quote(value),
+            label=_name_column(column), text=shorten(value),
         )  # fmt: skip
         return value, Remark(message, AS_ISO)
     if date is None or date == value:
         return value, None
-    return date, note("date", _name_column(column), quote(value), date, date)
+    return date, note("date", _name_column(column), shorten(value), date, date)
 
 
-def _take_name(column: Column, value: object, unit: str, quote: Quote) -> tuple[object, Remark | None]:
+def _take_name(column: Column, value: object, unit: str) -> tuple[object, Remark | None]:
     """Take stray spaces out of a name that other cells compare with."""
     if not isinstance(value, str):
         return value, None
@@ -260,11 +258,11 @@ def _take_name(column: Column, value: object, unit: str, quote: Quote) -> tuple[
     return (
         (value, None)
         if name == value
-        else (name, note("spaces", _name_column(column), quote(value), quote(name), name))
+        else (name, note("spaces", _name_column(column), shorten(value), shorten(name), name))
     )
 
 
-_Taker = Callable[[Column, object, str, Quote], tuple[object, Remark | None]]
+_Taker = Callable[[Column, object, str], tuple[object, Remark | None]]
 _TAKERS: Mapping[str, _Taker] = {
     "number": _take_number,
     "count": _take_number,

@@ -5,16 +5,14 @@
 
 import datetime
 import math
-import re
 from collections.abc import Callable, Mapping
 from functools import lru_cache, partial
 
 from assess.errors import InputError
 from assess.i18n import fill, find_language, nfill
 from assess.model import Outline
-from assess.plain_text import UNCLEAN, plain_text
 from assess.units import QUANTITIES
-from assess.workbook.habits import CellError, Remark
+from assess.workbook.habits import SHOWN, CellError, Remark, clean, shorten
 from assess.workbook.names import find_choice, find_near, plain, say_choices
 from assess.workbook.open import UNSAVED
 from assess.workbook.outlines import OutlineError, parse_outline
@@ -27,8 +25,6 @@ CellReader = Callable[[object], tuple[object, tuple[Remark, ...]]]
 
 ERRORS = frozenset({"#DIV/0!", "#N/A", "#NAME?", "#NULL!", "#NUM!", "#REF!", "#VALUE!", "#GETTING_DATA", "#SPILL!"})
 _TIMES = (datetime.datetime, datetime.date, datetime.time)
-_ESCAPE = re.compile(r"_x(00[01][0-9A-Fa-f])_")  # how a workbook writes control characters
-_SHOWN = 60
 _WRITE_OUTLINE = fill(
     "Write the corners in order round the room, x and y with a space between and a point as decimal sign: "
     "0 0; 6.5 0; 6.5 4; 0 4."
@@ -38,24 +34,6 @@ _WRITE_OUTLINE = fill(
 def is_blank(value: object) -> bool:
     """Tell whether a cell holds nothing to read."""
     return value is None or (isinstance(value, str) and not value.strip())
-
-
-def shorten(value: object) -> str:
-    """Return a value as it may be quoted in a message: clean, in quotes, at most 60 characters."""
-    text = clean(str(value))[0]
-    return f"'{text[:_SHOWN]}…'" if len(text) > _SHOWN else f"'{text}'"
-
-
-def clean(text: str) -> tuple[str, int]:
-    """Take out of a text what is not text, and count it.
-
-    Control characters become the replacement character; unseen marks, such as those that turn the direction of
-    writing, are left out, since they make a text show other than it reads. Line breaks and tabs stay.
-    """
-    if text.isascii() and text.isprintable() and "_x0" not in text:
-        return text, 0
-    text = _ESCAPE.sub(lambda match: chr(int(match[1], 16)), text).replace("\r\n", "\n").replace("\r", "\n")
-    return plain_text(text), len(UNCLEAN.findall(text))
 
 
 def read_text(value: object) -> str:
@@ -86,7 +64,7 @@ def cell_reader(column: Column, unit: str) -> CellReader:
     read_known = lru_cache(maxsize=1024, typed=True)(read_new)
 
     def read(value: object) -> tuple[object, tuple[Remark, ...]]:
-        is_rare = (isinstance(value, str) and len(value) > _SHOWN) or value == 0  # 0 and -0 are equal, not the same
+        is_rare = (isinstance(value, str) and len(value) > SHOWN) or value == 0  # 0 and -0 are equal, not the same
         return (read_new if is_rare else read_known)(value)
 
     return read
@@ -105,7 +83,7 @@ def _read_cell(column: Column, unit: str, value: object) -> tuple[object, tuple[
                 fill("Correct the formula in the cell."),
             )
         if not is_free(column):
-            meant, remark = understand(column, value, unit, shorten)
+            meant, remark = understand(column, value, unit)
     found, more = READERS[column.kind](column, meant, unit), _remark_on(column, value, meant, unit)
     return found, () if remark is more is None else tuple(one for one in (remark, more) if one)
 

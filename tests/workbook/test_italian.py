@@ -92,32 +92,6 @@ def book(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return openpyxl.load_workbook(example(tmp_path_factory.mktemp("it"), "it"))
 
 
-def test_a_workbook_typed_by_hand(tmp_path: Path) -> None:
-    items: Rows = [
-        ["ELEMENTO", "piano", "profondita [mm]", " Altezza[cm]", "Ancorato", "Importanza", "Tipo", "Asse", "Colore"],
-        ["A1", "1", 400, 180, "Si", "Incolumita'", None, "X", "rosso"],
-        ["A2", "1", None, None, "in parte", "beni", "Baule", None, None],
-    ]  # fmt: skip
-    building: Rows = [
-        ["Edificio", "Municipio"], ["Piani fuori terra", 4], ["destinazione d\u2019uso", "Uffici"],
-        ["Client", "Un ente"], ["Approvato da", "C"], ["Revision", 2], ["Data del rapporto", "marzo 2026"],
-        ["Tipo di scenario", "Come compilato"], ["PGA AL SUOLO [gal]", 98.0665],
-    ]  # fmt: skip
-    inventory = read(
-        tmp_path, items, Edificio=building, CATALOGO=[["Tipo", "Profondità [m]", "Altezza [m]"], ["Baule", 0.3, 1]]
-    )
-    first, second = inventory.items
-    assert (first.breadth, first.height, first.anchored, first.importance) == (0.4, 1.8, "yes", "life safety")
-    assert first.axis == "X", "a label in both languages, and a value of Asse"
-    assert (second.breadth, second.anchored, second.importance) == (0.3, "partly", "property")
-    assert inventory.extra_columns == ("Colore",)
-    told = inventory.building
-    assert (told.storeys, told.use, told.client, told.scenario_kind) == (4, "Uffici", "Un ente", "as filled")
-    assert (told.approved_by, told.revision, told.report_date) == ("C", "2", "marzo 2026")
-    assert told.ground_pga == pytest.approx(0.980665)
-    assert inventory.language == inventory.report_language == "it"
-
-
 def test_both_languages_in_one_workbook(tmp_path: Path) -> None:
     items: Rows = [
         ["Item", "Piano", "Breadth [cm]", "Altezza [cm]", "Ancorato", "Anything"],

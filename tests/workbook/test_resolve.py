@@ -12,14 +12,6 @@ from tests.workbook.books import ITEMS, Sheet, errors_of, read, read_item, remar
 TYPES: Sheet = [["Type", "Breadth [in]", "Width [in]", "Height [in]", "Source"], ["Locker", 12, 24, 72, "catalogue"]]
 
 
-def test_blank_sizes_come_from_the_catalogue(tmp_path: Path) -> None:
-    found = read_item(tmp_path, ["Type", "Breadth [cm]", "Height [cm]"], ["locker", None, 200], Catalogue=TYPES)
-    assert (found.type, found.breadth, found.width, found.height) == (
-        "Locker", 12 * 0.0254, 24 * 0.0254, 2.0,
-    )  # fmt: skip
-    assert found.assumed == ("breadth", "width", "quantity", "anchored")
-
-
 def test_breadth_is_the_shorter_side_with_the_catalogue_too(tmp_path: Path) -> None:
     path = write(tmp_path, [["Item", "Floor", "Type", "Breadth [cm]"], ["A1", "1", "Locker", 70]],
                  Catalogue=[*TYPES, ["Bench", 30, 20, 40, ""]])  # fmt: skip

@@ -27,7 +27,7 @@ DATE = BUILDING.column("report_date")
 
 def meant(column: Column, value: object, unit: str | None = None) -> tuple[object, str]:
     """Return what a cell is taken for, and the habit that it shows."""
-    found, remark = understand(column, value, column.unit if unit is None else unit, repr)
+    found, remark = understand(column, value, column.unit if unit is None else unit)
     return found, remark.habit if remark else ""
 
 
