@@ -9,8 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from assess.compare.past_run import CLASSES, PastPiece, PastRun
-from assess.compare.read_results import Reader, read_record
+from assess.compare.past_run import CLASSES, PastPiece, PastRun, Reader, read_record
 from assess.details import DETAILS
 from assess.errors import InputError
 from assess.i18n import fill
@@ -85,7 +84,7 @@ def list_items(entry: ScheduleRow) -> list[str]:
 def read_export(path: Path) -> ExportRun:
     """Read results.json for an export.
 
-    Raises InputError if it cannot be read (see `assess.compare.read_results.read_run`), or holds no identifier of any
+    Raises InputError if it cannot be read (see `assess.compare.past_run.read_run`), or holds no identifier of any
     piece.
     """
     run, record, reader = read_record(path)

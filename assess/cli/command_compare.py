@@ -73,7 +73,7 @@ def command(
         raise InputError(f"--out: {out} is a file; name a folder")
     from assess.compare.changes import compare
     from assess.compare.comparison_files import check_out, describe, dump, write_comparison
-    from assess.compare.read_results import read_run
+    from assess.compare.past_run import read_run
     from assess.report.report_options import ReportOptions
 
     check_out(out, wanted)

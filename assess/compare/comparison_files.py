@@ -13,8 +13,7 @@ from typing import Any
 
 from assess.compare.changes import Comparison, PieceChange, StateChange, Total, count_states
 from assess.compare.comparison_document import View
-from assess.compare.past_run import PastChance, PastPiece, PastRun
-from assess.compare.read_results import COMPARISON
+from assess.compare.past_run import COMPARISON, PastChance, PastPiece, PastRun
 from assess.delivery.deliver import Written, deliver, explain_fault, stage_for
 from assess.delivery.disk import find_digest, flush_file
 from assess.delivery.folders import NEW

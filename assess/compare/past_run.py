@@ -1,15 +1,31 @@
-"""What a comparison knows of a run: the part of its results.json that is compared, as typed rows."""
+"""results.json of unknown origin, read back: a `PastRun`, or an error that names the file, the place and the fault.
+
+A comparison knows no more of a run. Read are the files of one major version of the schema; of a later minor version
+what is new is left alone.
+"""
 
 import datetime
-from collections.abc import Mapping
+import hashlib
+import json
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Never, TypeVar
 
+from assess.delivery.deliver import explain_unfinished, is_unfinished
+from assess.errors import InputError
 from assess.fields import item_fields
-from assess.results import CANNOT_ROCK
+from assess.i18n import Text, fill
+from assess.input_file import read_input
+from assess.model import MEASURED
+from assess.plain_text import plain_line
+from assess.report.ownership import DATA
+from assess.report.results_schema import VERSION
+from assess.results import BASES, CANNOT_ROCK
 from assess.risk import RiskClass
-from assess.table import Field
+from assess.table import Field, unnest
+from assess.workbook.names import key
 
 CLASSES: Mapping[str, RiskClass] = {risk.word: risk for risk in reversed(RiskClass)}
 """The classes by their words, the highest first."""
@@ -128,3 +144,342 @@ class PastRun:
         if self.is_counted(piece):
             return piece.risk.word
         return UNCONFIRMED if piece.basis == UNCONFIRMED else BY_FORMULA
+
+
+# ---------------------------------------------------------------- reading
+
+
+COMPARISON = "comparison"
+"""Entry that tells compare.json, which is no run, from results.json."""
+MOST_BYTES = 1 << 30
+"""Size [bytes] above which a file is not read: 20,000 items take a tenth of it."""
+_TOP = ("building", "floors", "items", "routes")
+_MISSING = object()
+_MOST = 1e15
+"""Size of a number that is shown as it is."""
+Record = Mapping[str, Any]
+_Row = TypeVar("_Row")
+
+
+def read_run(path: Path) -> PastRun:
+    """Read the results of a run.
+
+    Parameters
+    ----------
+    path : Path
+        A results.json under any name, or the folder that holds one.
+
+    Raises
+    ------
+    InputError
+        If there is none, it cannot be read, is cut off, was written by another program or by a version of this one
+        with another major version of the schema, or a value in it is not what it may be.
+    """
+    return read_record(path)[0]
+
+
+def read_record(path: Path) -> tuple[PastRun, Record, "Reader"]:
+    """Read the results of a run, and return its record as well, with what reads further values of it."""
+    file = path / DATA if path.is_dir() else path
+    data, written = _load(path, file)
+    record = _parse(file, data)
+    reader = Reader(file)
+    return reader.run(record, hashlib.sha256(data).hexdigest(), written), record, reader
+
+
+def _load(path: Path, file: Path) -> tuple[bytes, datetime.datetime]:
+    try:
+        if not file.exists():
+            raise InputError(_explain_missing(path, file))
+        status = file.stat()
+        if status.st_size > MOST_BYTES:
+            sizes = {"size": status.st_size >> 20, "most": MOST_BYTES >> 20}
+            raise InputError(
+                fill("{path} is too large: {size:,} MB, at most {most:,} MB are read.", path=file, **sizes)
+            )
+        return read_input(file, MOST_BYTES), datetime.datetime.fromtimestamp(status.st_mtime, datetime.UTC)
+    except OSError as error:
+        why = error.strerror or str(error)
+        raise InputError(fill("{path} cannot be read: {why}.", path=file, why=why)) from None
+
+
+def _explain_missing(path: Path, file: Path) -> str:
+    if is_unfinished(file.parent, file.name):
+        return explain_unfinished(file.parent)
+    if path.is_dir():
+        return fill("{folder} contains no {name}: name the folder of a report, or its {name}.", folder=path, name=DATA)
+    return fill("{path} does not exist: name a {name}, or the folder that holds it.", path=path, name=DATA)
+
+
+def _parse(file: Path, data: bytes) -> Record:
+    """Return the record, which is that of a run by this major version of the schema."""
+    text = ""
+    try:
+        text = data.decode("utf-8-sig")
+        record = json.loads(text, parse_constant=_refuse)
+    except (ValueError, RecursionError) as error:
+        raise InputError(_describe_fault(file, text, error)) from None
+    foreign = fill("{path} was not written by assess: name a {name} written by assess.", path=file, name=DATA)
+    if not isinstance(record, dict):
+        raise InputError(foreign)
+    schema = record.get("schema")
+    if not isinstance(schema, str) or not isinstance(record.get("assess"), dict):
+        raise InputError(foreign)
+    if COMPARISON in record:
+        raise InputError(fill("{path} is a comparison, not a run: name the {name} of each run.", path=file, name=DATA))
+    major, ours = (one.partition(".")[0] for one in (schema, VERSION))
+    if not (major.isascii() and major.isdigit() and len(major) < 6):
+        raise InputError(foreign)
+    if major.lstrip("0") != ours:
+        raise InputError(_describe_version(file, schema, ours, is_earlier=int(major) < int(ours)))
+    if missing := [name for name in _TOP if name not in record]:
+        raise InputError(fill("{path} is incomplete: {name} is missing. Run assess again.", path=file, name=missing[0]))
+    return record
+
+
+def _refuse(name: str) -> Never:
+    raise ValueError(name)
+
+
+def _describe_fault(file: Path, text: str, error: Exception) -> Text:
+    """Return what is wrong with a text that is no JSON: it is cut off, or something else than a results.json."""
+    whole = text.strip()
+    if isinstance(error, UnicodeDecodeError) or (whole and not whole.startswith(("{", "["))):
+        return fill("{path} is not a JSON file: name a {name} written by assess, or its folder.", path=file, name=DATA)
+    if not whole:
+        return fill("{path} is empty: run assess again, or use another copy of the file.", path=file)
+    at_end = isinstance(error, json.JSONDecodeError) and error.pos >= len(text.rstrip())
+    if whole.startswith("{") and (at_end or not whole.endswith("}")):
+        return fill("{path} is truncated: run assess again, or use another copy of the file.", path=file)
+    if isinstance(error, json.JSONDecodeError):
+        line = f"{error.lineno}"
+        return fill("{path} is damaged: line {line} is not valid JSON. Run assess again.", path=file, line=line)
+    return fill("{path} is damaged: it is not valid JSON. Run assess again.", path=file)
+
+
+def _describe_version(file: Path, schema: str, ours: str, *, is_earlier: bool) -> Text:
+    values = {"path": file, "schema": schema[:20], "ours": ours}
+    if is_earlier:
+        return fill(
+            "{path} was written by an earlier version of assess: its schema is {schema}, this version reads {ours}.x. "
+            "Run its workbook again.",
+            **values,
+        )
+    return fill(
+        "{path} was written by a later version of assess: its schema is {schema}, this version reads {ours}.x. Update "
+        "assess.",
+        **values,
+    )
+
+
+class Reader:
+    """Turns the parts of a record into rows; `file` is named where a value is not what it may be.
+
+    A method that takes `row`, `name` and `place` returns the value of this name in a row, which stands at a place in
+    the record; it raises InputError where the value is missing or not what it may be.
+    """
+
+    def __init__(self, file: Path) -> None:
+        self.file = file
+
+    def run(self, record: Record, sha256: str, written: datetime.datetime) -> PastRun:
+        """Return the run."""
+        items, origin = self.rows(record, "items", ""), self.part(record, "assess", "")
+        routes = self.part(record, "routes", "")
+        inputs, inside, shaking = self.part(origin, "inputs", "assess"), "assess.inputs", origin.get("shaking")
+        return PastRun(
+            path=self.file,
+            sha256=sha256,
+            written=written,
+            schema=plain_line(record["schema"])[:20],
+            version=self.text(origin, "version", "assess"),
+            code=self.text(origin, "code", "assess") if "code" in origin else "",
+            platform=self.texts(origin, "platform", "assess"),
+            settings=self.plainly(origin, "settings", "assess"),
+            building=self.plainly(record, "building", ""),
+            uncertainty=self.plainly(origin, "uncertainty", "assess"),
+            shaking=plain_line(str(shaking.get("name", ""))) if isinstance(shaking, dict) else "",
+            site_ground=self.site_ground(origin),
+            workbook=self.text(inputs, "workbook", inside),
+            workbook_sha256=self.text(inputs, "sha256", inside),
+            motions=self.texts(inputs, "records", inside) | self.texts(inputs, "motions", inside),
+            is_simulated=self.is_simulated(record, items),
+            pieces=self.unique(items, "items", self.piece, lambda one: key(one.item)),
+            routes=self.states(routes, "routes", "route", "blocked"),
+            rooms=self.states(routes, "rooms", "room", "loses_every_exit"),
+            route_risk=self.share(routes, "risk", "routes"),
+            blocked_routes=self.number(routes, "blocked_routes_expected", "routes"),
+            cut_off_rooms=self.number(routes, "cut_off_rooms_expected", "routes"),
+            unknown_routes=self.count(routes, "unknown_routes", "routes"),
+            unknown_rooms=self.count(routes, "unknown_rooms", "routes"),
+            unjoined_rooms=self.list_texts(routes, "unjoined_rooms", "routes"),
+        )
+
+    def is_simulated(self, record: Record, items: Sequence[Record]) -> bool:
+        """Whether the run simulated any piece."""
+        demands = (
+            demand
+            for at, floor in enumerate(self.rows(record, "floors", ""))
+            for demand in self.rows(floor, "demands", f"floors[{at}]")
+        )
+        return any(one.get("ensemble") for one in demands) or any(one.get("verification") for one in items)
+
+    def piece(self, row: Record, place: str) -> PastPiece:
+        """Return a piece."""
+        adopted, anchor = self.part(row, "adopted", place), row.get("anchor")
+        inside = f"{place}.adopted"
+        held = anchor.get("counts_as_anchored") if isinstance(anchor, dict) else None
+        return PastPiece(
+            item=self.text(row, "item", place),
+            floor=self.text(row, "floor", place),
+            room=self.text(row, "room", place),
+            description=self.text(row, "description", place),
+            quantity=self.count(row, "quantity", place),
+            is_held=held if isinstance(held, bool) else row.get("anchored") == "yes",
+            basis=self.choice(adopted, "basis", inside, BASES),
+            risk=CLASSES[self.choice(adopted, "class", inside, [risk.word for risk in RiskClass])],
+            chance=self.chance(adopted, inside),
+            inputs=_read_inputs(row),
+        )
+
+    def states(self, routes: Record, name: str, kind: str, chance: str) -> tuple[PastState, ...]:
+        """Return the routes or the rooms; `chance` is the name of their chance, which may be null or absent."""
+
+        def read(row: Record, place: str) -> PastState:
+            return PastState(
+                name=self.text(row, kind, place),
+                floor=self.text(row, "floor", place) if kind == "room" else "",
+                state=self.text(row, "state", place),
+                chance=None
+                if row.get(chance) is None
+                else self.chance(self.part(row, chance, place), f"{place}.{chance}"),
+            )
+
+        rows = self.rows(routes, name, "routes")
+        return self.unique(rows, f"routes.{name}", read, lambda one: (key(one.floor), key(one.name)))
+
+    def site_ground(self, origin: Record) -> str:
+        """Return file, PGA and hash of a ShakeMap or of scenarios; "" where the motion rests on none."""
+        if origin.get("site_ground") is None:  # as in files before version 5.1 of the schema
+            return ""
+        found, place = self.part(origin, "site_ground", "assess"), "assess.site_ground"
+        file, sha256 = (self.text(found, name, place) for name in ("file", "sha256"))
+        return f"{file}, {self.number(found, 'pga_g', place):.3f} g, SHA-256 {sha256[:16]}"
+
+    def chance(self, row: Record, place: str) -> PastChance:
+        """Return a chance with its interval."""
+        ends = (self.share(row, name, place) if row.get(name) is not None else None for name in ("low", "high"))
+        return PastChance(self.share(row, "probability", place), *ends)
+
+    # ------------------------------------------------------------ values
+
+    def unique(
+        self,
+        rows: Sequence[Record],
+        place: str,
+        read: Callable[[Any, str], _Row],
+        name: Callable[[_Row], Any],
+    ) -> tuple[_Row, ...]:
+        """Return the rows that `read` makes; raises InputError where two have one name."""
+        found: dict[Any, _Row] = {}
+        for at, row in enumerate(rows):
+            where = f"{place}[{at}]"
+            one = read(row, where)
+            if name(one) in found:
+                raise InputError(
+                    fill("{path}: {place}: duplicate name. Run assess again.", path=self.file, place=where)
+                )
+            found[name(one)] = one
+        return tuple(found.values())
+
+    def get(self, row: Record, name: str, place: str, expected: Text, is_right: Callable[[Any], bool]) -> Any:
+        """Return a value."""
+        value = row.get(name, _MISSING)
+        if value is not _MISSING and is_right(value):
+            return value
+        raise InputError(
+            fill(
+                "{path}: {place} is {value}, expected {expected}. Run assess again.",
+                path=self.file,
+                place=f"{place}.{name}" if place else name,
+                value=fill("missing") if value is _MISSING else repr(value)[:40],
+                expected=expected,
+            )
+        )
+
+    def part(self, row: Record, name: str, place: str) -> dict[str, Any]:
+        """Return an object."""
+        return dict(self.get(row, name, place, fill("an object"), lambda value: isinstance(value, dict)))
+
+    def rows(self, row: Record, name: str, place: str) -> list[Record]:
+        """Return a list of objects."""
+        return list(self.get(row, name, place, fill("a list of objects"), lambda value: _is_list(value, dict)))
+
+    def text(self, row: Record, name: str, place: str) -> str:
+        """Return a text on one line, safe to show."""
+        return plain_line(self.get(row, name, place, fill("a text"), lambda value: isinstance(value, str)))
+
+    def texts(self, row: Record, name: str, place: str) -> dict[str, str]:
+        """Return an object of texts."""
+        found = self.part(row, name, place)
+        return {plain_line(one): self.text(found, one, f"{place}.{name}") for one in found}
+
+    def list_texts(self, row: Record, name: str, place: str) -> tuple[str, ...]:
+        """Return a list of texts, each on one line; none where an earlier version did not write it."""
+        if name not in row:
+            return ()
+        found = self.get(row, name, place, fill("a list of texts"), lambda value: _is_list(value, str))
+        return tuple(plain_line(one) for one in found)
+
+    def choice(self, row: Record, name: str, place: str, choices: Sequence[str]) -> str:
+        """Return one of some words."""
+        expected = fill("one of: {names}", names=", ".join(choices))
+        return str(self.get(row, name, place, expected, lambda value: value in choices))
+
+    def count(self, row: Record, name: str, place: str) -> int:
+        """Return a whole number from 0."""
+        expected = fill("a whole number, 0 or above")
+        return int(
+            self.get(row, name, place, expected, lambda value: isinstance(value, int) and _is_number(value, 1e9))
+        )
+
+    def number(self, row: Record, name: str, place: str) -> float:
+        """Return a number from 0."""
+        return float(self.get(row, name, place, fill("a number, 0 or above"), _is_number))
+
+    def share(self, row: Record, name: str, place: str) -> float:
+        """Return a number from 0 to 1."""
+        return float(self.get(row, name, place, fill("a number from 0 to 1"), lambda value: _is_number(value, 1.0)))
+
+    def plainly(self, row: Record, name: str, place: str) -> dict[str, Any]:
+        """Return an object of values that are shown as they are; a list becomes a tuple of texts."""
+        return {
+            plain_line(key): tuple(plain_line(str(one)) for one in value) if isinstance(value, list) else _plain(value)
+            for key, value in self.part(row, name, place).items()
+        }
+
+
+def _read_inputs(row: Record) -> dict[str, Any]:
+    """Return the inputs of a piece; no height of its bracket where that is assumed."""
+    found = unnest(row, INPUTS.values())
+    anchor = row.get("anchor")
+    if isinstance(anchor, dict) and anchor.get("is_height_assumed") is True:
+        found["bracket_height_cm"] = None
+    found["sizes_from"] = found["sizes_from"] or MEASURED  # results before 5.2 do not have it
+    return {name: _plain(value) for name, value in found.items()}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, str):
+        return plain_line(value)
+    is_shown = isinstance(value, bool) or (isinstance(value, int | float) and -_MOST < value < _MOST)
+    return value if is_shown else None
+
+
+def _is_number(value: Any, most: float = 1e300) -> bool:
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    return is_number and 0 <= value <= most and math.isfinite(value)
+
+
+def _is_list(value: Any, kind: type) -> bool:
+    return isinstance(value, list) and all(isinstance(one, kind) for one in value)

@@ -89,20 +89,8 @@ def render_page(
 ) -> bytes:
     """Return the page of a city as HTML, in the language of the options.
 
-    Parameters
-    ----------
-    city : City
-        The tables of the portfolio.
-    background : Background, optional
-        What lies behind the map.
-    options : ReportOptions, optional
-        Language and templates.
-    isolines : sequence of Isoline
-        Lines of equal shaking on the map.
-    repeat : str
-        Command that assesses one building alone, with ``{path}`` in place of its workbook.
-    indexed : collection of str
-        Paths of the buildings of which an index fills in something.
+    `background` and `isolines` are drawn on the map; `repeat` is the command that assesses one building alone, with
+    ``{path}`` in place of its workbook; `indexed` are the buildings of which an index fills in something.
 
     Raises
     ------
@@ -316,7 +304,7 @@ def _list_filters(city: City) -> list[tuple[str, str, list[tuple[str, str]]]]:
         ("use", _("Use"), [(use, use) for use in uses]),
         ("kind", _("Highest class"), signs["kind"]),
         ("state", _("Routes"), signs["state"]),
-        ("inventory", _("Inventory"), [(one, say.name_inventory(one)) for one in INVENTORIES if one in used]),
+        ("inventory", _("Inventory"), [(one, say.name(one)) for one in INVENTORIES if one in used]),
         ("storeys", _("Storeys"), [(f"{low}-{high}", say_storeys(low, high)) for low, high in STOREYS]),
     ]
 
@@ -485,8 +473,8 @@ def _list_cells(row: Row) -> list[str]:
     """Return the cells of the ranking after the first, in its columns; the class is written by its sign."""
     if row["status"] != "assessed":
         return [str(row["use"] or ""), "", "", *("" for _at in range(6))]
-    inventory = say.name_inventory(row["inventory"])
-    basis = "" if row["basis"] == "simulated" else f", {say.name_basis(row['basis'])}"
+    inventory = say.name(row["inventory"])
+    basis = "" if row["basis"] == "simulated" else f", {say.name(row['basis'])}"
     return [
         words.cut(str(row["use"] or ""), 60), say.mark_own_motions(f"{inventory}{basis}", row), "",
         say.say_whole(row["pieces"]), words.percent(find_share(row)), say.say_falls(row),
@@ -498,8 +486,8 @@ def _list_facts() -> list[tuple[str, Callable[[Row], str]]]:
     """Return what the page of a building says of it: label, and how it is read from its row."""
     return [
         (_("File"), lambda row: str(row["path"])),
-        (_("Inventory"), lambda row: say.name_inventory(row["inventory"])),
-        (_("Results"), lambda row: say.name_basis(row["basis"])),
+        (_("Inventory"), lambda row: say.name(row["inventory"])),
+        (_("Results"), lambda row: say.name(row["basis"])),
         (_("Use"), lambda row: str(row["use"] or words.DASH)),
         (_("Place"), say.say_place),
         (_("Storeys"), lambda row: say.say_whole(row["storeys"])),
@@ -606,7 +594,7 @@ def _pack_tables(city: City) -> dict[str, Any]:
                 say.say_whole(row["occupants"]), row["blockers"] or "", row["to_fill_in"] or ""]  # fmt: skip
 
     def read_problem(row: Row) -> list[str]:
-        return [say.say_severity(row["severity"] or ""), say.say_spot(row), row["message"] or "", row["fix"] or ""]
+        return [say.name(row["severity"]), say.say_spot(row), row["message"] or "", row["fix"] or ""]
 
     ranked = [(one["path"], one["basis"]) for one in city.ranked]
     piece_heads = [_("Item"), _("Floor"), _("Room"), _("What"), _("Size [cm]"), _("Pieces"), _("Class"), _("Chance"),

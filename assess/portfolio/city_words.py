@@ -1,11 +1,11 @@
 """What the outputs of a city say in words: sums with their ranges, rows, what is left out, how numbers were made."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import PurePath
 
 from assess.hazard import FAR
+from assess.i18n import Text, fill, ngettext, number
 from assess.i18n import gettext as _
-from assess.i18n import ngettext, number
 from assess.methods import adopted_formula
 from assess.motion.ground_scenarios import FAR_CAUTION
 from assess.motion.spatial_field import SCATTERS, Measure
@@ -52,18 +52,16 @@ def say_range(low: float | None, high: float | None, say: Callable[[float], str]
     return words.DASH if low is None or high is None else _("{low} to {high}", low=say(low), high=say(high))
 
 
-def name_inventory(inventory: str | None) -> str:
-    """Return where the pieces of a building come from."""
-    return {
-        "surveyed": _("surveyed"),
-        "handover": _("handover file (COBie)"),
-        "assumed": _("inventory assumed"),
-    }.get(inventory or "", words.DASH)
+_NAMES: Mapping[str, Text] = {
+    "surveyed": fill("surveyed"), "handover": fill("handover file (COBie)"), "assumed": fill("inventory assumed"),
+    "simulated": fill("simulated"), "formula": fill("by formula only"),
+    "error": fill("error"), "warning": fill("warning"), "note": fill("note"),
+}  # fmt: skip
 
 
-def name_basis(basis: str | None) -> str:
-    """Return what the numbers of a building rest on."""
-    return {"simulated": _("simulated"), "formula": _("by formula only")}.get(basis or "", words.DASH)
+def name(word: str | None) -> str:
+    """Return an inventory, a basis or a severity as people read it; a dash where it is not known."""
+    return _(_NAMES[word]) if word and word in _NAMES else word or words.DASH
 
 
 def name_group(group: Group) -> str:
@@ -73,7 +71,7 @@ def name_group(group: Group) -> str:
         "handover": _("Buildings from a handover file (COBie)"),
         "assumed": _("Buildings with an assumed inventory"),
     }
-    return _("{inventory}, {basis}", inventory=heads[group.inventory], basis=name_basis(group.basis))
+    return _("{inventory}, {basis}", inventory=heads[group.inventory], basis=name(group.basis))
 
 
 def say_title(city: City) -> str:
@@ -318,11 +316,6 @@ def say_size(row: Row) -> str:
 def label_state(state: str | None) -> str:
     """Return the state of a route as sign and words."""
     return say_state(RouteState(state or RouteState.NOT_KNOWN))
-
-
-def say_severity(severity: str) -> str:
-    """Return how grave a problem is."""
-    return {"error": _("error"), "warning": _("warning"), "note": _("note")}.get(severity, severity)
 
 
 def say_spot(row: Row) -> str:

@@ -151,8 +151,8 @@ def _list_buildings(city: City) -> Listing:
     return [
         Column(_("File"), 28, itemgetter("path")),
         Column(_("Building"), 30, itemgetter("building")),
-        Column(_("Inventory"), 16, lambda row: say.name_inventory(row["inventory"])),
-        Column(_("Results"), 14, lambda row: say.name_basis(row["basis"])),
+        Column(_("Inventory"), 16, lambda row: say.name(row["inventory"])),
+        Column(_("Results"), 14, lambda row: say.name(row["basis"])),
         Column(_("Use"), 12, itemgetter("use")),
         Column(_("Storeys"), 8, itemgetter("storeys"), COUNT),
         Column(_("Highest class"), 14, find_class),
@@ -206,7 +206,7 @@ def _list_pieces(city: City) -> Listing:
     return [
         Column(_("File"), 28, of_building("path")),
         Column(_("Building"), 30, of_building("building")),
-        Column(_("Inventory"), 16, lambda one: say.name_inventory(one[0]["inventory"])),
+        Column(_("Inventory"), 16, lambda one: say.name(one[0]["inventory"])),
         Column(_("Place on its work list"), 9, of_piece("work_place"), COUNT),
         Column(_("Item"), 12, of_piece("item")),
         Column(_("Floor"), 8, of_piece("floor")),
@@ -259,7 +259,7 @@ def _list_skipped(city: City) -> Listing:
     return [
         Column(_("File"), 36, itemgetter("path")),
         Column(_("Building"), 30, lambda row: names[row["path"]]),
-        Column(_("Severity"), 10, lambda row: say.say_severity(row["severity"] or "")),
+        Column(_("Severity"), 10, lambda row: say.name(row["severity"])),
         Column(_("Place"), 16, say.say_spot),
         Column(_("What"), 70, itemgetter("message")),
         Column(_("How to fix it"), 50, itemgetter("fix")),

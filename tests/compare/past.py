@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import assess
-from assess.compare.past_run import PastRun
-from assess.compare.read_results import read_run
+from assess.compare.past_run import PastRun, read_run
 from assess.settings import Settings
 from tests.report.routed import write_routed
 from tests.workbooks import write

@@ -7,8 +7,7 @@ import pytest
 from assess.compare.changes import Direction, compare, lies_within
 from assess.compare.comparison_document import View, say_anchor
 from assess.compare.comparison_files import describe
-from assess.compare.past_run import PastChance
-from assess.compare.read_results import read_run
+from assess.compare.past_run import PastChance, read_run
 from assess.errors import InputError
 from assess.risk import wilson_interval
 from assess.settings import Settings

@@ -12,7 +12,7 @@ from assess.compare import comparison_document
 from assess.compare.changes import compare
 from assess.compare.comparison_document import View
 from assess.compare.comparison_files import write_comparison
-from assess.compare.read_results import read_run
+from assess.compare.past_run import read_run
 from assess.errors import CancelledError, InputError, OutputError, PdfUnavailableError
 from assess.progress import Progress
 from assess.report.pages.pdf_seal import is_sealed

@@ -4,7 +4,7 @@ import pytest
 
 from assess.compare.changes import compare
 from assess.compare.comparison_files import write_comparison
-from assess.compare.read_results import read_run
+from assess.compare.past_run import read_run
 from assess.settings import Settings
 from tests.compare.past import write_routed_run
 from tests.report.test_phone import DESK, OVER_THE_EDGE, PHONE, _examine, pytestmark

@@ -14,7 +14,7 @@ import pytest
 from assess.cli.command_compare import describe_comparison
 from assess.compare.changes import compare
 from assess.compare.comparison_files import write_comparison
-from assess.compare.read_results import read_run
+from assess.compare.past_run import read_run
 from assess.report.report_options import ReportOptions
 from assess.settings import Settings
 from tests.compare.past import change, item, write_routed_run, write_run

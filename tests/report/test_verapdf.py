@@ -16,7 +16,7 @@ import weasyprint
 
 from assess.compare.changes import compare
 from assess.compare.comparison_files import write_comparison
-from assess.compare.read_results import read_run
+from assess.compare.past_run import read_run
 from assess.report.content import Content
 from assess.report.pages.html import render
 from assess.report.pages.pdf import write_pdf

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from assess.compare.read_results import read_run
+from assess.compare.past_run import read_run
 from assess.errors import InputError
 from assess.report.results_schema import VERSION
 from tests.compare.past import change, item, write_run
@@ -118,7 +118,7 @@ def test_a_value_that_cannot_be_is_named_by_its_place(source, tmp_path, name):
 
 
 def test_a_file_too_large_is_not_read(source, monkeypatch):
-    monkeypatch.setattr("assess.compare.read_results.MOST_BYTES", 1000)
+    monkeypatch.setattr("assess.compare.past_run.MOST_BYTES", 1000)
     with pytest.raises(InputError, match=r"too large: 0 MB, at most 0 MB"):
         read_run(Path(source))
 
