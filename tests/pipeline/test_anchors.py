@@ -148,3 +148,9 @@ def test_brackets_that_hold_a_piece_of_unknown_width():
     assert anchor_of(weighed).holds_high
     assert stable["a"].is_anchored
     assert weighed["a"].is_anchored
+
+
+def test_a_blank_bracket_height_is_assumed():
+    found = anchor_of(assess_one(bracket_height=None))
+    assert (found.bracket_height_cm, found.is_height_assumed) == (pytest.approx(162), True)
+    assert found.tension_kn == pytest.approx(0.24 * 1.7 / 1.62)

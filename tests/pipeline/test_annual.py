@@ -279,3 +279,22 @@ def test_what_cannot_fall_within_the_curve_has_a_rate_of_0(tmp_path):
     assert row.at_least, "beyond the end of the curve it may fall"
     assert results.annual.expected_falls == 0
     assert results.annual.expected_high is None
+
+
+def test_pieces_of_one_row_fall_together_so_that_any_of_them_is_a_lower_bound(tmp_path):
+    row = {**CABINET, **BLOCKS, "quantity": 5, "importance": "life safety"}
+    results, (one,) = rows_of(assessed(tmp_path, row, routes=True))
+    assert not one.at_least
+    assert results.annual.life_safety.at_least
+    assert results.route_tables.routes[0].annual.at_least
+
+
+@pytest.mark.slow
+def test_sds_stands_in_for_the_ground_pga_only_where_floors_follow_a_profile(tmp_path):
+    """A floor with a PFA of its own may be of another earthquake than the code's."""
+    assert "fill in Ground PGA" in rows_of(assessed(tmp_path, ground_pga=None, sds=0.375))[0].annual.missing
+    profile = [{"floor": "1", "elevation": 6}]
+    by_sds = rows_of(assessed(tmp_path, floors=profile, ground_pga=None, sds=0.375, height=12))
+    by_pga = rows_of(assessed(tmp_path, floors=profile, height=12))
+    assert by_sds[0].annual.ground_pga_g == pytest.approx(0.15)
+    assert by_sds[1][0].rate == pytest.approx(by_pga[1][0].rate)

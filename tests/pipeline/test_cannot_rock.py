@@ -71,6 +71,16 @@ def count_falls(items, floor, building, draws):
     return found, {int(joint.fell.sum()) for joint in found.joints.values()}
 
 
+@pytest.mark.long
+@pytest.mark.parametrize("beta", [0.0, 0.4])
+@pytest.mark.parametrize("floor", FLOORS)
+def test_in_10_000_draws_no_piece_that_cannot_rock_overturns(floor, beta):
+    items, one, building = pieces_and_building(floor, beta)
+    found, falls = count_falls(items, one, building, DRAWS)
+    assert not find_can_rock(found.cases, found.settings).any()
+    assert falls == {0}
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("beta", [0.0, 0.4])
 @pytest.mark.parametrize("floor", FLOORS)
@@ -102,3 +112,15 @@ def test_a_king_bed_and_a_coffee_table_are_low_with_formulas_only():
     assert results["bookcase"].adopted.risk >= RiskClass.HIGH
     assert [work.items for one in results.schedule.rows for work in one.works] == [("bookcase",)]
     assert results.schedule.before.count(RiskClass.LOW) == 2
+
+
+def test_a_top_heavy_piece_too_broad_for_the_formula_is_low_with_a_mark():
+    """At B/H 1.5 FEMA P-58, which is for pieces of uniform weight, has no value; at 80 % of its height it can rock."""
+    items = [{"item": "a", "floor": "1", "breadth": 150, "width": 160, "height": 100, "centre_of_gravity": 80}]
+    floors = [{"floor": "1", "pfa_x": 0.5, "pfv_x": 60.0}]
+    one = assessed(items, floors)["a"]
+    assert one.formula.value is None
+    assert (one.adopted.basis, one.adopted.probability, one.adopted.risk) == ("formula", 0.0, RiskClass.LOW)
+    assert "extrapolated" in one.formula.flags, "outside of what the formula was checked for"
+    checked = assessed(items, floors, settings=Settings(verify="high", runs=20))["a"]
+    assert checked.is_simulated

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import assess
 from assess.pipeline.either_axis import is_square, unite_axes
 from assess.pipeline.run import compute
 from assess.risk import wilson_interval
@@ -81,3 +82,8 @@ def test_an_unconfirmed_axis_is_not_united(done):
         adoption, done.outcomes, done.cases, done.inventory, done.case_item, done.case_demand, SETTINGS
     )
     assert united == {}
+
+
+def test_results_say_so():
+    results = assess.run(read({"item": "square", "width": 35}), SETTINGS, figures=False)
+    assert "either_axis" in results["square"].adopted.flags

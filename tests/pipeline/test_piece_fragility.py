@@ -13,6 +13,7 @@ import assess
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.piece_fragility import find_piece_fragilities
 from assess.pipeline.run import compute
+from assess.pipeline.verify import choose_motions
 from assess.progress import Progress, Report
 from assess.settings import Settings
 from assess.units import GRAVITY
@@ -153,6 +154,27 @@ def test_levels_of_pfv_are_those_of_pfa_by_the_floors_ratio(tmp_path):
         assert other.fallen == pytest.approx(one.fallen, abs=1), "but for the last digit of a factor"
         assert other.levels / one.levels == pytest.approx(demand.pfv / demand.pfa)
         assert 0 < one.fallen.sum() < 3 * RUNS
+
+
+def test_the_ratio_of_the_motions(tmp_path):
+    floors = [{"floor": "1", **SLOW}, {"floor": "2", "pfa_x": 0.4, "pfv_x": 50}]
+    assessment = assessed(tmp_path, CABINET, {**CABINET, "item": "b", "floor": "2"}, floors=floors)
+    recorded, generic = (one.motions[0] for one in found(assessment, 0.3, 0.5).curves)
+    every = np.ones(2, dtype=np.bool_)
+    cases = choose_motions(
+        assessment.cases, every, assessment.case_demand, assessment.demands, assessment.inventory, SETTINGS,
+        None,
+    )  # fmt: skip
+    for one, ensemble in zip((recorded, generic), cases.ensembles, strict=True):
+        ((motions, step),) = ensemble.open(1).realise(0, RUNS)
+        velocity = np.cumsum((motions[:, 1:] + motions[:, :-1]) * (step / 2), axis=1, dtype=np.float64)
+        assert one.mean_pfa == pytest.approx(np.abs(motions).max(axis=1).mean(), rel=1e-6)
+        assert one.mean_pfv == pytest.approx(np.abs(velocity).max(axis=1).mean(), rel=1e-4)
+        assert one.pfv_per_pfa == one.mean_pfv / one.mean_pfa
+    assert (recorded.spectrum, recorded.source) == ("that of the record", "slow.csv")
+    assert generic.spectrum == "drawn, nothing known of the building"
+    assert (generic.mean_pfa, generic.mean_pfv) == pytest.approx((0.4 * GRAVITY, 0.5), rel=0.02), "in every draw"
+    assert [(one.is_assumed, one.is_unknown) for one in (recorded, generic)] == [(False, False), (True, True)]
 
 
 # --- types ---

@@ -12,7 +12,7 @@ import pytest
 import assess
 from assess.pipeline import levels
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.route_sweep import FINEST, MOST_INSERTED, find_fragility, find_jumps, find_passing
+from assess.pipeline.route_sweep import FINEST, JUMP, MOST_INSERTED, find_fragility, find_jumps, find_passing
 from assess.pipeline.run import build_results, compute
 from assess.settings import Settings
 from assess.units import GRAVITY
@@ -90,6 +90,14 @@ def test_below_the_threshold_of_every_piece_nothing_falls(tmp_path):
     assert chances(none) == chances(none, "B") == [0]
 
 
+def test_a_blank_axis_takes_the_worse_at_each_value(tmp_path):
+    assessment = assessed(tmp_path, {**CABINET, "axis": None}, building=EXACT)
+    values = (0.3, 0.4, 0.5, 0.6)
+    along = [share(assessment, pfa) for pfa in values]
+    assert chances(fragility(assessment, *values)) == [pytest.approx(max(both)) for both in along]
+    assert any(one != other for one, other in along)
+
+
 def test_a_square_piece_blocks_in_draws_in_which_it_falls_along_either_axis(tmp_path):
     """The route is blocked as often as the piece falls, at the scenario's own PFA and in a run."""
     square = {**CABINET, "axis": None, "width": 50, "breadth": 40}
@@ -162,6 +170,15 @@ def test_where_the_motions_may_be_too_weak_a_run_does_not_know(tmp_path):
     assert run.pieces < found.routes[0].blocked[0].pieces
 
 
+def test_the_uncertainty_of_the_workbook_counts(tmp_path):
+    """At a PFA at which no motion fells the piece as given, it falls where the earthquake is stronger or it thinner."""
+    exact, uncertain = (fragility(assessed(tmp_path, building=one, floor=SLOW), 0.15) for one in (EXACT, {}))
+    assert chances(exact)[0] <= 0.05
+    assert chances(uncertain)[0] > chances(exact)[0] + 0.05
+    assert exact.uncertainty is not None
+    assert (exact.uncertainty.motion, exact.uncertainty.piece) == (0, False)
+
+
 def test_values_are_inserted_at_a_jump_and_change_nothing_else(tmp_path, monkeypatch):
     """Nothing is uncertain but the phases: the chance rises steeply. No case is rocked twice at one value."""
     assessment, asked = assessed(tmp_path, *ITEMS, building=EXACT), (0.1, 0.2, 0.6, 0.9)
@@ -191,6 +208,15 @@ def test_values_are_inserted_at_a_jump_and_change_nothing_else(tmp_path, monkeyp
     for one in fine.routes:
         for way in (one.blocked, one.if_anchors_fail or ()):
             assert all(step[jump] < 2.1 * FINEST for jump in find_jumps([chance.probability for chance in way]))
+
+
+def test_no_more_values_are_inserted_than_wanted(tmp_path):
+    found = fragility(assessed(tmp_path, building=EXACT), 0.1, 0.9, most_inserted=2)
+    assert len(found.inserted) == 2
+    assert 0.5 in [round(value / GRAVITY, 6) for value in found.inserted]
+    assert chances(found, "B") == [0, 0, 0, 0]
+    assert not fragility(assessed(tmp_path), 0.02, 0.03, most_inserted=9).inserted, "no chance jumps by over 0.2"
+    assert JUMP == 0.2
 
 
 def test_the_pieces_to_blame_are_those_without_which_it_stays_below(tmp_path):
@@ -235,3 +261,20 @@ def test_where_a_chance_reaches_a_level(chances, level, between):
     assert find_passing([0.1, 0.2, 0.3], chances, level) == pytest.approx(between)
     assert find_jumps([0.0, 0.3, 0.5, 0.7, 0.9, 0.6]) == [0, 4], "20 percentage points are none"
     assert find_jumps([0.5]) == []
+
+
+def test_a_stair_without_a_clear_width_is_named(tmp_path):
+    """As in the report, where that route is not known; with a width it is evaluated."""
+    flight = {"route": "A", "segment": "flight", "start": "Up", "end": "Down", "required_width": 0.9}
+    places = [{"place": "Up", "floor": "2", "kind": "stair"}, {"place": "Down", "floor": "1", "kind": "stair"}]
+    write_records(tmp_path, "pulse", "slow")
+    for width, named in ((None, ("flight",)), (1.2, ())):
+        rows = {
+            "Building": [{}], "Floors": [{"floor": name, "record_x": "pulse.csv"} for name in "12"],
+            "Items": [CABINET], "Places": places, "Routes": [CORRIDOR, {**flight, "clear_width": width}],
+        }  # fmt: skip
+        assessment = compute(read_sheets(tmp_path, **rows), SETTINGS)
+        (route,) = fragility(assessment, 0.01).routes
+        assert (route.is_evaluated, route.unevaluated) == (True, named)
+        (row,) = build_results(assessment, figures=False).route_tables.routes
+        assert row.unevaluated_segments == named

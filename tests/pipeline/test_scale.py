@@ -55,6 +55,17 @@ def test_no_simulated_chance_is_much_higher_in_a_weaker_earthquake(found):
         assert (one - other).max() <= NOT_MONOTONE
 
 
+def test_expected_falls_do_not_rise_in_a_weaker_earthquake(found):
+    """Beyond sampling error: falls of a draw go together, so that a building counts as one sample a draw."""
+    for weaker, stronger in pairs(found):
+        falls = [
+            sum(joint.fell.sum(axis=0).astype(float) for joint in one.outcomes[simulation().key].joints)
+            for one in (weaker, stronger)
+        ]
+        difference = falls[0] - falls[1]
+        assert difference.mean() <= 2 * difference.std() / np.sqrt(RUNS)
+
+
 def test_peaks_are_multiplied_and_most_of_the_range_is_covered(found):
     for scale, one in found.items():
         np.testing.assert_allclose(one.cases.pfa, scale * found[1.0].cases.pfa, rtol=1e-12)

@@ -6,6 +6,7 @@ import pytest
 import assess
 from assess.pipeline.piece_fragility import find_piece_fragilities
 from assess.pipeline.run import compute
+from assess.report.say.simulation import count_scanned
 from assess.settings import Settings
 from assess.units import GRAVITY
 from tests.pipeline import rows
@@ -53,6 +54,15 @@ def test_the_draws_of_others_do_not_change(measured, mixed):
     assert before["two"].ideal == after["two"].ideal, "as given it is the same piece"
 
 
+def test_a_model_counts_as_measured(measured):
+    assert simulated(run(pieces(sizes_from="model"))) == simulated(measured)
+
+
+def test_certain_pieces_do_not_vary_by_a_scan_either():
+    every = [run(items, piece_uncertainty="no") for items in (pieces(), pieces(*NAMES))]
+    assert simulated(every[0]) == simulated(every[1])
+
+
 def curves(items, runs, **levels):
     return find_piece_fragilities(compute(read(items), Settings(verify="none", runs=runs, seed=2)), **levels).curves
 
@@ -76,6 +86,10 @@ def test_a_weak_floor_may_rock_it():
 
 
 # --- what is counted ---
+
+
+def test_pieces_are_counted_by_quantity():
+    assert count_scanned(run(pieces("two", "three", quantity=5), Settings(verify="none"))) == 10
 
 
 # --- the column ---

@@ -61,6 +61,12 @@ def test_an_item_that_is_anchored_already_gets_a_note(inventory):
     assert [str(one) for one in noted] == [f"Items: Item {name!r} is anchored already: its anchor is taken to hold."]
 
 
+def test_a_bracket_that_is_too_weak_is_taken_to_hold(inventory):
+    name = inventory.items[0].item
+    weak = replace(inventory, items=(replace(inventory.items[0], bracket_capacity=1.0), *inventory.items[1:]))
+    assert anchor_named(weak, [name]).items[0].bracket_capacity is None
+
+
 def test_what_cannot_be(inventory):
     for anchor, message in (
         ("clam", r"anchor: there is no item 'clam' in Items\. Did you mean 'calm'\?"),

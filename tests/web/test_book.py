@@ -9,7 +9,7 @@ from typing import Any
 import openpyxl
 import pytest
 
-from assess.errors import InputError
+from assess.errors import InputError, WorkbookError
 from assess.pipeline.live_values import with_live
 from assess.web.book import Book, EditsRefused, VersionError
 from assess.workbook.lists import LETTERS, PLACES
@@ -236,6 +236,16 @@ def test_a_workbook_that_cannot_be_changed_at_all(tmp_path, filled):
     assert book.write() == path.read_bytes()
 
 
+def test_what_is_no_edit(book):
+    cells: list[Any] = [["Items", 2, 0], ["Items", "2", 0, 1], ["Items", 2.0, 0, 1], ["Items", True, 0, 1]]
+    cells += [[None, 2, 0, 1], ["Items", 2, 0, [1]], ["Items", 2, 0, {"a": 1}], ["Items", 2, None, 1]]
+    wrong: list[Any] = [None, {}, "x", [1], *([one] for one in cells)]
+    for edits in wrong:
+        with pytest.raises(InputError, match=r"edits? ha(s|ve) to be a list"):
+            book.edit(book.version, edits, "x")
+    assert book.version == 1
+
+
 def test_hostile_texts_stay_texts(book, tmp_path):
     """No text becomes a formula, markup or broken XML, and each comes back as it was sent."""
     texts = ["=cmd|' /C calc'!A0", "+1+1", "-1+1", "@SUM(1)", "<script>alert(1)</script>", "a\x00\x07b", "]]>", "&lt;",
@@ -305,11 +315,21 @@ def test_edits_from_many_threads(book):
     assert book.version == 41
 
 
-def test_what_is_no_edit(book):
-    cells: list[Any] = [["Items", 2, 0], ["Items", "2", 0, 1], ["Items", 2.0, 0, 1], ["Items", True, 0, 1]]
-    cells += [[None, 2, 0, 1], ["Items", 2, 0, [1]], ["Items", 2, 0, {"a": 1}], ["Items", 2, None, 1]]
-    wrong: list[Any] = [None, {}, "x", [1], *([one] for one in cells)]
-    for edits in wrong:
-        with pytest.raises(InputError, match=r"edits? ha(s|ve) to be a list"):
-            book.edit(book.version, edits, "x")
-    assert book.version == 1
+def test_a_snapshot_stays_as_it_is(book):
+    now = book.snapshot()
+    edit(book, ("Items", 2, at("breadth"), "wrong"))
+    assert book.snapshot() is not now
+    assert now.inventory.items[0].breadth == 0.3
+    assert [item.row for item in book.snapshot().inventory.items] == [3, 4, 5, 6]
+    assert [one.cell for one in book.snapshot().problems if one.severity == "error"] == [
+        f"{LETTERS['Items', 'breadth']}2"
+    ]
+    assert [row.number for row in book.snapshot().tables["Items"].rows] == [2, 3, 4, 5, 6]
+
+
+def test_what_is_no_workbook(tmp_path):
+    for data in (b"", b"hello", b"PK\x03\x04rest"):
+        with pytest.raises(WorkbookError):
+            Book.hold("x.xlsx", data, tmp_path)
+    with pytest.raises(WorkbookError, match="the sheet is missing"):
+        Book.open_disk(write_shared(tmp_path / "other.xlsx", {"Sheet1": [["a"]]}))

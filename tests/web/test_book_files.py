@@ -111,6 +111,16 @@ def test_a_save_keeps_owner_group_and_attributes(path):
     assert after.st_mtime_ns > before.st_mtime_ns
 
 
+def test_nothing_to_save_writes_nothing(path):
+    before = path.stat()
+    book = Book.open_disk(path)
+    book.save()
+    set_height(book, 150)
+    book.undo(book.version)
+    book.save()
+    assert (path.stat().st_mtime_ns, path.stat().st_ino) == (before.st_mtime_ns, before.st_ino)
+
+
 def test_edits_while_it_is_saved_are_not_lost(path):
     """Three that save and one that edits: what is edited is in the file, or counts as unsaved."""
     book = Book.open_disk(path)
@@ -178,6 +188,18 @@ def test_a_file_that_was_changed_outside_is_left(path, filled):
     assert not book.check_outside()
 
 
+def test_a_reload_of_what_is_no_workbook_changes_nothing(path):
+    book = Book.open_disk(path)
+    set_height(book, 150)
+    path.write_bytes(b"no workbook")
+    with pytest.raises(WorkbookError):
+        book.reload()
+    assert book.state()["can_undo"]
+    assert book.snapshot().inventory.items[0].height == 1.5
+    with pytest.raises(ChangedOutsideError):
+        book.save()
+
+
 def test_a_file_that_cannot_be_written_loses_nothing(path, filled, monkeypatch):
     def refuse(*_):
         raise OSError(28, "No space left on device")
@@ -207,6 +229,18 @@ def test_a_file_that_cannot_be_written_loses_nothing(path, filled, monkeypatch):
 
 
 # ---------------------------------------------------------------- files that it names
+
+
+def test_missing_files_are_listed_with_their_cells(named):
+    missing = {one["name"]: one for one in Book.open_disk(named).describe()["missing"]}
+    lines = {one["field"]: one["row"] for one in Book.open_disk(named).describe()["sheets"][0]["columns"]}
+    photo = PLACES["Items", "photo"]
+    assert {name: one["kind"] for name, one in missing.items()} == {
+        "logo.png": "logo", "plan 1.png": "plan", "records/a.smc": "record", "p.png": "photo",
+    }  # fmt: skip
+    assert missing["p.png"]["cells"] == [["Items", 2, photo], ["Items", 3, photo]]
+    assert missing["records/a.smc"]["cells"] == [["Floors", 2, PLACES["Floors", "record_x"]]]
+    assert missing["logo.png"]["cells"] == [["Building", lines["logo"], 1]]
 
 
 @pytest.mark.parametrize("mode", ["disk", "held"])
@@ -250,15 +284,3 @@ def test_no_file_is_replaced_or_added_that_the_workbook_does_not_name(named, tmp
     with pytest.raises(InputError):
         book.add_file("logo.png", b"x")
     assert not (tmp_path / "elsewhere.png").exists()
-
-
-def test_a_reload_of_what_is_no_workbook_changes_nothing(path):
-    book = Book.open_disk(path)
-    set_height(book, 150)
-    path.write_bytes(b"no workbook")
-    with pytest.raises(WorkbookError):
-        book.reload()
-    assert book.state()["can_undo"]
-    assert book.snapshot().inventory.items[0].height == 1.5
-    with pytest.raises(ChangedOutsideError):
-        book.save()

@@ -161,3 +161,17 @@ def test_a_picture_that_cannot_be_used_is_none(path):
     for floor in ("1", "2", "3", "none"):
         assert find_picture(book.snapshot(), floor) is None
         assert _plan(book, floor)["picture"] is None
+
+
+def test_an_unknown_width_is_told_and_without_floors_there_is_a_frame(path):
+    """It is drawn as Breadth, as the routes assume it; nobody may take that for what the piece covers."""
+    book = hold(path)
+    edit(book, ("Items", 2, "width", None))
+    (shelves,) = _plan(book, "2")["pieces"]
+    assert (shelves["missing"], shelves["width"]) == (["width"], shelves["breadth"])
+    piece = _plan(book, "1")["pieces"][0]
+    assert (piece["missing"], piece["width"], len(piece["fallen"])) == (["width"], 0.3, 2)
+    edit(book, *(("Floors", row, "floor", None) for row in (2, 3, 4)))
+    plan = _plan(book)
+    assert (plan["floor"], plan["floor_row"], plan["pieces"]) == ("", None, [])
+    assert plan["frame"] == [-BORDER, -BORDER, 12 + BORDER, 8 + BORDER]

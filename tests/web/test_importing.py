@@ -276,3 +276,13 @@ def test_names_of_new_workbooks_and_of_models(tmp_path):
     assert clean_name("C:\\x\\../../b\u202e<1>.ifc") == "b1.ifc"
     assert (len(clean_name("a" * 300 + ".ifc")), clean_name("a" * 300 + ".ifc")[-5:]) == (120, "a.ifc")
     assert clean_name("..") == ""
+
+
+@pytest.mark.slow
+def test_routes_are_drafted_where_they_are_asked_for(served_here):
+    client = served_here().client
+    office = scan_files.write(scan_files.office())
+    assert _read(client, "office.json", office)["found"]["routes"] == 0
+    assert _read(client, "office.json", office, "&routes=draft")["found"]["routes"] > 0
+    assert client.request("POST", "/api/import?name=a.ifc&routes=all", b"x").status == 422
+    assert client.request("POST", "/api/import?routes=none", b"x").status == 422

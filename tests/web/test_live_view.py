@@ -226,3 +226,15 @@ def test_live_columns_show_what_the_formulas_of_the_sheet_show(tmp_path):
     for shown, expected in zip(rows, live_values(book.snapshot().inventory), strict=True):
         for place, value in zip(order, shown, strict=True):
             assert value == (pytest.approx(expected[place]) if isinstance(expected[place], float) else expected[place])
+
+
+def test_a_type_that_is_not_known_is_to_be_checked(tmp_path):
+    """Without sizes of its own the piece has no class for that; one that is only begun is left alone."""
+    items = [{"item": "A1", "floor": "1", "breadth": 40, "height": 180}] * 3
+    book = hold(_write(tmp_path / "w.xlsx", {"Items": items, "Floors": FLOORS}))
+    edit(
+        book,
+        ("Items", 2, "type", "Zorp"),
+        *(("Items", row, name, None) for row in (2, 3) for name in ("breadth", "height")),
+    )
+    assert [word for _, word, *_ in _by_row(_answer(book)).values()] == ["type?", "", "check"]

@@ -132,6 +132,17 @@ def test_rooms_doors_and_a_segment_are_drawn_and_its_state_follows(empty):
     assert plan.values("Places", "place") == {}
 
 
+def test_a_piece_that_would_block_the_way_changes_its_state(plan):
+    expect(plan.page.locator(".band")).to_have_class(re.compile("state-open"))
+    plan.drag((5, 4), (6.5, 3), keys=["Alt"])
+    expect(plan.page.locator(".band")).to_have_class(re.compile("state-blocked|state-standing"))
+    plan.tab("routes")
+    expect(plan.panel.locator(".states")).to_have_count(2)
+    expect(plan.panel.locator(".states").first).to_contain_text("✕ blocked")
+    plan.keyboard.press("Control+z")
+    expect(plan.panel.locator(".states").first).to_contain_text("✓ open")
+
+
 def test_corners_of_a_room_are_dragged_added_and_taken_out_and_a_new_name_keeps_its_segments(plan):
     def outline():
         return plan.values("Places", "outline")[2]
@@ -183,3 +194,19 @@ def test_a_click_on_a_segment_splits_it_and_one_beside_it_tells_what_to_click(pl
     plan.keyboard.press("Control+z")
     assert plan.values("Routes", "end") == {2: "Door"}
     assert plan.values("Places", "place") == {2: "Hall", 3: "Door"}
+
+
+def test_a_room_is_drawn_by_keyboard_alone(empty):
+    plan = empty
+    plan.page.locator("svg.plan").focus()
+    plan.keyboard.press("p")
+    for keys in ("ArrowLeft", "ArrowUp " * 10, "ArrowRight " * 12, "Shift+ArrowDown " * 5):
+        for key in keys.split():
+            plan.keyboard.press(key)
+        plan.keyboard.press("Enter")
+    expect(plan.say()).to_have_text(re.compile(r"X .* m, Y .* m"))
+    plan.keyboard.press("Enter")
+    corners = [[float(one) for one in corner.split()] for corner in plan.values("Places", "outline")[2].split("; ")]
+    (x, y), *others = corners
+    assert [one for corner in others for one in corner] == pytest.approx([x, y + 1, x + 1.2, y + 1, x + 1.2, y + 0.95])
+    expect(plan.page.locator("[data-tool=select]")).to_have_attribute("aria-pressed", "true")

@@ -148,6 +148,30 @@ def test_keys_alone_select_move_copy_and_take_off(plan):
     assert FREE not in plan.values("Items", "item")
 
 
+def test_a_copy_lies_beside_the_original_or_on_another_floor(plan):
+    plan.click(2, 2)
+    plan.keyboard.press("Control+c")
+    plan.keyboard.press("Control+v")
+    assert plan.at(FREE)[:2] == (2.5, 1.5)
+    expect(plan.say()).to_have_text("1 piece pasted")
+    plan.keyboard.press("Control+v")
+    assert plan.at(FREE + 1)[:2] == (3, 1)
+    plan.keyboard.press("Control+z")
+    plan.keyboard.press("Control+z")
+    plan.settle()
+    plan.click(2, 2)
+    plan.keyboard.press("Control+c")
+    plan.page.get_by_role("button", name="First").click()
+    expect(plan.piece(5)).to_be_visible()
+    plan.mouse.move(*plan.place(1.5, 1.2))
+    plan.keyboard.press("Control+v")
+    expect(plan.piece(FREE)).to_be_visible()
+    x, y, angle = plan.at(FREE)
+    assert (x, y, angle) == (pytest.approx(1.5, abs=0.02), pytest.approx(1.2, abs=0.02), 90)
+    assert plan.values("Items", "floor")[FREE] == "2"
+    assert plan.values("Items", "description")[FREE] == "Bookcase"
+
+
 def test_what_is_not_known_of_a_piece_is_marked_and_leads_to_its_cell(page, served_here, tmp_path):
     items = [{"item": "A1", "floor": "1", "type": "Bookcase 5 shelves", "x": 3, "y": 3, "angle_deg": 0}]
     plan = opened_plan(page, served_here(write_floor(tmp_path / "hall.xlsx", items=items, routes=[])))
@@ -204,3 +228,20 @@ def test_positions_are_written_in_the_unit_of_the_workbook(page, served_here, tm
     plan.drag((2, 2), (3, 2.5), keys=["Alt"])
     assert plan.at(2)[:2] == (pytest.approx(3 / foot, abs=0.006), pytest.approx(2.5 / foot, abs=0.006))
     expect(plan.page.locator(".scale-bar")).to_have_text(re.compile("ft$"))
+
+
+def test_on_a_phone_the_plan_is_read_and_not_edited(page, served_here, tmp_path):
+    server = served_here(write_floor(tmp_path / "hall.xlsx"))
+    plan = opened_plan(page, server, width=390, height=844, has_touch=True)
+    plan.page.touchscreen.tap(*plan.place(2, 2))
+    expect(plan.panel.locator(".details h2")).to_have_text("A1")
+    expect(plan.panel.locator("input:visible, [data-panel=add]")).to_have_count(0)
+    before = plan.place(2, 2)
+    plan.drag((2, 2), (3, 2))
+    expect(plan.page.locator("[data-tool]:visible")).to_have_count(0)
+    assert plan.at(A1)[:2] == (2, 2)
+    plan.page.get_by_role("button", name="Zoom in").click()
+    assert plan.place(2, 2) != before
+    plan.tab("routes")
+    expect(plan.panel.locator(".states li")).to_have_count(2)
+    assert plan.page.evaluate("() => document.documentElement.scrollWidth <= innerWidth")

@@ -333,3 +333,19 @@ def test_a_folder_that_does_not_allow_writing_is_told_at_once(page, office):
         _, _, err = server.stop()
         office.parent.chmod(0o755)
     assert err.startswith("warning  The folder of office.xlsx does not allow writing")
+
+
+@browsing
+def test_a_view_that_fails_leaves_the_others(page, served_here, office):
+    found = page(served_here(office))
+    found.route(
+        "**/what_if_view.mjs",
+        lambda route: route.fulfill(body="throw new Error('broken')", content_type="text/javascript"),
+    )
+    found.reload()
+    show(found, "what-if")
+    expect(found.locator("#view-what-if").get_by_role("alert")).to_contain_text("other views work")
+    show(found, "simulate")
+    expect(found.get_by_role("button", name="Start the run")).to_be_enabled()
+    assert [one for one in found.errors if "broken" not in one] == []
+    found.errors.clear()

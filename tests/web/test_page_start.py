@@ -64,3 +64,12 @@ def test_three_steps_lead_to_the_first_class(started):
     expect(SheetPage(page, server).cell(CLASS, 2)).to_contain_text(re.compile("low|medium|high"))
     made = load_workbook(server.folder / "scuola-manzoni-pisa.xlsx")["Items"]
     assert [made.cell(row, 4).value for row in range(2, 7)] == ["Classroom"] * 4 + [None]
+
+
+def test_in_italian_the_workbook_is_italian(page, served_here):
+    server = served_here()
+    found = page(server, locale="it-IT")
+    found.get_by_role("button", name="Salta il resto e crea").click()
+    expect(found.get_by_role("heading", name="uffici.xlsx")).to_be_visible()
+    assert "Arredi" in load_workbook(server.folder / "uffici.xlsx").sheetnames
+    assert server.client.get("/api/book").json()["language"] == "it"

@@ -5,11 +5,13 @@ from typing import Any
 
 import pytest
 
+import assess
 from assess.report.say.route import say_blocked, say_room_state, say_route_state, say_segment_state
 from assess.route_results import RouteState
 from assess.web.route_states import describe_routes
 from assess.workbook.template import Content, write_workbook
 from tests.web.opened import MARKET, edit, hold
+from tests.workbooks import UNVERIFIED
 
 HALL: dict[str, list[dict[str, Any]]] = {
     "Floors": [{"floor": "1", "pfa_x": 0.5, "elevation": 0}, {"floor": "2", "pfa_x": 0.2, "elevation": 4}],
@@ -68,6 +70,17 @@ def test_states_are_those_of_the_run(example):
     assert all(places[one["room"]] == one["place_row"] for one in answer["rooms"])
 
 
+@pytest.mark.slow
+def test_a_piece_with_an_error_leaves_the_routes_to_the_others(tmp_path):
+    book = hold(MARKET)
+    edit(book, ("Items", 5, "height", "tall"))
+    (tmp_path / "w.xlsx").write_bytes(book.write())
+    inventory = assess.read_inventory(tmp_path / "w.xlsx", records=MARKET.parent, strict=False)
+    answer = _answer(book)
+    _compare(answer, assess.run(inventory, UNVERIFIED))
+    assert answer["remarks"][0].startswith("1 row of furniture has an error")
+
+
 @pytest.fixture
 def hall(tmp_path):
     write_workbook(tmp_path / "w.xlsx", Content(HALL), spare=3)
@@ -96,3 +109,9 @@ def test_routes_on_a_floor_without_shaking_are_not_known(hall):
         answer = _answer(hall)
         assert {one["state"] for one in answer["routes"]} == {state}
         assert bool(answer["error"]) == (state == "not_known")
+
+
+def test_without_routes_there_is_nothing_to_say(tmp_path):
+    write_workbook(tmp_path / "w.xlsx", Content({**HALL, "Routes": [], "Places": []}), spare=3)
+    answer = _answer(hold(tmp_path / "w.xlsx"))
+    assert [answer[name] for name in ("routes", "rooms", "segments", "remarks", "problems", "error")] == [[]] * 5 + [""]

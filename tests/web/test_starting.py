@@ -86,3 +86,14 @@ def test_names_that_were_sent_are_made_safe():
     assert make_safe("../../etc/Büro 2.XLSM") == "Büro 2.XLSM"
     assert make_safe("C:\\Users\\a\\b?.xlsx") == "b.xlsx"
     assert {make_safe(name) for name in ("", "..", "\0", "con.xlsx", ".xlsx")} == {"workbook.xlsx"}
+
+
+def test_literals_of_javascript_are_read_as_it_reads_them():
+    source = r"""t("a \"b\" é"), t('it\'s'), tn("{n} x", '{n} ' + "xs", n), t(`c`), set("no"), x.t("no"), t("long " +
+        "text")"""
+    found = [
+        [texts._evaluate(one[name] or "") for name in ("text", "one", "many")] for one in texts._CALL.finditer(source)
+    ]
+    assert found == [
+        ['a "b" é', "", ""], ["it's", "", ""], ["", "{n} x", "{n} xs"], ["c", "", ""], ["long text", "", ""]
+    ]  # fmt: skip
