@@ -38,21 +38,18 @@ WEAK_PFA, WEAK_PFV = 0.9, 0.85
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OpenMotions:
-    """Motions that have been made ready: `make` returns those from a number on, and a count of them.
+    """Motions that have been made ready.
 
+    `realise` returns motions from a number on, and a count of them, in batches (k, n) [m/s2], and their time step [s].
     `fit` and `spectra` are those of the first 100 motions; `is_weak` tells whether they are weaker than the floor's.
     `bands` are the factors above and below the corner by which drawn motions are brought to the floor's peaks [-].
     """
 
-    make: Callable[[int, int], list[tuple[NDArray[Any], float]]]
+    realise: Callable[[int, int], list[tuple[NDArray[Any], float]]]
     fit: "Fit | None" = None
     spectra: "Spectra | None" = None
     is_weak: bool = False
     bands: tuple[float, float] | None = None
-
-    def realise(self, first: int, count: int) -> list[tuple[NDArray[Any], float]]:
-        """Return motions `first` to `first + count - 1` in batches: (k, n) [m/s2], and their time step [s]."""
-        return self.make(first, count)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -132,11 +129,9 @@ class DrawnEnsemble:
         make_ground, key = self._find_ground(progress)
         beams = Beams(self.drawn.building, self.grid, self.seed, key, make_ground)
         found, step = open_floor(beams, self.drawn.target, threads, progress), self.grid.time_step
-
-        def make(first: int, count: int) -> list[tuple[NDArray[Any], float]]:
-            return [(found.realise(first, count, threads, progress), step)]
-
-        return OpenMotions(make, bands=(found.high, found.low))
+        return OpenMotions(
+            lambda first, count: [(found.realise(first, count, threads, progress), step)], bands=(found.high, found.low)
+        )
 
     def _find_ground(self, progress: Progress) -> tuple[Callable[[int], "NDArray[np.float32]"], object]:
         """Return what makes the ground motions of a group, and all that they depend on."""
@@ -170,9 +165,8 @@ class SuiteEnsemble:
         from statistics import median
 
         motions = [motion for _, motion in self.suite.motions]
-        scales = [self.demand.pfa / motion.pfa if self.is_scaled else self.factor for motion in motions]
-        scaled = [(one.pfa * scale, one.pfv * scale) for one, scale in zip(motions, scales, strict=True)]
-        return median(pfa for pfa, _ in scaled), median(pfv for _, pfv in scaled)
+        scaled = [(one, self.demand.pfa / one.pfa if self.is_scaled else self.factor) for one in motions]
+        return median(one.pfa * scale for one, scale in scaled), median(one.pfv * scale for one, scale in scaled)
 
     @property
     def is_weak(self) -> bool:
@@ -193,11 +187,11 @@ class SuiteEnsemble:
         spectra = self.suite.scaled_spectra(pfa, progress=progress)
         factor = 1.0 if self.is_scaled else self.factor
 
-        def make(first: int, count: int) -> list[tuple[FloatArray, float]]:
-            return [(factor * batch, step) for batch, step in self.suite.realise(first, count, pfa)]
-
         spectra = replace(spectra, ordinates=spectra.ordinates * np.float32(factor))
-        return OpenMotions(make, None, spectra, self.is_weak)
+        return OpenMotions(
+            lambda first, count: [(factor * one, step) for one, step in self.suite.realise(first, count, pfa)],
+            None, spectra, self.is_weak,
+        )  # fmt: skip
 
 
 FloorEnsemble = GeneratedEnsemble | DrawnEnsemble | SuiteEnsemble
@@ -280,29 +274,23 @@ def find_clock(name: str, record: Record) -> tuple[Any, ...]:
 
 def _find_signs(group: Sequence[_Recorded], grid: "Grid", along: float | None) -> dict[Demand, tuple[int, ...]]:
     """Return the signs of records on one clock; nothing where they are not of two floors at least."""
-    directed = [
-        (one, turn, motion) for (one, _, motion), turn in zip(group, _direct(group, along), strict=True) if turn
-    ]
+    known = [(one.pfa, azimuth) for one, azimuth, _ in group if azimuth is not None]
+    axis = max(known)[1] if along is None and known else along
+
+    def turn(azimuth: float | None) -> int:
+        """Return 1 for a record that points along the axis, -1 for one that points against it, else 0."""
+        if not known:
+            return 1
+        if azimuth is None or axis is None or angle_between(azimuth, axis) > NEAR_AXIS:
+            return 0
+        return 1 if math.cos(math.radians(azimuth - axis)) > 0 else -1
+
+    directed = [(one, turn(azimuth), motion) for one, azimuth, motion in group if turn(azimuth)]
     if len({one.floor.floor for one, _, _ in directed}) < 2:
         return {}
     from assess.motion.floor_signs import find_signs
     from assess.motion.target import put_on_grid
 
-    rows = np.stack([turn * put_on_grid(motion, grid) for _, turn, motion in directed])
+    rows = np.stack([sign * put_on_grid(motion, grid) for _, sign, motion in directed])
     signs = find_signs(rows, grid.time_step).tolist()
     return {one: tuple(own) for (one, _, _), own in zip(directed, signs, strict=True)}
-
-
-def _direct(group: Sequence[_Recorded], along: float | None) -> list[int]:
-    """Return 1 for each record that points along a direction [deg], -1 for one that points against it, else 0."""
-    known = [(demand.pfa, azimuth) for demand, azimuth, _ in group if azimuth is not None]
-    if not known:
-        return [1] * len(group)
-    axis = max(known)[1] if along is None else along
-    return [0 if azimuth is None else _turn(azimuth, axis) for _, azimuth, _ in group]
-
-
-def _turn(azimuth: float, along: float) -> int:
-    if angle_between(azimuth, along) > NEAR_AXIS:
-        return 0
-    return 1 if math.cos(math.radians(azimuth - along)) > 0 else -1

@@ -3,11 +3,9 @@
 The values are stored in a workbook next to the formulas, so that a viewer that does not calculate shows them too.
 """
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -29,7 +27,7 @@ from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, say_class
 from assess.workbook.lists import NO_SHAKING, RUN_ASSESS
 from assess.workbook.live_row import IS_ANCHORED
 from assess.workbook.read import read_inventory
-from assess.workbook.schema import CATALOGUE, CLASS, CLASS_OR, LIVE, NO, SHEETS, YES, Sheet
+from assess.workbook.schema import CATALOGUE, CLASS, CLASS_OR, LIVE, NO, SHEETS, YES
 from assess.workbook.template import Content, Rows, Units
 
 _SCALES = {"pfa": GRAVITY, "pfv": VELOCITY["cm/s"]}
@@ -45,10 +43,18 @@ def live_values(inventory: Inventory, scenario: str | None = None) -> list[list[
     settings = Settings()
     kind = scenario or inventory.building.scenario_kind or SCENARIOS[0]
     demands = build_demands(inventory, kind, ductility_reduction=settings.ductility_reduction)
-    is_live = {id(one): one for one in _list_live(inventory, demands)}
-    formula = adopted_formula(inventory.building.class_by)
-    options = [_list_options(item, demands, is_live) for item in inventory.items]
-    governing = [max(own, key=partial(_round_peak, formula.ruled_by), default=None) for own in options]
+    is_live, formula = set(map(id, _list_live(inventory, demands))), adopted_formula(inventory.building.class_by)
+
+    def find_options(item: Item) -> list[Demand]:
+        """Return the motions of a piece; none where the sheet cannot know one of them."""
+        every = [one for axis in ((item.axis,) if item.axis else AXES) for one in demands[item.floor, axis]]
+        return every if all(id(one) in is_live for one in every) else []
+
+    def find_peak_shown(one: Demand) -> float:
+        return round(float(getattr(one, formula.ruled_by)) / _SCALES[formula.ruled_by], ALIKE)
+
+    options = list(map(find_options, inventory.items))
+    governing = [max(own, key=find_peak_shown, default=None) for own in options]
     cases = _build_cases(inventory.items, governing)
     outcomes = {method.key: method.evaluate(cases, settings) for method in LIVE_METHODS}
     values = zip(*(outcome.value.tolist() for outcome in outcomes.values()), strict=True)
@@ -92,17 +98,6 @@ def _build_cases(items: Sequence[Item], motions: Sequence[Demand | None]) -> Cas
     return replace(cases, dispersion=spread, peak=peak)
 
 
-def _list_options(item: Item, demands: Demands, live: Collection[int]) -> list[Demand]:
-    """Return the motions of a piece; none where the sheet cannot know one of them."""
-    every = [one for axis in ((item.axis,) if item.axis else AXES) for one in demands[item.floor, axis]]
-    return every if all(id(one) in live for one in every) else []
-
-
-def _round_peak(ruling: str, demand: Demand) -> float:
-    peak: float = getattr(demand, ruling)
-    return round(peak / _SCALES[ruling], ALIKE)
-
-
 def _say_class(
     item: Item, governing: Demand | None, adopted: float, is_outside: bool = False, can_rock: bool = True
 ) -> str:
@@ -142,14 +137,10 @@ def without_shaking(content: Content, units: Units = "si") -> Content:
     Raises WorkbookError if the rows lack more than shaking.
     """
     floors = [{**row, "pfa_x": 1.0} for row in content.rows["Floors"]]  # of which no column shows anything
-    items = _read({**content.rows, "Floors": floors}, units).items
-    return replace(content, live=list(map(_write_unshaken, items)))
-
-
-def _write_unshaken(item: Item) -> list[float | str]:
-    hint = gettext(NO_SHAKING)
-    label = _say_class(item, None, 0.0) if item.anchored == YES else hint
-    return _write_unknown(item.breadth / item.height, label, hint)
+    items, hint = _read({**content.rows, "Floors": floors}, units).items, gettext(NO_SHAKING)
+    labels = [_say_class(one, None, 0.0) if one.anchored == YES else hint for one in items]
+    live = [_write_unknown(one.breadth / one.height, label, hint) for one, label in zip(items, labels, strict=True)]
+    return replace(content, live=live)
 
 
 def fill_content(units: Units, use: str, *, is_example: bool) -> Content:
@@ -179,10 +170,8 @@ def store_live(content: Content, units: Units) -> Content:
 
 def _read(rows: Mapping[str, Rows], units: Units, folder: Path | None = None) -> Inventory:
     rows = {CATALOGUE.name: read_catalogue(units), **rows}
-    headed = {sheet.name: [_head(sheet, row, units) for row in rows.get(sheet.name, ())] for sheet in SHEETS}
+    headed = {}
+    for sheet in SHEETS:
+        headers = {column.name: column.header(units) for column in sheet.columns}
+        headed[sheet.name] = [{headers[name]: value for name, value in row.items()} for row in rows.get(sheet.name, ())]
     return read_inventory(headed, records=folder)
-
-
-def _head(sheet: Sheet, row: Mapping[str, Any], units: Units) -> dict[str, Any]:
-    headers = {column.name: column.header(units) for column in sheet.columns}
-    return {headers[name]: value for name, value in row.items()}

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Set
 from assess.errors import Problem, Severity
 from assess.i18n import Text, fill, join, nfill
 from assess.intensity import RATIO, SHAKINGS
-from assess.model import AXES, Axis, Building, Floor, Inventory
+from assess.model import AXES, Axis, Floor, Inventory
 from assess.motion.assumed import CODE_FACTOR, CODE_POWER
 from assess.motion.record import treat
 from assess.motion.scenario import PGA_OF_SDS
@@ -17,8 +17,7 @@ from assess.motion.site_ground import SiteGround
 from assess.pipeline.demand import find_shaking, find_site
 from assess.pipeline.floor_demand import Demand, Demands
 from assess.pipeline.known_ground import find_ground
-from assess.results import GroundFact, GroundPsa, SiteGroundInfo
-from assess.units import ACCELERATION, GRAVITY, ROUNDING, VELOCITY, to_edge
+from assess.units import GRAVITY, ROUNDING, VELOCITY
 
 LOSS_TO_NOTE, LOSS_TO_WARN = 0.02, 0.1
 """Where treatment lowers PFA by more than these shares the report says so, and the record may be corrected already."""
@@ -300,24 +299,6 @@ _UNKNOWN_FIX = {
 
 def _in_cm_s(pfv: float) -> Text:
     return fill("no PFV") if math.isnan(pfv) else fill("{pfv:.1f} cm/s", pfv=pfv / VELOCITY["cm/s"])
-
-
-def describe_site(building: Building, demands: Demands) -> SiteGroundInfo | None:
-    """Return the ShakeMap or the scenarios on which the motion of a floor rests; None where none does."""
-    site = find_site(demands)
-    if site is None:
-        return None
-    names = ("kind", "file", "sha256", "dispersion", "dispersion_source", "shared", "cautions")
-    return SiteGroundInfo(
-        **{name: getattr(site, name) for name in names},
-        pga_g=to_edge(site.pga, ACCELERATION["g"]),
-        pgv_cm_s=None if site.pgv is None else to_edge(site.pgv, VELOCITY["cm/s"]),
-        psa=tuple(GroundPsa(period_s=period, psa_g=to_edge(value, ACCELERATION["g"])) for period, value in site.psa),
-        own_dispersion=building.motion_uncertainty or 0.0,
-        distance_km=None if site.distance is None else site.distance / 1000,
-        scenarios=len(site.scenarios),
-        facts=tuple(GroundFact(label=label, value=value) for label, value in site.facts),
-    )
 
 
 def remark_on_site(inventory: Inventory, demands: Demands) -> Iterator[Problem]:

@@ -3,7 +3,7 @@
 import math
 import tempfile
 import weakref
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
@@ -32,7 +32,7 @@ from assess.pipeline.either_axis import unite_axes
 from assess.pipeline.floor_demand import Demand, Demands
 from assess.pipeline.remarks import list_too_low, remark
 from assess.pipeline.schedule import build_schedule, list_entries
-from assess.pipeline.series import Arrays, build_series, write_series
+from assess.pipeline.series import build_series, write_series
 from assess.pipeline.tables import (
     add_annual,
     build_cases,
@@ -181,8 +181,7 @@ def _compute(
         obstructions = find_obstructions(inventory, progress)
     reaching = {one.item_index for segment in obstructions for one in segment.pieces}
     on_route = np.array([bool(one.route) or at in reaching for at, one in enumerate(inventory.items)], dtype=np.bool_)
-    case_item, case_demand = _pair(inventory, demands)
-    cases = _cases(inventory, case_item, case_demand, settings)
+    case_item, case_demand, cases = _pair(inventory, demands, settings)
     outcomes = {one.key: one.evaluate(cases, settings) for one in every if one.tier == "screening"}
     chosen = choose_items(settings.verify, every, outcomes, case_item, on_route)
     cases = choose_motions(cases, chosen[case_item], case_demand, demands, inventory, settings, suite)
@@ -243,7 +242,13 @@ def build_results(
         results = progress.wait_for(build)
         if figures:
             arrays = progress.wait_for(lambda: build_series(assessment, demands, results, progress))
-            _write_series(results.series.path, arrays, progress)
+            path = results.series.path
+            try:
+                path.parent.mkdir(parents=True, exist_ok=True)
+                write_series(path, arrays, progress)
+            except OSError as error:
+                why = error.strerror or str(error)
+                raise OutputError(fill("{path} cannot be written: {why}.", path=path, why=why)) from None
     except BaseException:
         if is_temporary:
             remove_folder(folder)
@@ -285,15 +290,6 @@ def _build_rows(assessment: Assessment, demands: Sequence[Demand], folder: Path,
     )
 
 
-def _write_series(path: Path, arrays: Arrays, progress: Progress) -> None:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_series(path, arrays, progress)
-    except OSError as error:
-        why = error.strerror or str(error)
-        raise OutputError(fill("{path} cannot be written: {why}.", path=path, why=why)) from None
-
-
 def _join_methods(further: Sequence[Method]) -> tuple[Method, ...]:
     """Return the published methods and further ones, in the order of reports."""
     every = (*all_methods(), *further)
@@ -302,80 +298,61 @@ def _join_methods(further: Sequence[Method]) -> tuple[Method, ...]:
         twice = [one for one in taken if taken.count(one) > 1]
         if twice:
             raise InputError(
-                fill(
-                    "two methods have the {name} {text!r}: give each its own, or name one only once.",
-                    name=name,
-                    text=twice[0],
-                )
-            )
+                fill("two methods have the {name} {text!r}: give each its own, or name one only once.",
+                     name=name, text=twice[0])
+            )  # fmt: skip
     return every
 
 
-def _pair(inventory: Inventory, demands: Demands) -> tuple[NDArray[np.intp], tuple[Demand, ...]]:
-    """Pair each item (its index) with every motion of its axis, or of both; those of an item stand together."""
+def _pair(
+    inventory: Inventory, demands: Demands, settings: Settings
+) -> tuple[NDArray[np.intp], tuple[Demand, ...], Cases]:
+    """Pair each item (its index) with every motion of its axis, or of both; those of an item stand together.
+
+    Alike are cases of one floor motion and of all that is computed with of a piece but its name.
+    """
     pairs = [
-        (index, demand)
+        (index, item, demand)
         for index, item in enumerate(inventory.items)
         for axis in ((item.axis,) if item.axis else AXES)
         for demand in demands[item.floor, axis]
     ]
-    return np.array([index for index, _ in pairs], dtype=np.intp), tuple(demand for _, demand in pairs)
-
-
-def _cases(
-    inventory: Inventory,
-    case_item: NDArray[np.intp],
-    case_demand: tuple[Demand, ...],
-    settings: Settings,
-) -> Cases:
-    def column(values: list[float | None]) -> NDArray[np.float64]:
-        return np.array(values, dtype=np.float64)
-
-    items, building = [inventory.items[index] for index in case_item], inventory.building
+    items, case_demand = [item for _, item, _ in pairs], tuple(demand for _, _, demand in pairs)
+    found, building, count = find_walls(inventory), inventory.building, len(pairs)
+    walls = [found[at].sense(one.axis) or SIDE_UNKNOWN if at in found else NO_WALL for at, _, one in pairs]
+    friction = [inventory.friction_of(item) for item in items]
+    kinds = [
+        (demand, wall, item.breadth, item.height, item.centre_of_gravity, item.is_scanned, mu)
+        for item, demand, wall, mu in zip(items, case_demand, walls, friction, strict=True)
+    ]
+    numbers = {kind: at for at, kind in enumerate(dict.fromkeys(kinds))}
     shaken = inventory if any(one.site for one in case_demand) else replace(inventory, site_ground=None)
-    names, walls = number_pieces(inventory, settings), _list_walls(inventory, case_item, case_demand)
-    return Cases(
-        breadth=column([item.breadth for item in items]),
-        height=column([item.height for item in items]),
-        pfa=column([demand.pfa for demand in case_demand]),
-        pfv=column([demand.pfv for demand in case_demand]),
-        friction=column([inventory.friction_of(item) for item in items]),
-        restitution=np.full(len(items), math.nan if building.restitution is None else building.restitution),
-        ensemble=np.full(len(items), -1, dtype=np.intp),
-        centre=column([item.centre_of_gravity for item in items]),
-        name=np.array([names[item.item] for item in items], dtype=np.int64),
-        scanned=np.array([item.is_scanned for item in items], dtype=np.bool_),
-        slides_under=np.full(len(items), -1, dtype=np.intp),
-        alike=_number_alike(inventory, case_item, case_demand, walls),
-        quantity=np.array([item.quantity for item in items], dtype=np.int64),
-        wall=walls,
-        dispersion=column([demand.dispersion for demand in case_demand]),
-        peak=column([find_peak(demand) for demand in case_demand]),
+    names = number_pieces(inventory, settings)
+
+    def column(values: Iterable[Any], kind: type = np.float64) -> NDArray[Any]:
+        return np.array(list(values), dtype=kind)
+
+    cases = Cases(
+        breadth=column(item.breadth for item in items),
+        height=column(item.height for item in items),
+        pfa=column(demand.pfa for demand in case_demand),
+        pfv=column(demand.pfv for demand in case_demand),
+        friction=column(friction),
+        restitution=np.full(count, math.nan if building.restitution is None else building.restitution),
+        ensemble=np.full(count, -1, dtype=np.intp),
+        centre=column(item.centre_of_gravity for item in items),
+        name=column((names[item.item] for item in items), np.int64),
+        scanned=column((item.is_scanned for item in items), np.bool_),
+        slides_under=np.full(count, -1, dtype=np.intp),
+        alike=column((numbers[kind] for kind in kinds), np.intp),
+        quantity=column((item.quantity for item in items), np.int64),
+        wall=column(walls, np.int8),
+        dispersion=column(demand.dispersion for demand in case_demand),
+        peak=column(map(find_peak, case_demand)),
         uncertainty=find_uncertainty(building),
         earthquakes=find_earthquakes(shaken, settings),
     )
-
-
-def _number_alike(
-    inventory: Inventory, case_item: NDArray[np.intp], case_demand: tuple[Demand, ...], walls: NDArray[np.int8]
-) -> NDArray[np.intp]:
-    """Return `Cases.alike`: a number for each floor motion and what is computed with of a piece beside its name."""
-    numbers: dict[tuple[Any, ...], int] = {}
-    found = []
-    for at, demand, wall in zip(case_item.tolist(), case_demand, walls.tolist(), strict=True):
-        item = inventory.items[at]
-        sizes = item.breadth, item.height, item.centre_of_gravity, item.is_scanned, inventory.friction_of(item)
-        found.append(numbers.setdefault((demand, wall, *sizes), len(numbers)))
-    return np.array(found, dtype=np.intp)
-
-
-def _list_walls(inventory: Inventory, case_item: NDArray[np.intp], case_demand: tuple[Demand, ...]) -> NDArray[np.int8]:
-    """Return `Cases.wall`: the direction along its axis in which each case can turn, where there is a wall."""
-    walls, found = find_walls(inventory), np.full(case_item.size, NO_WALL, dtype=np.int8)
-    for case, item in enumerate(case_item.tolist()):
-        if item in walls:
-            found[case] = walls[item].sense(case_demand[case].axis) or SIDE_UNKNOWN
-    return found
+    return column((at for at, _, _ in pairs), np.intp), case_demand, cases
 
 
 # ---------------------------------------------------------------- routes, imported only where there are any

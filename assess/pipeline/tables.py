@@ -17,9 +17,8 @@ from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED, Profile
 from assess.pipeline.anchors import build_anchors
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.city_draws import describe_draws
-from assess.pipeline.demand import find_shaking
-from assess.pipeline.floor_demand import Demand, Demands
-from assess.pipeline.remarks import describe_site
+from assess.pipeline.demand import find_shaking, find_site
+from assess.pipeline.floor_demand import Demand
 from assess.results import (
     AssumedShaking,
     CaseTable,
@@ -27,11 +26,14 @@ from assess.results import (
     EnsembleRow,
     FitRow,
     FloorRow,
+    GroundFact,
+    GroundPsa,
     ItemRow,
     MotionRow,
     PlanRow,
     ProfileInfo,
     Provenance,
+    SiteGroundInfo,
     SuiteInfo,
     WorkedMethod,
 )
@@ -40,7 +42,6 @@ from assess.units import ACCELERATION, FORCE, LENGTH, VELOCITY, to_edge
 from assess.version import __version__, find_code, versions
 
 if TYPE_CHECKING:
-    from assess.motion.suite import Suite
     from assess.route_results import RouteTables
 
 _FACTORS: Mapping[str, float] = {**LENGTH, **ACCELERATION, **VELOCITY, **FORCE}
@@ -94,41 +95,32 @@ def list_demands(assessment: Assessment) -> list[Demand]:
 
 
 def build_motions(assessment: Assessment, demands: Sequence[Demand]) -> tuple[MotionRow, ...]:
-    """Return a row for each motion, with what pieces were simulated under."""
-    joints, rows = assessment.joints, []
+    """Return a row for each motion, with what its record says and what pieces were simulated under."""
+    names, joints = ("format", "station", "location", "channel", "event", "azimuth_deg", "corrected"), assessment.joints
+    rows = []
     for index, demand in enumerate(demands):
-        row = build_motion(index, demand)
-        joint = joints.get(demand)
-        rows.append(row if joint is None else replace(row, ensemble=_ensemble(assessment, joint)))
+        record, more = demand.record, dict[str, Any]()
+        if record is not None:
+            more = {name: getattr(record, name) for name in names} | {
+                "pfa_file_g": edge(record.file_pfa, "g"), "time_step_s": record.time_step,
+                "samples": len(record.acceleration), "treatment": treatment(record), "notes": tuple(record.notes),
+            }  # fmt: skip
+        if demand in joints:
+            more["ensemble"] = _describe_ensemble(assessment, joints[demand])
+        row = _copy(
+            MotionRow,
+            demand,
+            index=index,
+            floor=demand.floor.floor,
+            pfa_g=_sure(demand.pfa, "g"),
+            pfv_cm_s=edge(demand.pfv, "cm/s"),
+            profile=describe_profile(demand.profile) if demand.profile else None,
+            record=demand.name,
+            pfv_follows=demand.drawn is not None and demand.drawn.target.meets != "peaks",
+            **more,
+        )
+        rows.append(row)
     return tuple(rows)
-
-
-def build_motion(index: int, demand: Demand) -> MotionRow:
-    """Return the row of one motion."""
-    row = _copy(
-        MotionRow,
-        demand,
-        index=index,
-        floor=demand.floor.floor,
-        pfa_g=_sure(demand.pfa, "g"),
-        pfv_cm_s=edge(demand.pfv, "cm/s"),
-        profile=describe_profile(demand.profile) if demand.profile else None,
-        record=demand.name,
-        pfv_follows=demand.drawn is not None and demand.drawn.target.meets != "peaks",
-    )
-    record = demand.record
-    if record is None:
-        return row
-    names = ("format", "station", "location", "channel", "event", "azimuth_deg", "corrected")
-    return replace(
-        row,
-        **{name: getattr(record, name) for name in names},
-        pfa_file_g=edge(record.file_pfa, "g"),
-        time_step_s=record.time_step,
-        samples=len(record.acceleration),
-        treatment=treatment(record),
-        notes=tuple(record.notes),
-    )
 
 
 def describe_profile(profile: Profile) -> ProfileInfo:
@@ -136,7 +128,7 @@ def describe_profile(profile: Profile) -> ProfileInfo:
     return _copy(ProfileInfo, profile, status=VERIFIED if profile.verified else UNVERIFIED)
 
 
-def _ensemble(assessment: Assessment, joint: Joint) -> EnsembleRow:
+def _describe_ensemble(assessment: Assessment, joint: Joint) -> EnsembleRow:
     ensemble, fit = assessment.cases.ensembles[joint.ensemble], joint.fit
     fell = assessment.outcomes[simulation().key].detail["record_overturned"][joint.cases].astype(np.float64)
     known = fell[~np.isnan(fell)]
@@ -288,7 +280,9 @@ def work_example(index: int, assessment: Assessment) -> Iterator[WorkedMethod]:
 
 def build_provenance(assessment: Assessment) -> Provenance:
     """Return what the run is made again from."""
-    inventory = assessment.inventory
+    inventory, demands, suite = assessment.inventory, assessment.demands, assessment.suite
+    shaking, site = find_shaking(demands), find_site(demands)
+    spread = max((one.dispersion for parallel in demands.values() for one in parallel), default=0.0)
     return Provenance(
         version=__version__,
         code=find_code(),
@@ -297,14 +291,24 @@ def build_provenance(assessment: Assessment) -> Provenance:
         sha256=inventory.sha256,
         files=dict(inventory.files),
         scenario=assessment.scenario,
-        uncertainty=replace(
-            assessment.cases.uncertainty,
-            motion=max((one.dispersion for parallel in assessment.demands.values() for one in parallel), default=0.0),
+        uncertainty=replace(assessment.cases.uncertainty, motion=spread),
+        earthquakes=describe_draws(inventory, assessment.settings, assessment.cases.earthquakes),
+        shaking=None if shaking is None else _copy(
+            AssumedShaking, shaking, pga_g=_sure(shaking.pga, "g"), pgv_cm_s=_sure(shaking.pgv, "cm/s")
         ),
-        earthquakes=describe_draws(assessment.inventory, assessment.settings, assessment.cases.earthquakes),
-        shaking=_describe_shaking(assessment.demands),
-        site_ground=describe_site(inventory.building, assessment.demands),
-        suite=_suite(assessment.suite, assessment.settings.scale_motions),
+        site_ground=None if site is None else _copy(
+            SiteGroundInfo, site, pga_g=_sure(site.pga, "g"), pgv_cm_s=edge(site.pgv, "cm/s"),
+            psa=tuple(GroundPsa(period_s=period, psa_g=_sure(value, "g")) for period, value in site.psa),
+            own_dispersion=inventory.building.motion_uncertainty or 0.0,
+            distance_km=None if site.distance is None else site.distance / 1000, scenarios=len(site.scenarios),
+            facts=tuple(GroundFact(label=label, value=value) for label, value in site.facts),
+        ),
+        suite=None if suite is None else SuiteInfo(
+            folder=suite.folder, names=tuple(name for name, _ in suite.motions), files=dict(suite.files),
+            is_scaled=assessment.settings.scale_motions,
+            pfa_g=tuple(_sure(motion.pfa, "g") for _, motion in suite.motions),
+            pfv_cm_s=tuple(_sure(motion.pfv, "cm/s") for _, motion in suite.motions),
+        ),
         language=inventory.report_language,
         sheets=dict(inventory.sheets),
         letters={sheet: dict(letters) for sheet, letters in inventory.letters.items()},
@@ -312,24 +316,4 @@ def build_provenance(assessment: Assessment) -> Provenance:
         interval_z=interval_width(assessment.settings),
         looks=LOOKS,
         profiles=tuple(map(describe_profile, PROFILES.values())),
-    )
-
-
-def _describe_shaking(demands: Demands) -> AssumedShaking | None:
-    shaking = find_shaking(demands)
-    if shaking is None:
-        return None
-    return _copy(AssumedShaking, shaking, pga_g=_sure(shaking.pga, "g"), pgv_cm_s=_sure(shaking.pgv, "cm/s"))
-
-
-def _suite(suite: "Suite | None", is_scaled: bool) -> SuiteInfo | None:
-    if suite is None:
-        return None
-    return SuiteInfo(
-        folder=suite.folder,
-        names=tuple(name for name, _ in suite.motions),
-        files=dict(suite.files),
-        is_scaled=is_scaled,
-        pfa_g=tuple(_sure(motion.pfa, "g") for _, motion in suite.motions),
-        pfv_cm_s=tuple(_sure(motion.pfv, "cm/s") for _, motion in suite.motions),
-    )
+    )  # fmt: skip
