@@ -227,7 +227,7 @@ def find_piece_fragilities(
             groups=_group(assessment.inventory, rocked, by),
             unit=UNITS[im],
         )
-        every, fallen = study.rock_chosen() if levels is None else study.rock_given(np.array(levels))
+        every, fallen = study.rock(levels)
         stocky = np.unique(assessment.case_item[assessment.cases.is_stocky])
         return PieceFragilities(
             by=by,
@@ -275,21 +275,21 @@ class _Study:
     unit: float
     motions: dict[int, FloorMotions] = field(default_factory=dict)
 
-    def rock_given(self, levels: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the levels (l,) and how often each item fell at each, (items, l); NaN where it was not rocked."""
-        fallen = self._make_blank(levels.size)
-        wanted = np.zeros(fallen.shape, dtype=np.bool_)
-        wanted[[at for group in self.groups for at in group]] = True
-        self._rock(levels, wanted, fallen)
-        return levels, fallen
+    def rock(self, given: Sequence[float] | None) -> tuple[FloatArray, FloatArray]:
+        """Return levels (l,) and how often each item fell at each, (items, l); NaN where it was not rocked.
 
-    def rock_chosen(self) -> tuple[FloatArray, FloatArray]:
-        """Return the same at preferred numbers: more of them until about everything fell, as far as it goes."""
-        spans = [self._span(group) for group in self.groups]
-        first, last = min(low for low, _, _ in spans), max(end for _, _, end in spans)
-        levels = np.array([_read_rung(rung) * self.unit for rung in range(first, last + 1)])
-        fallen = self._make_blank(levels.size)
-        ranges = [(low - first, top - first) for low, top, _ in spans]
+        The levels are those given, else preferred numbers: more of them until about everything fell, as far as it goes.
+        """
+        if given is not None:
+            levels, last = np.array(given), len(given) - 1
+            spans = [(0, last, last) for _ in self.groups]
+        else:
+            rungs = [self._span(group) for group in self.groups]
+            first, end = min(low for low, _, _ in rungs), max(end for _, _, end in rungs)
+            levels = np.array([_read_rung(rung) * self.unit for rung in range(first, end + 1)])
+            spans = [(low - first, top - first, end - first) for low, top, end in rungs]
+        fallen = np.full((len(self.sweep.assessment.inventory.items), levels.size), np.nan)
+        ranges = [(low, top) for low, top, _ in spans]
         while any(start <= stop for start, stop in ranges):
             wanted = np.zeros(fallen.shape, dtype=np.bool_)
             for group, (start, stop) in zip(self.groups, ranges, strict=True):
@@ -298,11 +298,8 @@ class _Study:
             for number, (group, (_, _, end)) in enumerate(zip(self.groups, spans, strict=True)):
                 top = ranges[number][1]
                 is_enough = float(fallen[group, top].mean()) / int(self.sweep.settings.runs) >= NEARLY_ALL
-                ranges[number] = (top + 1, top if is_enough else min(top + MORE_RUNGS, end - first))
+                ranges[number] = (top + 1, top if is_enough else min(top + MORE_RUNGS, end))
         return levels, fallen
-
-    def _make_blank(self, levels: int) -> FloatArray:
-        return np.full((len(self.sweep.assessment.inventory.items), levels), np.nan)
 
     def _span(self, group: Sequence[int]) -> tuple[int, int, int]:
         """Return the rungs of a group's lowest level, of its highest to begin with, and of its last."""
