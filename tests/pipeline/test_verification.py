@@ -86,6 +86,11 @@ def results(done):
     return done.results
 
 
+@pytest.fixture(scope="module")
+def inventory(tmp_path_factory):
+    return assess.read_inventory(_book(tmp_path_factory.mktemp("inventory")))
+
+
 # --- what is found ---
 
 
