@@ -15,9 +15,8 @@ from assess.progress import SILENT, Progress
 from assess.report import words
 from assess.report.blocks import Cell, Table, plain_words
 from assess.report.provenance import report_time
-from assess.report.xlsx.pen import CHANCE, COUNT, Column, Pen, name_sheets, set_page
+from assess.report.xlsx.pen import CHANCE, COUNT, Column, Pen, write_sheets
 from assess.route_results import RouteState
-from assess.workbook.writer import write_book
 
 LONGEST_HEAD = 80
 """Characters of the texts above and below a printed page, of which Excel takes 255 in all."""
@@ -30,21 +29,7 @@ _TONES: dict[str, dict[str, Any]] = {
 
 
 def write_tables(view: View, path: Path, progress: Progress = SILENT) -> None:
-    """Write compare.xlsx in the language in use.
-
-    Raises OSError if the file cannot be written; CancelledError if `progress` was cancelled (no file is left).
-    """
-
-    def write(book: Any) -> None:
-        created = datetime.datetime.combine(report_time().date(), datetime.time())
-        title = _("Furniture in earthquakes, before and after: {building}", building=words.cut(view.title, 120))
-        book.set_properties({"title": title, "created": created})
-        _write_sheets(book, view, progress)
-
-    write_book(path, write, by_row=True, progress=progress)
-
-
-def _write_sheets(book: Any, view: View, progress: Progress) -> None:
+    """Write compare.xlsx in the language in use, as `assess.report.xlsx.pen.write_sheets` does."""
     found = view.found
     sheets: dict[str, Callable[[Pen, Any], object]] = {
         _("Summary"): partial(_write_summary, view),
@@ -58,12 +43,15 @@ def _write_sheets(book: Any, view: View, progress: Progress) -> None:
         own = [column(_("Room")), Column(_("Floor"), 8, lambda one: one.row.floor)]
         sheets[_("Rooms")] = partial(_write_states, own, found.rooms)
     sheets[_("The two runs")] = partial(_write_facts, view)
-    pen = Pen(book, name_sheets({title: title for title in sheets}), progress)
-    pages = [book.add_worksheet(name) for name in pen.sheets.values()]
-    title, conditions = words.cut(view.title, LONGEST_HEAD // 2), words.cut(view.conditions, LONGEST_HEAD)
-    for page, name, write in zip(pages, pen.sheets.values(), sheets.values(), strict=True):
-        set_page(page, title, name, conditions, words.cut(view.footer, 2 * LONGEST_HEAD))
-        write(pen, page)
+    head, conditions = words.cut(view.title, LONGEST_HEAD // 2), words.cut(view.conditions, LONGEST_HEAD)
+    write_sheets(
+        path,
+        [(title, title, write) for title, write in sheets.items()],
+        title=_("Furniture in earthquakes, before and after: {building}", building=words.cut(view.title, 120)),
+        created=datetime.datetime.combine(report_time().date(), datetime.time()),
+        texts=(head, conditions, words.cut(view.footer, 2 * LONGEST_HEAD)),
+        progress=progress,
+    )
 
 
 def _write_summary(view: View, pen: Pen, page: Any) -> None:

@@ -4,6 +4,7 @@ Numbers are numbers, and every text stays text: no name becomes a formula or a l
 """
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from operator import attrgetter, itemgetter
 from typing import Any
 
@@ -17,11 +18,10 @@ from assess.portfolio.city_map import find_share, say_sign, sign_of_class
 from assess.progress import SILENT, Progress
 from assess.report import words
 from assess.report.report_options import ReportOptions
-from assess.report.xlsx.pen import CHANCE, COUNT, Column, Pen, name_sheets, set_page
+from assess.report.xlsx.pen import CHANCE, COUNT, Column, Pen, write_sheets
 from assess.risk import RiskClass
 from assess.route_results import RouteState
 from assess.workbook.template import CREATED
-from assess.workbook.writer import write_book
 
 SUM = "#,##0.0"
 """How Excel shows an expected number."""
@@ -34,38 +34,32 @@ MOST_PROBLEMS = 5_000
 def render_ranking(city: City, *, options: ReportOptions | None = None, progress: Progress = SILENT) -> bytes:
     """Return the ranking of a city as a workbook; the same tables give the same bytes.
 
-    Raises
-    ------
-    OSError
-        If there is no room for its parts.
-    CancelledError
-        If the work was cancelled.
+    Raises OSError if there is no room for its parts; CancelledError if the work was cancelled.
     """
     options = options or ReportOptions()
     with options.spoken(), private_folder("assess-page-") as folder:
         progress.wait_for(lambda: city.groups)
-        path = folder / "ranking.xlsx"
+        title = say.say_title(city)
+        sheets = [(key, _(name), partial(_write_list, find, city)) for key, name, find in LISTS]
+        write_sheets(
+            folder / "ranking.xlsx",
+            [("summary", _("Summary"), partial(_write_summary, city)), *sheets],
+            title=title,
+            created=(find_source_date() or CREATED).replace(tzinfo=None),
+            texts=(title, "", say.say_ground(city)[:120]),
+            progress=progress,
+        )
+        return (folder / "ranking.xlsx").read_bytes()
 
-        def write(book: Any) -> None:
-            moment = (find_source_date() or CREATED).replace(tzinfo=None)
-            book.set_properties({"title": say.say_title(city), "created": moment})
-            names = name_sheets({"summary": _("Summary"), **{key: _(title) for key, title, _list in LISTS}})
-            pen = Pen(book, names, progress)
-            pages = {key: book.add_worksheet(name) for key, name in names.items()}
-            for key, page in pages.items():
-                set_page(page, say.say_title(city), names[key], "", say.say_ground(city)[:120])
-            _write_summary(pen, pages["summary"], city)
-            for key, _title, list_rows in LISTS:
-                pen.listing(pages[key], *list_rows(city))
 
-        write_book(path, write, by_row=True, progress=progress)
-        return path.read_bytes()
+def _write_list(find: Callable[[City], "Listing"], city: City, pen: Pen, page: Any) -> None:
+    pen.listing(page, *find(city))
 
 
 # ---------------------------------------------------------------- sums
 
 
-def _write_summary(pen: Pen, page: Any, city: City) -> None:
+def _write_summary(city: City, pen: Pen, page: Any) -> None:
     """Write the answer in words, then the table of the groups."""
     page.set_column(0, 0, 62)
     page.set_column(1, 1 + len(city.groups), 24)

@@ -8,10 +8,9 @@ headings and the words that formulas compare are in the language in use; formula
 
 import datetime
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
-
-import xlsxwriter
 
 from assess.i18n import fill
 from assess.i18n import gettext as _
@@ -21,10 +20,9 @@ from assess.report.content import Content, report_date
 from assess.report.say.ground import name_source
 from assess.report.say.simulation import say_scenario
 from assess.report.xlsx import floors_sheet, items_sheet, list_sheets, route_sheets, summary_sheet, work_sheet
-from assess.report.xlsx.pen import Pen, name_sheets, set_page
+from assess.report.xlsx.pen import Pen, write_sheets
 from assess.results import Results
 from assess.workbook.formulas import write_plainly
-from assess.workbook.writer import write_book
 
 Write = Callable[[Pen, Any, Content], object]
 IsThere = Callable[[Content], bool]
@@ -58,38 +56,20 @@ SHEETS: tuple[tuple[str, Write, IsThere], ...] = (
 
 
 def write_xlsx(content: Content, path: Path, progress: Progress = SILENT) -> None:
-    """Write report.xlsx in the language in use.
+    """Write report.xlsx in the language in use, as `assess.report.xlsx.pen.write_sheets` does."""
 
-    Raises
-    ------
-    OSError
-        If the file cannot be written.
-    CancelledError
-        If `progress` was cancelled; no file is left.
-    """
+    def write_own(write: Write, pen: Pen, page: Any) -> None:
+        write_plainly(page)
+        write(pen, page, content)
 
-    def write(book: xlsxwriter.Workbook) -> None:
-        created = datetime.datetime.fromisoformat(report_date())
-        title = _("Furniture in earthquakes: {title}", title=content.title[:200])
-        book.set_properties({"title": title, "created": created})
-        there = [(title, write) for title, write, is_there in SHEETS if is_there(content)]
-        pen = Pen(book, name_sheets({str(title): _(title) for title, _write in there}), progress)
-        pages = [book.add_worksheet(name) for name in pen.sheets.values()]
-        for row, (name, _meaning, _value) in enumerate(list_sheets.named_values(content.run), 2):
-            book.define_name(name, f"={pen.refer('Assumptions')}$B${row}")
-        for page, name, (_title, write) in zip(pages, pen.sheets.values(), there, strict=True):
-            progress.check()
-            write_plainly(page)
-            set_page(
-                page,
-                words.cut(content.title, 80),
-                name,
-                _say_conditions(content.run),
-                say_scenario(content.run).rstrip("."),
-            )
-            write(pen, page, content)
-
-    write_book(path, write, by_row=True, progress=progress)
+    write_sheets(
+        path,
+        [(str(one), _(one), partial(write_own, write)) for one, write, is_there in SHEETS if is_there(content)],
+        title=_("Furniture in earthquakes: {title}", title=content.title[:200]),
+        created=datetime.datetime.fromisoformat(report_date()),
+        texts=(words.cut(content.title, 80), _say_conditions(content.run), say_scenario(content.run).rstrip(".")),
+        progress=progress,
+    )
 
 
 def _say_conditions(run: Results) -> str:

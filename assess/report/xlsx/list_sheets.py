@@ -202,7 +202,7 @@ def _describe(method: "MethodInfo") -> Iterator[tuple[str, str, str]]:
 # ---------------------------------------------------------------- assumptions
 
 
-def named_values(results: Results) -> list[tuple[str, str, float]]:
+def _list_values(results: Results) -> list[tuple[str, str, float]]:
     """Return what formulas refer to by name: name of the cell, meaning and value, in the order of the rows."""
     found = [
         (name, _("Lower limit of {risk} (edit the value: classes and counts follow)", risk=_(risk.word)), limit)
@@ -220,8 +220,9 @@ def write_assumptions(pen: Pen, page: Any, content: Content) -> None:
     """Write the values that formulas refer to, and what else was assumed."""
     columns = _of_texts((_("Assumption"), 80), (_("Value"), 60))
     pen.listing(page, columns, ())
-    values = named_values(content.run)
-    for row, (_name, meaning, value) in enumerate(values, 1):
+    values = _list_values(content.run)
+    for row, (name, meaning, value) in enumerate(values, 1):
+        pen.book.define_name(name, f"={pen.refer('Assumptions')}$B${row + 1}")
         page.write_string(row, 0, meaning, pen.style("text"))
         page.write_number(row, 1, value, pen.style("input"))
     rule = {"validate": "decimal", "criteria": "between", "minimum": 0, "maximum": 1}

@@ -4,6 +4,8 @@ import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from datetime import datetime
+from pathlib import Path
 from typing import Any
 
 from assess.i18n import gettext as _
@@ -12,6 +14,7 @@ from assess.report.xlsx.item_formulas import Terms, build_terms
 from assess.risk import RiskClass
 from assess.route_results import RouteState
 from assess.table import Field
+from assess.workbook.writer import write_book
 
 HEAD = 1
 """Rows above the data of Items and Floors: the headings alone."""
@@ -248,16 +251,38 @@ def name_sheets(titles: Mapping[str, str]) -> dict[str, str]:
     return names
 
 
-def set_page(page: Any, title: str, sheet: str, conditions: str, footer: str) -> None:
-    """Set up the printed pages of a sheet with texts above, in the middle what holds for all numbers, and below."""
-    page.set_landscape()
-    page.set_paper(A4)
-    page.set_margins(left=0.5, right=0.5, top=0.75, bottom=0.75)
-    page.fit_to_pages(1, 0)
-    pages = _plain(_("Page {page} of {pages}", page=_PAGE, pages=_PAGES)).replace(_PAGE, "&P").replace(_PAGES, "&N")
-    middle = f"&C&8 {_plain(conditions)}" if conditions else ""
-    page.set_header(f"&L&8 {_plain(title)}{middle}&R&8 {_plain(sheet)}")
-    page.set_footer(f"&L&8 {_plain(footer)}&R&8 {pages}")
+Write = Callable[[Pen, Any], object]
+
+
+def write_sheets(
+    path: Path, sheets: Sequence[tuple[str, str, Write]], *, title: str, created: datetime, texts: tuple[str, str, str],
+    progress: Progress = SILENT,
+) -> None:  # fmt: skip
+    """Write a workbook: of each sheet its key, its title in the language in use, and what writes it.
+
+    `title` and `created` are what the file says of itself; `texts` stand on every printed page: at the head, in the
+    middle of it what holds for all numbers, and at the foot. Raises OSError if the file cannot be written;
+    CancelledError if `progress` was cancelled (no file is left).
+    """
+    head, conditions, foot = map(_plain, texts)
+
+    def write(book: Any) -> None:
+        book.set_properties({"title": title, "created": created})
+        pen = Pen(book, name_sheets({key: name for key, name, _write in sheets}), progress)
+        pages = [book.add_worksheet(name) for name in pen.sheets.values()]
+        for page, name, (_key, _title, write_own) in zip(pages, pen.sheets.values(), sheets, strict=True):
+            progress.check()
+            page.set_landscape()
+            page.set_paper(A4)
+            page.set_margins(left=0.5, right=0.5, top=0.75, bottom=0.75)
+            page.fit_to_pages(1, 0)
+            middle = f"&C&8 {conditions}" if conditions else ""
+            page.set_header(f"&L&8 {head}{middle}&R&8 {_plain(name)}")
+            number = _plain(_("Page {page} of {pages}", page=_PAGE, pages=_PAGES))
+            page.set_footer(f"&L&8 {foot}&R&8 {number.replace(_PAGE, '&P').replace(_PAGES, '&N')}")
+            write_own(pen, page)
+
+    write_book(path, write, by_row=True, progress=progress)
 
 
 def _plain(text: str) -> str:
