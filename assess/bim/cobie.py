@@ -316,7 +316,6 @@ class _Sorted:
     with_several_spaces: int = 0
 
     def take(self, row: Row) -> None:
-        """Sort one component in."""
         named, space = say(row.get("TypeName")), say(row.get("Space"))
         kind = self.types.get(key(named))
         if kind is None:

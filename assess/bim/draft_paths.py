@@ -209,7 +209,7 @@ def is_corridor(room: Room) -> bool:
     return len(room.links) > 1 and find_width(room.area) > 0
 
 
-def find_axes(room: Room) -> list[Axis]:
+def _find_axes(room: Room) -> list[Axis]:
     """Return the middle lines of a corridor, the longest first; none where no walls face each other."""
     width = find_width(room.area)
     area = find_largest(room.floor)
@@ -241,7 +241,7 @@ def _face(one: tuple[Point, Point], other: tuple[Point, Point], width: float) ->
     return Axis(middle.point(low), middle.point(high), gap)
 
 
-def find_spots(axis: Axis, nodes: Iterable[tuple[str, Point]]) -> list[tuple[float, list[str]]]:
+def _find_spots(axis: Axis, nodes: Iterable[tuple[str, Point]]) -> list[tuple[float, list[str]]]:
     """Return the places along an axis at which nodes are joined to it, with these nodes, and its two ends, in order."""
     beyond = max(BESIDE, BEYOND * axis.width)
     low, high = axis.inset, axis.length - axis.inset
@@ -268,7 +268,7 @@ def measure_width(axis_width: float, ends: tuple[Point, Point], floor: BaseGeome
 
 def _follow_axes(ways: Ways) -> None:
     room = ways.room
-    axes = find_axes(room)
+    axes = _find_axes(room)
     joints = [
         (f"end {at} {end}", point)
         for at, axis in enumerate(axes)
@@ -279,7 +279,7 @@ def _follow_axes(ways: Ways) -> None:
     own: dict[str, list[str]] = {}
     for at, axis in enumerate(axes):
         others = [one for one in every if one[0] not in (f"end {at} 0", f"end {at} 1")]
-        names = _add_axis(ways, axis, find_spots(axis, others), own, at)
+        names = _add_axis(ways, axis, _find_spots(axis, others), own, at)
         # neighbours on an axis: such ways cost no more for being many
         for one, other in pairwise(sorted(names, key=lambda name: axis.find(ways.at(name))[0])):
             ends = ways.at(one), ways.at(other)

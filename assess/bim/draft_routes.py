@@ -100,8 +100,7 @@ class Network:
             self.graph.add_edge(one, other, space=space, **way)
 
 
-def build_network(model: BuildingModel) -> Network:
-    """Return the network of a building."""
+def _build_network(model: BuildingModel) -> Network:
     sides = find_sides(model)
     kinds = find_kinds(model, sides)
     network = Network()
@@ -163,7 +162,7 @@ class Step:
     target: str
 
 
-def find_steps(network: Network) -> dict[str, Step]:
+def _find_steps(network: Network) -> dict[str, Step]:
     """Return the steps of the ways out of all rooms, by the node from which each leads: way by way, the longest first.
 
     Each is the shortest way to an exit, or, where no exit can be reached, to the end of a stair. A way ends where it
@@ -237,7 +236,7 @@ def _measure_sides(line: shapely.LineString, stands: BaseGeometry) -> float | No
     return None if left.is_empty or right.is_empty else float(left.distance(right))
 
 
-def set_widths(links: Sequence[Link], between_walls: float | None, gap: float | None) -> dict[str, Any]:
+def _set_widths(links: Sequence[Link], between_walls: float | None, gap: float | None) -> dict[str, Any]:
     """Return the widths of a segment and what is assumed of them.
 
     `between_walls`: the free width of a corridor in whose middle it lies [m].
@@ -289,8 +288,8 @@ def draft_routes(model: BuildingModel, names: Mapping[str, str]) -> DraftRoutes:
 
     The draft is empty, with remarks that say why, where there is nothing to draft.
     """
-    network = build_network(model)
-    steps = find_steps(network)
+    network = _build_network(model)
+    steps = _find_steps(network)
     sheet = _Sheet(model, network, steps, names)
     routes = list(sheet.list_routes())
     lost = tuple(
@@ -367,7 +366,7 @@ class _Sheet:
         row |= {"floor": self._floor(ends[0].storey), "room": self._list_rooms(ends, way["space"])}
         links = [node.link for node in ends if node.link is not None]
         gap = measure_gap(self.network.plans[ends[0].storey], way["space"], (ends[0].at, ends[1].at), links)
-        row |= set_widths(links, way["width"], gap)
+        row |= _set_widths(links, way["width"], gap)
         return {name: value for name, value in row.items() if value not in ("", None)}
 
     def _list_rooms(self, ends: tuple[Node, Node], space: str) -> str:

@@ -89,7 +89,7 @@ def _list_properties(found: ExportRun, one: ExportPiece) -> Iterator[tuple[str, 
     if one.pfa_source:
         yield "PFASource", write_label(one.pfa_source)
     if routes := list_routes(found, [past.item]):
-        yield "MayBlockRoutes", write_long_text(", ".join(routes))
+        yield "MayBlockRoutes", _write_long_text(", ".join(routes))
     if one.importance:
         yield "Importance", write_label(_(one.importance))
     if past.item in found.works:
@@ -101,9 +101,9 @@ def _list_properties(found: ExportRun, one: ExportPiece) -> Iterator[tuple[str, 
             "FixingTensionCode": work.tension_code_kn, "BaseShear": work.shear_kn,
         }  # fmt: skip
         yield from ((f"{key}_kN", write_real(force)) for key, force in forces.items() if force is not None)
-    yield "Scenario", write_long_text(say_scenario(run))
+    yield "Scenario", _write_long_text(say_scenario(run))
     yield "AssessedBy", write_label(say_program(run))
-    yield "Report", write_long_text(say_report(run))
+    yield "Report", _write_long_text(say_report(run))
 
 
 # ---------------------------------------------------------------- STEP
@@ -142,8 +142,7 @@ def write_label(text: str) -> str:
     return f"IFCLABEL({write_text(text if len(text) <= LONGEST_LABEL else f'{text[: LONGEST_LABEL - 1]}…')})"
 
 
-def write_long_text(text: str) -> str:
-    """Return an IfcText."""
+def _write_long_text(text: str) -> str:
     return f"IFCTEXT({write_text(text)})"
 
 

@@ -154,7 +154,7 @@ def list_lines(found: ExportRun, entry: ScheduleRow, pieces: Sequence[ExportPiec
                 source=one.pfa_source or words.DASH)  # fmt: skip
     yield _("Earthquake: {scenario}. The chance is for this earthquake, not per year.",
             scenario=say_scenario(run))  # fmt: skip
-    reason = say_reason(found, entry, pieces)
+    reason = _say_reason(found, entry, pieces)
     if reason:
         yield _("Why it comes here: {reason}.", reason=reason)
     if entry.is_together:
@@ -171,7 +171,7 @@ def list_lines(found: ExportRun, entry: ScheduleRow, pieces: Sequence[ExportPiec
             n=len(found.entries), report=say_report(run), program=say_program(run))  # fmt: skip
 
 
-def say_reason(found: ExportRun, entry: ScheduleRow, pieces: Sequence[ExportPiece]) -> str:
+def _say_reason(found: ExportRun, entry: ScheduleRow, pieces: Sequence[ExportPiece]) -> str:
     """Return why an entry comes where it does: its importance, its routes and the effect of fixing it on them."""
     steps: dict[str, list[RouteStep]] = {}
     for step in sorted(found.steps, key=lambda step: (step.route, step.place)):

@@ -105,7 +105,6 @@ class _Frame:
 
     @classmethod
     def round(cls, points: Sequence[Point]) -> "_Frame":
-        """Return the box round points with its margin, to the centimetre."""
         left, right = min(x for x, _ in points) - MARGIN, max(x for x, _ in points) + MARGIN
         bottom, top = min(y for _, y in points) - MARGIN, max(y for _, y in points) + MARGIN
         left, bottom = math.floor(100 * left) / 100, math.floor(100 * bottom) / 100

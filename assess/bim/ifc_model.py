@@ -62,7 +62,7 @@ def read_model(path: Path, name: str, also: Sequence[str] = ()) -> BuildingModel
 
 def _understand(model: Any, name: str, also: Sequence[str]) -> BuildingModel:
     unit = find_unit(model, name)
-    storeys, warnings = list_storeys(model, unit)
+    storeys, warnings = _list_storeys(model, unit)
     if not storeys:
         storeys = [_stand_in(model, name)]
         warnings.append(
@@ -70,16 +70,16 @@ def _understand(model: Any, name: str, also: Sequence[str]) -> BuildingModel:
                  floor=storeys[0].name)
         )  # fmt: skip
     known = {one.key for one in storeys}
-    spaces = tuple(list_spaces(model, known))
+    spaces = tuple(_list_spaces(model, known))
     found = find_pieces(model, storeys, spaces, also)
-    walls, windows = cut_walls(model, found.storeys)
-    title, address = find_names(model)
-    latitude, longitude = find_position(model) or (None, None)
+    walls, windows = _cut_walls(model, found.storeys)
+    title, address = _find_names(model)
+    latitude, longitude = _find_position(model) or (None, None)
     read = BuildingModel(
         source=name, schema=model.schema_identifier, name=title, address=address, storeys=tuple(found.storeys),
-        spaces=spaces, doors=tuple(list_doors(model, known, unit)), stairs=tuple(list_stairs(model, found.storeys)),
+        spaces=spaces, doors=tuple(_list_doors(model, known, unit)), stairs=tuple(_list_stairs(model, found.storeys)),
         pieces=tuple(found.pieces), walls=walls, windows=windows, skipped=found.skipped,
-        azimuth_deg=find_azimuth(model), latitude=latitude, longitude=longitude,
+        azimuth_deg=_find_azimuth(model), latitude=latitude, longitude=longitude,
         warnings=(*warnings, *found.warnings), remarks=tuple(_note_rooms(model, spaces, found.pieces)),
     )  # fmt: skip
     return bring_near(read)
@@ -113,7 +113,7 @@ def _note_rooms(model: Any, spaces: Sequence[Space], pieces: Sequence[Piece]) ->
 # ---------------------------------------------------------------- the site and its storeys
 
 
-def find_names(model: Any) -> tuple[str, str]:
+def _find_names(model: Any) -> tuple[str, str]:
     """Return the name and the address of the building, "" where it has none."""
     buildings, projects = model.by_type("IfcBuilding"), model.by_type("IfcProject")
     named = [say(one.LongName) or say(one.Name) for one in (*buildings, *projects)]
@@ -123,16 +123,16 @@ def find_names(model: Any) -> tuple[str, str]:
     return next(filter(None, named), ""), ", ".join(filter(None, map(say, lines)))
 
 
-def find_position(model: Any) -> tuple[float, float] | None:
+def _find_position(model: Any) -> tuple[float, float] | None:
     """Return latitude and longitude of the site [deg], None where the model gives none, no such, or both are 0."""
     for site in model.by_type("IfcSite"):
-        latitude, longitude = to_degrees(site.RefLatitude), to_degrees(site.RefLongitude)
+        latitude, longitude = _to_degrees(site.RefLatitude), _to_degrees(site.RefLongitude)
         if latitude is not None and longitude is not None and (latitude or longitude) and abs(latitude) <= 90:
             return latitude, longitude
     return None
 
 
-def to_degrees(angle: Sequence[int] | None) -> float | None:
+def _to_degrees(angle: Sequence[int] | None) -> float | None:
     """Return an IfcCompoundPlaneAngleMeasure in degrees; None if there is none, or it is no angle of a site."""
     if not angle or len(angle) > len(_ARC):
         return None
@@ -140,7 +140,7 @@ def to_degrees(angle: Sequence[int] | None) -> float | None:
     return round(degrees, 6) if abs(degrees) <= 180 else None
 
 
-def find_azimuth(model: Any) -> float | None:
+def _find_azimuth(model: Any) -> float | None:
     """Return the compass direction of the X axis [deg], None where no true north is given."""
     for context in model.by_type("IfcGeometricRepresentationContext", include_subtypes=False):
         if context.TrueNorth is not None:
@@ -149,7 +149,7 @@ def find_azimuth(model: Any) -> float | None:
     return None
 
 
-def list_storeys(model: Any, unit: float) -> tuple[list[Storey], list[Text]]:
+def _list_storeys(model: Any, unit: float) -> tuple[list[Storey], list[Text]]:
     """Return all storeys of a model, from the lowest, and warnings.
 
     Elevation counts from the building's zero, the placement from that of the model: they differ by one height in all
@@ -183,8 +183,7 @@ def list_storeys(model: Any, unit: float) -> tuple[list[Storey], list[Text]]:
 # ---------------------------------------------------------------- rooms, doors, stairs and walls
 
 
-def list_spaces(model: Any, storeys: Collection[str]) -> Iterator[Space]:
-    """Yield the rooms that have a plan, on the storeys that are given."""
+def _list_spaces(model: Any, storeys: Collection[str]) -> Iterator[Space]:
     spaces = {one.id(): one for one in model.by_type("IfcSpace")}
     keys = tell_apart(spaces.values())
     shapes = dict(list_shapes(model, list(spaces.values())))
@@ -203,7 +202,7 @@ def _find_known(element: Element, storeys: Collection[str]) -> str | None:
     return "" if "" in storeys else None
 
 
-def list_doors(model: Any, storeys: Collection[str], unit: float) -> Iterator[Door]:
+def _list_doors(model: Any, storeys: Collection[str], unit: float) -> Iterator[Door]:
     """Yield the doors that have a plan: that of their opening, else their own."""
     doors = model.by_type("IfcDoor")
     keys = tell_apart(doors)
@@ -230,8 +229,7 @@ def list_doors(model: Any, storeys: Collection[str], unit: float) -> Iterator[Do
         )  # fmt: skip
 
 
-def list_stairs(model: Any, storeys: Sequence[Storey]) -> Iterator[Stair]:
-    """Yield foot and head of each stair and ramp, on the storeys that they join."""
+def _list_stairs(model: Any, storeys: Sequence[Storey]) -> Iterator[Stair]:
     stairs = {one.id(): one for one in list_outer(list_elements(model, STAIRS))}
     keys = tell_apart(stairs.values())
     for number, shape in sorted(join_parts(model, list(stairs.values())), key=lambda one: one[0]):
@@ -257,8 +255,7 @@ Plans = dict[str, tuple[Area, ...]]
 """Areas by the key of their storey."""
 
 
-def cut_walls(model: Any, storeys: Sequence[Storey]) -> tuple[Plans, Plans]:
-    """Return what stands and what is glazed at 1.2 m above the floor of each storey."""
+def _cut_walls(model: Any, storeys: Sequence[Storey]) -> tuple[Plans, Plans]:
     elements = {one.id(): one for one in list_elements(model, (*WALLS, "IfcWindow"))}
     walls, windows = dict[str, list[Polygon]](), dict[str, list[Polygon]]()
     cuts = {

@@ -29,7 +29,7 @@ from assess.bim.ifc_elements import (
     say,
     tell_apart,
 )
-from assess.bim.plan_shapes import FloatArray, Shape, SpaceSearch, find_box, join, join_stacked, note_stacked
+from assess.bim.plan_shapes import FloatArray, Shape, SpaceSearch, find_box, find_stacks, join, note_stacked
 from assess.errors import ModelError
 from assess.i18n import Text, fill
 
@@ -96,7 +96,7 @@ def find_pieces(
     skipped: list[tuple[str, Text, bool]] = []
 
     def skip(one: Element, reason: Text, *, is_furniture: bool = True) -> None:
-        skipped.append((name_skipped(one.is_a(), name_type(one)), reason, is_furniture))
+        skipped.append((name_skipped(one.is_a(), _name_type(one)), reason, is_furniture))
 
     for one in every:
         if one.id() not in elements:
@@ -139,7 +139,7 @@ class _Shaped:
         element, box = self.elements[number], find_box(shape)
         storey, space = self._find_place(element, (box.x, box.y), shape.bottom)
         floor = space.bottom if space is not None else self.storeys[storey].level
-        kind = name or name_type(element)
+        kind = name or _name_type(element)
         self.pieces[number] = Piece(
             key=self.keys[number], storey=storey, space=space.key if space is not None else "",
             ifc_class=element.is_a(), name=name or say(element.Name), type=kind, bottom=shape.bottom - floor,
@@ -176,26 +176,21 @@ class _Shaped:
         return warnings
 
     def join_groups(self) -> set[int]:
-        """Make one piece of the parts of an assembly that stand on each other; return those that are no longer one."""
         groups: dict[int, list[int]] = {}
         for number, whole in self._wholes.items():
             if number in self._shapes:
                 groups.setdefault(whole.id(), []).append(number)
         gone = set[int]()
-        for members in groups.values():
-            on_floor = [self.pieces[number].bottom <= ON_FLOOR for number in members]
-            for places in join_stacked(np.array([self.bounds[number] for number in members]), on_floor, beside=True):
-                first, *others = (members[at] for at in places)
-                if others:
-                    name = say(self._wholes[first].Name) if len(places) == len(members) else ""
-                    self._take(first, join([self._shapes[number] for number in (first, *others)]), name)
-                    gone |= {*others}
+        on_floor = {number for number, one in self.pieces.items() if one.bottom <= ON_FLOOR}
+        for (first, *others), is_whole in list(find_stacks(groups.values(), self.bounds, on_floor, beside=True)):
+            name = say(self._wholes[first].Name) if is_whole else ""
+            self._take(first, join([self._shapes[number] for number in (first, *others)]), name)
+            gone |= {*others}
         for number in gone:
             del self.pieces[number], self.bounds[number]
         return gone
 
     def note_stacked(self) -> list[Text]:
-        """Return the warning about pieces on which others stand that were left out."""
         on_floor = [number for number, one in self.pieces.items() if one.bottom <= ON_FLOOR]
         off = [number for number, one in self.pieces.items() if one.bottom > ON_FLOOR]
         names = [self.pieces[number].name or self.pieces[number].type for number in on_floor]
@@ -231,7 +226,7 @@ def _check_classes(model: Any, classes: Sequence[str]) -> None:
             )  # fmt: skip
 
 
-def name_type(element: Element) -> str:
+def _name_type(element: Element) -> str:
     """Return the type of an element in words: as a program for buildings shows it, without its number.
 
     Revit writes ``Family:Type:Number`` as the name, others the name of the type alone.

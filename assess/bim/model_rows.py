@@ -195,7 +195,6 @@ class _Building:
         return round(top, 2) if max(highest, LOWEST_ROOF) < top <= TALLEST else None
 
     def list_floor(self, storey: Storey, plan: Drawn | None, files: Mapping[str, str]) -> Row:
-        """Return the row of a storey."""
         row: Row = {"floor": self.floors[storey.key]}
         if LOWEST <= storey.elevation <= HIGHEST:
             row["elevation"] = round(storey.elevation, 3) + 0.0
@@ -205,7 +204,6 @@ class _Building:
         return row
 
     def list_items(self, types: Mapping[Any, str]) -> Iterator[Row]:
-        """Yield the rows of the pieces."""
         for name, one in zip(self._name_items(), self.pieces, strict=True):
             piece = one.piece
             row = {
@@ -217,7 +215,6 @@ class _Building:
             yield {field: value for field, value in row.items() if value != ""}
 
     def list_places(self) -> Iterator[Row]:
-        """Yield the rows of rooms, doors and ends of stairs."""
         points, search = find_room_points(self.model), SpaceSearch(self.model.spaces)
         held = (search.find(one.storey, (one.x, one.y), REACH) for one in self.model.stairs)
         with_stair = {own[0].key for own in held if own}
@@ -256,7 +253,6 @@ class _Building:
             )  # fmt: skip
 
     def remark(self) -> Iterator[Text]:
-        """Yield what else a user should know."""
         model = self.model
         fitted = sum(one.piece.is_fitted for one in self.pieces)
         if fitted:

@@ -4,7 +4,7 @@ Also which room holds a point of a plan, and which bodies stand on each other.
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -373,36 +373,40 @@ def _areas(bounds: Bounds) -> FloatArray:
     return found
 
 
-def join_stacked(bounds: Bounds, is_on_floor: Sequence[bool], *, beside: bool = False) -> list[list[int]]:
-    """Return which bodies of a group are one piece, by their places: what is off the floor belongs to what it touches.
+def find_stacks(
+    groups: Iterable[Sequence[int]],
+    bounds: Mapping[int, FloatArray],
+    on_floor: Collection[int],
+    *,
+    beside: bool = False,
+) -> Iterator[tuple[list[int], bool]]:
+    """Yield the bodies of a group that are one piece, the lowest first, and whether they are the whole group.
 
-    Bodies that stand beside each other on the floor stay apart. `beside`: see `find_pairs`. Each piece begins with its
-    lowest body.
+    What is off the floor belongs to what it touches; bodies that stand beside each other on the floor stay apart.
+    `beside`: see `find_pairs`.
     """
-    floor = np.asarray(is_on_floor, bool)
-    label = list(range(len(bounds)))
-    off = np.flatnonzero(~floor)
-    for at, other in find_pairs(bounds[off], bounds, beside=beside):
-        one, two = label[int(off[at])], label[other]
-        label = [min(one, two) if each in (one, two) else each for each in label]
-    pieces = [[at for at, each in enumerate(label) if each == kind] for kind in dict.fromkeys(label)]
-    return [sorted(piece, key=lambda at: (not floor[at], bounds[at, 2], at)) for piece in pieces]
+    for members in groups:
+        off, own = [one for one in members if one not in on_floor], np.array([bounds[one] for one in members])
+        label = {one: at for at, one in enumerate(members)}
+        for at, other in find_pairs(np.array([bounds[one] for one in off]).reshape(-1, 6), own, beside=beside):
+            one, two = label[off[at]], label[members[other]]
+            label = {each: min(one, two) if kind in (one, two) else kind for each, kind in label.items()}
+        for kind in dict.fromkeys(label.values()):
+            stack = [one for one in members if label[one] == kind]
+            if len(stack) > 1:
+                yield sorted(stack, key=lambda one: (one not in on_floor, bounds[one][2])), len(stack) == len(members)
 
 
 def note_stacked(names: Sequence[str], bounds: Bounds, left: Bounds) -> list[Text]:
     """Return the warning about the taken pieces on which others stand that were left out."""
-    if not len(bounds) or not len(left):
+    pairs = find_pairs(left, bounds) if len(bounds) and len(left) else []
+    if not pairs:
         return []
-    carriers = dict.fromkeys(other for _, other in find_pairs(left, bounds))
-    if not carriers:
-        return []
-    shown = name_some([names[at] for at in carriers], MOST_NAMED)
-    return [
-        nfill(
-            "Something that was left out stands on {n:,} piece, whose height is then not the whole: {names}. Check its "
-            "Height in Items.",
-            "Something that was left out stands on {n:,} pieces, whose heights are then not the whole: {names}. Check "
-            "their Height in Items.",
-            len(carriers), names=shown,
-        )
-    ]  # fmt: skip
+    carriers = dict.fromkeys(other for _, other in pairs)
+    text = nfill(
+        "Something that was left out stands on {n:,} piece, whose height is then not the whole: {names}. Check its "
+        "Height in Items.",
+        "Something that was left out stands on {n:,} pieces, whose heights are then not the whole: {names}. Check "
+        "their Height in Items.", len(carriers), names=name_some([names[at] for at in carriers], MOST_NAMED),
+    )  # fmt: skip
+    return [text]

@@ -69,9 +69,9 @@ def _choose(path: Path, name: str, start: bytes) -> Reader | None:
             ) from None
         if any(part.lower().endswith((".ifc", ".ifcxml")) for part in parts):
             check_model(path, name)
-        return read_home if HOME in parts or OLD_HOME in parts else None
+        return _read_home if HOME in parts or OLD_HOME in parts else None
     if start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(_BRACES):
-        return read_scan
+        return _read_scan
     if not is_model(start) and path.suffix.lower() not in (".ifc", ""):
         raise ModelError(
             fill("{name} is of a kind that is not imported: name an IFC model (.ifc), a RoomPlan scan (.json), a Sweet "
@@ -88,11 +88,11 @@ def build(read: Reader, path: Path, name: str, routes: Drafts, also: Sequence[st
         return list_building(read(path, name, also), routes)
 
 
-def read_scan(path: Path, name: str, _also: Sequence[str]) -> BuildingModel:
+def _read_scan(path: Path, name: str, _also: Sequence[str]) -> BuildingModel:
     """Read a RoomPlan scan; errors as of `assess.bim.roomplan.read_roomplan`."""
     return read_roomplan(read_input(path, MOST_OF_SCAN), name)
 
 
-def read_home(path: Path, name: str, _also: Sequence[str]) -> BuildingModel:
+def _read_home(path: Path, name: str, _also: Sequence[str]) -> BuildingModel:
     """Read a home of Sweet Home 3D; errors as of `assess.bim.sweet_home.read_sweet_home`."""
     return read_sweet_home(read_input(path, MOST_OF_HOME), name)

@@ -178,7 +178,7 @@ class Scan:
         return replace(self, **lists)
 
 
-def parse_scan(data: bytes, name: str) -> Scan:
+def _parse_scan(data: bytes, name: str) -> Scan:
     """Return the values of a file.
 
     Raises ModelError if it is no scan, damaged, or beyond a limit; the message names the place in the file.
@@ -243,7 +243,6 @@ class _Reader:
     """Places of objects by their identifier."""
 
     def read(self, parts: Sequence[tuple[str, Mapping[str, Any]]], kind: str) -> Iterator[Scanned]:
-        """Yield the elements of one list."""
         for start, part in parts:
             story = _whole(part.get("story"), 0)
             for place, data in self._list(part, start, kind):
@@ -320,7 +319,7 @@ class _Reader:
         for start, part in parts:
             story = _whole(part.get("story"), 0)
             for place, data in self._list(part, start, "sections"):
-                words, centre = say_word(read_word(data.get("label"))), data.get("center")
+                words, centre = _say_word(read_word(data.get("label"))), data.get("center")
                 if centre is not None and not _is_point(centre):
                     raise self._fault(f"{place}.center", fill("expected three numbers."))
                 if words and words != "Unidentified":
@@ -357,7 +356,7 @@ def read_word(value: object) -> str:
     return _text(value)
 
 
-def say_word(word: str) -> str:
+def _say_word(word: str) -> str:
     """Return a word of the file as people write it: ``washerDryer`` is "Washer dryer"."""
     parts = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", word.replace("_", " ")).lower()
     return parts[:1].upper() + parts[1:]
@@ -372,7 +371,7 @@ def read_roomplan(data: bytes, name: str) -> BuildingModel:
     Raises ModelError if it is no scan, damaged, or beyond a limit; the message names the place in the file, as
     ``objects[3]``.
     """
-    scan = parse_scan(data, name)
+    scan = _parse_scan(data, name)
     scan = scan.turned(_find_turn(scan.walls))
     storeys = _list_storeys(scan)
     levels = {int(one.key): one.level for one in storeys}
@@ -406,7 +405,6 @@ def read_roomplan(data: bytes, name: str) -> BuildingModel:
 
 
 def _list_storeys(scan: Scan) -> tuple[Storey, ...]:
-    """Return the storeys that hold something, from the lowest, which is taken to be at 0 m."""
     every = (*scan.objects, *scan.walls, *scan.floors, *scan.doors)
     levels = {story: _find_level(scan, story) for story in sorted({one.story for one in every})}
     ground = min(levels.values(), default=0.0)
@@ -419,13 +417,12 @@ def _list_storeys(scan: Scan) -> tuple[Storey, ...]:
 def _find_pieces(
     scan: Scan, rooms: Sequence[Space], levels: Mapping[int, float]
 ) -> tuple[list[Piece], Counter[str], tuple[Skipped, ...]]:
-    """Return the pieces, how many were recognised with low confidence by category, and what was left out."""
     pieces, unsure, skipped = list[Piece](), Counter[str](), list[tuple[str, Text, bool]]()
     kinds, search = {one.key: one.kind for one in scan.objects}, SpaceSearch(rooms)
     for one in scan.objects:
         x, y, _z = one.origin.tolist()
         room = next(iter(search.find(str(one.story), (x, y))), None)
-        kind = say_word(one.kind) or gettext("Object")
+        kind = _say_word(one.kind) or gettext("Object")
         bottom = one.bottom - (room.bottom if room else levels[one.story])
         left: tuple[Text, bool] | None = None
         if one.kind in (*FIXED, STAIRS):
@@ -471,9 +468,9 @@ def _list_stairs(scan: Scan, levels: Mapping[int, float]) -> Iterator[Stair]:
     for one in scan.objects:
         if one.kind == STAIRS:
             x, y, top = float(one.origin[0]), float(one.origin[1]), one.bottom + one.sizes[1]
-            yield Stair(one.key, str(one.story), say_word(one.kind), "foot", x, y)
+            yield Stair(one.key, str(one.story), _say_word(one.kind), "foot", x, y)
             above = [story for story, level in levels.items() if abs(level - top) <= NEAR_STOREY and story != one.story]
-            yield from (Stair(one.key, str(story), say_word(one.kind), "head", x, y) for story in above[:1])
+            yield from (Stair(one.key, str(story), _say_word(one.kind), "head", x, y) for story in above[:1])
 
 
 def _remark(scan: Scan, unsure: Counter[str]) -> Iterator[Text]:
@@ -522,7 +519,6 @@ def _height_of(floor: Scanned) -> float:
 
 
 def _draw_walls(scan: Scan, story: int) -> tuple[Area, ...]:
-    """Return the walls of a storey with gaps at its doors, windows and openings; those of cylinders are left out."""
     walls = [_lay(one, WALL) for one in scan.walls if one.story == story and one.is_upright and not one.is_curved]
     openings = (*scan.doors, *scan.windows, *scan.openings)
     holes = [_lay(one, 3 * WALL) for one in openings if one.story == story and one.is_upright]

@@ -40,7 +40,7 @@ from assess.bim.building_model import (
 )
 from assess.bim.plan_shapes import (
     SpaceSearch,
-    join_stacked,
+    find_stacks,
     list_polygons,
     merge,
     note_stacked,
@@ -160,7 +160,6 @@ class _Home:
         self._counts: Counter[str] = Counter()
 
     def parse(self, data: bytes) -> None:
-        """Take in Home.xml."""
         parser = expat.ParserCreate()
         parser.StartElementHandler, parser.EndElementHandler = self._enter, lambda _: self._open.pop()
         parser.EntityDeclHandler = self._refuse
@@ -207,7 +206,6 @@ class _Home:
     # ------------------------------------------------------------ values
 
     def number(self, element: _Element, name: str, otherwise: float | None = None) -> float:
-        """Return a number of an element."""
         text = element.values.get(name)
         if text is None and otherwise is not None:
             return otherwise
@@ -229,7 +227,6 @@ class _Home:
     # ------------------------------------------------------------ the model
 
     def build(self) -> BuildingModel:
-        """Return the model."""
         storeys = self._list_storeys()
         spaces = tuple(self._list_spaces(storeys))
         boxes = _join_groups([self._box(one, storeys) for one in self.furniture])
@@ -345,17 +342,14 @@ class _Box:
 
     @property
     def is_hidden(self) -> bool:
-        """Whether it is not shown."""
         return self.element.values.get("visible") == "false"
 
     @property
     def is_opening(self) -> bool:
-        """Whether it is a door or a window."""
         return self.element.tag == "doorOrWindow" or self.element.values.get("doorOrWindow") == "true"
 
     @property
     def is_stair(self) -> bool:
-        """Whether it cuts a hole into the floor above."""
         return "staircaseCutOutShape" in self.element.values
 
     def plan(self, least: float = 0.0) -> Polygon:
@@ -376,7 +370,7 @@ class _Box:
 
     @property
     def bounds(self) -> tuple[float, ...]:
-        """Least and largest X, Y and Z, as `join_stacked` takes them; storeys lie far from each other."""
+        """Least and largest X, Y and Z, as `find_stacks` takes them; storeys lie far from each other."""
         left, low, right, high = self.plan().bounds
         return left, low, self.bottom, right, high, self.bottom + self.height
 
@@ -415,16 +409,14 @@ def _join_groups(boxes: Sequence[_Box]) -> list[_Box]:
     for at, one in enumerate(boxes):
         if one.element.group is not None and one.why_left_out() in (None, NOT_ON_FLOOR) and not one.is_opening:
             groups.setdefault((one.storey, one.element.group.place), []).append(at)
+    bounds = {at: np.array(boxes[at].bounds) for members in groups.values() for at in members}
+    on_floor = {at for at in bounds if boxes[at].bottom <= ON_FLOOR}
     joined: dict[int, _Box] = {}
     gone = set[int]()
-    for members in groups.values():
-        own = [boxes[at] for at in members]
-        for places in join_stacked(np.array([one.bounds for one in own]), [one.bottom <= ON_FLOOR for one in own]):
-            if len(places) > 1:
-                group = own[0].element.group if len(places) == len(own) else None
-                name = group.name if group is not None else ""
-                joined[members[places[0]]] = _join_boxes([own[at] for at in places], name)
-                gone |= {members[at] for at in places[1:]}
+    for (first, *others), is_whole in find_stacks(groups.values(), bounds, on_floor):
+        group = boxes[first].element.group if is_whole else None
+        joined[first] = _join_boxes([boxes[at] for at in (first, *others)], group.name if group is not None else "")
+        gone |= {*others}
     return [joined.get(at, one) for at, one in enumerate(boxes) if at not in gone]
 
 

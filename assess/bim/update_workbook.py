@@ -307,7 +307,6 @@ class _Update:
         sheet.add([{**row, "place": name} for name, row in zip(names, added, strict=True)])
 
     def _update_types(self, matched: Mapping[int, Row], names: Mapping[str, str]) -> None:
-        """Update the sizes of the types that both have, and add those of the model alone."""
         sheet = self.sheets["Catalogue"]
         for at, row in matched.items():
             for name in SIZES:

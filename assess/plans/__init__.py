@@ -46,7 +46,7 @@ def read_plan(data: bytes, width: float | None) -> Drawing:
         return Drawing(content, aspect)
     if data.startswith(b"AC10"):
         raise PictureError(fill("it is a DWG drawing, which cannot be read. Save it as DXF"))
-    if is_dxf(data):
+    if _is_dxf(data):
         if len(data) > MOST_FILE:
             raise PictureError(fill("it is larger than {most} MB. Save it smaller", most=MOST_FILE >> 20))
         from assess.plans.dxf import read_dxf
@@ -73,7 +73,7 @@ def is_picture(data: bytes) -> bool:
     return data.startswith((PNG, JPEG))
 
 
-def is_dxf(data: bytes) -> bool:
+def _is_dxf(data: bytes) -> bool:
     """Tell whether a file begins as a DXF drawing does: as text, after comments (999), or in binary form."""
     if data.startswith(b"AutoCAD Binary DXF"):
         return True

@@ -113,7 +113,6 @@ class _Reader:
         self._entities = self._points = self._inserts = 0
 
     def take(self, entity: Any, depth: int) -> None:
-        """Take in an entity, or what a block holds that it inserts."""
         self._entities += 1
         if self._entities > MOST_ELEMENTS:
             raise too_many()

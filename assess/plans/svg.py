@@ -123,19 +123,19 @@ class SvgReader:
             raise PictureError(fill("it is no PNG, JPEG, SVG or DXF file. Save it as one of them"))
         box = read_list(attributes["viewBox"]) if "viewBox" in attributes else None
         if box is None:
-            width, height = (read_length(attributes, side) for side in ("width", "height"))
+            width, height = (_read_length(attributes, side) for side in ("width", "height"))
             box = [0.0, 0.0, width, height] if width and height else None
         if box is not None:
             if len(box) != 4 or box[2] <= 0 or box[3] <= 0:
                 raise unreadable()
             self.frame = (box[0], box[1], box[0] + box[2], box[1] + box[3])
-        self._open.append((np.eye(3), read_style(attributes, {})))
+        self._open.append((np.eye(3), _read_style(attributes, {})))
 
     def _inside(self, name: str, attributes: dict[str, str]) -> None:
         matrix, style = self._open[-1]
         if "transform" in attributes:
-            matrix = matrix @ read_transform(attributes["transform"])
-        style = read_style(attributes, style)
+            matrix = matrix @ _read_transform(attributes["transform"])
+        style = _read_style(attributes, style)
         self._open.append((matrix, style))
         if name == "g" or not is_shown(style):
             return
@@ -154,7 +154,7 @@ class SvgReader:
 # ---------------------------------------------------------------- attributes
 
 
-def read_style(attributes: Mapping[str, str], above: Mapping[str, str]) -> dict[str, str]:
+def _read_style(attributes: Mapping[str, str], above: Mapping[str, str]) -> dict[str, str]:
     """Return what decides whether a shape is seen: its own, else that of the element round it.
 
     What lies in an element that is not displayed stays hidden, whatever it says itself (SVG 1.1, 11.5).
@@ -194,7 +194,7 @@ def read_list(text: str) -> list[float]:
     return found
 
 
-def read_length(attributes: Mapping[str, str], name: str) -> float | None:
+def _read_length(attributes: Mapping[str, str], name: str) -> float | None:
     """Return a length in pixels, 0 where it is not there; None where it is relative to something else."""
     text = attributes.get(name, "0").strip()
     if text == "auto" or text.endswith(("%", "em", "ex", "rem", "vw", "vh")):
@@ -205,7 +205,7 @@ def read_length(attributes: Mapping[str, str], name: str) -> float | None:
     return read_number(found[1]) * UNITS[found[2]]
 
 
-def read_transform(text: str) -> FloatArray:
+def _read_transform(text: str) -> FloatArray:
     """Return the matrix (3, 3) of a list of transforms, or raise PictureError."""
     at, matrix = 0, np.eye(3)
     while at < len(text):
@@ -243,7 +243,7 @@ Lines = list[list[complex]]
 
 def _lengths(attributes: Attributes, *names: str) -> list[float]:
     """Return lengths; none where one of them is relative to something else."""
-    found = [read_length(attributes, name) for name in names]
+    found = [_read_length(attributes, name) for name in names]
     return [] if None in found else [one for one in found if one is not None]
 
 

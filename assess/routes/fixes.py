@@ -90,7 +90,6 @@ class _Trial:
         return find_upper(self.couplings, chance, self.items - fixed, self.z)
 
     def involved(self, fixed: Fixed) -> list[int]:
-        """Return the pieces that fall in any of the draws in which the route is blocked."""
         return sorted({item for one in self.every for item in one.falling(one.happened(fixed), fixed)})
 
     def best(self, fixed: Fixed) -> int:
@@ -124,7 +123,6 @@ class _Sample:
         self._happened: dict[Fixed, int] = {}
 
     def blocked(self, fixed: Fixed) -> dict[int, int]:
-        """Return for each segment the set of the draws in which it is blocked."""
         found = {}
         for at, reach in self._reach.items():
             own = fixed & reach
@@ -136,7 +134,6 @@ class _Sample:
         return found
 
     def happened(self, fixed: Fixed) -> int:
-        """Return the set of the draws in which the route is blocked."""
         if fixed not in self._happened:
             self._happened[fixed] = self._is_blocked(self.blocked(fixed), self._draws.every)
         return self._happened[fixed]
@@ -146,7 +143,6 @@ class _Sample:
         return self._draws.share(self.happened(fixed))
 
     def falling(self, draws: int, fixed: Fixed) -> set[int]:
-        """Return the pieces, other than the fixed ones, that fall in any of some draws."""
         return {item for (item, _), falls in self._fallen.items() if item not in fixed and falls & draws}
 
     def chances_left(self, items: Sequence[int], fixed: Fixed) -> dict[int, float]:

@@ -113,13 +113,13 @@ def find_obstructions(inventory: Inventory, progress: Progress = SILENT) -> tupl
         progress.check()
         band, covered, others = bands.get(at), dict[int, Coverage](), []
         for index in near.get(at, ()):
-            if one := cover_by_plan(index, shapes[index], bands[at]):
+            if one := _cover_by_plan(index, shapes[index], bands[at]):
                 if is_walled_off(inventory.items[index], segment):
                     others.append(index)
                 else:
                     covered[index] = one
         for index in named.get(at, ()):
-            if one := cover_by_distance(index, inventory.items[index], clear[at], band, shapes.get(index)):
+            if one := _cover_by_distance(index, inventory.items[index], clear[at], band, shapes.get(index)):
                 covered[index] = one
         required = segment.required_width or DEFAULT_WIDTH
         gaps = build_gaps([one for index in sorted(covered) for one in covered[index].obstacles], clear[at])
@@ -213,7 +213,7 @@ def _find_near(inventory: Inventory, shapes: Mapping[int, Shape], bands: Mapping
     return found
 
 
-def cover_by_plan(index: int, shape: Shape, band: Band) -> Coverage | None:
+def _cover_by_plan(index: int, shape: Shape, band: Band) -> Coverage | None:
     """Return what a placed piece covers of a band: nothing where the plan shows that it cannot reach it."""
     from shapely import union_all
 
@@ -241,7 +241,7 @@ def _placed(index: int, shape: "BaseGeometry", band: Band, *, falls: bool) -> Ob
     return Obstacle(item=index, falls=falls, left=left, right=right, shape=shape)
 
 
-def cover_by_distance(index: int, item: Item, clear: float, band: Band | None, shape: Shape | None) -> Coverage | None:
+def _cover_by_distance(index: int, item: Item, clear: float, band: Band | None, shape: Shape | None) -> Coverage | None:
     """Return what a piece covers by its Edge distance; nothing where the plan decides it."""
     distance, flags = item.edge_distance, ["side_unknown"]
     if not item.segment:
