@@ -25,12 +25,6 @@ def test_a_plan_that_no_piece_reaches_is_evaluated():
     assert found.rooms[0].unevaluated_segments == ()
 
 
-def test_one_that_is_too_narrow_as_it_stands_needs_no_plan():
-    found = evaluated(make_falls([]), [], [stretch("a", clear_width=0.8)])
-    assert found.segments[0].evaluated
-    assert found.segments[0].blocked.probability == 1
-
-
 def test_a_room_tells_which_segments_of_its_ways_are_not():
     places = [*STAIRS, place("Office", "room", floor="2"), place("Street", "exit")]
     flight = stretch("flight", "Up", "Down", floor="", clear_width=None)
