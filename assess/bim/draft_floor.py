@@ -144,9 +144,6 @@ def link_stairs(model: BuildingModel, plan: FloorPlan) -> list[Link]:
     return found
 
 
-# ---------------------------------------------------------------- one room
-
-
 @dataclass(frozen=True)
 class Room:
     """One space with what leads out of it: `area` is its plan, `floor` that less the walls, `free` less furniture."""
@@ -203,9 +200,6 @@ def build_rooms(plan: FloorPlan, links: Iterable[Link]) -> dict[str, Room]:
 def _widest(area: BaseGeometry, otherwise: BaseGeometry) -> BaseGeometry:
     polygons = list(list_polygons(area))
     return shapely.MultiPolygon(polygons) if len(polygons) > 1 else polygons[0] if polygons else otherwise
-
-
-# ---------------------------------------------------------------- where rooms stand on the plan
 
 
 def find_room_points(model: BuildingModel) -> dict[str, Point]:

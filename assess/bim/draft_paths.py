@@ -165,9 +165,6 @@ def _near(own: Mapping[str, Point], others: Mapping[str, Point]) -> Iterator[tup
         yield from ((name, names[one]) for one in np.argsort(far, kind="stable")[: NEAREST + 1].tolist())
 
 
-# ---------------------------------------------------------------- corridors
-
-
 @dataclass(frozen=True, slots=True)
 class Axis:
     """The middle line between two walls that face each other: its ends, and the distance of the walls [m]."""

@@ -106,9 +106,6 @@ def _list_properties(found: ExportRun, one: ExportPiece) -> Iterator[tuple[str, 
     yield "Report", _write_long_text(say_report(run))
 
 
-# ---------------------------------------------------------------- STEP
-
-
 def make_uuid(kind: str, *keys: str) -> uuid.UUID:
     """Return the identifier of what is made of something in a model: always the same for the same kind and keys."""
     return uuid.uuid5(_NAMESPACE, "\n".join((kind, *keys)))

@@ -110,9 +110,6 @@ def _note_rooms(model: Any, spaces: Sequence[Space], pieces: Sequence[Piece]) ->
                     "{n:,} pieces stand in no room of the model: their Room stays blank.", outside)  # fmt: skip
 
 
-# ---------------------------------------------------------------- the site and its storeys
-
-
 def _find_names(model: Any) -> tuple[str, str]:
     """Return the name and the address of the building, "" where it has none."""
     buildings, projects = model.by_type("IfcBuilding"), model.by_type("IfcProject")
@@ -178,9 +175,6 @@ def _list_storeys(model: Any, unit: float) -> tuple[list[Storey], list[Text]]:
     text = fill("Elevation in the model differs from where these storeys are placed, which was taken: {names}. Check "
                 "Elevation in Floors.", names=", ".join(odd[:MOST_NAMED]))  # fmt: skip
     return kept, [text]
-
-
-# ---------------------------------------------------------------- rooms, doors, stairs and walls
 
 
 def _list_spaces(model: Any, storeys: Collection[str]) -> Iterator[Space]:

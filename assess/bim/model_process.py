@@ -109,9 +109,6 @@ def _too_long(name: str) -> ModelError:
     )  # fmt: skip
 
 
-# ---------------------------------------------------------------- in that process
-
-
 def main() -> None:
     """Do the work of the folder that is named, in the process of its own."""
     folder = Path(sys.argv[1])

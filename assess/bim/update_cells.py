@@ -211,8 +211,6 @@ class SheetUpdate:
                 label = self.table.label(name)
                 self.changes.append(Change("left_out", self.cells.title, "", label=label, reason=why))
 
-    # ------------------------------------------------------------ new rows
-
     def add(self, rows: Rows) -> bool:
         """Fill in new rows after the last one that is filled, and return whether it is certain that they belong there.
 

@@ -147,9 +147,6 @@ def match_alike(
     return found
 
 
-# ---------------------------------------------------------------- the origin
-
-
 def find_offset(pairs: Iterable[Pair]) -> Point:
     """Return what is to be added to the positions of a model, so that they have the origin of the workbook [m].
 

@@ -165,8 +165,6 @@ class Scene:
             lambda: build_couplings(self.falls, keys, self.seed, progress=self.progress, unconfirmed_fall=fall),
         )
 
-    # ------------------------------------------------------------ what happens in draws
-
     def narrower(self, draws: Draws, segment: int, width: float) -> int:
         """Return the set of the draws in which the width left of a segment is under a width [m].
 
@@ -197,8 +195,6 @@ class Scene:
         for key in couplings.keys:
             found[key[0]] = max(found.get(key[0], 0.0), draws.share(happened & draws.fallen[key]))
         return {item: value for item, value in found.items() if value > 0}
-
-    # ------------------------------------------------------------ chances
 
     def bounds(self, segments: Collection[int], happens: Happens) -> tuple[list[Chance], list[Chance]]:
         """Return the chances of what happens on some segments if all anchors hold.
