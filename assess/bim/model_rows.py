@@ -369,10 +369,8 @@ def find_sizes(piece: Piece) -> Sized:
 def find_kind(space: Space, doors: int = 0, *, holds_stair: bool = False) -> Literal["room", "corridor", "stair"]:
     """Return what a room is by the words of its name, and what bears them out.
 
-    Rooms are checked for losing all their ways out, corridors and stairs are not: so a name alone makes none.
-
-    `doors`: how many doors it has.
-    `holds_stair`: whether a stair begins or ends in it.
+    Rooms are checked for losing all their ways out, corridors and stairs are not: so a name alone makes none. It has so
+    many `doors`, and may hold an end of a stair.
     """
     words = set(re.findall(r"[^\W\d_]+", f"{space.name} {space.title}".casefold()))
     if holds_stair and words & set(STAIRS):

@@ -43,10 +43,9 @@ NOTHING = Polygon()
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """Triangles of an element.
+    """Triangles of an element: corners (n, 3) in the axes of the model [m], and the indices (m, 3) of those of each.
 
-    `points`: corners in the axes of the model [m]. `triangles`: Indices of the corners of each triangle. `axes`: its
-    own axes as columns, in those of the model.
+    `axes` (3, 3) are its own axes as columns, in those of the model.
     """
 
     points: FloatArray

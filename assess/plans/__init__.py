@@ -21,9 +21,8 @@ MOST_FILE = 10 * 2**20
 class Drawing:
     """What is kept of a plan's file.
 
-    `content`: a grey JPEG; or, if `is_lines`, points of lines as `assess.plans.linework.pack` keeps them. `aspect`:
-    height over width [-]. `width`: Width [m] where the file tells its units. `left_out`: what of the file is not drawn,
-    in words.
+    `content` is a grey JPEG or, if `is_lines`, points of lines as `assess.plans.linework.pack` keeps them; `aspect` is
+    height over width [-], `width` that of the whole [m] where the file tells its units. `left_out` is not drawn.
     """
 
     content: bytes

@@ -57,9 +57,8 @@ def find_box(lines: Sequence[Line]) -> Box:
 def pack(lines: Sequence[Line], box: Box, *, is_down: bool) -> tuple[bytes, float]:
     """Return lines as bytes, and the aspect (height over width) of `box`, which they are cut at.
 
-    Raises PictureError if nothing is left, or too much.
-
-    `lines`: In the drawing's units. `box`: the frame of the drawing. `is_down`: whether Y points downwards.
+    All are in the drawing's units; `is_down` tells whether Y points downwards. Raises PictureError if nothing is left,
+    or too much.
     """
     left, low, right, high = box
     wide, tall = right - left, high - low

@@ -89,8 +89,8 @@ class Gaps:
     def narrower(self, fallen: Mapping[Key, int], every: int, width: float) -> int:
         """Return the set of the draws in which less than a width [m] is left: some chain has narrower gaps alone.
 
-        `fallen`: For each piece the set of the draws in which it falls; others stand. `every`: the set of all draws,
-        which is returned where the segment itself is narrower. `width`: Width [m].
+        `fallen` has for each piece the set of the draws in which it falls; others stand. `every`, the set of all draws,
+        is returned where the segment itself is narrower.
         """
         if self.clear < width:
             return every
