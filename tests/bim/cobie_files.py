@@ -12,6 +12,8 @@ from typing import Any
 
 from tests.workbook.books import write_book
 
+Rows = Sequence[Sequence[Any]]
+
 HEADERS: Mapping[str, Sequence[str]] = {
     "Facility": (
         "Name", "CreatedBy", "CreatedOn", "Category", "ProjectName", "SiteName", "LinearUnits", "AreaUnits",

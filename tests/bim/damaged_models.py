@@ -97,3 +97,7 @@ def _exchange(line: bytes, pattern: re.Pattern[bytes], text: bytes, draw: random
         return line
     one = draw.choice(found)
     return line[: one.start()] + text + line[one.end() :]
+
+
+WAYS = (_change, _change, _drop, _refer, _refer, _number, _number)
+"""What is done to a line, by how often."""

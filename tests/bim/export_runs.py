@@ -118,3 +118,14 @@ def export(results: Path, model: Path, **wanted: bool) -> Export:
 def read_rows(results: Path) -> dict[str, dict[str, Any]]:
     """Return the rows of the items of a results.json by their names."""
     return {one["item"]: one for one in json.loads(results.read_text(encoding="utf-8"))["items"]}
+
+
+def write_adopted(results: Path, folder: Path, *adopted: dict[str, Any]) -> Path:
+    """Write results anew with other values of what was adopted for each piece; one set of them serves all."""
+    record = json.loads(results.read_text(encoding="utf-8"))
+    every = adopted if len(adopted) > 1 else adopted * len(record["items"])
+    for row, values in zip(record["items"], every, strict=True):
+        row["adopted"] |= values
+    changed = folder / "changed.json"
+    changed.write_text(json.dumps(record), encoding="utf-8")
+    return changed

@@ -7,11 +7,11 @@ import pytest
 from openpyxl import load_workbook
 
 from assess.bim import cobie_sheets
-from assess.bim.cobie import convert, read_cobie
+from assess.bim.cobie import convert, is_cobie, read_cobie
 from assess.bim.import_workbook import ImportedBuilding
 from assess.errors import WorkbookError
 from assess.workbook.read import read_inventory
-from tests.bim.cobie_files import COMPONENTS, FLOORS, make_sheets, one_type, write_cobie
+from tests.bim.cobie_files import COMPONENTS, FLOORS, TYPES, make_sheets, one_type, write_cobie
 from tests.workbook.books import write_book, write_shared
 from tests.workbooks import write as write_inventory
 
@@ -322,3 +322,22 @@ def test_names_stay_text(tmp_path: Path) -> None:
     assert [(one.item, one.room, one.type) for one in items] == [(name, name, name) for name in clean]
     cells = [cell for row in load_workbook(tmp_path / "w.xlsx")["Items"].iter_rows() for cell in row]
     assert not [cell.value for cell in cells if cell.data_type == "f" and "HYPERLINK" in str(cell.value)]
+
+
+def test_a_cobie_file_is_known_by_its_sheets(tmp_path: Path) -> None:
+    cobie = write_cobie(tmp_path / "c.xlsx")
+    inventory = write_inventory(tmp_path / "w.xlsx")
+    (tmp_path / "t.xlsx").write_bytes(b"PK\x03\x04 not a zip")
+    assert is_cobie(cobie)
+    assert is_cobie(cobie.read_bytes())
+    assert not is_cobie(inventory)
+    assert not is_cobie(inventory.read_bytes())
+    assert not is_cobie(tmp_path / "t.xlsx")
+    assert not is_cobie(tmp_path / "missing.xlsx")
+    assert not is_cobie(b"")
+
+
+def test_of_several_spaces_the_first_known_is_taken_and_said(tmp_path: Path) -> None:
+    found = _read(tmp_path, components=({**COMPONENTS[0], "Space": "Site, U01, G01"},))
+    assert found.items[0]["floor"] == "Upper"
+    assert "1 piece names several spaces; the first that is known was taken." in found.remarks

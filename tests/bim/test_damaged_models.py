@@ -15,6 +15,9 @@ from assess.workbook.read import read_inventory, read_tables
 from tests.bim.damaged_models import damage, write_house
 
 MODELS = Path(__file__).parents[2] / "samples" / "models"
+QUICK = {"house": 2, "large": 1}
+MANY = 60
+"""Damaged models of each that are read by the slow tests and by the long ones."""
 FOUND = {"house": (142, 143, 184, 315, 333, 344, 379, 496), "large": (1108,)}
 """Seeds that once broke something."""
 ENDS = {"read", "refused"}
@@ -56,6 +59,12 @@ def models(tmp_path_factory) -> dict[str, bytes]:
     return {"house": house.read_bytes(), "large": (MODELS / "LargeBuilding.ifc").read_bytes()}
 
 
+@pytest.mark.parametrize(("name", "seed"), [(name, seed) for name, count in QUICK.items() for seed in range(count)])
+@pytest.mark.slow
+def test_a_damaged_model(tmp_path, models, name, seed):
+    assert read_damaged(models[name], seed, tmp_path) in ENDS
+
+
 def read_all(data: bytes, seeds: Iterable[int], folder: Path) -> set[str]:
     """Read a model after damages by seeds; return how they end, having checked that each does."""
     ends = {}
@@ -71,6 +80,12 @@ def read_all(data: bytes, seeds: Iterable[int], folder: Path) -> set[str]:
 @pytest.mark.parametrize("name", ["house", pytest.param("large", marks=pytest.mark.long)])
 def test_models_whose_damage_once_broke_something(tmp_path, models, name):
     assert "read" in read_all(models[name], FOUND[name], tmp_path)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", FOUND)
+def test_many_damaged_models(tmp_path, models, name):
+    assert read_all(models[name], range(500, 500 + MANY), tmp_path) == ENDS
 
 
 @pytest.mark.slow

@@ -82,3 +82,18 @@ def test_columns_and_niches_change_the_free_width():
     floor = BAR.difference(column).union(box(4, 1.8, 5, 2.4))
     assert measure_width(1.8, ((8.0, 0.9), (12.0, 0.9)), floor) == pytest.approx(1.2, abs=0.01)
     assert measure_width(1.8, ((2.0, 0.9), (8.0, 0.9)), floor) == pytest.approx(1.8, abs=0.01)
+
+
+def test_parts_of_a_room_that_a_wall_divides_are_not_joined():
+    room = build(box(0, 0, 6, 5), link("one", 1.0, -0.05), link("two", 1.0, 5.05), solids=(box(-1, 2.4, 7, 2.6),))
+    ways = find_ways(room, "room a", (3.0, 1.0))
+    graph = nx.Graph(ways.found)
+    assert nx.has_path(graph, "one", "room a")
+    assert "two" not in graph or not nx.has_path(graph, "one", "two")
+
+
+def test_a_way_goes_round_walls_inside_a_room():
+    wall = box(0, 2.4, 4.5, 2.6)
+    room = build(box(0, 0, 6, 5), link("one", 1.0, -0.05), link("two", 1.0, 5.05), solids=(wall,))
+    way = follow(find_ways(room, "room a", (3.0, 1.0)), "one", "two")
+    assert way.distance(wall) >= 0.45

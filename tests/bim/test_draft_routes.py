@@ -386,3 +386,35 @@ def test_a_draft_is_a_workbook_without_errors(published, tmp_path):
     assert len(inventory.routes) > 0
     drafted = [one for one in inventory.problems if "drafted from a building model" in one.message]
     assert [one.severity for one in drafted] == ["warning"]
+
+
+@pytest.mark.slow
+def test_a_route_to_a_stair_ends_with_its_flight():
+    found = draft(build_office(1, 3, storeys=2))
+    (flight,) = [row for row in found.routes if "floor" not in row]
+    assert (flight["route"], flight["start"], flight["end"]) == (
+        "To Stair 1 s0, head (draft)", "Stair 1 s0, head", "Stair 1 s0, foot",
+    )  # fmt: skip
+    assert flight["notes"] == "Stair: fill in Clear width."
+    assert "clear_width" not in flight
+    starts = {row["start"] for row in found.routes if row["route"].startswith("To Door")}
+    assert "Stair 1 s0, foot" in starts  # from where the route of the ground storey goes on
+
+
+def test_balconies_are_no_exits():
+    office = build_office(1, 3, storeys=2)
+    upstairs = replace(office, doors=(*office.doors, door("balcony", 16.0, 18.0, 0.0, "1"),
+                                      door("terrace", -0.05, 6.1, 0.0, "1")))  # fmt: skip
+    assert "1 door of other storeys has a room on one side only: it does not count as an exit." in say(draft(upstairs))
+
+
+def test_the_door_bounds_its_segment():
+    for leaf, clear, words in (
+        (EXIT, 1.2, "the door's 1.30 m"),
+        (replace(EXIT, width=0.9, overall=1.8), 0.8, "the door's 0.90 m in the model less 0.1 m"),
+    ):
+        (row,) = draft_routes(hall(doors=(leaf,)), name_all(hall())).routes
+        assert row["clear_width"] == pytest.approx(clear)
+        assert row["notes"].startswith(f"Clear width: {words}")
+    assert row["required_width"] == 0.8
+    assert measure_in(hall(), (4.0, 3.0), (10.05, 3.0)) == pytest.approx(1.3)

@@ -2,6 +2,7 @@
 
 import math
 import re
+import shutil
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,8 @@ from assess.bim.export_model import PROPERTY_SET
 from assess.bim.export_properties import (
     LONGEST_LABEL,
     append_lines,
+    make_global_id,
+    make_uuid,
     write_label,
     write_real,
 )
@@ -38,6 +41,7 @@ from tests.bim.export_runs import (
     export,
     piece,
     read_rows,
+    write_adopted,
     write_results,
 )
 from tests.bim.ifc_files import ModelWriter
@@ -111,6 +115,35 @@ def test_a_class_is_that_of_the_report_and_what_has_none_says_so(simulated, expo
     assert differs < len(sets)
 
 
+def test_a_class_by_which_programs_filter_tells_what_it_could_be(simulated, flat, tmp_path):
+    """Twenty draws leave the class of one of the two open; as which one is chance, the file is edited."""
+    results = write_adopted(simulated, tmp_path, {"class": "low", "class_upper": "medium", "probability": 0.0})
+    sets = read_exported(results, flat)
+    assert (sets[CUPBOARD_1]["RiskClass"], sets[CUPBOARD_1]["ClassUpper"]) == ("low, could be medium", "medium")
+    assert sets[HELD]["RiskClass"] == "depends on its anchor (free-standing: low, could be medium)"
+    assert sets[SOFA]["RiskClass"] == "unconfirmed (low), could be medium"
+
+
+@pytest.mark.slow
+def test_classes_of_the_formula_are_called_so(simulated, flat, tmp_path):
+    """Where motions may be too weak, or a piece was left out of the simulation; here none is: files are edited."""
+    sets = read_exported(write_adopted(simulated, tmp_path, {"method": "fema_p58"}), flat)
+    assert sets[SOFA]["RiskClass"] == "unconfirmed (formula: high)"
+    accents = Path(shutil.copy(flat, tmp_path / "modèle è.ifc"))
+    sets = read_exported(write_adopted(simulated, tmp_path, {"basis": "formula"}), accents)
+    assert sets[CUPBOARD_1]["RiskClass"] == "very high by formula only"
+
+
+@pytest.mark.slow
+def test_by_formula_alone_there_is_no_interval_and_an_assumed_shaking_is_called_assumed(flat, tmp_path):
+    floors = [{"floor": "1", "elevation": 0.0}, {"floor": "2", "elevation": 3.1}]
+    results = write_results(tmp_path, CUPBOARDS, floors, building={"shaking": "MMI VIII, severe", "height": 6.2})
+    found = read_exported(results, flat)[CUPBOARD_1]
+    assert found["Scenario"] == "MMI VIII, severe (assumed)"
+    assert (found["Basis"], "by formula" in found["RiskClass"]) == ("formula", False)
+    assert {"ProbabilityLow", "ProbabilityHigh"}.isdisjoint(found)
+
+
 @pytest.mark.slow
 def test_texts_come_back_with_their_accents_and_in_the_language_in_use(simulated, exported, flat):
     found = read_sets(exported)[CUPBOARD_1]
@@ -120,6 +153,35 @@ def test_texts_come_back_with_their_accents_and_in_the_language_in_use(simulated
     assert found["Report"].startswith("Palazzo Duè, building.xlsx, revision B, 2026-05-04, results.json SHA-256 ")
     with speaking(load_catalogue("it")):
         assert read_exported(simulated, flat)[CUPBOARD_1]["RiskClass"] == "molto alto"
+
+
+def test_a_piece_of_the_schedule_has_what_an_engineer_needs(exported):
+    sets = read_sets(exported)
+    found = sets[CUPBOARD_1]
+    assert (found["MayBlockRoutes"], found["FixingDetail"]) == ("Scala", "L-bracket to studs")
+    assert found["FixOrder"] in (1, 2)
+    assert found["FixingTension84_kN"] > found["FixingTension_kN"] > 0
+    assert found["BaseShear_kN"] > 0
+    assert "FixOrder" not in sets[HELD]
+
+
+@pytest.mark.long  # the gate does the same with small models
+def test_the_model_has_no_fault_that_it_did_not_have(exported):
+    assert complain(exported) == complain(DUPLEX)
+
+
+def test_no_two_have_one_global_id(exported):
+    model = ifcopenshell.open(str(exported))
+    ids = [one.GlobalId for one in model.by_type("IfcRoot")]
+    assert len(ids) == len(set(ids))
+
+
+@pytest.mark.slow
+def test_the_owner_history_is_that_of_the_element_and_the_same_export_gives_the_same_bytes(simulated, exported):
+    model = ifcopenshell.open(str(exported))
+    sets = [one for one in model.by_type("IfcPropertySet") if one.Name == PROPERTY_SET]
+    assert {one.OwnerHistory.id() for one in sets} == {model.by_guid(CUPBOARD_1).OwnerHistory.id()}
+    assert export(simulated, DUPLEX, with_topics=False).model == exported.read_bytes()
 
 
 @pytest.mark.slow
@@ -185,6 +247,18 @@ def test_nothing_is_written_on_what_is_no_furniture_or_not_in_the_model(tmp_path
 
 
 @pytest.mark.slow
+def test_what_an_import_takes_by_name_may_be_a_piece(tmp_path):
+    writer = ModelWriter("IFC4")
+    storey = writer.storey()
+    items: list[dict[str, Any]] = []
+    for name in ("BuildingElementProxy", "ElementAssembly", "TransportElement", "FlowTerminal", "Tank"):
+        one = writer.element(f"Ifc{name}", name, (0, 0, 0, 0.6, 1.2, 2.0), within=storey, at=(2, 3, 0))
+        items.append(piece(name, "1", one.GlobalId, 2 + len(items), 3))
+    found = export(write_results(tmp_path, items, FLOORS[:1]), writer.write(tmp_path / "model.ifc"))
+    assert (found.written, found.is_complete) == (5, True)
+
+
+@pytest.mark.slow
 def test_of_pieces_with_one_source_id_the_worst_is_written(flat, tmp_path):
     """The first stands on the ground floor and is low, the second very high; of another key there are three."""
     items = [
@@ -213,6 +287,16 @@ def test_a_model_that_was_exported_before_is_refused(simulated, flat, tmp_path):
     with pytest.raises(ModelError, match=message):
         export(simulated, exported)
     assert export(simulated, exported, with_properties=False).topics.count > 0
+
+
+@pytest.mark.slow
+def test_pieces_of_another_workbook_can_join_a_model(flat, tmp_path):
+    joined = tmp_path / "joined.ifc"
+    joined.write_bytes(export(write_results(tmp_path / "a", CUPBOARDS[:2]), flat, with_topics=False).model)
+    second = export(write_results(tmp_path / "b", CUPBOARDS[2:]), joined, with_topics=False)
+    joined.write_bytes(second.model)
+    assert len(read_sets(joined)) == 4
+    assert complain(joined) == complain(flat)
 
 
 @pytest.mark.slow
@@ -277,6 +361,15 @@ def test_every_number_comes_back(number):
     text = write_real(number)
     assert re.fullmatch(r"IFCREAL\(-?\d+\.\d*(E-?\d+)?\)", text)
     assert read_back(text) == number
+
+
+def test_identifiers_are_those_of_their_numbers():
+    for at in range(50):
+        found = make_global_id("property set", str(at))
+        assert ifcopenshell.guid.expand(found) == make_uuid("property set", str(at)).hex
+        assert (len(found), found[0] in "0123") == (22, True)
+    assert make_global_id("a", "b") == make_global_id("a", "b") != make_global_id("a", "c")
+    assert make_global_id("a", "b") != make_global_id("b", "a")
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n"])

@@ -17,7 +17,9 @@ from lxml import etree
 
 from assess.bim import export_topics as topics_module
 from assess.bim.export_camera import FIELD_OF_VIEW
-from assess.bim.export_topics import Topics
+from assess.bim.export_topics import PRIORITIES, Topics
+from assess.i18n import load_catalogue, speaking
+from assess.risk import RiskClass
 from tests.bim.export_runs import (
     BUILDING,
     CUPBOARD_1,
@@ -33,6 +35,7 @@ from tests.bim.export_runs import (
     export,
     import_results,
     piece,
+    write_adopted,
     write_results,
 )
 
@@ -278,3 +281,59 @@ def test_all_that_a_topic_selects_is_in_the_picture(tmp_path: Path):
         assert any(one.is_a("IfcFurnishingElement") for one in selected)
         with_door += has_door
     assert with_door == found.topics.doors
+
+
+def test_titles_and_labels_have_the_upper_class_as_well(simulated, flat, tmp_path):
+    changed = write_adopted(simulated, tmp_path, {"class": "medium", "class_upper": "high", "probability": 0.2})
+    for topic in read_topics(changed, flat).topics:
+        assert {"medium", "high"} <= set(topic.labels)
+        assert ", could be high: " in topic.text("Title")
+        assert topic.text("Priority") == "Major"
+    assert [PRIORITIES[risk] for risk in RiskClass] == ["Minor", "Normal", "Major", "Critical"]
+
+
+def test_a_topic_of_unlike_pieces_has_the_highest_class_of_any(pair, flat, tmp_path):
+    classes = [
+        {"class": "medium", "class_upper": "very high", "probability": 0.5},
+        {"class": "high", "class_upper": "high", "probability": 0.5},
+    ]
+    (topic,) = read_topics(write_adopted(pair, tmp_path, *classes), flat).topics
+    assert topic.labels[:4] == ["earthquake", "high", "very high", "2"]
+    assert topic.text("Title").startswith("high, could be very high: ")
+    assert topic.text("Priority") == "Critical"
+
+
+def test_of_an_entry_that_is_partly_in_the_model_the_rest_is_named(flat, tmp_path):
+    items = [CUPBOARDS[0] | {"item": "C1"}, CUPBOARDS[0] | {"item": "C2", "source_id": None, "x": 3.71}]
+    (topic,) = read_topics(write_results(tmp_path, items), flat).topics
+    assert topic.selected == [CUPBOARD_1]
+    assert "Not in this model: C2." in topic.text("Description")
+    assert topic.text("Title").startswith("very high: C1 (")
+
+
+def test_pieces_with_one_source_id_have_topics_of_their_own(flat, tmp_path):
+    items = [CUPBOARDS[0], CUPBOARDS[1] | {"source_id": CUPBOARD_1, "height": 240.0, "room": "B203"}]
+    found = read_topics(write_results(tmp_path, items), flat)
+    assert [one.selected for one in found.topics] == [[CUPBOARD_1]] * 2
+    assert len({one.folder for one in found.topics}) == 2
+    assert all(not one.text("Description").count("Not in this model") for one in found.topics)
+
+
+def test_topics_are_in_the_language_in_use(simulated, flat):
+    with speaking(load_catalogue("it")):
+        assert "molto alto" in find(read_topics(simulated, flat), CUPBOARD_1).labels
+
+
+def test_a_door_is_found_in_a_shifted_workbook_and_where_a_segment_passes_it(flat, tmp_path):
+    """A workbook of a model far from its origin is shifted by whole metres; here there is no place at the door."""
+    places = [PLACES[0] | {"x": 1.9, "y": -13.5}, PLACES[2] | {"x": 1.0, "y": -10.3}]
+    routes = [{"route": "Scala", "segment": "a", "floor": "2", "start": "B202", "end": "out"}]
+    items = [CUPBOARDS[0] | {"edge_distance": 0.0, "route": "Scala"}]
+    results = write_results(tmp_path, move(items, 1200), places=move(places, 1200), routes=routes)
+    found = export_topics(results, flat)
+    assert found.is_placed
+    assert find(Bcf(found.data), CUPBOARD_1).selected == [CUPBOARD_1, DOOR_B202]
+
+
+def move(rows: list[dict[str, Any]], by: float) -> list[dict[str, Any]]:
+    return [one | {"x": one["x"] + by, "y": one["y"] - by} for one in rows]

@@ -109,6 +109,20 @@ def test_a_turned_piece_keeps_its_sizes_and_tells_its_angle(tmp_path):
         assert math.cos(math.radians(2 * (piece.angle_deg - angle))) == pytest.approx(1, abs=1e-6)
 
 
+def test_a_piece_askew_in_its_own_axes_or_tilted_has_the_smallest_rectangle(tmp_path):
+    """A ladder of boxes along a diagonal: in its own axes it would be as deep as it is wide."""
+    model, _, room = one_room()
+    boxes = [(at, at, 0, 0.1, 0.1, 1.0) for at in (0, 0.25, 0.5, 0.75, 1.0)]
+    model.piece("Screen", *boxes, within=room, at=(2, 1, 0))
+    model.piece("Board", (0, 0, 0, 2.0, 0.05, 1.0), within=room, at=(3, 2, 0), up=(0, 0.2, 1))
+    found = {one.name: one for one in read(model, tmp_path).pieces}
+    screen, board = found["Screen"], found["Board"]
+    assert (screen.breadth, screen.width) == pytest.approx((math.sqrt(2) * 0.1, math.sqrt(2) * 1.1), abs=1e-3)
+    assert screen.angle_deg == pytest.approx(-45, abs=0.1)
+    assert board.width == pytest.approx(2.0, abs=1e-3)
+    assert 0.2 < board.breadth < 0.3
+
+
 def test_supports_are_what_touches_the_floor(tmp_path):
     """A table on two feet: 40 cm apart along its breadth of 90 cm."""
     model, _, room = one_room()
@@ -147,6 +161,21 @@ def test_a_door_has_the_sizes_of_its_opening_else_of_its_leaf(tmp_path, deep):
     assert abs(door.normal_deg) == pytest.approx(90)
 
 
+def test_a_model_far_from_its_origin_is_brought_near_and_true_north_tells_the_direction_of_x(tmp_path):
+    model = ModelWriter(north=(-1.0, 0.0))
+    storey = model.storey()
+    room = model.space(storey, (412_003, 5_654_002, 0, 6, 4, 3))
+    model.piece("Shelf", SHELF, within=room, at=(412_002, 5_654_001, 0))
+    found = read(model, tmp_path)
+    assert found.shift[0] == 412_000
+    assert found.shift[1] % 100 == 0
+    (piece,) = found.pieces
+    assert (piece.x + found.shift[0], piece.y + found.shift[1]) == pytest.approx((412_002, 5_654_001), abs=1e-3)
+    assert min(x for x, _ in found.spaces[0].area[0]) == pytest.approx(0, abs=1e-3)
+    assert any("stands far from its origin" in text for text in found.remarks)
+    assert found.azimuth_deg == pytest.approx(180), "true north along -X: X points south"
+
+
 # ---------------------------------------------------------------- what is a piece
 
 
@@ -164,6 +193,39 @@ def test_what_is_no_piece_is_left_out_with_the_reason(tmp_path):
         ("IfcBuildingElementProxy Tree", "its class is not furniture", False),
         ("IfcTransportElement Lift", "its class is not furniture", False),
     }  # fmt: skip
+
+
+def test_in_ifc2x3_an_appliance_is_known_by_its_type(tmp_path):
+    model, _, room = one_room("IFC2X3")
+    fridge = model.element("IfcFlowTerminal", "Fridge:1", SHELF, within=room, at=(2, 1, 0))
+    model.element("IfcFlowTerminal", "Mirror", SHELF, within=room, at=(3, 1, 0))
+    model.typed("IfcElectricApplianceType", "Fridge", fridge)
+    found = read(model, tmp_path)
+    assert [one.name for one in found.pieces] == ["Fridge:1"]
+    assert [one.type for one in found.skipped] == ["IfcFlowTerminal Mirror"]
+
+
+def test_types_are_named_as_programs_show_them(tmp_path):
+    model, _, room = one_room()
+    plain = model.piece("Stuhl-017", SHELF, within=room, at=(1, 1, 0))
+    model.typed("IfcFurnitureType", "Stuhl 4", plain)
+    model.piece("M_Desk:1525 x 762mm:355965", SHELF, within=room, at=(2, 1, 0), Tag="355965")
+    model.piece("M_Bed:Queen:Queen:99", SHELF, within=room, at=(3, 1, 0))
+    model.piece("  Two\n lines ", SHELF, within=room, at=(4, 1, 0))
+    found = read(model, tmp_path)
+    assert {one.type for one in found.pieces} == {"Stuhl 4", "M_Desk 1525 x 762mm", "M_Bed Queen", "Two lines"}
+
+
+def test_a_raised_floor_of_a_room_counts_and_a_piece_of_no_storey_stands_on_the_next_below(tmp_path):
+    """A platform 60 cm above the storey: what stands on it stands on the floor."""
+    model = ModelWriter()
+    storey, upper = model.storey(), model.storey("Level 2", 5.0)
+    room = model.space(storey, (3, 2, 0.6, 6, 4, 3))
+    model.piece("Shelf", SHELF, within=room, at=(2, 1, 0.6))
+    model.piece("Outside", SHELF, within=model.building, at=(30, 1, 5.0))
+    found = {one.name: one for one in read(model, tmp_path).pieces}
+    assert found["Shelf"].bottom == pytest.approx(0, abs=1e-6)
+    assert (found["Outside"].storey, found["Outside"].space) == (upper.GlobalId, "")
 
 
 # ---------------------------------------------------------------- models that lack something
@@ -243,6 +305,17 @@ def test_one_storey_placed_above_zero_keeps_its_furniture(tmp_path, site, elevat
     found = read(model, tmp_path)
     assert [(one.name, round(one.bottom, 3)) for one in found.pieces] == [("Shelf", 0)]
     assert not found.warnings
+
+
+@pytest.mark.parametrize("levels", [(3.0,), (0.0, 3.0)])
+def test_furniture_tells_the_floor_of_a_storey_that_is_not_placed(tmp_path, levels):
+    model = ModelWriter()
+    for number, level in enumerate(levels):
+        storey = model.storey(f"L{number}", level, z=0.0)
+        model.piece("Shelf", SHELF, within=storey, at=(2, 1, level))
+    found = read(model, tmp_path)
+    assert [round(one.bottom, 3) for one in found.pieces] == [0] * len(levels)
+    assert [round(one.elevation, 3) for one in found.storeys] == [*levels]
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from assess.bim.import_workbook import (
     list_rows,
     name_apart,
 )
+from assess.i18n import load_catalogue, speaking
 from assess.workbook.read import read_inventory
 
 PIECE = {"item": "A1", "floor": "1", "type": "Desk", "breadth": 60.0, "width": 120.0, "height": 75.0, "source_id": "g1"}
@@ -47,3 +48,9 @@ def test_the_rooms_of_a_segment_are_not_cut():
     rooms = "; ".join(f"{number} Waiting area and reception" for number in range(30))
     rows = list_rows(ImportedBuilding(source="a", routes=[{"route": "A", "segment": "1", "room": rooms}]))
     assert rows["Routes"][0]["room"] == rooms
+
+
+def test_the_workbook_speaks_the_language_in_use() -> None:
+    with speaking(load_catalogue("it")):
+        data = build_workbook(_building(types=[{"type": "Desk", "breadth": 60.0, "height": 75.0}]))
+    assert read_inventory(data, building=SHAKEN).language == "it"

@@ -188,3 +188,25 @@ def test_names_of_plans_are_plain_and_each_its_own():
     assert name_plans("a.ifc", ["一层", "二层", "Level-1", "level 1"]) == [
         "a.svg", "a-2.svg", "a-Level-1.svg", "a-level-1-2.svg"
     ]  # fmt: skip
+
+
+def test_a_type_of_several_sizes_becomes_several_types():
+    found = list_building(model(pieces=(PIECE, replace(PIECE, key="q", height=1.0))))
+    assert [(row["type"], row["height"]) for row in found.types] == [("Shelf", 190.0), ("Shelf (2)", 100.0)]
+    heights = {row["type"]: row["height"] for row in found.types}
+    assert all(heights[row["type"]] == row["height"] for row in found.items)
+
+
+def test_an_edge_as_far_as_half_the_supports_changes_nothing():
+    for piece in (PIECE, replace(PIECE, support_breadth=0.3), replace(PIECE, support_breadth=0.4, support_width=0.25)):
+        reach = min(piece.support_breadth, piece.support_width) / 2
+        angle = 30.0 if piece.support_breadth < piece.support_width else -60.0
+        assert find_sizes(replace(piece, support_reach=reach, support_angle_deg=angle)) == replace(
+            find_sizes(piece), piece=replace(piece, support_reach=reach, support_angle_deg=angle)
+        )
+
+
+def test_the_roof_is_the_highest_storey_or_ceiling():
+    assert list_building(model()).building["height"] == 3.0
+    roof = Storey("t", "Roof", 7.5, 7.5)
+    assert list_building(model(storeys=(STOREY, roof))).building["height"] == 7.5

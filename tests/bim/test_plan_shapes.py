@@ -22,6 +22,10 @@ def leg(x: float, y: float, half: float = 0.001) -> tuple[float, float, float, f
     return x - half, y - half, 0.0, x + half, y + half, 0.5
 
 
+def on_circle(radius: float, *degrees: float) -> list[tuple[float, float]]:
+    return [(radius * math.cos(math.radians(one)), radius * math.sin(math.radians(one))) for one in degrees]
+
+
 def base(box: Box) -> tuple[float, float]:
     return box.support_reach, box.support_angle_deg
 
@@ -49,6 +53,16 @@ def test_feet_at_the_corners_of_a_rectangle_about_the_middle(body, turn):
     assert found.support_reach == pytest.approx(found.support_breadth / 2)
     assert found.support_angle_deg == pytest.approx(found.angle_deg)
     assert found.support_across == pytest.approx(found.width)
+
+
+def test_a_base_in_the_form_of_a_cross():
+    """Four feet on the axes, 35 cm from the middle: the edges between them are at 45 degrees, and nearer."""
+    body = (-0.35, -0.35, 0.5, 0.35, 0.35, 1.0)
+    found = find_box(draw(body, *(leg(x, y) for x, y in on_circle(0.349, 0, 90, 180, 270))))
+    assert found.support_breadth == pytest.approx(0.7)
+    assert found.support_reach == pytest.approx(0.35 / math.sqrt(2), abs=2e-3)
+    assert abs(found.support_angle_deg) == pytest.approx(45, abs=0.5)
+    assert found.support_across == pytest.approx(0.7 * math.sqrt(2))
 
 
 @pytest.mark.parametrize(

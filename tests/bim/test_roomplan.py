@@ -14,6 +14,7 @@ from assess.bim import roomplan
 from assess.bim.import_workbook import build_workbook
 from assess.bim.model_rows import list_building
 from assess.bim.plan_shapes import to_polygon
+from assess.bim.read_source import read_source
 from assess.bim.roomplan import EXITS, EXPERIMENTAL, SCANNED_SIZES, UNKNOWN_AXES, read_roomplan
 from assess.errors import ModelError
 from tests.bim.scan_files import element, identify, lie, office, place, wall, write
@@ -49,6 +50,15 @@ def test_pieces_have_sizes_positions_and_directions():
     assert piece(model, "chair").angle_deg in (pytest.approx(30), pytest.approx(-60)), "it is square"
     assert [one.bottom for one in model.pieces] == pytest.approx([0] * len(model.pieces), abs=1e-9)
     assert {one.space for one in model.pieces} == {identify("floor")}
+
+
+def test_texts_for_categories_and_lists_of_columns_mean_the_same():
+    other = office()
+    for kind in ("objects", "walls", "doors", "windows", "floors"):
+        for one in other[kind]:
+            one["category"], one["confidence"] = next(iter(one["category"])), "high"
+            one["transform"] = [one["transform"][at : at + 4] for at in range(0, 16, 4)]
+    assert read(other) == read(office())
 
 
 def test_a_file_of_ios_16_has_neither_floors_nor_storeys():
@@ -106,6 +116,17 @@ def test_what_is_no_piece_is_listed_with_its_reason():
     assert [(one.storey, one.end) for one in model.stairs] == [("0", "foot")]
 
 
+def test_a_free_standing_oven_and_an_unknown_category_are_taken():
+    scan = office()
+    scan["objects"] += [element("oven", "oven", (0.6, 0.9, 0.6), place(-2, 0.45, 1)),
+                        element("washerDryer", "washer", (0.6, 0.85, 0.6), place(-2, 0.43, 0)),
+                        element("plantPot2D", "pot", (0.4, 0.6, 0.4), place(2, 0.3, 1.5))]  # fmt: skip
+    model = read(scan)
+    assert {one.type: one.is_fitted for one in model.pieces[-3:]} == {
+        "Oven": True, "Washer dryer": False, "Plant pot2d": False,
+    }  # fmt: skip
+
+
 def test_remarks_and_warnings_say_what_a_scan_does_not_know():
     assert read(office()).warnings == (EXPERIMENTAL, SCANNED_SIZES, UNKNOWN_AXES, EXITS)
     assert EXITS not in read(office(doors=[])).warnings
@@ -134,6 +155,15 @@ def test_rooms_have_outlines_and_the_names_of_all_their_uses():
     for sizes, at in (((5, 4, 0), lie(0, 0, 0)), ((5, 0, 4), place(0, 0, 0))):  # without an outline
         (room,) = read(office(floors=[element("floor", "floor", sizes, at)])).spaces
         assert to_polygon(room.area).bounds == pytest.approx((-2.5, -2, 2.5, 2))
+
+
+def test_walls_that_close_no_room_make_none():
+    scan = office(floors=[])
+    assert len(read(scan).spaces) == 1
+    del scan["walls"][0]
+    model = read(scan)
+    assert not model.spaces
+    assert {one.space for one in model.pieces} == {""}
 
 
 def test_walls_have_gaps_at_doors_and_windows():
@@ -201,6 +231,17 @@ def test_a_structure_has_storeys_and_named_rooms():
     assert [(one.storey, one.end) for one in model.stairs] == [("0", "foot"), ("1", "head")]
 
 
+def test_rooms_that_were_not_merged_are_taken_with_a_warning():
+    both = [office(), office(identifier=identify("b"))]
+    for one in both[1]["objects"]:
+        one["identifier"] += " b"
+    listed, named = read(both), read({"rooms": both})
+    assert listed == named
+    assert len(listed.pieces) == 8
+    assert any("The 2 rooms were scanned one by one" in str(one) for one in listed.warnings)
+    assert not any("one by one" in str(one) for one in read(structure()).warnings)
+
+
 # --- as a workbook ---
 
 
@@ -217,6 +258,12 @@ def test_a_scan_becomes_a_workbook_that_is_read(tmp_path):
     assert [one.is_scanned for one in inventory.items] == [True] * len(found.items)
     assert {one.room for one in inventory.items} <= {one.place for one in inventory.places}
     assert all(floor.plan for floor in inventory.floors)
+
+
+def test_the_reader_of_files_knows_it(tmp_path):
+    path = tmp_path / "scan.json"
+    path.write_bytes(b"\xef\xbb\xbf" + json.dumps(office(), indent=1).encode())
+    assert len(read_source(path, "scan.json").items) == 4
 
 
 # ---------------------------------------------------------------- files that are no scan, damaged ones and hostile ones

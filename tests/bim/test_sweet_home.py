@@ -1,6 +1,7 @@
 """Homes of Sweet Home 3D: a file that the program itself wrote, and damaged ones made of it."""
 
 import io
+import re
 import struct
 import zipfile
 from pathlib import Path
@@ -12,6 +13,7 @@ import shapely.affinity
 import assess
 from assess.bim import sweet_home
 from assess.bim.import_workbook import build_workbook
+from assess.bim.model_rows import list_building
 from assess.bim.plan_shapes import to_polygon
 from assess.bim.read_source import read_source
 from assess.bim.sweet_home import DRAWN_SIZES, read_sweet_home
@@ -113,6 +115,12 @@ def test_doors_and_windows(home):
     assert walls.covers(shapely.Point(5, -4))
 
 
+def test_north_is_that_of_the_compass(home):
+    """30 degrees clockwise from up the plan: X, to the right, points 60 degrees clockwise from north."""
+    assert home.azimuth_deg == 60
+    assert read(change(b"northDirection='0.5235988'", b"northDirection='0.0'")).azimuth_deg is None
+
+
 @pytest.mark.slow
 def test_a_home_becomes_a_workbook_that_is_read(tmp_path):
     found = read_source(FILE, FILE.name, routes="draft")
@@ -157,6 +165,34 @@ def refused(data):
     with pytest.raises(ModelError) as raised:
         read(data)
     return str(raised.value)
+
+
+def test_a_home_without_levels():
+    xml = re.sub(rb"<level [^>]*/>", b"", home_xml())
+    xml = re.sub(rb" level='[^']*'", b"", xml)
+    model = read(pack(xml))
+    assert [(one.key, one.level) for one in model.storeys] == [("", 0)]
+    assert len(model.pieces) == 10
+    assert len(list_building(model).items) == 10
+
+
+def test_a_hidden_group_hides_its_pieces():
+    model = read(change(b"name='Kitchen' x=", b"name='Kitchen' visible='false' x="))
+    assert "Fridge & Freezer" not in {one.name for one in model.pieces}
+    hidden = {
+        one.type.removeprefix("Sweet Home 3D ") for one in model.skipped if str(one.reason) == "hidden in the plan"
+    }
+    assert hidden == {"Chair", "Kitchen cabinet", "Kitchen upper cabinet", "Fridge & Freezer"}
+
+
+def test_a_round_wall_is_not_drawn():
+    (remark,) = read(change(b"<wall id=", b"<wall arcExtent='1.5' id=")).remarks
+    assert str(remark) == "1 round wall is not drawn."
+
+
+def test_an_empty_home_is_a_model_of_nothing():
+    model = read(pack(b"<home version='7000'/>"))
+    assert (model.pieces, model.spaces, len(model.storeys)) == ((), (), 1)
 
 
 BOMB = b"<!DOCTYPE home [<!ENTITY a 'aaaaaaaaaa'><!ENTITY b '&a;&a;&a;&a;'>]><home name='&b;'/>"

@@ -16,6 +16,7 @@ from tests.bim.update_books import (
     FLOORS,
     ITEMS,
     PLACES,
+    TYPES,
     building,
     changed,
     faults,
@@ -26,6 +27,7 @@ from tests.bim.update_books import (
     piece,
     resaved,
     row,
+    table,
     texts,
     typed,
     update,
@@ -121,12 +123,27 @@ def test_under_merged_cells_nothing_is_added(book: bytes) -> None:
     assert "merged cells or a formula of several cells stand below row 7" in str(found.problems[0])
 
 
+@pytest.mark.slow
+def test_what_another_program_saved_with_formulas_in_a_column_of_its_own_is_updated(book: bytes) -> None:
+    def prepare(workbook: Any) -> None:
+        page = workbook["Items"]
+        at = page.max_column + 1
+        page.cell(1, at, "Volume")
+        for number in range(2, 40):
+            page.cell(number, at, f"=H{number}*I{number}")
+
+    assert update(resaved(book)).changes == ()
+    found = update(resaved(book, prepare), building(items=[*changed(p3={"breadth": 60.0}).items, NEW]))
+    assert texts(found)[1:] == ["Items A8 B201-07 was added"]
+
+
 # ---------------------------------------------------------------- other units, languages and programs
 
 
+@pytest.mark.parametrize("language", ["en", "it"])
 @pytest.mark.slow
-def test_imperial_headers_in_any_language(tmp_path: Path) -> None:
-    data = in_units(tmp_path / "book.xlsx", building(), "it")
+def test_imperial_headers_in_any_language(tmp_path: Path, language: str) -> None:
+    data = in_units(tmp_path / "book.xlsx", building(), language)
     assert update(data).changes == ()
     model = changed(p3={"breadth": 60.0, "x": 4.0})
     new = {"place": "B202", "floor": "Level 2", "x": 9.0, "y": 2.0, "kind": "exit", "outline": "6 0; 12.5 0; 12.5 4"}
@@ -142,7 +159,7 @@ def test_imperial_headers_in_any_language(tmp_path: Path) -> None:
     assert place.kind == "exit"
     assert [one for corner in place.outline for one in corner] == pytest.approx([6, 0, 12.5, 0, 12.5, 4], abs=1e-4)
     word = openpyxl.load_workbook(io.BytesIO(found.data)).worksheets[4][address("kind", 6, "Places")].value
-    assert word == "uscita"
+    assert word == {"en": "exit", "it": "uscita"}[language]
 
 
 def in_own_order(path: Path, *, is_table: bool = False) -> bytes:
@@ -166,8 +183,9 @@ def in_own_order(path: Path, *, is_table: bool = False) -> bytes:
     return path.read_bytes()
 
 
-def test_columns_in_another_order_and_other_units(tmp_path: Path) -> None:
-    data = in_own_order(tmp_path / "book.xlsx", is_table=True)
+@pytest.mark.parametrize("is_table", [False, True])
+def test_columns_in_another_order_and_other_units(tmp_path: Path, is_table: bool) -> None:
+    data = in_own_order(tmp_path / "book.xlsx", is_table=is_table)
     found = update(
         data, building(items=[*changed(p3={"breadth": 60.0, "height": 190.0}).items, NEW], places=[], types=[])
     )
@@ -188,6 +206,12 @@ def test_columns_in_another_order_and_other_units(tmp_path: Path) -> None:
         cell.coordinate: cell.value for line in openpyxl.load_workbook(io.BytesIO(found.data))["Items"] for cell in line
     }
     assert (values["E9"], values["E10"], values["I10"]) == ("INV-5", None, 445)
+
+
+def test_a_column_without_a_known_unit_is_left_alone(tmp_path: Path) -> None:
+    data = resaved(in_own_order(tmp_path / "book.xlsx"), lambda one: one["Items"].__setitem__("I3", "Breadth [stone]"))
+    found = update(data, building(items=changed(p3={"breadth": 60.0}).items, places=[], types=[], floors=FLOORS[:0]))
+    assert "Items Breadth of the model was left out: its header gives no known unit" in texts(found)
 
 
 @pytest.mark.parametrize("label", [None, "Total"])
@@ -226,6 +250,18 @@ def test_headings_blank_rows_and_typed_units(tmp_path: Path) -> None:
         "Items A13 B201-07 was added",
     ]
     assert [one.item for one in inventory(found.data).items] == [*(f"W-{at}" for at in range(6)), "B201-07"]
+
+
+def test_new_types_places_and_pieces_make_a_sound_workbook(book: bytes) -> None:
+    kind = {**TYPES[0], "type": "Safe made to measure", "width": 60.0}
+    place = {"place": "B202 Store", "floor": "Level 2", "x": 9.0, "y": 2.0, "kind": "room"}
+    new = {**NEW, "type": "Safe made to measure", "room": "B202 Store"}
+    found = update(book, grown(new, types=[*TYPES, kind], places=[*PLACES, place]))
+    assert kinds(found) == ["added"] * 3
+    read = inventory(found.data)
+    assert faults(found.data) == []
+    assert {one.type for one in read.catalogue} >= {"Safe made to measure"}
+    assert len(table(found.data, "Catalogue").rows) == len(table(book, "Catalogue").rows) + 1
 
 
 def test_pieces_of_one_new_source_id_are_all_added(book: bytes) -> None:

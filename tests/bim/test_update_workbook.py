@@ -33,6 +33,7 @@ from tests.bim.update_books import (
     kinds,
     line,
     piece,
+    resaved,
     row,
     table,
     texts,
@@ -67,6 +68,22 @@ def test_a_real_model_again_changes_nothing() -> None:
     model = read_source(Path(__file__).parents[2] / "samples" / "models" / name, name, routes="draft")
     data = build_workbook(model)
     assert update_workbook(data, model, "b.xlsx").data is data
+
+
+@pytest.mark.slow
+def test_a_cobie_file_again_adds_what_is_new_and_its_sizes_follow(tmp_path: Path) -> None:
+    """Such files have no positions, and nothing in them says where sizes come from."""
+    path = cobie_files.write_cobie(tmp_path / "handover.xlsx")
+    data = build_workbook(read_source(path, path.name))
+    assert update_workbook(data, read_source(path, path.name), "b.xlsx").data is data
+    more = [*cobie_files.COMPONENTS, {**cobie_files.COMPONENTS[0], "Name": "Bookcase A:9", "ExtIdentifier": "new"}]
+    cobie_files.write_cobie(
+        path, types=({**cobie_files.TYPES[0], "NominalHeight": 1850}, *cobie_files.TYPES[1:]), components=more
+    )
+    found = update_workbook(data, read_source(path, path.name), "b.xlsx")
+    of_items = [one for one in found.changes if one.sheet == "Items"]
+    assert [(one.label, one.now) for one in of_items[:2]] == [("Height [cm]", 185)] * 2
+    assert [str(describe(one)) for one in of_items[2:]] == ["Items A4 Bookcase A:9 was added"]
 
 
 # ---------------------------------------------------------------- pieces that both have
@@ -334,6 +351,15 @@ def test_floors_that_were_renumbered_are_not_mixed_up() -> None:
     assert kinds(update(data, anew)) == ["kept", "kept"], "names that the model gives anew"
 
 
+def test_a_new_floor_is_added_with_its_pieces(book: bytes) -> None:
+    floor = {"floor": "Level 3", "elevation": 6.2, "plan": "house-Level-3.svg", "plan_left": 0.0}
+    found = update(book, building(floors=[*FLOORS, floor], items=[*ITEMS, piece(7, "Level 3", "C301")]))
+    assert texts(found) == ["Floors A4 Level 3 was added", "Items A8 C301-07 was added"]
+    added = row(found.data, 3, "Floors")
+    assert (added.get("elevation"), added.get("plan"), added.get("plan_left")) == (6.2, "house-Level-3.svg", 0.0)
+    assert faults(found.data) == []
+
+
 def test_an_elevation_that_people_corrected_stays(book: bytes) -> None:
     data = typed(typed(book, "Floors", 2, elevation=0.45), "Floors", 3, elevation=None)
     found = update(data)
@@ -342,6 +368,16 @@ def test_an_elevation_that_people_corrected_stays(book: bytes) -> None:
         f"Floors {cell} Elevation [m] of Level 1 stays 0.45; the model has 0",
         f"Floors {cell[0]}3 Elevation [m] of Level 2: blank -> 3.1",
     ]
+
+
+def test_a_plan_of_a_model_of_another_file_name_is_replaced(book: bytes) -> None:
+    """The types tell which files the workbook was imported from."""
+    floors = [{**one, "plan": one["plan"].replace("house", "house-v2")} for one in FLOORS]
+    model = building(source="house_v2.ifc", floors=floors, files={one["plan"]: b"<svg/>" for one in floors})
+    found = update(book, model)
+    assert [(one.was, one.now) for one in found.changes] == [
+        ("house-Level-1.svg", "house-v2-Level-1.svg"), ("house-Level-2.svg", "house-v2-Level-2.svg"),
+    ]  # fmt: skip
 
 
 def test_where_floors_cannot_be_added_nothing_is_written(book: bytes) -> None:
@@ -371,6 +407,14 @@ def test_a_type_of_the_catalogue_that_people_chose_stays_for_all_pieces(book: by
         "Items A8 B201-07 was added",
     ]
     assert inventory(found.data).items[-1].type == "Bookcase tall"
+
+
+def test_a_type_that_the_model_replaced_is_added_and_listed(book: bytes) -> None:
+    new = {**TYPES[0], "type": "Wardrobe 90", "width": 90.0}
+    pieces = {f"p{number}": {"type": "Wardrobe 90", "width": 90.0} for number in (1, 3, 5)}
+    found = update(book, building(items=changed(**pieces).items, types=[new, TYPES[1]]))
+    assert kinds(found) == ["changed", "kept"] * 3 + ["added"]
+    assert inventory(found.data).items[0].width == pytest.approx(0.9)
 
 
 def test_sizes_of_a_type_follow_and_its_weight_and_types_of_the_program_stay(book: bytes) -> None:
@@ -427,6 +471,12 @@ def test_routes_are_peoples_own_and_points_of_another_draft_move_none_of_theirs(
     others = [{**point, "x": 9.0}, {**point, "place": "L1 point 2"}]
     other = [{**segment, "segment": "b", "clear_width": 1.2}, segment | {"route": "S"}]
     assert update(data, building(places=[*PLACES, *others], routes=other)).changes == ()
+
+
+def test_without_a_sheet_of_places_these_are_left_out(book: bytes) -> None:
+    found = update(resaved(book, lambda one: one.remove(one["Places"])))
+    assert texts(found)[0] == "Places A101 Hall of the model was left out: the workbook lacks the sheet"
+    assert kinds(found) == ["left_out"] * len(PLACES)
 
 
 @pytest.mark.slow
