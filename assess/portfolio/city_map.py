@@ -14,14 +14,13 @@ from typing import Any, cast
 import numpy as np
 
 from assess.errors import InputError
+from assess.i18n import fill, number
 from assess.i18n import gettext as _
-from assess.i18n import number
 from assess.motion.site_ground import GroundField
 from assess.portfolio.background import Background, Place
 from assess.portfolio.city import City, Row
 from assess.portfolio.table_schemas import CLASS_COLUMNS, STATE_COLUMNS
-from assess.report.say.route import name_state
-from assess.report.words import ANCHORED, ANCHORED_FILL, APART_FILL, BY_FORMULA, INK, UNCONFIRMED, class_name, risk_word
+from assess.report.words import ANCHORED, ANCHORED_FILL, APART_FILL, BY_FORMULA, INK, UNCONFIRMED, class_name
 from assess.risk import LIMITS, RiskClass, classify
 from assess.route_results import RouteState
 from assess.units import GRAVITY
@@ -37,7 +36,7 @@ _INK = "#3a4045"
 
 @dataclass(frozen=True, slots=True)
 class Sign:
-    """How a building is marked: `key` in styles and filters, `symbol` in texts, that of the reports.
+    """How a building is marked: `key` in styles and filters, `symbol` in texts, that of the reports, `label` in words.
 
     `path` is its outline round its centre, as an SVG path [px]; the highest `severity` is drawn last and lies on top.
     One that `is_open` is strokes alone, the outline of one that `is_dashed` stands outside the classes.
@@ -48,6 +47,7 @@ class Sign:
     fill: str
     path: str
     severity: int
+    label: str
     is_open: bool = False
     is_dashed: bool = False
 
@@ -61,18 +61,26 @@ _SHAPES = {
     RiskClass.LOW: CIRCLE, RiskClass.MEDIUM: DIAMOND, RiskClass.HIGH: TRIANGLE, RiskClass.VERY_HIGH: SQUARE,
 }  # fmt: skip
 BY_CLASS: Mapping[str, Sign] = {
-    "skipped": Sign("skipped", "×", _INK, CROSS, 0, is_open=True),
-    "none": Sign("none", "–", "#ffffff", "M-5-1.5H5V1.5H-5Z", 1),
-    "anchored": Sign("anchored", ANCHORED, ANCHORED_FILL, CIRCLE, 2),
-    "by-formula": Sign("by-formula", BY_FORMULA, APART_FILL, DIAMOND, 3, is_dashed=True),
-    "unconfirmed": Sign("unconfirmed", UNCONFIRMED, APART_FILL, CIRCLE, 4, is_dashed=True),
+    "skipped": Sign("skipped", "×", _INK, CROSS, 0, fill("not assessed"), is_open=True),
+    "none": Sign("none", "–", "#ffffff", "M-5-1.5H5V1.5H-5Z", 1, fill("no pieces")),
+    "anchored": Sign("anchored", ANCHORED, ANCHORED_FILL, CIRCLE, 2, fill("all pieces anchored")),
+    "by-formula": Sign("by-formula", BY_FORMULA, APART_FILL, DIAMOND, 3, fill("by formula only"), is_dashed=True),
+    "unconfirmed": Sign("unconfirmed", UNCONFIRMED, APART_FILL, CIRCLE, 4, fill("unconfirmed"), is_dashed=True),
 } | {
-    class_name(risk): Sign(class_name(risk), risk.symbol, risk.fill, _SHAPES[risk], 5 + risk) for risk in RiskClass
+    class_name(risk): Sign(class_name(risk), risk.symbol, risk.fill, _SHAPES[risk], 5 + risk, risk.word)
+    for risk in RiskClass
 }  # fmt: skip
 """Signs by the worst class of the pieces, in the order in which they are drawn."""
-_BANDS = {risk: f"share-{class_name(risk)}" for risk in RiskClass}
+_LOW, _MEDIUM, _HIGH = (f"{100 * limit:g}" for limit in LIMITS)
+_BANDS = {
+    RiskClass.LOW: fill("below {high} % of its pieces expected to fall", high=_LOW),
+    RiskClass.MEDIUM: fill("{low} to {high} % of its pieces expected to fall", low=_LOW, high=_MEDIUM),
+    RiskClass.HIGH: fill("{low} to {high} % of its pieces expected to fall", low=_MEDIUM, high=_HIGH),
+    RiskClass.VERY_HIGH: fill("{low} % or more of its pieces expected to fall", low=_HIGH),
+}
 BY_SHARE: Mapping[str, Sign] = {key: BY_CLASS[key] for key in BY_CLASS if key not in map(class_name, RiskClass)} | {
-    key: replace(BY_CLASS[class_name(risk)], key=key) for risk, key in _BANDS.items()
+    f"share-{class_name(risk)}": replace(BY_CLASS[class_name(risk)], key=f"share-{class_name(risk)}", label=label)
+    for risk, label in _BANDS.items()
 }
 """Signs by the share of the pieces that is expected to fall, likewise: its bands have the limits of the classes."""
 _ROUTE_SHAPES = {
@@ -80,11 +88,11 @@ _ROUTE_SHAPES = {
 }  # fmt: skip
 BY_ROUTES: Mapping[str, Sign] = {
     "skipped": BY_CLASS["skipped"],
-    "no-routes": Sign("no-routes", "–", "#ffffff", "M-5-1.5H5V1.5H-5Z", 1),
+    "no-routes": replace(BY_CLASS["none"], key="no-routes", label=fill("no routes")),
 } | {
     state.replace(" ", "-"): Sign(
         state.replace(" ", "-"), state.symbol, "#2e7d5b" if state is RouteState.OPEN else state.fill,
-        _ROUTE_SHAPES[state], 2 + state.severity, is_open=state is RouteState.OPEN,
+        _ROUTE_SHAPES[state], 2 + state.severity, state, is_open=state is RouteState.OPEN,
     )
     for state in sorted(RouteState, key=lambda one: one.severity)
 }  # fmt: skip
@@ -104,7 +112,7 @@ def sign_of_share(row: Row) -> Sign:
     """Return the sign of a row of the table buildings by the share of its pieces that is expected to fall."""
     share = find_share(row)
     risk = None if share is None else classify(share)
-    return _sign_without_class(row) if risk is None else BY_SHARE[_BANDS[risk]]
+    return _sign_without_class(row) if risk is None else BY_SHARE[f"share-{class_name(risk)}"]
 
 
 def sign_of_class(row: Row) -> Sign:
@@ -128,31 +136,6 @@ def sign_of_routes(row: Row) -> Sign:
     worst_first = sorted(RouteState, key=lambda one: -one.severity)
     found = next((state for state in worst_first if row[STATE_COLUMNS[state]]), "no-routes")
     return BY_ROUTES[found.replace(" ", "-")]
-
-
-def say_sign(sign: Sign) -> str:
-    """Return what a sign means, in the language in use."""
-    for risk in RiskClass:
-        if sign.key == class_name(risk):
-            return risk_word(risk)
-        if sign.key == _BANDS[risk]:  # the band of the share that has the limits of the class
-            low, high = (number(100 * limit, "g") for limit in (0.0, *LIMITS, 1.0)[risk : risk + 2])
-            if risk == min(RiskClass):
-                return _("below {high} % of its pieces expected to fall", high=high)
-            if risk == max(RiskClass):
-                return _("{low} % or more of its pieces expected to fall", low=low)
-            return _("{low} to {high} % of its pieces expected to fall", low=low, high=high)
-    for state in RouteState:
-        if sign.key == state.replace(" ", "-"):
-            return name_state(state)
-    return {
-        "skipped": _("not assessed"),
-        "none": _("no pieces"),
-        "no-routes": _("no routes"),
-        "anchored": _("all pieces anchored"),
-        "by-formula": _("by formula only"),
-        "unconfirmed": _("unconfirmed"),
-    }[sign.key]
 
 
 # ---------------------------------------------------------------- the map

@@ -32,7 +32,6 @@ from assess.portfolio.city_map import (
     draw_map,
     draw_sign,
     find_share,
-    say_sign,
     sign_of_class,
     sign_of_routes,
     sign_of_share,
@@ -284,7 +283,7 @@ def _show_legend(city: City, key: str, size: int) -> Box:
     for sign, count in list_legend(city, key):
         box = f'width="{size}" height="{size}" viewBox="-9 -9 18 18" aria-hidden="true"'
         drawn = Image(f'<svg {box} data-key="{escape(sign.key)}">{draw_sign(sign)}</svg>')
-        lines.append([drawn, f" {say_sign(sign)}: {say.say_whole(count)}"])
+        lines.append([drawn, f" {_(sign.label)}: {say.say_whole(count)}"])
     kind = "map-view chosen" if key == next(iter(VIEWS)) else "map-view"
     return Box([Bullets(lines, "map-legend"), Paragraph(_(VIEWS[key].note), "map-note")], kind, id=f"legend-{key}")
 
@@ -299,7 +298,7 @@ def _list_filters(city: City) -> list[tuple[str, str, list[tuple[str, str]]]]:
 
     uses = sorted({words.cut(city.spell_use(row), 60) for row in city.ranked if row["use"]})
     used = {row["inventory"] for row in city.ranked}
-    signs = {key: [(sign.key, say_sign(sign)) for sign, _count in list_legend(city, key)] for key in ("kind", "state")}
+    signs = {key: [(sign.key, _(sign.label)) for sign, _count in list_legend(city, key)] for key in ("kind", "state")}
     return [
         ("use", _("Use"), [(use, use) for use in uses]),
         ("kind", _("Highest class"), signs["kind"]),

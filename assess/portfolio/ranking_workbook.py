@@ -14,7 +14,7 @@ from assess.i18n import fill
 from assess.i18n import gettext as _
 from assess.portfolio import city_words as say
 from assess.portfolio.city import BUILDING_RULE, TYPE_RULE, City, Group, Row
-from assess.portfolio.city_map import find_share, say_sign, sign_of_class
+from assess.portfolio.city_map import find_share, sign_of_class
 from assess.progress import SILENT, Progress
 from assess.report import words
 from assess.report.report_options import ReportOptions
@@ -131,7 +131,7 @@ Listing = tuple[list[Column], Sequence[Any]]
 def _list_buildings(city: City) -> Listing:
     def find_class(row: Row) -> str:
         sign = sign_of_class(row)
-        return f"{sign.symbol} {say_sign(sign)}"
+        return f"{sign.symbol} {_(sign.label)}"
 
     def find_known_people(row: Row) -> int | None:
         return None if row["occupants"] is None else row["occupants"] - (row["people_not_known"] or 0)

@@ -22,7 +22,6 @@ from assess.portfolio.city_map import (
     draw_map,
     find_bar,
     list_isolines,
-    say_sign,
     sign_of_class,
     sign_of_routes,
     sign_of_share,
@@ -108,7 +107,7 @@ def test_the_sign_of_a_building_is_that_of_its_worst_or_by_the_share_that_falls(
     ):  # fmt: skip
         found = [find(ROW | changes).key for find in (sign_of_share, sign_of_class, sign_of_routes)]
         assert found == [share, kind, state]
-    assert say_sign(BY_SHARE["share-high"]) == "30 to 70 % of its pieces expected to fall"
+    assert BY_SHARE["share-high"].label == "30 to 70 % of its pieces expected to fall"
 
 
 def test_the_background_is_cut_to_what_is_shown():
