@@ -214,16 +214,11 @@ def compare(before: PastRun, after: PastRun) -> Comparison:
                 after=after.path,
             )
         )
-    states = [
-        _arrange(
-            [
-                _compare_states(*pair, before.main_basis == after.main_basis)
-                for pair in _match(was, now, lambda one: (key(one.floor), key(one.name)))
-            ],
-            lambda one: (0.0, one.row.name),
-        )
-        for was, now in ((before.routes, after.routes), (before.rooms, after.rooms))
-    ]
+    is_comparable, states = before.main_basis == after.main_basis, []
+    for was, now in ((before.routes, after.routes), (before.rooms, after.rooms)):
+        pairs = _match(was, now, lambda one: (key(one.floor), key(one.name)))
+        found = [_compare_states(*pair, is_comparable) for pair in pairs]
+        states.append(_arrange(found, lambda one: (0.0, one.row.name)))
     changes = [_compare_piece(before, after, *pair) for pair in pieces]
     return Comparison(before, after, _arrange(changes, lambda one: (-_difference(one), one.row.item)), *states)
 
@@ -352,16 +347,15 @@ def _add_up(before: Sequence[PastPiece], after: Sequence[PastPiece], is_comparab
             return None
         return math.fsum(one.quantity * (value or 0.0) for one, value in zip(pieces, values, strict=True))
 
-    sums = [
-        PastChance(
-            add(pieces, [one.chance.probability for one in pieces]) or 0.0,
-            add(pieces, [one.chance.low for one in pieces]),
-            add(pieces, [one.chance.high for one in pieces]),
+    def add_all(pieces: Sequence[PastPiece]) -> PastChance:
+        chances = [one.chance for one in pieces]
+        expected = add(pieces, [one.probability for one in chances]) or 0.0
+        return PastChance(
+            expected, add(pieces, [one.low for one in chances]), add(pieces, [one.high for one in chances])
         )
-        for pieces in (before, after)
-    ]
-    is_within = lies_within(*sums) if is_comparable else None
-    return Total(sums[0].probability, sums[1].probability, is_comparable, is_within)
+
+    was, now = add_all(before), add_all(after)
+    return Total(was.probability, now.probability, is_comparable, lies_within(was, now) if is_comparable else None)
 
 
 def count_states(before: Iterable[PastState], after: Iterable[PastState]) -> dict[str, tuple[int, int]]:

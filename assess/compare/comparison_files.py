@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from assess.compare.changes import Comparison, PieceChange, StateChange, Total, count_states
-from assess.compare.comparison_document import View
+from assess.compare.comparison_document import View, render_comparison, write_print
+from assess.compare.comparison_sheets import write_tables
 from assess.compare.past_run import COMPARISON, PastChance, PastPiece, PastRun
 from assess.delivery.deliver import Written, deliver, explain_fault, stage_for
 from assess.delivery.disk import find_digest, flush_file
@@ -22,6 +23,7 @@ from assess.i18n import fill
 from assess.progress import SILENT, Progress
 from assess.report import check_folder
 from assess.report.ownership import find_reports
+from assess.report.pages.pdf_seal import seal
 from assess.report.report_options import ReportOptions
 from assess.version import __version__
 
@@ -102,7 +104,7 @@ def _write_all(
     progress: Progress,
     listed: dict[str, str | None],
 ) -> PdfUnavailableError | None:
-    """Write the files; what does is imported only when it is wanted. Return the error of a PDF that cannot be made.
+    """Write the files; return the error of a PDF that cannot be made.
 
     `listed` gets the files but for compare.json with their SHA-256: None of the PDF, which carries compare.json, unless
     it has no identifiers that could be made to follow from it.
@@ -120,9 +122,6 @@ def _write_all(
                 listed.update({FILES["pdf"]: None} if "pdf" in formats else {})
                 write_data()
             elif name == "pdf":
-                from assess.compare.comparison_document import write_print
-                from assess.report.pages.pdf_seal import seal
-
                 try:
                     write_print(view, path, data, options, progress)
                 except PdfUnavailableError as error:
@@ -135,12 +134,8 @@ def _write_all(
                     write_data()
             else:
                 if name == "xlsx":
-                    from assess.compare.comparison_sheets import write_tables
-
                     write_tables(view, path, progress)
                 else:
-                    from assess.compare.comparison_document import render_comparison
-
                     path.write_text(render_comparison(view, options, progress=progress), encoding="utf-8")
                 listed[path.name] = find_digest(path)
             flush_file(path)

@@ -8,7 +8,7 @@ import openpyxl
 import pypdfium2
 import pytest
 
-from assess.compare import comparison_document
+from assess.compare import comparison_document, comparison_files
 from assess.compare.changes import compare
 from assess.compare.comparison_document import View
 from assess.compare.comparison_files import write_comparison
@@ -142,7 +142,7 @@ def test_what_fails_or_is_cancelled_leaves_nothing(found, tmp_path, monkeypatch)
     def full(*_given, **_named):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(comparison_document, "render_comparison", full)
+    monkeypatch.setattr(comparison_files, "render_comparison", full)
     with pytest.raises(OutputError, match="No space left on device"):
         write_comparison(found, tmp_path / "b", ("html", "xlsx"))
     assert list(tmp_path.iterdir()) == []
