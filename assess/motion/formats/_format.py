@@ -1,5 +1,7 @@
-"""What a format of recorded motion is, and the record that every reader builds."""
+"""What a format of recorded motion is, what the words of its headers mean, and the record that every reader builds."""
 
+import math
+import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
@@ -9,6 +11,7 @@ from assess.errors import RecordError
 from assess.i18n import fill, join, nfill
 from assess.motion.formats._direction import UNKNOWN, Direction
 from assess.motion.record import Record, Series, check_samples, check_time_step, peak
+from assess.units import ACCELERATION, GRAVITY, read_unit
 
 T = TypeVar("T")
 
@@ -20,6 +23,16 @@ MOST_NOTES = 4
 """Notes on single channels that are left out."""
 HEADER_PEAK_WITHIN = 0.02
 """Headers print two to four digits of the peak; a larger difference [-] is noted."""
+
+
+_MORE_UNITS = {"mm/s2": 0.001, "g/10": GRAVITY / 10, "mg": GRAVITY / 1000, "in/s2": 0.0254}
+NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[ED][-+]?\d+)?"
+"""A number of a header, without sign, with the exponent that Fortran prints; whatever the case of its letters."""
+END = r"(?=[\s,;]|$)"
+"""Where such a number ends, if no unit follows it."""
+
+_EXPONENT = re.compile(r"(?<=[\d.])D(?=[-+\d])", re.IGNORECASE)
+_QUANTITIES = {"velocity": fill("velocities"), "displacement": fill("displacements")}
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +108,45 @@ def build_record(
         notes=tuple(notes),
         recorder=recorder,
     )
+
+
+def read_real(text: str) -> float | None:
+    """Return the number that `text` is, None where it is none; Fortran's D stands for E."""
+    try:
+        return float(_EXPONENT.sub("E", text))
+    except ValueError:
+        return None
+
+
+def read_finite(text: str | None) -> float | None:
+    """Return the finite number that `text` is, None where it is none."""
+    number = read_real(text or "")
+    return number if number is not None and math.isfinite(number) else None
+
+
+def read_acceleration_unit(text: str) -> float | None:
+    """Return the factor from the unit that `text` names to m/s2, None where it is no unit of acceleration."""
+    spelt = read_unit(text.replace("**", "").replace("^", "")).replace("sec", "s").replace("/s/s", "/s2").strip(".")
+    return ACCELERATION.get(spelt, _MORE_UNITS.get(spelt))
+
+
+def require_unit(text: str) -> float:
+    """Return the factor from the unit that `text` names to m/s2; RecordError where it is no unit of acceleration."""
+    factor = read_acceleration_unit(text)
+    if factor is None:
+        raise RecordError.about("{unit!r} is not a known unit of acceleration. Get the file again", unit=text[:20])
+    return factor
+
+
+def name_quantity(text: str) -> str:
+    """Return what a file holds instead of accelerations, as messages call it; as in its header if it is not known."""
+    return _QUANTITIES.get(text.lower(), text.lower())
+
+
+def read_peak(number: str, unit: float | None) -> float | None:
+    """Return the peak that a header prints, in `unit` [m/s2], as m/s2 without sign; None where there is none."""
+    found = read_finite(number)
+    return None if found is None or unit is None else abs(found) * unit
 
 
 def even_series(values: FloatArray, time_step: float, notes: Sequence[str] = ()) -> Series:

@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 from assess.arrays import FloatArray
 from assess.errors import RecordError
 from assess.i18n import Text, fill, nfill
-from assess.motion.formats._format import MOST_CHANNELS, Format, check_channels, keep_readable
-from assess.motion.formats._values import read_real
+from assess.motion.formats._format import MOST_CHANNELS, Format, check_channels, keep_readable, read_real
 from assess.motion.record import MOST_SAMPLES, Record
 from assess.plain_text import with_line_feeds
 from assess.progress import check_waits

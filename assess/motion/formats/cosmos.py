@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from assess.errors import RecordError
 from assess.i18n import fill
 from assess.motion.formats._direction import read_direction
-from assess.motion.formats._format import build_record, even_series
+from assess.motion.formats._format import NUMBER, build_record, even_series, read_acceleration_unit, read_peak
 from assess.motion.formats._text import (
     LONGEST_TEXT,
     Columns,
@@ -24,7 +24,6 @@ from assess.motion.formats._text import (
     read_format,
     text_format,
 )
-from assess.motion.formats._values import NUMBER, read_acceleration_unit, read_peak
 from assess.motion.record import Record
 from assess.units import ACCELERATION, GRAVITY
 

@@ -9,9 +9,8 @@ from collections import defaultdict
 
 from assess.errors import RecordError
 from assess.motion.formats._direction import read_direction
-from assess.motion.formats._format import build_record, even_series
+from assess.motion.formats._format import build_record, even_series, name_quantity, read_finite, read_peak, require_unit
 from assess.motion.formats._text import Section, read_words, text_format
-from assess.motion.formats._values import name_quantity, read_finite, read_peak, require_unit
 from assess.motion.record import Record
 from assess.units import ACCELERATION
 

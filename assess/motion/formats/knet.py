@@ -15,9 +15,8 @@ from datetime import datetime, timedelta
 
 from assess.errors import RecordError
 from assess.motion.formats._direction import read_direction
-from assess.motion.formats._format import build_record, even_series
+from assess.motion.formats._format import NUMBER, build_record, even_series, read_finite, read_peak
 from assess.motion.formats._text import Section, read_words, text_format
-from assess.motion.formats._values import NUMBER, read_finite, read_peak
 from assess.motion.record import Record
 from assess.units import ACCELERATION
 

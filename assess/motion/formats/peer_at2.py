@@ -10,9 +10,16 @@ import re
 
 from assess.errors import RecordError
 from assess.motion.formats._direction import read_direction
-from assess.motion.formats._format import build_record, even_series
+from assess.motion.formats._format import (
+    END,
+    NUMBER,
+    build_record,
+    even_series,
+    name_quantity,
+    read_finite,
+    require_unit,
+)
 from assess.motion.formats._text import Section, fields, read_fields, read_words, text_format
-from assess.motion.formats._values import END, NUMBER, name_quantity, read_finite, require_unit
 from assess.motion.record import Record
 
 TITLE = "PEER AT2"

@@ -21,8 +21,7 @@ from assess.arrays import FloatArray
 from assess.errors import RecordError
 from assess.i18n import fill
 from assess.motion.formats._direction import read_direction
-from assess.motion.formats._format import Format, build_record, even_series
-from assess.motion.formats._values import read_acceleration_unit
+from assess.motion.formats._format import Format, build_record, even_series, read_acceleration_unit
 from assess.motion.record import Record, check_count, peak
 
 TITLE = "SAC"

@@ -18,7 +18,7 @@ from assess.arrays import FloatArray
 from assess.errors import RecordError
 from assess.i18n import fill
 from assess.motion.formats._direction import Direction, read_direction
-from assess.motion.formats._format import build_record, even_series
+from assess.motion.formats._format import NUMBER, build_record, even_series, read_peak
 from assess.motion.formats._text import (
     MOST_BEYOND,
     Columns,
@@ -33,7 +33,6 @@ from assess.motion.formats._text import (
     text_format,
     too_long,
 )
-from assess.motion.formats._values import NUMBER, read_peak
 from assess.motion.record import Record, build_series
 from assess.units import ACCELERATION
 
