@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from assess.arrays import FloatArray
-from assess.motion.calibrate import MOST_SHARPENED
+from assess.motion.generate import MOST_SHARPENED
 from assess.motion.recipe import (
     MOST_BENT,
     TAPER,

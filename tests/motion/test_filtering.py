@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from assess.motion.calibrate import choose_periods, gains_of, guess_power, improve, response_matrix, roll_off
 from assess.motion.drawn_ground import find_shape
+from assess.motion.generate import choose_periods, gains_of, guess_power, improve, response_matrix, roll_off
 from assess.motion.target import Grid, recorded_target
 from tests.motion.motions import read_motion
 
