@@ -3,6 +3,7 @@
 Floor 2 has two parallel records along X: the fast one has the larger PFA, the slow pulse overturns more.
 """
 
+import csv
 import html
 import json
 import re
@@ -89,6 +90,12 @@ def read_json(path: Path) -> dict[str, Any]:
     """Return results.json."""
     found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     return found
+
+
+def read_csv(path: Path) -> list[dict[str, str]]:
+    """Return the rows of items.csv."""
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        return list(csv.DictReader(file))
 
 
 def read_items(cells: Cells, results: Results) -> list[dict[str, Any]]:

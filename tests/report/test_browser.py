@@ -231,3 +231,16 @@ def test_the_page_never_scrolls_sideways(open_page, width):
     assert page.locator("#pieces td").evaluate_all(too_wide) == []
     for selector in ("#pieces", "svg.floor-plan", "#filter-bar"):
         assert page.locator(selector).first.is_visible()
+
+
+def test_print_shows_the_rows_as_filtered_and_no_controls(open_page):
+    page = open_page()
+    page.emulate_media(media="print")
+    assert not page.locator("#filter-bar").is_visible()
+    page.emulate_media(media="screen")
+    _filter(page, "Floor").select_option("1")
+    page.emulate_media(media="print")
+    assert not page.get_by_role("button", name="Show all").is_visible()
+    assert not page.locator("#filter-floor").is_visible()
+    assert _status(page) == "Rows: 3 of 5 shown: Floor: 1"
+    assert page.locator("#pieces tbody tr:visible").count() == 3

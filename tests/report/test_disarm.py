@@ -8,7 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from assess.report.data import disarm
+from assess.report.data import disarm, write_csv
+from tests.cli.calling import run
+from tests.workbooks import assessed, write
 
 SIGNS = "=+-@＝＋－＠"
 
@@ -58,3 +60,25 @@ def test_no_cell_is_a_formula(texts: list[str], separator: str, knows_quotes: bo
 def test_a_long_text_takes_no_longer_than_it_is_long() -> None:
     for run_of in (" ", "'", '"', ";", "=", "a"):
         assert disarm(run_of * 200_000 + "x") is not None
+
+
+def test_items_csv(tmp_path) -> None:
+    items = [{"item": "A1", "floor": "1", "description": "cabinet;=cmd|'/C calc'!A0", "breadth": 30, "height": 200,
+              "edge_distance": -0.4, "notes": "＝1+1"}]  # fmt: skip
+    write_csv(assessed(tmp_path / "w.xlsx", items), tmp_path / "items.csv")
+    lines = (tmp_path / "items.csv").read_text(encoding="utf-8-sig").splitlines()
+    assert [cell for line in lines for cell in line.split(";") if cell[:1] in SIGNS] == []
+    (row,) = csv.DictReader(lines)
+    assert (row["description"], row["notes"]) == ("cabinet;'=cmd|'/C calc'!A0", "'＝1+1")
+    assert row["edge_distance_m"] == "-0.4"
+
+
+@pytest.mark.slow
+def test_curves_of_fragility(tmp_path) -> None:
+    items = [{"item": "a;=1", "floor": "1", "breadth": 30, "height": 200}]
+    path = write(tmp_path / "w.xlsx", items)
+    done = run("fragility", path, "--runs", 20, "--formats", "csv", "--out", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    texts = [one.read_text(encoding="utf-8-sig") for one in (tmp_path / "out").rglob("*.csv")]
+    assert any("a;'=1" in text for text in texts)
+    assert not any(";=1" in text for text in texts)

@@ -7,7 +7,8 @@ import pypdfium2
 import pytest
 
 import assess
-from tests.workbooks import ITEMS, assessed
+from tests.benchmarks.measuring import write_thousand
+from tests.workbooks import ITEMS, UNVERIFIED, assessed
 
 LONG = "N" * 299 + "Z"
 BARE = {"item": "A1", "floor": "1", "breadth": 30, "height": 200}
@@ -48,3 +49,19 @@ def test_it_renders(tmp_path, name):
     assert "Items" in book.sheetnames
     book.close()
     assert LONG not in text or name != "names of 300 characters"
+
+
+@pytest.mark.long
+@pytest.mark.slow
+def test_a_thousand_items_take_forty_pages_and_an_appendix(tmp_path):
+    book = write_thousand(tmp_path / "w.xlsx")
+    written = assess.write_reports(
+        assess.run(assess.read_inventory(book), UNVERIFIED), tmp_path / "out", ("pdf", "annex")
+    )
+    assert len(_read(written["pdf"])) <= 40
+    pages = _read(written["annex"])
+    first = next(at for at, page in enumerate(pages) if "One line for each row" in page)
+    assert first <= 40
+    listed = " ".join(pages[first:])
+    for at in range(1000):
+        assert listed.count(f"P{at:04d} ") == 2, at  # all pieces, and what every method says of them

@@ -1,11 +1,13 @@
 """The PDF as it is laid out: nothing runs past the margin, words stay whole, sections keep their heads."""
 
+from itertools import pairwise
+
 import pytest
 
 import assess
 from assess.report.report_options import ReportOptions
 from tests.report.reading import lay_out, render
-from tests.workbooks import UNVERIFIED, write_sheets
+from tests.workbooks import UNVERIFIED, assessed, write_sheets
 
 pytestmark = pytest.mark.slow
 
@@ -81,3 +83,107 @@ def test_no_text_runs_out_of_its_cell(pages):
             for cell in _of(table, boxes.TableCellBox):
                 end = cell.content_box_x() + cell.width
                 assert all(_right(line) <= end + 0.5 for line in _of(cell, boxes.LineBox)), _text(cell)
+
+
+def _heads(pages):
+    return [cell for page in pages for cell in _of(page, boxes.TableCellBox) if cell.element_tag == "th"]
+
+
+def test_words_of_a_head_are_broken_at_a_syllable_only(pages):
+    heads = [head for head in _heads(pages) if head.element.get("scope") == "col"]
+    assert len(heads) > 40
+    for head in heads:
+        whole = "".join(head.element.itertext()).split()
+        for line in _of(head, boxes.LineBox):
+            *words, last = _text(line).split() or [""]
+            assert all(any(word in one for one in whole) for word in words)
+            is_end_of_word = any(one.endswith(last) for one in whole) or last.endswith("-")
+            assert is_end_of_word or (last.endswith("‐") and len(last) > 3), whole
+
+
+def test_the_foot_of_a_page_is_one_line(pages):
+    for page in pages:
+        feet = [one for one in _of(page, boxes.MarginBox) if one.at_keyword in ("@bottom-left", "@bottom-right")]
+        assert len(feet) == 2
+        for foot in feet:
+            assert len(_of(foot, boxes.LineBox)) == 1, _text(foot)
+
+
+def test_the_running_head_is_the_section_in_force_where_the_page_begins(pages):
+    chapter = ""
+    for page in pages:
+        heads = [one for one in _of(page, boxes.BlockBox) if one.element_tag == "h2"]
+        titles = [one for one in heads if one.element.get("class") != "plain"]
+        body = next(one for one in page.children if not isinstance(one, boxes.MarginBox))
+        top = min((line.position_y for line in _of(body, boxes.LineBox)), default=0)
+        begins = bool(titles) and _of(titles[0], boxes.LineBox)[0].position_y <= top + 0.5
+        head = "".join(_text(one) for one in _of(page, boxes.MarginBox) if one.at_keyword == "@top-right")
+        expected = _text(titles[0]) if begins else chapter
+        assert head == expected
+        chapter = _text(titles[-1]) if titles else chapter
+
+
+def test_a_floor_with_its_plan_stays_on_one_page(pages):
+    floors = [
+        (at, one.element.get("id"))
+        for at, page in enumerate(pages)
+        for one in _of(page, boxes.BlockBox)
+        if one.element_tag == "article" and one.element.get("id", "").startswith("floor-")
+    ]
+    assert len(floors) == len({name for _at, name in floors}) == 2
+
+
+def test_the_approval_block_has_room_for_signatures(pages):
+    (table,) = [one for one in _of(pages[0], boxes.TableBox) if "signing" in one.element.get("class", "")]
+    rows = [row for row in _of(table, boxes.TableRowBox) if row.element.getparent().tag == "tbody"] if hasattr(
+        table.element, "getparent") else _of(table, boxes.TableRowBox)[1:]  # fmt: skip
+    assert len(rows) == 3
+    assert all(row.height >= 14 / 25.4 * 96 - 1 for row in rows)
+
+
+LEVELS = [
+    {"floor": name, "name": title, "elevation": at, "pfa_x": 0.5, "pfv_x": 40, "pfa_y": 0.5, "pfv_y": 45}
+    for name, title, at in (("Second", "Second floor", 8), ("Mezzanine", "", 4), ("Basement", "", -3))
+]  # fmt: skip
+
+
+ROOMS = ["Physiotherapy", "Echocardiography waiting area", "Gastroenterology", "Sterilisation"]
+
+
+WHAT = ["Refrigerator for vaccines", "Electrocardiograph on a trolley", "Bookcase, partly anchored",
+        "Uninterruptible power supply"]  # fmt: skip
+
+
+HOSPITAL = [
+    {"item": f"{LEVELS[at % 3]['floor']}-{at:02}", "floor": LEVELS[at % 3]["floor"], "room": ROOMS[at % 4],
+     "description": WHAT[at % 4], "breadth": 30 + 5 * (at % 4), "width": 80, "height": 180,
+     "anchored": "yes" if at % 7 == 0 else "no", "importance": "life safety" if at % 5 == 0 else None}
+    for at in range(24)
+]  # fmt: skip
+
+
+TABLES = {"items", "pieces", "named"}
+
+
+def _broken(cell):
+    """Return where a line of a cell ends within a word: not at a space, hyphen or slash."""
+    words = "".join(cell.element.itertext()).split()
+    lines = ["".join(one.text for one in _of(line, boxes.TextBox)).split() for line in _of(cell, boxes.LineBox)]
+    ends = [(one[-1], other[0]) for one, other in pairwise(line for line in lines if line)]
+    return [
+        (last, first)
+        for last, first in ends
+        if last[-1] not in "-/" and any(last.rstrip("\N{HYPHEN}") + first in word for word in words)
+    ]
+
+
+def test_no_word_of_the_inventory_is_broken_over_lines(tmp_path):
+    results = assessed(tmp_path / "w.xlsx", HOSPITAL, LEVELS, building="General Hospital")
+    seen = set()
+    for page in lay_out(render(results, for_print=True)):
+        for table in _of(page, boxes.TableBox):
+            names = TABLES & set(table.element.get("class", "").split())
+            for cell in _of(table, boxes.TableCellBox) if names else ():
+                assert _broken(cell) == [], "".join(cell.element.itertext())
+                seen |= set("".join(cell.element.itertext()).split())
+    assert {"Physiotherapy", "Echocardiography", "Mezzanine", "Electrocardiograph"} <= seen

@@ -7,7 +7,7 @@ import pytest
 
 import assess
 from assess.report.content import Content
-from assess.report.figures.labels import overlap
+from assess.report.figures.labels import bounds, overlap
 from assess.report.figures.plan import build_plan, fallen, rectangle
 from assess.report.figures.ways import build_stretches
 from tests.report.reading import render
@@ -159,3 +159,50 @@ def test_segments_are_bands_to_scale_that_go_on_round_a_bend(routed):
     _near(ways["hall"].corners, [(11.5, -0.6), (11.5, 8.3), (8.5, 8.3), (8.5, -0.6)])
     for one in plan.ways:
         assert all(plan.low[0] < x < plan.high[0] and plan.low[1] < y < plan.high[1] for x, y in one.corners)
+
+
+def test_y_points_upwards(assessment):
+    plan, _second = _plans(assessment)
+    assert plan.y(plan.high[1]) == 0
+    assert plan.y(4.0) < plan.y(3.0) < plan.size[1]
+    assert plan.x(3.0) - plan.x(2.0) == pytest.approx(1 / plan.unit, abs=0.02)
+    assert plan.y(2.0) - plan.y(3.0) == pytest.approx(1 / plan.unit, abs=0.02)
+    assert plan.outline([(plan.low[0], plan.high[1]), (plan.high[0], plan.high[1])]).startswith("M26 0L")
+    for piece in plan.pieces:
+        for corners in (piece.corners, *piece.fallen):
+            assert all(plan.low[0] < x < plan.high[0] and plan.low[1] < y < plan.high[1] for x, y in corners)
+
+
+CROWD = [
+    {"place": f"{kind or 'point'} {at}", "floor": "1", "x": 1.0 + 2.0 * at, "y": 5.0 + 3.0 * row, "kind": kind}
+    for row, kind in enumerate(("room", "door", ""))
+    for at in range(14)
+]
+
+
+DRAFTED = [
+    {"route": "To Exit 1 (draft)", "segment": str(at), "floor": "1", "start": f"room {at}", "end": f"door {at}",
+     "clear_width": 0.9}
+    for at in range(14)
+]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def crowded(tmp_path_factory):
+    walked = {"route": "Walked", "segment": "x", "floor": "1", "start": "door 0", "end": "point 0"}
+    return _assess(tmp_path_factory.mktemp("crowd") / "w.xlsx", PIECES[:3], CROWD, [*DRAFTED, walked])
+
+
+def test_names_cover_nothing_where_places_are_many(crowded):
+    """Points of routes keep their dots without names, and doors that have no room are in no list below the plan."""
+    plan = _plans(crowded)[0]
+    named = {spot.name for spot in plan.places} | {key.name for key in plan.keys}
+    assert not [name for name in named if name.startswith("point")]
+    assert {f"room {at}" for at in range(14)} <= named
+    assert len(plan.places) == len(CROWD)
+    doors = [spot for spot in plan.places if spot.kind == "door" and spot.name]
+    others = [spot.box for spot in plan.places if spot.name and spot.kind != "door"]
+    assert not [1 for one, box in itertools.product(doors, others) if overlap(one.box, box)]
+    assert not [key for key in plan.keys if key.name.startswith("door")]
+    shapes = [bounds(one.corners) for one in plan.pieces]
+    assert not [1 for box, shape in itertools.product(plan.boxes, shapes) if overlap(box, shape)]

@@ -1,10 +1,12 @@
 """Every number of a piece, and every count, is the same in results.json, items.csv, the Excel report, HTML and PDF."""
 
+import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import openpyxl
 import pytest
 
@@ -14,7 +16,7 @@ from assess.results import Results
 from assess.risk import RiskClass
 from assess.settings import Settings
 from tests.recalculate import stored_cells
-from tests.report.parallel import BASES, assess_rich, read_html, read_items, read_json
+from tests.report.parallel import BASES, assess_rich, read_csv, read_html, read_items, read_json, recalculate
 from tests.report.reading import no_figures, read_text
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
@@ -31,14 +33,20 @@ class Written:
     folder: Path
 
 
-@pytest.fixture(scope="module", params=["high", "all by OR"])
+@pytest.fixture(
+    scope="module",
+    params=["none by OR", "high", "all by OR", pytest.param("example", marks=pytest.mark.slow)],
+)
 def written(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp("same")
-    verify, _, by_paper = request.param.partition(" by ")
-    class_by = "proposed OR" if by_paper else None
-    results = assess_rich(folder, Settings(verify=verify, runs=40, class_by=class_by))
+    if request.param == "example":
+        results = request.getfixturevalue("verified_example")
+    else:
+        verify, _, by_paper = request.param.partition(" by ")
+        class_by = "proposed OR" if by_paper else None
+        results = assess_rich(folder, Settings(verify=verify, runs=40, class_by=class_by))
     with no_figures():
-        paths = assess.write_reports(results, folder / "out", ("json", "xlsx", "html"))
+        paths = assess.write_reports(results, folder / "out", ("json", "csv", "xlsx", "html", "npz"))
     return Written(results, paths, folder)
 
 
@@ -83,6 +91,11 @@ def test_stored_items_are_those_of_results_json(written):
     _compare_items(read_items(cells, written.results), written)
 
 
+def test_recalculated_items_are_those_of_results_json(written):
+    cells = recalculate(written.paths["xlsx"], [])
+    _compare_items(read_items(cells, written.results), written)
+
+
 def test_pieces_in_the_page_are_those_of_results_json(written):
     items = {one["item"]: one for one in read_json(written.paths["json"])["items"]}
     rows = read_html(written.paths["html"].read_text(encoding="utf-8"))
@@ -113,6 +126,63 @@ def _check_class(row: dict[str, Any], one: dict[str, Any], main: str) -> None:
     assert row["style"][0] == ("anchored" if is_held else apart)
     if "ideal_higher" not in adopted["flags"] and adopted["class_upper"] != adopted["class"]:
         assert f"could be {adopted['class_upper']}" in row["Class"][0]
+
+
+def test_every_parallel_record_stands_in_floors(written):
+    sheet = openpyxl.load_workbook(written.paths["xlsx"], data_only=True)["Floors"]
+    lines = [row for row in sheet.iter_rows(min_row=2, max_col=8, values_only=True) if row[0]]
+    for floor in read_json(written.paths["json"])["floors"]:
+        own = [row for row in lines if row[0] == floor["floor"]]
+        for axis, at in (("X", 2), ("Y", 5)):
+            served = [one for one in floor["demands"] if one["axis"] == axis]
+            shown = [row for row in own if row[at] is not None]
+            assert len(shown) == len(served)
+            for one in served:
+                found = [row for row in shown if not one["record"] or row[at + 2].endswith(one["record"])]
+                assert [(row[at], row[at + 1]) for row in found] == [(_is(one["pfa_g"]), _is(one["pfv_cm_s"]))]
+
+
+# ---------------------------------------------------------------- the table for other programs
+
+
+def test_items_csv_and_the_table_of_a_notebook_are_results_json(written):
+    items = read_json(written.paths["json"])["items"]
+    rows, frame = read_csv(written.paths["csv"]), written.results.items
+    assert len(rows) == len(frame) == len(items)
+    assert list(rows[0]) == list(frame.columns)
+    places = {"axis": ("axis",), "pfa_g": ("pfa_g",), "pfv_cm_s": ("pfv_cm_s",), "pfa_source": ("pfa_source",),
+              "proposed_or": ("methods", "proposed_or", "value"), "anchor_held": ("anchor", "counts_as_anchored"),
+              "kaneko_hayashi": ("methods", "kaneko_hayashi", "value"), "adopted_class": ("adopted", "class"),
+              "adopted_class_upper": ("adopted", "class_upper"), "adopted_basis": ("adopted", "basis"),
+              "adopted_probability": ("adopted", "probability"), "adopted_low": ("adopted", "low"),
+              "adopted_high": ("adopted", "high"), "quantity": ("quantity",)}  # fmt: skip
+    places["counts_as_anchored"] = places.pop("anchor_held")
+    for row, (_, series), one in zip(rows, frame.iterrows(), items, strict=True):
+        for key, place in places.items():
+            value: Any = one
+            for step in place:
+                value = value[step]
+            assert row[key] == ("" if value is None else str(value)), key
+            assert _in_table(series[key]) == value, key
+
+
+def _in_table(value: Any) -> Any:
+    return None if isinstance(value, float) and math.isnan(value) else value
+
+
+def test_outcomes_npz_are_the_verification_of_results_json(written):
+    items = {one["item"]: one for one in read_json(written.paths["json"])["items"]}
+    with np.load(written.paths["npz"]) as arrays:
+        found = {name: arrays[name] for name in arrays.files}
+    falls = np.unpackbits(found["overturned"], axis=1) if len(found["item"]) else np.zeros((0, 0))
+    governing = [at for at in range(len(found["item"])) if found["governs"][at]]
+    assert len(governing) == sum(one["verification"] is not None for one in items.values())
+    for at in governing:
+        one = items[str(found["item"][at])]
+        assert (found["axis"][at], found["source"][at]) == (one["axis"], one["pfa_source"])
+        assert found["runs"][at] == one["verification"]["runs"]
+        own, simulated = falls[at, : found["runs"][at]].sum(), one["verification"]
+        assert own <= simulated["overturned"] <= simulated["draws"] - simulated["runs"] + own, "of it and those alike"
 
 
 # ---------------------------------------------------------------- counts

@@ -331,3 +331,17 @@ def test_an_interrupt_leaves_nothing_behind(tmp_path):
     assert process.returncode == 130
     assert errors.endswith("\nInterrupted; nothing was written.\n")
     assert [path.name for path in tmp_path.iterdir()] == ["new.xlsx"]
+
+
+def test_the_annex_is_written_where_it_is_asked_for():
+    assert "annex" not in DEFAULT
+    assert {"docx", "npz", "parquet"} & set(DEFAULT) == set()
+
+
+@pytest.mark.slow
+def test_results_list_the_files_of_their_run(tmp_path, results):
+    assess.write_reports(results, tmp_path, ("html", "csv"))
+    listed = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))["assess"]["files"]
+    assert listed == {
+        name: hashlib.sha256((tmp_path / name).read_bytes()).hexdigest() for name in ("items.csv", "report.html")
+    }
