@@ -14,7 +14,6 @@ from pathlib import Path
 import pytest
 import weasyprint
 
-import assess
 from assess.compare.changes import compare
 from assess.compare.comparison_files import write_comparison
 from assess.compare.past_run import read_run
@@ -117,21 +116,3 @@ def test_reports_are_valid_and_the_validator_can_say_no(tmp_path, jars):
     assert found == [""] * 4
     assert re.search(r"^  5 test 1: .*PDF/UA", archival_as_accessible)
     assert "6.6" in plain_as_archival
-
-
-def _small(folder, kinds=EVERY_KIND):
-    results = assessed(folder / "w.xlsx", building="Town hall", scenario="A test", prepared_by="A. Engineer")
-    return _write_each(results, folder / "small", kinds)
-
-
-def _example(folder):
-    return _write_each(
-        assess.run(assess.read_inventory(ROOT / "inventories" / "market-street.xlsx"), UNVERIFIED), folder
-    )
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("write", [_small, _strange, _comparison, _example])
-def test_every_edition_in_every_kind_is_valid(tmp_path, jars, write):
-    files = write(tmp_path)
-    assert _validate(jars, *files) == [""] * len(files)
