@@ -35,15 +35,7 @@ class LeftOut:
 
 @dataclass(frozen=True, slots=True)
 class Exchange:
-    """Files for another program.
-
-    Parameters
-    ----------
-    files : mapping
-        The bytes of each file by its name.
-    left_out : tuple of LeftOut
-        Curves that they do not hold.
-    """
+    """Files for another program: the bytes of each by its name, and the curves that they do not hold."""
 
     files: Mapping[str, bytes]
     left_out: tuple[LeftOut, ...]

@@ -64,24 +64,11 @@ class _Function:
 
 
 def write_nrml(assessment: Assessment, found: PieceFragilities) -> Exchange:
-    """Write the curves as a fragility model: NAME-nrml.xml.
+    """Write the curves as a fragility model, NAME-nrml.xml; where no lognormal stands in, the table is written.
 
-    Parameters
-    ----------
-    assessment : Assessment
-        Of which the fragilities were found; its scenario gives the PGA of the ground.
-    found : PieceFragilities
-        Against PFA, by `assess.pipeline.piece_fragility.find_piece_fragilities`.
-
-    Returns
-    -------
-    Exchange
-        The file, and the curves left out. Where no lognormal stands in, the table is written.
-
-    Raises
-    ------
-    InputError
-        If the measure is PFV, the ground PGA of the scenario is not known, or there is no curve to be written.
+    The scenario of `assessment` gives the PGA of the ground; `found` is of it and against PFA, by
+    `assess.pipeline.piece_fragility.find_piece_fragilities`. Raises InputError if the measure is PFV, the ground PGA is
+    not known, or there is no curve to be written.
     """
     pga = find_ground_pga(assessment, found.im)
     kept, left = choose_curves("OpenQuake", found.curves, _judge)
@@ -94,10 +81,7 @@ def write_nrml(assessment: Assessment, found: PieceFragilities) -> Exchange:
 def find_ground_pga(assessment: Assessment, im: str) -> float:
     """Return the ground PGA to which the motions of the floors belong [m/s2].
 
-    Raises
-    ------
-    InputError
-        If it is not known, or the measure is not "pfa": then no curve can be written, whatever it is.
+    Raises InputError if it is not known, or the measure is not "pfa": then no curve can be written, whatever it is.
     """
     if im != "pfa":
         raise InputError(

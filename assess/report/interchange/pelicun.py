@@ -55,24 +55,10 @@ USE = (
 
 
 def write_pelicun(assessment: Assessment, found: PieceFragilities) -> Exchange:
-    """Write the lognormals as a damage database: NAME-pelicun.csv and NAME-pelicun.json.
+    """Write the lognormals as a damage database, NAME-pelicun.csv and NAME-pelicun.json; pelicun takes nothing else.
 
-    Parameters
-    ----------
-    assessment : Assessment
-        Of which the fragilities were found.
-    found : PieceFragilities
-        By `assess.pipeline.piece_fragility.find_piece_fragilities`.
-
-    Returns
-    -------
-    Exchange
-        The files, and the curves for which no lognormal can stand in: pelicun takes nothing else.
-
-    Raises
-    ------
-    InputError
-        If there is no curve to be written.
+    `found` is of `assessment`, by `assess.pipeline.piece_fragility.find_piece_fragilities`. Raises InputError if there
+    is no curve to be written.
     """
     kept, left = choose_curves("pelicun", found.curves, _judge)
     stem = find_stem(assessment)

@@ -42,14 +42,8 @@ def add_classes(pen: Pen, page: Any, cell: Cell, top: int, basis: str) -> None:
     _add(chart, pen.sheets["Summary"], (top, 1, top, len(RiskClass)), (top + 1, 1, top + 1, len(RiskClass)),
          {"gap": 60, **series})  # fmt: skip
     chart.set_y_axis({"visible": False, "major_gridlines": {"visible": False}, "min": 0})
-    _place(
-        page,
-        cell,
-        chart,
-        _("Pieces by class: {basis}", basis=basis),
-        (470, 280),
-        _("Pieces of each class in the whole building"),
-    )
+    description = _("Pieces of each class in the whole building")
+    _place(page, cell, chart, _("Pieces by class: {basis}", basis=basis), (470, 280), description)
     chart.set_legend({"none": True})
 
 

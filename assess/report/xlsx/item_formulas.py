@@ -80,21 +80,14 @@ class Terms:
 
 def build_terms() -> Terms:
     """Return the terms in the language in use."""
+    bases = {
+        "simulated": _("simulated"), "formula": _("formula (not simulated)"), "unconfirmed": _("unconfirmed"),
+        CANNOT_ROCK: _("cannot rock"),
+    }  # fmt: skip
     return Terms(
-        yes=_("yes"),
-        no=_("no"),
-        partly=_("partly"),
-        edited=_("edited"),
-        check=_("check"),
-        again=_("run again"),
-        bases={
-            "simulated": _("simulated"),
-            "formula": _("formula (not simulated)"),
-            "unconfirmed": _("unconfirmed"),
-            CANNOT_ROCK: _("cannot rock"),
-        },
-        labels=tuple(say_class(risk) for risk in RiskClass),
-    )
+        yes=_("yes"), no=_("no"), partly=_("partly"), edited=_("edited"), check=_("check"), again=_("run again"),
+        bases=bases, labels=tuple(map(say_class, RiskClass)),
+    )  # fmt: skip
 
 
 def _differs(now: str, as_run: str) -> str:
@@ -137,16 +130,9 @@ def top_motion(ruling: Sequence[str], other: Sequence[str], top: str) -> tuple[s
 class ItemFormulas:
     """The formulas of a row of Items: templates, in which a cell stands by the key of its column.
 
-    Names in capitals are words, and expressions that several formulas have.
-
-    Parameters
-    ----------
-    cells : mapping of str to str
-        The cells of the row by the keys of their columns.
-    floors : str
-        The sheet Floors as formulas write it, `last` the row of its last floor, `lowest` of its last record.
-    formula, paper : MethodInfo
-        The adopted formula, and the paper's.
+    Names in capitals are words, and expressions that several formulas have. `cells` are those of the row by the keys of
+    their columns, `floors` is the sheet Floors as formulas write it, `last` the row of its last floor, `lowest` of its
+    last record; `formula` is the adopted one, `paper` the paper's.
     """
 
     def __init__(
@@ -240,8 +226,8 @@ class ItemFormulas:
 
         found = {
             "axis": (cells["axis_run"], self._axis()),
-            "pfa_g": (self._peak_as_run("pfa"), self._peak("pfa")),
-            "pfv_cm_s": (self._peak_as_run("pfv"), self._peak("pfv")),
+            "pfa_g": self._peaks("pfa"),
+            "pfv_cm_s": self._peaks("pfv"),
             "class_formula": (
                 live.risk_class(self._formula, cells["formula_run"], ratio, cells["formula_pfa_run"], LIMITS),
                 classed(self._formula),
@@ -354,17 +340,13 @@ class ItemFormulas:
         found = fastest if peak == "pfv" else self._among(axis, "({pfv}={fastest})*{pfa}", fastest=fastest)
         return f"IF({fastest}>0,{found},{top})"
 
-    def _peak(self, peak: str) -> str:
-        return self._on_axis(*(self._top(peak, axis) for axis in AXES))
-
-    def _peak_as_run(self, peak: str) -> str:
-        """Return the peak of the record that governed the run."""
+    def _peaks(self, peak: str) -> tuple[str, str]:
+        """Return the peak along the row's axis of the record that governed the run, and of the one that governs now."""
         areas = (self._area(f"{peak}_{axis}", self._lowest) for axis in AXES)
-        return self._on_axis(*(f"INDEX({area},{self._cells['motion_run']})" for area in areas))
-
-    def _on_axis(self, x: str, y: str) -> str:
-        chosen = f'IF({self._cells["axis"]}="X",{x},{y})'
-        return f'IF({chosen}="","",{chosen})'
+        as_run = (f"INDEX({area},{self._cells['motion_run']})" for area in areas)
+        now = (self._top(peak, axis) for axis in AXES)
+        found = [self._fill('IF({axis}="X",{x},{y})', x=x, y=y) for x, y in (as_run, now)]
+        return f'IF({found[0]}="","",{found[0]})', f'IF({found[1]}="","",{found[1]})'
 
 
 def live_formulas(cells: Mapping[str, str]) -> dict[str, str]:

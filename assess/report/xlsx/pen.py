@@ -52,27 +52,10 @@ _INKS = {
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """One column of a sheet.
+    """One column of a sheet: its heading in the language in use, its width in characters, and what reads a row.
 
-    Parameters
-    ----------
-    label : str
-        Its heading, in the language in use, with the unit.
-    width : int
-        In characters.
-    read : callable
-        From a row to its value.
-    format : str
-        How Excel shows a number.
-    key : str
-        Its name in formulas, in the sheet Items.
-    look : str
-        One of `LOOKS`; "" goes by the value.
-    is_live, is_hidden : bool
-        In Items: whether it holds a formula, of which `read` gives the result, in those rows that have one for it;
-        whether it is hidden.
-    align : str
-        "center" or "".
+    `format` is how Excel shows a number, `look` one of `LOOKS` ("" goes by the value), `align` "center" or "". In Items
+    a column has a key, by which formulas name it, and `is_live` where it holds formulas, whose results `read` returns.
     """
 
     label: str
