@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from assess.cli import interrupts
-from assess.cli.console import say
+from assess.cli.console import open_address, say
 from assess.cli.options import language_of
 from assess.errors import AssessError, InputError
 from assess.extras import say_install
@@ -125,8 +125,6 @@ def _welcome(server: "Server", place: "Place", no_browser: bool) -> None:
         say(address)
         sys.stdout.flush()
         if not (no_browser or place.is_hosted):
-            from assess.cli.opening import open_address
-
             threading.Thread(target=open_address, args=(address,), name="assess-browser", daemon=True).start()
 
     def repeat() -> None:

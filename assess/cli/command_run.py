@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from assess.cli import options
-from assess.cli.console import print_warnings, say, say_written, show_progress
-from assess.cli.opening import open_file
+from assess.cli.console import open_file, print_warnings, say, say_written, show_progress
 from assess.errors import InputError
 from assess.progress import Progress
 from assess.report_formats import ALL, DEFAULT, FILES

@@ -7,6 +7,7 @@ error, what was asked for to standard output.
 """
 
 import errno
+import os
 import re
 import sys
 import threading
@@ -289,3 +290,35 @@ def describe_progress(report: Report) -> str:
     if (seconds := report.seconds_left) is not None:  # with no more digits than can be known
         left = f", about {max(1, round(seconds))} s left" if seconds < 90 else f", about {round(seconds / 60)} min left"
     return f"{plain_line(' '.join((stage, report.detail))).strip()}: {int(100 * report.share)} %{left}"
+
+
+# ---------------------------------------------------------------- the browser
+
+
+def open_file(path: Path) -> str:
+    """Open a file with the default browser, which hands a kind that it does not show to its viewer.
+
+    The environment variable ``BROWSER`` names another program, as `webbrowser` has it. Returns "" where a program was
+    started; else one line that says where the file is.
+    """
+    if open_address(path.resolve().as_uri()):
+        return ""
+    why = "No browser could be started" if _has_display() else "There is no display here"
+    return f"{why}. The report is {path.resolve()}"
+
+
+def open_address(address: str) -> bool:
+    """Open an address in the default browser; tell whether a program was started, which is never an error."""
+    import webbrowser
+
+    try:
+        return _has_display() and webbrowser.open(address)
+    except (webbrowser.Error, OSError, ValueError):  # no program, one that does not start, a BROWSER that is garbled
+        return False
+
+
+def _has_display() -> bool:
+    """Whether a program with a window can be shown; a text browser would take the terminal over."""
+    if os.environ.get("BROWSER") or sys.platform in ("win32", "darwin", "cygwin"):
+        return True
+    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from assess.cli import opening
+from assess.cli.console import open_file
 from tests.workbooks import write
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="the program that stands for the browser is a shell script")
@@ -65,4 +65,4 @@ def test_a_browser_that_does_not_start_is_no_error(monkeypatch, fault):
     monkeypatch.setenv("BROWSER", "any")
     monkeypatch.setattr(webbrowser, "open", fail)
     report = Path("report.html").resolve()
-    assert opening.open_file(Path("report.html")) == f"No browser could be started. The report is {report}"
+    assert open_file(Path("report.html")) == f"No browser could be started. The report is {report}"
