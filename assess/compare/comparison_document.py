@@ -101,12 +101,8 @@ _KINDS: Mapping[Direction, tuple[Text, Text, str]] = {
     Direction.REMOVED: (fill("only in BEFORE"), fill("items removed, or a smaller quantity"), "unclear"),
 }
 """Name, what its tile counts, and tone of each direction, in the order of the tiles."""
-_STANDINGS: Mapping[str, tuple[Text, str, str]] = {
-    UNCONFIRMED: (fill("unconfirmed"), words.UNCONFIRMED, "apart-unconfirmed"),
-    BY_FORMULA: (fill("by formula only"), words.BY_FORMULA, "apart-formula"),
-    ANCHORED: (fill("anchored"), words.ANCHORED, "anchored"),
-}
-"""Word, symbol and style of what stands outside the classes."""
+_APART = {UNCONFIRMED: "unconfirmed", BY_FORMULA: "formula", ANCHORED: "anchored"}
+"""What stands outside the classes, as the reports call it."""
 _BASES: Mapping[str, Text] = {
     "simulated": fill("simulated"),
     "formula": fill("by formula"),
@@ -167,21 +163,22 @@ def name_basis(basis: str) -> str:
 
 
 def name_state(state: str) -> str:
-    """Return the standing of a piece or the state of a route or room in words; a dash where the run lacks it."""
-    if state == ABSENT:
-        return DASH
-    return _(_STANDINGS[state][0] if state in _STANDINGS else state)
+    """Return the state of a route or room in words; a dash where the run lacks it."""
+    return DASH if state == ABSENT else _(state)
 
 
 def label_standing(standing: str) -> str:
-    """Return the standing of a piece with its symbol."""
+    """Return the standing of a piece with its symbol; a dash where the run lacks it."""
     if standing in CLASSES:
         return words.risk_label(CLASSES[standing])
-    return f"{_STANDINGS[standing][1]} {name_state(standing)}" if standing in _STANDINGS else name_state(standing)
+    return words.apart_label(_APART[standing]) if standing in _APART else DASH
 
 
 def _mark_standing(standing: str) -> Span:
-    style = words.class_name(CLASSES[standing]) if standing in CLASSES else _STANDINGS[standing][2]
+    if standing in CLASSES:
+        style = words.class_name(CLASSES[standing])
+    else:
+        style = standing if standing == ANCHORED else f"apart-{_APART.get(standing)}"
     return Span(label_standing(standing), f"badge {style}")
 
 

@@ -117,9 +117,18 @@ BREADTH_STEP, HEIGHT_STEP = 10, 20
 
 Row = Mapping[str, Any]
 """One row of a table: values by column, None for what is not known."""
-RangeOver = Literal["earthquakes", "known ground", "own grounds", "motions"]
-"""What a range is over: earthquakes like the one of the map; the buildings' own motions on a ground that is taken as
-known; earthquakes in which every building has the ground motion of its own workbook; motions without uncertainty."""
+_MOTIONS = fill(
+    "In nine of ten motions like the given ones, without the uncertainty of the earthquake: between {low} and {high}.",
+    low="", high="",
+)  # fmt: skip
+_OWN_GROUNDS = fill(
+    "In nine of ten draws, as if the ground motions of all workbooks were of one earthquake: between {low} and {high}.",
+    low="", high="",
+)  # fmt: skip
+_KNOWN_GROUND = fill(
+    "In nine of ten draws, with the motion of the ground taken as known: between {low} and {high}.", low="", high=""
+)
+_EARTHQUAKES = fill("In nine of ten earthquakes like this one between {low} and {high}.", low="", high="")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -148,8 +157,8 @@ class Group:
     """Buildings whose pieces come from one kind of inventory, and whose numbers rest on one basis.
 
     Numbers with the name of a column of the table buildings are the sums of that column; a cost is None where none is
-    known. `by_class` counts free-standing pieces of the basis; `range_over` tells what differs from draw to draw: not
-    every range is one over earthquakes. `falls` and `people` are those of pieces in the classes, and of routes whose
+    known. `by_class` counts free-standing pieces of the basis; `range_over` says what a range is over, which is not
+    always earthquakes. `falls` and `people` are those of pieces in the classes, and of routes whose
     state is known, by `PEOPLE_RULE`. `falls_low_inventory` and `falls_high_inventory` are expected with all 10 % and
     all 90 % quantities of assumed inventories, as if all buildings had few or many pieces together. `unplaced` counts
     buildings without latitude and longitude, whose draws are fully correlated with one another; `own_motions` those of
@@ -167,7 +176,7 @@ class Group:
     anchored: int
     left_out: int
     cannot_rock: int
-    range_over: RangeOver
+    range_over: Text
     falls: Spread
     falls_low_inventory: float | None
     falls_high_inventory: float | None
@@ -271,7 +280,7 @@ class City:
             basis=basis,
             buildings=len(rows),
             by_class=by_class,
-            range_over=self._range_over,
+            range_over=self._find_range(),
             falls=falls,
             falls_low_inventory=add_known("falls_low_inventory"),
             falls_high_inventory=add_known("falls_high_inventory"),
@@ -286,13 +295,12 @@ class City:
             **{name: round(add(name)) for name in _ADDED},
         )
 
-    @property
-    def _range_over(self) -> RangeOver:
+    def _find_range(self) -> Text:
         if self.settings.ideal:
-            return "motions"
+            return _MOTIONS
         if self.ground is None:
-            return "own grounds"
-        return "known ground" if self.ground.is_known else "earthquakes"
+            return _OWN_GROUNDS
+        return _KNOWN_GROUND if self.ground.is_known else _EARTHQUAKES
 
     def name_building(self, row: Row) -> str:
         """Return the name of a building, its path where it has none, and both where others have the same name."""

@@ -116,7 +116,7 @@ def _say_falls(group: Group) -> Iterator[str]:
             expected=say_number(spread.expected), counted=say_whole(group.counted),
             buildings=ngettext("{n:,} building", "{n:,} buildings", group.buildings))  # fmt: skip
     if spread.draws:
-        yield _say_range_of_draws(group, spread)
+        yield _(group.range_over.template, low=say_whole(spread.low), high=say_whole(spread.high))
     else:
         yield _("No range is known, as nothing was simulated: the formula takes the median of the ground motion and "
                 "leaves its uncertainty out.")  # fmt: skip
@@ -132,21 +132,6 @@ def _say_falls(group: Group) -> Iterator[str]:
                        "no number.",
                        "{n:,} components of the handover files were left out, as their sizes or places are missing, "
                        "and are in no number.", group.left_out)  # fmt: skip
-
-
-def _say_range_of_draws(group: Group, spread: Spread) -> str:
-    """Return the range of a sum, and what it is over."""
-    ends = {"low": say_whole(spread.low), "high": say_whole(spread.high)}
-    if group.range_over == "known ground":
-        return _("In nine of ten draws, with the motion of the ground taken as known: between {low} and {high}.",
-                 **ends)  # fmt: skip
-    if group.range_over == "own grounds":
-        return _("In nine of ten draws, as if the ground motions of all workbooks were of one earthquake: between "
-                 "{low} and {high}.", **ends)  # fmt: skip
-    if group.range_over == "motions":
-        return _("In nine of ten motions like the given ones, without the uncertainty of the earthquake: between "
-                 "{low} and {high}.", **ends)  # fmt: skip
-    return _("In nine of ten earthquakes like this one between {low} and {high}.", **ends)
 
 
 def _say_cannot_rock(group: Group) -> Iterator[str]:
@@ -165,7 +150,7 @@ def _say_people(group: Group) -> Iterator[str]:
         yield _("Expected on blocked evacuation routes: {expected} of {occupants} people.",
                 expected=say_number(people.expected), occupants=say_whole(group.people_known))  # fmt: skip
     if group.people_known and people.draws:
-        yield _say_range_of_draws(group, people)
+        yield _(group.range_over.template, low=say_whole(people.low), high=say_whole(people.high))
         if people.apart > 0:
             yield _("Of the people expected on blocked routes, {apart} are in no range: their routes have no joint "
                     "draws.", apart=say_number(people.apart))  # fmt: skip

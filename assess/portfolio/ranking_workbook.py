@@ -191,43 +191,40 @@ def _list_types(city: City) -> Listing:
 
 
 def _list_pieces(city: City) -> Listing:
-    def of_building(name: str) -> Callable[[tuple[Row, Row]], Any]:
-        return lambda one: one[0][name]
-
-    def of_piece(name: str) -> Callable[[tuple[Row, Row]], Any]:
-        return lambda one: one[1][name]
-
     return [
-        Column(_("File"), 28, of_building("path")),
-        Column(_("Building"), 30, of_building("building")),
-        Column(_("Inventory"), 16, lambda one: say.name(one[0]["inventory"])),
-        Column(_("Place on its work list"), 9, of_piece("work_place"), COUNT),
-        Column(_("Item"), 12, of_piece("item")),
-        Column(_("Floor"), 8, of_piece("floor")),
-        Column(_("Room"), 16, of_piece("room")),
-        Column(_("What"), 26, lambda one: one[1]["description"] or one[1]["type"]),
-        Column(_("Size [cm]"), 16, lambda one: say.say_size(one[1])),
-        Column(_("Pieces"), 8, of_piece("quantity"), COUNT),
-        Column(_("Class"), 18, lambda one: say.label_piece(one[1], one[0]["basis"])),
-        Column(_("Chance"), 9, of_piece("probability"), CHANCE),
-        Column(_("Interval, low"), 9, of_piece("probability_low"), CHANCE),
-        Column(_("Interval, high"), 9, of_piece("probability_high"), CHANCE),
-        Column(_("Route"), 16, of_piece("route")),
-        Column(_("How to fix it"), 24, of_piece("detail")),
-        Column(_("Unit cost"), 10, of_piece("unit_cost"), COUNT),
+        Column(_("File"), 28, itemgetter("path")),
+        Column(_("Building"), 30, itemgetter("building")),
+        Column(_("Inventory"), 16, lambda row: say.name(row["inventory"])),
+        Column(_("Place on its work list"), 9, itemgetter("work_place"), COUNT),
+        Column(_("Item"), 12, itemgetter("item")),
+        Column(_("Floor"), 8, itemgetter("floor")),
+        Column(_("Room"), 16, itemgetter("room")),
+        Column(_("What"), 26, lambda row: row["description"] or row["type"]),
+        Column(_("Size [cm]"), 16, say.say_size),
+        Column(_("Pieces"), 8, itemgetter("quantity"), COUNT),
+        Column(_("Class"), 18, lambda row: say.label_piece(row, row["main_basis"])),
+        Column(_("Chance"), 9, itemgetter("probability"), CHANCE),
+        Column(_("Interval, low"), 9, itemgetter("probability_low"), CHANCE),
+        Column(_("Interval, high"), 9, itemgetter("probability_high"), CHANCE),
+        Column(_("Route"), 16, itemgetter("route")),
+        Column(_("How to fix it"), 24, itemgetter("detail")),
+        Column(_("Unit cost"), 10, itemgetter("unit_cost"), COUNT),
     ], list_first_pieces(city)
 
 
-def list_first_pieces(city: City) -> list[tuple[Row, Row]]:
-    """Return building and piece: the first of every work list, then the second, in the order of the ranking."""
+def list_first_pieces(city: City) -> list[Row]:
+    """Return the first piece of every work list, then the second, in the order of the ranking, with its building."""
     ranked = [
-        (row["work_place"], at, building, row)
+        (row["work_place"], at, row, building)
         for at, building in enumerate(city.ranked)
         for row in city.pieces_of.get(building["path"], [])
         if row["work_place"] is not None
     ]
     ranked.sort(key=lambda one: one[:2])
-    return [(building, row) for _place, _at, building, row in ranked[:MOST_PIECES]]
+    return [
+        {**row, "building": one["building"], "inventory": one["inventory"], "main_basis": one["basis"]}
+        for _place, _at, row, one in ranked[:MOST_PIECES]
+    ]
 
 
 def _list_routes(city: City) -> Listing:

@@ -35,10 +35,11 @@ def test_the_sheets_have_filters_and_frozen_heads_and_no_cell_is_a_formula_or_a_
 
 def test_pieces_come_by_their_place_on_the_work_lists(view):
     found = list_first_pieces(view)
-    places = [piece["work_place"] for _building, piece in found]
+    places = [row["work_place"] for row in found]
     assert places == sorted(places)
-    assert all(building["path"] == piece["path"] for building, piece in found)
-    assert {piece["work_place"] for _building, piece in found[:20]} == {1}
+    names = dict(zip(view.buildings["path"], view.buildings["building"], strict=True))
+    assert all(row["building"] == names[row["path"]] for row in found)
+    assert set(places[:20]) == {1}
 
 
 @pytest.mark.slow
