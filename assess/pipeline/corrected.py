@@ -4,7 +4,7 @@ Only those cells change, and the stored results of the live columns, which rest 
 """
 
 import hashlib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
@@ -15,7 +15,7 @@ from assess.model import Inventory
 from assess.pipeline.live_values import live_values
 from assess.progress import SILENT, Progress
 from assess.workbook.held import list_formulas
-from assess.workbook.names import is_live, plain, say_live, split_header
+from assess.workbook.names import find_live, is_live, plain, split_header
 from assess.workbook.open import HEADER_ROWS, Book
 from assess.workbook.patch import Value, Values, patch_workbook
 from assess.workbook.plain_rows import column_letters, split_address
@@ -74,11 +74,19 @@ def find_results(data: bytes, inventory: Inventory) -> dict[str, Values]:
         sheets = list(book.sheets)
         lists = [name for name in sheets if is_lists(name)]
         items = inventory.sheets.get(ITEMS.name, ITEMS.name)
-        columns = _find_columns(book, items, inventory.language) if items in sheets else {}
+        columns = _find_columns(book, items) if items in sheets else {}
     results: dict[str, Values] = {name: dict.fromkeys(list_formulas(data, name)) for name in lists}
     if columns:
-        rows = find_live_rows(inventory)
-        results[items] = dict(_results_of(list_formulas(data, items), columns, rows))
+        rows, found = find_live_rows(inventory), dict[str, Value]()
+        results[items] = found
+        for address, is_filled in list_formulas(data, items).items():
+            letters = address.rstrip("0123456789")
+            if letters in columns:
+                row, header = rows.get(int(address[len(letters) :])), columns[letters]
+                if row is not None and header in LIVE:
+                    found[address] = row[LIVE.index(header)]
+                elif row is not None or is_filled:
+                    found[address] = None
     return {sheet: values for sheet, values in results.items() if values}
 
 
@@ -87,14 +95,12 @@ def is_lists(name: str) -> bool:
     return plain(name) in {plain(load_catalogue(code).find(LISTS)) for code in LANGUAGES}
 
 
-def _find_columns(book: Book, sheet: str, language: str) -> dict[str, int | None]:
-    """Return the place among `LIVE` of each column that Excel computes, by its letters; None for other such ones."""
-    best: dict[str, int | None] = {}
-    with speaking(load_catalogue(language)):
-        labels = {plain(split_header(text)[0]): at for at, live in enumerate(LIVE) for text in (live, say_live(live))}
+def _find_columns(book: Book, sheet: str) -> dict[str, str]:
+    """Return the header, of `LIVE` or `WORKINGS`, of each column that Excel computes, by its letters."""
+    best: dict[str, str] = {}
     for _, cells in islice(book.cells(sheet).rows(), HEADER_ROWS):
         heads = {at: split_header(value)[0] for at, value in cells.items() if isinstance(value, str)}
-        found = {column_letters(at): labels.get(plain(text)) for at, text in heads.items() if is_live(ITEMS, text)}
+        found = {column_letters(at): find_live(text) or "" for at, text in heads.items() if is_live(ITEMS, text)}
         best = max(best, found, key=len)
     return best
 
@@ -107,20 +113,6 @@ def find_live_rows(inventory: Inventory) -> dict[int, list[float | str]]:
     except WorkbookError:
         return {}
     return {item.row: row for item, row in zip(inventory.items, rows, strict=True)}
-
-
-def _results_of(
-    formulas: Mapping[str, bool], columns: Mapping[str, int | None], rows: Mapping[int, list[float | str]]
-) -> Iterator[tuple[str, Value]]:
-    for address, is_filled in formulas.items():
-        letters = address.rstrip("0123456789")
-        if letters not in columns:
-            continue
-        row, at = rows.get(int(address[len(letters) :])), columns[letters]
-        if row is not None and at is not None:
-            yield address, row[at]
-        elif row is not None or is_filled:
-            yield address, None
 
 
 # ---------------------------------------------------------------- what was done, in words

@@ -5,7 +5,7 @@ fall together in a draw. Of routes those are counted draw by draw that have join
 number is known, which is kept apart. People are counted once for each route that they leave by.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +16,6 @@ from assess.pipeline.assessment import Assessment
 from assess.progress import SILENT, Progress
 from assess.results import Results, sum_falls
 from assess.route_results import RouteRow, RouteState, RouteTables
-from assess.routes.chances import Falls
 from assess.settings import AUTO
 
 Numbers = NDArray[np.int64]
@@ -63,21 +62,32 @@ def sum_draws(assessment: Assessment, results: Results, *, progress: Progress = 
     blocked: Mapping[str, BoolArray] = {}
     fallen = people_blocked = routes_blocked = None
     if results.main_basis == SIMULATED and runs != AUTO:
-        blocked = _find_blocked(assessment, assessment.find_falls(), chances, progress)
+        if assessment.obstructions:
+            from assess.routes.evaluate import find_joint_draws
+
+            found = find_joint_draws(
+                assessment.inventory, assessment.obstructions, assessment.find_falls(), assessment.settings, int(runs),
+                progress=progress,
+            )  # fmt: skip
+            blocked = {route: found[route] for route in chances if route in found}
         none = np.zeros(int(runs), dtype=np.int64)
         fallen = sum_falls(one for one in results if not one.is_anchored and not one.apart)
         fallen = none if fallen is None else fallen
         people_blocked = sum((people[route] * draws for route, draws in blocked.items()), none)
         routes_blocked = sum((draws.astype(np.int64) for draws in blocked.values()), none)
     apart = {route: chance for route, chance in chances.items() if route not in blocked}
+
+    def expect(of: Mapping[str, float]) -> float:
+        return float(sum(people[route] * chance for route, chance in of.items()))
+
     return DrawSums(
         falls=fallen,
         people_blocked=people_blocked,
         routes_blocked=routes_blocked,
         joint_routes=tuple(blocked),
-        people_expected=_expect(chances, people),
+        people_expected=expect(chances),
         routes_expected=sum(chances.values()),
-        people_apart=_expect(apart, people),
+        people_apart=expect(apart),
         routes_apart=sum(apart.values()),
         people_not_known=sum(number for route, number in people.items() if route not in chances),
     )
@@ -87,22 +97,3 @@ def count_people(tables: RouteTables, route: RouteRow) -> int | None:
     """Return how many people leave by a route: the largest Occupants of its segments; None where all are blank."""
     given = [tables.segments[at].occupants for at in route.segment_indices]
     return max((one for one in given if one is not None), default=None)
-
-
-def _find_blocked(
-    assessment: Assessment, falls: Falls, known: Iterable[str], progress: Progress
-) -> Mapping[str, BoolArray]:
-    """Return in which draws each of the routes `known` is blocked that has joint outcomes."""
-    if not assessment.obstructions:
-        return {}
-    from assess.routes.evaluate import find_joint_draws
-
-    found = find_joint_draws(
-        assessment.inventory, assessment.obstructions, falls, assessment.settings,
-        int(assessment.settings.runs), progress=progress,
-    )  # fmt: skip
-    return {route: found[route] for route in known if route in found}
-
-
-def _expect(chances: Mapping[str, float], people: Mapping[str, int]) -> float:
-    return float(sum(people[route] * chance for route, chance in chances.items()))

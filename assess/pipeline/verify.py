@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from assess.arrays import BoolArray
 from assess.errors import InputError, Problem
-from assess.i18n import Text, count, fill, join
+from assess.i18n import count, fill, join
 from assess.methods import Cases, Outcome, simulation
 from assess.methods.simulate import LOOKS, may_slide
 from assess.model import Building, Inventory
@@ -84,28 +84,24 @@ def remark_suite(suite: "Suite | None", cases: Cases) -> list[Problem]:
     """Return what was left out of the user's own motions, and the floors for which they are too weak."""
     if suite is None:
         return []
-    ensembles = [one for one in cases.ensembles if isinstance(one, SuiteEnsemble) and one.is_weak]
     texts = (fill("Motions of the folder {folder}: {note}.", folder=suite.folder, note=note) for note in suite.notes)
-    notes = [Problem("note", "", "", text) for text in texts]
-    return notes + [Problem("warning", "", "", _describe_weak(one), WEAK) for one in ensembles]
+    found = [Problem("note", "", "", text) for text in texts]
+    for one in (one for one in cases.ensembles if isinstance(one, SuiteEnsemble) and one.is_weak):
+        demand, (pfa, pfv) = one.demand, one.peaks
+        peaks = fill("median PFA {pfa:.3f} g for {wanted:.3f} g", pfa=pfa / GRAVITY, wanted=demand.pfa / GRAVITY)
+        if demand.pfv > 0:
+            median, wanted = 100 * pfv, 100 * demand.pfv
+            text = fill("median PFV {pfv:.1f} cm/s for {wanted:.1f} cm/s", pfv=median, wanted=wanted)
+            peaks = join(", ", [peaks, text])
+        message = fill(
+            "the user's own motions are weaker than floor '{floor}' {axis}: {peaks}.",
+            floor=demand.floor.floor, axis=demand.axis, peaks=peaks,
+        )  # fmt: skip
+        found.append(Problem("warning", "", "", message, WEAK))
+    return found
 
 
 WEAK = fill("Simulation may raise a class there, but not lower it. Scale the motions, or choose stronger ones.")
-
-
-def _describe_weak(one: SuiteEnsemble) -> Text:
-    pfa, pfv = one.peaks
-    peaks = fill("median PFA {pfa:.3f} g for {wanted:.3f} g", pfa=pfa / GRAVITY, wanted=one.demand.pfa / GRAVITY)
-    if one.demand.pfv > 0:
-        median, wanted = 100 * pfv, 100 * one.demand.pfv
-        text = fill("median PFV {pfv:.1f} cm/s for {wanted:.1f} cm/s", pfv=median, wanted=wanted)
-        peaks = join(", ", [peaks, text])
-    return fill(
-        "the user's own motions are weaker than floor '{floor}' {axis}: {peaks}.",
-        floor=one.demand.floor.floor,
-        axis=one.demand.axis,
-        peaks=peaks,
-    )
 
 
 def verify(

@@ -175,38 +175,32 @@ class Server:
     """The page of one workbook, or of several users, until it is stopped."""
 
     def __init__(self, listening: socket.socket, place: Place, folder: Path, home: Path) -> None:
-        self._listening, self._place, self._folder, self._home = listening, place, folder, home
+        self._listening, self._place = listening, place
         self.port = int(listening.getsockname()[1])
         most = (HOSTED if place.is_hosted else Limits()).jobs
-        self._slots, self._reading_slots = Slots(most), Slots(most, READING)
-        self._keys: Keys = self._make_keys()
+        slots, reading_slots = Slots(most), Slots(most, READING)
+
+        def make_session(limits: Limits, home: Path | None = None) -> Session:
+            return Session(
+                secrets.token_urlsafe(32), Path(tempfile.mkdtemp(prefix="session-", dir=folder)), home, limits,
+                slots=slots, reading_slots=reading_slots, language=place.language,
+            )  # fmt: skip
+
+        if place.is_hosted:
+            self._keys: Keys = HostedKeys(place.user_header, self.port, lambda: make_session(HOSTED))
+            hosts, schemes = list(place.allowed), ["http", "https"]
+        else:
+            self._keys, schemes = LocalKeys(make_session(Limits(), home), self.port), ["http"]
+            names = (LOOPBACK, "localhost", "[::1]")
+            hosts = [*(f"{name}:{self.port}" for name in names), *(names[:2] if self.port == HTTP else ())]
         self._keeper = Keeper(self._keys)
-        application = build_application(self._keeper.note_edit)
-        schemes = ("http", "https") if place.is_hosted else ("http",)
         config = uvicorn.Config(
-            Guard(application, self._keys, self._list_hosts(), schemes), access_log=False, log_config=None,
-            log_level="critical", lifespan="off", ws="none", http="h11", loop="asyncio", server_header=False,
-            date_header=False, proxy_headers=False, timeout_graceful_shutdown=GRACE, timeout_keep_alive=30,
+            Guard(build_application(self._keeper.note_edit), self._keys, hosts, schemes), access_log=False,
+            log_config=None, log_level="critical", lifespan="off", ws="none", http="h11", loop="asyncio",
+            server_header=False, date_header=False, proxy_headers=False, timeout_graceful_shutdown=GRACE,
+            timeout_keep_alive=30,
         )  # fmt: skip
         self._uvicorn = _Uvicorn(config)
-
-    def _make_keys(self) -> Keys:
-        if self._place.is_hosted:
-            return HostedKeys(self._place.user_header, self.port, lambda user: self._make_session(user, HOSTED))
-        return LocalKeys(self._make_session("", Limits(), self._home), self.port)
-
-    def _make_session(self, user: str, limits: Limits, home: Path | None = None) -> Session:
-        folder = Path(tempfile.mkdtemp(prefix="session-", dir=self._folder))
-        return Session(
-            secrets.token_urlsafe(32), user, folder, home, limits, slots=self._slots,
-            reading_slots=self._reading_slots, language=self._place.language,
-        )  # fmt: skip
-
-    def _list_hosts(self) -> list[str]:
-        if self._place.is_hosted:
-            return [name.lower() for name in self._place.allowed]
-        names = [f"{name}:{self.port}" for name in (LOOPBACK, "localhost", "[::1]")]
-        return [*names, LOOPBACK, "localhost"] if self.port == HTTP else names
 
     def take(self, book: "Book") -> str:
         """Open a workbook in the session of the own machine; return what its user should know, blank without."""
@@ -219,11 +213,14 @@ class Server:
         return f"http://{host}:{self.port}{ticket}"
 
     def run(self, signals: Sequence[int], started: Callable[[], None]) -> Ending:
-        """Answer requests until one of `signals` comes; save what there is to save."""
+        """Answer requests until one of `signals` comes; save what there is to save.
+
+        `started` is called at once: who asks while the server begins waits for it, as the socket listens already.
+        """
         with _stopped_by(signals, self._uvicorn):
             self._keeper.start()
-            self._uvicorn.started_by = started
             try:
+                started()
                 self._uvicorn.run(sockets=[self._listening])
             finally:
                 self._keeper.end()
@@ -251,19 +248,12 @@ class Server:
 
 
 class _Uvicorn(uvicorn.Server):
-    """A server that leaves signals to us, and tells when it listens."""
-
-    started_by: Callable[[], None] = staticmethod(lambda: None)
+    """A server that leaves signals to us."""
 
     @contextmanager
     def capture_signals(self) -> Iterator[None]:
         """Leave signals alone."""
         yield
-
-    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Begin, and tell."""
-        await super().startup(sockets)
-        self.started_by()
 
 
 @contextmanager

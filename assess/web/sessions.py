@@ -72,8 +72,6 @@ class Session:
     ----------
     key : str
         Value of the cookie that belongs to it.
-    user : str
-        Who, as the proxy calls them; blank on the own machine.
     folder : Path
         A folder for this session alone, that is removed with it.
     home : Path, optional
@@ -92,7 +90,6 @@ class Session:
     """
 
     key: str
-    user: str
     folder: Path
     home: Path | None = None
     limits: Limits = field(default_factory=Limits)
@@ -295,7 +292,7 @@ class LocalKeys:
 class HostedKeys:
     """A session for every user whom the proxy names in a header; the page gets its cookie at the entrance."""
 
-    def __init__(self, header: str, port: int, make: Callable[[str], Session], limits: Limits = HOSTED) -> None:
+    def __init__(self, header: str, port: int, make: Callable[[], Session], limits: Limits = HOSTED) -> None:
         self.cookie = f"{COOKIE}-{port}"
         self._header, self._make, self._limits = header, make, limits
         self._sessions: dict[str, Session] = {}
@@ -321,7 +318,7 @@ class HostedKeys:
             if user not in self._sessions:
                 if len(self._sessions) >= self._limits.sessions:
                     raise RequestError(fill("Too many users have a workbook open. Try again later."), TOO_MANY)
-                self._sessions[user] = self._make(user)
+                self._sessions[user] = self._make()
             return self._sessions[user]
 
     def sessions(self) -> Sequence[Session]:

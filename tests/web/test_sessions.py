@@ -1,5 +1,8 @@
 """A server for several users: behind a proxy that names them, sessions apart; what a session may take."""
 
+import tempfile
+from pathlib import Path
+
 import pytest
 from starlette.requests import HTTPConnection
 
@@ -75,10 +78,9 @@ def test_neither_a_cookie_nor_a_name_alone_lets_anyone_in(served):
 
 @pytest.fixture
 def make(tmp_path):
-    def make(user, limits=None):
-        folder = tmp_path / user
-        folder.mkdir()
-        return Session(f"key of {user}", user, folder, limits=limits or Limits())
+    def make(limits=None):
+        folder = Path(tempfile.mkdtemp(dir=tmp_path))
+        return Session(f"key of {folder.name}", folder, limits=limits or Limits())
 
     return make
 
@@ -115,7 +117,7 @@ def test_sessions_are_limited_and_end_when_nobody_asks(make):
 
 def test_files_of_a_session_are_limited(make, tmp_path):
     data = write(tmp_path / "w.xlsx").read_bytes()
-    session = make("ann", Limits(bytes=3 * len(data)))
+    session = make(Limits(bytes=3 * len(data)))
     session.hold("w.xlsx", data)
     (session.folder / "more").write_bytes(data)
     (session.book.folder / "plan.png").write_bytes(data)
