@@ -56,6 +56,14 @@ def test_before_and_after_equal_what_each_run_says(folder, tmp_path):
             assert one[side]["class"] == adopted[one["item"]]["class"]
 
 
+@pytest.mark.slow
+def test_files_go_to_the_current_folder_by_default(folder, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    _compare(folder, "base", "strong")
+    names = {path.name for path in (tmp_path / "compare").iterdir()}
+    assert names == {"compare.html", "compare.pdf", "compare.xlsx", "compare.json"}
+
+
 def test_the_files_speak_the_language_of_the_workbook_or_the_one_asked_for(folder, tmp_path):
     for options, code in (((), "en"), (("--language", "italiano"), "it")):
         _compare(folder, "base", "base", "--out", tmp_path, "--formats", "html", *options)

@@ -1,6 +1,7 @@
 """`assess record`: what it prints, as text and as JSON, what it draws, and what it says of files it cannot read."""
 
 import json
+import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import pytest
@@ -59,6 +60,14 @@ def test_a_file_that_cannot_be_read_is_named_and_the_others_are_told(tmp_path):
     assert (done.exit_code, done.stdout) == (2, "")
     assert "none.v2: there is no such file" in done.stderr
     assert record(f"{SWEEP}#west").exit_code == 2
+
+
+@pytest.mark.slow
+def test_the_figure_has_three_panels_a_channel(tmp_path):
+    path = tmp_path / "figure.svg"
+    done = record(SWEEP, "--plot", path)
+    assert (done.exit_code, done.stderr) == (0, f"wrote {path}\n")
+    assert sum(1 for one in ET.parse(path).iter() if str(one.get("id", "")).startswith("axes_")) == 9
 
 
 @pytest.mark.slow

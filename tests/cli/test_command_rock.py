@@ -201,6 +201,14 @@ def test_the_figure_shows_motion_threshold_path_and_impacts():
     assert (low, high) == pytest.approx((-1.5, 2.3))
 
 
+def test_the_figure_shows_the_threshold_of_the_centre_of_gravity():
+    top, _ = paint(case(cg=60), fallen()).axes
+    texts = [text.get_text() for text in top.texts]
+    assert any(text.startswith("40 × 180 cm, B/H 0.222, centre of gravity at 60 % of the height, ") for text in texts)
+    assert "dashed: ±b/z_c = ±0.185 g, above which it starts to rock" in texts
+    assert top.lines[2].get_ydata()[0] == pytest.approx(20 / 108)
+
+
 def test_the_figure_is_turned_towards_the_fall_and_reaches_it():
     _, bottom = paint(case(), fallen(side=-1, at=33.0)).axes
     assert bottom.get_ylim() == pytest.approx((-2.3, 1.5))

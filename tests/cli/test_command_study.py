@@ -86,6 +86,15 @@ def test_all_of_them_have_one_page(tmp_path):
     assert "0.3" in (tmp_path / "first.md").read_text(encoding="utf-8").split()
 
 
+@pytest.mark.usefixtures("two")
+def test_names_are_taken_in_any_case_and_what_is_kept_is_told(tmp_path):
+    assert [study(name, "--out", tmp_path).exit_code for name in ("FIRST", "All")] == [0, 0]
+    assert (tmp_path / PAGE).is_file()
+    (tmp_path / PARTS).mkdir()
+    found = study("second", "--out", tmp_path)
+    assert f"second.md; {tmp_path / PARTS} keeps the long integrations for the next run" in found.stderr
+
+
 def test_files_appear_whole_or_not_at_all(tmp_path):
     """One of them cannot be written, or a later study fails: what was there is left."""
     write_files(tmp_path, {"a.csv": b"old", "inside/b.svg": b"old"})

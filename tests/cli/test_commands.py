@@ -86,6 +86,11 @@ def test_scale_and_ideal_reach_the_settings(tmp_path, monkeypatch):
     ]  # fmt: skip
 
 
+def test_a_number_with_more_digits_than_are_read_is_refused(tmp_path):
+    done = run(app, ["run", str(write(tmp_path / "w.xlsx")), "--runs", "9" * 5000, "--out", str(tmp_path / "out")])
+    assert (done.exit_code, "--runs is '999" in done.stderr) == (2, True)
+
+
 def test_a_scenario_is_accepted_in_any_spelling(tmp_path):
     path = write(tmp_path / "w.xlsx", floors=[{"floor": at, "elevation": at} for at in (1, 2)], ground_pga=0.2)
     done = run(app, [*RUN, str(path), "--out", str(tmp_path / "out"), "--formats", "json", "--scenario", "asce7-22"])
