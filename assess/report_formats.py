@@ -97,7 +97,7 @@ def _write_npz(job: "Job", path: Path) -> None:
 
 
 def _write_parquet(job: "Job", path: Path) -> None:
-    from assess.report.parquet_file import write_parquet
+    from assess.report.data import write_parquet
 
     write_parquet(job.results, path, job.progress)
 

@@ -1,4 +1,4 @@
-"""The files for other programs: results.json, items.csv and outcomes.npz, the same in every language.
+"""The files for other programs: results.json, items.csv and .parquet, outcomes.npz; the same in every language.
 
 Their fields are those of `assess.fields`; units stand in the names. They are written row by row, so that 20,000 items
 take little more memory than one.
@@ -20,7 +20,7 @@ from assess.fields import MOTION_FIELDS, STATE_FIELDS
 from assess.progress import SILENT, Progress
 from assess.report.results_schema import FILE, VERSION, building_key
 from assess.results import Results
-from assess.table import Table
+from assess.table import Kind, Table
 from assess.units import to_edge
 from assess.workbook.schema import BUILDING
 
@@ -173,6 +173,45 @@ def _put_apostrophe(found: re.Match[str]) -> str:
     before, sign = found[1], found[2]
     is_first = found.start() == 0 or not _SEPARATORS.isdisjoint(before)
     return f"{before}'{sign}" if is_first else found[0]
+
+
+# ---------------------------------------------------------------- items.parquet
+
+_SQL_TYPES: Mapping[Kind, str] = {"number": "DOUBLE", "share": "DOUBLE", "count": "BIGINT", "flag": "BOOLEAN"}
+"""Of the columns by what a field holds, never by the values, so that the files of many buildings can be read as one
+table; all others are VARCHAR."""
+
+
+def write_parquet(results: Results, path: Path, progress: Progress = SILENT) -> None:
+    """Write items.parquet by DuckDB: rows and columns of items.csv, typed; what is not known is NULL.
+
+    The same results give the same bytes. Raises OSError if the file cannot be written; CancelledError if cancelled.
+    """
+    progress.wait_for(lambda: _write_parquet(results, path))
+
+
+def _write_parquet(results: Results, path: Path) -> None:
+    import duckdb
+
+    def to_text(value: Any) -> str | None:
+        value = "; ".join(map(str, value)) if isinstance(value, list) else value
+        return value if isinstance(value, str) else None
+
+    table = results.table("items")
+    types, frame = {one.key: _SQL_TYPES.get(one.kind, "VARCHAR") for one in table.fields}, table.to_frame()
+    for key in (key for key, sql in types.items() if sql == "VARCHAR"):
+        frame[key] = frame[key].astype("object").map(to_text)
+    names = {key: '"' + key.replace('"', '""') + '"' for key in types}
+    columns = ", ".join(f"{names[key]}::{sql} AS {names[key]}" for key, sql in types.items())
+    target = str(path).replace("'", "''")
+    try:
+        with duckdb.connect(config={"threads": 1, "autoinstall_known_extensions": False}) as connection:
+            connection.register("found", frame)
+            connection.execute(
+                f"COPY (SELECT {columns} FROM found) TO '{target}' (FORMAT parquet, COMPRESSION zstd)"  # noqa: S608
+            )
+    except duckdb.Error as error:
+        raise OSError(str(error).splitlines()[0]) from None
 
 
 # ---------------------------------------------------------------- outcomes.npz

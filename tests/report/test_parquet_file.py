@@ -9,8 +9,7 @@ import pytest
 
 import assess
 from assess.errors import InputError
-from assess.report.data import write_csv
-from assess.report.parquet_file import write_parquet
+from assess.report.data import write_csv, write_parquet
 from tests.cli.calling import run as call
 
 FLOORS = [{"floor": "1", "PFA X [g]": 0.3, "PFA Y [g]": 0.2}]
