@@ -514,9 +514,14 @@ class View:
         uncertainty = {"motion": _("Motion uncertainty"), "piece": _("Piece uncertainty")}
         lines = {building_key(column): _(column.label) for column in BUILDING.columns}
         motions = _say_motions(before, after), _say_motions(after, before)
+        settings = {name: _(label) for name, label in SETTINGS.items()}
+        was, now = ({label: words.cut(text, LONGEST_FACT) or DASH for label, text in _describe_run(run).items()}
+                    for run in (before, after))  # fmt: skip
+        origins = [Fact(label, text, now[label], differs=text != now[label]) for label, text in was.items()]
+
         return [
-            *self._list_origins(),
-            *_list_settings(before.settings, after.settings),
+            *origins,
+            *_list_differing(before.settings, after.settings, settings, always=ALWAYS),
             *_list_differing(before.uncertainty, after.uncertainty, uncertainty),
             *_list_differing({"": before.shaking}, {"": after.shaking}, {"": _("Assumed shaking")}),
             *_list_differing({"": before.site_ground}, {"": after.site_ground}, {"": _("Ground motion")}),
@@ -524,12 +529,6 @@ class View:
             *_list_differing(before.building, after.building, lines, left_out=("building", "report_date")),
             *_list_differing(before.platform, after.platform, {}),
         ]
-
-    def _list_origins(self) -> Iterator[Fact]:
-        was, now = map(_describe_run, (self.before, self.after))
-        for label, text in was.items():
-            before, after = (words.cut(one, LONGEST_FACT) or DASH for one in (text, now[label]))
-            yield Fact(label, before, after, differs=before != after)
 
 
 def _describe_run(run: PastRun) -> dict[str, str]:
@@ -546,14 +545,6 @@ def _describe_run(run: PastRun) -> dict[str, str]:
     }
 
 
-def _list_settings(before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[Fact]:
-    for name in dict.fromkeys((*SETTINGS, *sorted({*before, *after}))):
-        was, now = before.get(name), after.get(name)
-        if was != now or name in ALWAYS:
-            show = say_anchor if name == "anchor" else _say_value
-            yield Fact(_(SETTINGS[name]) if name in SETTINGS else name, show(was), show(now), differs=was != now)
-
-
 def _say_motions(run: PastRun, other: PastRun) -> str:
     own = [name for name, digest in run.motions.items() if other.motions.get(name) != digest]
     if not own:
@@ -563,12 +554,17 @@ def _say_motions(run: PastRun, other: PastRun) -> str:
 
 
 def _list_differing(
-    before: Mapping[str, Any], after: Mapping[str, Any], names: Mapping[str, str], left_out: Sequence[str] = ()
+    before: Mapping[str, Any],
+    after: Mapping[str, Any],
+    names: Mapping[str, str],
+    left_out: Sequence[str] = (),
+    always: Sequence[str] = (),
 ) -> Iterator[Fact]:
-    for name in dict.fromkeys((*before, *after)):
+    for name in dict.fromkeys((*names, *before, *after)):
         was, now = before.get(name), after.get(name)
-        if was != now and name not in left_out:
-            yield Fact(names.get(name, name), _say_value(was), _say_value(now), differs=True)
+        if name in always or (was != now and name not in left_out):
+            show = say_anchor if name == "anchor" else _say_value
+            yield Fact(names.get(name, name), show(was), show(now), differs=was != now)
 
 
 # ---------------------------------------------------------------- the document
