@@ -3,7 +3,6 @@
 After a change that is meant, ``python -m tests.compare.test_shown`` writes the lines anew and prints how they differ.
 """
 
-import difflib
 import os
 import re
 import tempfile
@@ -18,7 +17,7 @@ from assess.compare.past_run import read_run
 from assess.report.report_options import ReportOptions
 from assess.settings import Settings
 from tests.compare.past import change, item, write_routed_run, write_run
-from tests.nets.lines import read_excel, read_html, read_json
+from tests.nets.lines import keep_lines, list_differences, read_excel, read_html, read_json
 from tests.report.routed import PLACES
 from tests.workbooks import ITEMS, UNVERIFIED
 
@@ -109,17 +108,15 @@ def show(found, language, folder):
     return outputs
 
 
-def find_differences(name, language, kind, lines):
-    """Return how the lines of an output differ from what is kept."""
-    path = SHOWN / f"{name}.{language}.{kind}.txt"
-    kept = path.read_text(encoding="utf-8").split("\n") if path.exists() else []
-    return path, list(difflib.unified_diff(kept, "\n".join(lines).split("\n"), n=0, lineterm=""))[2:]
+def find_place(name, language, kind):
+    """Return where the lines of an output are kept."""
+    return SHOWN / f"{name}.{language}.{kind}.txt"
 
 
 @pytest.mark.parametrize(("name", "language"), CASES)
 def test_outputs_say_what_they_said(name, language, tmp_path):
     outputs = show(build(name, tmp_path), language, tmp_path)
-    found = {kind: find_differences(name, language, kind, lines)[1] for kind, lines in outputs.items()}
+    found = {kind: list_differences(find_place(name, language, kind), lines) for kind, lines in outputs.items()}
     assert {kind: one for kind, one in found.items() if one} == {}
 
 
@@ -127,6 +124,4 @@ if __name__ == "__main__":
     for name, language in CASES:
         with tempfile.TemporaryDirectory() as box:
             for kind, lines in show(build(name, Path(box)), language, Path(box)).items():
-                path, differences = find_differences(name, language, kind, lines)
-                print(path.name, *differences, sep="\n")
-                path.write_text("\n".join(lines), encoding="utf-8")
+                keep_lines(find_place(name, language, kind), lines)

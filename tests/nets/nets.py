@@ -6,10 +6,9 @@ the workbooks anew first. Names of workbooks limit both to these.
 """
 
 import argparse
-import difflib
 import shutil
 import tempfile
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -24,7 +23,7 @@ from assess.report.word import writer
 from assess.report.word.drawings import Picture
 from assess.results import Results
 from assess.settings import Settings
-from tests.nets.lines import PDFS, QUICK, render
+from tests.nets.lines import PDFS, QUICK, keep_lines, list_differences, render
 from tests.nets.make import CITY, MADE, ROOT, make_workbooks
 from tests.nets.stored import read_results, write_results
 from tests.pictures import picture
@@ -106,12 +105,9 @@ def find_shown(name: str, kind: str) -> Path:
     return SHOWN / f"{name}.{kind}.txt"
 
 
-def compare(name: str, kind: str, now: list[str]) -> Iterator[str]:
-    """Yield how the lines of an output differ from what is kept, as diff does, without what stands around."""
-    path = find_shown(name, kind)
-    kept = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
-    marks = difflib.unified_diff(kept, [line for text in now for line in text.splitlines()], n=0, lineterm="")
-    yield from (line for line in list(marks)[2:])
+def compare(name: str, kind: str, now: list[str]) -> list[str]:
+    """Return how the lines of an output differ from what is kept."""
+    return list_differences(find_shown(name, kind), now)
 
 
 def rewrite(names: Collection[str] = NAMES, *, anew: bool = False, say: Callable[[str], Any] = print) -> None:
@@ -130,12 +126,7 @@ def rewrite(names: Collection[str] = NAMES, *, anew: bool = False, say: Callable
             if name in PRINTED:
                 found |= show(name, results, folder / "printed", PDFS)
             for kind, lines in found.items():
-                difference = list(compare(name, kind, lines))
-                if difference:
-                    say(f"{name}.{kind}: {len(difference)} lines")
-                    for line in difference[:20]:
-                        say(f"  {line[:200]}")
-                    find_shown(name, kind).write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
+                keep_lines(find_shown(name, kind), lines, say)
             shutil.rmtree(folder)
 
 

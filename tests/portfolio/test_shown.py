@@ -3,7 +3,6 @@
 After a change that is meant, ``python -m tests.portfolio.test_shown`` writes the outputs anew and shows the difference.
 """
 
-import difflib
 import html
 import json
 import os
@@ -20,7 +19,7 @@ from assess.portfolio.ranking_workbook import render_ranking
 from assess.portfolio.run_portfolio import PortfolioResult
 from assess.report.report_options import ReportOptions
 from assess.settings import Settings
-from tests.nets.lines import flatten, read_excel, read_html, read_pdf
+from tests.nets.lines import flatten, keep_lines, list_differences, read_excel, read_html, read_pdf
 from tests.portfolio.city_samples import BUILDING, NASTY, PIECE, frame
 
 SHOWN = Path(__file__).parent / "shown"
@@ -126,11 +125,9 @@ def _unpack(table):
             yield f"{at}/{row - start}", " | ".join(cells)
 
 
-def find_differences(kind: str, language: str, lines: list[str]) -> list[str]:
-    """Return how the lines of an output differ from what is kept."""
-    path = SHOWN / f"city.{language}.{kind}.txt"
-    kept = path.read_text(encoding="utf-8").split("\n") if path.exists() else []
-    return list(difflib.unified_diff(kept, "\n".join(lines).split("\n"), n=0, lineterm=""))[2:]
+def find_place(kind: str, language: str) -> Path:
+    """Return where the lines of an output are kept."""
+    return SHOWN / f"city.{language}.{kind}.txt"
 
 
 CASES = [(kind, language) for kind in RENDERERS for language in LANGUAGES] + [("txt", "en")]
@@ -142,7 +139,7 @@ CASES = [(kind, language) for kind in RENDERERS for language in LANGUAGES] + [("
 )
 def test_outputs_say_what_they_said(kind, language, tmp_path, monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", DATE)
-    found = find_differences(kind, language, show(kind, language, tmp_path))
+    found = list_differences(find_place(kind, language), show(kind, language, tmp_path))
     assert found == [], "where that is meant, write them anew: python -m tests.portfolio.test_shown"
 
 
@@ -152,6 +149,4 @@ if __name__ == "__main__":
     os.environ["SOURCE_DATE_EPOCH"] = DATE
     for kind, language in CASES:
         with tempfile.TemporaryDirectory() as box:
-            lines = show(kind, language, Path(box))
-        print(kind, language, *find_differences(kind, language, lines), sep="\n")
-        (SHOWN / f"city.{language}.{kind}.txt").write_text("\n".join(lines), encoding="utf-8")
+            keep_lines(find_place(kind, language), show(kind, language, Path(box)))
