@@ -14,7 +14,7 @@ from assess.motion.floor_medians import find_medians
 from assess.motion.formats import read_records
 from assess.motion.generate import CALIBRATED, Generator, build_generator
 from assess.motion.record import CORNER, Motion, treat
-from assess.motion.spectrum import pseudo_acceleration
+from assess.motion.spectrum import response_spectrum
 from assess.motion.target import (
     JUDGED_FROM,
     build_grid,
@@ -148,7 +148,7 @@ def deviations_of(generator: Generator) -> tuple[np.ndarray, tuple[np.ndarray, n
     """Return periods [s], and how the mean spectra of the first 100 and of all 200 deviate from the target [-]."""
     target, step = generator.target, generator.grid.time_step
     periods = np.geomspace(JUDGED_FROM, matched_to(target.periods, target.pseudo), 300)
-    spectra = pseudo_acceleration(generator.realise(0, ALL), step, periods, threads=2)
+    spectra = response_spectrum(generator.realise(0, ALL), step, periods, threads=2).pseudo
     wanted = target.ordinates(periods, step)
     return periods, (spectra[:CALIBRATED].mean(axis=0) / wanted - 1, spectra.mean(axis=0) / wanted - 1)
 

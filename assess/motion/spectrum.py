@@ -65,35 +65,6 @@ def response_spectrum(
     Raises CancelledError if the caller stops the work; ValueError if a period, the damping or the time step is outside
     these limits, or a motion has fewer than two samples or one that is not finite.
     """
-    peaks = _respond(acceleration, time_step, periods, damping, threads, progress, both=True)
-    squared = (2 * np.pi / np.asarray(periods)) ** 2
-    return Spectrum(np.asarray(periods, dtype=np.float64), peaks[..., 0, :] * squared, peaks[..., 1, :])
-
-
-def pseudo_acceleration(
-    acceleration: NDArray[Any],
-    time_step: float,
-    periods: FloatArray,
-    *,
-    threads: int = 1,
-    progress: Progress = SILENT,
-) -> FloatArray:
-    """Return the 5 % pseudo-acceleration alone [m/s2], (..., m), a third sooner than `response_spectrum`."""
-    peaks = _respond(acceleration, time_step, periods, DAMPING, threads, progress, both=False)
-    return np.asarray(peaks[..., 0, :] * (2 * np.pi / np.asarray(periods)) ** 2)
-
-
-def _respond(
-    acceleration: NDArray[Any],
-    time_step: float,
-    periods: FloatArray,
-    damping: float,
-    threads: int,
-    progress: Progress,
-    *,
-    both: bool,
-) -> FloatArray:
-    """Return peak displacements [m] and, where `both`, peak absolute accelerations [m/s2], (..., 2, m)."""
     periods = np.asarray(periods, dtype=np.float64)
     acceleration = np.asarray(acceleration, dtype=np.float64)
     if not (periods.ndim == 1 and periods.size and np.isfinite(periods).all() and periods.min() > 0):
@@ -109,11 +80,9 @@ def _respond(
     rows = np.ascontiguousarray(np.atleast_2d(acceleration))
     step = oscillator_step(periods, time_step, damping)
     peaks = np.zeros((len(rows), 2, periods.size))
-    if both:
-        run_rows(lambda row: _peaks(rows[row], step, peaks[row]), len(rows), threads, progress)
-    else:
-        run_rows(lambda row: _displacements(rows[row], step, peaks[row, 0]), len(rows), threads, progress)
-    return peaks.reshape((*acceleration.shape[:-1], 2, periods.size))
+    run_rows(lambda row: _peaks(rows[row], step, peaks[row]), len(rows), threads, progress)
+    pseudo, absolute = np.moveaxis(peaks.reshape((*acceleration.shape[:-1], 2, periods.size)), -2, 0)
+    return Spectrum(periods, pseudo * (2 * np.pi / periods) ** 2, absolute)
 
 
 def oscillator_step(periods: FloatArray, time_step: float, damping: float = DAMPING) -> FloatArray:
@@ -158,21 +127,3 @@ def _peaks(acceleration: FloatArray, step: FloatArray, peaks: FloatArray) -> Non
             displacement[j] = max(displacement[j], abs(next_u))
         for j in range(count):
             absolute[j] = max(absolute[j], abs(r8[j] * v[j] + r9[j] * u[j]))
-
-
-@compiled
-def _displacements(acceleration: FloatArray, step: FloatArray, peak: FloatArray) -> None:  # pragma: no cover
-    """Fill `peak` (m,) with peak |u|; two steps a turn, which halves what is read and written."""
-    count, last = step.shape[1], acceleration.size - 1
-    r0, r1, r2, r3, r4, r5, r6, r7 = step[0], step[1], step[2], step[3], step[4], step[5], step[6], step[7]
-    u, v = np.zeros(count), np.zeros(count)
-    for i in range(0, last, 2):
-        a, b, c = acceleration[i], acceleration[i + 1], acceleration[min(i + 2, last)]
-        counts = 1.0 if i + 2 <= last else 0.0  # an odd number of steps ends after the first of a turn
-        for j in range(count):
-            u1 = r0[j] * u[j] + r1[j] * v[j] + r4[j] * a + r5[j] * b
-            v1 = r2[j] * u[j] + r3[j] * v[j] + r6[j] * a + r7[j] * b
-            u2 = r0[j] * u1 + r1[j] * v1 + r4[j] * b + r5[j] * c
-            v2 = r2[j] * u1 + r3[j] * v1 + r6[j] * b + r7[j] * c
-            u[j], v[j] = u2, v2
-            peak[j] = max(peak[j], abs(u1), counts * abs(u2))

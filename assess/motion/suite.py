@@ -61,12 +61,12 @@ class Suite:
 
     def scaled_spectra(self, pfa: float | None = None, *, progress: Progress = SILENT) -> Spectra:
         """Return the spectra of the first 100 motions, each scaled to a `pfa` [m/s2] where one is given."""
-        from assess.motion.spectrum import build_periods, pseudo_acceleration
+        from assess.motion.spectrum import build_periods, response_spectrum
 
         if not self._found:
             periods = build_periods(SPECTRUM_FROM, SPECTRUM_TO, SPECTRUM_COUNT)
             batches = self.realise(0, MOST_SPECTRA)
-            found = [pseudo_acceleration(batch, step, periods, progress=progress) for batch, step in batches]
+            found = [response_spectrum(batch, step, periods, progress=progress).pseudo for batch, step in batches]
             self._found.append((periods, np.concatenate(found)))
         periods, ordinates = self._found[0]
         if pfa is not None:

@@ -139,9 +139,9 @@ def _of_motion(demand: Demand, joint: Joint | None) -> Iterator[tuple[str, NDArr
     if spectra.target is not None:
         yield "target_g", spectra.target / GRAVITY
     elif motion is not None:
-        from assess.motion.spectrum import pseudo_acceleration
+        from assess.motion.spectrum import response_spectrum
 
-        own = pseudo_acceleration(motion.acceleration, motion.time_step, spectra.periods)
+        own = response_spectrum(motion.acceleration, motion.time_step, spectra.periods).pseudo
         yield "record_spectrum_g", own / GRAVITY
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from assess.errors import RecordError
-from assess.motion.spectrum import pseudo_acceleration
+from assess.motion.spectrum import response_spectrum
 from assess.motion.suite import MOST_SPECTRA, read_suite
 from assess.units import GRAVITY
 from tests.motion.motions import MARKET, read_motion
@@ -123,7 +123,7 @@ def test_spectra_of_motions_of_several_steps(tmp_path: Path) -> None:
     assert (spectra.target, spectra.ordinates.shape) == (None, (3, spectra.periods.size))
     batches = [(motion, step) for batch, step in suite.realise(0, 3) for motion in batch]
     for (motion, step), own, to_peak in zip(batches, spectra.ordinates, scaled.ordinates, strict=True):
-        expected = pseudo_acceleration(motion, step, spectra.periods)
+        expected = response_spectrum(motion, step, spectra.periods).pseudo
         np.testing.assert_allclose(own, expected, rtol=1e-6)
         np.testing.assert_allclose(to_peak, expected * 3.0 / np.abs(motion).max(), rtol=1e-6)
 
