@@ -15,7 +15,7 @@ from functools import cache
 from assess.progress import SILENT, Progress
 from assess.risk import LIMITS, RiskClass
 from assess.studies.released_blocks import describe_released
-from assess.studies.study import Finding, Options, Study, Table, render_page
+from assess.studies.study import Finding, Options, Study, render_page
 from assess.studies.study_files import PARTS, check_folder, write_files
 from assess.version import __version__
 
@@ -43,17 +43,13 @@ def run_study(study: Study, options: Options, progress: Progress = SILENT) -> Fi
     """Run a study as one stage of `progress`, and write its tables, figures, files and page to `options.out`."""
     with progress.stage(study.name, study.title) as stage:
         finding = study.run(replace(options, report_share=stage.at))
-        texts = {f"{name}.csv": _to_csv(table) for name, table in finding.tables.items()} | dict(finding.files)
+        texts = dict(finding.files)
+        for name, table in finding.tables.items():
+            csv.writer(file := io.StringIO(), lineterminator="\n").writerows([table.columns, *table.rows])
+            texts[f"{name}.csv"] = file.getvalue()
         texts[f"{study.name}.md"] = render_page("study", study=study, finding=finding, describe=describe)
         write_files(options.out, {name: text.encode() for name, text in texts.items()} | dict(finding.figures))
     return finding
-
-
-def _to_csv(table: Table) -> str:
-    file = io.StringIO()
-    writer = csv.writer(file, lineterminator="\n")
-    writer.writerows([table.columns, *table.rows])
-    return file.getvalue()
 
 
 def describe(study: Study, finding: Finding, folder: str) -> Iterator[str]:

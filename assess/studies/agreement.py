@@ -145,11 +145,8 @@ def pool(
     The latter for exactly the recorded motion and the piece as given, or with both `uncertain`.
     """
     values = [one.formulas[key][chosen(one)] for one in compared]
-    return np.concatenate(values), np.concatenate([_count(one, uncertain)[chosen(one)] for one in compared])
-
-
-def _count(one: Compared, uncertain: bool) -> NDArray[np.int64]:
-    return one.trials.fallen_uncertain if uncertain else one.trials.fallen
+    counts = [(one.trials.fallen_uncertain if uncertain else one.trials.fallen)[chosen(one)] for one in compared]
+    return np.concatenate(values), np.concatenate(counts)
 
 
 def agree(compared: Sequence[Compared], key: str, chosen: Chosen = every_case, *, uncertain: bool = False) -> Agreement:

@@ -92,10 +92,12 @@ class ReleasedBlock:
 
 def list_released() -> list[ReleasedBlock]:
     """Return the four blocks of which sizes and base correction are published."""
-    return [
-        _build(row["block"], *(float(row[name]) for name in ("half_base_m", "half_height_m", "base_correction")))
-        for row in read_facts("released_blocks")
-    ]
+    found = []
+    for row in read_facts("released_blocks"):
+        b, h, share = (float(row[name]) for name in ("half_base_m", "half_height_m", "base_correction"))
+        inertia = (b**2 + h**2) / 3  # of the uniform block: (B2 + H2) / 12
+        found.append(ReleasedBlock(row["block"], share, Rocker(b, h, inertia), Rocker(share * b, h, inertia)))
+    return found
 
 
 def describe_released() -> dict[str, object]:
@@ -106,9 +108,3 @@ def describe_released() -> dict[str, object]:
         "released": blocks, "release": RELEASE, "faded": FADED, "base": BASE, "least": least,
         "lowered": [1 - one.correction for one in blocks], "outside": sum(one.correction < least for one in blocks),
     }  # fmt: skip
-
-
-def _build(name: str, half_base: float, half_height: float, correction: float) -> ReleasedBlock:
-    inertia = (half_base**2 + half_height**2) / 3  # of the uniform block: (B2 + H2) / 12
-    nominal, corrected = (Rocker(share * half_base, half_height, inertia) for share in (1.0, correction))
-    return ReleasedBlock(name, correction, nominal, corrected)

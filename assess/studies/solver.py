@@ -311,7 +311,10 @@ Results = Mapping[Solver, Sequence[Found]]
 def run(options: Options) -> Finding:
     """Find all limits by all solvers."""
     limits = read_limits()
-    found = find_all(limits, options.narrow(0.0, 0.85))
+    found = {
+        solver: [find_limit(limit, solver, partial(one.report_share, 0.0)) for limit, one in part.each(limits)]
+        for solver, part in options.narrow(0.0, 0.85).each(SOLVERS)
+    }
     bands = find_bands(options.narrow(0.85, 0.95))
     drawn = [limit for limit in limits if limit.case.pulse == "one_sine"]
     paths = follow_near(drawn, options.narrow(0.95, 1.0))
@@ -376,14 +379,6 @@ def collect(limits: Sequence[Limit], found: Results, bands: Sequence[Row]) -> di
         "closer": {"ode23s": count_closer(ODE23S, RK45), "tight": count_closer(TIGHT, ODE23S)},
         "fastest": P * (1 + strongest**2) ** 0.25,
     }  # fmt: skip
-
-
-def find_all(limits: Sequence[Limit], options: Options) -> Results:
-    """Find all limits by each solver."""
-    return {
-        solver: [find_limit(limit, solver, partial(one.report_share, 0.0)) for limit, one in part.each(limits)]
-        for solver, part in options.each(SOLVERS)
-    }
 
 
 def find_bands(options: Options) -> list[Row]:
@@ -458,7 +453,11 @@ def _paint(drawn: Sequence[Limit], paths: Paths, figure: Any) -> None:
     panels = figure.subplots(4, 2, sharex=True, sharey="row")
     titles = "linear equation of slender blocks", "eq. 3 of the paper"
     for title, column, limits in zip(titles, panels.T, columns.values(), strict=True):
-        _paint_pulses(column[0], limits)
+        times = np.arange(0, END, STEP / 10)
+        for limit in limits:
+            values = [limit.case.shake(limit.listed, time) / ALPHA for time in times.tolist()]
+            column[0].plot(times, values, lw=0.8, color="#444444")
+        column[0].axhline(limits[0].case.threshold / ALPHA, lw=0.5, ls=":", color="#444444")
         column[0].set_title(title, fontsize=8, loc="left")
         for axes, limit in zip(column[1:], limits, strict=True):
             _paint_responses(axes, limit, paths)
@@ -467,14 +466,6 @@ def _paint(drawn: Sequence[Limit], paths: Paths, figure: Any) -> None:
         panels[row, 0].set_ylabel(name)
     lines, names = panels[1, 0].get_legend_handles_labels()
     figure.legend(lines, names, loc="outside lower center", ncols=3, fontsize=7, frameon=False)
-
-
-def _paint_pulses(axes: Any, limits: Sequence[Limit]) -> None:
-    times = np.arange(0, END, STEP / 10)
-    for limit in limits:
-        values = [limit.case.shake(limit.listed, time) / ALPHA for time in times.tolist()]
-        axes.plot(times, values, lw=0.8, color="#444444")
-    axes.axhline(limits[0].case.threshold / ALPHA, lw=0.5, ls=":", color="#444444")
 
 
 def _paint_responses(axes: Any, limit: Limit, paths: Paths) -> None:

@@ -161,7 +161,7 @@ def paint_climbed(climbed: Climbed, names: Mapping[str, str], figure: Any) -> No
         axes.plot(list(roofs), list(roofs.values()), "D", ms=3, color="#8c1d3f", label="roof, worse direction")
         for limit in LIMITS:
             axes.axhline(limit, color="#444444", linewidth=0.6, linestyle="--")
-        axes.set_yscale("function", functions=(_root, np.square))
+        axes.set_yscale("function", functions=(lambda values: np.sqrt(np.maximum(values, 0)), np.square))
         axes.set_ylim(0, 1)
         axes.set_yticks([0, *LIMITS, 1], [f"{tick:g}" for tick in (0, *LIMITS, 1)])
         axes.set_title(name, loc="left", fontsize=8)
@@ -181,10 +181,6 @@ def _dashes(climbed: Climbed, key: str) -> tuple[FloatArray, FloatArray]:
     dashes = sorted({(int(one.station.number), round(value, 3)) for one, value in every if value == value})
     points = np.array([((at - 0.3, risk), (at + 0.3, risk), (at, np.nan)) for at, risk in dashes]).reshape(-1, 2)
     return points[:, 0], points[:, 1]
-
-
-def _root(values: Any) -> Any:
-    return np.sqrt(np.maximum(values, 0))
 
 
 LISTED = 8

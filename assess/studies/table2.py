@@ -18,6 +18,7 @@ from assess.rocking.draws import BASE, Uncertainty
 from assess.studies.agreement import (
     NAMES,
     Agreement,
+    Chosen,
     Compared,
     agree,
     as_recorded,
@@ -138,25 +139,26 @@ def compare(compared: Sequence[Compared]) -> Comparison:
 
 def find_agreements(compared: Sequence[Compared]) -> dict[tuple[str, str, str], Agreement]:
     """Return how each formula agrees with integration, by building, subset and key; empty subsets are left out."""
-    found: dict[tuple[str, str, str], Agreement] = {}
-    for name, own in by_building(compared).items():
-        for subset, chosen in SUBSETS.items():
-            if not any(chosen(one).any() for one in own):
-                continue
-            found |= {(name, subset, key): agree(own, key, chosen) for key in FORMULAS}
-            fallen = pool(own, OR, chosen)[1]
-            found[name, subset, NOTHING] = find_agreement(np.zeros(fallen.size), fallen, own[0].trials.runs)
-    return found
+    return {
+        (name, subset, key): one
+        for name, own in by_building(compared).items()
+        for subset, chosen in SUBSETS.items()
+        if any(chosen(one).any() for one in own)
+        for key, one in _agree_all(own, chosen, uncertain=False).items()
+    }
 
 
 def find_uncertain(compared: Sequence[Compared]) -> dict[tuple[str, str], Agreement]:
     """Return how each formula agrees with integration where motion and piece are uncertain, by building and key."""
-    found: dict[tuple[str, str], Agreement] = {}
-    for name, own in by_building(compared).items():
-        found |= {(name, key): agree(own, key, uncertain=True) for key in FORMULAS}
-        fallen = pool(own, OR, uncertain=True)[1]
-        found[name, NOTHING] = find_agreement(np.zeros(fallen.size), fallen, own[0].trials.runs)
-    return found
+    every = by_building(compared).items()
+    return {(name, key): one for name, own in every for key, one in _agree_all(own, every_case, uncertain=True).items()}
+
+
+def _agree_all(own: Sequence[Compared], chosen: Chosen, *, uncertain: bool) -> dict[str, Agreement]:
+    """Return how each formula, and `NOTHING`, agrees with integration."""
+    fallen = pool(own, OR, chosen, uncertain=uncertain)[1]
+    found = {key: agree(own, key, chosen, uncertain=uncertain) for key in FORMULAS}
+    return found | {NOTHING: find_agreement(np.zeros(fallen.size), fallen, own[0].trials.runs)}
 
 
 def find_criteria(compared: Sequence[Compared]) -> dict[tuple[str, str], Criterion]:
