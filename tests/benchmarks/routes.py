@@ -17,7 +17,7 @@ FLOORS, ITEMS, AIM = 60, 2000, 5
 TIMED = """
 import json, sys, time
 import assess
-from assess.pipeline import run as assessment
+from assess.pipeline import assessment
 from assess.routes import evaluate, obstructions
 spent = []
 def timed(module, name):
