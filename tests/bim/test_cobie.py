@@ -15,6 +15,8 @@ from tests.bim.cobie_files import COMPONENTS, FLOORS, TYPES, make_sheets, one_ty
 from tests.workbook.books import write_book, write_shared
 from tests.workbooks import write as write_inventory
 
+SHAKEN = {"ground_pga": 0.3}
+
 
 def _read(folder: Path, **rows: Any) -> ImportedBuilding:
     path = write_cobie(folder / "handover.xlsx", **rows)
@@ -341,3 +343,36 @@ def test_of_several_spaces_the_first_known_is_taken_and_said(tmp_path: Path) -> 
     found = _read(tmp_path, components=({**COMPONENTS[0], "Space": "Site, U01, G01"},))
     assert found.items[0]["floor"] == "Upper"
     assert "1 piece names several spaces; the first that is known was taken." in found.remarks
+
+
+def test_pieces_that_no_unit_makes_furniture_are_left_out_and_the_unit_is_not_doubted(tmp_path: Path) -> None:
+    found = _read(tmp_path, **one_type(NominalLength=30_000, NominalWidth=1, NominalHeight=0.001))
+    assert [one.type for one in found.skipped] == ["Bookcase A"]
+
+
+def test_spellings_of_moveable(tmp_path: Path) -> None:
+    for typed in ("Movable", "MOVEABLE", " moveable "):
+        assert len(_read(tmp_path, **one_type(AssetType=typed)).items) == 1
+
+
+def test_thin_pieces_are_named_as_what_may_hang_on_a_wall(tmp_path: Path) -> None:
+    found = _read(tmp_path, **one_type(NominalWidth=60))
+    assert any("Thinner than 10 cm" in text and "Bookcase A" in text for text in found.remarks)
+
+
+def test_a_type_named_as_one_of_the_catalogue_takes_its_place(tmp_path: Path) -> None:
+    types = ({**TYPES[0], "Name": "Sideboard"},)
+    path = write_cobie(tmp_path / "c.xlsx", types=types, components=({**COMPONENTS[0], "TypeName": "Sideboard"},))
+    inventory = read_inventory(convert(path.read_bytes()), building=SHAKEN)
+    (kind,) = (one for one in inventory.catalogue if one.type == "Sideboard")
+    assert kind.breadth == pytest.approx(0.303)
+    assert kind.source == "COBie file COBie.xlsx, sheet Type: nominal sizes"
+
+
+def test_a_file_without_furniture_and_with_several_facilities_gives_its_floors(tmp_path: Path) -> None:
+    sheets = make_sheets(types=(), components=())
+    sheets["Facility"].append(sheets["Facility"][1])
+    path = write_book(tmp_path / "c.xlsx", sheets)
+    found = read_cobie(path, path.name)
+    assert (len(found.floors), found.items, found.is_complete) == (2, [], False)
+    assert found.remarks[0] == "The sheet Facility has 2 rows; the first was taken."

@@ -106,3 +106,17 @@ def test_the_ground_is_the_lowest_storey_with_doors_that_is_no_basement(elevatio
     assert {key: kinds[f"d{key}"] for key in keys} == {
         key: "exit" if f"Level {key}" == ground else "outside" for key in keys
     }
+
+
+def test_a_room_is_found_behind_a_thick_finish():
+    found = model(replace(door("d", 4.25, 2.0, 0.0), thickness=0.1),
+                  spaces=(room("a", 0, 0, 4, 4), room("b", 4.7, 0, 8, 4)))  # fmt: skip
+    assert find_sides(found) == {"d": ("b", "a")}
+
+
+def test_a_storey_without_rooms_or_doors_is_not_the_ground():
+    foundation_and_slab = model(door("d", -0.05, 2.0, 0.0, "2"), spaces=(room("a", 0, 0, 4, 4, storey="2"),),
+                                elevations=(-0.5, -0.1, 0.0))  # fmt: skip
+    assert find_ground(foundation_and_slab).name == "Level 2"
+    assert find_ground(model(spaces=())) is None
+    assert find_ground(model()) is None

@@ -418,3 +418,10 @@ def test_the_door_bounds_its_segment():
         assert row["notes"].startswith(f"Clear width: {words}")
     assert row["required_width"] == 0.8
     assert measure_in(hall(), (4.0, 3.0), (10.05, 3.0)) == pytest.approx(1.3)
+
+
+def test_storeys_without_walls_are_named():
+    office = replace(build_office(1, 3), walls={})
+    found = draft(office)
+    assert found.unreached == ()
+    assert "No walls on Level 0: openings without doors, of 0.6 m and more, are not found there." in say(found)

@@ -17,7 +17,8 @@ from lxml import etree
 
 from assess.bim import export_topics as topics_module
 from assess.bim.export_camera import FIELD_OF_VIEW
-from assess.bim.export_topics import PRIORITIES, Topics
+from assess.bim.export_results import read_export
+from assess.bim.export_topics import PRIORITIES, Topics, find_date
 from assess.i18n import load_catalogue, speaking
 from assess.risk import RiskClass
 from tests.bim.export_runs import (
@@ -27,6 +28,7 @@ from tests.bim.export_runs import (
     CUPBOARDS,
     DOOR_B202,
     DUPLEX,
+    FLOORS,
     OFFICE,
     PLACES,
     ROUTES,
@@ -337,3 +339,22 @@ def test_a_door_is_found_in_a_shifted_workbook_and_where_a_segment_passes_it(fla
 
 def move(rows: list[dict[str, Any]], by: float) -> list[dict[str, Any]]:
     return [one | {"x": one["x"] + by, "y": one["y"] - by} for one in rows]
+
+
+@pytest.mark.slow
+def test_pieces_without_shapes_are_seen_at_their_origin(flat, tmp_path):
+    model = ifcopenshell.open(str(flat))
+    model.by_guid(CUPBOARD_1).Representation = None
+    bare = tmp_path / "bare.ifc"
+    model.write(str(bare))
+    (topic,) = read_topics(write_results(tmp_path, CUPBOARDS[:1]), bare).topics
+    assert math.dist(topic.point("CameraViewPoint")[:2], (2.91, -11.41)) < 4.5
+
+
+def test_without_a_date_of_the_report_the_topics_have_that_of_the_results(tmp_path, monkeypatch):
+    items = CUPBOARDS[:1]
+    results = write_results(tmp_path, items, FLOORS, building=BUILDING | {"report_date": None})
+    run = read_export(results).run
+    assert find_date(run) == run.written
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
+    assert find_date(run).isoformat() == "1970-01-02T00:00:00+00:00"

@@ -210,3 +210,10 @@ def test_the_roof_is_the_highest_storey_or_ceiling():
     assert list_building(model()).building["height"] == 3.0
     roof = Storey("t", "Roof", 7.5, 7.5)
     assert list_building(model(storeys=(STOREY, roof))).building["height"] == 7.5
+
+
+def test_a_model_of_walls_alone_keeps_its_storeys():
+    upper = Storey("u", "Level 2", 3.0, 3.0)
+    found = list_building(model(storeys=(STOREY, upper), spaces=(), pieces=(), walls={"s": ((ROOM,),)}))
+    assert [row["floor"] for row in found.floors] == ["Level 1", "Level 2"]
+    assert not found.is_complete

@@ -9,7 +9,7 @@ from assess.cache_folder import examine_folder
 from assess.i18n import gettext, load_catalogue, speaking
 from assess.methods import all_methods
 from assess.motion.scenario import PROFILES
-from assess.report.blocks import Equation
+from assess.report.blocks import Equation, lower_indices
 from assess.report.equations import NotationError, split_line, write_tex
 from assess.report.figures import math_figures
 from assess.report.figures.math_figures import draw_math
@@ -125,3 +125,18 @@ def test_what_is_drawn_is_kept_and_drawn_anew_where_that_is_damaged(monkeypatch,
     assert draw_math.__wrapped__(r"\dfrac{a}{b}") == drawn, "nothing is read where others can write"
     assert [path.read_text() for path in (tmp_path / "assess" / "equations").iterdir()] == ["{}"]
     examine_folder.cache_clear()
+
+
+@pytest.mark.parametrize(
+    ("text", "html"),
+    [
+        ("F_f = PFA/(2π PFV)", "F<sub>f</sub> = PFA/(2π PFV)"),
+        ("15.6/√H (1 + B/H)^-1.5", "15.6/√H (1 + B/H)<sup>-1.5</sup>"),
+        ("15,6/√202·(1 + 0,1386)^(-1,5) = 0,9", "15,6/√202·(1 + 0,1386)<sup>-1,5</sup> = 0,9"),
+        ("θ″ = -p²·(a_g/g)", "θ″ = -p²·(a<sub>g</sub>/g)"),
+        ("λ_A < ζ_V & x", "λ<sub>A</sub> &lt; ζ<sub>V</sub> &amp; x"),
+        ("a_1<b>", "a<sub>1</sub>&lt;b&gt;"),
+    ],
+)
+def test_indices(text, html):
+    assert HtmlWriter(for_print=True).words(lower_indices(text)) == html

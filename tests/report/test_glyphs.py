@@ -9,7 +9,7 @@ import pytest
 
 from assess.i18n import load_catalogue, speaking
 from assess.report.fonts import find_missing, print_fonts, replace_signs
-from assess.report.pages import pdf
+from assess.report.pages import glyphs, pdf
 from assess.report.pages.pdf_layout import open_page
 from tests.report.reading import render
 from tests.workbooks import assessed, write
@@ -126,3 +126,28 @@ def _read(path):
     text = " ".join(document[at].get_textpage().get_text_range() for at in range(len(document)))
     document.close()
     return " ".join(text.split())
+
+
+def test_marks_that_nobody_sees_are_not_told(tmp_path, monkeypatch):
+    monkeypatch.setattr(pdf, "find_nowhere", lambda _: frozenset())
+    text = "wide\u3000space, \u2068isolate\u2069, \ufe0f, \u00ad"
+    assert pdf.list_problems(assessed(tmp_path / "w.xlsx", _items(text))) == []
+
+
+def test_many_fields_are_counted():
+    missing = [glyphs.Missing("Items", f"A{at}", "Room", 1, "本") for at in range(14)]
+    told = glyphs.describe(missing, {"本"})
+    assert len(told) == 11
+    assert str(told[-1]) == "the same is true of 4 more fields."
+    assert str(glyphs.describe(missing[:11], {"本"})[-1]) == "the same is true of 1 more field."
+
+
+def test_a_font_of_the_machine_that_helps_out_is_a_note(tmp_path, monkeypatch):
+    monkeypatch.setattr(pdf, "find_nowhere", lambda _: frozenset())
+    results = assessed(tmp_path / "w.xlsx", _items("一二三四五六七"))
+    (problem,) = pdf.list_problems(results)
+    assert problem.severity == "note"
+    assert problem.message == (
+        "Description: a font of this machine lends the PDF 一 (U+4E00), 二 (U+4E8C), 三 (U+4E09), 四 (U+56DB), "
+        "五 (U+4E94) and 2 more; figures may have boxes instead."
+    )

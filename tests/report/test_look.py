@@ -144,3 +144,8 @@ def test_a_logo_is_embedded(tmp_path):
         found = re.search(r'<img class="logo" src="data:image/png;base64,([^"]+)" alt="Logo of Us &amp; Co">', html)
         assert found
         assert struct.unpack(">II", base64.b64decode(found[1])[16:24]) == shown
+
+
+@pytest.mark.slow
+def test_a_style_of_the_firms_own_stands_in(assessment, tmp_path):
+    assert "h1 { color: teal; }" in render(assessment, own(tmp_path, "style/screen.css", "h1 { color: teal; }"))

@@ -61,3 +61,31 @@ def test_nothing_is_written_where_there_is_no_lognormal(small):
         InputError, match=r"formats: none of the 1 curves can be written for pelicun. The first is U: no"
     ):
         write_pelicun(assessment, shape_curves(found, ("U", UNEVEN)))
+
+
+def test_what_it_is_of_stands_in_the_metadata(small):
+    assessment, found = small
+    found = shape_curves(found, ("Shelf", RISING), ("Uneven", UNEVEN), ("Still", (0.0, 0.0)))
+    rows, about = read(write_pelicun(assessment, found))
+    general = about.pop("_GeneralInformation")
+    assert [row["ID"] for row in rows] == list(about) == ["assess.small.office.Shelf.pfa"]
+    for words in (
+        "small office.xlsx", f"SHA-256 {assessment.inventory.sha256}", "60 motions, seed 3", "For screening",
+        "maximum binomial likelihood", "The uncertainty of the motion is not in them, that of the pieces is",
+    ):  # fmt: skip
+        assert words in general["Description"]
+    assert "NonDirectionalMultipliers" in general["Use"]
+    (one,) = about.values()
+    assert one["Description"] == "Shelf: base 30 to 40 cm, height 180 cm, free-standing"
+    curve = found.curves[0].curve
+    assert f"median {curve.median / GRAVITY:.4g} g" in one["Comments"]
+    assert f"largest misfit {curve.misfit:.3f}" in one["Comments"]
+    assert re.search(r"PFV/PFA of the motions: 0\.\d+ to 0\.\d+ s\.", one["Comments"])
+    assert general["LeftOut"] == [
+        {
+            "Name": "Uneven",
+            "Reason": "no lognormal stands in for its table: the misfit exceeds 0.05. More draws lessen "
+            "the part of it that is chance; the table itself is in the formats csv and json",
+        },
+        {"Name": "Still", "Reason": "not fitted: nothing fell at any level"},
+    ]

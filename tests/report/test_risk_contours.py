@@ -5,7 +5,9 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
+from assess.i18n import Catalogue, speaking
 from assess.methods import Cases, all_methods
+from assess.report.figures.draw import draw
 from assess.report.figures.risk_contours import draw_contours
 from assess.report.figures.risk_map import LINES, MOST_NAMES
 from assess.settings import Settings
@@ -78,3 +80,28 @@ def test_one_piece_and_many(tmp_path):
 
 
 # --- where texts go ---
+
+
+@pytest.mark.parametrize("shares", [False, True])
+def test_ticks_are_written_once_with_the_decimal_sign_of_the_language(shares):
+    found = []
+
+    def paint(figure):
+        panels = figure.subplots(1, 2, sharey=shares)
+        for axes in panels:
+            axes.plot([0, 1], [0, 0.5])
+        panels[1].set_xticks([0, 1], ["J.P. Room", "1,5"])
+        found.append(panels)
+
+    with speaking(Catalogue("it", decimal=",", group=".")):
+        draw(4, 2, paint)
+        labels = [[text.get_text() for text in axes.get_yticklabels()] for axes in found[0]]
+        assert "0,2" in labels[0]
+        assert not any("." in text for one in labels for text in one)
+        assert [text.get_text() for text in found[0][1].get_xticklabels()] == ["J.P. Room", "1,5"]
+
+
+@pytest.mark.slow
+def test_a_strange_name_and_a_chance_that_is_everywhere_one(tmp_path):
+    size = {"item": "棚 $x$ \u0628", "breadth": 5, "height": 300}
+    assert _ids(_choose(tmp_path, size, floors=[{"floor": "1", "pfa_x": 4.0, "pfv_x": 900}]), "piece") == [3]

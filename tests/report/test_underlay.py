@@ -184,3 +184,16 @@ def test_photos_by_item_and_no_more_than_a_report_holds(tmp_path):
     photos.left = 10
     assert photos.photo_of(1) == ""
     assert Photos(_assess(tmp_path, [PIECE])).photo_of(0) == ""
+
+
+def test_plans_without_their_series_are_left_out(tmp_path):
+    results = _assess(tmp_path, plan="p.png", **FRAME)
+    results.series.path.unlink()
+    (plan,) = _plans(results)
+    assert plan.underlay is None
+
+
+def test_falls_stay_whole_where_a_piece_stands_outside_every_outline(tmp_path):
+    (plan,) = _plans(_assess(tmp_path, [PIECE, {**PIECE, "item": "A2", "x": 12.0}], ROOMS[:1]))
+    assert plan.cut_at == ""
+    assert [one.area for one in _covered(plan)] == pytest.approx([1.6] * 4)

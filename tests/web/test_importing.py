@@ -120,6 +120,8 @@ def test_a_cobie_file_and_a_scan_are_recognised_by_their_content(served, tmp_pat
     assert server.client.send("/api/upload", "mine.xlsx", office.read_bytes()).json()["name"] == "mine.xlsx"
     scan = scan_files.write(scan_files.office())  # by its content
     assert _read(server.client, "office.ifc", scan)["found"]["routes"] == 0
+    assert server.client.request("POST", "/api/import?name=a.ifc&routes=all", b"x").status == 422
+    assert server.client.request("POST", "/api/import?routes=none", b"x").status == 422
     found = _read(server.client, "office.ifc", scan, "&routes=draft")
     assert (found["state"], found["found"]["floors"], found["found"]["routes"] > 0) == ("done", 1, True)
     assert server.client.post("/api/import/open").json()["name"] == "office.xlsx"
@@ -276,13 +278,3 @@ def test_names_of_new_workbooks_and_of_models(tmp_path):
     assert clean_name("C:\\x\\../../b\u202e<1>.ifc") == "b1.ifc"
     assert (len(clean_name("a" * 300 + ".ifc")), clean_name("a" * 300 + ".ifc")[-5:]) == (120, "a.ifc")
     assert clean_name("..") == ""
-
-
-@pytest.mark.slow
-def test_routes_are_drafted_where_they_are_asked_for(served_here):
-    client = served_here().client
-    office = scan_files.write(scan_files.office())
-    assert _read(client, "office.json", office)["found"]["routes"] == 0
-    assert _read(client, "office.json", office, "&routes=draft")["found"]["routes"] > 0
-    assert client.request("POST", "/api/import?name=a.ifc&routes=all", b"x").status == 422
-    assert client.request("POST", "/api/import?routes=none", b"x").status == 422
