@@ -58,12 +58,14 @@ def find_openings(plan: FloorPlan, doors: Sequence[Door]) -> list[Link]:
         return []
     reached, full = _find_reached(plan, rays, doors)
     found: dict[frozenset[str], list[Link]] = {}
-    for stretch in (*_group(rays, reached, full), *_group(rays, reached, None)):
-        link = _link(plan, stretch, rays)
-        pair = found.setdefault(frozenset(link.spaces), [])
-        is_new = not pair or (stretch.is_free and all(math.dist(one.at, link.at) >= SAME for one in pair))
-        if is_new and link.width >= NARROWEST_OPENING - STEP / 2:
-            pair.append(link)
+    free = [-1 if is_full else room for room, is_full in zip(reached, full, strict=True)]
+    for is_free, rooms in ((True, free), (False, reached)):
+        for other, own in _group(rays, rooms):
+            link = _link(plan, rays, own, other)
+            pair = found.setdefault(frozenset(link.spaces), [])
+            is_new = not pair or (is_free and all(math.dist(one.at, link.at) >= SAME for one in pair))
+            if is_new and link.width >= NARROWEST_OPENING - STEP / 2:
+                pair.append(link)
     return [link for pair in found.values() for link in pair]
 
 
@@ -122,35 +124,19 @@ def _find_reached(plan: FloorPlan, rays: _Rays, doors: Sequence[Door]) -> tuple[
     return found.tolist(), full.tolist()
 
 
-@dataclass(frozen=True, slots=True)
-class _Stretch:
-    """Rays next to each other that lead from a room to another; `is_free` where none of them meets furniture."""
-
-    room: int
-    other: int
-    rays: list[int]
-    is_free: bool
+def _group(rays: _Rays, reached: Sequence[int]) -> list[tuple[int, list[int]]]:
+    """Return rays next to each other that lead to another room, with the number of that, the widest stretch first."""
+    edges = rays.edge.tolist()
+    groups = groupby(range(len(edges)), key=lambda ray: (edges[ray], reached[ray]))
+    found = [(other, list(own)) for (_, other), own in groups if other >= 0]
+    return sorted(found, key=lambda one: (-len(one[1]), one[1][0]))
 
 
-def _group(rays: _Rays, reached: Sequence[int], full: Sequence[bool] | None) -> Iterator[_Stretch]:
-    """Yield the stretches, the widest first: those free of furniture, or all where it is not told (`full`)."""
-    edges, rooms = rays.edge.tolist(), rays.room.tolist()
-    found = []
-    for (_, other), group in groupby(
-        range(len(edges)), key=lambda ray: (edges[ray], -1 if full is not None and full[ray] else reached[ray])
-    ):
-        if other >= 0:
-            own = list(group)
-            found.append(_Stretch(rooms[own[0]], other, own, is_free=full is not None))
-    yield from sorted(found, key=lambda one: (-len(one.rays), one.rays[0]))
-
-
-def _link(plan: FloorPlan, stretch: _Stretch, rays: _Rays) -> Link:
-    first, last = stretch.rays[0], stretch.rays[-1]
-    middle = rays.at[[first, last]].mean(axis=0)
+def _link(plan: FloorPlan, rays: _Rays, own: Sequence[int], other: int) -> Link:
+    first, width = own[0], len(own) * STEP
+    middle = rays.at[[first, own[-1]]].mean(axis=0)
     u, v = rays.outward[first].tolist()
-    gap = float(plan.polygons[stretch.other].distance(shapely.Point(middle)))
+    gap = float(plan.polygons[other].distance(shapely.Point(middle)))
     at = float(middle[0]) + gap / 2 * u, float(middle[1]) + gap / 2 * v
-    spaces = tuple(plan.spaces[room].key for room in (stretch.room, stretch.other))
-    width = len(stretch.rays) * STEP
+    spaces = tuple(plan.spaces[room].key for room in (int(rays.room[first]), other))
     return Link(f"opening {spaces[0]} {spaces[1]} {first}", at, (u, v), width, width, spaces)
