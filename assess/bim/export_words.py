@@ -46,20 +46,15 @@ def say_risk(run: PastRun, pieces: Sequence[ExportPiece]) -> str:
 
 def say_class(run: PastRun, one: ExportPiece, upper: RiskClass, *, is_short: bool) -> str:
     """Return the class of a piece in words, with what it could be; of one outside the classes, on what it rests."""
-    past, word = one.past, words.risk_word(one.past.risk)
+    past = one.past
+    apart = "" if past.basis in (run.main_basis, CANNOT_ROCK) else past.basis
     is_by_faster = past.basis == UNCONFIRMED and one.has_simulated  # nothing is known of the building
-    if past.basis == UNCONFIRMED:
-        with_formula = _("unconfirmed (formula: {risk})", risk=word)
-        word = _("unconfirmed ({risk})", risk=word) if is_by_faster else with_formula
-    elif past.basis not in (run.main_basis, CANNOT_ROCK):
-        word = _("{risk} by formula only", risk=word)
-    notes = [word]
+    notes = [words.say_apart(past.risk, apart, has_simulated=one.has_simulated) or words.risk_word(past.risk)]
     if not (is_short or is_by_faster) and classify(past.chance.probability) != past.risk:
         notes.append(_("as it overturns under the record itself"))
     if upper > past.risk:
         notes.append(words.could_be(words.risk_word(upper)))
-    word = ", ".join(notes)
-    return _("depends on its anchor (free-standing: {risk})", risk=word) if past.is_held else word
+    return words.join_notes(notes, is_anchored=past.is_held)
 
 
 def describe(one: ExportPiece) -> str:

@@ -362,18 +362,27 @@ def has_doubtful_bracket(one: ItemResult) -> bool:
 
 def risk_words(one: ItemResult) -> str:
     """Return the class in words, with its notes; of a piece that stands apart, on what it rests."""
-    words = ", ".join([apart_words(one) or risk_word(one.adopted.risk), *risk_notes(one)])
-    return _("depends on its anchor (free-standing: {risk})", risk=words) if one.is_anchored else words
+    words = [apart_words(one) or risk_word(one.adopted.risk), *risk_notes(one)]
+    return join_notes(words, is_anchored=one.is_anchored)
+
+
+def join_notes(notes: Sequence[str], *, is_anchored: bool) -> str:
+    """Return a class in words and its notes as one text; of an anchored piece it is that of a free-standing one."""
+    words = ", ".join(notes)
+    return _("depends on its anchor (free-standing: {risk})", risk=words) if is_anchored else words
 
 
 def apart_words(one: ItemResult) -> str:
     """Return the class in words of a piece that stands apart from the simulated ones, "" for all others."""
-    if one.apart == "unconfirmed":
-        risk = risk_word(one.adopted.risk)
-        if one.adopted.has_simulated:
-            return _("unconfirmed ({risk})", risk=risk)
-        return _("unconfirmed (formula: {risk})", risk=risk)
-    return _("{risk} by formula only", risk=risk_word(one.adopted.risk)) if one.apart else ""
+    return say_apart(one.adopted.risk, one.apart, has_simulated=one.adopted.has_simulated)
+
+
+def say_apart(risk: RiskClass, apart: str, *, has_simulated: bool) -> str:
+    """Return a class in words of a piece that stands apart, by what sets it apart; "" where nothing does."""
+    if apart == "unconfirmed":
+        word = risk_word(risk)
+        return _("unconfirmed ({risk})", risk=word) if has_simulated else _("unconfirmed (formula: {risk})", risk=word)
+    return _("{risk} by formula only", risk=risk_word(risk)) if apart else ""
 
 
 def apart_note(one: ItemResult) -> str:
