@@ -8,8 +8,9 @@ import pytest
 import assess
 from assess.report.content import Content
 from assess.report.figures.labels import bounds, overlap
-from assess.report.figures.plan import build_plan, fallen, rectangle
+from assess.report.figures.plan import build_plan
 from assess.report.figures.ways import build_stretches
+from assess.routes.geometry import fallen, rectangle
 from tests.report.reading import render
 from tests.workbooks import FLOORS, UNVERIFIED, write_sheets
 

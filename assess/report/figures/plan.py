@@ -29,6 +29,7 @@ from assess.report.figures.underlay import (
 from assess.report.figures.ways import Stretch, Style, name_ways, place_signs, sign_box
 from assess.results import ItemResult, ItemRow, Results
 from assess.risk import RiskClass
+from assess.routes.geometry import fallen, rectangle
 
 ANCHORED, INK = "#d0d0d0", "#1c1c1c"
 """Fill of an anchored piece, which stands outside the classes, and the colour of its symbol."""
@@ -259,19 +260,6 @@ def turn(item: ItemRow) -> float:
     return 90.0 if item.axis_given == "Y" else 0.0
 
 
-def rectangle(at: Point, angle: float, along: tuple[float, float], across: float) -> Corners:
-    """Return the corners of a rectangle [m], anticlockwise.
-
-    `at` is the centre of the piece, `angle` [deg] the direction of Breadth, `along` where the rectangle begins and ends
-    along it from the centre, `across` its width across it.
-    """
-    cos, sin = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-    (x, y), (near, far), half = at, along, across / 2
-    local = ((near, -half), (far, -half), (far, half), (near, half))
-    one, two, three, four = ((x + u * cos - v * sin, y + u * sin + v * cos) for u, v in local)
-    return one, two, three, four
-
-
 def _ways_to_fall(item: ItemRow, at: Point) -> tuple[Corners, ...]:
     """Return what a piece covers beyond its footprint, each way that it may fall: away from a wall alone."""
     across, angle = (item.width_cm or item.breadth_cm) / 100, turn(item)
@@ -279,12 +267,6 @@ def _ways_to_fall(item: ItemRow, at: Point) -> tuple[Corners, ...]:
     if item.falls_toward_deg is None:
         return ahead, behind
     return (ahead,) if math.cos(math.radians(item.falls_toward_deg - angle)) > 0 else (behind,)
-
-
-def fallen(at: Point, angle: float, breadth: float, width: float, height: float) -> tuple[Corners, Corners]:
-    """Return what a piece covers beyond its footprint if it falls over either of its edges across Breadth [m]."""
-    edge = breadth / 2
-    return rectangle(at, angle, (edge, edge + height), width), rectangle(at, angle, (-edge - height, -edge), width)
 
 
 def _title(one: ItemResult) -> str:
