@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Annotated, Never
 
 import typer
 
-from assess.cli.console import count, count_errors, print_numbered, print_problems, print_ways, say, show_progress
+from assess.cli.console import count_errors, print_numbered, print_problems, print_ways, say, show_progress
 from assess.cli.options import Workbook, check_file, check_new, force, is_same, save_files
 from assess.errors import Gap, InputError, Problem, WorkbookError
+from assess.i18n import count
 from assess.settings import Settings
 
 if TYPE_CHECKING:

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from assess.cli.console import count, say, say_written, show_progress
+from assess.cli.console import say, say_written, show_progress
 from assess.cli.options import check_file, check_new, force, is_same, save_files
 from assess.errors import InputError
+from assess.i18n import LANGUAGES, count, load_catalogue, speaking
 
 if TYPE_CHECKING:
     from assess.bim.export_files import Export
@@ -56,7 +57,6 @@ def command(
     _check_names({"--out": out, "--bcf": bcf}, {ifc, results}, replaces=replaces)
     from assess.bim.export_files import build_export
     from assess.bim.export_results import read_export
-    from assess.i18n import LANGUAGES, load_catalogue, speaking
 
     with show_progress() as progress, progress.stage("reading", ifc.name):
         found = progress.wait_for(lambda: read_export(results))

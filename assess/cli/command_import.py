@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from assess.cli.console import count, say, show_progress
+from assess.cli.console import say, show_progress
 from assess.cli.options import force, is_same, quote, save_files
 from assess.errors import InputError, OutputError
+from assess.i18n import count, load_catalogue, speaking
 from assess.progress import Progress
 
 if TYPE_CHECKING:
@@ -114,7 +115,6 @@ def _update(source: Path, out: Path, progress: Progress, choices: Mapping[str, A
     from assess.bim.import_workbook import ENDING
     from assess.bim.read_source import read_source
     from assess.bim.update_workbook import update_workbook
-    from assess.i18n import load_catalogue, speaking
     from assess.workbook.open import read_file
     from assess.workbook.read import hold_sheets
 

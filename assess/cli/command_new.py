@@ -11,6 +11,7 @@ import typer
 from assess.cli.console import say
 from assess.cli.options import check_new, force, language_of, quote
 from assess.errors import InputError, OutputError
+from assess.i18n import ENGLISH, find_language, load_catalogue, speaking
 
 if TYPE_CHECKING:
     from assess.workbook.template import Units
@@ -51,8 +52,6 @@ def command(
 
     It has drop-downs, units and help, and its risk classes update while you type.
     """
-    from assess.i18n import find_language
-
     code, purpose = find_language(language), use.capitalize() if use else ""
     write_new_workbook(path, units, language=code, use=purpose, example=example, replace=replaces)
     then = "Fill in its sheets Floors and Items, then run: assess check"
@@ -79,7 +78,6 @@ def write_new_workbook(
         raise InputError(f"{path} does not end in .xlsx: name it {path.stem or 'inventory'}.xlsx.")
     check_new(path, replaces=replace)
     from assess.delivery.deliver import saving
-    from assess.i18n import ENGLISH, load_catalogue, speaking
     from assess.pipeline.live_values import fill_content
     from assess.workbook.template import write_workbook
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from assess.cli import options
-from assess.cli.console import InterruptedWorkError, count, print_error, say, say_written, show_progress
+from assess.cli.console import InterruptedWorkError, print_error, say, say_written, show_progress
 from assess.errors import CancelledError, InputError
-from assess.i18n import LANGUAGES, find_language
+from assess.i18n import LANGUAGES, count, find_language
 from assess.plain_text import plain_line
 from assess.settings import ROUTE_RISK, Settings
 

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from assess.cli.console import count, print_error, say, show_progress
+from assess.cli.console import print_error, say, show_progress
 from assess.cli.options import AsJson, check_file, plot_of, write_files
 from assess.errors import InputError
+from assess.i18n import count
 from assess.units import GRAVITY
 
 if TYPE_CHECKING:

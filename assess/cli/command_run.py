@@ -9,6 +9,7 @@ import typer
 from assess.cli import options
 from assess.cli.console import open_file, print_warnings, say, say_written, show_progress
 from assess.errors import InputError
+from assess.i18n import find_language
 from assess.progress import Progress
 from assess.report_formats import ALL, DEFAULT, FILES
 from assess.settings import ROUTE_RISK
@@ -130,7 +131,6 @@ def command(
         route_risk=route_risk, anchor=anchor, city=city, class_by=class_by,
     )  # fmt: skip
     options.check_out(folder, wanted)
-    from assess.i18n import find_language
     from assess.report import write_reports
     from assess.report.report_options import ReportOptions
 

@@ -22,10 +22,10 @@ from typing import Any, Never, TextIO, get_type_hints
 import typer
 from typer.models import OptionInfo
 
-from assess import i18n
 from assess.cli import interrupts
 from assess.environment import find_source_date
 from assess.errors import AssessError, CancelledError, InputError, Problem, RecordError, WorkbookError
+from assess.i18n import count
 from assess.plain_text import plain_line, plain_text
 from assess.progress import Progress, Report
 
@@ -181,9 +181,6 @@ def count_errors(problems: Sequence[Problem]) -> str:
     if kinds == errors:
         return count(errors, "error")
     return f"{kinds:,} {'kind' if kinds == 1 else 'kinds'} of error in {errors:,} places"
-
-
-count = i18n.count
 
 
 # ---------------------------------------------------------------- progress and Ctrl-C

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from assess.cli.console import count
 from assess.cli.route_output import WIDE, describe_run, finite, say_motions, say_run, write_rows
 from assess.fragility import MOST_MISFIT, lognormal_chance
+from assess.i18n import count
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.piece_fragility import UNITS, FloorMotions, PieceFragilities, PieceFragility
 from assess.plain_text import plain_line

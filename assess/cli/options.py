@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from assess.cli.console import count, say
+from assess.cli.console import say
 from assess.errors import InputError, OutputError
-from assess.i18n import LANGUAGES
+from assess.i18n import LANGUAGES, count
 from assess.settings import AUTO, CLASS_BY, MOST_SCALE, RUNS, SCENARIOS, SEED, VERIFY, Settings, change_settings
 
 if TYPE_CHECKING:

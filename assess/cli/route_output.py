@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
-from assess.cli.console import count
+from assess.i18n import count
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.route_sweep import FINEST, JUMP, Fragility, RouteFragility, find_jumps, find_passing
 from assess.report import words
