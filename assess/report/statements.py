@@ -47,8 +47,7 @@ def list_flags(results: Results) -> dict[str, str]:
 
 def list_assumptions(results: Results) -> Lines:
     """Return what was assumed, and for how many rows or where."""
-    lines = [*ground.list_assumed_shaking(results), *ground.list_assumed_ground(results)]
-    lines += [*ground.list_assumed_motions(results), *ground.list_drawn_assumptions(results)]
+    lines = ground.list_assumed(results)
     items = results.item_rows
     counted = Counter(name for item in items for name in item.assumed)
     for name, text in _assumed().items():

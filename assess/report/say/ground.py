@@ -1,8 +1,8 @@
 """What is said of the motion of the ground and the floors: where it comes from, how strong it is, what to beware of."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -104,8 +104,12 @@ def describe_origin(motion: MotionRow) -> str:
 
 def say_signs(results: Results) -> str:
     """Return what the motions of a draw have in common from floor to floor."""
-    floors = _signed_floors(results)
-    if not floors:
+    found = []
+    for axis in AXES:
+        motions = [one for one in results.motions if one.axis == axis and one.ensemble and one.ensemble.signs]
+        floors = list(dict.fromkeys(words.cut(one.floor, 20) for one in motions))
+        found += [f"{floor} {axis}" for floor in floors] if len(floors) > 1 else []
+    if not found:
         return _(
             "The motions of a draw have the same random phases on all floors along an axis; the signs of modes from "
             "floor to floor are not known. What falls together on several floors is therefore an estimate."
@@ -114,18 +118,8 @@ def say_signs(results: Results) -> str:
         "The motions of a draw have the same random phases on all floors along an axis. Between floors that have "
         "records of one earthquake on one clock ({floors}), the sign of each octave is that of the records. Elsewhere "
         "the signs of modes are not known, and what falls together on several floors is an estimate.",
-        floors=words.name_first(floors, MOST_PLACES),
+        floors=words.name_first(found, MOST_PLACES),
     )
-
-
-def _signed_floors(results: Results) -> list[str]:
-    """Return the floors and axes whose signs are known, along each axis where that is of two floors at least."""
-    found = []
-    for axis in AXES:
-        motions = [one for one in results.motions if one.axis == axis and one.ensemble and one.ensemble.signs]
-        floors = list(dict.fromkeys(words.cut(one.floor, 20) for one in motions))
-        found += [f"{floor} {axis}" for floor in floors] if len(floors) > 1 else []
-    return found
 
 
 def factors(motion: MotionRow) -> str:
@@ -147,11 +141,6 @@ def list_sources(motions: Iterable[MotionRow]) -> list[str]:
     for motion in motions:
         kinds.setdefault(describe_source(motion), {})[f"{words.cut(motion.floor, 20)} {motion.axis}"] = None
     return [f"{source}: {words.name_first(list(places), MOST_PLACES)}" for source, places in kinds.items()]
-
-
-def list_floors(motions: Iterable[MotionRow], source: str) -> list[str]:
-    """Return the names of the floors with a source along any axis."""
-    return list(dict.fromkeys(one.floor for one in motions if one.source == source))
 
 
 def describe_suite(results: Results) -> str:
@@ -178,12 +167,8 @@ def used_profiles(results: Results) -> list[ProfileInfo]:
     return [profile for profile in results.provenance.profiles if profile.key in used]
 
 
-def with_status(profile: ProfileInfo) -> str:
-    """Return the name of a profile, and that it was not checked against its source where that is so."""
-    return _with_status(profile.key, profile)
-
-
 def _with_status(text: str, profile: ProfileInfo) -> str:
+    """Return a text on a profile, and that this was not checked against its source where that is so."""
     return text if profile.verified else f"{text} ({_(profile.status)})"
 
 
@@ -200,35 +185,54 @@ def profile_status(profile: ProfileInfo) -> str:
     return f"{status[0].upper()}{status[1:]}. {_(profile.remark)}"
 
 
-def list_assumed_motions(results: Results) -> list[tuple[str, str]]:
-    """Return the assumptions about the floors that a code's profile serves."""
+def list_assumed(results: Results) -> list[tuple[str, str]]:
+    """Return what the motion of the ground and the floors rests on, where it is assumed."""
+    return [*_list_shaking(results), *_list_ground(results), *_list_profiled(results), *_list_drawn(results)]
+
+
+def _list_profiled(results: Results) -> list[tuple[str, str]]:
     used, served = used_profiles(results), [one for one in results.motions if one.profile and one.amplification]
     if not used or not served:
         return []
-    building, floors = results.building, ", ".join(list_floors(results.motions, "profile"))
-    chosen = _("design profile of {code}, the scenario", code=with_status(used[0]))
-    is_from_sds = building.ground_pga is None and building.sds is not None
+    building = results.building
     pga = served[0].pfa_g / (served[0].amplification or 1.0)
+    is_from_sds = building.ground_pga is None and building.sds is not None
     source = _("0.4 SDS, as Ground PGA is blank") if is_from_sds else _("Ground PGA")
     if shaking := results.provenance.shaking:
         source = _("assumed: the median of {intensity}, as Ground PGA and SDS are blank", intensity=_(shaking.choice))
     if site := results.provenance.site_ground:
         source = _("{source} at the building, as the median", source=name_source(site))
+    highest = max((one.elevation_m for one in results.floor_rows if one.elevation_m is not None), default=0.0)
+    if building.height is not None:
+        roof = _("{height} m, Height", height=words.in_m(building.height))
+    elif highest > 0:
+        roof = _("{height} m, the highest floor, as Height is blank", height=words.in_m(highest))
+    else:
+        roof = _("{height} m, no floor above the ground, Height is blank", height=words.in_m(0.0))
     lines = [
-        (_("Motion of floors {floors}", floors=words.clip(floors, 300)), chosen),
+        (_name_served(one.floor for one in results.motions if one.source == "profile"),
+         _("design profile of {code}, the scenario", code=_with_status(used[0].key, used[0]))),
         (_("Ground motion of the profile"),
          _("{pga} g, {source}; it stands for 0.4 SDS and for αS", pga=words.in_g(pga), source=source)),
-        (_("Roof height h of the profile"), _describe_roof(results)),
+        (_("Roof height h of the profile"), roof),
     ]  # fmt: skip
-    return lines + (_list_reduction(results) if any(profile.reduced for profile in used) else [])
+    if any(profile.reduced for profile in used):
+        factor = number(results.settings.ductility_reduction, "g")
+        if results.settings.ductility_reduction == 1:
+            factor = _("{factor}: no reduction for the building's ductility", factor=factor)
+        period = (f"{number(building.period, 'g')} s" if building.period
+                  else _("unknown: Eq. 13.3-5, which is never below Eq. 13.3-4"))  # fmt: skip
+        lines += [(_("Period T1 in the profile"), period), (_("R_μ of ASCE 7-22"), factor)]
+    return lines
 
 
-def list_drawn_assumptions(results: Results) -> list[tuple[str, str]]:
-    """Return what is assumed of the ground motion and of the building where floors have no record."""
+def _name_served(floors: Iterable[str]) -> str:
+    return _("Motion of floors {floors}", floors=words.clip(", ".join(dict.fromkeys(floors)), 300))
+
+
+def _list_drawn(results: Results) -> list[tuple[str, str]]:
     made = [one for one in results.motions if one.ensemble is not None and one.ensemble.assumed_motion]
-    floors = ", ".join(
-        dict.fromkeys(one.floor for one in [*made, *results.motions] if one in made or one.source == "beam")
-    )
+    floors = [one.floor for one in [*made, *results.motions] if one in made or one.source == "beam"]
     if not floors:
         return []
     building, origin = results.building, results.provenance
@@ -246,31 +250,52 @@ def list_drawn_assumptions(results: Results) -> list[tuple[str, str]]:
     elif any("unknown_building" in one.flags for one in results.motions):
         period = _("drawn from 0.15 to 3 s, as nothing is known of the building")
     return [
-        (_("Motion of floors {floors}", floors=words.clip(floors, 300)), _(DRAWN)),
+        (_name_served(floors), _(DRAWN)),
         (_("PGV over PGA of the ground"), ratio),
         (_("Period T1 of the drawn buildings"), period),
         (_("Structure of the drawn buildings"), _(building.structure or "unknown")),
     ]
 
 
-def _describe_roof(results: Results) -> str:
-    if results.building.height is not None:
-        return _("{height} m, Height", height=words.in_m(results.building.height))
-    highest = max((one.elevation_m for one in results.floor_rows if one.elevation_m is not None), default=0.0)
-    if highest > 0:
-        return _("{height} m, the highest floor, as Height is blank", height=words.in_m(highest))
-    return _("{height} m, no floor above the ground, Height is blank", height=words.in_m(0.0))
+def _list_ground(results: Results) -> list[tuple[str, str]]:
+    found = results.provenance.site_ground
+    if found is None:
+        return []
+    lines = [(_("Ground motion"), say_ground_source(results))]
+    lines.append((_("File of the ground motion"), _("{file}, SHA-256 {sha256}", file=found.file, sha256=found.sha256)))
+    lines += [(_(one.label), _(one.value)) for one in found.facts]
+    if found.psa:
+        values = ", ".join(
+            _("{psa} g at {period} s", psa=words.in_g(one.psa_g), period=number(one.period_s, "g"))
+            for one in found.psa
+        )  # fmt: skip
+        text = _("{values}; for information: the motion of the floors follows from PGA and PGV", values=values)
+        lines.append((_("Spectral acceleration at the building, 5 %"), text))
+    if found.shared is not None:
+        share = _("{share} % of the variance of ln {measure}", share=words.fixed(100 * found.shared, 0),
+                  measure=_name_measure(found))  # fmt: skip
+        lines.append((_("Common to all places of the earthquake"), share))
+    return lines
 
 
-def _list_reduction(results: Results) -> list[tuple[str, str]]:
-    period, reduction = results.building.period, results.settings.ductility_reduction
-    known = _("unknown: Eq. 13.3-5, which is never below Eq. 13.3-4")
-    if period:
-        known = f"{number(period, 'g')} s"
-    factor = number(reduction, "g")
-    if reduction == 1:
-        factor = _("{factor}: no reduction for the building's ductility", factor=factor)
-    return [(_("Period T1 in the profile"), known), (_("R_μ of ASCE 7-22"), factor)]
+def _list_shaking(results: Results) -> list[tuple[str, str]]:
+    found = results.provenance.shaking
+    if found is None:
+        return []
+    lines = [(_("Shaking"), _say_shaking(found, results))]
+    if found.is_derived:
+        text = _(
+            "from PGV by the ratio that is drawn, as no published relation of the JMA class to PGA was found; the "
+            "scatter is that of PGV, with the width of the class"
+        )
+        lines.append((_("PGA of the assumed shaking"), text))
+    if found.is_open:
+        text = _(
+            "open above: taken as {intensity}, the middle of a class of one whole degree; the ground can shake more",
+            intensity=number(found.intensity, "g"),
+        )
+        lines.append((_("Class of the assumed shaking"), text))
+    return lines
 
 
 # ---------------------------------------------------------------- peaks of the ground
@@ -294,7 +319,9 @@ def say_peak(results: Results, name: str, given: str) -> str:
     reason = _find_reason(results, name)
     if not reason:
         return given
-    used = _find_used(results) if name == "ground_pga" else None
+    levels = {one.floor: one.elevation_m for one in results.floor_rows}
+    ground = [one for one in results.motions if levels.get(one.floor) == 0 and name == "ground_pga"]
+    used = max(ground, key=lambda one: (one.pfa_g, not one.is_borrowed), default=None)  # of the axis known along
     of_anchors = name == ("sds" if results.building.sds is not None else "ground_pga")
     if used is None:
         if of_anchors:
@@ -326,34 +353,43 @@ def _find_reason(results: Results, name: str) -> str:
     return ""
 
 
-def _find_used(results: Results) -> MotionRow | None:
-    """Return the strongest motion on the ground; of the same ones, that of the axis which it is known along."""
-    levels = {one.floor: one.elevation_m for one in results.floor_rows}
-    ground = [one for one in results.motions if levels.get(one.floor) == 0]
-    return max(ground, key=lambda one: (one.pfa_g, not one.is_borrowed), default=None)
-
-
 # ---------------------------------------------------------------- the ground motion
 
 
 def say_ground_source(results: Results) -> str:
     """Return on which map, scenarios or assumed intensity the ground motion rests, in a paragraph; "" for none."""
-    found = results.provenance.site_ground
+    found, shaking = results.provenance.site_ground, results.provenance.shaking
     if found is None:
-        return say_shaking(results)
-    texts = [_say_median(found), *_say_strength(found.pga_g, found.pgv_cm_s, results), *say_factor(results)]
-    texts += [_say_scatter_of_map(found, results), *(f"{_(text)[:1].upper()}{_(text)[1:]}." for text in found.cautions)]
-    return " ".join(texts)
+        return _say_shaking(shaking, results) if shaking else ""
+    values = {
+        "sigma": number(found.dispersion, ".3g"), "source": _(found.dispersion_source), "measure": _name_measure(found),
+    }  # fmt: skip
+    if not uses_scatter(results):
+        scatter = _(
+            "The standard deviation of ln {measure} there is {sigma} ({source}); the chances hold for the median alone "
+            "and leave it out.", **values,
+        )  # fmt: skip
+    elif found.own_dispersion:
+        scatter = _(
+            "The standard deviation of ln {measure} there is {sigma} ({source}); with {own}, Motion uncertainty, the "
+            "dispersion of the motions is {motion}, the root of the sum of their squares.",
+            own=number(found.own_dispersion, ".3g"),
+            motion=number(results.provenance.uncertainty.motion, ".3g"), **values,
+        )  # fmt: skip
+    else:
+        scatter = _("The standard deviation of ln {measure} there is {sigma} ({source}), which is drawn.", **values)
+    cautions = (f"{_(text)[:1].upper()}{_(text)[1:]}." for text in found.cautions)
+    return " ".join((*_say_site(found, results), scatter, *cautions))
 
 
 def say_ground(results: Results, *, shortly: bool = False) -> str:
     """Return the same, and where it rests on none of these the peaks that are filled in or recorded; "" for none."""
-    found = results.provenance.site_ground
-    if not shortly or (found is None and results.provenance.shaking is None):
+    found, shaking = results.provenance.site_ground, results.provenance.shaking
+    if not shortly or (found is None and shaking is None):
         return say_ground_source(results) or " ".join(_say_given(results))
-    if found is None:
-        return say_shaking_shortly(results)
-    return " ".join((_say_median(found), *_say_strength(found.pga_g, found.pgv_cm_s, results), *say_factor(results)))
+    if found is not None:
+        return " ".join(_say_site(found, results))
+    return _say_shaking_shortly(shaking, results) if shaking else ""
 
 
 def name_source(found: SiteGroundInfo) -> str:
@@ -376,18 +412,21 @@ def _name_measure(found: SiteGroundInfo) -> str:
     return "PGA" if found.pgv_cm_s is None else "PGV"
 
 
-def _say_median(found: SiteGroundInfo) -> str:
+def _say_site(found: SiteGroundInfo, results: Results) -> Iterator[str]:
     source = name_source(found)
     if found.kind == "shakemap" and found.facts:
         event = words.cut(_(found.facts[0].value), 120)
         source = _("{source} of the earthquake {event}", source=source, event=event)
     values = {"source": source, "pga": words.in_g(found.pga_g)}
     if found.pgv_cm_s is None:
-        return _("Ground motion: {source}, with a median PGA of {pga} g at the building.", **values)
-    return _(
-        "Ground motion: {source}, with a median PGA of {pga} g and PGV of {pgv} cm/s at the building.",
-        pgv=words.fixed(found.pgv_cm_s, 1), **values,
-    )  # fmt: skip
+        yield _("Ground motion: {source}, with a median PGA of {pga} g at the building.", **values)
+    else:
+        yield _(
+            "Ground motion: {source}, with a median PGA of {pga} g and PGV of {pgv} cm/s at the building.",
+            pgv=words.fixed(found.pgv_cm_s, 1), **values,
+        )  # fmt: skip
+    yield from _say_strength(found.pga_g, found.pgv_cm_s, results)
+    yield from _say_factor(results)
 
 
 def _say_given(results: Results) -> Iterator[str]:
@@ -413,7 +452,7 @@ def _say_given(results: Results) -> Iterator[str]:
     else:
         yield _("Ground motion: PGA {pga} g as filled in.", **values)
     yield from _say_strength(pga_g, pgv, results)
-    yield from () if own else say_factor(results)
+    yield from () if own else _say_factor(results)
 
 
 def _say_strength(pga_g: float, pgv_cm_s: float | None, results: Results) -> Iterator[str]:
@@ -430,78 +469,7 @@ def _say_strength(pga_g: float, pgv_cm_s: float | None, results: Results) -> Ite
         yield _("Its PGA is exceeded about once in {years:,.0f} years, by the hazard curve.", years=1 / rate)
 
 
-def _say_scatter_of_map(found: SiteGroundInfo, results: Results) -> str:
-    values = {
-        "sigma": number(found.dispersion, ".3g"), "source": _(found.dispersion_source), "measure": _name_measure(found),
-    }  # fmt: skip
-    if uses_scatter(results) and not found.own_dispersion:
-        return _("The standard deviation of ln {measure} there is {sigma} ({source}), which is drawn.", **values)
-    if uses_scatter(results):
-        return _(
-            "The standard deviation of ln {measure} there is {sigma} ({source}); with {own}, Motion uncertainty, the "
-            "dispersion of the motions is {motion}, the root of the sum of their squares.",
-            own=number(found.own_dispersion, ".3g"),
-            motion=number(results.provenance.uncertainty.motion, ".3g"), **values,
-        )  # fmt: skip
-    return _(
-        "The standard deviation of ln {measure} there is {sigma} ({source}); the chances hold for the median alone and "
-        "leave it out.", **values,
-    )  # fmt: skip
-
-
-def list_assumed_ground(results: Results) -> list[tuple[str, str]]:
-    """Return what the ground motion of a ShakeMap or of scenarios rests on."""
-    found = results.provenance.site_ground
-    if found is None:
-        return []
-    lines = [(_("Ground motion"), say_ground_source(results))]
-    lines.append((_("File of the ground motion"), _("{file}, SHA-256 {sha256}", file=found.file, sha256=found.sha256)))
-    lines += [(_(one.label), _(one.value)) for one in found.facts]
-    if found.psa:
-        values = ", ".join(
-            _("{psa} g at {period} s", psa=words.in_g(one.psa_g), period=number(one.period_s, "g"))
-            for one in found.psa
-        )  # fmt: skip
-        text = _("{values}; for information: the motion of the floors follows from PGA and PGV", values=values)
-        lines.append((_("Spectral acceleration at the building, 5 %"), text))
-    if found.shared is not None:
-        share = _("{share} % of the variance of ln {measure}", share=words.fixed(100 * found.shared, 0),
-                  measure=_name_measure(found))  # fmt: skip
-        lines.append((_("Common to all places of the earthquake"), share))
-    return lines
-
-
 # ---------------------------------------------------------------- assumed shaking
-
-
-def say_shaking(results: Results) -> str:
-    """Return that the shaking is assumed, with all it rests on, in a paragraph; "" where it is not."""
-    found = results.provenance.shaking
-    return "" if found is None else " ".join(_say(found, results))
-
-
-def say_shaking_shortly(results: Results) -> str:
-    """Return the same in a sentence; "" where no shaking is assumed."""
-    found = results.provenance.shaking
-    if found is None:
-        return ""
-    values = {
-        "intensity": _(found.choice), "pga": words.in_g(found.pga_g), "pgv": words.fixed(found.pgv_cm_s, 1),
-        "sources": ", ".join(found.sources), "scatter": number(found.scatter, "g"),
-    }  # fmt: skip
-    if uses_scatter(results):
-        text = _(
-            "Assumed shaking: {intensity}, by its median PGV of {pgv} cm/s and PGA of {pga} g, scatter of ln PGV "
-            "{scatter} ({sources}).",
-            **values,
-        )
-    else:
-        text = _(
-            "Assumed shaking: {intensity}, by its median PGV of {pgv} cm/s and PGA of {pga} g ({sources}); scatter is "
-            "not in the results.",
-            **values,
-        )
-    return " ".join((text, *say_factor(results)))
 
 
 def uses_scatter(results: Results) -> bool:
@@ -509,63 +477,52 @@ def uses_scatter(results: Results) -> bool:
     return results.has_simulated and not results.settings.ideal
 
 
-def _say(found: AssumedShaking, results: Results) -> Iterator[str]:
-    yield _(
+def _say_shaking(found: AssumedShaking, results: Results) -> str:
+    scatter = number(found.scatter, "g")
+    texts = [_(
         "Assumed shaking: no motion of the ground is known for this building. {intensity} is assumed, with its "
         "median PGV of {pgv} cm/s and PGA of {pga} g ({sources}).",
         intensity=_(found.choice), pga=words.in_g(found.pga_g), pgv=words.fixed(found.pgv_cm_s, 1),
         sources=", ".join(found.sources),
-    )  # fmt: skip
-    yield from say_factor(results)
-    yield _say_scatter_of_intensity(found, results)
+    ), *_say_factor(results)]  # fmt: skip
+    if uses_scatter(results):
+        texts.append(_("PGV scatters about this median by {scatter} (standard deviation of ln PGV), which is drawn.",
+                       scatter=scatter))  # fmt: skip
+    elif results.has_simulated:
+        texts.append(_(
+            "PGV scatters about this median by {scatter} (standard deviation of ln PGV); the simulation leaves this "
+            "scatter out: its chances hold for the median alone.", scatter=scatter,
+        ))  # fmt: skip
+    else:
+        texts.append(_(
+            "PGV scatters about this median by {scatter} (standard deviation of ln PGV). The formula takes the median; "
+            "the scatter is not in it.", scatter=scatter,
+        ))  # fmt: skip
+    return " ".join(texts)
 
 
-def say_factor(results: Results) -> Iterator[str]:
-    """Yield by which factor the settings multiply the medians, where they do."""
+def _say_shaking_shortly(found: AssumedShaking, results: Results) -> str:
+    values = {
+        "intensity": _(found.choice), "pga": words.in_g(found.pga_g), "pgv": words.fixed(found.pgv_cm_s, 1),
+        "sources": ", ".join(found.sources),
+    }  # fmt: skip
+    if uses_scatter(results):
+        text = _(
+            "Assumed shaking: {intensity}, by its median PGV of {pgv} cm/s and PGA of {pga} g, scatter of ln PGV "
+            "{scatter} ({sources}).", scatter=number(found.scatter, "g"), **values,
+        )  # fmt: skip
+    else:
+        text = _(
+            "Assumed shaking: {intensity}, by its median PGV of {pgv} cm/s and PGA of {pga} g ({sources}); scatter is "
+            "not in the results.", **values,
+        )  # fmt: skip
+    return " ".join((text, *_say_factor(results)))
+
+
+def _say_factor(results: Results) -> Iterator[str]:
     if results.settings.scale != 1:
         factor = number(results.settings.scale, "g")
         yield _("The results are for these medians times {factor}.", factor=factor)
-
-
-def _say_scatter_of_intensity(found: AssumedShaking, results: Results) -> str:
-    scatter = number(found.scatter, "g")
-    if uses_scatter(results):
-        return _(
-            "PGV scatters about this median by {scatter} (standard deviation of ln PGV), which is drawn.",
-            scatter=scatter,
-        )
-    if results.has_simulated:
-        return _(
-            "PGV scatters about this median by {scatter} (standard deviation of ln PGV); the simulation leaves this "
-            "scatter out: its chances hold for the median alone.",
-            scatter=scatter,
-        )
-    return _(
-        "PGV scatters about this median by {scatter} (standard deviation of ln PGV). The formula takes the median; the "
-        "scatter is not in it.",
-        scatter=scatter,
-    )
-
-
-def list_assumed_shaking(results: Results) -> list[tuple[str, str]]:
-    """Return what an assumed intensity rests on."""
-    found = results.provenance.shaking
-    if found is None:
-        return []
-    lines = [(_("Shaking"), say_shaking(results))]
-    if found.is_derived:
-        text = _(
-            "from PGV by the ratio that is drawn, as no published relation of the JMA class to PGA was found; the "
-            "scatter is that of PGV, with the width of the class"
-        )
-        lines.append((_("PGA of the assumed shaking"), text))
-    if found.is_open:
-        text = _(
-            "open above: taken as {intensity}, the middle of a class of one whole degree; the ground can shake more",
-            intensity=number(found.intensity, "g"),
-        )
-        lines.append((_("Class of the assumed shaking"), text))
-    return lines
 
 
 # ---------------------------------------------------------------- cautions
@@ -580,8 +537,7 @@ MOST_FLOORS, LONGEST_FLOOR = 6, 10
 """Floors that a short caution names, and the characters of each."""
 
 
-@dataclass(frozen=True, slots=True)
-class Caution:
+class Caution(NamedTuple):
     """A caution: the whole `text`, and `short`, what a summary has room for."""
 
     text: str
@@ -590,44 +546,49 @@ class Caution:
 
 def build_cautions(results: Results) -> list[Caution]:
     """Return what a reader must know about the floors' motion before trusting a class."""
-    cautions = [*_profiled(results), *_interpolated(results.motions), *_underestimates(results)]
-    if len({motion.source for motion in results.motions}) > 1:
-        text = _("The floors' motion comes from mixed sources: compare floors with care.")
-        cautions.append(Caution(text, text))
-    if results.has_simulated:
-        suite = results.provenance.suite
-        cautions += _generic(results) if suite is None else _own_motions(results, suite)
-    return cautions
+    motions, mixed = results.motions, _("The floors' motion comes from mixed sources: compare floors with care.")
+    profiles = ", ".join(_with_status(one.key, one) for one in used_profiles(results))
+    cautions = [
+        *_of_floors(
+            (one.floor for one in motions if one.source == "profile"),
+            lambda floors: " ".join((_("{floors}: the motion is that of {profile}.", floors=floors, profile=profiles),
+                                     _(ENVELOPES))),
+            lambda floors: _("{floors}: the motion is a code's design profile, an envelope.", floors=floors),
+        ),
+        *_of_floors(
+            (one.floor for one in motions if one.between and not one.is_level),
+            lambda floors: _("{floors}: no motion is known there; it is interpolated between the floors above and "
+                             "below. This {caution}.", floors=floors, caution=MAY_BE_LOWER),
+            lambda floors: _("{floors}: interpolated between floors; it may be lower than the truth.", floors=floors),
+        ),
+        *_of_floors(
+            (one.floor for one in motions if one.is_level),
+            lambda floors: _("{floors}: no motion is known there; it is that of a known floor at the same height.",
+                             floors=floors),
+            lambda floors: _("{floors}: the same as a known floor at the same height.", floors=floors),
+        ),
+        *_list_underestimates(results),
+        *([Caution(mixed, mixed)] if len({motion.source for motion in motions}) > 1 else []),
+    ]  # fmt: skip
+    if not results.has_simulated:
+        return cautions
+    suite = results.provenance.suite
+    return [*cautions, *(_list_generated(results) if suite is None else _list_own(results, suite))]
 
 
-def _profiled(results: Results) -> Iterator[Caution]:
-    floors = list_floors(results.motions, "profile")
-    if floors:
-        names = ", ".join(map(with_status, used_profiles(results)))
-        text = _("{floors}: the motion is that of {profile}.", floors=_name(floors), profile=names)
-        short = _("{floors}: the motion is a code's design profile, an envelope.", floors=_name_some(floors))
-        yield Caution(f"{text} {_(ENVELOPES)}", short)
+def _of_floors(floors: Iterable[str], say: Callable[[str], str], shortly: Callable[[str], str]) -> list[Caution]:
+    """Return a caution on floors, of which a short text names the first; nothing where there are none."""
+    each = list(dict.fromkeys(floors))
+    if not each:
+        return []
+    some = words.name_first([words.cut(floor, LONGEST_FLOOR) for floor in each], MOST_FLOORS)
+    named, short = (
+        ngettext("Floor {floors}", "Floors {floors}", len(each), floors=text) for text in (", ".join(each), some)
+    )
+    return [Caution(say(words.clip(named, 300)), shortly(short))]
 
 
-def _interpolated(motions: Sequence[MotionRow]) -> Iterator[Caution]:
-    """Name the floors that are interpolated, and those with the motion of another floor at their height."""
-    between = list(dict.fromkeys(one.floor for one in motions if one.between and not one.is_level))
-    level = list(dict.fromkeys(one.floor for one in motions if one.is_level))
-    if between:
-        text = _(
-            "{floors}: no motion is known there; it is interpolated between the floors above and below. This "
-            "{caution}.",
-            floors=_name(between), caution=MAY_BE_LOWER,
-        )  # fmt: skip
-        short = _("{floors}: interpolated between floors; it may be lower than the truth.", floors=_name_some(between))
-        yield Caution(text, short)
-    if level:
-        text = _("{floors}: no motion is known there; it is that of a known floor at the same height.",
-                 floors=_name(level))  # fmt: skip
-        yield Caution(text, _("{floors}: the same as a known floor at the same height.", floors=_name_some(level)))
-
-
-def _underestimates(results: Results) -> Iterator[Caution]:
+def _list_underestimates(results: Results) -> Iterator[Caution]:
     """Give the first warnings that more shaking is known than is used, and the number of the others."""
     warnings = list(dict.fromkeys(map(_, results.underestimates)))
     short = ngettext(
@@ -665,39 +626,47 @@ def list_narrowing(results: Results) -> list[str]:
     return ways
 
 
-def _generic(results: Results) -> Iterator[Caution]:
+def _list_generated(results: Results) -> list[Caution]:
     """Name the floors whose pieces were simulated under assumed motions, and those with weaker ones."""
     made = [(one.floor, one.ensemble) for one in results.motions if one.ensemble is not None]
-    unknown = list(dict.fromkeys(floor for floor, one in made if one.unknown_building))
-    assumed = list(dict.fromkeys(floor for floor, one in made if one.assumed_motion and not one.unknown_building))
-    weak = list(dict.fromkeys(floor for floor, one in made if one.weak_motions))
-    if unknown:
-        text = _("{floors}: assumed motion, and neither T1, Height, Storeys nor an Elevation is known; buildings of "
-                 "every period were drawn, and no class is confirmed.", floors=_name(unknown))  # fmt: skip
-        short = _("{floors}: assumed motion, nothing known of the building; no class is confirmed.",
-                  floors=_name_some(unknown))  # fmt: skip
-        yield Caution(text, short)
-    if assumed:
-        text = _("{floors}: assumed motion: earthquakes with the known peaks of the ground and buildings of about this "
-                 "period were drawn.", floors=_name(assumed))  # fmt: skip
-        if ways := list_narrowing(results):
-            text += " " + _("What would narrow it: {ways}.", ways=", ".join(ways))
-        yield Caution(text, _("{floors}: assumed motion (ground and building drawn).", floors=_name_some(assumed)))
-    if weak:
-        text = _("{floors}: the generated motions have a smaller PFV than the floor's; simulation may raise a class "
-                 "there, never lower it.", floors=_name(weak))  # fmt: skip
-        short = _("{floors}: weaker motions than the floor's; simulation may raise a class there, never lower it.",
-                  floors=_name_some(weak))  # fmt: skip
-        yield Caution(text, short)
+    ways = list_narrowing(results)
+    narrow = " " + _("What would narrow it: {ways}.", ways=", ".join(ways)) if ways else ""
+    return [
+        *_of_floors(
+            (floor for floor, one in made if one.unknown_building),
+            lambda floors: _("{floors}: assumed motion, and neither T1, Height, Storeys nor an Elevation is known; "
+                             "buildings of every period were drawn, and no class is confirmed.", floors=floors),
+            lambda floors: _("{floors}: assumed motion, nothing known of the building; no class is confirmed.",
+                             floors=floors),
+        ),
+        *_of_floors(
+            (floor for floor, one in made if one.assumed_motion and not one.unknown_building),
+            lambda floors: _("{floors}: assumed motion: earthquakes with the known peaks of the ground and buildings "
+                             "of about this period were drawn.", floors=floors) + narrow,
+            lambda floors: _("{floors}: assumed motion (ground and building drawn).", floors=floors),
+        ),
+        *_of_floors(
+            (floor for floor, one in made if one.weak_motions),
+            lambda floors: _("{floors}: the generated motions have a smaller PFV than the floor's; simulation may "
+                             "raise a class there, never lower it.", floors=floors),
+            lambda floors: _("{floors}: weaker motions than the floor's; simulation may raise a class there, never "
+                             "lower it.", floors=floors),
+        ),
+    ]  # fmt: skip
 
 
-def _own_motions(results: Results, suite: SuiteInfo) -> Iterator[Caution]:
+def _list_own(results: Results, suite: SuiteInfo) -> Iterator[Caution]:
     """Say that pieces were simulated under the user's own motions, and where these differ from the floor's."""
     text = _("Simulation uses {motions}.", motions=describe_suite(results))
     yield Caution(text, _("Simulation uses the user's own motions."))
-    median = suite.median_pfa_g
-    off = {one: median / one.pfa_g - 1 for one in results.motions if one.ensemble and one.pfa_g > 0}
-    places = [_off(motion, ratio) for motion, ratio in off.items() if abs(ratio) > UNLIKE]
+    median, places = suite.median_pfa_g, []
+    for one in results.motions:
+        off = median / one.pfa_g - 1 if one.ensemble and one.pfa_g > 0 else 0.0
+        place = {"floor": words.cut(one.floor, 20), "axis": one.axis, "pfa": words.in_g(one.pfa_g)}
+        if off > UNLIKE:
+            places.append(_("floor {floor} {axis} ({pfa} g), {off:.0f} % above", **place, off=100 * off))
+        elif off < -UNLIKE:
+            places.append(_("floor {floor} {axis} ({pfa} g), {off:.0f} % below", **place, off=-100 * off))
     if places and not suite.is_scaled:
         text = _(
             "The median PFA of these motions, {pfa} g, differs from that of {places}. Where it is below, chances come "
@@ -708,23 +677,6 @@ def _own_motions(results: Results, suite: SuiteInfo) -> Iterator[Caution]:
         yield Caution(text, short)
 
 
-def _off(motion: MotionRow, ratio: float) -> str:
-    """Return by how much the user's own motions are above or below a floor's."""
-    place = {"floor": words.cut(motion.floor, 20), "axis": motion.axis, "pfa": words.in_g(motion.pfa_g)}
-    if ratio > 0:
-        return _("floor {floor} {axis} ({pfa} g), {off:.0f} % above", **place, off=100 * ratio)
-    return _("floor {floor} {axis} ({pfa} g), {off:.0f} % below", **place, off=-100 * ratio)
-
-
-def _name(floors: Sequence[str]) -> str:
-    return words.clip(ngettext("Floor {floors}", "Floors {floors}", len(floors), floors=", ".join(floors)), 300)
-
-
-def _name_some(floors: Sequence[str]) -> str:
-    named = words.name_first([words.cut(floor, LONGEST_FLOOR) for floor in floors], MOST_FLOORS)
-    return ngettext("Floor {floors}", "Floors {floors}", len(floors), floors=named)
-
-
 # ---------------------------------------------------------------- a floor in two lines
 
 SOURCES = 3
@@ -733,28 +685,18 @@ SOURCES = 3
 
 def say_motions(floor: FloorRow, motions: Sequence[MotionRow]) -> str:
     """Return the motion of a floor: elevation, peaks along both axes, and where they come from."""
-    peaks = [
-        *(_say_peak(axis, [one for one in motions if one.axis == axis]) for axis in AXES),
-        *(_say_speed(axis, [one for one in motions if one.axis == axis]) for axis in AXES),
-    ]
+    peaks, speeds = [], []
+    for axis in AXES:
+        own = [one for one in motions if one.axis == axis]
+        known = [one.pfv_cm_s for one in own if one.pfv_cm_s is not None]
+        if own:
+            peak = _("PFA {axis} {pfa} g", axis=axis, pfa=words.in_g(max(one.pfa_g for one in own)))
+            is_one = len({one.pfa_g for one in own}) < 2
+            peaks.append(peak if is_one else _("{peak} (the largest of {n})", peak=peak, n=len(own)))
+        if known:
+            speeds.append(_("PFV {axis} {pfv} cm/s", axis=axis, pfv=words.in_cm_s(max(known))))
     sources = list(dict.fromkeys(map(describe_source, motions)))
-    parts = ["; ".join(text for text in peaks if text), words.name_first(sources, SOURCES, "; ")]
-    text = ": ".join(part for part in parts if part)
+    text = ": ".join(filter(None, ("; ".join([*peaks, *speeds]), words.name_first(sources, SOURCES, "; "))))
     if floor.elevation_m is None:
         return f"{text}."
     return _("{elevation} m above ground. {motion}.", elevation=words.in_m(floor.elevation_m), motion=text)
-
-
-def _say_peak(axis: str, motions: Sequence[MotionRow]) -> str:
-    if not motions:
-        return ""
-    largest = max(one.pfa_g for one in motions)
-    text = _("PFA {axis} {pfa} g", axis=axis, pfa=words.in_g(largest))
-    if len({one.pfa_g for one in motions}) < 2:
-        return text
-    return _("{peak} (the largest of {n})", peak=text, n=len(motions))
-
-
-def _say_speed(axis: str, motions: Sequence[MotionRow]) -> str:
-    known = [one.pfv_cm_s for one in motions if one.pfv_cm_s is not None]
-    return _("PFV {axis} {pfv} cm/s", axis=axis, pfv=words.in_cm_s(max(known))) if known else ""
