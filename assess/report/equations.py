@@ -7,9 +7,9 @@ needless are left out.
 """
 
 import re
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
 from itertools import pairwise
+from typing import NamedTuple
 
 FUNCTIONS = ("asin", "acos", "atan", "sin", "cos", "tan", "exp", "ln", "max", "min", "sgn")
 _UNITS = r"cm/s²|m/s²|cm/s|rad/s|rad|Hz|cm|m|g|s"
@@ -46,21 +46,15 @@ _NAME = re.compile(
 )
 
 
+Token = re.Match[str]
+"""A part of a line; the name of its group tells what it is."""
+
+
 class NotationError(ValueError):
     """A text is not written in the notation of equations."""
 
 
-@dataclass(frozen=True, slots=True)
-class Token:
-    """A part of a line: what it is, its text, and where it starts."""
-
-    kind: str
-    text: str
-    start: int
-
-
-@dataclass(frozen=True, slots=True)
-class Part:
+class Part(NamedTuple):
     """A stretch of a line as it stands in the plain text; `tex` is empty where it is words."""
 
     text: str
@@ -80,25 +74,21 @@ def split_line(line: str) -> list[Part]:
             found = _split_relations(line[start:stop])
         except NotationError:
             continue
-        parts += [Part(line[end:start])] if start > end else []
-        parts += found
+        parts += [*([Part(line[end:start])] if start > end else []), *found]
         end = stop
     return [*parts, Part(line[end:])] if end < len(line) else parts
 
 
 def _split_relations(equation: str) -> list[Part]:
-    depth, starts = 0, list[int]()
-    for token in _tokenise(equation):
-        depth += (token.kind == "open") - (token.kind == "close")
-        starts += [token.start] if token.kind == "relation" and depth == 0 else []
-    ends = [0, *starts[1:], len(equation)]
-    texts = [equation[start:end] for start, end in pairwise(ends)]
-    return [
-        part
-        for text in texts
-        for part in (Part(text.rstrip(), write_tex(text)), Part(text[len(text.rstrip()) :]))
-        if part.text
-    ]
+    depth, starts, parts = 0, list[int](), list[Part]()
+    for token in _TOKEN.finditer(equation):
+        depth += (token.lastgroup == "open") - (token.lastgroup == "close")
+        starts += [token.start()] if token.lastgroup == "relation" and depth == 0 else []
+    for start, end in pairwise([0, *starts[1:], len(equation)]):
+        text = equation[start:end]
+        blank = text[len(text.rstrip()) :]
+        parts += [Part(text.rstrip(), write_tex(text)), *([Part(blank)] if blank else [])]
+    return parts
 
 
 def write_tex(equation: str) -> str:
@@ -109,12 +99,11 @@ def write_tex(equation: str) -> str:
     NotationError
         If it is not written in the notation of this module.
     """
-    tokens = [one for one in _tokenise(equation) if one.kind != "space"]
-    return _Parser(tokens).read_all()
-
-
-def _tokenise(line: str) -> list[Token]:
-    return [Token(str(found.lastgroup), found[0], found.start()) for found in _TOKEN.finditer(line)]
+    parser = _Parser([one for one in _TOKEN.finditer(equation) if one.lastgroup != "space"])
+    found = parser.relations()
+    if parser.kind:
+        raise NotationError(parser.text)
+    return found
 
 
 # ---------------------------------------------------------------- where the equations of a line are
@@ -123,45 +112,43 @@ def _tokenise(line: str) -> list[Token]:
 def _find_stretches(line: str) -> Iterator[tuple[int, int]]:
     """Yield start and end of each stretch that may be an equation: it has a relation or a product, and no words."""
     depth, stretch = 0, list[Token]()
-    tokens = _tokenise(line)
+    tokens = list(_TOKEN.finditer(line))
     for at, token in enumerate(tokens):
-        depth += (token.kind == "open") - (token.kind == "close")
+        depth += (token.lastgroup == "open") - (token.lastgroup == "close")
         if _ends_stretch(tokens, at, depth):
-            yield from _bounds(stretch)
+            yield from _find_bounds(stretch)
             stretch, depth = [], 0
         else:
             stretch.append(token)
-    yield from _bounds(stretch)
+    yield from _find_bounds(stretch)
 
 
 def _ends_stretch(tokens: list[Token], at: int, depth: int) -> bool:
-    token = tokens[at]
-    if token.kind in ("word", "other", "comma"):
-        return token.kind != "comma" or depth <= 0
-    begins_number = token.kind == "space" and len(token.text) > 2  # that of the equation, as in ``R = k/N   (5)``
-    return depth <= 0 and (_is_conjunction(tokens, at) or begins_number)
+    """Tell whether a token ends a stretch: words do, and a lone letter between spaces, as the Italian "e" is."""
+    kind, text = tokens[at].lastgroup, tokens[at][0]
+    if kind in ("word", "other", "comma"):
+        return kind != "comma" or depth <= 0
+    if depth > 0:
+        return False
+    if kind == "space" and len(text) > 2:  # before the number of the equation, as in ``R = k/N   (5)``
+        return True
+    around = [one.lastgroup for one in tokens[at - 1 : at] + tokens[at + 1 : at + 3]]
+    is_alone = len(around) == 3 and around[:2] == ["space", "space"]
+    return is_alone and len(text) == 1 and "a" <= text <= "z" and around[2] in ("name", "word")
 
 
-def _is_conjunction(tokens: list[Token], at: int) -> bool:
-    """Tell whether a lone letter between spaces is a word, as the Italian "e" is: a name or a word follows it."""
-    around = tokens[at - 1 : at] + tokens[at + 1 : at + 3]
-    is_alone = len(around) == 3 and all(one.kind == "space" for one in around[:2])
-    text = tokens[at].text
-    return is_alone and len(text) == 1 and "a" <= text <= "z" and around[2].kind in ("name", "word")
-
-
-def _bounds(stretch: list[Token]) -> Iterator[tuple[int, int]]:
+def _find_bounds(stretch: list[Token]) -> Iterator[tuple[int, int]]:
     """Yield start and end of a stretch without what belongs to the words around it; not of one that words interrupt."""
-    if [one.kind for one in stretch[-2:]] == ["name", "open"]:
+    if [one.lastgroup for one in stretch[-2:]] == ["name", "open"]:
         return
-    while stretch and stretch[0].kind in ("space", "close"):
+    while stretch and stretch[0].lastgroup in ("space", "close"):
         stretch = stretch[1:]
-    if stretch and stretch[0].kind == "relation":
+    if stretch and stretch[0].lastgroup == "relation":
         return
-    while stretch and stretch[-1].kind in ("space", "open"):
+    while stretch and stretch[-1].lastgroup in ("space", "open"):
         stretch = stretch[:-1]
-    if any(one.kind == "relation" or (one.kind == "operator" and one.text in "·/^") for one in stretch):
-        yield stretch[0].start, stretch[-1].start + len(stretch[-1].text)
+    if any(one.lastgroup == "relation" or (one.lastgroup == "operator" and one[0] in "·/^") for one in stretch):
+        yield stretch[0].start(), stretch[-1].end()
 
 
 # ---------------------------------------------------------------- from tokens to TeX
@@ -176,38 +163,42 @@ class _Parser:
     def __init__(self, tokens: list[Token]) -> None:
         self.tokens, self.at, self.in_brackets = tokens, 0, 0
 
-    def read_all(self) -> str:
-        found = self.relations()
-        if self.at < len(self.tokens):
-            raise NotationError(self.tokens[self.at].text)
-        return found
+    @property
+    def kind(self) -> str:
+        return str(self.tokens[self.at].lastgroup) if self.at < len(self.tokens) else ""
 
-    def peek(self) -> Token:
-        return self.tokens[self.at] if self.at < len(self.tokens) else Token("end", "", -1)
+    @property
+    def text(self) -> str:
+        return self.tokens[self.at][0] if self.at < len(self.tokens) else ""
 
-    def take(self, *kinds: str) -> str:
-        token = self.peek()
-        if token.kind not in kinds:
-            raise NotationError(token.text or "the end")
+    def is_operator(self, signs: str) -> bool:
+        return self.kind == "operator" and self.text in signs
+
+    def touches(self) -> bool:
+        return self.at < len(self.tokens) and self.tokens[self.at - 1].end() == self.tokens[self.at].start()
+
+    def take(self, kind: str) -> str:
+        text = self.text
+        if self.kind != kind:
+            raise NotationError(text or "the end")
         self.at += 1
-        return token.text
+        return text
 
     def relations(self) -> str:
-        parts = [] if self.peek().kind == "relation" else [self.sum()]
-        while self.peek().kind == "relation":
-            sign = self.take("relation")
-            parts += [_RELATIONS.get(sign, sign), self.sum()]
+        parts = list[str]()
+        while not parts or self.kind == "relation":
+            if self.kind == "relation":
+                sign = self.take("relation")
+                parts.append(_RELATIONS.get(sign, sign))
+            parts.append(self.sum())
         return " ".join(parts)
 
     def sum(self) -> str:
-        parts = [self.sign()] if self._is_sign() else []
-        parts.append(self.product())
-        while self._is_sign():
-            parts += [self.sign(), self.product()]
+        parts = list[str]()
+        while not parts or self.is_operator("+-−±"):
+            parts += [self.sign()] if self.is_operator("+-−±") else []
+            parts.append(self.product())
         return " ".join(parts)
-
-    def _is_sign(self) -> bool:
-        return self.peek().kind == "operator" and self.peek().text in "+-−±"
 
     def sign(self) -> str:
         sign = self.take("operator")
@@ -215,127 +206,87 @@ class _Parser:
 
     def product(self) -> str:
         """Read factors; what stands before a stroke is the numerator, a second stroke adds to the denominator."""
-        start, over, under = self.at, self.factors(), list[str]()
-        if self._is_stroke() and r"\dfrac" in over:  # a fraction within a fraction is written with a stroke
+        start, found, under = self.at, self.factors(), list[str]()
+        if self.is_operator("/") and r"\dfrac" in found:  # a fraction within a fraction is written with a stroke
             self.at = start
-            over = self._inside(self.factors)
-        while self._is_stroke():
-            self.take("operator")
-            under.append(self._inside(self.run))
-        rest = ""
+            found = self.factors(is_inside=True)
+        while self.is_operator("/"):
+            self.at += 1
+            under.append(self.factors(is_inside=True, is_run=True))
+        if under and self.in_brackets:
+            found = "/".join([found, *under])
+        elif under:
+            below = _bare(under[0]) if len(under) == 1 else r" \cdot ".join(under)
+            found = rf"\dfrac{{{_bare(found)}}}{{{below}}}"
         if under and (mark := self.times()):
-            rest = mark + self.product()
-        return self._quotient(over, under) + rest + self.unit()
+            found += mark + self.product()
+        if self.kind == "unit":
+            found += r"\;\mathrm{" + self.take("unit").replace("²", "^2") + "}"
+        return found
 
-    def factors(self) -> str:
+    def factors(self, *, is_inside: bool = False, is_run: bool = False) -> str:
+        """Read factors, with fractions as strokes if `is_inside`; of a run those that touch, as in ``3g/4r``."""
+        self.in_brackets += is_inside
         found = self.factor()
-        while mark := self.times():
+        while mark := self.times(is_run=is_run):
             found += mark + self.factor()
+        self.in_brackets -= is_inside
         return found
 
-    def times(self) -> str:
+    def times(self, *, is_run: bool = False) -> str:
         """Return the TeX between two factors, and nothing where none follows."""
-        if self.peek().kind == "operator" and self.peek().text == "·":
-            self.take("operator")
+        if self.is_operator("·") and not is_run:
+            self.at += 1
             return r"\cdot "
-        if self.peek().kind in _STARTS:
-            return " " if self._touches() else r"\, "
-        return ""
-
-    def _is_stroke(self) -> bool:
-        return self.peek().kind == "operator" and self.peek().text == "/"
-
-    def _inside(self, read: Callable[[], str]) -> str:
-        """Return what `read` reads where fractions are written with strokes."""
-        self.in_brackets += 1
-        found = read()
-        self.in_brackets -= 1
-        return found
-
-    def run(self) -> str:
-        """Read what a stroke divides by: factors that stand together without a space or a sign, as in ``3g/4r``."""
-        found = self.factor()
-        while self.peek().kind in _STARTS and self._touches():
-            found += " " + self.factor()
-        return found
-
-    def _touches(self) -> bool:
-        before = self.tokens[self.at - 1]
-        return before.start + len(before.text) == self.peek().start
-
-    def _quotient(self, over: str, under: list[str]) -> str:
-        if not under:
-            return over
-        if self.in_brackets:
-            return "/".join([over, *under])
-        below = _bare(under[0]) if len(under) == 1 else r" \cdot ".join(under)
-        return rf"\dfrac{{{_bare(over)}}}{{{below}}}"
-
-    def unit(self) -> str:
-        if self.peek().kind != "unit":
+        if self.kind not in _STARTS:
             return ""
-        return r"\;\mathrm{" + self.take("unit").replace("²", "^2") + "}"
+        return " " if self.touches() else "" if is_run else r"\, "
 
     def factor(self) -> str:
-        found = self.atom()
-        if self.peek().kind == "upper":
-            found += "^{" + self.take("upper").translate(_UPPER) + "}"
-        elif self.peek().kind == "operator" and self.peek().text == "^":
+        found = self.atom() + self.power()
+        if self.is_operator("^"):
             self.at += 1
-            sign = self.sign() if self._is_sign() else ""
+            sign = self.sign() if self.is_operator("+-−±") else ""
             found += "^{" + sign + _bare(self.atom()) + "}"
         return found
 
+    def power(self) -> str:
+        return "^{" + self.take("upper").translate(_UPPER) + "}" if self.kind == "upper" else ""
+
     def atom(self) -> str:
-        kind = self.peek().kind
-        if kind == "number":
-            return self.take("number").replace(",", "{,}")
-        if kind == "half":
-            return r"\frac{1}{2}" if self.take("half") else ""
-        if kind == "name":
-            return self.name()
-        if kind == "function":
-            return self.function()
-        if kind == "root":
-            return self.root()
-        if kind == "bar":
-            return self.magnitude()
+        match self.kind:
+            case "number":
+                return self.take("number").replace(",", "{,}")
+            case "half":
+                self.at += 1
+                return r"\frac{1}{2}"
+            case "name":
+                found = _write_name(self.take("name"))
+                is_called = found == r"\Phi" or (found == "N" and self.touches())
+                return found + (self.bracket(deeper=0) if is_called and self.text == "(" else "")
+            case "function":
+                name = self.take("function")
+                word = rf"\mathrm{{{name}}}" if name in ("asin", "acos", "atan", "sgn") else rf"\{name}"
+                word += self.power()
+                return word + (self.bracket(deeper=0) if self.kind == "open" else r"\, " + self.factor())
+            case "root":
+                self.at += 1
+                inside = _bare(self.bracket(deeper=0)) if self.kind == "open" else self.factor()
+                return rf"\sqrt{{{inside}}}"
+            case "bar":
+                self.at += 1
+                found = self.sum()
+                self.take("bar")
+                return f"|{found}|"
         return self.bracket()
-
-    def name(self) -> str:
-        found = write_name(self.take("name"))
-        if found == r"\Phi" or (found == "N" and self.peek().text == "(" and self._touches()):
-            return found + (self.bracket(deeper=0) if self.peek().kind == "open" else "")
-        return found
-
-    def function(self) -> str:
-        name = self.take("function")
-        word = rf"\{name}" if name not in ("asin", "acos", "atan", "sgn") else rf"\mathrm{{{name}}}"
-        if self.peek().kind == "upper":
-            word += "^{" + self.take("upper").translate(_UPPER) + "}"
-        if self.peek().kind == "open":
-            return word + self.bracket(deeper=0)
-        return word + r"\, " + self.factor()
-
-    def root(self) -> str:
-        self.take("root")
-        if self.peek().kind != "open":
-            return rf"\sqrt{{{self.factor()}}}"
-        return rf"\sqrt{{{_bare(self.bracket(deeper=0))}}}"
-
-    def magnitude(self) -> str:
-        self.take("bar")
-        found = self.sum()
-        self.take("bar")
-        return f"|{found}|"
 
     def bracket(self, deeper: int = 1) -> str:
         """Read what stands in brackets; those of a function or a root are not `deeper`: they may hold a fraction."""
         opened = self.take("open")
         self.in_brackets += deeper
         parts = [self.sum()]
-        while self.peek().kind == "comma":
-            self.take("comma")
+        while self.kind == "comma":
+            self.at += 1
             parts.append(self.sum())
         self.in_brackets -= deeper
         if self.take("close") != _CLOSING[opened]:
@@ -348,23 +299,17 @@ def _bare(tex: str) -> str:
     """Return TeX without the brackets around all of it."""
     for opened, closed in _CLOSING.items():
         left, right = rf"\left{opened}", rf"\right{closed}"
-        inner = tex.removeprefix(left).removesuffix(right)
-        if tex.startswith(left) and tex.endswith(right) and _is_balanced(inner):
-            return inner
+        inner, depth = tex.removeprefix(left).removesuffix(right), 0
+        if tex.startswith(left) and tex.endswith(right):
+            depths = [depth := depth + (1 if one == "left" else -1) for one in _BRACKET.findall(inner)]
+            return inner if min(depths, default=0) >= 0 else tex  # none closes that was not opened there
     return tex
 
 
-def _is_balanced(tex: str) -> bool:
-    """Tell whether no bracket closes in a TeX that was not opened there."""
-    depth = 0
-    for found in re.finditer(r"\\(left|right)(?=[(\[)\]])", tex):
-        depth += 1 if found[1] == "left" else -1
-        if depth < 0:
-            return False
-    return True
+_BRACKET = re.compile(r"\\(left|right)(?=[(\[)\]])")
 
 
-def write_name(name: str) -> str:
+def _write_name(name: str) -> str:
     """Return the TeX of a quantity: capitals together upright, a letter slanted, its index, star and primes."""
     found = _NAME.fullmatch(name)
     if found is None:
