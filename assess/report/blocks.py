@@ -6,7 +6,7 @@ names the style of a block, a row, a cell or a run of words: its class in HTML, 
 """
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
@@ -165,6 +165,14 @@ class Row:
     kind: str = ""
     id: str = ""
     data: Mapping[str, str] = field(default_factory=dict)
+
+    def place_cells(self) -> Iterator[tuple[int, Cell]]:
+        """Yield the cells, each with the column that it begins in."""
+        at = 0
+        for one in self.cells:
+            cell = one if isinstance(one, Cell) else Cell(one)
+            yield at, cell
+            at += cell.columns
 
 
 def head(words: Words) -> Cell:

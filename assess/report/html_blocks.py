@@ -6,34 +6,7 @@ from urllib.parse import quote
 from markupsafe import escape
 
 from assess.i18n import gettext as _
-from assess.report.blocks import (
-    Block,
-    Box,
-    Bullets,
-    Cell,
-    Column,
-    Contents,
-    Equation,
-    Equations,
-    Figure,
-    Heading,
-    Image,
-    Inline,
-    Listing,
-    Paragraph,
-    Row,
-    Section,
-    Span,
-    Table,
-    Terms,
-    Tile,
-    Tiles,
-    Title,
-    Words,
-    list_words,
-    lower_indices,
-    plain_words,
-)
+from assess.report import blocks
 from assess.report.equations import split_line
 from assess.report.figures.math_figures import draw_math, write_letters
 from assess.report.templates import break_words
@@ -53,59 +26,65 @@ class HtmlWriter:
         self.for_print = for_print
         self.letters: dict[str, str] = {}
 
-    def section(self, one: Section) -> str:
+    def section(self, one: blocks.Section) -> str:
         """Return a section with its heading."""
         title = f'<h2 id="{one.id}-heading">{escape(one.heading)}</h2>\n' if one.heading else ""
-        return f"<section{_attributes(id=one.id, kind=one.kind)}>\n{title}{self.blocks(one.blocks)}</section>\n"
+        return f"<section{_attributes(id=one.id, kind=one.kind)}>\n{title}{self.write_blocks(one.blocks)}</section>\n"
 
-    def blocks(self, blocks: Iterable[Block]) -> str:
+    def write_blocks(self, found: Iterable[blocks.Block]) -> str:
         """Return blocks, one below the other."""
-        return "".join(f"{self._block(one)}\n" for one in blocks)
+        return "".join(f"{self._block(one)}\n" for one in found)
 
-    def _block(self, one: Block) -> str:  # noqa: C901 - one case a kind of block
+    def _block(self, one: blocks.Block) -> str:  # noqa: C901 - one case a kind of block
         match one:
-            case Paragraph(words, kind):
+            case blocks.Paragraph(words, kind):
                 return f"<p{_attributes(kind=kind)}>{self.words(words)}</p>"
-            case Heading(words, level):
+            case blocks.Heading(words, level):
                 return f"<h{level}>{self.words(words)}</h{level}>"
-            case Table():
+            case blocks.Table():
                 return self._table(one)
-            case Bullets(items, kind):
+            case blocks.Bullets(items, kind):
                 lines = "".join(f"<li>{self.words(item)}</li>\n" for item in items)
                 return f"<ul{_attributes(kind=kind)}>{lines}</ul>"
-            case Terms(items):
+            case blocks.Terms(items):
                 terms = "".join(f"<dt>{self.words(term)}</dt><dd>{self.words(text)}</dd>\n" for term, text in items)
                 return f'<dl class="marks">\n{terms}</dl>'
-            case Tiles(tiles):
-                return f'<div class="tiles">\n{"".join(map(_tile, tiles))}</div>'
-            case Figure(image, caption, kind, legend):
+            case blocks.Tiles(tiles):
+                counts = "".join(
+                    f'<div class="tile {one.kind}"><span class="tile-name">{escape(one.name)}</span>'
+                    f'<span class="tile-number">{escape(one.number)}</span>'
+                    f'<span class="tile-note">{escape(one.note)}</span></div>\n'
+                    for one in tiles
+                )
+                return f'<div class="tiles">\n{counts}</div>'
+            case blocks.Figure(image, caption, kind, legend):
                 caption_ = f"\n<figcaption>{self.words(caption)}</figcaption>" if caption else ""
-                inside = self.blocks(legend)
+                inside = self.write_blocks(legend)
                 return f"<figure{_attributes(kind=kind)}>{self._image(image)}{inside}{caption_}</figure>"
-            case Listing(head, lines):
+            case blocks.Listing(head, lines):
                 rows = "\n".join(self.words(line) for line in lines)
                 return f'<pre class="listing"><b>{escape(head)}</b>\n{rows}\n</pre>'
-            case Equations(lines, is_whole):
+            case blocks.Equations(lines, is_whole):
                 rows = "".join(f"<p>{self.words(line)}</p>" for line in lines)
                 return f'<div class="equations{" whole" if is_whole else ""}">{rows}</div>'
-            case Title(words, short, status, conditions):
+            case blocks.Title(words, short, status, conditions):
                 running = {"short": short, "status": status, "conditions": conditions, "page": _("Page"), "of": _("of")}
                 data = "".join(f' data-{name}="{escape(text)}"' for name, text in running.items())
                 return f"<h1{data}>{self.words(words)}</h1>"
-            case Contents(heading, lines, after):
+            case blocks.Contents(heading, lines, after):
                 rows = "".join(self._line(words, inner) for words, inner in lines)
                 note = f'<p class="small">{self.words(after)}</p>\n' if after else ""
                 return (
                     f'<nav class="contents" id="contents" aria-label="{escape(heading)}">\n'
                     f'<h2 class="plain">{escape(heading)}</h2>\n<ol>\n{rows}</ol>\n{note}</nav>'
                 )
-            case Box(blocks, kind, tag, id_, label):
+            case blocks.Box(inside, kind, tag, id_, label):
                 attributes = _attributes(id=id_, kind=kind)
                 if label and not self.for_print:  # what scrolls is reached by the keyboard, and says what it is
                     attributes += f' role="region" tabindex="0" aria-label="{escape(label)}"'
-                return f"<{tag}{attributes}>\n{self.blocks(blocks)}</{tag}>"
+                return f"<{tag}{attributes}>\n{self.write_blocks(inside)}</{tag}>"
 
-    def _line(self, words: Words, inner: Sequence[Words]) -> str:
+    def _line(self, words: blocks.Words, inner: Sequence[blocks.Words]) -> str:
         """Return a line of the contents with those below it; one that leads nowhere is a note after them."""
         links = "".join(f"<li>{self.words(one)}</li>\n" for one in inner if not isinstance(one, str))
         notes = "".join(f'<p class="small">{self.words(one)}</p>' for one in inner if isinstance(one, str))
@@ -114,10 +93,10 @@ class HtmlWriter:
 
     # ------------------------------------------------------------ tables
 
-    def _table(self, one: Table) -> str:
+    def _table(self, one: blocks.Table) -> str:
         caption = f"<caption>{self.words(one.caption)}</caption>\n" if one.caption else ""
         columns = "".join(f"<col{_attributes(kind=column.width)}>" for column in one.columns)
-        labels = [escape(" ".join(plain_words(column.heading).split())) for column in one.columns]
+        labels = [escape(" ".join(blocks.plain_words(column.heading).split())) for column in one.columns]
         heads = "".join(
             f'<th scope="col"{_attributes(kind=_kind(column, column.kind))}>{self.words(column.heading)}</th>'
             for column in one.columns
@@ -129,12 +108,11 @@ class HtmlWriter:
         attributes = _attributes(id=one.id, kind=one.kind)
         return f"<table{attributes}>\n{caption}<colgroup>{columns}</colgroup>\n{thead}{bodies}</table>"
 
-    def _row(self, row: Row, table: Table, labels: Sequence[str]) -> str:
+    def _row(self, row: blocks.Row, table: blocks.Table, labels: Sequence[str]) -> str:
         data = "".join(f' data-{name}="{escape(value)}"' for name, value in row.data.items())
         write, columns = self._cell_words if table.is_named else self.words, table.columns
-        cells, at, has_labels = [], 0, table.is_cards and not self.for_print
-        for one in row.cells:
-            cell = one if isinstance(one, Cell) else Cell(one)
+        cells, has_labels = [], table.is_cards and not self.for_print
+        for at, cell in row.place_cells():
             span = f' colspan="{cell.columns}"' if cell.columns > 1 else ""
             if cell.is_head:
                 scope = "rowgroup" if row.kind == "part" else "row"
@@ -144,30 +122,29 @@ class HtmlWriter:
                 sort = f' data-value="{escape(cell.sort)}"' if cell.sort is not None else ""
                 label = f' data-label="{labels[at]}"' if labels[at] and has_labels else ""
                 cells.append(f"<td{_attributes(kind=kind)}{span}{sort}{label}>{write(cell.words)}</td>")
-            at += cell.columns
         return f"<tr{_attributes(id=row.id, kind=row.kind)}{data}>{''.join(cells)}</tr>\n"
 
     # ------------------------------------------------------------ on a line
 
-    def _cell_words(self, words: Words) -> str:
+    def _cell_words(self, words: blocks.Words) -> str:
         """Return the words of a cell, the long ones with places to break at."""
         if isinstance(words, str):
             return str(break_words(words)) if len(words) > LONGEST_WORD else str(escape(words))
         return "".join(
-            self._cell_words(one) if isinstance(one, str) else self._inline(one) for one in list_words(words)
+            self._cell_words(one) if isinstance(one, str) else self._inline(one) for one in blocks.list_words(words)
         )
 
-    def words(self, words: Words) -> str:
+    def words(self, words: blocks.Words) -> str:
         """Return what stands on a line."""
-        return str(escape(words)) if isinstance(words, str) else "".join(map(self._inline, list_words(words)))
+        return str(escape(words)) if isinstance(words, str) else "".join(map(self._inline, blocks.list_words(words)))
 
-    def _inline(self, one: Inline) -> str:
+    def _inline(self, one: blocks.Inline) -> str:
         match one:
             case str():
                 return str(escape(one))
-            case Span(_, "break"):
+            case blocks.Span(_, "break"):
                 return "<br>"
-            case Span(words, kind, href, title):
+            case blocks.Span(words, kind, href, title):
                 inside = self.words(words)
                 if kind in _TAGS:
                     inside = f"<{kind}>{inside}</{kind}>"
@@ -176,15 +153,15 @@ class HtmlWriter:
                 if href:
                     return f'<a{class_} href="{escape(href)}"{title_}>{inside}</a>'
                 return f"<span{class_}{title_}>{inside}</span>" if class_ else inside
-            case Image():
+            case blocks.Image():
                 return self._image(one)
-            case Equation(text):
+            case blocks.Equation(text):
                 return "".join(
-                    self._math(piece.tex, piece.text) if piece.tex else self.words(lower_indices(piece.text))
+                    self._math(piece.tex, piece.text) if piece.tex else self.words(blocks.lower_indices(piece.text))
                     for piece in split_line(text)
                 )
 
-    def _image(self, image: Image) -> str:
+    def _image(self, image: blocks.Image) -> str:
         if image.is_drawn:
             return image.source
         return f'<img{_attributes(kind=image.kind)} src="{escape(image.source)}" alt="{escape(image.alternative)}">'
@@ -216,13 +193,5 @@ def _attributes(*, id: str = "", kind: str = "") -> str:  # noqa: A002 - as HTML
     return (f' id="{escape(id)}"' if id else "") + (f' class="{escape(kind)}"' if kind else "")
 
 
-def _kind(column: Column, kind: str) -> str:
+def _kind(column: blocks.Column, kind: str) -> str:
     return f"num {kind}".strip() if column.is_number else kind
-
-
-def _tile(tile: Tile) -> str:
-    return (
-        f'<div class="tile {tile.kind}"><span class="tile-name">{escape(tile.name)}</span>'
-        f'<span class="tile-number">{escape(tile.number)}</span><span class="tile-note">{escape(tile.note)}</span>'
-        "</div>\n"
-    )

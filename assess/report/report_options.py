@@ -43,6 +43,11 @@ class ReportOptions:
             _check_templates(self.templates)
 
     @property
+    def spoken_language(self) -> str:
+        """The code of the language of the reports."""
+        return self.language or LANGUAGES[0]
+
+    @property
     def folders(self) -> tuple[Path, ...]:
         """Where a template is looked for, in this order."""
         return (*((self.templates,) if self.templates else ()), resources.templates())
@@ -55,7 +60,7 @@ class ReportOptions:
     @contextmanager
     def spoken(self) -> Iterator[None]:
         """Have every text be in the language of the report."""
-        with speaking(load_catalogue(self.language or LANGUAGES[0], self.templates)):
+        with speaking(load_catalogue(self.spoken_language, self.templates)):
             yield
 
 

@@ -10,7 +10,7 @@ from typing import Any
 from markupsafe import Markup
 
 from assess.errors import Problem
-from assess.i18n import LANGUAGES, fill
+from assess.i18n import fill
 from assess.i18n import gettext as _
 from assess.progress import SILENT, Progress
 from assess.report.blocks import Document
@@ -142,17 +142,17 @@ def render_document(
 
     page = Page(
         document=document,
-        language=options.language or LANGUAGES[0],
+        language=options.spoken_language,
         for_print=for_print,
         style=as_html(build_style(options, for_print, *styles)),
         script=as_html(script),
         script_hash=hash_script(script),
-        cover=as_html(writer.blocks(document.cover)),
+        cover=as_html(writer.write_blocks(document.cover)),
         sections=[
             PageSection(id=one.id, heading=one.heading, html=as_html(writer.section(one)))
             for one in progress.checked(document.sections)
         ],
-        contents=as_html(writer.blocks([document.contents]) if document.contents else ""),
+        contents=as_html(writer.write_blocks([document.contents]) if document.contents else ""),
         filters=filters,
         outlines=as_html(writer.outlines()),
     )

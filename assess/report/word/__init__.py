@@ -1,8 +1,4 @@
-"""The Word edition of the client's report: the same page as report.pdf, as paragraphs, tables and pictures to edit.
-
-`writer` writes the blocks of the document, `drawings` turns what is drawn into pictures, `document` holds styles,
-headers and footers.
-"""
+"""The Word edition of the client's report: the same page as report.pdf, as paragraphs, tables and pictures to edit."""
 
 from pathlib import Path
 
@@ -25,7 +21,6 @@ def write_word(content: Content, path: Path, options: ReportOptions, progress: P
     CancelledError
         If the work was cancelled; nothing is written.
     """
-    from assess.i18n import LANGUAGES
     from assess.report.cover import build_document
     from assess.report.pages.html import build_style
     from assess.report.view import View
@@ -34,6 +29,6 @@ def write_word(content: Content, path: Path, options: ReportOptions, progress: P
 
     view = View(content=content, edition="client", for_print=True, options=options, progress=progress)
     document = progress.wait_for(lambda: build_document(view))
-    word = Word(document, options.language or LANGUAGES[0], progress)
+    word = Word(document, options.spoken_language, progress)
     WordWriter(word).write(document, build_style(options, True, "edition.css"))
     word.save(path)

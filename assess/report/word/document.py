@@ -37,12 +37,20 @@ class Word:
 
     def __init__(self, document: Document, language: str, progress: Progress) -> None:
         import docx
+        from docx.shared import Mm
 
         self.progress = progress
         self.file: Any = docx.Document()
-        _set_page(self.file)
+        section = self.file.sections[0]
+        section.page_width, section.page_height = Mm(WIDTH), Mm(HEIGHT)
+        section.left_margin = section.right_margin = Mm(SIDE)
+        section.top_margin = section.bottom_margin = Mm(TOP)
+        section.header_distance = section.footer_distance = Mm(9)
         _set_styles(self.file, language)
-        _set_properties(self.file, document, language)
+        properties = self.file.core_properties
+        properties.title, properties.author = document.title[:255], document.author[:255]
+        properties.comments, properties.language = f"assess {__version__}", language
+        properties.created = properties.modified = report_time().replace(tzinfo=None)
         self._ids = {one.name: one.style_id for one in self.file.styles}
 
     def add(self, style: str, text: str = "") -> Any:
@@ -66,16 +74,6 @@ class Word:
                 entry = zipfile.ZipInfo(one.filename, (1980, 1, 1, 0, 0, 0))
                 entry.compress_type = zipfile.ZIP_DEFLATED
                 target.writestr(entry, source.read(one))
-
-
-def _set_page(file: Any) -> None:
-    from docx.shared import Mm
-
-    section = file.sections[0]
-    section.page_width, section.page_height = Mm(WIDTH), Mm(HEIGHT)
-    section.left_margin = section.right_margin = Mm(SIDE)
-    section.top_margin = section.bottom_margin = Mm(TOP)
-    section.header_distance = section.footer_distance = Mm(9)
 
 
 def _set_styles(file: Any, language: str) -> None:
@@ -119,13 +117,6 @@ def _set_face(style: Any, size: float, colour: str, after: float) -> None:
     style.paragraph_format.line_spacing = 1.1 if style.name in ("Normal", "Lead", "Caution") else 1.0
 
 
-def _set_properties(file: Any, document: Document, language: str) -> None:
-    properties = file.core_properties
-    properties.title, properties.author = document.title[:255], document.author[:255]
-    properties.comments, properties.language = f"assess {__version__}", language
-    properties.created = properties.modified = report_time().replace(tzinfo=None)
-
-
 def write_margins(word: Word, short: str, status: str, conditions: str) -> None:
     """Write the header and the footer: what every page has to say, the building, and the page of all pages."""
     from docx.enum.text import WD_TAB_ALIGNMENT
@@ -142,7 +133,9 @@ def write_margins(word: Word, short: str, status: str, conditions: str) -> None:
     footer.paragraph_format.tab_stops.add_tab_stop(Mm(WIDTH - 2 * SIDE), WD_TAB_ALIGNMENT.RIGHT)
     for text, field in ((_("Page") + " ", "PAGE"), (" " + _("of") + " ", "NUMPAGES")):
         footer.add_run(text)
-        add_field(footer, field, "1")
+        shown = make("w:fldSimple", {"w:instr": field})  # what Word computes, and what it shows until then
+        shown.append(make_run("w:t", "1"))
+        footer._p.append(shown)
 
 
 def make(name: str, attributes: dict[str, str] | None = None) -> Any:
@@ -161,15 +154,12 @@ def _q(name: str) -> str:
     return str(qn(name))
 
 
-def add_field(paragraph: Any, code: str, shown: str) -> None:
-    """Add a field that Word computes, with what it shows until then."""
-    field = make("w:fldSimple", {"w:instr": code})
-    run = make("w:r")
-    text = make("w:t")
-    text.text = shown
-    run.append(text)
-    field.append(run)
-    paragraph._p.append(field)
+def make_run(name: str, text: str) -> Any:
+    """Return a run with an element that holds a text, ``w:t``."""
+    run, element = make("w:r"), make(name)
+    element.text = text
+    run.append(element)
+    return run
 
 
 def shade(properties: Any, colour: str) -> None:

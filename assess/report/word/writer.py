@@ -9,36 +9,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from assess.plain_text import plain_text
-from assess.report.blocks import (
-    BREAK,
-    Block,
-    Box,
-    Bullets,
-    Cell,
-    Column,
-    Contents,
-    Document,
-    Equation,
-    Equations,
-    Figure,
-    Heading,
-    Image,
-    Inline,
-    Listing,
-    Paragraph,
-    Row,
-    Section,
-    Span,
-    Table,
-    Terms,
-    Tiles,
-    Title,
-    Words,
-    list_words,
-    lower_indices,
-    plain_words,
-)
-from assess.report.word.document import HEAD, SIDE, WIDTH, Word, make, shade, write_margins
+from assess.report import blocks
+from assess.report.word.document import HEAD, SIDE, WIDTH, Word, make, make_run, shade, write_margins
 from assess.report.word.drawings import Drawing, draw_all, measure
 from assess.report.words import NO_BREAK, class_name
 from assess.risk import RiskClass
@@ -84,71 +56,71 @@ class WordWriter:
         self.bookmarks = 0
         self.drawn: list[tuple[Any, Drawing]] = []
 
-    def write(self, document: Document, style: str) -> None:
+    def write(self, document: blocks.Document, style: str) -> None:
         """Write a document; `style` is the style sheet that drawings are drawn with."""
-        self.blocks(document.cover)
+        self.write_blocks(document.cover)
         for section in document.sections:
             self.section(section)
         pictures = draw_all([drawing for _run, drawing in self.drawn], style, self.word.progress)
         for (run, _drawing), picture in zip(self.drawn, pictures, strict=True):
             _add_picture(run, picture.png, picture.width, picture.alternative)
 
-    def section(self, one: Section) -> None:
+    def section(self, one: blocks.Section) -> None:
         """Write a section, on a new page unless it runs on."""
         if one.heading:
             self._head(one.heading, 1, one.id, is_new="run-on" not in one.kind.split())
-        self.blocks(one.blocks)
+        self.write_blocks(one.blocks)
 
-    def blocks(self, blocks: Iterable[Block]) -> None:
+    def write_blocks(self, found: Iterable[blocks.Block]) -> None:
         """Write blocks; an article behind another begins a page unless it is brief."""
-        before: Block | None = None
-        for one in blocks:
+        before: blocks.Block | None = None
+        for one in found:
             self.word.progress.check()
-            self._block(one, is_after_article=isinstance(before, Box) and before.tag == "article")
+            self._block(one, is_after_article=isinstance(before, blocks.Box) and before.tag == "article")
             before = one
 
-    def _block(self, one: Block, *, is_after_article: bool) -> None:  # noqa: C901 - one case a kind of block
+    def _block(self, one: blocks.Block, *, is_after_article: bool) -> None:  # noqa: C901 - one case a kind of block
         match one:
-            case Paragraph(words, kind):
+            case blocks.Paragraph(words, kind):
                 kinds = kind.split()
                 style = next((STYLES[name] for name in kinds if name in STYLES), "Normal")
                 self._paragraph(style, words, keep="lead-in" in kinds)
-            case Title(words, short, status, conditions):
+            case blocks.Title(words, short, status, conditions):
                 write_margins(self.word, short, status, conditions)
                 self._paragraph("Title", words)
-            case Heading(words, level):
+            case blocks.Heading(words, level):
                 self._paragraph(f"Heading {level - 1}", words)
-            case Bullets(items):
+            case blocks.Bullets(items):
                 for item in items:
                     self._paragraph("List Bullet", item)
-            case Terms(items):
+            case blocks.Terms(items):
                 for term, text in items:
-                    self._paragraph("Normal", [Span(term, "strong"), ": ", *list_words(text)])
-            case Table():
+                    self._paragraph("Normal", [blocks.Span(term, "strong"), ": ", *blocks.list_words(text)])
+            case blocks.Table():
                 self._table(one)
-            case Tiles():
+            case blocks.Tiles():
                 self._tiles(one)
-            case Figure(image, caption, _, legend):
+            case blocks.Figure(image, caption, _, legend):
                 self._paragraph("Normal", image, keep=True)
-                self.blocks(legend)
+                self.write_blocks(legend)
                 if caption:
                     self._paragraph("Caption", caption)
-            case Listing(head, lines):
-                for text in (head, *map(plain_words, lines)):
+            case blocks.Listing(head, lines):
+                for text in (head, *map(blocks.plain_words, lines)):
                     self.word.add("Listing", text)
-            case Equations(lines):
+            case blocks.Equations(lines):
                 for line in lines:
                     self._paragraph("Normal", line)
-            case Contents():
+            case blocks.Contents():
                 self._contents(one)
-            case Box(blocks, kind, "article", id_) if blocks and isinstance(blocks[0], Heading):
+            case blocks.Box([blocks.Heading(words, level), *inside], kind, "article", id_):
                 is_next = is_after_article and "brief" not in kind.split()
-                self._head(blocks[0].words, blocks[0].level - 1, id_, is_new=is_next)
-                self.blocks(blocks[1:])
-            case Box(blocks):
-                self.blocks(blocks)
+                self._head(words, level - 1, id_, is_new=is_next)
+                self.write_blocks(inside)
+            case blocks.Box(inside):
+                self.write_blocks(inside)
 
-    def _head(self, words: Words, level: int, name: str, *, is_new: bool) -> None:
+    def _head(self, words: blocks.Words, level: int, name: str, *, is_new: bool) -> None:
         """Write a heading that links lead to."""
         paragraph = self._paragraph(f"Heading {level}", words)
         paragraph.paragraph_format.page_break_before = is_new
@@ -159,30 +131,25 @@ class WordWriter:
             paragraph._p.insert(1 if paragraph._p.pPr is not None else 0, start)
             paragraph._p.append(make("w:bookmarkEnd", {"w:id": number}))
 
-    def _paragraph(self, style: str, words: Words, *, keep: bool = False) -> Any:
+    def _paragraph(self, style: str, words: blocks.Words, *, keep: bool = False) -> Any:
         paragraph = self.word.add(style)
         self._fill(paragraph, words)
         if keep:
             paragraph.paragraph_format.keep_with_next = True
         return paragraph
 
-    def _contents(self, one: Contents) -> None:
+    def _contents(self, one: blocks.Contents) -> None:
         """Write a field that Word fills with pages, which shows the headings until then."""
         self._paragraph("Subtitle", one.heading)
         paragraph = self.word.add("Normal")
-        code = make("w:r")
-        text = make("w:instrText")
-        text.text = ' TOC \\o "1-1" \\h \\z '
-        code.append(text)
+        code = make_run("w:instrText", ' TOC \\o "1-1" \\h \\z ')
         for part in (_field_part("begin"), code, _field_part("separate")):
             paragraph._p.append(part)
         for at, (line, _inner) in enumerate(one.lines):
             paragraph = self.word.add("Normal") if at else paragraph
-            link = next(span for span in list_words(line) if isinstance(span, Span))
-            made, run, text = make("w:hyperlink", {"w:anchor": link.href[1:]}), make("w:r"), make("w:t")
-            text.text = plain_words(line)
-            run.append(text)
-            made.append(run)
+            link = next(span for span in blocks.list_words(line) if isinstance(span, blocks.Span))
+            made = make("w:hyperlink", {"w:anchor": link.href[1:]})
+            made.append(make_run("w:t", blocks.plain_words(line)))
             paragraph._p.append(made)
             paragraph.paragraph_format.space_after = 0
         paragraph._p.append(_field_part("end"))
@@ -191,23 +158,23 @@ class WordWriter:
 
     # ------------------------------------------------------------ on a line
 
-    def _fill(self, paragraph: Any, words: Words, look: Look | None = None) -> None:
-        for one in list_words(words):
+    def _fill(self, paragraph: Any, words: blocks.Words, look: Look | None = None) -> None:
+        for one in blocks.list_words(words):
             self._inline(paragraph, one, look or Look())
 
-    def _inline(self, paragraph: Any, one: Inline, look: Look) -> None:
+    def _inline(self, paragraph: Any, one: blocks.Inline, look: Look) -> None:
         match one:
             case str():
                 text = _SPACES.sub(NO_BREAK if look.ground else " ", plain_text(one))
                 if text:
                     _dress(paragraph.add_run(text), look)
-            case Span() if one == BREAK:
+            case blocks.Span() if one == blocks.BREAK:
                 paragraph.add_run().add_break()
-            case Span(words, kind):
+            case blocks.Span(words, kind):
                 self._fill(paragraph, words, _look(kind, look))
-            case Equation(text):
-                self._fill(paragraph, lower_indices(text), look)
-            case Image(source, alternative, kind):
+            case blocks.Equation(text):
+                self._fill(paragraph, blocks.lower_indices(text), look)
+            case blocks.Image(source, alternative, kind):
                 if kind == "photo":
                     paragraph.add_run().add_break()
                 run = paragraph.add_run()
@@ -219,18 +186,26 @@ class WordWriter:
 
     # ------------------------------------------------------------ tables
 
-    def _table(self, one: Table) -> None:
+    def _table(self, one: blocks.Table) -> None:
         """Write a table, its caption above it: heads repeat on every page, rows stay whole."""
-        from docx.shared import Pt
+        from docx.shared import Mm
 
         if one.caption:
             self._paragraph("Caption", one.caption)
-        heads = [Row([column.heading for column in one.columns], "head")] if any(c.heading for c in one.columns) else []
+        heads = (
+            [blocks.Row([column.heading for column in one.columns], "head")]
+            if any(c.heading for c in one.columns)
+            else []
+        )
         rows = [*heads, *(row for group in one.groups for row in group)]
         made = self.word.file.add_table(len(rows), len(one.columns))
         made.autofit = False
         widths, scale = _find_widths(one.columns, rows)
-        _set_columns(made, widths)
+        for column, width in zip(made._tbl.tblGrid.gridCol_lst, widths, strict=True):
+            column.w = Mm(width)
+        for tr in made._tbl.tr_lst:
+            for tc, width in zip(tr.tc_lst, widths, strict=True):
+                tc.width = Mm(width)
         slots = [list(tr.tc_lst) for tr in made._tbl.tr_lst]
         for at, (tr, row) in enumerate(zip(made._tbl.tr_lst, rows, strict=True)):
             self.word.progress.check()
@@ -238,17 +213,19 @@ class WordWriter:
             properties.append(make("w:cantSplit"))
             if row.kind == "head":
                 properties.append(make("w:tblHeader"))
-            self._row(made, row, one.columns, slots[at], scale, Pt)
+            self._row(made, row, one.columns, slots[at], scale)
         _set_borders(made)
         self.word.add("Small")
 
-    def _row(self, made: Any, row: Row, columns: Sequence[Column], slots: list[Any], scale: float, Pt: Any) -> None:
+    def _row(
+        self, made: Any, row: blocks.Row, columns: Sequence[blocks.Column], slots: list[Any], scale: float
+    ) -> None:
         from docx.enum.text import WD_ALIGN_PARAGRAPH
+        from docx.shared import Pt
         from docx.table import _Cell
 
-        at, is_head = 0, row.kind in ("head", "part")
-        for given in row.cells:
-            cell = given if isinstance(given, Cell) else Cell(given)
+        is_head = row.kind in ("head", "part")
+        for at, cell in row.place_cells():
             slot = _Cell(slots[at], made)
             if cell.columns > 1:
                 slot = slot.merge(_Cell(slots[at + cell.columns - 1], made))
@@ -262,9 +239,8 @@ class WordWriter:
                 run.font.size = Pt(round(max(SMALLEST, SIZE * scale), 1))
             if is_head:
                 shade(slot._tc.get_or_add_tcPr(), _GROUND)
-            at += cell.columns
 
-    def _tiles(self, one: Tiles) -> None:
+    def _tiles(self, one: blocks.Tiles) -> None:
         """Write counts as one row of cells, each with the colour of its class."""
         from docx.enum.text import WD_ALIGN_PARAGRAPH
         from docx.shared import Pt, RGBColor
@@ -326,19 +302,16 @@ def _add_picture(run: Any, data: bytes, width: float, alternative: str) -> None:
 # ---------------------------------------------------------------- widths
 
 
-def _find_widths(columns: Sequence[Column], rows: Sequence[Row]) -> tuple[list[float], float]:
+def _find_widths(columns: Sequence[blocks.Column], rows: Sequence[blocks.Row]) -> tuple[list[float], float]:
     """Return the width of each column [mm], its own in percent, else by what it holds; and a scale.
 
     None is narrower than its longest word; the scale is that of the letters at which there is room for all.
     """
     texts: list[list[str]] = [[] for _column in columns]
     for row in rows:
-        at = 0
-        for given in row.cells:
-            cell = given if isinstance(given, Cell) else Cell(given)
+        for at, cell in row.place_cells():
             if cell.columns == 1:
-                texts[at].append(plain_words(cell.words))
-            at += cell.columns
+                texts[at].append(blocks.plain_words(cell.words))
     own = [float(found[1]) if (found := _OWN_WIDTH.match(column.width)) else None for column in columns]
     shares = [min(MOST, max(LEAST, *map(_reckon, one), LEAST)) for one in texts]
     left = max(100.0 - sum(one or 0.0 for one in own), 10.0)
@@ -364,16 +337,6 @@ def _reckon(text: str) -> float:
     """Return how many characters wide a cell would be: its longest word, or some of its text."""
     longest = max(map(len, _SPACES.split(text)))
     return max(float(longest), math.pow(len(text), 0.75))
-
-
-def _set_columns(table: Any, widths: list[float]) -> None:
-    from docx.shared import Mm
-
-    for column, width in zip(table._tbl.tblGrid.gridCol_lst, widths, strict=True):
-        column.w = Mm(width)
-    for tr in table._tbl.tr_lst:
-        for tc, width in zip(tr.tc_lst, widths, strict=True):
-            tc.width = Mm(width)
 
 
 def _set_borders(table: Any) -> None:
