@@ -58,7 +58,7 @@ docs: $(VENV)/.installed
 	$(BIN)/python docs/rocking.py
 	$(BIN)/python docs/bounds.py
 	$(BIN)/python docs/validation.py
-	$(BIN)/python -m assess.report.results_schema
+	$(BIN)/python docs/results_schema.py
 
 samples: $(VENV)/.developing
 	$(BIN)/python docs/samples.py

@@ -50,11 +50,11 @@ from assess.report.blocks import (
     strong,
     table,
 )
+from assess.report.data import building_key
 from assess.report.pages.html import render_document
 from assess.report.pages.pdf import attach, print_page
 from assess.report.provenance import say_date
 from assess.report.report_options import ReportOptions
-from assess.report.results_schema import building_key
 from assess.results import CANNOT_ROCK
 from assess.risk import RiskClass
 from assess.route_results import RouteState

@@ -21,7 +21,7 @@ from assess.input_file import read_input
 from assess.model import MEASURED
 from assess.plain_text import plain_line
 from assess.report.ownership import DATA
-from assess.report.results_schema import VERSION
+from assess.report.data import VERSION
 from assess.results import BASES, CANNOT_ROCK
 from assess.risk import RiskClass
 from assess.table import Field, unnest

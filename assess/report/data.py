@@ -18,16 +18,16 @@ from numpy.typing import NDArray
 
 from assess.fields import MOTION_FIELDS, STATE_FIELDS
 from assess.progress import SILENT, Progress
-from assess.report.results_schema import FILE, VERSION, building_key
 from assess.results import Results
 from assess.table import Kind, Table
 from assess.units import to_edge
-from assess.workbook.schema import BUILDING
+from assess.workbook.schema import BUILDING, Column
 
 # ---------------------------------------------------------------- results.json
 
-SCHEMA = FILE
-"""JSON Schema of results.json."""
+VERSION = "5.3"
+SCHEMA = Path(__file__).with_name("results.schema.json")
+"""JSON Schema of results.json, which docs/results_schema.py makes from the fields."""
 _dump = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(", ", ": ")).encode
 
 
@@ -121,6 +121,12 @@ def building_record(results: Results) -> dict[str, Any]:
         else:
             record[column.name] = value.name if isinstance(value, Path) else value
     return record
+
+
+def building_key(column: Column) -> str:
+    """Return what results.json calls a line of the sheet Building: its field, with the unit but for angles."""
+    has_unit = column.quantity and column.quantity != "angle"
+    return f"{column.name}_{column.unit.replace('/', '_')}" if has_unit else column.name
 
 
 def _floor_records(results: Results) -> list[dict[str, Any]]:

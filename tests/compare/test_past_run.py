@@ -6,7 +6,7 @@ import pytest
 
 from assess.compare.past_run import read_run
 from assess.errors import InputError
-from assess.report.results_schema import VERSION
+from assess.report.data import VERSION
 from tests.compare.past import change, item, write_run
 from tests.workbooks import UNVERIFIED
 

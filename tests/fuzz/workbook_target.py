@@ -21,12 +21,12 @@ import assess
 from assess.errors import WorkbookError
 from assess.i18n import gettext, load_catalogue, speaking
 from assess.model import Inventory
-from assess.report.results_schema import build_schema
 from assess.results import Results
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.example import example_content
 from assess.workbook.schema import SHEETS
 from assess.workbook.template import Units
+from docs.results_schema import build_schema
 from tests.fuzz.engine import BrokenRuleError
 from tests.fuzz.plain_targets import check_problems, keep
 from tests.motion.writers import THREE, at2, csmip_v2

@@ -4,7 +4,7 @@ import jsonschema
 import pytest
 
 from assess.report.data import SCHEMA, write_json
-from assess.report.results_schema import build_schema
+from docs.results_schema import build_schema
 from tests.workbooks import ITEMS, assessed
 
 

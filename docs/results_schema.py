@@ -1,8 +1,7 @@
-"""The JSON Schema of results.json, made from the fields of `assess.fields` and from the rows of
-`assess.route_results`.
+"""Write the JSON Schema of results.json beside what writes it: ``python docs/results_schema.py``.
 
-``python -m assess.report.results_schema`` writes it beside this file; descriptions are the fields' help and the rows'
-docstrings.
+It is made from the fields of `assess.fields` and from the rows of `assess.route_results`; descriptions are the fields'
+help and the rows' docstrings. A test compares the file with what this script makes.
 """
 
 import inspect
@@ -11,7 +10,6 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass
 from enum import StrEnum
-from pathlib import Path
 from types import NoneType, UnionType
 from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
@@ -20,14 +18,12 @@ from assess.annual_results import AnnualRow, AnnualTables
 from assess.errors import Problem
 from assess.fields import ENTRY_FIELDS, MOTION_FIELDS, SIMULATION_FIELDS, STATE_FIELDS, WORK_FIELDS, item_fields
 from assess.model import AXES
+from assess.report.data import SCHEMA, VERSION, building_key
 from assess.results import AssumedShaking, EarthquakeDraws, Provenance, SiteGroundInfo
 from assess.risk import RiskClass
 from assess.settings import MOST_SCALE, SCENARIOS, Settings
 from assess.table import Field, Tree, build_tree
-from assess.workbook.schema import BUILDING, Column
-
-VERSION = "5.3"
-FILE = Path(__file__).with_name("results.schema.json")
+from assess.workbook.schema import BUILDING
 
 Schema = dict[str, Any]
 UNCERTAINTY = get_type_hints(Provenance)["uncertainty"]
@@ -166,12 +162,6 @@ def _schedule() -> Schema:
     return made | {"description": "What to fix, with what, and what it changes: screening, not design."}
 
 
-def building_key(column: Column) -> str:
-    """Return what results.json calls a line of the sheet Building: its field, with the unit but for angles."""
-    has_unit = column.quantity and column.quantity != "angle"
-    return f"{column.name}_{column.unit.replace('/', '_')}" if has_unit else column.name
-
-
 def _assess() -> Schema:
     fitted = _object({"title": TEXT, "reference": TEXT})
     return _object(
@@ -294,10 +284,6 @@ def _describe(row: type) -> dict[str, str]:
     return found
 
 
-def write_schema(path: Path = FILE) -> None:
-    """Write the schema."""
-    path.write_text(json.dumps(build_schema(), indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-
-
 if __name__ == "__main__":
-    write_schema()
+    text = json.dumps(build_schema(), indent=1, ensure_ascii=False)
+    SCHEMA.write_text(f"{text}\n", encoding="utf-8")
