@@ -12,11 +12,14 @@ from typing import Any
 import pytest
 
 import assess
+from assess.progress import SILENT, Progress
 from assess.report.content import Content
+from assess.report.data import write_json
 from assess.report.figures import math_figures, motion_figures, risk_contours
 from assess.report.figures.math_figures import MathFigure
 from assess.report.fonts import print_fonts
 from assess.report.pages import html as pages
+from assess.report.pages.pdf import finish_pdf, start_pdf
 from assess.report.pages.pdf_layout import open_page
 from assess.report.report_options import ReportOptions
 from assess.report.view import Edition
@@ -57,6 +60,16 @@ def render(
     options = options or ReportOptions(language=results.provenance.language)
     with options.spoken(), nullcontext() if for_print else no_figures():
         return pages.render(Content(results), options, for_print=for_print, edition=edition)
+
+
+def write_pdf(
+    content: Content, path: Path, options: ReportOptions, progress: Progress = SILENT, *, edition: Edition = "client"
+) -> None:
+    """Write one PDF as a run does, with results.json beside it."""
+    data = path.with_name("results.json")
+    write_json(content.run, data)
+    with start_pdf(content, options, progress, edition=edition) as layout:
+        finish_pdf(layout, content.run, path, options, progress, data)
 
 
 def lay_out(page: str) -> list[Any]:

@@ -71,15 +71,15 @@ from pathlib import Path
 import assess
 from assess.report.content import Content
 from assess.report.pages import pdf
-from assess.report.pages.pdf_layout import open_page
 from assess.report.report_options import ReportOptions
 from matplotlib import font_manager
+from tests.report.reading import write_pdf
 font_manager.X11FontDirectories.clear()  # searched as well, whatever fontconfig says
 results = assess.run(sys.argv[1], verify="none")
 print(*pdf.list_problems(results), sep="\\n")
 for accessible in (False, True):
     options = ReportOptions(accessible=accessible)
-    pdf.write_pdf(Content(results), Path(sys.argv[2 + accessible]), options, edition="all")
+    write_pdf(Content(results), Path(sys.argv[2 + accessible]), options, edition="all")
 """
 
 

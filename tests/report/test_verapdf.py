@@ -19,11 +19,11 @@ from assess.compare.comparison_files import write_comparison
 from assess.compare.past_run import read_run
 from assess.report.content import Content
 from assess.report.pages.html import render
-from assess.report.pages.pdf import write_pdf
 from assess.report.report_options import ReportOptions
 from assess.settings import Settings
 from tests.compare.past import write_routed_run
 from tests.pictures import picture
+from tests.report.reading import write_pdf
 from tests.workbooks import UNVERIFIED, assessed
 
 HERE = Path(__file__).parents[1] / "verapdf"

@@ -50,39 +50,6 @@ class Attached:
     data: str
 
 
-def write_pdf(
-    content: Content,
-    path: Path,
-    options: ReportOptions,
-    progress: Progress = SILENT,
-    *,
-    edition: Edition = "client",
-    data: Path | None = None,
-) -> None:
-    """Write report.pdf or annex.pdf: PDF/A-3u, or PDF/UA-1 where it is to be accessible.
-
-    Parameters
-    ----------
-    content, path, options, progress
-        What to write, where to, and how.
-    edition : {"client", "annex", "all"}
-        The sections that it shows, of `assess.report.view`.
-    data : Path, optional
-        results.json where it has been written already.
-
-    Raises
-    ------
-    PdfUnavailableError
-        If WeasyPrint's native libraries are missing.
-    OSError
-        If the file cannot be written.
-    CancelledError
-        If the work was cancelled; what is written of the file is of no use.
-    """
-    with start_pdf(content, options, progress, edition=edition) as layout:
-        finish_pdf(layout, content.run, path, options, progress, data=data)
-
-
 @contextlib.contextmanager
 def start_pdf(
     content: Content, options: ReportOptions, progress: Progress = SILENT, *, edition: Edition = "client"
@@ -95,17 +62,27 @@ def start_pdf(
 
 
 def finish_pdf(
-    layout: "Layout",
-    results: Results,
-    path: Path,
-    options: ReportOptions,
-    progress: Progress = SILENT,
-    *,
-    data: Path | None = None,
+    layout: "Layout", results: Results, path: Path, options: ReportOptions, progress: Progress, data: Path
 ) -> None:
-    """Write a PDF that was begun, with what is attached; raises what `write_pdf` does."""
-    files = progress.wait_for(lambda: list_attached(results, data))
-    layout.finish(path, files, ACCESSIBLE if options.accessible else ARCHIVAL, progress)
+    """Write report.pdf or annex.pdf that was begun: PDF/A-3u, or PDF/UA-1 where it is to be accessible.
+
+    Parameters
+    ----------
+    layout, results, path, options, progress
+        What was begun, of which results, where to write it, and how.
+    data : Path
+        results.json, which it carries with the workbook.
+
+    Raises
+    ------
+    PdfUnavailableError
+        If WeasyPrint's native libraries are missing.
+    OSError
+        If the file cannot be written.
+    CancelledError
+        If the work was cancelled; what is written of the file is of no use.
+    """
+    layout.finish(path, progress.wait_for(lambda: list_attached(results, data)), options, progress)
 
 
 def print_page(
@@ -117,25 +94,31 @@ def print_page(
     *,
     moment: datetime | None = None,
 ) -> None:
-    """Write a page that was rendered for print as a PDF that carries `files`; raises what `write_pdf` does.
+    """Write a page that was rendered for print as a PDF that carries `files`; raises what `finish_pdf` does.
 
     `moment` is its date, in place of that of the report: for files that are the same whenever they are made.
     """
     with start_layout(html) as layout:
-        layout.finish(path, files, ACCESSIBLE if options.accessible else ARCHIVAL, progress, moment)
+        layout.finish(path, files, options, progress, moment)
 
 
 def list_problems(results: Results) -> list[Problem]:
     """Return what concerns the PDF alone: characters that it cannot show, a workbook that it cannot hold."""
     missing = glyphs.list_missing(results)
     nowhere = find_nowhere("".join(sorted({sign for one in missing for sign in one.characters})))
-    return [*_list_unattached(results), *glyphs.describe(missing, nowhere)]
+    found = glyphs.describe(missing, nowhere)
+    if "workbook" in results.series:
+        return found
+    message = fill(
+        "{name} is not attached to the PDF: the results hold no copy of it.", name=results.provenance.workbook
+    )
+    return [Problem("warning", "", "", message), *found]
 
 
 def find_weasyprint() -> str:
     """Return the version of WeasyPrint; raises PdfUnavailableError with how to fix it where it cannot be loaded."""
     with start_layout("") as layout:
-        return layout.finish(None, (), None, SILENT).strip()
+        return layout.finish(None).strip()
 
 
 def fix() -> str:
@@ -151,9 +134,9 @@ def fix() -> str:
 # ---------------------------------------------------------------- attached files
 
 
-def list_attached(results: Results, data: Path | None = None) -> list[Attached]:
+def list_attached(results: Results, data: Path) -> list[Attached]:
     """Return what to attach, sorted by name as a PDF wants it: the workbook as it was read, and results.json."""
-    files = [attach(DATA, "Data", _("The results, for other programs"), _read_data(results, data))]
+    files = [attach(DATA, "Data", _("The results, for other programs"), data.read_bytes())]
     if "workbook" in results.series:
         description = _("The inventory that this report was made from")
         workbook = results.series["workbook"].tobytes()
@@ -167,32 +150,7 @@ def attach(name: str, relationship: str, description: str, data: bytes) -> Attac
     return Attached(name, kind, relationship, description, base64.b64encode(data).decode())
 
 
-def _read_data(results: Results, data: Path | None) -> bytes:
-    from assess.report.data import write_json
-
-    if data is not None:
-        return data.read_bytes()
-    with private_folder("assess-page-") as folder:
-        write_json(results, folder / DATA)
-        return (folder / DATA).read_bytes()
-
-
-def _list_unattached(results: Results) -> list[Problem]:
-    if "workbook" in results.series:
-        return []
-    message = fill(
-        "{name} is not attached to the PDF: the results hold no copy of it.", name=results.provenance.workbook
-    )
-    return [Problem("warning", "", "", message)]
-
-
 # ---------------------------------------------------------------- the process that lays it out
-
-
-def lay_out_page(html: str, path: Path, progress: Progress = SILENT) -> None:
-    """Lay out a page of HTML as a plain PDF, of no archival kind and with nothing attached; raises as `write_pdf`."""
-    with start_layout(html) as layout:
-        layout.finish(path, (), None, progress)
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,12 +164,16 @@ class Layout:
     def finish(
         self,
         path: Path | None,
-        files: Sequence[Attached],
-        variant: str | None,
-        progress: Progress,
+        files: Sequence[Attached] = (),
+        options: ReportOptions | None = None,
+        progress: Progress = SILENT,
         moment: datetime | None = None,
     ) -> str:
-        """Have the PDF written, and return what the process printed; raises what `write_pdf` does."""
+        """Have the PDF written, and return what the process printed; raises what `finish_pdf` does.
+
+        Without `options` it is a plain one, of no archival kind.
+        """
+        variant = options and (ACCESSIBLE if options.accessible else ARCHIVAL)
         job = {
             "path": str(path),
             "variant": variant,
@@ -227,7 +189,9 @@ class Layout:
                 with contextlib.suppress(subprocess.TimeoutExpired):
                     self.process.wait(_CHECKED_EVERY)
                     break
-        answer, reason = (_read_text(file) for file in (self.printed, self.errors))
+        for file in (self.printed, self.errors):
+            file.seek(0)
+        answer, reason = (file.read().decode("utf-8", "replace") for file in (self.printed, self.errors))
         lines = reason.strip().splitlines() or ["no reason is given"]
         if self.process.returncode == MISSING:
             raise PdfUnavailableError(f"the PDF was not written: a native library is missing ({lines[-1]}). {fix()}")
@@ -248,9 +212,12 @@ class Layout:
 @contextlib.contextmanager
 def start_layout(html: str) -> Iterator[Layout]:
     """Begin to lay out a page in a process, which is killed at the end; of an empty one the version is asked for."""
+    from assess.report.pages import pdf_layout
+
+    code = f"import sys, runpy; sys.path[:] = {sys.path!r}; runpy.run_path({pdf_layout.__file__!r})['main']()"
     with tempfile.TemporaryFile() as printed, tempfile.TemporaryFile() as errors:
-        process = subprocess.Popen(  # noqa: S603 - this Python, with code of this program
-            _command(), stdin=subprocess.PIPE, stdout=printed, stderr=errors,
+        process = subprocess.Popen(  # noqa: S603 - this Python with the same folders of modules, and its own code
+            [sys.executable, "-W", "ignore", "-c", code], stdin=subprocess.PIPE, stdout=printed, stderr=errors,
             creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
         )  # fmt: skip
         layout = Layout(process, printed, errors)
@@ -261,16 +228,3 @@ def start_layout(html: str) -> Iterator[Layout]:
         finally:
             process.kill()
             process.communicate()
-
-
-def _command() -> list[str]:
-    """Return the command of the process: this Python, with the same folders of modules."""
-    from assess.report.pages import pdf_layout
-
-    code = f"import sys, runpy; sys.path[:] = {sys.path!r}; runpy.run_path({pdf_layout.__file__!r})['main']()"
-    return [sys.executable, "-W", "ignore", "-c", code]
-
-
-def _read_text(file: IO[bytes]) -> str:
-    file.seek(0)
-    return file.read().decode("utf-8", "replace")

@@ -96,11 +96,12 @@ def draw_all(drawings: Sequence[Drawing], style: str, progress: Progress) -> lis
     """
     if not drawings:
         return []
-    from assess.report.pages.pdf import lay_out_page
+    from assess.report.pages.pdf import start_layout
 
     with private_folder("assess-page-") as folder:
         path = folder / "drawings.pdf"
-        lay_out_page(_write_sheet(drawings, f"<style>{style}</style>"), path, progress)
+        with start_layout(_write_sheet(drawings, f"<style>{style}</style>")) as layout:
+            layout.finish(path, progress=progress)
         return progress.wait_for(lambda: _read_pictures(path, drawings))
 
 
