@@ -20,8 +20,8 @@ from assess.i18n import Text, fill
 from assess.input_file import read_input
 from assess.model import MEASURED
 from assess.plain_text import plain_line
-from assess.report.ownership import DATA
 from assess.report.data import VERSION
+from assess.report.ownership import DATA
 from assess.results import BASES, CANNOT_ROCK
 from assess.risk import RiskClass
 from assess.table import Field, unnest

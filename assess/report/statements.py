@@ -1,8 +1,7 @@
 """What a report states about itself: assumptions, the meaning of the marks, limits, and how it was made."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
@@ -16,9 +15,6 @@ from assess.route_results import RouteTables
 from assess.units import GRAVITY
 from assess.workbook.catalogue import is_assumed
 from assess.workbook.schema import ITEMS
-
-if TYPE_CHECKING:
-    from assess.methods import MethodInfo
 
 MOST_FILES = 40
 """Input files whose hashes a report lists."""
@@ -47,60 +43,41 @@ def list_flags(results: Results) -> dict[str, str]:
 
 def list_assumptions(results: Results) -> Lines:
     """Return what was assumed, and for how many rows or where."""
-    lines = ground.list_assumed(results)
-    items = results.item_rows
-    counted = Counter(name for item in items for name in item.assumed)
-    for name, text in _assumed().items():
-        if counted[name]:
-            where = ngettext("{column} blank in {n:,} row", "{column} blank in {n:,} rows", counted[name],
-                             column=_(ITEMS.column(name).label))  # fmt: skip
-            lines.append((where, text))
-    if sizes := _count_assumed_sizes(results):
-        where = ngettext("Sizes by Type in {n:,} row", "Sizes by Type in {n:,} rows", sizes)
-        lines.append((where, _("assumed: usual sizes, no citable source")))
-    lines += _list_for_anchors(results)
-    if axes := sum(item.axis_given is None for item in items):
-        where = ngettext("Axis unknown in {n:,} row", "Axis unknown in {n:,} rows", axes)
-        lines.append((where, _("the worse of X and Y governs")))
-    if frictions := sum(item.friction is None for item in items):
-        where = ngettext("Friction unknown in {n:,} row", "Friction unknown in {n:,} rows", frictions)
-        lines.append((where, _("no sliding, as the paper assumes")))
-    return [*lines, *_list_for_routes(results), *_list_constants(results)]
-
-
-def _list_for_anchors(results: Results) -> Lines:
-    anchors, lines = [item.anchor for item in results.item_rows], Lines()
-    if weights := sum(one.weight_source == "estimate" for one in anchors):
-        where = ngettext("Weight unknown in {n:,} row", "Weight unknown in {n:,} rows", weights)
-        text = _("estimated for forces on brackets, by a density of what the Type holds; densities are assumed unless "
-                 "a source stands beside them")  # fmt: skip
-        lines.append((where, text))
-    if heights := sum(one.is_height_assumed for one in anchors):
-        where = ngettext("Bracket height unknown in {n:,} row", "Bracket height unknown in {n:,} rows", heights)
-        lines.append((where, _("assumed: {share:g} % of the height of the piece", share=100 * BRACKET)))
-    return lines
-
-
-def _count_assumed_sizes(results: Results) -> int:
-    """Count the rows with a size taken from a type of the Catalogue whose source says that it is assumed."""
-    assumed = {one.type for one in results.catalogue if is_assumed(one.source)}
-    sizes = {"breadth", "width", "height", "centre_of_gravity"}
-    return sum(item.type in assumed and not sizes.isdisjoint(item.assumed) for item in results.item_rows)
-
-
-def _assumed() -> Mapping[str, str]:
+    items, lines = results.item_rows, ground.list_assumed(results)
     catalogue = _("taken from the Catalogue by Type")
-    return {
-        "breadth": catalogue,
-        "width": catalogue,
-        "height": catalogue,
-        "weight": catalogue,
+    assumed = {
+        "breadth": catalogue, "width": catalogue, "height": catalogue, "weight": catalogue,
         "centre_of_gravity": catalogue,
         "quantity": _("1 piece"),
         "axis": _("set from Angle, which lies within 15° of X or Y"),
         "anchored": _("unknown, which counts as free-standing"),
         "friction": _("the building's default friction"),
-    }
+    }  # fmt: skip
+    counted = Counter(name for item in items for name in item.assumed)
+    for name, text in assumed.items():
+        if n := counted[name]:
+            where = ngettext("{column} blank in {n:,} row", "{column} blank in {n:,} rows", n,
+                             column=_(ITEMS.column(name).label))  # fmt: skip
+            lines.append((where, text))
+    types = {one.type for one in results.catalogue if is_assumed(one.source)}
+    sizes = {"breadth", "width", "height", "centre_of_gravity"}
+    if n := sum(item.type in types and not sizes.isdisjoint(item.assumed) for item in items):
+        lines.append((ngettext("Sizes by Type in {n:,} row", "Sizes by Type in {n:,} rows", n),
+                      _("assumed: usual sizes, no citable source")))  # fmt: skip
+    if n := sum(one.anchor.weight_source == "estimate" for one in items):
+        text = _("estimated for forces on brackets, by a density of what the Type holds; densities are assumed unless "
+                 "a source stands beside them")  # fmt: skip
+        lines.append((ngettext("Weight unknown in {n:,} row", "Weight unknown in {n:,} rows", n), text))
+    if n := sum(one.anchor.is_height_assumed for one in items):
+        lines.append((ngettext("Bracket height unknown in {n:,} row", "Bracket height unknown in {n:,} rows", n),
+                      _("assumed: {share:g} % of the height of the piece", share=100 * BRACKET)))  # fmt: skip
+    if n := sum(item.axis_given is None for item in items):
+        lines.append((ngettext("Axis unknown in {n:,} row", "Axis unknown in {n:,} rows", n),
+                      _("the worse of X and Y governs")))  # fmt: skip
+    if n := sum(item.friction is None for item in items):
+        lines.append((ngettext("Friction unknown in {n:,} row", "Friction unknown in {n:,} rows", n),
+                      _("no sliding, as the paper assumes")))  # fmt: skip
+    return [*lines, *_list_for_routes(results), *_list_constants(results)]
 
 
 def _list_for_routes(results: Results) -> Lines:
@@ -140,8 +117,13 @@ def _list_couplings(routes: RouteTables, seed: int) -> Lines:
 
 
 def _list_constants(results: Results) -> Lines:
+    values = {
+        one.title: ", ".join(f"{each.symbol} = {number(getattr(results.settings, each.setting), 'g')}"
+                             for each in one.parameters)
+        for one in results.methods if one.parameters
+    }  # fmt: skip
     return [
-        *((_(method.title), _list_parameters(results, method)) for method in results.methods if method.parameters),
+        *((_(title), text) for title, text in values.items()),
         (_("Gravity"), f"{number(GRAVITY)} m/s²"),
         (_("A class limit belongs to"), _("the higher class (the paper leaves this open)")),
         (_("Units"), _("Lengths are in cm and m, accelerations in g, velocities in cm/s, whatever the workbook's units "
@@ -149,17 +131,37 @@ def _list_constants(results: Results) -> Lines:
     ]  # fmt: skip
 
 
-def _list_parameters(results: Results, method: "MethodInfo") -> str:
-    return ", ".join(
-        f"{one.symbol} = {number(getattr(results.settings, one.setting), 'g')}" for one in method.parameters
-    )
-
-
 # ---------------------------------------------------------------- limits
 
 
 def list_limits(results: Results) -> Sequence[str]:
     """Return the limits of the methods, in plain words."""
+    of_simulation = (
+        _(
+            "A simulated chance is that of the rigid block under motions that match the floor's record, or that are "
+            "drawn where it has none. Its sampling interval covers the number of draws only."
+        ),
+        _(
+            "How much stronger or weaker an earthquake like this one could be, and how much pieces differ from their "
+            "nominal sizes, centre of gravity and restitution, is assumed, not measured on furniture."
+        ),
+        *(() if results.provenance.suite else (ground.say_signs(results),)),
+        _(
+            "Rocking depends on details of a motion that a response spectrum does not contain, such as long pulses. "
+            "The behaviour under the recorded motion itself is therefore shown next to the chance."
+        ),
+    )
+    of_routes = (
+        _(
+            "Evacuation routes are screened by a rule of this program, as no published rule exists. Only pieces that "
+            "overturn count: not what slides or rolls, spilt contents, jammed doors, fallen ceilings or people."
+        ),
+        _(
+            "An open route is not shown to be safe: its chance is below the chosen risk in this scenario, as far as "
+            "the workbook lists the furniture. The direction of a recorded motion is not used: a piece may fall either "
+            "way, unless it stands against a wall and the outline of its room tells on which side that is."
+        ),
+    )
     return [
         _(
             "The chance is that of overturning in this scenario. It is not a chance per year, and does not state how "
@@ -185,41 +187,9 @@ def list_limits(results: Results) -> Sequence[str]:
         ),
         *(f"{_(results.formula.title)}: {_(text)}" for text in results.formula.assumptions),
         _("A piece marked as anchored is not classified: it depends on its anchors; its free-standing risk is shown."),
-        *(_limits_of_simulation(results) if results.has_simulated else ()),
-        *(_limits_of_routes() if results.has_routes else ()),
+        *(of_simulation if results.has_simulated else ()),
+        *(of_routes if results.has_routes else ()),
     ]
-
-
-def _limits_of_simulation(results: Results) -> tuple[str, ...]:
-    return (
-        _(
-            "A simulated chance is that of the rigid block under motions that match the floor's record, or that are "
-            "drawn where it has none. Its sampling interval covers the number of draws only."
-        ),
-        _(
-            "How much stronger or weaker an earthquake like this one could be, and how much pieces differ from their "
-            "nominal sizes, centre of gravity and restitution, is assumed, not measured on furniture."
-        ),
-        *(() if results.provenance.suite else (ground.say_signs(results),)),
-        _(
-            "Rocking depends on details of a motion that a response spectrum does not contain, such as long pulses. "
-            "The behaviour under the recorded motion itself is therefore shown next to the chance."
-        ),
-    )
-
-
-def _limits_of_routes() -> tuple[str, ...]:
-    return (
-        _(
-            "Evacuation routes are screened by a rule of this program, as no published rule exists. Only pieces that "
-            "overturn count: not what slides or rolls, spilt contents, jammed doors, fallen ceilings or people."
-        ),
-        _(
-            "An open route is not shown to be safe: its chance is below the chosen risk in this scenario, as far as "
-            "the workbook lists the furniture. The direction of a recorded motion is not used: a piece may fall either "
-            "way, unless it stands against a wall and the outline of its room tells on which side that is."
-        ),
-    )
 
 
 # ---------------------------------------------------------------- how it was made

@@ -323,18 +323,12 @@ def say_bracket(one: ItemResult) -> str:
     if anchored not in ("yes", "partly") or anchor.bracket_capacity_kn is None:
         return ""
     holds = anchor.holds if anchored == "yes" else anchor.holds_high
-    if one.is_anchored:
-        return _say_bracket_of_anchored(one, holds)
-    if holds is None:
-        return _("width not known, so whether its bracket holds is not known: counts as free-standing")
-    if anchored == "yes":
-        return _("bracket fails at PFA: counts as free-standing")
-    return _("bracket fails at 84 % of PFA: counts as free-standing")
-
-
-def _say_bracket_of_anchored(one: ItemResult, holds: bool | None) -> str:
-    anchor = one.item.anchor
     fails = anchor.holds_high is False, anchor.holds_code is False
+    if not one.is_anchored:
+        if holds is None:
+            return _("width not known, so whether its bracket holds is not known: counts as free-standing")
+        return (_("bracket fails at PFA: counts as free-standing") if anchored == "yes"
+                else _("bracket fails at 84 % of PFA: counts as free-standing"))  # fmt: skip
     if holds is None:
         text = _("width not known, so whether its bracket holds is not known: counts as anchored")
         further = {
@@ -343,10 +337,9 @@ def _say_bracket_of_anchored(one: ItemResult, holds: bool | None) -> str:
             (True, True): _("bracket fails at 84 % of PFA and by the code"),
         }
         return "; ".join((text, further[fails])) if any(fails) else text
-    if one.item.anchored == "partly":
-        if fails[1]:
-            return _("bracket holds at 84 % of PFA, fails by the code: counts as anchored")
-        return _("bracket holds at 84 % of PFA: counts as anchored")
+    if anchored == "partly":
+        return (_("bracket holds at 84 % of PFA, fails by the code: counts as anchored") if fails[1]
+                else _("bracket holds at 84 % of PFA: counts as anchored"))  # fmt: skip
     return {
         (False, False): "",
         (True, False): _("bracket holds at PFA, fails at 84 % of PFA: counts as anchored"),

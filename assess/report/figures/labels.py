@@ -29,18 +29,6 @@ class Label:
     lead: tuple[Point, Point] | None
 
 
-def text_width(text: str) -> float:
-    """Return about how wide [px] a text of 9 px is."""
-    return sum(3.9 if sign in _NARROW else 8.2 if sign in _WIDE else 5.8 for sign in text)
-
-
-def place_labels(
-    named: Sequence[tuple[str, Bounds]], taken: Sequence[Bounds], frame: Bounds, unit: float
-) -> Iterator[Label]:
-    """Place the names of pieces as `place_each` does, the first 40; those without room are left out."""
-    return (one for one in place_each(named[:MOST], taken, frame, unit) if one is not None)
-
-
 def place_each(
     named: Sequence[tuple[str, Bounds]],
     taken: Sequence[Bounds],
@@ -66,7 +54,8 @@ def place_each(
     held = [*names]
     placed: list[Label | None] = []
     for text, piece in named:
-        size = (1.1 * text_width(text) * unit, LINE * unit)  # bold
+        width = sum(3.9 if sign in _NARROW else 8.2 if sign in _WIDE else 5.8 for sign in text)  # [px], about
+        size = (1.1 * width * unit, LINE * unit)  # bold
         tried = [box for box in _around(piece, size, unit) if _is_inside(box, frame)]
         tried = [box for box, area in zip(tried, _covered(tried, held), strict=True) if not area]
         if not tried:
@@ -114,17 +103,11 @@ def _away(box: Bounds, piece: Bounds) -> float:
 
 def _lead(box: Bounds, piece: Bounds) -> tuple[Point, Point]:
     """Return the points of the label and of the piece that lie nearest to each other, the middle where they overlap."""
-    ends = [_nearest(box[at], box[at + 2], piece[at], piece[at + 2]) for at in (0, 1)]
+    ends = []
+    for low, high, other_low, other_high in ((box[at], box[at + 2], piece[at], piece[at + 2]) for at in (0, 1)):
+        middle = (max(low, other_low) + min(high, other_high)) / 2
+        ends.append((high, other_low) if high < other_low else (low, other_high) if low > other_high else (middle,) * 2)
     return (ends[0][0], ends[1][0]), (ends[0][1], ends[1][1])
-
-
-def _nearest(low: float, high: float, other_low: float, other_high: float) -> Point:
-    if high < other_low:
-        return high, other_low
-    if low > other_high:
-        return low, other_high
-    middle = (max(low, other_low) + min(high, other_high)) / 2
-    return middle, middle
 
 
 def _is_inside(box: Bounds, frame: Bounds) -> bool:

@@ -99,18 +99,18 @@ def choose_traced(results: Results, rows: Sequence[ItemResult]) -> list[Traced]:
     if not results.series.is_there:
         return []
     simulated = [one for one in rows if one.is_simulated]
+
+    def by_risk(one: ItemResult) -> tuple[object, ...]:
+        found = one.governing.simulation
+        return bool(one.apart), -one.adopted.upper, -found.probability if found else 0.0, natural_key(one.item.item)
+
     alike: dict[tuple[int, float, float], list[ItemResult]] = {}
-    for one in sorted([one for one in simulated if not one.is_anchored] or simulated, key=_by_risk):
+    for one in sorted([one for one in simulated if not one.is_anchored] or simulated, key=by_risk):
         alike.setdefault((one.governing.motion.index, one.item.breadth_cm, one.item.height_cm), []).append(one)
     firsts = {own[0].item.index: own for own in alike.values()}
     undecided = [index for index, own in firsts.items() if "undecided" in own[0].adopted.flags]
     chosen = set(list(dict.fromkeys([*list(firsts)[:1], *undecided, *firsts]))[:MOST])
     return [_trace(results, own[0], len(own) - 1) for index, own in firsts.items() if index in chosen]
-
-
-def _by_risk(one: ItemResult) -> tuple[object, ...]:
-    found = one.governing.simulation
-    return bool(one.apart), -one.adopted.upper, -found.probability if found else 0.0, natural_key(one.item.item)
 
 
 def _trace(results: Results, one: ItemResult, alike: int) -> Traced:
@@ -138,8 +138,13 @@ def draw_traced(content: Content, progress: Progress = SILENT) -> Iterator[Figur
           names=names, which=which),
         _("Chance of overturning against the number of motions, with its interval, of {names}", names=names),
     )  # fmt: skip
+
+    def paint_rotations(figure: Any) -> None:
+        _paint_panels(traced, _paint_rotations, figure)
+        figure.supxlabel(_("largest rotation, over the critical angle"), fontsize=8)
+
     yield _figure(
-        draw(7, 2.2, partial(_paint_all_rotations, traced), progress=progress),
+        draw(7, 2.2, paint_rotations, progress=progress),
         _("How far the same pieces turned: largest rotation over the critical angle in each motion. White bar: at "
           "rest; hatched bar: overturned; right of the dashed line: past the critical angle, but without "
           "overturning."),
@@ -231,11 +236,6 @@ def _paint_convergence(z: float, is_long: bool, axes: Any, one: Traced, is_first
         axes.set_ylabel(_("chance of overturning"), fontsize=8)
 
 
-def _paint_all_rotations(traced: Sequence[Traced], figure: Any) -> None:
-    _paint_panels(traced, _paint_rotations, figure)
-    figure.supxlabel(_("largest rotation, over the critical angle"), fontsize=8)
-
-
 def _paint_rotations(axes: Any, one: Traced, is_first: bool) -> None:
     """Paint how many motions turned a piece how far: at rest, ten steps to the critical angle, beyond, overturned."""
     stood = one.rotation[~one.fell]
@@ -310,9 +310,7 @@ def _paint_motions(accelerations: Sequence[Acceleration], spectra: Spectra | Non
     left.supylabel(_("acceleration [g]"), fontsize=8)
     panels[-1].set_xlabel(_("time [s]"), fontsize=8)
     if spectra is not None:
-        axes = right.subplots()
-        _paint_spectra(axes, spectra)
-        _frame_spectra(axes, spectra.periods)
+        _paint_spectra(right.subplots(), spectra)
 
 
 def _paint_spectra(axes: Any, spectra: Spectra) -> None:
@@ -332,9 +330,6 @@ def _paint_spectra(axes: Any, spectra: Spectra) -> None:
     if spectra.target_g is not None:
         axes.plot(periods, spectra.target_g, color=RECORD, linewidth=2.2, zorder=3,
                   label=spectra.target_name)[0].set_gid("wanted")  # fmt: skip
-
-
-def _frame_spectra(axes: Any, periods: FloatArray) -> None:
     axes.set_xscale("log")
     ticks = [tick for tick in (0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10) if periods[0] * 0.99 <= tick <= periods[-1] * 1.01]
     axes.set_xticks(ticks, [number(tick, "g") for tick in ticks])

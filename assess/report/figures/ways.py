@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from assess.i18n import gettext as _
 from assess.report import words
-from assess.report.figures.labels import LINE, Bounds, Corners, Label, Point, overlap, place_labels
+from assess.report.figures.labels import LINE, MOST, Bounds, Corners, Label, Point, overlap, place_each
 from assess.report.say.route import (
     is_held,
     say_blocked,
@@ -161,9 +161,9 @@ def name_ways(ways: Sequence[Stretch], taken: Sequence[Bounds], frame: Bounds, u
     """Name the segments beside their signs, those with most to warn of first, where a name covers nothing else."""
     signed = [(one.name, sign_box(one.sign, unit)) for one in ways if one.sign is not None]
     blocked = [*taken, *(box for _name, box in signed)]
-    found = place_labels(signed, blocked, frame, unit)
+    found = place_each(signed[:MOST], blocked, frame, unit)
     small = LINE * LINE * unit * unit / 20
-    return [one for one in found if one.lead is None and _covered(one.box, blocked) < small]
+    return [one for one in found if one and one.lead is None and _covered(one.box, blocked) < small]
 
 
 def _point(one: Stretch, share: float) -> Point:
