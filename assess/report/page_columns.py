@@ -36,28 +36,11 @@ NOT_COMPACT = frozenset(("verification_record_overturned", "adopted_class", "ado
 
 @dataclass(frozen=True, slots=True)
 class PageColumn:
-    """One column of a table on a page.
+    """One column of a table on a page, by the `key` of a field, or of what is composed of several: styles go by it.
 
-    Parameters
-    ----------
-    key : str
-        The field, or what is composed of several: templates and styles go by it.
-    heading : str
-        In the language in use.
-    text : callable
-        From a row to what the cell says.
-    is_number : bool
-        Whether it stands to the right.
-    sort : callable, optional
-        From a row to the value that it is sorted by, where that is not its text.
-    places : int
-        Characters in a compact list; 0: it is left out there.
-    line, line_heading
-        What a compact list shows, where that differs from `text` and `heading`.
-    show : callable, optional
-        From a row to what the cell shows, where that is more than its text, such as the badge of a class.
-    is_wide, is_method : bool
-        Whether its numbers may take two lines; whether it is the value of a method.
+    `text` says what the cell of a row says, `show` what it shows where that is more, such as the badge of a class,
+    `sort` what it is sorted by; `line` and `line_heading` are for a compact list, where they differ, and `places` the
+    characters there, 0 where it is left out. The numbers of a wide column may take two lines.
     """
 
     key: str

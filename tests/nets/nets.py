@@ -17,7 +17,7 @@ import pytest
 
 import assess
 from assess.report import html_blocks
-from assess.report.figures import motion_figures, risk_contours
+from assess.report.figures import motion_figures, risk_map
 from assess.report.figures.math_figures import MathFigure
 from assess.report.word import writer
 from assess.report.word.drawings import Picture
@@ -84,7 +84,7 @@ def show(name: str, results: Results, folder: Path, formats: Collection[str] = Q
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SOURCE_DATE_EPOCH", DATE)
-        for module in (motion_figures, risk_contours):
+        for module in (motion_figures, risk_map):
             patch.setattr(module, "draw", lambda *_, **__: b"")
         patch.setattr(html_blocks, "draw_math", leave_room if set(formats) & set(PDFS) else lambda _: NO_ROOM)
         patch.setattr(writer, "draw_all", lambda given, *_: [Picture(EMPTY, one.width, "") for one in given])

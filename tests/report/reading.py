@@ -15,7 +15,7 @@ import assess
 from assess.progress import SILENT, Progress
 from assess.report.content import Content
 from assess.report.data import write_json
-from assess.report.figures import math_figures, motion_figures, risk_contours
+from assess.report.figures import math_figures, motion_figures, risk_map
 from assess.report.figures.math_figures import MathFigure
 from assess.report.fonts import print_fonts
 from assess.report.pages import html as pages
@@ -30,7 +30,7 @@ from assess.results import ItemResult, Results
 def no_figures() -> Iterator[None]:
     """Leave figures out of pages, which take most of the time: they have empty pictures in their places."""
     with pytest.MonkeyPatch.context() as patch:
-        for module in (motion_figures, risk_contours):
+        for module in (motion_figures, risk_map):
             patch.setattr(module, "draw", lambda *_, **__: b"")
         yield
 

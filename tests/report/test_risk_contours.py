@@ -8,8 +8,7 @@ import pytest
 from assess.i18n import Catalogue, speaking
 from assess.methods import Cases, all_methods
 from assess.report.figures.draw import draw
-from assess.report.figures.risk_contours import draw_contours
-from assess.report.figures.risk_map import LINES, MOST_NAMES
+from assess.report.figures.risk_map import LINES, MOST_NAMES, draw_contours
 from assess.settings import Settings
 from assess.units import GRAVITY
 from tests.workbooks import assessed

@@ -13,8 +13,7 @@ from assess.i18n import gettext as _
 from assess.model import Place
 from assess.report import words
 from assess.report.content import FloorPage
-from assess.report.figures.labels import MOST, Bounds, Corners, Label, Point, bounds, overlap
-from assess.report.figures.plan_names import Key, Names, Spot
+from assess.report.figures.labels import MOST, Bounds, Corners, Key, Label, Names, Point, Spot, bounds, overlap
 from assess.report.figures.underlay import (
     Ring,
     Room,
@@ -218,7 +217,7 @@ def _name(
     signs = [sign_box(one.sign, unit) for one in ways if one.sign is not None]
     falls = [bounds(ring) for one in pieces for ring in one.fallen]
     spots = names.place_spots(places, [*shapes, *falls, *signs])
-    middle = names.place_rooms(rooms, [*shapes, *signs])
+    middle = names.place_rooms([(one.name, one.centre) for one in rooms if one.name], [*shapes, *signs])
     labels = [one for one in names.place(_risky(pieces), [*shapes, *signs]) if one is not None]
     segments = name_ways(ways, [*shapes, *names.boxes], names.frame, unit)
     held = (*names.boxes, *shapes)

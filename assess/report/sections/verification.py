@@ -8,7 +8,7 @@ from assess.i18n import fill, ngettext, number
 from assess.i18n import gettext as _
 from assess.report import blocks, words
 from assess.report.figures.motion_figures import draw_traced
-from assess.report.figures.risk_contours import draw_contours
+from assess.report.figures.risk_map import draw_contours
 from assess.report.page_columns import build_table
 from assess.report.say import annual
 from assess.report.say.annual import AnnualLine
