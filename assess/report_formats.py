@@ -14,7 +14,7 @@ from assess.extras import say_install
 from assess.i18n import fill
 
 if TYPE_CHECKING:
-    from assess.report import Job
+    from assess.report.job import Job
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,10 +8,8 @@ were. A run replaces and removes only what results.json lists (`assess.report.ow
 import os
 from collections.abc import Collection, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from assess.delivery.deliver import Written, deliver, explain_fault, stage_for
 from assess.delivery.disk import find_digest, flush_file
@@ -19,55 +17,14 @@ from assess.delivery.folders import NEW
 from assess.errors import InputError, OutputError, PdfUnavailableError
 from assess.i18n import fill
 from assess.progress import SILENT, Progress
+from assess.report.job import Job
 from assess.report.ownership import DATA, find_reports
 from assess.report.report_options import ReportOptions
 from assess.report_formats import ALL, DEFAULT, FILES, FORMATS
 from assess.results import Results
 
-if TYPE_CHECKING:
-    from assess.report.content import Content
-    from assess.report.pages.pdf import Layout
-
 _LAST = ("json", *(one.key for one in FORMATS.values() if one.edition))
 """What is written last: results.json, which lists the files before it, and the PDFs, which carry it."""
-
-
-@dataclass(frozen=True)
-class Job:
-    """One set of reports that is written; the content is built once for all of them."""
-
-    results: Results
-    options: ReportOptions
-    progress: Progress
-    stage: Path
-    listed: dict[str, str | None] = field(default_factory=dict)
-    """The files of the run but for results.json, with their SHA-256; None of one that carries results.json."""
-
-    layouts: dict[str, "Layout"] = field(default_factory=dict)
-    """The PDFs that were begun, by the names of their files."""
-
-    @property
-    def data(self) -> Path:
-        """results.json as it stands in the stage."""
-        return self.stage / DATA
-
-    @property
-    def written(self) -> list[str]:
-        """The names of the files of the run."""
-        return [*self.listed, DATA]
-
-    @cached_property
-    def content(self) -> "Content":
-        """What HTML, PDF and Excel show, in the language of the reports."""
-        from assess.report.content import Content
-
-        return self.progress.wait_for(lambda: Content(self.results))
-
-    def write_data(self) -> None:
-        """Write results.json, with the list of the other files."""
-        from assess.report.data import write_json
-
-        write_json(self.results, self.data, self.progress, files=dict(sorted(self.listed.items())))
 
 
 def write_reports(
