@@ -140,3 +140,22 @@ def test_what_is_drawn_is_kept_and_drawn_anew_where_that_is_damaged(monkeypatch,
 )
 def test_indices(text, html):
     assert HtmlWriter(for_print=True).words(lower_indices(text)) == html
+
+
+@pytest.mark.parametrize(
+    ("line", "equations"),
+    [
+        ("Rocking starts where |a_g|/g > B/H", ["|a_g|/g > B/H"]),
+        ("R = k/N   (5), PFA in cm/s²", ["R = k/N"]),
+        ("Possibile dove PFA > g·(B/H) e PFV > 10·B/√H (cm, cm/s)", ["PFA > g·(B/H)", "PFV > 10·B/√H"]),
+        ("a = 0,5, b = N(0; 1); c = 2", ["a = 0,5", "b = N(0; 1)", "c = 2"]),
+        ("B/H = 28/202 = 0.13861", ["B/H = 28/202", "= 0.13861"]),
+        ("PFA is not above PFA*: it is used as it is.", []),
+        ("It overturned in 144 of 200 draws of a motion.", []),
+        ("The piece (see a) has 2 sides; k of them", []),
+    ],
+)
+def test_equations_of_a_line(line, equations):
+    parts = split_line(line)
+    assert [one.text for one in parts if one.tex] == equations
+    assert "".join(one.text for one in parts) == line

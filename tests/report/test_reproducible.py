@@ -6,9 +6,10 @@ import sys
 
 import pytest
 
-from assess.report_formats import FILES
+from assess.report_formats import DEFAULT, FILES
 from tests.workbooks import write
 
+EVERY = [name for name in FILES if name != "npz"]
 EPOCH = "1700000000"
 
 
@@ -24,8 +25,8 @@ def _run(book, out, formats, **environment):
 
 
 @pytest.mark.slow
-def test_two_runs_write_the_same_bytes(tmp_path):
-    formats = [name for name in FILES if name != "npz"]
+@pytest.mark.parametrize("formats", [DEFAULT, pytest.param(EVERY, marks=pytest.mark.long)])
+def test_two_runs_write_the_same_bytes(tmp_path, formats):
     book = write(tmp_path / "w.xlsx", building="Town hall", language="Italiano")
     first = _run(book, tmp_path / "a", formats, SOURCE_DATE_EPOCH=EPOCH, PYTHONHASHSEED="1", TZ="Pacific/Kiritimati")
     assert first.communicate(timeout=600)[0]
