@@ -6,7 +6,7 @@ motion lie in one file, to which `Results.series` refers.
 """
 
 import difflib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from itertools import chain
@@ -584,6 +584,12 @@ class ItemResult:
         return found
 
     @property
+    def ideal_class(self) -> RiskClass:
+        """The highest class of the piece as given under exactly its motions; low where none was simulated."""
+        found: RiskClass = self._part.column("ideal_class")[self._at]
+        return found
+
+    @property
     def simulation(self) -> Simulation | None:
         """What direct integration found under the governing motion; None where it was not simulated."""
         return self.governing.simulation if self.is_simulated else None
@@ -604,11 +610,6 @@ class ItemResult:
         return self.item.importance == "life safety" or bool(self.routes)
 
     @property
-    def does_not_rock(self) -> bool:
-        """Whether it is too stocky for Housner's equations."""
-        return "does_not_rock" in self.adopted.flags
-
-    @property
     def fell_in_record(self) -> bool:
         """Whether it overturns under any recorded motion itself."""
         return any(case.simulation is not None and bool(case.simulation.record_overturned) for case in self.cases)
@@ -622,13 +623,6 @@ class ItemResult:
         from assess.fields import item_html
 
         return item_html(self)
-
-
-def find_ideal_class(cases: Sequence[CaseRow]) -> RiskClass:
-    """Return the highest class of a piece as given under exactly its motions; low where none was simulated."""
-    exact = [case.simulation.ideal for case in cases if case.simulation is not None]
-    classes = [classify(one.probability) for one in exact if one is not None]
-    return max((one for one in classes if one is not None), default=RiskClass.LOW)
 
 
 @dataclass(frozen=True, slots=True)
@@ -736,15 +730,10 @@ def known(array: NDArray[Any]) -> list[Any]:
 
 
 _DETAILS: Mapping[str, str] = {
-    "simulation.runs": "runs", "simulation.draws": "draws", "simulation.overturned": "overturned",
-    "simulation.low": "low", "simulation.high": "high", "simulation.if_slower": "if_slower",
-    "simulation.if_faster": "if_faster", "simulation.record_overturned": "record_overturned",
     "simulation.record_max_rotation_ratio": "record_rotation", "simulation.ideal.runs": "runs",
-    "simulation.ideal.overturned": "ideal_overturned", "simulation.ideal.probability": "ideal",
-    "simulation.ideal.low": "ideal_low", "simulation.ideal.high": "ideal_high", "sliding.branch": "sliding_branch",
-    "sliding.slip_median_cm": "slip_median_cm", "sliding.slip_84_cm": "slip_84_cm", "one_sided": "one_sided",
+    "simulation.ideal.probability": "ideal", "sliding.branch": "sliding_branch",
 }  # fmt: skip
-"""Names of what simulation found beside its chance, by the attributes of a case."""
+"""Names of what simulation found, by the attributes of a case, where they are not those of the attributes."""
 _TYPES: Mapping[str, type] = {"runs": int, "draws": int, "overturned": int, "ideal_overturned": int,
                               "record_overturned": bool}  # fmt: skip
 _RISKS = tuple(RiskClass)
@@ -830,7 +819,7 @@ class CaseColumns(Columns):
         if source == "simulation.tried":
             columns = [(one, known(self._found.detail[f"dispersion_{one:g}"][self.cut])) for one in TRIED]
             return [{one: column[at] for one, column in columns if column[at] is not None} for at in range(len(self))]
-        name = _DETAILS[source]
+        name = _DETAILS.get(source) or source.rpartition("simulation.")[2].removeprefix("sliding.").replace(".", "_")
         values = known(self._found.detail[name][self.cut])
         if source.startswith("simulation."):
             is_known = self.is_simulated
@@ -917,18 +906,14 @@ class ItemColumns(Columns):
         """Yield the rows."""
         return (ItemResult(self, at) for at in range(len(self)))
 
-    def adopted(self, at: int) -> Adopted:
-        """Return the adopted risk of one of the rows."""
-        found: Adopted = self._make_adopted(at)
-        return found
+    @cached_property
+    def adopted(self) -> Callable[[int], Adopted]:
+        """Makes the adopted risk of one of the rows."""
+        return _Maker(self, Adopted, "adopted", "basis")
 
     def inner(self, source: str) -> tuple[Columns, Sequence[int]]:
         """Return the cases, and how many each row has."""
         return self.cases, [one.last_case - one.first_case for one in self.items]
-
-    @cached_property
-    def _make_adopted(self) -> _Maker:
-        return _Maker(self, Adopted, "adopted", "basis")
 
     def _make(self, source: str) -> list[Any]:
         group, _dot, name = source.partition(".")

@@ -87,39 +87,38 @@ def _read_anchored(value: Any) -> int | tuple[str, ...] | None:
     return _read_whole(value, 1, MOST_FIRST)
 
 
-def _read_flag(value: Any) -> bool | None:
-    return value if isinstance(value, bool) else None
+_Rule = tuple[Callable[[Any], Any], Text]
 
 
-_positive = partial(_read_number, is_allowed=lambda number: number > 0)
-_RULES: Mapping[str, tuple[Callable[[Any], Any], Text]] = {
-    "scenario": (partial(_read_choice, choices=SCENARIOS), fill("one of: {names}", names=", ".join(SCENARIOS))),
-    "class_by": (partial(_read_choice, choices=CLASS_BY), fill("one of: {names}", names=", ".join(CLASS_BY))),
-    "verify": (partial(_read_choice, choices=VERIFY), fill("one of: {names}", names=", ".join(VERIFY))),
+def _choice(choices: tuple[str, ...]) -> _Rule:
+    return partial(_read_choice, choices=choices), fill("one of: {names}", names=", ".join(choices))
+
+
+def _number(is_allowed: Callable[[float], bool], expected: Text) -> _Rule:
+    return partial(_read_number, is_allowed=is_allowed), expected
+
+
+_FLAG: _Rule = (lambda value: value if isinstance(value, bool) else None), fill("True or False")
+_POSITIVE = _number(lambda number: number > 0, fill("above 0, and finite"))
+_RULES: Mapping[str, _Rule] = {
+    "scenario": _choice(SCENARIOS),
+    "class_by": _choice(CLASS_BY),
+    "verify": _choice(VERIFY),
     "runs": (_read_runs, fill("1 to {most:,}, or {auto}", most=MOST_RUNS, auto=AUTO)),
     "seed": (partial(_read_whole, low=0, high=math.inf), fill("a whole number, 0 or above")),
-    "scale": (
-        partial(_read_number, is_allowed=lambda number: 0 < number <= MOST_SCALE),
-        fill("above 0 and at most {most:g}", most=MOST_SCALE),
-    ),
-    "ideal": (_read_flag, fill("True or False")),
-    "scale_motions": (_read_flag, fill("True or False")),
-    "city": (_read_flag, fill("True or False")),
-    "zeta_acceleration": (_positive, fill("above 0, and finite")),
-    "zeta_velocity": (_positive, fill("above 0, and finite")),
-    "slide_coefficient": (partial(_read_number, is_allowed=lambda number: 0 <= number <= 1), fill("0 to 1")),
-    "ductility_reduction": (
-        partial(_read_number, is_allowed=lambda number: number >= 1),
-        fill("at least 1, and finite"),
-    ),
+    "scale": _number(lambda number: 0 < number <= MOST_SCALE, fill("above 0 and at most {most:g}", most=MOST_SCALE)),
+    "ideal": _FLAG,
+    "scale_motions": _FLAG,
+    "city": _FLAG,
+    "zeta_acceleration": _POSITIVE,
+    "zeta_velocity": _POSITIVE,
+    "slide_coefficient": _number(lambda number: 0 <= number <= 1, fill("0 to 1")),
+    "ductility_reduction": _number(lambda number: number >= 1, fill("at least 1, and finite")),
     "anchor": (_read_anchored, fill("names of items, separated by commas, or first:N")),
-    "anchor_resonance": (_positive, fill("above 0, and finite")),
-    "anchor_strength": (_positive, fill("above 0, and finite")),
-    "anchor_importance": (_positive, fill("above 0, and finite")),
-    "route_risk": (
-        partial(_read_number, is_allowed=lambda number: 0 < number < 1),
-        fill("above 0 and below 1 (write 3 % as 0.03)"),
-    ),
+    "anchor_resonance": _POSITIVE,
+    "anchor_strength": _POSITIVE,
+    "anchor_importance": _POSITIVE,
+    "route_risk": _number(lambda number: 0 < number < 1, fill("above 0 and below 1 (write 3 % as 0.03)")),
 }
 """What reads the value of each setting, None for one that cannot be used, and what was expected."""
 _BY_WORKBOOK = ("scenario", "class_by")

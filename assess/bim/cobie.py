@@ -35,7 +35,7 @@ from assess.workbook.names import key
 from assess.workbook.open import UNSAVED
 from assess.workbook.ranges import is_within
 from assess.workbook.schema import BUILDING, CATALOGUE, FLOORS, Column
-from assess.workbook.values import read_cell
+from assess.workbook.values import cell_reader
 
 __all__ = ["convert", "is_cobie", "read_cobie"]
 
@@ -284,7 +284,7 @@ def _read_length(column: Column, label: str, value: object, unit: str) -> float:
     Raises CellError if it is no number, or out of the limits.
     """
     typed = _read_number(value)
-    found, _ = read_cell(replace(column, label=label), value if typed is None else typed, unit)
+    found, _ = cell_reader(replace(column, label=label), unit)(value if typed is None else typed)
     if not isinstance(found, float):
         raise CellError(fill("{label} is blank.", label=label))
     return found

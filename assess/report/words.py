@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
 from assess.model import SCANNED
-from assess.results import ItemResult, find_ideal_class
+from assess.results import ItemResult
 from assess.risk import LIMITS, RiskClass, classify
 from assess.workbook.draft_names import is_draft
 
@@ -391,7 +391,7 @@ def risk_notes(one: ItemResult) -> list[str]:
     adopted, notes = one.adopted, []
     if classify(adopted.probability) != adopted.risk and one.fell_in_record:
         notes.append(_("as it overturns under the record itself"))
-    ideal = find_ideal_class(one.cases) if "ideal_higher" in one.adopted.flags else None
+    ideal = one.ideal_class if "ideal_higher" in one.adopted.flags else None
     if ideal is not None:
         notes.append(_("{risk} if exactly this motion recurred", risk=risk_word(ideal)))
     highest = find_highest(one)

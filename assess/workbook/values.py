@@ -47,19 +47,15 @@ def read_text(value: object) -> str:
     return clean(str(value))[0].strip()
 
 
-def read_cell(column: Column, value: object, unit: str) -> tuple[object, tuple[Remark, ...]]:
-    """Return a cell's value in SI, and what is remarkable about it.
-
-    `unit` is that of the column's header. The value of a blank cell is None, as of a text of unseen marks alone.
-
-    Raises CellError if the cell does not hold what the column needs.
-    """
-    return cell_reader(column, unit)(value)
-
-
 @lru_cache(maxsize=512)
 def cell_reader(column: Column, unit: str) -> CellReader:
-    """Return `read_cell` for one column and unit: the same values stand in row after row, book after book."""
+    """Return what gives the value in SI of a column's cell, and what is remarkable about it.
+
+    `unit` is that of the column's header. The value of a blank cell is None, as of a text of unseen marks alone. What
+    was read is kept: the same values stand in row after row, book after book.
+
+    What is returned raises CellError if the cell does not hold what the column needs.
+    """
     read_new = partial(_read_cell, column, unit)
     read_known = lru_cache(maxsize=1024, typed=True)(read_new)
 

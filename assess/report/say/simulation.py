@@ -232,7 +232,7 @@ def describe_trials(verified: Verified) -> list[str]:
 
 
 def _say_extent(verified: Verified) -> str:
-    n = sum(one.does_not_rock for one in verified.run)
+    n = sum("does_not_rock" in one.adopted.flags for one in verified.run)
     text = _(
         "The rocking of {done:,} of {rows} was integrated step by step (Housner's equations of a rigid block, see "
         "Methods). The chance is the share of draws in which the piece overturns, each of one motion.",
