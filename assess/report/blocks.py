@@ -1,8 +1,8 @@
 """What a document is made of: headings, paragraphs, lists, tables, tiles, figures, equations and notes.
 
-A section is a function from results to blocks. Renderers turn blocks into HTML (`assess.report.html_blocks`), Word
-(`assess.report.word`) and plain text (`assess.report.text_blocks`); none of them knows what a section is about. `kind`
-names the style of a block, a row, a cell or a run of words: its class in HTML, its style in Word.
+A section is a function from results to blocks. Renderers turn blocks into HTML (`assess.report.html_blocks`) and Word
+(`assess.report.word`); neither knows what a section is about. `kind` names the style of a block, a row, a cell or a run
+of words: its class in HTML, its style in Word.
 """
 
 import re
