@@ -97,3 +97,11 @@ def test_a_way_goes_round_walls_inside_a_room():
     room = build(box(0, 0, 6, 5), link("one", 1.0, -0.05), link("two", 1.0, 5.05), solids=(wall,))
     way = follow(find_ways(room, "room a", (3.0, 1.0)), "one", "two")
     assert way.distance(wall) >= 0.45
+
+
+def test_a_way_goes_round_furniture_so_that_a_standing_piece_does_not_narrow_it():
+    table = box(1.5, 2, 4.5, 3)
+    room = build(box(0, 0, 6, 5), link("one", 3.0, -0.05), link("two", 3.0, 5.05), pieces=(table,))
+    way = follow(find_ways(room, "room a", (0.8, 1.0)), "one", "two")
+    assert way.distance(table) >= 0.45
+    assert 5.1 < way.length < 8

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from assess.fragility import lognormal_chance
 from assess.hazard import read_hazard
 from assess.motion.suite import read_suite
 from assess.pipeline.annual import evaluate_annual
@@ -298,3 +299,14 @@ def test_sds_stands_in_for_the_ground_pga_only_where_floors_follow_a_profile(tmp
     by_pga = rows_of(assessed(tmp_path, floors=profile, height=12))
     assert by_sds[0].annual.ground_pga_g == pytest.approx(0.15)
     assert by_sds[1][0].rate == pytest.approx(by_pga[1][0].rate)
+
+
+@pytest.mark.slow
+def test_scatter_of_the_motion_is_averaged_over_as_if_it_were_drawn(tmp_path):
+    """The share at the ground PGA of the scenario is the chance that the run finds by drawing the scale."""
+    runs = 400
+    assessment = assessed(tmp_path, settings=Settings(seed=3, runs=runs))
+    (row,) = rows_of(assessment)[1]
+    by_curve = lognormal_chance(0.15, row.median_g, row.dispersion)
+    chance = assessment.adoption.probability[0]
+    assert by_curve == pytest.approx(chance, abs=0.02 + 2 * np.sqrt(chance * (1 - chance) / runs))

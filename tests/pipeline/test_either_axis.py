@@ -87,3 +87,12 @@ def test_an_unconfirmed_axis_is_not_united(done):
 def test_results_say_so():
     results = assess.run(read({"item": "square", "width": 35}), SETTINGS, figures=False)
     assert "either_axis" in results["square"].adopted.flags
+
+
+def test_two_alike_have_one_chance_of_a_fall_along_either_axis():
+    found = compute(read({"item": "a", "width": 35}, {"item": "b", "width": 35, "quantity": 3}), SETTINGS)
+    assert list(found.either_axis) == [0, 1]
+    shares = [found.either_axis[at].mean() for at in (0, 1)]
+    assert shares[0] != shares[1], "which of them fall together is each one's own"
+    chances = found.adoption.probability[found.governing]
+    assert chances == pytest.approx([np.average(shares, weights=[1, 3])] * 2)
