@@ -9,7 +9,9 @@ import pytest
 
 from assess.motion.spatial_field import EARTH, SCATTERS, correlate
 from assess.portfolio.city import FIRST, City, build_spread, find_sampling
+from assess.risk import RiskClass
 from assess.rocking.draws import Earthquakes
+from assess.route_results import RouteState
 from assess.settings import Settings
 from tests.portfolio.city_samples import frame
 
@@ -197,3 +199,64 @@ def test_the_range_of_the_docs_is_that_of_this_city():
     assert found is not None
     numbers = [int(one.replace(",", "")) for one in found.groups()]
     assert numbers == [spread.low, spread.high, spread.independent_low, spread.independent_high]
+
+
+@pytest.fixture(scope="module")
+def sums():
+    buildings = [
+        {"path": "a.xlsx", "people_not_known": 30},
+        {"path": "b.xlsx", "is_placed": False, "cost": None, "works_without_cost": 2},
+        {"path": "formula.xlsx", "basis": "formula", "draws": 0, "expected_falls": 40.0, "own_motions": 2},
+        {"path": "cobie.xlsx", "inventory": "handover", "basis": "formula", "draws": 0, "expected_falls": 7.0},
+        {"path": "assumed", "inventory": "assumed", "basis": "simulated", "expected_falls": 20.0, "is_placed": None,
+         "falls_low_inventory": 5.0, "falls_high_inventory": 60.0, "people_blocked": None, "occupants": None},
+        {"path": "bad.xlsx", "status": "skipped", "inventory": None, "basis": None, "pieces": None},
+    ]  # fmt: skip
+    draws = {"a.xlsx": DRAWS, "b.xlsx": DRAWS, "assumed": [(10, 0), (20, 0), (20, 0), (30, 0)]}
+    return view(buildings, draws=draws)
+
+
+def find(sums, inventory, basis):
+    return next(one for one in sums.groups if (one.inventory, one.basis) == (inventory, basis))
+
+
+def test_inventories_and_bases_are_never_in_one_sum(sums):
+    assert [(one.inventory, one.basis, one.buildings, one.falls.expected) for one in sums.groups] == [
+        ("surveyed", "simulated", 2, 2.0),
+        ("surveyed", "formula", 1, 40.0),
+        ("handover", "formula", 1, 7.0),
+        ("assumed", "simulated", 1, 20.0),
+    ]
+    assert [one["path"] for one in sums.skipped] == ["bad.xlsx"]
+
+
+def test_falls_have_a_range_over_earthquakes_where_they_were_simulated(sums):
+    surveyed = find(sums, "surveyed", "simulated").falls
+    assert (surveyed.low, surveyed.high, surveyed.draws, surveyed.apart) == (0, 6, 4, 0)
+    formula = find(sums, "surveyed", "formula").falls
+    assert (formula.low, formula.draws, formula.apart) == (None, 0, 40.0)
+
+
+def test_people_on_routes_without_joint_outcomes_and_of_an_unknown_state_stand_apart(sums):
+    """Of 12 expected people 10 are in the draws."""
+    group = find(sums, "surveyed", "simulated")
+    assert (group.people.expected, group.people.apart, group.people.high) == (12, pytest.approx(2), 20)
+    assert (group.occupants, group.people_not_known, group.people_known) == (100, 30, 70)
+    assert (group.routes[RouteState.NOT_KNOWN], group.routes[RouteState.OPEN]) == (2, 2)
+
+
+def test_pieces_are_counted_by_class_and_costs_that_are_not_known_are_not_taken_as_nothing(sums):
+    group = find(sums, "surveyed", "simulated")
+    assert (group.pieces, group.counted, group.unconfirmed, group.anchored) == (20, 16, 2, 2)
+    assert list(group.by_class.items()) == list(zip(RiskClass, (8, 6, 2, 0), strict=True))
+    assert (group.cost, group.works, group.works_without_cost) == (150, 4, 3)
+    blank = view([{"path": "a", "cost": None, "draws": 0, "basis": "formula"}])
+    assert blank.groups[0].cost is None
+
+
+def test_buildings_that_are_not_of_this_earthquake_without_a_place_or_assumed_are_counted(sums):
+    surveyed, assumed = find(sums, "surveyed", "simulated"), find(sums, "assumed", "simulated")
+    assert (surveyed.unplaced, assumed.unplaced) == (1, 1)
+    assert find(sums, "surveyed", "formula").own_motions == 1
+    assert (assumed.falls_low_inventory, assumed.falls_high_inventory) == (5, 60)
+    assert (surveyed.falls_low_inventory, assumed.people.expected) == (None, 0)
