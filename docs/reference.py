@@ -4,7 +4,9 @@ Each page is written by hand down to the line `MARK`; what follows repeats what 
 the workbook, the methods, the help of the commands. A test compares the pages with what this script writes.
 """
 
+import ast
 import inspect
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import fields as fields_of
 from pathlib import Path
@@ -23,6 +25,7 @@ from assess.workbook.schema import CLASS, LIVE, SHEETS, WORKINGS, Column
 from assess.workbook.template import describe
 
 DOCS = Path(__file__).parent
+METHODS = DOCS.parent / "assess" / "methods"
 MARK = "<!-- Generated from here on: change the code, then run `python docs/reference.py`. -->"
 OTHER = "it"
 """The language in which the names of the workbook are listed next to the English ones."""
@@ -138,6 +141,7 @@ def _describe_methods() -> Iterator[str]:
 
 
 def _describe_method(info: MethodInfo) -> Iterator[str]:
+    sections = _read_sections(info.key)
     yield f"## {info.title}"
     yield ""
     yield info.predicts
@@ -145,16 +149,20 @@ def _describe_method(info: MethodInfo) -> Iterator[str]:
     yield f"**Source.** {info.reference}"
     yield ""
     checked = (f"{name} {one.low:g} to {one.high:g} {one.unit}".rstrip() for name, one in info.valid.items())
-    if info.valid:
-        yield from ("**Validity.**", "", f"Checked for {'; '.join(checked)}.", "")
-    lists = {
-        "Equations": info.equations, "Assumptions": info.assumptions,
-        "Departures from the source": info.departures or ("None.",),
-    }  # fmt: skip
-    for heading, texts in lists.items():
+    validity = "; ".join(checked)
+    yield from ("**Validity.**", "", f"{f'Checked for {validity}. ' if validity else ''}{sections['Validity']}", "")
+    for heading, texts in (("Equations", info.equations), ("Assumptions", info.assumptions)):
         yield from (f"**{heading}.**", "", *(f"* {text}" for text in texts), "") if texts else ()
+    yield from ("**Departures from the source.**", "", sections["Departures"], "")
     if info.flags:
         yield from _build_table(("flag", "meaning"), ((f"`{flag}`", str(text)) for flag, text in info.flags.items()))
+
+
+def _read_sections(key: str) -> dict[str, str]:
+    """Return the text of each section of a method's docstring by its heading."""
+    docstring = ast.get_docstring(ast.parse((METHODS / f"{key}.py").read_text(encoding="utf-8"))) or ""
+    _, *parts = re.split(r"^(\w+)\n-+\n", docstring, flags=re.MULTILINE)
+    return {heading: text.strip() for heading, text in zip(parts[::2], parts[1::2], strict=True)}
 
 
 # ---------------------------------------------------------------- the commands

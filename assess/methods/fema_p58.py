@@ -1,7 +1,26 @@
-"""FEMA P-58 contents: the chance that unanchored contents overturn, lognormal in PFV.
+"""FEMA P-58 contents (key ``fema_p58``): the chance that unanchored contents overturn, lognormal in PFV.
 
-The reserve-energy method of ASCE 43-05, Appendix A, at a rotation of α, with the Newmark-Hall median amplification of
-velocity (1.65 at 5 % damping), gives all nine published medians within 2 %.
+Reference
+---------
+FEMA P-58, second edition, fragility database 3.1.2, E.20.22.102a to 125a (unanchored bookcases and filing cabinets),
+as the SimCenter DamageAndLossModelLibrary carries it.
+
+Equations
+---------
+P = Φ(ln(PFV/PFV50)/β), β = 0.5
+PFV50 = V_imp/[2.31 - 0.41 ln(100 β_e)]
+V_imp = √[(4/3) g H (1/cos α - 1)/cos² α], α = atan(B/H)
+C_R = 1 - 1.5 sin² α, γ = -2 ln C_R, β_e = γ/√(4π² + γ²)
+
+Validity
+--------
+The nine published medians lie at B/H 0.155 to 0.625; the closed form gives all of them within 2 %.
+
+Departures
+----------
+FEMA P-58 publishes nine medians and no formula. The closed form is *inferred* from them: it is the reserve-energy
+method of ASCE 43-05, Appendix A, at a rotation of α, with the Newmark-Hall median amplification of velocity (1.65 at
+5 % damping).
 """
 
 from collections.abc import Mapping

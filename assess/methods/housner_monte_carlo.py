@@ -1,8 +1,25 @@
-"""Housner Monte Carlo: the rocking of each piece, integrated under many motions.
+"""Housner Monte Carlo (key ``housner_monte_carlo``): the rocking of each piece, integrated under many motions.
 
-The paper's Monte Carlo takes the floor's motion and the piece as exactly known; that is found as well (`ideal`), but
-adopted is the chance in an earthquake like this one, of a piece like this one: see `assess.rocking.draws`. What the
-piece does under the recorded motion itself is found too. With N "auto", the interval is that of six checks.
+Reference
+---------
+Sections 2.1 and 3.2.2 of "Overturning Risk of Furniture in Earthquake Affected Areas", equations (1) to (4); the block
+is Housner's (1963), of any height of the centre of gravity.
+
+Equations
+---------
+theta'' = -p2 [sin(alpha sgn theta - theta) + (a_g/g) cos(alpha sgn theta - theta)], p2 = m g R / I0; risk =
+overturned / N, with its Wilson interval.
+
+Validity
+--------
+Rigid, free-standing pieces that neither slide nor bounce, with B/H below 1.41 (of a uniform block), in plane motion.
+
+Departures
+----------
+N is 200 by default; the paper's is 100, of which none fallen cannot show "low". With N "auto", the interval is that of
+six checks. What the piece does under the recorded motion itself is found too. The paper's Monte Carlo takes the floor's
+motion and the piece as exactly known; that is found as well (`ideal`), but adopted is the chance in an earthquake like
+this one, of a piece like this one: see `assess.rocking.draws`.
 """
 
 import math

@@ -1,7 +1,22 @@
-"""Ishiyama's criterion: lower limits of PFA and PFV, both of which overturning must exceed.
+"""Ishiyama's criterion (key ``ishiyama``): lower limits of PFA and PFV, both of which overturning must exceed.
 
-10·B/√H is 0.4 times the velocity √[(8 g r/3)(1 - cos α)/cos² α] of an impulse that just overturns a slender block,
-within 2 % where B/H is small; rounded as in Japanese practice (4 of the Japanese rule is PFV = 40 cm/s).
+Reference
+---------
+Ishiyama Y (1982), Earthquake Engineering & Structural Dynamics 10(5):635-650.
+
+Equations
+---------
+Overturning is possible where PFA > g·B/H and PFV > 10·B/√H (cm, cm/s). 10·B/√H is 0.4 times the velocity
+√[(8 g r/3)(1 - cos α)/cos² α] of an impulse that just overturns a slender block, within 2 % where B/H is small.
+
+Validity
+--------
+Rigid blocks that do not slide. The limits are lower limits: exceeded, overturning is possible, not certain.
+
+Departures
+----------
+The velocity limit is taken in its rounded form, as in Japanese practice (4 of the Japanese rule is PFV = 40 cm/s).
+Where PFA alone is below its limit the answer is known without PFV.
 """
 
 import math

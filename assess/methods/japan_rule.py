@@ -1,6 +1,20 @@
-"""Japanese rule: pieces slender for their height must be fixed, whatever the shaking.
+"""Japanese rule (key ``japan_rule``): pieces slender for their height must be fixed, whatever the shaking.
 
-It is Ishiyama's velocity limit at a PFV of 40 cm/s. A piece within rounding of the limit is on it.
+Reference
+---------
+Consumer Affairs Agency of Japan (2010). The limit is assumed: it is as Japanese safety guidance quotes it.
+
+Equations
+---------
+Must be fixed where B/√H ≤ 4, B and H in cm, B the shorter plan side.
+
+Validity
+--------
+Furniture at home and at work in Japan; it looks at no motion. It is Ishiyama's velocity limit at a PFV of 40 cm/s.
+
+Departures
+----------
+A piece within rounding of the limit (1e-9) is on it, and must be fixed.
 """
 
 from typing import Any

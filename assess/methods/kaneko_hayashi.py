@@ -1,11 +1,32 @@
-"""Kaneko and Hayashi's simplified formula: the chance of overturning from size, PFA and PFV.
+"""Kaneko and Hayashi's simplified formula (key ``kaneko_hayashi``): the chance of overturning from size, PFA and PFV.
 
-Compared by Nakamura et al. (2008) with what one 14-storey building went through in 2005; exp(λ_A) equals five published
-Japanese values to 1 gal. Equation (5) is right and the paper's prose is not: F_b is the frequency at which both medians
-are the same motion, exp(λ_A) = 2π F_b exp(λ_V) (to 0.05 %: 15.6 is rounded).
+Reference
+---------
+Kaneko M, Hayashi Y (2004), 13th World Conference on Earthquake Engineering, as equations (5) to (7) of "Overturning
+Risk of Furniture in Earthquake Affected Areas" print it.
 
-PFV unknown: on the velocity branch F_f > F_b means PFV/exp(λ_V) < k = PFA/exp(λ_A), so that no PFV gives more than
-α·max[Φ(ln k/ζ_A), Φ(ln k/ζ_V)].
+Equations
+---------
+(5)  R = α·Φ((ln PFA - λ_A)/ζ_A) where F_f ≤ F_b, R = α·Φ((ln PFV - λ_V)/ζ_V) where F_f > F_b
+(6)  λ_A = ln[(B/H) g (1 + B/H)], λ_V = ln[10 B/√H (1 + B/H)^2.5]
+(7)  F_f = PFA/(2π PFV), F_b = 15.6/√H (1 + B/H)^-1.5
+in cm, cm/s, cm/s², Hz. exp(λ_A) and exp(λ_V) are medians: the motion that overturns half of the pieces.
+
+Validity
+--------
+No range is printed. Compared by Nakamura et al. (2008) with what one 14-storey building went through in 2005; exp(λ_A)
+equals five published Japanese values to 1 gal.
+
+Departures
+----------
+* The paper's prose states the switch the other way round. Equation (5) is right and is used: F_b is the frequency at
+  which both medians are the same motion, exp(λ_A) = 2π F_b exp(λ_V) (to 0.05 %: 15.6 is rounded).
+* ζ_A, ζ_V are not printed: settings, 0.20 and 0.5 (`Settings` says why). As they differ, R jumps at F_f = F_b, so a
+  slightly thinner piece may come out safer there. Flagged within 10 % of the switch; the 10 % is our choice.
+* PFV unknown: the largest R that any PFV gives, α·max[Φ(ln k/ζ_A), Φ(ln k/ζ_V)], k = PFA/exp(λ_A); on the velocity
+  branch F_f > F_b means PFV/exp(λ_V) < k.
+* α is the setting everywhere; a piece that slides, or slides and rocks, at the floor's PFA by Shenton's limits is only
+  flagged.
 """
 
 import math

@@ -1,10 +1,30 @@
-"""Proposed OR formula: the chance of overturning from B/H and PFA alone.
+"""Proposed OR formula (key ``proposed_or``): the chance of overturning from B/H and PFA alone.
 
-`raw` is equation (9) as printed; it gives all 27 values of Table 3 within 0.0051 (AL1, mean: 0.65495 against 0.66).
-`value` is what is used, so that no stronger motion and no thinner piece comes out safer. As B/H falls, equation (9)
-rises to B/H* and falls below it; PFA in B/H* is capped at 640 cm/s², since both stand still where B/H* and PFA* meet,
-near 656 cm/s². The small residue of the cap (B/H 0.1526 to 0.154) lies where equation (9) is above 1, so the clip hides
-it.
+Reference
+---------
+"Overturning Risk of Furniture in Earthquake Affected Areas", section 4 (the paper prints neither authors nor DOI).
+
+Equations
+---------
+(9)  OR = a + b/(B/H) + c·PFA + d/(B/H)² + e·PFA² + f·PFA/(B/H), PFA in cm/s².
+
+Validity
+--------
+Fitted to direct integrations of Housner's block in three buildings; checked by shaking-table tests (Table 3) for B/H
+0.14 to 0.39 and PFA 0.10 to 0.90 g. `raw` gives all 27 values of Table 3 within 0.0051 (AL1, mean: 0.65495 against
+0.66).
+
+Departures
+----------
+`raw` is equation (9) as printed. `value` is what is used, so that no stronger motion and no thinner piece comes out
+safer:
+
+1. a thin piece: as B/H falls, equation (9) rises to B/H* = -2d/(b + f·PFA) and falls below it. It is evaluated at
+   max(B/H, B/H*), with PFA in B/H* capped at 640 cm/s²: where B/H* and PFA* meet, near 656 cm/s², both stand still;
+2. strong motion: as PFA rises, it rises to PFA* = (c + f/(B/H))/(-2e) and falls past it. The value at PFA* is held;
+3. a fit knows no bounds: clipped to [0, 1].
+
+The small residue of the cap (B/H 0.1526 to 0.154) lies where equation (9) is above 1, so the clip hides it.
 """
 
 from collections.abc import Mapping

@@ -1,4 +1,22 @@
-"""Static criterion of Milne and West: whether the piece can start to rock at all."""
+"""Static criterion of Milne and West (key ``static``): whether the piece can start to rock at all.
+
+Reference
+---------
+Equilibrium of a block at rest, the condition on line 118 of "Overturning Risk of Furniture in Earthquake Affected
+Areas" (section 2.1); known as the formula of Milne or West.
+
+Equations
+---------
+Rocking starts where PFA/g > B/H.
+
+Validity
+--------
+Any rigid block whose centroid is at mid-height and that does not slide.
+
+Departures
+----------
+None.
+"""
 
 from typing import Any
 
