@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any, TextIO
 
 import numpy as np
-from numpy.typing import NDArray
 
 from assess.fields import MOTION_FIELDS, STATE_FIELDS
 from assess.progress import SILENT, Progress
@@ -247,11 +246,23 @@ def write_npz(results: Results, path: Path, progress: Progress = SILENT) -> None
 
 
 def _pack_outcomes(results: Results) -> bytes:
-    blocks = [(one, _outcomes(results, one.index)) for one in results.motions if one.ensemble is not None]
-    most = max((rotation.shape[1] for _, (_, _, _, rotation) in blocks), default=0)
-    cases = _joined([block[0] for _, block in blocks], np.zeros(0, dtype=np.int64))
+    names, series = ("cases", "runs", "overturned", "rotation"), results.series
+    blocks: list[tuple[Any, ...]] = [
+        (one, *(series[f"motion/{one.index}/{name}"] for name in names))
+        for one in results.motions
+        if one.ensemble is not None
+    ]
+    most = max((rotation.shape[1] for *_rest, rotation in blocks), default=0)
+    cases = np.concatenate([np.zeros(0, np.int64), *(own.astype(np.int64) for _one, own, *_rest in blocks)])
     items = [results.item_rows[at] for at in results.cases_table.item[cases]]
-    motions = [one for one, block in blocks for _ in block[0]]
+    motions = [one for one, own, *_rest in blocks for _ in own]
+    rotations = []
+    for _one, _cases, runs, _bits, rotation in blocks:
+        wide = np.pad(rotation.astype(np.float32), ((0, 0), (0, most - rotation.shape[1])), constant_values=np.nan)
+        rotations.append(np.where(np.arange(most) >= runs.astype(np.int64)[:, np.newaxis], np.float32(np.nan), wide))
+    bits = [
+        np.pad(packed, ((0, 0), (0, -(-most // 8) - packed.shape[1]))) for _one, _cases, _runs, packed, _wide in blocks
+    ]
     packed = io.BytesIO()
     np.savez_compressed(
         packed,
@@ -260,33 +271,8 @@ def _pack_outcomes(results: Results) -> bytes:
         axis=np.array([motion.axis for motion in motions], dtype=np.str_),
         source=np.array([motion.label for motion in motions], dtype=np.str_),
         governs=np.isin(cases, [item.governing for item in results.item_rows]),
-        runs=_joined([block[1] for _, block in blocks], np.zeros(0, dtype=np.int64)),
-        overturned=_joined([_widen_bits(block[2], most) for _, block in blocks], np.zeros((0, 0), np.uint8)),
-        max_rotation_ratio=_joined(
-            [_widen(block[3], block[1], most) for _, block in blocks], np.zeros((0, 0), np.float32)
-        ),
+        runs=np.concatenate([np.zeros(0, np.int64), *(runs.astype(np.int64) for _one, _cases, runs, *_ in blocks)]),
+        overturned=np.concatenate([np.zeros((0, -(-most // 8)), np.uint8), *bits]),
+        max_rotation_ratio=np.concatenate([np.zeros((0, most), np.float32), *rotations]),
     )
     return packed.getvalue()
-
-
-def _outcomes(results: Results, motion: int) -> tuple[NDArray[Any], ...]:
-    names = ("cases", "runs", "overturned", "rotation")
-    cases, runs, overturned, rotation = (results.series[f"motion/{motion}/{name}"] for name in names)
-    return cases.astype(np.int64), runs.astype(np.int64), overturned, rotation
-
-
-def _joined(blocks: list[NDArray[Any]], empty: NDArray[Any]) -> NDArray[Any]:
-    return np.concatenate(blocks) if blocks else empty
-
-
-def _widen_bits(packed: NDArray[Any], most: int) -> NDArray[Any]:
-    wide = np.zeros((len(packed), -(-most // 8)), dtype=np.uint8)
-    wide[:, : packed.shape[1]] = packed
-    return wide
-
-
-def _widen(rotation: NDArray[Any], runs: NDArray[Any], most: int) -> NDArray[Any]:
-    wide = np.full((len(rotation), most), np.nan, dtype=np.float32)
-    wide[:, : rotation.shape[1]] = rotation
-    wide[np.arange(most) >= runs[:, np.newaxis]] = np.nan
-    return wide

@@ -20,30 +20,30 @@ EAST_ASIAN = (
 """Families with Chinese, Japanese and Korean characters that systems bring along or offer, the best match first."""
 
 
-@cache
-def print_fonts() -> dict[str, str]:
-    """Return the files of the fonts of a PDF by the address under which its style rules name them."""
-    return {_name_address(*key): str(path) for key, path in _find_print_fonts().items()}
-
-
-def _name_address(family: str, style: str) -> str:
-    return f"font:{family}-{style}".replace(" ", "-")
-
-
 def _find_print_fonts() -> dict[tuple[str, str], Path]:
     """Return the fonts of a PDF by family and style: a machine without fonts makes the same PDF.
 
     Signs such as ⚓, which are emoji as well, are looked for in a family of the name emoji first: it is this font, too.
     """
     own = resources.fonts()
-    signs = {("emoji", style): path for (family, style), path in own.items() if family == "Report Signs"}
-    return own | {key: path for key, path in signs.items() if key[1] == "regular"}
+    signs = own.get(("Report Signs", "regular"))
+    return own | ({("emoji", "regular"): signs} if signs else {})
+
+
+def _name_address(key: tuple[str, str]) -> str:
+    return f"font:{'-'.join(key)}".replace(" ", "-")
+
+
+@cache
+def print_fonts() -> dict[str, str]:
+    """Return the files of the fonts of a PDF by the address under which its style rules name them."""
+    return {_name_address(key): str(path) for key, path in _find_print_fonts().items()}
 
 
 @cache
 def font_faces() -> str:
     """Return the fonts of a PDF as @font-face rules that name `print_fonts`: as part of the CSS, files take seconds."""
-    return _write_faces({key: _name_address(*key) for key in _find_print_fonts()})
+    return _write_faces({key: _name_address(key) for key in _find_print_fonts()})
 
 
 @cache

@@ -33,12 +33,14 @@ def draw(
     It can be cancelled with whatever is put into it, and before each panel is laid out and drawn. It is not made in a
     thread that is left behind, as the defaults of matplotlib have to be set back by then.
     """
-    Figure, rc_context = progress.wait_for(_import_matplotlib)
+    Figure, Text, rc_context = progress.wait_for(_import_matplotlib)
     with one_at_a_time(progress), rc_context(_style()):
         figure = Figure(figsize=(width, height), layout="constrained")
         figure.stale_callback = lambda *_: progress.check()  # called with whatever is put into it
         paint(figure)
-        _replace_missing(figure)
+        for one in figure.findobj(Text):
+            if missing := find_undrawn(one.get_text()):
+                one.set_text(replace_signs(one.get_text(), missing))
         _write_numbers(figure)
         file = BytesIO()
         figure.savefig(file, format=kind, dpi=150, metadata=dict.fromkeys(_UNDATED[kind]))
@@ -59,15 +61,16 @@ def _style() -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _import_matplotlib() -> tuple[Any, Any]:
+def _import_matplotlib() -> tuple[Any, Any, Any]:
     """Return what figures are drawn with; its fonts are listed, and what writes SVG is loaded."""
     import matplotlib as mpl
     from matplotlib import font_manager
     from matplotlib.backends import backend_svg
     from matplotlib.figure import Figure
+    from matplotlib.text import Text
 
     _ = font_manager, backend_svg
-    return Figure, mpl.rc_context
+    return Figure, Text, mpl.rc_context
 
 
 @contextmanager
@@ -81,28 +84,20 @@ def one_at_a_time(progress: Progress) -> Iterator[None]:
         _DRAWING.release()
 
 
-def _replace_missing(figure: Any) -> None:
-    from matplotlib.text import Text
-
-    for one in figure.findobj(Text):
-        if missing := find_undrawn(one.get_text()):
-            one.set_text(replace_signs(one.get_text(), missing))
-
-
 def _write_numbers(figure: Any) -> None:
     """Have numbers along axes written as the language in use does; ticks with words are as they were set."""
     from matplotlib.ticker import LogFormatter, ScalarFormatter
 
     if spoken().number("1.5") == "1.5":
         return
+
+    def write(ticks: Callable[[Any], list[str]], say: Callable[[str], str], values: Any) -> list[str]:
+        return [say(text) for text in ticks(values)]
+
     formatters = [axis.get_major_formatter() for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)]
     numeric: dict[int, Any] = {id(one): one for one in formatters if isinstance(one, (ScalarFormatter, LogFormatter))}
     for formatter in numeric.values():  # axes that share a scale share its formatter
-        formatter.format_ticks = partial(_write_ticks, formatter.format_ticks, spoken().number)
-
-
-def _write_ticks(write: Callable[[Any], list[str]], say: Callable[[str], str], values: Any) -> list[str]:
-    return [say(text) for text in write(values)]
+        formatter.format_ticks = partial(write, formatter.format_ticks, spoken().number)
 
 
 _PATH, _DIGITS = re.compile(rb'(?<= d=")[^"]+'), re.compile(rb"(\.\d\d)\d+")

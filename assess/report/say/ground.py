@@ -305,17 +305,7 @@ PEAKS = ("ground_pga", "sds")
 
 
 def say_peak(results: Results, name: str, given: str) -> str:
-    """Return a peak of the ground in words: as given, or what is used in its place, and why.
-
-    Parameters
-    ----------
-    results : Results
-        Of the run.
-    name : str
-        Field of the building, one of `PEAKS`.
-    given : str
-        Its value in the workbook, with its unit.
-    """
+    """Return a peak of the ground, one of `PEAKS`, in words: as `given` with its unit, or what is used, and why."""
     reason = _find_reason(results, name)
     if not reason:
         return given
