@@ -1,5 +1,6 @@
 """The evacuation routes on a plan: every segment as a band, with its state in colour, line and sign."""
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -14,6 +15,7 @@ from assess.report.say.route import (
     say_segment_state,
 )
 from assess.route_results import RouteState, RouteTables, SegmentRow
+from assess.routes.geometry import rectangle
 from assess.workbook.draft_names import is_draft
 
 NAMED = 20
@@ -72,44 +74,42 @@ class Stretch:
 
 def list_styles() -> dict[str, Style]:
     """Return how each state is drawn, the best first; none is told by colour alone."""
-    white, dark = "#ffffff", "#1c1c1c"
-    fills = {state: state.fill for state in RouteState}
-    drawn = (
-        ("open", _("open"), RouteState.OPEN, white, dark, "", 0.8),
-        ("doubtful", _("doubtful"), RouteState.DOUBTFUL, white, dark, "8 3", 1.2),
-        ("unknown", _("not known"), RouteState.NOT_KNOWN, white, dark, "8 3 2 3", 1.6),
-        ("blocked", _("blocked"), RouteState.BLOCKED, white, dark, "2 2.5", 2.0),
-        ("standing", _("blocked as it stands"), RouteState.BLOCKED, dark, white, "", 2.6),
+    white, dark, opened, blocked = "#ffffff", "#1c1c1c", RouteState.OPEN, RouteState.BLOCKED
+    doubtful, unknown, standing = RouteState.DOUBTFUL, RouteState.NOT_KNOWN, _("blocked as it stands")
+    styles = (
+        Style("open", _("open"), opened.symbol, opened.fill, white, dark, "", 0.8),
+        Style("doubtful", _("doubtful"), doubtful.symbol, doubtful.fill, white, dark, "8 3", 1.2),
+        Style("unknown", _("not known"), unknown.symbol, unknown.fill, white, dark, "8 3 2 3", 1.6),
+        Style("blocked", _("blocked"), blocked.symbol, blocked.fill, white, dark, "2 2.5", 2.0),
+        Style("standing", standing, blocked.symbol, blocked.fill, dark, white, "", 2.6),
     )
-    return {
-        name: Style(name, said, state.symbol, fills[state], ground, ink, dash, width)
-        for name, said, state, ground, ink, dash, width in drawn
-    }
+    return {one.name: one for one in styles}
 
 
 def build_stretches(routes: RouteTables) -> Mapping[str, Sequence[Stretch]]:
     """Return by floor the segments whose places both have a position on it, those with most to warn of last."""
     found: dict[str, list[Stretch]] = {}
-    styles, order = list_styles(), list(list_styles())
+    styles = list_styles()
+    order = list(styles)
     for number, one in enumerate(routes.segments, start=1):
-        if one.length_m and one.floor is not None:
-            found.setdefault(one.floor, []).append(_stretch(number, one, routes.risk, styles))
+        if not one.length_m or one.floor is None:
+            continue
+        state = "unknown" if one.state == RouteState.NOT_KNOWN else str(one.state)
+        start, end = (one.start_x_m or 0.0, one.start_y_m or 0.0), (one.end_x_m or 0.0, one.end_y_m or 0.0)
+        along = (-one.extends_start_m, one.length_m + one.extends_end_m)  # as far as it goes on round a bend
+        angle = math.degrees(math.atan2(end[1] - start[1], end[0] - start[0]))
+        found.setdefault(one.floor, []).append(Stretch(
+            number=number,
+            name=words.cut(one.segment, NAMED),
+            title=_title(one, routes.risk),
+            style=styles["standing" if one.is_blocked_standing else state],
+            start=start,
+            end=end,
+            corners=rectangle(start, angle, along, one.clear_width_used_m),
+            is_held=is_held(one, routes.risk),
+            is_draft=is_draft(one.route),
+        ))  # fmt: skip
     return {floor: sorted(own, key=lambda one: order.index(one.style.name)) for floor, own in found.items()}
-
-
-def _stretch(number: int, one: SegmentRow, risk: float, styles: Mapping[str, Style]) -> Stretch:
-    state = "unknown" if one.state == RouteState.NOT_KNOWN else str(one.state)
-    return Stretch(
-        number=number,
-        name=words.cut(one.segment, NAMED),
-        title=_title(one, risk),
-        style=styles["standing" if one.is_blocked_standing else state],
-        start=(one.start_x_m or 0.0, one.start_y_m or 0.0),
-        end=(one.end_x_m or 0.0, one.end_y_m or 0.0),
-        corners=_outline(one),
-        is_held=is_held(one, risk),
-        is_draft=is_draft(one.route),
-    )
 
 
 def _title(one: SegmentRow, risk: float) -> str:
@@ -127,22 +127,12 @@ def _title(one: SegmentRow, risk: float) -> str:
     return _("{segment}; most likely by {item}", segment=said, item=words.cut(one.most_likely_piece.item, 40))
 
 
-def _outline(one: SegmentRow) -> Corners:
-    """Return the corners of a band on the plan, as far as it goes on round a bend."""
-    x0, y0, x1, y1 = (at or 0.0 for at in (one.start_x_m, one.start_y_m, one.end_x_m, one.end_y_m))
-    long, half, before = one.length_m or 0.0, one.clear_width_used_m / 2, -one.extends_start_m
-    behind = long + one.extends_end_m
-    along, across = ((x1 - x0) / long, (y1 - y0) / long), (-(y1 - y0) / long, (x1 - x0) / long)
-    local = ((before, -half), (behind, -half), (behind, half), (before, half))
-    first, two, three, four = ((x0 + u * along[0] + v * across[0], y0 + u * along[1] + v * across[1]) for u, v in local)
-    return first, two, three, four
-
-
 def place_signs(ways: Sequence[Stretch], taken: Sequence[Bounds], unit: float) -> Iterator[Stretch]:
     """Place the sign of each segment on its centre line, where it covers least; an open one may go without."""
     held: list[Bounds] = []
     for one in reversed(ways):
-        tried = [sign_box(_point(one, share), unit) for share in _ALONG]
+        (x, y), (x_end, y_end) = one.start, one.end
+        tried = [sign_box((x + share * (x_end - x), y + share * (y_end - y)), unit) for share in _ALONG]
         best = min(tried, key=lambda box: (_covered(box, held), _covered(box, taken)))
         if one.is_open and _covered(best, (*held, *taken)) > 0:
             yield one
@@ -164,10 +154,6 @@ def name_ways(ways: Sequence[Stretch], taken: Sequence[Bounds], frame: Bounds, u
     found = place_each(signed[:MOST], blocked, frame, unit)
     small = LINE * LINE * unit * unit / 20
     return [one for one in found if one and one.lead is None and _covered(one.box, blocked) < small]
-
-
-def _point(one: Stretch, share: float) -> Point:
-    return tuple(start + share * (end - start) for start, end in zip(one.start, one.end, strict=True))  # type: ignore[return-value]
 
 
 def _covered(box: Bounds, others: Sequence[Bounds]) -> float:
