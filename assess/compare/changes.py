@@ -14,7 +14,6 @@ from typing import Generic, TypeVar
 
 from assess.compare.past_run import ANCHORED, APART, CLASSES, PastChance, PastPiece, PastRun, PastState
 from assess.errors import InputError
-from assess.i18n import fill
 from assess.natural import natural_key
 from assess.results import CANNOT_ROCK
 from assess.route_results import RouteState
@@ -207,12 +206,10 @@ def compare(before: PastRun, after: PastRun) -> Comparison:
     """Compare two runs; raises InputError if they have no item in common: they are of different buildings."""
     pieces = _match(before.pieces, after.pieces, lambda one: key(one.item))
     if (before.pieces or after.pieces) and not any(one and other for one, other in pieces):
-        raise InputError(
-            fill(
-                "{before} and {after} have no item in common: they cannot be compared. Name two runs of one building.",
-                before=before.path,
-                after=after.path,
-            )
+        raise InputError.about(
+            "{before} and {after} have no item in common: they cannot be compared. Name two runs of one building.",
+            before=before.path,
+            after=after.path,
         )
     is_comparable, states = before.main_basis == after.main_basis, []
     for was, now in ((before.routes, after.routes), (before.rooms, after.rooms)):

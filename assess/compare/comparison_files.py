@@ -19,7 +19,6 @@ from assess.delivery.deliver import Written, deliver, explain_fault, stage_for
 from assess.delivery.disk import find_digest, flush_file
 from assess.delivery.folders import NEW
 from assess.errors import InputError, PdfUnavailableError
-from assess.i18n import fill
 from assess.progress import SILENT, Progress
 from assess.report import check_folder
 from assess.report.ownership import find_reports
@@ -48,16 +47,10 @@ def write_comparison(
     `formats` are of "html", "pdf", "xlsx", "json"; `options` language and kind of PDF. Files of an earlier comparison
     in the folder are replaced or removed, others stay. Returns the file of each format, and what was removed.
 
-    Raises
-    ------
-    InputError
-        If a format is unknown, or a file of the user's stands at the name of one of the files.
-    PdfUnavailableError
-        If the native libraries of the PDF are missing; all other formats have been written.
-    OutputError
-        If a file cannot be written; what was there before is left as it was.
-    CancelledError
-        If the work was cancelled; nothing was written.
+    Raises InputError if a format is unknown, or a file of the user's stands at the name of one of the files;
+    PdfUnavailableError if the native libraries of the PDF are missing; all other formats have been written; OutputError
+    if a file cannot be written; what was there before is left as it was; CancelledError if the work was cancelled;
+    nothing was written.
     """
     folder, options = Path(folder), options or ReportOptions()
     wanted = _arrange(formats)
@@ -92,7 +85,7 @@ def _arrange(formats: Sequence[str]) -> list[str]:
     unknown = [name for name in formats if name not in FILES]
     if unknown:
         known = ", ".join(sorted(FILES))
-        raise InputError(fill("formats: {name!r} is unknown, expected some of: {known}", name=unknown[0], known=known))
+        raise InputError.about("formats: {name!r} is unknown, expected some of: {known}", name=unknown[0], known=known)
     return [name for name in FILES if name in {*formats, "json"}]
 
 

@@ -164,16 +164,10 @@ _Row = TypeVar("_Row")
 def read_run(path: Path) -> PastRun:
     """Read the results of a run.
 
-    Parameters
-    ----------
-    path : Path
-        A results.json under any name, or the folder that holds one.
+    * `path`: a results.json under any name, or the folder that holds one.
 
-    Raises
-    ------
-    InputError
-        If there is none, it cannot be read, is cut off, was written by another program or by a version of this one
-        with another major version of the schema, or a value in it is not what it may be.
+    Raises InputError if there is none, it cannot be read, is cut off, was written by another program or by a version of
+    this one with another major version of the schema, or a value in it is not what it may be.
     """
     return read_record(path)[0]
 
@@ -194,13 +188,13 @@ def _load(path: Path, file: Path) -> tuple[bytes, datetime.datetime]:
         status = file.stat()
         if status.st_size > MOST_BYTES:
             sizes = {"size": status.st_size >> 20, "most": MOST_BYTES >> 20}
-            raise InputError(
-                fill("{path} is too large: {size:,} MB, at most {most:,} MB are read.", path=file, **sizes)
+            raise InputError.about(
+                "{path} is too large: {size:,} MB, at most {most:,} MB are read.", path=file, **sizes
             )
         return read_input(file, MOST_BYTES), datetime.datetime.fromtimestamp(status.st_mtime, datetime.UTC)
     except OSError as error:
         why = error.strerror or str(error)
-        raise InputError(fill("{path} cannot be read: {why}.", path=file, why=why)) from None
+        raise InputError.about("{path} cannot be read: {why}.", path=file, why=why) from None
 
 
 def _explain_missing(path: Path, file: Path) -> str:
@@ -226,14 +220,14 @@ def _parse(file: Path, data: bytes) -> Record:
     if not isinstance(schema, str) or not isinstance(record.get("assess"), dict):
         raise InputError(foreign)
     if COMPARISON in record:
-        raise InputError(fill("{path} is a comparison, not a run: name the {name} of each run.", path=file, name=DATA))
+        raise InputError.about("{path} is a comparison, not a run: name the {name} of each run.", path=file, name=DATA)
     major, ours = (one.partition(".")[0] for one in (schema, VERSION))
     if not (major.isascii() and major.isdigit() and len(major) < 6):
         raise InputError(foreign)
     if major.lstrip("0") != ours:
         raise InputError(_describe_version(file, schema, ours, is_earlier=int(major) < int(ours)))
     if missing := [name for name in _TOP if name not in record]:
-        raise InputError(fill("{path} is incomplete: {name} is missing. Run assess again.", path=file, name=missing[0]))
+        raise InputError.about("{path} is incomplete: {name} is missing. Run assess again.", path=file, name=missing[0])
     return record
 
 
@@ -386,8 +380,8 @@ class Reader:
             where = f"{place}[{at}]"
             one = read(row, where)
             if name(one) in found:
-                raise InputError(
-                    fill("{path}: {place}: duplicate name. Run assess again.", path=self.file, place=where)
+                raise InputError.about(
+                    "{path}: {place}: duplicate name. Run assess again.", path=self.file, place=where
                 )
             found[name(one)] = one
         return tuple(found.values())
@@ -397,14 +391,12 @@ class Reader:
         value = row.get(name, _MISSING)
         if value is not _MISSING and is_right(value):
             return value
-        raise InputError(
-            fill(
-                "{path}: {place} is {value}, expected {expected}. Run assess again.",
-                path=self.file,
-                place=f"{place}.{name}" if place else name,
-                value=fill("missing") if value is _MISSING else repr(value)[:40],
-                expected=expected,
-            )
+        raise InputError.about(
+            "{path}: {place} is {value}, expected {expected}. Run assess again.",
+            path=self.file,
+            place=f"{place}.{name}" if place else name,
+            value=fill("missing") if value is _MISSING else repr(value)[:40],
+            expected=expected,
         )
 
     def part(self, row: Record, name: str, place: str) -> dict[str, Any]:

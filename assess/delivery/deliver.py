@@ -140,10 +140,10 @@ def explain_fault(folder: Path, error: OSError, files: Collection[str]) -> Outpu
     where = Path(error.filename2 or error.filename or folder)
     if where.name in files:
         path = folder / where.name
-        return OutputError(
-            fill("{path} could not be replaced: {why}. Is it open in another program?", path=path, why=why)
+        return OutputError.about(
+            "{path} could not be replaced: {why}. Is it open in another program?", path=path, why=why
         )
-    return OutputError(fill("{folder} cannot be written to: {why}.", folder=folder, why=why))
+    return OutputError.about("{folder} cannot be written to: {why}.", folder=folder, why=why)
 
 
 def save(files: Mapping[Path, bytes]) -> None:

@@ -18,7 +18,6 @@ from pathlib import Path
 
 from assess.delivery.traces import forget_folder, make_folder, remove_folder
 from assess.errors import OutputError
-from assess.i18n import fill
 from assess.progress import SILENT, Progress
 
 if sys.platform == "win32":
@@ -112,8 +111,8 @@ def locked(folder: Path, progress: Progress = SILENT) -> Iterator[None]:
     while not lock.take():
         progress.check()
         if time.monotonic() > latest:
-            raise OutputError(
-                fill("{folder} is in use: another run is writing to it. Wait until it has ended.", folder=folder)
+            raise OutputError.about(
+                "{folder} is in use: another run is writing to it. Wait until it has ended.", folder=folder
             )
         time.sleep(_ASKED_EVERY)
     try:

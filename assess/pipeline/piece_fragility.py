@@ -169,40 +169,31 @@ def find_piece_fragilities(
 ) -> PieceFragilities:
     """Find how likely pieces overturn at each level of their floor's PFA or PFV, and fit lognormals to it.
 
-    Parameters
-    ----------
-    assessment : Assessment
-        From `assess.pipeline.run.compute`, simulated or not; its settings give the number of draws and their seed.
-    by, im : str
-        What has one curve, of `BY`; the intensity measure, of `MEASURES`.
-    levels : sequence of float, optional
-        Rising levels [m/s2] or [m/s], above 0. By default each curve takes preferred numbers, in g or cm/s, from where
-        about nothing falls to where about everything does.
-    jobs : int, optional
-        Threads; as many as there are processors by default. They do not change a result.
-    progress : Progress
-        Receives the stage "rocking", more than once where levels are added; obeys a cancel.
+    * `assessment`: from `assess.pipeline.run.compute`, simulated or not; its settings give the number of draws and
+      their seed.
+    * `by`, `im`: what has one curve, of `BY`; the intensity measure, of `MEASURES`.
+    * `levels`: rising levels [m/s2] or [m/s], above 0. By default each curve takes preferred numbers, in g or cm/s,
+      from where about nothing falls to where about everything does.
+    * `jobs`: threads; as many as there are processors by default. They do not change a result.
+    * `progress`: receives the stage "rocking", more than once where levels are added; obeys a cancel.
 
-    Raises
-    ------
-    InputError
-        If `by`, `im` or `levels` cannot be used, the number of motions is "auto", they are the user's own, no piece can
-        rock, or the results may exceed the available memory.
+    Raises InputError if `by`, `im` or `levels` cannot be used, the number of motions is "auto", they are the user's
+    own, no piece can rock, or the results may exceed the available memory.
     """
     settings = assessment.settings
     if settings.runs == AUTO or assessment.suite is not None:
-        raise InputError(fill('runs: a fragility needs a fixed number of generated motions, not "auto" or a suite'))
+        raise InputError.about('runs: a fragility needs a fixed number of generated motions, not "auto" or a suite')
     by, im = _choose("by", by, BY), _choose("im", im, MEASURES)
     if levels is not None:
         levels = [float(one) for one in levels]
         is_rising = all(one < other for one, other in pairwise(levels))
         if not levels or not is_rising or not all(0 < one < math.inf for one in levels):
-            raise InputError(
-                fill("levels: expected one or more finite numbers above 0, each larger than the one before")
+            raise InputError.about(
+                "levels: expected one or more finite numbers above 0, each larger than the one before"
             )
     rocked = np.unique(assessment.case_item[~assessment.cases.is_stocky])
     if not rocked.size:
-        raise InputError(fill("no piece can rock: all are too stocky, or there are none."))
+        raise InputError.about("no piece can rock: all are too stocky, or there are none.")
 
     def find() -> PieceFragilities:
         chosen = np.isin(assessment.case_item, rocked)
@@ -245,7 +236,7 @@ def find_piece_fragilities(
 def _choose(name: str, text: _Choice, choices: tuple[str, ...]) -> _Choice:
     if text not in choices:
         known = ", ".join(choices)
-        raise InputError(fill("{name} is {text!r}, expected one of: {known}", name=name, text=str(text), known=known))
+        raise InputError.about("{name} is {text!r}, expected one of: {known}", name=name, text=str(text), known=known)
     return text
 
 

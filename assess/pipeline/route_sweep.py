@@ -24,7 +24,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.errors import InputError
-from assess.i18n import fill
 from assess.methods import Ensemble
 from assess.methods.simulate import interval_width
 from assess.model import AXES, Segment
@@ -117,26 +116,18 @@ def find_fragility(
 ) -> Fragility:
     """Find how likely each route is blocked at each PFA.
 
-    Parameters
-    ----------
-    assessment : Assessment
-        Of a building with routes, simulated or not; its settings give the number of the motions and their seed.
-    values : sequence of float
-        PFA on the floors of the routes [m/s2], above 0 and rising.
-    most_inserted : int
-        How many values are inserted at most, where a chance jumps.
-    jobs, progress
-        As in `find_piece_fragilities`.
+    * `assessment`: of a building with routes, simulated or not; its settings give the number of the motions and their
+      seed.
+    * `values`: PFA on the floors of the routes [m/s2], above 0 and rising.
+    * `most_inserted`: how many values are inserted at most, where a chance jumps.
+    * `jobs`, `progress`: as in `find_piece_fragilities`.
 
-    Raises
-    ------
-    InputError
-        If the number of motions is "auto", if they are the user's own, or if the results may exceed the available
-        memory.
+    Raises InputError if the number of motions is "auto", if they are the user's own, or if the results may exceed the
+    available memory.
     """
     if assessment.settings.runs == AUTO or assessment.suite is not None:
-        raise InputError(
-            fill('runs: the sweep over PFA needs a fixed number of generated motions, not "auto" or a suite')
+        raise InputError.about(
+            'runs: the sweep over PFA needs a fixed number of generated motions, not "auto" or a suite'
         )
 
     def find() -> Fragility:

@@ -82,47 +82,28 @@ def run(
     under many motions of their floors. The pair of the highest adopted class governs, then the larger probability, then
     the larger peak that rules the formula (PFV; PFA by the paper's), then axis X.
 
-    Parameters
-    ----------
-    inventory : Inventory, str or Path
-        From `assess.read_inventory`, or a workbook, which is read.
-    settings : Settings, optional
-        Defaults to `Settings()`.
-    suite : Suite, optional
-        The user's own motions, from `assess.motion.suite.read_suite`, in place of generated ones; `settings.runs` is
-        their number then.
-    methods : sequence of Method, optional
-        Further ones, as from `assess.read_model`: reports show them next to the published ones, but no adopted risk,
-        choice or count goes by them.
-    jobs : int, optional
-        Threads; as many as there are processors by default. They do not change a result.
-    figures : bool
-        Whether the series of figures and the outcomes of every motion are kept, in one file. Without them reports leave
-        their figures out; json and csv need none.
-    series_folder : str or Path, optional
-        Where the file of series for figures is written; a temporary folder by default, which is removed with the
-        results.
-    progress : Progress or callable, optional
-        Notified of how far the work is: a callable gets an `assess.progress.Report`.
-    cancel : threading.Event, optional
-        Stops the work within half a second once it is set.
-    **options
-        Settings by their names, which change `settings`: ``run("office.xlsx", verify="none")``.
+    * `inventory`: from `assess.read_inventory`, or a workbook, which is read.
+    * `settings`: defaults to `Settings()`.
+    * `suite`: the user's own motions, from `assess.motion.suite.read_suite`, in place of generated ones;
+      `settings.runs` is their number then.
+    * `methods`: further ones, as from `assess.read_model`: reports show them next to the published ones, but no adopted
+      risk, choice or count goes by them.
+    * `jobs`: threads; as many as there are processors by default. They do not change a result.
+    * `figures`: whether the series of figures and the outcomes of every motion are kept, in one file. Without them
+      reports leave their figures out; json and csv need none.
+    * `series_folder`: where the file of series for figures is written; a temporary folder by default, which is removed
+      with the results.
+    * `progress`: notified of how far the work is: a callable gets an `assess.progress.Report`.
+    * `cancel`: stops the work within half a second once it is set.
+    * `**options`: settings by their names, which change `settings`: ``run("office.xlsx", verify="none")``.
 
     Returns
     -------
     Results
 
-    Raises
-    ------
-    WorkbookError
-        If the workbook cannot be read, or nothing that the scenario asks for serves a floor.
-    InputError
-        If a setting is not one of those allowed, or two methods have one key or title.
-    OutputError
-        If the series cannot be written.
-    CancelledError
-        If `cancel` was set.
+    Raises WorkbookError if the workbook cannot be read, or nothing that the scenario asks for serves a floor;
+    InputError if a setting is not one of those allowed, or two methods have one key or title; OutputError if the series
+    cannot be written; CancelledError if `cancel` was set.
     """
     progress = Progress.of(progress, cancel)
     if isinstance(inventory, str | Path):
@@ -248,7 +229,7 @@ def build_results(
                 write_series(path, arrays, progress)
             except OSError as error:
                 why = error.strerror or str(error)
-                raise OutputError(fill("{path} cannot be written: {why}.", path=path, why=why)) from None
+                raise OutputError.about("{path} cannot be written: {why}.", path=path, why=why) from None
     except BaseException:
         if is_temporary:
             remove_folder(folder)
@@ -297,10 +278,8 @@ def _join_methods(further: Sequence[Method]) -> tuple[Method, ...]:
         taken = [str(getattr(one, name)) for one in every]
         twice = [one for one in taken if taken.count(one) > 1]
         if twice:
-            raise InputError(
-                fill("two methods have the {name} {text!r}: give each its own, or name one only once.",
-                     name=name, text=twice[0])
-            )  # fmt: skip
+            raise InputError.about("two methods have the {name} {text!r}: give each its own, or name one only once.",
+                     name=name, text=twice[0])  # fmt: skip
     return every
 
 

@@ -29,11 +29,10 @@ def spell_names(inventory: Inventory, names: Sequence[str]) -> tuple[str, ...]:
 
 def _refuse(inventory: Inventory, name: str) -> NoReturn:
     if _FIRST.match(name):
-        text = fill(
+        raise SettingsError.about(
             "anchor is {name!r}, expected first:N with a whole number N of at least 1, alone, or names of items.",
             name=name,
         )
-        raise SettingsError(text)
     fault = fill("anchor: there is no item {name!r} in Items.", name=name)
     near = get_close_matches(name, [one.item for one in inventory.items], 1, 0.6)
     raise SettingsError(join(" ", (fault, *(fill("Did you mean {name}?", name=repr(one)) for one in near))))
@@ -62,10 +61,9 @@ def anchor_first(assessment: Assessment, rows: Sequence[ScheduleRow]) -> Assessm
     """
     wanted = assessment.settings.anchor
     if isinstance(wanted, int) and wanted > len(rows):
-        text = fill(
+        raise SettingsError.about(
             "anchor: first:{wanted:,} is more than the {n:,} entries of the schedule", wanted=wanted, n=len(rows)
         )
-        raise SettingsError(text)
     held = {index for row in rows[: wanted if isinstance(wanted, int) else 0] for index in row.item_indices}
     inventory = _anchor(assessment.inventory, held)
     cases, governing = assessment.cases, assessment.governing

@@ -6,7 +6,6 @@ Nothing of a user's file reaches a report as it is: a picture is decoded and wri
 
 from dataclasses import dataclass
 
-from assess.i18n import fill
 from assess.pictures import JPEG, PNG, PictureError, prepare_plan
 
 DOTS = 100.0
@@ -44,10 +43,10 @@ def read_plan(data: bytes, width: float | None) -> Drawing:
         content, aspect = prepare_plan(data, count_side(width))
         return Drawing(content, aspect)
     if data.startswith(b"AC10"):
-        raise PictureError(fill("it is a DWG drawing, which cannot be read. Save it as DXF"))
+        raise PictureError.about("it is a DWG drawing, which cannot be read. Save it as DXF")
     if _is_dxf(data):
         if len(data) > MOST_FILE:
-            raise PictureError(fill("it is larger than {most} MB. Save it smaller", most=MOST_FILE >> 20))
+            raise PictureError.about("it is larger than {most} MB. Save it smaller", most=MOST_FILE >> 20)
         from assess.plans.dxf import read_dxf
 
         return _of_lines(*read_dxf(data))
@@ -55,7 +54,7 @@ def read_plan(data: bytes, width: float | None) -> Drawing:
         from assess.plans.svg import read_svg
 
         return _of_lines(*read_svg(data), None)
-    raise PictureError(fill("it is no PNG, JPEG, SVG or DXF file. Save it as one of them"))
+    raise PictureError.about("it is no PNG, JPEG, SVG or DXF file. Save it as one of them")
 
 
 def count_side(width: float | None) -> int:

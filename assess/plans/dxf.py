@@ -11,7 +11,6 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from assess.extras import say_install
-from assess.i18n import fill
 from assess.pictures import PictureError, damaged
 from assess.plans.linework import FARTHEST, MOST_ELEMENTS, MOST_RAW, describe_left_out, find_box, pack, too_many
 
@@ -59,11 +58,10 @@ def _open(data: bytes) -> "Document":
     try:
         from ezdxf import recover
     except ImportError:
-        message = fill(
+        raise PictureError.about(
             "DXF is read with ezdxf, which is not installed. Save the drawing as SVG or PNG, or install ezdxf. {how}",
             how=say_install("plans"),
-        )
-        raise PictureError(message) from None
+        ) from None
     logging.getLogger("ezdxf").setLevel(logging.CRITICAL)
     try:
         _check_size(recover.bytes_loader(io.BytesIO(data)))
@@ -85,8 +83,8 @@ def _check_size(tags: Iterable[Any]) -> None:
         if elements > MOST_ELEMENTS:
             raise too_many()
         if at > MOST_TAGS:
-            raise PictureError(
-                fill("it has more than {most:,} group codes. Save the walls and doors alone", most=MOST_TAGS)
+            raise PictureError.about(
+                "it has more than {most:,} group codes. Save the walls and doors alone", most=MOST_TAGS
             )
 
 

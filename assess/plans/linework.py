@@ -5,7 +5,6 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.i18n import fill
 from assess.pictures import PictureError
 
 FloatArray = NDArray[np.float64]
@@ -29,18 +28,16 @@ FARTHEST = 1e9
 
 def too_many() -> PictureError:
     """Build the error for a drawing that has too much in it."""
-    return PictureError(
-        fill(
-            "it has more than {elements:,} elements or {points:,} points. Save the walls and doors alone",
-            elements=MOST_ELEMENTS,
-            points=MOST_POINTS,
-        )
+    return PictureError.about(
+        "it has more than {elements:,} elements or {points:,} points. Save the walls and doors alone",
+        elements=MOST_ELEMENTS,
+        points=MOST_POINTS,
     )
 
 
 def empty() -> PictureError:
     """Build the error for a drawing without lines."""
-    return PictureError(fill("it holds no lines that can be drawn. Save it as PNG"))
+    return PictureError.about("it holds no lines that can be drawn. Save it as PNG")
 
 
 def find_box(lines: Sequence[Line]) -> Box:

@@ -16,7 +16,6 @@ from xml.parsers import expat
 
 import numpy as np
 
-from assess.i18n import fill
 from assess.pictures import MOST_BYTES, PictureError, damaged
 from assess.plans.linework import (
     FARTHEST,
@@ -52,7 +51,7 @@ _ROUND = 0.5522847498
 
 def unreadable() -> PictureError:
     """Build the error for a drawing with something that SVG does not know."""
-    return PictureError(fill("a path, a number or a transform in it cannot be read. Save it as plain SVG, or as PNG"))
+    return PictureError.about("a path, a number or a transform in it cannot be read. Save it as plain SVG, or as PNG")
 
 
 def read_svg(data: bytes) -> tuple[bytes, float, tuple[str, ...]]:
@@ -64,7 +63,7 @@ def read_svg(data: bytes) -> tuple[bytes, float, tuple[str, ...]]:
     lines.
     """
     if len(data) > MOST_BYTES:
-        raise PictureError(fill("it is larger than {most} MB. Save it smaller", most=MOST_BYTES >> 20))
+        raise PictureError.about("it is larger than {most} MB. Save it smaller", most=MOST_BYTES >> 20)
     reader = SvgReader()
     try:
         with np.errstate(all="ignore"):  # what lies beyond all bounds is refused
@@ -116,11 +115,11 @@ class SvgReader:
             self._open.pop()
 
     def _refuse(self, *_: object) -> None:
-        raise PictureError(fill("it declares XML entities, as an attack does. Save it as plain SVG, or as PNG"))
+        raise PictureError.about("it declares XML entities, as an attack does. Save it as plain SVG, or as PNG")
 
     def _begin(self, name: str, attributes: dict[str, str]) -> None:
         if name != "svg":
-            raise PictureError(fill("it is no PNG, JPEG, SVG or DXF file. Save it as one of them"))
+            raise PictureError.about("it is no PNG, JPEG, SVG or DXF file. Save it as one of them")
         box = read_list(attributes["viewBox"]) if "viewBox" in attributes else None
         if box is None:
             width, height = (_read_length(attributes, side) for side in ("width", "height"))

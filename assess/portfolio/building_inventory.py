@@ -51,12 +51,8 @@ ROUGH = 0.01
 def read_building(source: Source, data: bytes | None, ground: GroundField | None) -> tuple[Origin, Inventory]:
     """Return where the pieces of a building come from, and its inventory; `data` is its file, where it can be read.
 
-    Raises
-    ------
-    WorkbookError
-        If its workbook or its COBie file cannot be used.
-    InputError
-        If no inventory can be assumed, or its place lies outside the ground motion of the run.
+    Raises WorkbookError if its workbook or its COBie file cannot be used; InputError if no inventory can be assumed, or
+    its place lies outside the ground motion of the run.
     """
     if source.kind == "assumed" and source.index is not None:
         origin, rows, problems = build_assumed(source.index)
@@ -185,25 +181,23 @@ def build_assumed(row: IndexRow) -> tuple[Origin, Mapping[str, Sequence[Mapping[
     Returns its 10 % and 90 % quantities by item, its rows by sheet with the 50 % quantity, and what is said of that:
     that it is assumed, from what, and in which range.
 
-    Raises
-    ------
-    InputError
-        If one of them is blank, the use is none that P-58 gives quantities for, or the area is too small or too large.
+    Raises InputError if one of them is blank, the use is none that P-58 gives quantities for, or the area is too small
+    or too large.
     """
     use = find_use(row.use)
     if row.storeys is None or row.floor_area_m2 is None:
         missing = [name for name in ("storeys", "floor_area_m2") if getattr(row, name) is None]
         text = "no inventory can be assumed without {columns}. Give it in the index, or survey the building."
-        raise InputError(fill(text, columns=", ".join(missing)))
+        raise InputError.about(text, columns=", ".join(missing))
     area, storeys = row.floor_area_m2, row.storeys
     counts = [(kind, kind.count(area)) for kind in _read_kinds()[use]]
     if not any(one.median for _kind, one in counts):
         text = "no inventory can be assumed for a floor area of {area:g} m2: FEMA P-58 gives less than one piece."
-        raise InputError(fill(text, area=area))
+        raise InputError.about(text, area=area)
     most = int(ITEMS.column("quantity").high or 0)  # that a row of an inventory takes
     if max(one.high for _kind, one in counts) > most * storeys:
         text = "{area:,.0f} m2 on {storeys} storeys is more than {most:,} pieces of a kind a storey: check both."
-        raise InputError(fill(text, area=area, storeys=storeys, most=most))
+        raise InputError.about(text, area=area, storeys=storeys, most=most)
     height = row.height_m or min(STOREY_HEIGHT * storeys, BUILDING.column("height").high or 0.0)
     items: list[dict[str, Any]] = []
     low, high = {}, {}
@@ -234,14 +228,14 @@ def find_use(text: str) -> str:
     """Return the occupancy of P-58 that a use means; InputError if it is blank, or P-58 gives no quantities of it."""
     if not text.strip():
         fault = "no inventory can be assumed without use. Give it in the index, or survey the building."
-        raise InputError(fill(fault))
+        raise InputError.about(fault)
     if (use := _names().get(key(text))) is not None:
         return use
     fault = (
         "no inventory can be assumed for the use {use}: FEMA P-58 gives quantities of furniture for office, healthcare "
         "and laboratory only. Survey the building, and name its workbook in the column path."
     )
-    raise InputError(fill(fault, use=repr(text[:60])))
+    raise InputError.about(fault, use=repr(text[:60]))
 
 
 @cache

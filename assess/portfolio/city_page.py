@@ -91,12 +91,7 @@ def render_page(
     `background` and `isolines` are drawn on the map; `repeat` is the command that assesses one building alone, with
     ``{path}`` in place of its workbook; `indexed` are the buildings of which an index fills in something.
 
-    Raises
-    ------
-    InputError
-        If a template cannot be used.
-    CancelledError
-        If the work was cancelled.
+    Raises InputError if a template cannot be used; CancelledError if the work was cancelled.
     """
     options = options or ReportOptions()
     with options.spoken():
@@ -124,14 +119,8 @@ def render_summary(
 
     Its date is SOURCE_DATE_EPOCH or a fixed one: the same tables give the same bytes.
 
-    Raises
-    ------
-    PdfUnavailableError
-        If WeasyPrint's native libraries are missing.
-    InputError
-        If a template cannot be used.
-    CancelledError
-        If the work was cancelled.
+    Raises PdfUnavailableError if WeasyPrint's native libraries are missing; InputError if a template cannot be used;
+    CancelledError if the work was cancelled.
     """
     options = options or ReportOptions()
     with options.spoken(), private_folder("assess-page-") as folder:

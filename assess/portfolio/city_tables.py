@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 from assess.errors import InputError, OutputError
 from assess.extras import say_install
-from assess.i18n import fill
 from assess.portfolio.building_task import Part
 from assess.portfolio.table_schemas import TABLES
 from assess.table import Kind
@@ -31,8 +30,8 @@ def check_tables() -> Any:
     try:
         import duckdb
     except ImportError:
-        raise InputError(
-            fill("the format parquet needs duckdb, which is not installed. {how}", how=say_install("parquet"))
+        raise InputError.about(
+            "the format parquet needs duckdb, which is not installed. {how}", how=say_install("parquet")
         ) from None
     return duckdb
 
@@ -61,12 +60,7 @@ def write_tables(parts: Iterable[Part], folder: Path | None) -> "dict[str, pd.Da
     A table is written block by block, as ``NAME.parquet``, or as ``NAME-0001.parquet`` and so on with several blocks;
     `folder` is None where no files are wanted.
 
-    Raises
-    ------
-    InputError
-        If files are wanted and DuckDB is not installed.
-    OutputError
-        If a file cannot be written.
+    Raises InputError if files are wanted and DuckDB is not installed; OutputError if a file cannot be written.
     """
     import pandas as pd
 
@@ -107,7 +101,7 @@ def _write_file(name: str, frame: "pd.DataFrame", path: Path) -> None:
             )
     except duckdb.Error as error:
         why = str(error).splitlines()[0]
-        raise OutputError(fill("{path} could not be written: {why}", path=path.name, why=why)) from None
+        raise OutputError.about("{path} could not be written: {why}", path=path.name, why=why) from None
 
 
 def _connect(duckdb: Any) -> "duckdb.DuckDBPyConnection":
@@ -133,12 +127,12 @@ def read_table(folder: str | Path, name: str) -> "pd.DataFrame":
     Raises InputError if there is no such table, it cannot be read, or DuckDB is not installed.
     """
     if name not in TABLES:
-        raise InputError(
-            fill("{name!r} is an unknown table; expected one of: {names}", name=name, names=", ".join(TABLES))
+        raise InputError.about(
+            "{name!r} is an unknown table; expected one of: {names}", name=name, names=", ".join(TABLES)
         )
     duckdb, files = check_tables(), find_files(Path(folder), name)
     if not files:
-        raise InputError(fill("{folder}: there is no {name}.parquet.", folder=folder, name=name))
+        raise InputError.about("{folder}: there is no {name}.parquet.", folder=folder, name=name)
     listed = ", ".join(map(_quote, files))
     try:
         with _connect(duckdb) as connection:
@@ -146,8 +140,8 @@ def read_table(folder: str | Path, name: str) -> "pd.DataFrame":
             frame = connection.execute(f"SELECT {names} FROM read_parquet([{listed}])").df()  # noqa: S608
     except duckdb.Error as error:
         why = str(error).splitlines()[0]
-        raise InputError(
-            fill("{folder}: {name}.parquet cannot be read: {why}", folder=folder, name=name, why=why)
+        raise InputError.about(
+            "{folder}: {name}.parquet cannot be read: {why}", folder=folder, name=name, why=why
         ) from None
     frame = frame.astype({one.key: FRAME_TYPES[one.kind] for one in TABLES[name]})
     for one in TABLES[name]:

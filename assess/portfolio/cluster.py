@@ -72,33 +72,26 @@ def check_cluster(scheduler: str) -> None:
     """Raise InputError unless the address has the form of that of a scheduler, and dask is installed."""
     match = _ADDRESS.fullmatch(scheduler)
     if match is None or not 0 < int(match[1]) < 65536:
-        raise InputError(
-            fill(
-                "scheduler is {address!r}, expected tcp://HOST:PORT, such as tcp://10.0.0.5:8786 (tls, ucx, ws or wss "
-                "may take the place of tcp)",
-                address=plain_line(scheduler)[:100],
-            )
+        raise InputError.about(
+            "scheduler is {address!r}, expected tcp://HOST:PORT, such as tcp://10.0.0.5:8786 (tls, ucx, ws or wss "
+            "may take the place of tcp)",
+            address=plain_line(scheduler)[:100],
         )
     try:
         import distributed  # noqa: F401
     except ImportError:
-        raise InputError(
-            fill("scheduler: dask is needed, which is not installed. {how}", how=say_install("cluster"))
+        raise InputError.about(
+            "scheduler: dask is needed, which is not installed. {how}", how=say_install("cluster")
         ) from None
 
 
 def run_on_cluster(tasks: Sequence[Task], scheduler: str, progress: Progress = SILENT) -> Iterator[Summary]:
     """Yield the summaries of tasks as workers get them done, in no order; the paths are the same on every machine.
 
-    Raises
-    ------
-    InputError
-        If dask is not installed, the address is none, no scheduler can be reached there or it has no workers, or a
-        worker has another version of a package, several threads, or does not see the folders.
-    OutputError
-        If the scheduler is lost; parts that are written stay.
-    CancelledError
-        If the work was cancelled; parts that are written stay.
+    Raises InputError if dask is not installed, the address is none, no scheduler can be reached there or it has no
+    workers, or a worker has another version of a package, several threads, or does not see the folders; OutputError if
+    the scheduler is lost; parts that are written stay; CancelledError if the work was cancelled; parts that are written
+    stay.
     """
     check_cluster(scheduler)
     with _connect(scheduler, progress) as client, _probe(tasks) as site:
@@ -162,15 +155,13 @@ def _explain_silence(scheduler: str, error: Exception) -> InputError:
         while inner is not None and not (isinstance(inner, OSError) and inner.strerror):
             inner = getattr(inner, "real_error", None) or inner.__cause__  # what the system refused, which dask wraps
         why = plain_line(str(getattr(inner, "strerror", None) or error)).strip() or type(error).__name__
-        return InputError(
-            fill("scheduler {address} cannot be reached: {why}. Is it running?", address=scheduler, why=why)
+        return InputError.about(
+            "scheduler {address} cannot be reached: {why}. Is it running?", address=scheduler, why=why
         )
-    return InputError(
-        fill(
-            "scheduler {address}: what is there does not answer as a dask scheduler of this version. Check host and "
-            "port: a scheduler prints its address when it starts.",
-            address=scheduler,
-        )
+    return InputError.about(
+        "scheduler {address}: what is there does not answer as a dask scheduler of this version. Check host and "
+        "port: a scheduler prints its address when it starts.",
+        address=scheduler,
     )
 
 
@@ -179,11 +170,9 @@ def _wait_for_worker(client: "Client", scheduler: str, progress: Progress) -> No
     while not client.nthreads():
         progress.check()
         if time.monotonic() > latest:
-            raise InputError(
-                fill(
-                    "scheduler {address} has no workers. Start some with one thread each, by the command: dask worker",
-                    address=scheduler,
-                )
+            raise InputError.about(
+                "scheduler {address} has no workers. Start some with one thread each, by the command: dask worker",
+                address=scheduler,
             )
         time.sleep(_ASKED_EVERY)
 
@@ -282,11 +271,9 @@ def _hand_over(
     client: "Client", site: Site, tasks: Sequence[Task], scheduler: str, progress: Progress
 ) -> Iterator[Summary]:
     """Keep a window of tasks with the scheduler, and yield what comes back; OutputError if the scheduler is gone."""
-    lost = OutputError(
-        fill(
-            "the scheduler {address} is gone. What is done is kept: start it and run the same command again.",
-            address=scheduler,
-        )
+    lost = OutputError.about(
+        "the scheduler {address} is gone. What is done is kept: start it and run the same command again.",
+        address=scheduler,
     )
     left, running = deque(tasks), dict["Future", Task]()
     try:
@@ -321,8 +308,8 @@ def _take_answer(future: "Future", task: Task) -> Summary:
     if isinstance(error, KilledWorker):
         return give_up(task)
     if isinstance(error, WorkerUnfitError):
-        raise InputError(fill("a worker that joined later cannot do the work: {why}", why=error)) from None
+        raise InputError.about("a worker that joined later cannot do the work: {why}", why=error) from None
     if error is not None:
-        raise OutputError(fill("a worker failed: {why}", why=f"{type(error).__name__}: {str(error)[:300]}")) from error
+        raise OutputError.about("a worker failed: {why}", why=f"{type(error).__name__}: {str(error)[:300]}") from error
     summary: Summary = future.result()
     return summary

@@ -20,7 +20,6 @@ from assess.delivery.disk import find_digest
 from assess.delivery.folders import NEW, staging
 from assess.delivery.traces import moving
 from assess.errors import InputError
-from assess.i18n import fill
 from assess.plain_text import plain_line
 from assess.portfolio.background import read_background
 from assess.portfolio.index_file import COLUMNS
@@ -64,12 +63,7 @@ def write_example_city(folder: Path, buildings: int = BUILDINGS) -> bool:
     They have the same bytes every time; a few of the `buildings` have no workbook. Returns whether it was written:
     False where the folder holds exactly this city already.
 
-    Raises
-    ------
-    InputError
-        If the folder holds anything else.
-    OSError
-        If a file cannot be written.
+    Raises InputError if the folder holds anything else; OSError if a file cannot be written.
     """
     folder = folder.resolve()
     folder.parent.mkdir(parents=True, exist_ok=True)
@@ -90,11 +84,9 @@ def write_example_city(folder: Path, buildings: int = BUILDINGS) -> bool:
                 return True
             if _find_digests(folder) == _find_digests(made):
                 return False
-    raise InputError(
-        fill(
-            "{folder} is not empty, and not the worked city as it was written; name a folder that does not exist yet.",
-            folder=plain_line(str(folder)),
-        )
+    raise InputError.about(
+        "{folder} is not empty, and not the worked city as it was written; name a folder that does not exist yet.",
+        folder=plain_line(str(folder)),
     )
 
 

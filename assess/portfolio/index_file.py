@@ -92,11 +92,11 @@ def _read_text(file: Path) -> str:
         data = read_input(file, LARGEST_FILE)
     except (OSError, ValueError) as error:  # ValueError: a zero character in the name
         why = getattr(error, "strerror", None) or str(error)
-        raise InputError(fill("the index cannot be read: {why}.", why=why)) from None
+        raise InputError.about("the index cannot be read: {why}.", why=why) from None
     if len(data) > LARGEST_FILE:
-        raise InputError(fill("the index is larger than {most:.0f} MB. Split it.", most=LARGEST_FILE / 1e6))
+        raise InputError.about("the index is larger than {most:.0f} MB. Split it.", most=LARGEST_FILE / 1e6)
     if b"\0" in data or data.startswith((b"PK", b"\xff\xfe", b"\xfe\xff")):
-        raise InputError(fill("the index is not plain text. Save it as CSV UTF-8."))
+        raise InputError.about("the index is not plain text. Save it as CSV UTF-8.")
     return decode(data)
 
 
@@ -112,7 +112,7 @@ def _split(text: str) -> Iterator[tuple[int, list[str]]]:
         except csv.Error as error:
             raise InputError(_describe_cut(number, str(error))) from None
         if any(len(cell) > LONGEST for cell in cells):
-            raise InputError(fill("line {line}: a cell is longer than {most:,} characters.", line=number, most=LONGEST))
+            raise InputError.about("line {line}: a cell is longer than {most:,} characters.", line=number, most=LONGEST)
         if any(cell.strip() for cell in cells):
             yield number, [cell.strip() for cell in cells]
 
@@ -139,14 +139,14 @@ def _describe_cut(line: int, why: str) -> Text:
 def _read_rows(lines: Iterator[tuple[int, list[str]]]) -> list[IndexRow]:
     line, heading = next(lines, (0, []))
     if not line:
-        raise InputError(fill("the index is empty. Its first line holds the names of the columns."))
+        raise InputError.about("the index is empty. Its first line holds the names of the columns.")
     names = _read_heading(line, heading)
     faults: list[Text] = []
     rows = list(islice(lines, MOST_ROWS + 1))
     if not rows:
-        raise InputError(fill("no building is listed below the headings."))
+        raise InputError.about("no building is listed below the headings.")
     if len(rows) > MOST_ROWS:
-        raise InputError(fill("more than {most:,} buildings are listed. Split the index.", most=MOST_ROWS))
+        raise InputError.about("more than {most:,} buildings are listed. Split the index.", most=MOST_ROWS)
     found = [_read_row(number, names, cells, faults) for number, cells in rows]
     every = [*faults, *_list_repeated(found)]
     if every:
@@ -167,10 +167,10 @@ def _read_heading(line: int, heading: Sequence[str]) -> list[str]:
                 raise InputError(join(". ", (fault, fill("Did you mean {name}?", name=near[0]))))
             raise InputError(join(", ", (fault, fill("expected some of: {names}", names=", ".join(COLUMNS)))))
         if names.count(name) > 1:
-            raise InputError(fill("line {line}: the column {name} is there twice.", line=line, name=name))
+            raise InputError.about("line {line}: the column {name} is there twice.", line=line, name=name)
     if not {"path", "building"} & set(names):
-        raise InputError(
-            fill("line {line}: expected the column path, or building for buildings without a survey.", line=line)
+        raise InputError.about(
+            "line {line}: expected the column path, or building for buildings without a survey.", line=line
         )
     return names
 
@@ -198,7 +198,7 @@ def _read_number(name: str, text: str) -> float | int:
     match = _NUMBER.fullmatch(straighten(text))
     digits = read_digits(match[2].rstrip()) if match else []
     if match is None or not digits:
-        raise InputError(fill("{name} is {text!r}, not a number.", name=name, text=text[:40]))
+        raise InputError.about("{name} is {text!r}, not a number.", name=name, text=text[:40])
     low, high = 1.0, _LARGEST_AREA
     if name in _FIELDS:
         column = BUILDING.column(_FIELDS[name])
@@ -207,20 +207,17 @@ def _read_number(name: str, text: str) -> float | int:
     within = [one for one in readings if low <= one <= high]
     if len(within) > 1:  # both are given as they can be written: three decimals with a zero after them
         one, other = (f"{number:.10g}" for number in within)
-        raise InputError(
-            fill(
+        raise InputError.about(
                 "{name}: {text} can be {one:,.10g} or {other:,.10g}: write {plain_one} or {plain_other}.",
                 name=name, text=text[:40], one=within[0], other=within[1],
-                plain_one=f"{one}0" if len(read_digits(one)) > 1 else one, plain_other=other,
-            )
-        )  # fmt: skip
+                plain_one=f"{one}0" if len(read_digits(one)) > 1 else one, plain_other=other)  # fmt: skip
     value = (within or readings)[0]
     if not within:
-        raise InputError(
-            fill("{name} is {value:g}, expected {low:g} to {high:g}.", name=name, value=value, low=low, high=high)
+        raise InputError.about(
+            "{name} is {value:g}, expected {low:g} to {high:g}.", name=name, value=value, low=low, high=high
         )
     if name == "storeys" and value != int(value):
-        raise InputError(fill("{name} is {value:g}, expected a whole number.", name=name, value=value))
+        raise InputError.about("{name} is {value:g}, expected a whole number.", name=name, value=value)
     return int(value) if name == "storeys" else value
 
 

@@ -18,7 +18,6 @@ from pathlib import Path
 from typing import Any
 
 from assess.errors import CancelledError, OutputError
-from assess.i18n import fill
 from assess.portfolio.building_task import Summary, Task, give_up
 from assess.progress import SILENT, Progress
 
@@ -36,12 +35,8 @@ Process = subprocess.Popen[bytes]
 def run_local(tasks: Sequence[Task], jobs: int, progress: Progress = SILENT) -> Iterator[Summary]:
     """Yield the summaries of tasks as `jobs` processes get them done, in no order.
 
-    Raises
-    ------
-    CancelledError
-        If the work was cancelled, which ends the processes at once; parts that are written stay.
-    OutputError
-        If no process can be started.
+    Raises CancelledError if the work was cancelled, which ends the processes at once; parts that are written stay;
+    OutputError if no process can be started.
     """
     processes, done = _Processes(), queue.SimpleQueue[Future[Summary]]()
     threads = ThreadPoolExecutor(min(jobs, len(tasks)))
@@ -115,7 +110,7 @@ class _Processes:
             with suppress(subprocess.TimeoutExpired):
                 process.wait(1)
             status = self._end(process)
-        raise OutputError(fill("processes end as soon as they are started (exit status {how}).", how=status))
+        raise OutputError.about("processes end as soon as they are started (exit status {how}).", how=status)
 
     def _end(self, process: Process) -> int:
         """End a process, unless it did so itself, and return its exit status."""

@@ -93,43 +93,23 @@ def run_portfolio(
 ) -> PortfolioResult:
     """Assess many buildings under one earthquake.
 
-    Parameters
-    ----------
-    source : str or Path
-        A folder of workbooks, or an index (.csv).
-    out : str or Path
-        Folder of the results. The files of an earlier run in it are replaced, other files are left alone; buildings
-        that an earlier run has assessed in the same way are taken from it.
-    settings : Settings, optional
-        Of the run; `city` is set.
-    ground : GroundField, optional
-        A ShakeMap, or computed scenarios: they take the place of the ground motions of the workbooks.
-    jobs : int, optional
-        Processes, as many as there are processors by default: they do not change a result.
-    scheduler : str, optional
-        Address of a dask scheduler whose workers do the work.
-    formats : sequence of str
-        Some of `FORMATS`.
-    background : Background, optional
-        Of the map.
-    language : str
-        Code of the language of the reports.
-    repeat : str
-        Command that assesses one building alone, with ``{path}`` in place of its workbook: the page shows it.
-    progress : Progress or callable, optional
-        Notified of how far the work is.
-    cancel : threading.Event, optional
-        Stops the work; what is done is kept for the next run.
+    * `source`: a folder of workbooks, or an index (.csv).
+    * `out`: folder of the results. The files of an earlier run in it are replaced, other files are left alone;
+      buildings that an earlier run has assessed in the same way are taken from it.
+    * `settings`: of the run; `city` is set.
+    * `ground`: a ShakeMap, or computed scenarios: they take the place of the ground motions of the workbooks.
+    * `jobs`: processes, as many as there are processors by default: they do not change a result.
+    * `scheduler`: address of a dask scheduler whose workers do the work.
+    * `formats`: some of `FORMATS`.
+    * `background`: of the map.
+    * `language`: code of the language of the reports.
+    * `repeat`: command that assesses one building alone, with ``{path}`` in place of its workbook: the page shows it.
+    * `progress`: notified of how far the work is.
+    * `cancel`: stops the work; what is done is kept for the next run.
 
-    Raises
-    ------
-    InputError
-        If a setting, the folder, the index or the scheduler cannot be used, or a format needs a package that is not
-        installed.
-    OutputError
-        If the results cannot be written; those of an earlier run are left as they were.
-    CancelledError
-        If the work was cancelled; nothing was written, but the buildings that are done are kept.
+    Raises InputError if a setting, the folder, the index or the scheduler cannot be used, or a format needs a package
+    that is not installed; OutputError if the results cannot be written; those of an earlier run are left as they were;
+    CancelledError if the work was cancelled; nothing was written, but the buildings that are done are kept.
     """
     source, out = Path(source), Path(out).absolute()
     path = getattr(ground, "path", None)  # other processes may be in another folder
@@ -170,7 +150,7 @@ def check_extras(formats: Sequence[str], scheduler: str | None) -> None:
     for name in formats:
         if name not in FORMATS:
             known = ", ".join(FORMATS)
-            raise InputError(fill("formats: {name!r} is unknown, expected some of: {known}", name=name, known=known))
+            raise InputError.about("formats: {name!r} is unknown, expected some of: {known}", name=name, known=known)
     if "parquet" in formats:
         from assess.portfolio.city_tables import check_tables
 
@@ -185,9 +165,9 @@ def _check_out(source: Path, out: Path, formats: Sequence[str]) -> None:
     """Raise unless results can be written to the folder."""
     shown = plain_line(str(out))
     if out.exists() and not out.is_dir():
-        raise InputError(fill("out: {folder} is a file; name a folder.", folder=shown))
+        raise InputError.about("out: {folder} is a file; name a folder.", folder=shown)
     if out.resolve() == source.resolve():
-        raise InputError(fill("out: {folder} holds the workbooks; name another folder.", folder=shown))
+        raise InputError.about("out: {folder} holds the workbooks; name another folder.", folder=shown)
     check_folder(out)
     if out.is_dir():
         _find_old(out, _list_names(formats))
@@ -209,8 +189,8 @@ def _find_old(out: Path, wanted: Collection[str]) -> frozenset[str]:
 def _check_settings(settings: Settings, ground: GroundField | None) -> Settings:
     """Return the settings of all buildings; InputError if none of them could be assessed with their draws."""
     if settings.runs == AUTO and settings.verify != "none":
-        raise InputError(
-            fill("runs is {runs}: all buildings of a city need the same draws. Give a number, such as 200.", runs=AUTO)
+        raise InputError.about(
+            "runs is {runs}: all buildings of a city need the same draws. Give a number, such as 200.", runs=AUTO
         )
     scenarios = getattr(ground, "event_count", 0)
     if scenarios and settings.verify != "none":
@@ -229,7 +209,7 @@ def _reserving(out: Path) -> Iterator[None]:
         raise explain_fault(out, error, ()) from None
     lock = FolderLock(out / FOLDER)
     if not lock.take():
-        raise OutputError(fill("{folder} is in use: another run is writing to it.", folder=plain_line(str(out))))
+        raise OutputError.about("{folder} is in use: another run is writing to it.", folder=plain_line(str(out)))
     try:
         if lock.is_held:
             sweep_parts(out)
@@ -319,12 +299,10 @@ def _list_parts(job: _Job, summaries: Mapping[str, Summary]) -> Iterator[Part]:
         summary = summaries[source.path]
         part = summary.part or read_part(job.out, summary.key)
         if part is None:
-            raise OutputError(
-                fill(
-                    "{folder}: what was found of {path} is gone, or damaged. Run the same command again.",
-                    folder=plain_line(str(job.out / FOLDER)),
-                    path=plain_line(summary.path),
-                )
+            raise OutputError.about(
+                "{folder}: what was found of {path} is gone, or damaged. Run the same command again.",
+                folder=plain_line(str(job.out / FOLDER)),
+                path=plain_line(summary.path),
             )
         is_counted = summary.content and summary.status == "assessed"
         same = first.setdefault(summary.content, part.path) if is_counted else part.path

@@ -49,30 +49,24 @@ def find_sources(source: Path, out: Path | None = None) -> tuple[Source, ...]:
     `assess`; workbooks in other formats, such as .xls, are refused. Links to workbooks inside the folder count; links
     that lead out of it, and links to folders, are refused.
 
-    Raises
-    ------
-    InputError
-        If there is no such folder or index, the index cannot be used, or there is no building in it.
+    Raises InputError if there is no such folder or index, the index cannot be used, or there is no building in it.
     """
     root, shown = _resolve(source), plain_line(str(source))
     if root.is_dir():
         found = _search(root, None if out is None else _resolve(out))
     elif source.suffix.lower() in ENDINGS:
-        raise InputError(
-            fill(
-                "{path} is a workbook: name the folder that holds it, or assess it by itself with `assess run`.",
-                path=shown,
-            )
+        raise InputError.about(
+            "{path} is a workbook: name the folder that holds it, or assess it by itself with `assess run`.", path=shown
         )
     elif root.exists():
         found = (_take_row(row, root.parent) for row in read_index(root))
     else:
-        raise InputError(fill("{path} is neither a folder nor an index (.csv).", path=shown))
+        raise InputError.about("{path} is neither a folder nor an index (.csv).", path=shown)
     listed = list(islice(found, MOST_BUILDINGS + 1))
     if len(listed) > MOST_BUILDINGS:
-        raise InputError(fill("there are more than {most:,} buildings. Split the folder.", most=MOST_BUILDINGS))
+        raise InputError.about("there are more than {most:,} buildings. Split the folder.", most=MOST_BUILDINGS)
     if not listed:
-        raise InputError(fill("{path}: there is no workbook (.xlsx or .xlsm) in this folder.", path=shown))
+        raise InputError.about("{path}: there is no workbook (.xlsx or .xlsm) in this folder.", path=shown)
     return tuple(sorted(listed, key=lambda one: one.path))
 
 
@@ -81,7 +75,7 @@ def _resolve(path: Path) -> Path:
         return path.resolve()
     except (OSError, RuntimeError, ValueError) as error:  # links in a circle; a zero character
         why = getattr(error, "strerror", None) or str(error)
-        raise InputError(fill("{path} cannot be used: {why}.", path=plain_line(str(path)), why=why)) from None
+        raise InputError.about("{path} cannot be used: {why}.", path=plain_line(str(path)), why=why) from None
 
 
 def _search(root: Path, out: Path | None) -> Iterator[Source]:

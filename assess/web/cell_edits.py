@@ -141,7 +141,7 @@ def take_edits(
     Raises InputError if it is no such list; EditsRefused if any cell cannot be changed so.
     """
     if not isinstance(edits, list) or len(edits) > MOST_EDITS:
-        raise InputError(fill("edits have to be a list of at most {most:,} cells.", most=MOST_EDITS))
+        raise InputError.about("edits have to be a list of at most {most:,} cells.", most=MOST_EDITS)
     found: dict[CellPlace, Value] = {}
     refused: Refused = []
     for edit in edits:
@@ -171,7 +171,7 @@ def _take_apart(edit: object) -> tuple[str, int, int, Value]:
         are_numbers = type(row) is int and type(at) is int
         if isinstance(sheet, str) and are_numbers and (value is None or isinstance(value, bool | int | float | str)):
             return sheet, row, at, value
-    raise InputError(fill("an edit has to be a list of sheet, row, column and value."))
+    raise InputError.about("an edit has to be a list of sheet, row, column and value.")
 
 
 def _find_column(sheet: PageSheet | None, row: int, at: int) -> tuple[PageColumn | None, str]:

@@ -75,8 +75,8 @@ class DiskFile:
             target = self.path.resolve(strict=True)
             mode = stat.S_IMODE(target.stat().st_mode)
         except (OSError, RuntimeError):
-            raise OutputError(
-                fill("{name} is no longer in its folder: put it back, or download your version.", name=self.path.name)
+            raise OutputError.about(
+                "{name} is no longer in its folder: put it back, or download your version.", name=self.path.name
             ) from None
         if hindrance := self.find_hindrance():
             raise OutputError(hindrance)

@@ -139,7 +139,7 @@ def add_file(name: str, data: bytes, missing: list[dict[str, Any]], folder: Path
     """
     shown = repr(name[:100])
     if name not in {one["name"] for one in missing}:
-        raise InputError(fill("the workbook names no missing file of this name: {name}.", name=shown))
+        raise InputError.about("the workbook names no missing file of this name: {name}.", name=shown)
     try:
         path = find_place(name, folder)
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -148,7 +148,7 @@ def add_file(name: str, data: bytes, missing: list[dict[str, Any]], folder: Path
     except CellError as error:
         raise InputError(error.message) from None
     except FileExistsError:
-        raise InputError(fill("{name} is there already; it was left as it is.", name=shown)) from None
+        raise InputError.about("{name} is there already; it was left as it is.", name=shown) from None
     except OSError as error:
         why = error.strerror or error
-        raise OutputError(fill("{name} cannot be written: {why}.", name=shown, why=why)) from None
+        raise OutputError.about("{name} cannot be written: {why}.", name=shown, why=why) from None

@@ -18,7 +18,6 @@ import uvicorn
 
 from assess.delivery.deliver import saving
 from assess.errors import AssessError, InputError
-from assess.i18n import fill
 from assess.web.endpoints import build_application
 from assess.web.guard import Guard
 from assess.web.importing import find_free
@@ -102,8 +101,8 @@ def bind(place: Place) -> socket.socket:
     except OSError as error:
         listening.close()
         where = f"{place.host}:{place.port}"
-        raise InputError(
-            fill("port: {where} cannot be used: {why}. Choose another.", where=where, why=error.strerror or str(error))
+        raise InputError.about(
+            "port: {where} cannot be used: {why}. Choose another.", where=where, why=error.strerror or str(error)
         ) from None
     return listening
 

@@ -177,8 +177,8 @@ def place_workbook(made: Made, folder: Path) -> Path:
         with path.open("xb") as file:
             file.write(made.data)
     except OSError as error:
-        raise OutputError(
-            fill("{name} cannot be written: {why}.", name=made.name, why=error.strerror or str(error))
+        raise OutputError.about(
+            "{name} cannot be written: {why}.", name=made.name, why=error.strerror or str(error)
         ) from None
     return path
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from assess.errors import AssessError, InputError
-from assess.i18n import fill, gettext, load_catalogue, speaking
+from assess.i18n import gettext, load_catalogue, speaking
 from assess.model import Inventory
 from assess.pipeline.run import evaluate_route_tables, list_first_fixes
 from assess.pipeline.what_if import anchor_named, spell_names
@@ -75,11 +75,11 @@ def _list_anchored(settings: Settings) -> tuple[str, ...]:
 def _read_request(inventory: Inventory, tables: Tables, request: object) -> tuple[Settings, int]:
     """Return the settings that a request asks for, and how many of the first fixes it has anchored besides."""
     if not isinstance(request, Mapping):
-        raise InputError(fill("The request cannot be read."))
+        raise InputError.about("The request cannot be read.")
     unknown = [str(name) for name in request if name not in ASKED]
     if unknown:
         known = ", ".join(ASKED)
-        raise InputError(fill("{name} is not known, expected one of: {known}.", name=_show(unknown[0]), known=known))
+        raise InputError.about("{name} is not known, expected one of: {known}.", name=_show(unknown[0]), known=known)
     given = {name: value for name, value in request.items() if value is not None}
     names = _read_names(given.get("anchor", ()))
     _check_left_out(inventory, tables, names)
@@ -91,7 +91,7 @@ def _read_request(inventory: Inventory, tables: Tables, request: object) -> tupl
 def _read_scale(value: Any) -> float:
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
     if not is_number or not abs(value) < FAR:  # NaN among them
-        raise InputError(fill("scale is {value}, expected a number.", value=_show(value)))
+        raise InputError.about("scale is {value}, expected a number.", value=_show(value))
     return float(value)
 
 
@@ -99,13 +99,13 @@ def _read_first(value: object) -> int:
     if isinstance(value, float) and value.is_integer():
         value = int(value)
     if isinstance(value, bool) or not isinstance(value, int) or value < 0:
-        raise InputError(fill("first is {value}, expected a whole number, 0 or above.", value=_show(value)))
+        raise InputError.about("first is {value}, expected a whole number, 0 or above.", value=_show(value))
     return value
 
 
 def _read_names(value: object) -> tuple[str, ...]:
     if isinstance(value, str) or not isinstance(value, Sequence) or not all(isinstance(one, str) for one in value):
-        raise InputError(fill("anchor is {value}, expected a list of names of items.", value=_show(value)))
+        raise InputError.about("anchor is {value}, expected a list of names of items.", value=_show(value))
     return tuple(dict.fromkeys(one.strip() for one in value if one.strip()))
 
 
@@ -114,9 +114,11 @@ def _check_left_out(inventory: Inventory, tables: Tables, names: Iterable[str]) 
     rows = {key(row.get("item")): row.number for row in tables["Items"].with_all("item")}
     for name in names:
         if key(name) not in known and key(name) in rows:
-            message = fill("{name} cannot be anchored: its row {row} has an error or a blank.", name=_show(name),
-                           row=rows[key(name)])  # fmt: skip
-            raise InputError(message)
+            raise InputError.about(
+                "{name} cannot be anchored: its row {row} has an error or a blank.",
+                name=_show(name),
+                row=rows[key(name)],
+            )
 
 
 def _show(value: object) -> str:
