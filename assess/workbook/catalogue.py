@@ -5,7 +5,6 @@ source does not print is blank or marked *assumed* in the column ``source``. ``u
 `assess.workbook.schema.USES` that a type belongs to, ``contents`` one of `CONTENTS`: what it is mostly full of.
 """
 
-import re
 from csv import DictReader
 from functools import cache
 from importlib.resources import files
@@ -13,6 +12,7 @@ from io import StringIO
 from typing import TYPE_CHECKING, Any
 
 from assess.i18n import LANGUAGES, gettext, load_catalogue
+from assess.natural import natural_key
 from assess.units import QUANTITIES
 from assess.workbook.names import key
 from assess.workbook.schema import CATALOGUE
@@ -51,7 +51,7 @@ def read_catalogue(units: "Units" = "si", use: str = "") -> list[dict[str, Any]]
     `use`: one of `assess.workbook.schema.USES`: the types of this use alone. Blank: every type.
     """
     wanted = (line for line in catalogue_rows() if not use or use.lower() in line["uses"].split())
-    return sorted((_read_type(line, units) for line in wanted), key=lambda row: _by_number(row["type"]))
+    return sorted((_read_type(line, units) for line in wanted), key=lambda row: natural_key(row["type"]))
 
 
 def find_contents(name: str, language: str = "en") -> str:
@@ -98,8 +98,3 @@ def _read_type(line: dict[str, str], units: "Units") -> dict[str, Any]:
                 _DECIMALS,
             )
     return {**row, "source": gettext(source) if source.startswith(ASSUMED) else source}
-
-
-def _by_number(name: str) -> list[tuple[int, int | str]]:
-    parts = re.split(r"(\d+)", name.casefold())
-    return [(0, int(part)) if part.isdigit() else (1, part) for part in parts if part]

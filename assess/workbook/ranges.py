@@ -57,7 +57,13 @@ def find_slip(column: Column, number: float, unit: str) -> Text | str:
         and is_within(column, number / 100, unit)
     ):
         return fill("Did you mean {number:g}?", number=number / 100)
-    readings = [_say_reading(column, number, other, unit) for other in _list_units(column, number, unit)]
+    readings = [
+        fill(
+            "{number:.10g} {other} = {converted:.4g} {unit}",
+            number=number, other=other, converted=number * _scale(column, other) / _scale(column, unit), unit=unit,
+        )
+        for other in _list_units(column, number, unit)
+    ]  # fmt: skip
     if len(readings) > 1:
         return fill("Did you mean {one}, or {other}?", one=readings[0], other=readings[1])
     if readings:
@@ -76,10 +82,3 @@ def _list_units(column: Column, number: float, unit: str) -> list[str]:
         if usual:
             return usual[:_MOST_READINGS]
     return []
-
-
-def _say_reading(column: Column, number: float, other: str, unit: str) -> Text:
-    converted = number * _scale(column, other) / _scale(column, unit)
-    return fill(
-        "{number:.10g} {other} = {converted:.4g} {unit}", number=number, other=other, converted=converted, unit=unit
-    )
