@@ -21,18 +21,11 @@ if TYPE_CHECKING:
 class Format:
     """A format of reports.
 
-    Parameters
-    ----------
-    key, file : str
-        What it is called, and the name of its file.
-    write : callable
-        Writes the file; it imports what it needs when it is called.
-    is_default : bool
-        Whether it is written where no format is named.
-    edition : {"client", "annex"}, optional
-        Of a PDF, which is begun before all others and written last, as it carries results.json.
-    needs : mapping of str to str
-        Packages beyond those of every report, by the modules that they bring, and `extra` which brings them.
+    * `key`, `file`: what it is called, and the name of its file.
+    * `write`: writes the file; it imports what it needs when it is called.
+    * `is_default`: whether it is written where no format is named.
+    * `edition`: of a PDF, which is begun before all others and written last, as it carries results.json.
+    * `needs`: packages beyond those of every report, by the modules that they bring, and `extra` which brings them.
     """
 
     key: str

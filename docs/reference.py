@@ -191,7 +191,9 @@ def _describe_templates() -> Iterator[str]:
     yield ""
     for name, kind in (("page", Page), ("page.sections[]", PageSection), ("page.document", Document)):
         fields = [f"`{name}.{one.name}`" for one in fields_of(kind)]
-        yield f"* {', '.join(fields)}: {' '.join(inspect.getdoc(kind).split('Parameters')[0].split())}"  # type: ignore[union-attr]
+        what, *parts = (inspect.getdoc(kind) or "").split("\n* ")
+        yield f"* {', '.join(fields)}: {' '.join(what.split())}"
+        yield from (f"  * {' '.join(one.split())}" for one in parts)
     yield ""
     named = [part for part in list_all_parts() if "all" in part.places or "client" in part.places]
     rows = [(f"`{one.key}`", one.heading, ", ".join(one.places)) for one in named]

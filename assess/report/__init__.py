@@ -37,37 +37,24 @@ def write_reports(
 ) -> Written:
     """Write the reports of a run.
 
-    Parameters
-    ----------
-    results : Results
-        From `assess.run`.
-    folder : str or Path
-        Where to; made where it is missing. Reports of an earlier run in it are replaced or removed, whatever their
-        format; other files are left alone.
-    formats : str or sequence of str
-        Of "pdf", "annex", "xlsx", "html", "json", "csv", "docx", "npz", "parquet"; by default all but "annex" and the
-        last three; or "all". results.json is always written.
-    options : ReportOptions, optional
-        Language, templates and kind of PDF; by default in the workbook's language, with the standard templates.
-    progress : Progress, optional
-        Notified of how far the work is; once it is cancelled, nothing is written.
+    * `results`: from `assess.run`.
+    * `folder`: where to; made where it is missing. Reports of an earlier run in it are replaced or removed, whatever
+      their format; other files are left alone.
+    * `formats`: of "pdf", "annex", "xlsx", "html", "json", "csv", "docx", "npz", "parquet"; by default all but "annex"
+      and the last three; or "all". results.json is always written.
+    * `options`: language, templates and kind of PDF; by default in the workbook's language, with the standard
+      templates.
+    * `progress`: notified of how far the work is; once it is cancelled, nothing is written.
 
     Returns
     -------
     Written
         The file of each format; `removed` are those of an earlier run that were not replaced.
 
-    Raises
-    ------
-    InputError
-        If a format is unknown, a template of the firm's own cannot be used, or a file of the user's stands at the name
-        of a report.
-    PdfUnavailableError
-        If the native libraries of the PDFs are missing; all other formats have been written.
-    OutputError
-        If a file cannot be written; what was there before is left as it was.
-    CancelledError
-        If the work was cancelled; nothing was written.
+    Raises InputError if a format is unknown, a template of the firm's own cannot be used, or a file of the user's
+    stands at the name of a report; PdfUnavailableError if the native libraries of the PDFs are missing; all other
+    formats have been written; OutputError if a file cannot be written; what was there before is left as it was;
+    CancelledError if the work was cancelled; nothing was written.
     """
     formats = list_formats((formats,) if isinstance(formats, str) else formats)
     unknown = [name for name in formats if name not in FILES]
@@ -104,20 +91,11 @@ def _find_old(folder: Path, wanted: Collection[str]) -> frozenset[str]:
 def check_folder(folder: Path, formats: Sequence[str] = ()) -> None:
     """Check before the long work that files can be written to a folder, which need not exist yet.
 
-    Parameters
-    ----------
-    folder : Path
-        Where to.
-    formats : sequence of str
-        The formats of reports that are to be written, if it is about reports.
+    * `folder`: where to.
+    * `formats`: the formats of reports that are to be written, if it is about reports.
 
-    Raises
-    ------
-    OutputError
-        If nothing can be written there.
-    InputError
-        If a folder or a file of the user's stands at the name of a report (see `assess.report.ownership`), or a format
-        needs a package that is not installed.
+    Raises OutputError if nothing can be written there; InputError if a folder or a file of the user's stands at the
+    name of a report (see `assess.report.ownership`), or a format needs a package that is not installed.
     """
     for name in formats:
         FORMATS[name].check()

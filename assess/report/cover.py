@@ -17,10 +17,7 @@ MOST_PRINTED, MOST = 12, 40
 def build_document(view: View) -> Document:
     """Return the report in the language in use; figures are cancelled while they are drawn.
 
-    Raises
-    ------
-    CancelledError
-        If the work was cancelled.
+    Raises CancelledError if the work was cancelled.
     """
     content, building = view.content, view.run.building
     named = words.cut(content.title, 80)

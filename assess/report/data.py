@@ -235,12 +235,7 @@ def write_npz(results: Results, path: Path, progress: Progress = SILENT) -> None
     (`numpy.unpackbits`); ``max_rotation_ratio`` (m, k) is the largest |theta| over the critical angle, NaN beyond the
     runs.
 
-    Raises
-    ------
-    OSError
-        If the file cannot be written.
-    CancelledError
-        If `progress` was cancelled.
+    Raises OSError if the file cannot be written; CancelledError if `progress` was cancelled.
     """
     path.write_bytes(progress.wait_for(lambda: _pack_outcomes(results)))
 

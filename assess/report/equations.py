@@ -94,10 +94,7 @@ def _split_relations(equation: str) -> list[Part]:
 def write_tex(equation: str) -> str:
     """Return an equation in TeX.
 
-    Raises
-    ------
-    NotationError
-        If it is not written in the notation of this module.
+    Raises NotationError if it is not written in the notation of this module.
     """
     parser = _Parser([one for one in _TOKEN.finditer(equation) if one.lastgroup != "space"])
     found = parser.relations()

@@ -29,21 +29,13 @@ def find_reports(
 ) -> frozenset[str]:
     """Return the names of the files in a folder that are an earlier run's.
 
-    Parameters
-    ----------
-    folder : Path
-        May be missing.
-    wanted : collection of str
-        Names of the files that are to be written.
-    known : callable
-        Whether the program writes a file of this name into such a folder.
-    data : str
-        Name of the file that lists those of the earlier run.
+    * `folder`: may be missing.
+    * `wanted`: names of the files that are to be written.
+    * `known`: whether the program writes a file of this name into such a folder.
+    * `data`: name of the file that lists those of the earlier run.
 
-    Raises
-    ------
-    InputError
-        If a folder or a file of the user's stands at one of these names, or a report was changed after it was written.
+    Raises InputError if a folder or a file of the user's stands at one of these names, or a report was changed after it
+    was written.
     """
     lists = [folder / name for name in (data, *name_aside(data))]
     try:

@@ -15,20 +15,13 @@ from assess.i18n import LANGUAGES, fill, join, load_catalogue, speaking
 class ReportOptions:
     """How reports are written.
 
-    Parameters
-    ----------
-    language : str
-        Code of the language of the reports, one of `assess.i18n.LANGUAGES`; "" takes the workbook's. results.json and
-        items.csv, which programs read, are the same in every language.
-    templates : Path, optional
-        A folder whose files replace those of the same name among the templates: trusted code.
-    accessible : bool
-        Whether the PDF is PDF/UA-1, for screen readers, instead of PDF/A-3u, for archives.
+    * `language`: code of the language of the reports, one of `assess.i18n.LANGUAGES`; "" takes the workbook's.
+      results.json and items.csv, which programs read, are the same in every language.
+    * `templates`: a folder whose files replace those of the same name among the templates: trusted code.
+    * `accessible`: whether the PDF is PDF/UA-1, for screen readers, instead of PDF/A-3u, for archives.
 
-    Raises
-    ------
-    InputError
-        If the language is unknown, or the folder of templates does not exist or holds nothing that replaces a template.
+    Raises InputError if the language is unknown, or the folder of templates does not exist or holds nothing that
+    replaces a template.
     """
 
     language: str = ""

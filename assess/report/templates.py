@@ -24,12 +24,8 @@ def open_template(name: str, options: ReportOptions) -> Any:
 def render_template(name: str, options: ReportOptions, values: Mapping[str, Any], progress: Progress = SILENT) -> str:
     """Return a template with its names filled in.
 
-    Raises
-    ------
-    InputError
-        If a template of the firm's own cannot be used: it names the file, the line and the reason.
-    CancelledError
-        If the work was cancelled.
+    Raises InputError if a template of the firm's own cannot be used: it names the file, the line and the reason;
+    CancelledError if the work was cancelled.
     """
     TemplateError, SecurityError = progress.wait_for(_import_errors)
     parts = []

@@ -156,18 +156,11 @@ class View:
 class Part:
     """A section of the report: one of the `PARTS` of a module in `assess.report.sections`, which is found there.
 
-    Parameters
-    ----------
-    key : str
-        Its anchor.
-    heading : str
-        In English; it stands in the contents as well.
-    places : mapping of str to int
-        By edition, where it stands: a section of a smaller number comes first.
-    build : callable
-        From the view to its blocks, as a section, or several of which the first has the heading.
-    is_shown : callable
-        Whether the run has something on it; by default it has.
+    * `key`: its anchor.
+    * `heading`: in English; it stands in the contents as well.
+    * `places`: by edition, where it stands: a section of a smaller number comes first.
+    * `build`: from the view to its blocks, as a section, or several of which the first has the heading.
+    * `is_shown`: whether the run has something on it; by default it has.
     """
 
     key: str

@@ -1,6 +1,7 @@
 """``python -m tests.fuzz TARGET --seconds N``: fuzz a target for so much time of the processor.
 
 Inputs that broke a rule are kept in build/fuzz/TARGET, each with its traceback. The exit status is 1 if there are any.
+With ``--atheris``, libFuzzer chooses the inputs where atheris is installed.
 """
 
 import argparse
@@ -34,13 +35,18 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=60.0, help="time of the processor")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--quick", action="store_true", help="leave out what takes seconds, such as simulations")
+    parser.add_argument("--atheris", action="store_true", help="have libFuzzer choose the inputs")
     given = parser.parse_args()
+    if given.atheris:
+        from tests.fuzz.atheris_engine import fuzz as run
+    else:
+        run = fuzz
 
     def report(summary: Summary) -> None:
         keep_findings(given.target, summary)
         print(summary.describe(given.target), flush=True)
 
-    summary = fuzz(TARGETS[given.target], given.seconds, seed=given.seed, deep=not given.quick, report=report)
+    summary = run(TARGETS[given.target], given.seconds, seed=given.seed, deep=not given.quick, report=report)
     report(summary)
     return int(bool(summary.findings))
 

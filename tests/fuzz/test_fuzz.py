@@ -11,7 +11,7 @@ import pytest
 
 import assess
 from assess.units import read_unit
-from tests.fuzz.engine import BrokenRuleError, find_fault, fuzz
+from tests.fuzz.engine import BrokenRuleError, Lines, find_fault, fuzz
 from tests.fuzz.targets import CORPUS, TARGETS, list_corpus
 
 SECONDS = {"workbooks": 6.0}
@@ -92,6 +92,15 @@ def test_planted_faults_are_found_once_each() -> None:
     assert min(len(one.data) for one in summary.findings.values()) == len(b"sounda")
     assert summary.outcomes["sound"] > 0
     assert "3 findings" in summary.describe("planted")
+
+
+@pytest.mark.skipif(sys.version_info < (3, 12), reason="sys.monitoring is new in Python 3.12")
+def test_new_lines_are_counted_once() -> None:
+    with Lines() as lines:
+        read_unit("m/s2")
+        once = lines.count
+        read_unit("m/s2")
+        assert lines.count == once > 0
 
 
 @pytest.mark.slow

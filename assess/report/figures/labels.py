@@ -41,18 +41,11 @@ def place_each(
 ) -> list[Label | None]:
     """Place each name beside its box, or farther off with a line to it; None where there is no room for it.
 
-    Parameters
-    ----------
-    named : sequence of (str, (4,) floats)
-        Names with the boxes of their pieces [m], the most important first.
-    taken : sequence of (4,) floats
-        What is to stay free: pieces and names of places [m].
-    frame : (4,) floats
-        The drawing [m].
-    unit : float
-        One pixel [m].
-    names : sequence of (4,) floats
-        Names that are there already, which no other may overlap [m].
+    * `named` (4,): names with the boxes of their pieces [m], the most important first.
+    * `taken` (4,): what is to stay free: pieces and names of places [m].
+    * `frame` (4,): the drawing [m].
+    * `unit`: one pixel [m].
+    * `names` (4,): names that are there already, which no other may overlap [m].
     """
     held = [*names]
     placed: list[Label | None] = []

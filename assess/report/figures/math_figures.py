@@ -41,16 +41,10 @@ _POINTS = {1: 1, 2: 1, 3: 2, 4: 3, 79: 1}
 class MathFigure:
     """An equation as a picture.
 
-    Parameters
-    ----------
-    letters : mapping of str to str
-        The outline of each letter as an SVG path, by a name that is the same in every equation.
-    placed : str
-        SVG elements that use the letters, and rules.
-    box : tuple of float
-        Left, top, width and height [units].
-    depth : float
-        What of the height is below the line of writing [units].
+    * `letters`: the outline of each letter as an SVG path, by a name that is the same in every equation.
+    * `placed`: SVG elements that use the letters, and rules.
+    * `box`: left, top, width and height [units].
+    * `depth`: what of the height is below the line of writing [units].
     """
 
     letters: Mapping[str, str]
@@ -85,10 +79,7 @@ def write_letters(letters: Mapping[str, str]) -> str:
 def draw_math(tex: str) -> MathFigure:
     """Return an equation, given in the TeX that mathtext reads, as a picture.
 
-    Raises
-    ------
-    ValueError
-        If it is no TeX that mathtext reads.
+    Raises ValueError if it is no TeX that mathtext reads.
     """
     place = _find_place(tex)
     with contextlib.suppress(OSError, ValueError, TypeError, LookupError):  # none is kept, or a damaged one

@@ -42,26 +42,15 @@ class PageSection:
 class Page:
     """What the template page.html.j2 shows: a firm's own places `cover`, `sections` and `contents` as it likes.
 
-    Parameters
-    ----------
-    document : Document
-        Title, author, description, keywords, conditions and kind.
-    language : str
-        Its code.
-    version : str
-        Of `assess`.
-    for_print : bool
-        Whether it is laid out as a PDF.
-    style, script, script_hash : str
-        The style sheets and the script of the page, and the hash that allows it.
-    cover, contents : str
-        HTML of what stands above the sections, and of the contents, "" where the cover has them.
-    sections : sequence of PageSection
-        In the order of the edition.
-    outlines : str
-        SVG with the letters of equations, which the page holds once.
-    filters : sequence of tuple of str
-        Classes by which the rows of all pieces can be filtered, as value and words; none without a script.
+    * `document`: title, author, description, keywords, conditions and kind.
+    * `language`: its code.
+    * `version`: of `assess`.
+    * `for_print`: whether it is laid out as a PDF.
+    * `style`, `script`, `script_hash`: the style sheets and the script of the page, and the hash that allows it.
+    * `cover`, `contents`: HTML of what stands above the sections, and of the contents, "" where the cover has them.
+    * `sections`: in the order of the edition.
+    * `outlines`: SVG with the letters of equations, which the page holds once.
+    * `filters`: classes by which the rows of all pieces can be filtered, as value and words; none without a script.
     """
 
     document: Document
@@ -98,12 +87,8 @@ def render(
     `for_print` takes the style of the page and the embedded fonts of the PDF, and leaves the script out; `edition`
     takes the sections of one of the editions (`assess.report.view`).
 
-    Raises
-    ------
-    InputError
-        If a template cannot be used: it names the file, the line and the reason.
-    CancelledError
-        If the work was cancelled.
+    Raises InputError if a template cannot be used: it names the file, the line and the reason; CancelledError if the
+    work was cancelled.
     """
     options = options or ReportOptions()
     view = View(content=content, edition=edition, for_print=for_print, options=options, progress=progress)

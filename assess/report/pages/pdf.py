@@ -66,21 +66,11 @@ def finish_pdf(
 ) -> None:
     """Write report.pdf or annex.pdf that was begun: PDF/A-3u, or PDF/UA-1 where it is to be accessible.
 
-    Parameters
-    ----------
-    layout, results, path, options, progress
-        What was begun, of which results, where to write it, and how.
-    data : Path
-        results.json, which it carries with the workbook.
+    * `layout`, `results`, `path`, `options`, `progress`: what was begun, of which results, where to write it, and how.
+    * `data`: results.json, which it carries with the workbook.
 
-    Raises
-    ------
-    PdfUnavailableError
-        If WeasyPrint's native libraries are missing.
-    OSError
-        If the file cannot be written.
-    CancelledError
-        If the work was cancelled; what is written of the file is of no use.
+    Raises PdfUnavailableError if WeasyPrint's native libraries are missing; OSError if the file cannot be written;
+    CancelledError if the work was cancelled; what is written of the file is of no use.
     """
     layout.finish(path, progress.wait_for(lambda: list_attached(results, data)), options, progress)
 

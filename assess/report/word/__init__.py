@@ -10,16 +10,9 @@ from assess.report.report_options import ReportOptions
 def write_word(content: Content, path: Path, options: ReportOptions, progress: Progress = SILENT) -> None:
     """Write report.docx: the client's edition.
 
-    Raises
-    ------
-    InputError
-        If a package or a template cannot be used.
-    PdfUnavailableError
-        If the native libraries that draw plans and charts are missing.
-    OSError
-        If the file cannot be written.
-    CancelledError
-        If the work was cancelled; nothing is written.
+    Raises InputError if a package or a template cannot be used; PdfUnavailableError if the native libraries that draw
+    plans and charts are missing; OSError if the file cannot be written; CancelledError if the work was cancelled;
+    nothing is written.
     """
     from assess.report.cover import build_document
     from assess.report.pages.html import build_style

@@ -87,12 +87,7 @@ def _length(text: str | None) -> float | None:
 def draw_all(drawings: Sequence[Drawing], style: str, progress: Progress) -> list[Picture]:
     """Return the drawings as pictures, drawn with a style.
 
-    Raises
-    ------
-    PdfUnavailableError
-        If WeasyPrint's native libraries are missing.
-    CancelledError
-        If the work was cancelled.
+    Raises PdfUnavailableError if WeasyPrint's native libraries are missing; CancelledError if the work was cancelled.
     """
     if not drawings:
         return []
