@@ -5,6 +5,7 @@ an hour on two cores.
 """
 
 import datetime
+import importlib.util
 import re
 import subprocess
 import sys
@@ -65,18 +66,23 @@ def run(what: str, python: str | Path, *arguments: str) -> tuple[str, str, str]:
 
 
 def fuzz() -> Iterator[tuple[str, str, str]]:
-    """Fuzz every target, as tests/fuzz does for ten seconds."""
-    for target in FUZZED:
-        started = time.monotonic()
-        print(f"== fuzzing {target}", flush=True)
-        command = [sys.executable, "-m", "tests.fuzz", target, f"--seconds={FUZZ_SECONDS}"]
-        done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=False)
-        print(done.stdout)
-        closing = [line for line in done.stdout.splitlines() if line.startswith(f"{target}: ")]
-        result = closing[-1].partition(": ")[2] if closing else f"error: it ended with {done.returncode}"
-        if done.returncode and closing:
-            result = f"failed: {result}"
-        yield f"fuzzing {target}", result, f"{(time.monotonic() - started) / 60:.0f}"
+    """Fuzz every target, as tests/fuzz does for ten seconds, and with libFuzzer too where atheris is installed."""
+    engines = {"": (), " with atheris": ("--atheris",)}
+    for engine, more in engines.items() if importlib.util.find_spec("atheris") else [("", ())]:
+        for target in FUZZED:
+            started = time.monotonic()
+            print(f"== fuzzing {target}{engine}", flush=True)
+            command = [sys.executable, "-m", "tests.fuzz", target, f"--seconds={FUZZ_SECONDS}", *more]
+            done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=False)
+            print(done.stdout)
+            closing = [line for line in done.stdout.splitlines() if line.startswith(f"{target}: ")]
+            result = closing[-1].partition(": ")[2] if closing else f"error: it ended with {done.returncode}"
+            is_sound = done.returncode == 0 or not closing
+            yield (
+                f"fuzzing {target}{engine}",
+                result if is_sound else f"failed: {result}",
+                f"{(time.monotonic() - started) / 60:.0f}",
+            )
 
 
 def draw_others() -> tuple[str, str, str]:
