@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from assess.results import known
 from tests.nets.make import make_workbooks
 from tests.nets.nets import BY_FORMULA, NAMES, assess_workbook, read_stored
 
-CHANCE = 0.02
+CHANCE, MEAN = 0.08, 0.015
+"""How far a chance of 100 draws, and the mean of all, may be off on another processor: last digits of motions are."""
 LONGEST = {"market-street": pytest.mark.slow, "everything": pytest.mark.slow, "everything-it": pytest.mark.long}
 """Half of the time."""
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
@@ -24,17 +24,21 @@ def made(tmp_path_factory):
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=LONGEST.get(name, ())) for name in NAMES])
 def test_what_is_computed_is_what_it_was(name, made, tmp_path):
-    """Formulas are equal, chances that are simulated within 0.02, in 50 years 0.04; texts are not compared."""
+    """Formulas are equal, chances that are simulated nearly so; texts are not compared."""
     now, then = assess_workbook(name, made), read_stored(name, tmp_path)
     assert [replace(one.item, annual=None) for one in now] == [replace(one.item, annual=None) for one in then]
-    in_50_years = [[one.item.annual and one.item.annual.chance_in_50_years for one in each] for each in (now, then)]
-    assert [one is None for one in in_50_years[0]] == [one is None for one in in_50_years[1]]
-    assert known(np.array(in_50_years[0], float)) == pytest.approx(known(np.array(in_50_years[1], float)), abs=2 * CHANCE)
     for key, outcome in then.cases_table.outcomes.items():
-        tolerance = CHANCE if key == now.simulation.key else 1e-9
-        np.testing.assert_allclose(now.cases_table.outcomes[key].value, outcome.value, rtol=1e-9, atol=tolerance)
-    for one in ("probability", "low", "high"):
-        np.testing.assert_allclose(now.cases_table.adopted[one], then.cases_table.adopted[one], atol=CHANCE)
+        if key != now.simulation.key:
+            np.testing.assert_allclose(now.cases_table.outcomes[key].value, outcome.value, rtol=1e-9)
     assert name not in BY_FORMULA or not now.has_simulated
-    routes = [[one.blocked and one.blocked.probability for one in each.route_tables.routes] for each in (now, then)]
-    assert known(np.array(routes[0], dtype=float)) == pytest.approx(known(np.array(routes[1], dtype=float)), abs=CHANCE)
+    for one, other in zip(list_chances(now), list_chances(then), strict=True):
+        np.testing.assert_allclose(one, other, rtol=0, atol=CHANCE)
+        assert abs(np.nanmean([0, *(one - other)])) < MEAN
+
+
+def list_chances(results):
+    """Yield what rests on draws: chances of pieces with their intervals, in 50 years, and of routes."""
+    yield results.cases_table.outcomes[results.simulation.key].value
+    yield from (results.cases_table.adopted[one] for one in ("probability", "low", "high"))
+    yield np.array([one.item.annual and one.item.annual.chance_in_50_years for one in results], dtype=float)
+    yield np.array([one.blocked and one.blocked.probability for one in results.route_tables.routes], dtype=float)
