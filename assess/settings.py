@@ -189,7 +189,7 @@ class Settings:
             given = getattr(self, name)
             value = None if given is None else read(given)
             if value is None and not (name in _BY_WORKBOOK and given is None):
-                shown = _show(given)
+                shown = show_given(given)
                 text = fill("{name} is {value}, expected {expected}", name=name, value=shown, expected=expected)
                 raise SettingsError(text)
             object.__setattr__(self, name, value)
@@ -200,7 +200,8 @@ class Settings:
         return asdict(self) | {"anchor": f"first:{anchor}" if isinstance(anchor, int) else ",".join(anchor)}
 
 
-def _show(value: object) -> str:
+def show_given(value: object) -> str:
+    """Return a value that was given as a message shows it."""
     shown = repr(value) if isinstance(value, str) else str(value)
     return shown if len(shown) <= LONGEST_SHOWN else f"{shown[:LONGEST_SHOWN]}..."
 

@@ -30,7 +30,7 @@ def _paint_ensemble(generator: Generator, title: str, figure: Any) -> None:
     for axes, (name, values) in zip(
         right.subplots(len(series), 1, sharex=True, sharey=True, squeeze=False)[:, 0], series, strict=True
     ):
-        times = np.arange(values.size) * generator.grid.time_step
+        times = np.arange(values.size) * generator.phases.grid.time_step
         axes.plot(times, values / GRAVITY, color=TARGET if name == "record" else "#666666", linewidth=0.5)
         axes.set_title(f"{name}: PFA {np.abs(values).max() / GRAVITY:.3f} g", loc="left", fontsize=7)
         axes.margins(x=0)
@@ -41,10 +41,10 @@ def _paint_ensemble(generator: Generator, title: str, figure: Any) -> None:
 def _paint_spectra(axes: Any, generator: Generator, motions: NDArray[Any]) -> None:
     fit = generator.fit
     periods = build_periods(0.03, 10.0, 250)
-    spectra = response_spectrum(motions, generator.grid.time_step, periods).pseudo / GRAVITY
+    spectra = response_spectrum(motions, generator.phases.grid.time_step, periods).pseudo / GRAVITY
     axes.plot(periods, spectra.T, color=ONE, linewidth=0.4)
     axes.plot([], [], color=ONE, label=f"each of {len(motions)} realisations")
-    target = generator.target.ordinates(periods, generator.grid.time_step) / GRAVITY
+    target = generator.target.ordinates(periods, generator.phases.grid.time_step) / GRAVITY
     axes.plot(periods, target, color=TARGET, linewidth=1.6, label="target")
     axes.plot(periods, spectra.mean(axis=0), color=MEAN, linewidth=1.2, linestyle="--", label="mean")
     _dress(axes)

@@ -16,6 +16,7 @@ from assess.motion.assumed import Building, Ground, draw_places
 from assess.motion.beam import find_shares, swing_modes
 from assess.motion.drawn_ground import build_beam_grid, draw_ground
 from assess.motion.floor_medians import COLUMNS, PERIODS, PLACES, RATIOS, STRUCTURES, TABLE
+from assess.motion.noise import Phases
 from assess.motion.rows import GROUP
 from assess.motion.target import Grid
 from assess.motion.target_fit import measure_peaks
@@ -53,7 +54,7 @@ def _find_peaks(entries: Sequence[Entry], grid: Grid, group: int) -> np.ndarray:
         building, ratio = _build(entry), entry[2]
         if ratio not in grounds:
             motion = Ground(pga=1.0, pgv=ratio)
-            grounds[ratio] = draw_ground(motion, grid, seed=SEED, axis="X", group=group, progress=SILENT)
+            grounds[ratio] = draw_ground(motion, Phases(grid, SEED, "X"), group, SILENT)
         periods, alphas = (one(SEED, first, GROUP) for one in (building.draw_periods, building.draw_alphas))
         basis = swing_modes(grounds[ratio], grid.time_step, periods, alphas)
         for at, places in enumerate(every):

@@ -146,7 +146,7 @@ def lines_of_ensembles(generators: dict[str, Generator], across: dict[str, Gener
 
 def deviations_of(generator: Generator) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
     """Return periods [s], and how the mean spectra of the first 100 and of all 200 deviate from the target [-]."""
-    target, step = generator.target, generator.grid.time_step
+    target, step = generator.target, generator.phases.grid.time_step
     periods = np.geomspace(JUDGED_FROM, matched_to(target.periods, target.pseudo), 300)
     spectra = response_spectrum(generator.realise(0, ALL), step, periods, threads=2).pseudo
     wanted = target.ordinates(periods, step)
@@ -181,7 +181,7 @@ def lines_of_shaking(generators: dict[str, Generator]) -> Iterator[str]:
     rows = []
     for name, generator in generators.items():
         assert generator.target.acceleration is not None  # noqa: S101 - all are records
-        step, made = generator.grid.time_step, generator.realise(0, ALL)
+        step, made = generator.phases.grid.time_step, generator.realise(0, ALL)
         own = shaking_of(generator.target.acceleration[None], step)[0]
         every = shaking_of(made, step) / own
         rows.append((every[:CALIBRATED].mean(axis=0), every.mean(axis=0)))

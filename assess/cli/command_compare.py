@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from assess.cli.console import say, say_written, show_progress
-from assess.cli.options import AsJson, language_of, list_of, read_formats
+from assess.cli.options import AsJson, language_of, list_of, read_formats, spell_options
 from assess.errors import InputError
 from assess.i18n import LANGUAGES, find_language
 from assess.input_file import read_input
-from assess.settings import CLASS_BY, SCENARIOS, Settings
+from assess.settings import CLASS_BY, SCENARIOS
 from assess.version import find_code
 
 if TYPE_CHECKING:
@@ -118,13 +118,9 @@ def _list_ways(name: str, run: "PastRun") -> Iterator[str]:
             return False
 
     found = next(filter(is_it, (folder / workbook, folder.parent / workbook, Path(workbook))), None)
-    default = Settings().as_record()
+    own = {option: value for option, value in run.settings.items() if value not in _FILLED}
     parts = ["assess", "run", str(found or workbook), "--out", f"{folder.resolve().name}-again"]
-    for option in OPTIONS:
-        value = run.settings.get(option)
-        if value not in (None, default[option], *_FILLED):
-            parts += [f"--{option.replace('_', '-')}", *(() if value is True else (str(value),))]
-    yield f"Assess {name} again, and compare that: {shlex.join(parts)}"
+    yield f"Assess {name} again, and compare that: {shlex.join([*parts, *spell_options(own, OPTIONS)])}"
     if found is None and (folder / PDF).is_file():
         yield f"{workbook} is attached to {folder / PDF}: save it from there."
 

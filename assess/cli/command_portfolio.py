@@ -28,6 +28,8 @@ EXAMPLES = (
 )
 FORMATS = ("parquet", "xlsx", "html", "pdf")
 """Those of `assess.portfolio.run_portfolio`, which takes long to import."""
+REPEATED = ("verify", "runs", "seed", "scenario", "scale", "route_risk", "class_by", "ideal")
+"""Settings of the run that the command for one building has an option for."""
 MOST_SKIPPED = 10
 """Buildings that were skipped that are named at the end."""
 EXAMPLE_MAP, EXAMPLE_COAST, EXAMPLE_INDEX = "grid.xml", "coast.geojson", "index.csv"
@@ -144,17 +146,12 @@ def _prepare_example(
 def _say_repeat(source: Path, settings: Settings, shakemap: Path | None, ground_motions: Path | None) -> str:
     """Return the command that assesses one building alone, {path} being its workbook; "" where a name holds {path}."""
     folder = f"{_quote(source if source.is_dir() else source.parent)}/"
-    default = Settings()
-    named = {
-        "--shakemap": shakemap and _quote(shakemap), "--ground-motions": ground_motions and _quote(ground_motions),
-        **{f"--{name.replace('_', '-')}": shlex.quote(str(getattr(settings, name)))
-           for name in ("verify", "runs", "seed", "scenario", "scale", "route_risk", "class_by")
-           if getattr(settings, name) != getattr(default, name)},
-    }  # fmt: skip
-    given = [f"{option} {value}" for option, value in named.items() if value is not None]
+    files = {"--shakemap": shakemap, "--ground-motions": ground_motions}
+    given = [f"{option} {_quote(file)}" for option, file in files.items() if file]
+    given += map(shlex.quote, options.spell_options(settings.as_record(), REPEATED))
     if any("{path}" in one for one in (folder, *given)):
         return ""
-    return " ".join([f"assess run {folder}{{path}} --city", *given, *(["--ideal"] if settings.ideal else [])])
+    return " ".join([f"assess run {folder}{{path}} --city", *given])
 
 
 def _quote(path: Path) -> str:

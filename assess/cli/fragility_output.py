@@ -261,13 +261,14 @@ def _remark(one: PieceFragility) -> Iterator[str]:
 
 
 def _describe_motions(one: FloorMotions) -> dict[str, Any]:
+    demand = one.demand
     return {
         "floor": one.floor,
-        "axis": one.axis,
-        "source": str(one.source),
+        "axis": demand.axis,
+        "source": str(demand.label),
         "spectrum": str(one.spectrum),
-        "pfa_g": one.pfa / GRAVITY,
-        "pfv_cm_s": finite(100 * one.pfv),
+        "pfa_g": demand.pfa / GRAVITY,
+        "pfv_cm_s": finite(100 * demand.pfv),
         "mean_pfa_g": one.mean_pfa / GRAVITY,
         "mean_pfv_cm_s": 100 * one.mean_pfv,
         "pfv_per_pfa_s": one.pfv_per_pfa,

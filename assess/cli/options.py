@@ -1,7 +1,7 @@
 """Options that several commands have, their values as arguments of the library, and the writing of files."""
 
 import re
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
@@ -213,6 +213,15 @@ def read_ground(shakemap: Path | None, scenarios: Path | None) -> "GroundField |
 
         return read_scenarios(scenarios)
     return None
+
+
+def spell_options(settings: Mapping[str, Any], names: Iterable[str]) -> Iterator[str]:
+    """Yield the parts of a command line that give `assess run` those of some settings that are not by default."""
+    default = Settings().as_record()
+    for name in names:
+        value = settings.get(name)
+        if value not in (None, default[name]):
+            yield from (f"--{name.replace('_', '-')}", *(() if value is True else (str(value),)))
 
 
 def check_out(folder: Path, formats: Sequence[str] = ()) -> None:

@@ -22,7 +22,7 @@ import numpy as np
 from assess.arrays import FloatArray, Single
 from assess.motion.assumed import Ground
 from assess.motion.bands import meet_peaks, split_bands
-from assess.motion.noise import draw_noise, find_rates
+from assess.motion.noise import Phases, draw_noise, find_rates
 from assess.motion.rows import GROUP
 from assess.motion.stratified import draw_normal
 from assess.motion.target import LOWEST, TIME_STEP, Envelopes, Grid
@@ -61,17 +61,14 @@ def build_beam_grid(longest: float | None) -> Grid:
     return Grid(TIME_STEP, math.ceil((LEAD + REACH * LENGTH + rest) / TIME_STEP) + 1)
 
 
-def draw_ground(ground: Ground, grid: Grid, *, seed: int, axis: str, group: int, progress: Progress) -> Single:
+def draw_ground(ground: Ground, phases: Phases, group: int, progress: Progress) -> Single:
     """Return the ground motions of a group of draws, (GROUP, n) [m/s2]."""
     from scipy.fft import irfft
 
-    first = group * GROUP
-    ratios = ground.draw_ratios(seed, axis, first, GROUP)
-    length = draw_normal([seed, _LENGTH], first, GROUP, 3.0).clip(-SHORT, LONG)
-    noise = draw_noise(
-        _envelope(grid), grid, seed=seed, axis=axis, group=group, progress=progress,
-        stretches=np.exp(LENGTH_SCATTER * length),
-    )  # fmt: skip
+    first, grid = group * GROUP, phases.grid
+    ratios = ground.draw_ratios(phases.seed, phases.axis, first, GROUP)
+    length = draw_normal([phases.seed, _LENGTH], first, GROUP, 3.0).clip(-SHORT, LONG)
+    noise = draw_noise(_envelope(grid), phases, group, progress, stretches=np.exp(LENGTH_SCATTER * length))
     noise *= _find_gains(grid, ratios)
     rates = find_rates(grid)
     filtered = irfft(noise, rates.length, axis=1, overwrite_x=True)[:, : grid.count]

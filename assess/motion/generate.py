@@ -31,7 +31,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from assess.arrays import FloatArray, Single
-from assess.motion.noise import Signs, Transforms, draw_noise, find_rates
+from assess.motion.noise import Phases, Transforms, draw_noise, find_rates
 from assess.motion.recipe import Bending, Recipe, bend_to
 from assess.motion.record import CORNER
 from assess.motion.rows import GROUP, make_groups, run_groups, run_rows
@@ -302,7 +302,7 @@ class Generator:
     """Makes the motions of one floor along one axis; `build_generator` finds what it holds.
 
     * `target`: of the floor.
-    * `grid`, `seed`, `axis`, `threads`, `progress`, `signs`: as given to `build_generator`.
+    * `phases`: of its motions; `threads`, `progress` as given to `build_generator`.
     * `recipe`: what turns noise into motions.
     * `made` (100, n): the first realisations [m/s2], which were made while it was found.
     * `fit`: how they meet the target.
@@ -310,16 +310,13 @@ class Generator:
     """
 
     target: Target
-    grid: Grid
-    seed: int
-    axis: str
+    phases: Phases
     threads: int
     progress: Progress
     recipe: Recipe
     made: Single
     fit: Fit
     spectra: Spectra
-    signs: Signs | None = None
 
     def realise(self, first: int = 0, count: int = CALIBRATED) -> Single:
         """Return realisations `first` to `first + count - 1`: accelerations [m/s2], (count, n), in single precision.
@@ -333,15 +330,12 @@ class Generator:
         def make(group: int) -> Single:
             if group * GROUP < len(self.made):
                 return self.made[group * GROUP : (group + 1) * GROUP]
-            noise = draw_noise(
-                self.target.envelopes, self.grid, seed=self.seed, axis=self.axis, group=group, progress=self.progress,
-                signs=self.signs,
-            )  # fmt: skip
-            motions = np.empty((GROUP, self.grid.count), np.float32)
+            noise = draw_noise(self.target.envelopes, self.phases, group, self.progress)
+            motions = np.empty((GROUP, self.phases.grid.count), np.float32)
             self.recipe.make(noise, motions, self.progress)
             return motions
 
-        return make_groups(make, first, count, self.grid.count, self.threads, self.progress)
+        return make_groups(make, first, count, self.phases.grid.count, self.threads, self.progress)
 
 
 def build_generator(
@@ -352,27 +346,23 @@ def build_generator(
     axis: str,
     threads: int = 1,
     progress: Progress = SILENT,
-    signs: Signs | None = None,
+    signs: tuple[int, ...] | None = None,
 ) -> Generator:
     """Find the filter, the bending and the wavelets that make an ensemble meet its target.
 
     * `target`: of the floor, on the grid of its building.
-    * `grid`: the building's samples.
-    * `seed`: 0 or above. Phases and durations come from (seed, axis, number of the realisation) only.
-    * `axis` "X" or "Y": each axis has its own phases.
+    * `grid`, `seed`, `axis`, `signs`: as of `assess.motion.noise.Phases`; errors likewise.
     * `threads`: number of threads that share the work; it does not change a result.
     * `progress`: asked often, here and in `Generator.realise`, whether to stop.
-    * `signs` (b,): of the floor, 1 or -1 by octave, from `assess.motion.floor_signs.find_signs`.
 
-    Raises CancelledError if the caller stops the work; KeyError if the axis is not "X" or "Y".
+    Raises CancelledError if the caller stops the work.
     """
+    phases = Phases(grid, seed, axis, signs)
     bench = Bench(threads, progress)
     noise: list[Transforms] = [np.empty((0, 0), np.complex64)] * (CALIBRATED // GROUP)
 
     def draw(group: int) -> None:
-        noise[group] = draw_noise(
-            target.envelopes, grid, seed=seed, axis=axis, group=group, progress=progress, signs=signs
-        )
+        noise[group] = draw_noise(target.envelopes, phases, group, progress)
 
     run_rows(draw, len(noise), threads, progress)
     recipe = Recipe.of(target, grid)
@@ -380,6 +370,6 @@ def build_generator(
     recipe = find_corrections(target, recipe, motions, bench)
     fit, spectra = measure_match(target, motions, grid.time_step, threads, progress)
     return Generator(
-        target=target, grid=grid, seed=seed, axis=axis, threads=threads, progress=progress,
-        recipe=recipe, made=motions, fit=fit, spectra=spectra, signs=signs,
+        target=target, phases=phases, threads=threads, progress=progress,
+        recipe=recipe, made=motions, fit=fit, spectra=spectra,
     )  # fmt: skip

@@ -29,10 +29,31 @@ ROOM = 3.9
 widens it."""
 PHASES = 4096
 """Random phases are multiples of a turn over this number."""
-Signs = tuple[int, ...]
-"""1 or -1 by octave."""
-
 _AXES = {"X": 0, "Y": 1}
+
+
+@dataclass(frozen=True, slots=True)
+class Phases:
+    """The samples of motions, and what draws their phases; those of (seed, axis) are the same on all floors.
+
+    * `grid`: the building's samples.
+    * `seed`: 0 or above. Phases and durations come from (seed, axis, number of the realisation) only.
+    * `axis` "X" or "Y": each axis has its own phases.
+    * `signs` (b,): of a floor, 1 or -1 by octave, from `assess.motion.floor_signs.find_signs`, by which its phases are
+      turned; None where they turn nothing.
+
+    Raises KeyError if the axis is not "X" or "Y".
+    """
+
+    grid: Grid
+    seed: int
+    axis: str
+    signs: tuple[int, ...] | None = None
+
+    def __post_init__(self) -> None:
+        _AXES[self.axis]
+        if self.signs is not None and min(self.signs) > 0:
+            object.__setattr__(self, "signs", None)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -81,30 +102,24 @@ KEPT: Kept[Bands] = Kept(96_000_000)
 """Noise for further floors: 200 motions of 12,000 samples on two axes are 55 million bytes."""
 
 
-def draw_bands(grid: Grid, seed: int, axis: str, group: int, progress: Progress, signs: Signs | None = None) -> Bands:
-    """Return white noise of random phases, the same on all floors, and how the time of each motion is stretched.
-
-    Where a floor has `signs`, its phases are turned by them; with 1 in every octave the noise is that of all floors.
-    Raises KeyError if the axis is not "X" or "Y".
-    """
-    number, turned = _AXES[axis], signs if signs is not None and min(signs) < 0 else None
-    key = (grid, seed, number, group, turned)
-    return KEPT.find_or_make(key, lambda: _draw(grid, seed, number, group, progress, turned), progress)
+def draw_bands(phases: Phases, group: int, progress: Progress) -> Bands:
+    """Return the white noise of a group of realisations, and how the time of each motion is stretched."""
+    return KEPT.find_or_make((phases, group), lambda: _draw(phases, group, progress), progress)
 
 
-def _draw(grid: Grid, seed: int, axis: int, group: int, progress: Progress, signs: Signs | None) -> Bands:
+def _draw(phases: Phases, group: int, progress: Progress) -> Bands:
     from scipy.fft import irfft
 
-    rates = find_rates(grid)
+    rates = find_rates(phases.grid)
     turns = np.exp(2j * np.pi * np.arange(PHASES) / PHASES).astype(np.complex64)
     white = np.empty((GROUP, rates.frequencies.size), np.complex64)
     stretches = np.empty(GROUP)
     for row in range(GROUP):
-        draw = np.random.default_rng([seed, axis, group * GROUP + row])
+        draw = np.random.default_rng([phases.seed, _AXES[phases.axis], group * GROUP + row])
         stretches[row] = math.exp(STRETCH * draw.standard_normal())
         turns.take(draw.integers(0, PHASES, rates.frequencies.size, dtype=np.uint16), out=white[row], mode="wrap")
-    if signs is not None:
-        white *= turn_phases(rates.frequencies, signs).astype(np.complex64)
+    if phases.signs is not None:
+        white *= turn_phases(rates.frequencies, phases.signs).astype(np.complex64)
     bands = []
     for weights, depth in zip(rates.weights, rates.depths, strict=True):
         progress.check()
@@ -114,17 +129,9 @@ def _draw(grid: Grid, seed: int, axis: int, group: int, progress: Progress, sign
 
 
 def draw_noise(
-    envelopes: Envelopes,
-    grid: Grid,
-    *,
-    seed: int,
-    axis: str,
-    group: int,
-    progress: Progress,
-    signs: Signs | None = None,
-    stretches: FloatArray | None = None,
+    envelopes: Envelopes, phases: Phases, group: int, progress: Progress, *, stretches: FloatArray | None = None
 ) -> Transforms:
-    """Return the transforms of a group of white noise under the envelopes of a floor, turned by its signs.
+    """Return the transforms of a group of white noise under the envelopes of a floor.
 
     `stretches` (GROUP,) of the time of each motion are drawn unless they are given [-].
 
@@ -133,14 +140,14 @@ def draw_noise(
     """
     from scipy.fft import rfft
 
-    rates, bands = find_rates(grid), draw_bands(grid, seed, axis, group, progress, signs)
+    rates, bands = find_rates(phases.grid), draw_bands(phases, group, progress)
     noise = np.zeros((GROUP, rates.frequencies.size), np.complex64)
     by = 1 / (bands.stretches if stretches is None else stretches)
     for number, (band, depth) in enumerate(zip(bands.octaves, rates.depths, strict=True)):
         progress.check()
         values = envelopes.values[min(number, len(envelopes.values) - 1)]
         under = np.zeros_like(band)
-        _modulate(band, values, by, envelopes.half_time / grid.time_step, depth, under)
+        _modulate(band, values, by, envelopes.half_time / phases.grid.time_step, depth, under)
         transform = rfft(under, axis=1, overwrite_x=True)
         noise[:, : transform.shape[1]] += transform
     return noise

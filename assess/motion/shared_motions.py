@@ -17,9 +17,9 @@ import numpy as np
 from assess.arrays import Single
 from assess.motion.generate import Generator, build_generator
 from assess.motion.kept import Kept, waiting
-from assess.motion.noise import Signs
+from assess.motion.noise import Phases
 from assess.motion.rows import GROUP
-from assess.motion.target import Grid, Target
+from assess.motion.target import Target
 from assess.motion.target_fit import Fit, Spectra
 from assess.progress import SILENT, Progress
 
@@ -100,37 +100,30 @@ class SharedMotions:
 
 
 def share_motions(
-    target: Target,
-    grid: Grid,
-    *,
-    factor: float,
-    seed: int,
-    axis: str,
-    threads: int = 1,
-    progress: Progress = SILENT,
-    signs: Signs | None = None,
+    target: Target, phases: Phases, *, factor: float, threads: int = 1, progress: Progress = SILENT
 ) -> SharedMotions:
     """Return the motions of a floor whose target is `factor` times another, which floors share.
 
     * `target`: of the shape.
     * `factor`: that of the floor over it [-].
-    * `grid`, `seed`, `axis`, `threads`, `progress`, `signs`: as of `assess.motion.generate.build_generator`; errors
-      likewise.
+    * `threads`, `progress`: as of `assess.motion.generate.build_generator`; errors likewise.
     """
 
     def make() -> _Entry:
-        found = build_generator(target, grid, seed=seed, axis=axis, threads=threads, progress=progress, signs=signs)
+        found = build_generator(
+            target, phases.grid, seed=phases.seed, axis=phases.axis, threads=threads, progress=progress,
+            signs=phases.signs,
+        )  # fmt: skip
         found.made.flags.writeable = False
         return _Entry(replace(found, threads=1, progress=SILENT))
 
-    key = _name(target, grid, seed, axis, signs)
+    key = _name(target, phases)
     entry = KEPT.find_or_make(key, make, progress)
     return SharedMotions(replace(entry.generator, threads=threads, progress=progress), factor, key, entry)
 
 
-def _name(target: Target, grid: Grid, seed: int, axis: str, signs: Signs | None) -> bytes:
-    envelopes, signs = target.envelopes, signs if signs is not None and min(signs) < 0 else None
-    found = hashlib.sha256(repr((grid, seed, axis, signs)).encode())
+def _name(target: Target, phases: Phases) -> bytes:
+    envelopes, found = target.envelopes, hashlib.sha256(repr(phases).encode())
     numbers = target.pfa, target.pfv, envelopes.half_time
     arrays = target.periods, target.pseudo, envelopes.centres, envelopes.values, target.acceleration
     for one in (numbers, *arrays):

@@ -82,11 +82,6 @@ def draw_field(
     return np.asarray(values[start : start + count])
 
 
-def correlate(distance: FloatArray, range_km: float = SCATTERS["PGA"].range_km) -> FloatArray:
-    """Return the correlation of the numbers of places this far apart [km]."""
-    return np.asarray(np.exp(-3 * distance / range_km))
-
-
 @lru_cache(maxsize=64)
 def _draw_waves(seed: int, block: int) -> tuple[FloatArray, FloatArray]:
     """Return the wave numbers over a range [rad], (256, WAVES, 3), and phases, (256, WAVES), of a block of draws.

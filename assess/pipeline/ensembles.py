@@ -89,12 +89,11 @@ class GeneratedEnsemble:
 
     def open(self, threads: int, progress: Progress = SILENT) -> OpenMotions:
         """Find the filter and the corrections that meet the target; the motions are in single precision."""
+        from assess.motion.noise import Phases
         from assess.motion.shared_motions import share_motions
 
-        shared = share_motions(
-            self.build_target(), self.grid, factor=self.factor, seed=self.seed, axis=self.demand.axis, threads=threads,
-            progress=progress, signs=self.signs,
-        )  # fmt: skip
+        phases = Phases(self.grid, self.seed, self.demand.axis, self.signs)
+        shared = share_motions(self.build_target(), phases, factor=self.factor, threads=threads, progress=progress)
         step = self.grid.time_step
         is_weak = shared.fit.pfv_ratio < WEAK_PFV  # NaN where no PFV is to be met
         return OpenMotions(
@@ -136,13 +135,12 @@ class DrawnEnsemble:
     def _find_ground(self, progress: Progress) -> tuple[Callable[[int], "NDArray[np.float32]"], object]:
         """Return what makes the ground motions of a group, and all that they depend on."""
         from assess.motion.drawn_ground import draw_ground
+        from assess.motion.noise import Phases
 
         record, ground, axis = self.drawn.record, self.drawn.ground, self.demand.axis
         if record is None:
-            return (
-                lambda group: draw_ground(ground, self.grid, seed=self.seed, axis=axis, group=group, progress=progress),
-                (ground, axis),
-            )
+            phases = Phases(self.grid, self.seed, axis)
+            return lambda group: draw_ground(ground, phases, group, progress), (ground, axis)
         made = GeneratedEnsemble(record, self.grid, self.seed, self.signs).open(1, progress)
         return lambda group: made.realise(group * GROUP, GROUP)[0][0], (record, axis)
 

@@ -26,6 +26,7 @@ from assess.i18n import Text, fill
 from assess.model import AXES, Axis, Inventory, Item
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.either_axis import is_square
+from assess.pipeline.floor_demand import Demand
 from assess.pipeline.levels import RockedLevels, Sweep
 from assess.pipeline.verify import choose_motions
 from assess.progress import SILENT, Progress
@@ -63,27 +64,34 @@ _Choice = TypeVar("_Choice", bound=str)
 class FloorMotions:
     """The motions of one floor along one axis, before any factor.
 
-    * `floor`, `axis`: where.
-    * `source`: where its demand comes from: the record's name, "given", the profile's code, or two floors.
-    * `pfa`, `pfv`: of the floor [m/s2], [m/s].
+    * `demand`: of the floor.
     * `mean_pfa`, `mean_pfv`: means over the motions [m/s2], [m/s].
-    * `spectrum`: what their spectrum follows, in words.
     * `is_assumed`, `is_unknown`, `is_weak`: whether ground motion and building are drawn, whether nothing is known of
       the building, and whether the motions are weaker than the floor's. Under the latter two a fragility may be too
       low.
     """
 
-    floor: str
-    axis: Axis
-    source: str
-    pfa: float
-    pfv: float
+    demand: Demand
     mean_pfa: float
     mean_pfv: float
-    spectrum: Text
     is_assumed: bool
     is_unknown: bool
     is_weak: bool
+
+    @property
+    def floor(self) -> str:
+        """Name of the floor."""
+        return self.demand.floor.floor
+
+    @property
+    def spectrum(self) -> Text:
+        """What their spectrum follows, in words."""
+        drawn = self.demand.drawn
+        if drawn is None:
+            return fill("that of the record")
+        if drawn.building.period is None:
+            return fill("drawn, nothing known of the building")
+        return fill("drawn for T1 {period:.3g} s", period=drawn.building.period)
 
     @property
     def pfv_per_pfa(self) -> float:
@@ -326,25 +334,11 @@ class _Study:
         return counts
 
     def _describe(self, number: int, case: int, rocked: RockedLevels) -> FloorMotions:
-        demand, made = self.sweep.assessment.case_demand[case], self.sweep.cases.ensembles[number]
-        spectrum, drawn = fill("that of the record"), demand.drawn
-        if drawn is not None and drawn.building.period is None:
-            spectrum = fill("drawn, nothing known of the building")
-        elif drawn is not None:
-            spectrum = fill("drawn for T1 {period:.3g} s", period=drawn.building.period)
+        made = self.sweep.cases.ensembles[number]
         return FloorMotions(
-            floor=demand.floor.floor,
-            axis=demand.axis,
-            source=demand.label,
-            pfa=demand.pfa,
-            pfv=demand.pfv,
-            mean_pfa=rocked.pfa,
-            mean_pfv=rocked.pfv,
-            spectrum=spectrum,
-            is_assumed=made.is_assumed,
-            is_unknown=made.is_unknown,
-            is_weak=rocked.is_weak,
-        )
+            demand=self.sweep.assessment.case_demand[case], mean_pfa=rocked.pfa, mean_pfv=rocked.pfv,
+            is_assumed=made.is_assumed, is_unknown=made.is_unknown, is_weak=rocked.is_weak,
+        )  # fmt: skip
 
     def build_curve(self, group: Sequence[int], levels: FloatArray, fallen: FloatArray, by: By) -> PieceFragility:
         """Return the curve of a group whose items fell so often at the levels, (m, l); NaN where they were not."""

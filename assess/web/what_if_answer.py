@@ -13,7 +13,7 @@ from assess.model import Inventory
 from assess.pipeline.run import evaluate_route_tables, list_first_fixes
 from assess.pipeline.what_if import anchor_named, spell_names
 from assess.progress import SILENT
-from assess.settings import SCENARIOS, Settings
+from assess.settings import SCENARIOS, Settings, show_given
 from assess.web.evaluation import BY_FORMULAS, Evaluation, evaluate_once, evaluate_other
 from assess.web.live import count_classes, describe_rows, list_rows, say_fault
 from assess.web.route_states import describe_states, describe_unknown
@@ -27,8 +27,6 @@ ASKED = ("scale", "scenario", "anchor", "first")
 """What a request may hold."""
 FAR = 1e6
 """A scale beyond this is no number that anyone means [-]."""
-LONGEST = 40
-"""Characters of a wrong value that a message repeats."""
 
 
 def try_out(snapshot: "Snapshot", request: object) -> dict[str, Any]:
@@ -79,7 +77,9 @@ def _read_request(inventory: Inventory, tables: Tables, request: object) -> tupl
     unknown = [str(name) for name in request if name not in ASKED]
     if unknown:
         known = ", ".join(ASKED)
-        raise InputError.about("{name} is not known, expected one of: {known}.", name=_show(unknown[0]), known=known)
+        raise InputError.about(
+            "{name} is not known, expected one of: {known}.", name=show_given(unknown[0]), known=known
+        )
     given = {name: value for name, value in request.items() if value is not None}
     names = _read_names(given.get("anchor", ()))
     _check_left_out(inventory, tables, names)
@@ -91,7 +91,7 @@ def _read_request(inventory: Inventory, tables: Tables, request: object) -> tupl
 def _read_scale(value: Any) -> float:
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
     if not is_number or not abs(value) < FAR:  # NaN among them
-        raise InputError.about("scale is {value}, expected a number.", value=_show(value))
+        raise InputError.about("scale is {value}, expected a number.", value=show_given(value))
     return float(value)
 
 
@@ -99,13 +99,13 @@ def _read_first(value: object) -> int:
     if isinstance(value, float) and value.is_integer():
         value = int(value)
     if isinstance(value, bool) or not isinstance(value, int) or value < 0:
-        raise InputError.about("first is {value}, expected a whole number, 0 or above.", value=_show(value))
+        raise InputError.about("first is {value}, expected a whole number, 0 or above.", value=show_given(value))
     return value
 
 
 def _read_names(value: object) -> tuple[str, ...]:
     if isinstance(value, str) or not isinstance(value, Sequence) or not all(isinstance(one, str) for one in value):
-        raise InputError.about("anchor is {value}, expected a list of names of items.", value=_show(value))
+        raise InputError.about("anchor is {value}, expected a list of names of items.", value=show_given(value))
     return tuple(dict.fromkeys(one.strip() for one in value if one.strip()))
 
 
@@ -116,14 +116,9 @@ def _check_left_out(inventory: Inventory, tables: Tables, names: Iterable[str]) 
         if key(name) not in known and key(name) in rows:
             raise InputError.about(
                 "{name} cannot be anchored: its row {row} has an error or a blank.",
-                name=_show(name),
+                name=show_given(name),
                 row=rows[key(name)],
             )
-
-
-def _show(value: object) -> str:
-    shown = repr(value) if isinstance(value, str) else str(value)
-    return shown if len(shown) <= LONGEST else f"{shown[:LONGEST]}..."
 
 
 def _name_entries(found: Evaluation) -> list[list[str]]:

@@ -15,6 +15,7 @@ from assess.motion.beam import DAMPING, MODES, solve_beam
 from assess.motion.beam_motions import Beams, open_floor
 from assess.motion.drawn_ground import build_beam_grid, draw_ground, fit_noise
 from assess.motion.floor_medians import find_medians
+from assess.motion.noise import Phases
 from assess.progress import SILENT
 from tests.benchmarks.measuring import compare, spent
 
@@ -42,7 +43,7 @@ def _shake(floors: int) -> None:
     for axis in AXES:
 
         def draw(group: int, axis: str = axis) -> Single:
-            return draw_ground(GROUND, GRID, seed=1, axis=axis, group=group, progress=SILENT)
+            return draw_ground(GROUND, Phases(GRID, 1, axis), group, SILENT)
 
         beams = Beams(BUILDING, GRID, 1, axis, draw)
         for at in range(1, floors + 1):

@@ -16,7 +16,8 @@ import assess
 from assess.cli.curve_figures import CURVES_A_PANEL, MOST_CURVE_PANELS, choose_curves, paint_curves
 from assess.cli.fragility_output import FORMATS, MOST_LINES, Curves
 from assess.fragility import fit_fragility, lognormal_chance
-from assess.model import Item
+from assess.model import Floor, Item
+from assess.pipeline.floor_demand import Demand
 from assess.pipeline.piece_fragility import FloorMotions, PieceFragilities, PieceFragility, find_piece_fragilities
 from assess.pipeline.run import compute
 from assess.units import GRAVITY
@@ -82,12 +83,12 @@ def test_it_is_what_the_library_finds(made):
 # --- curves that are made up ---
 
 
+DEMAND = Demand(floor=Floor(row=2, floor="1"), axis="X", source="given", pfa=3.0, pfv=0.4)
+
+
 def curves_of(*shares: list[float], weak: bool = False) -> Curves:
     """Curves over 0.1, 0.2, ... g with these shares of 100 draws."""
-    motions = FloorMotions(
-        floor="1", axis="X", source="given", pfa=3.0, pfv=0.4, mean_pfa=3.0, mean_pfv=0.45,
-        spectrum=cast("Any", "drawn"), is_assumed=True, is_unknown=weak, is_weak=False,
-    )  # fmt: skip
+    motions = FloorMotions(demand=DEMAND, mean_pfa=3.0, mean_pfv=0.45, is_assumed=True, is_unknown=weak, is_weak=False)
     every = []
     for number, one in enumerate(shares):
         levels = [GRAVITY * (1 + at) / 10 for at in range(len(one))]

@@ -12,6 +12,7 @@ from assess.motion.assumed import Building, FloorTarget, Ground, Meets
 from assess.motion.beam_motions import Beams, FloorMotions, open_floor
 from assess.motion.drawn_ground import build_beam_grid, draw_ground
 from assess.motion.floor_medians import find_medians
+from assess.motion.noise import Phases
 from assess.motion.rows import GROUP
 from assess.motion.target_fit import measure_peaks
 from assess.progress import SILENT
@@ -29,7 +30,7 @@ def nothing_left() -> Iterator[None]:
 
 def make_beams(building: Building = BUILDING, seed: int = 1, axis: str = "X") -> Beams:
     def draw(group: int) -> Single:
-        return draw_ground(GROUND, GRID, seed=seed, axis=axis, group=group, progress=SILENT)
+        return draw_ground(GROUND, Phases(GRID, seed, axis), group, SILENT)
 
     key: Hashable = (GROUND, axis)
     return Beams(building, GRID, seed, key, draw)
@@ -82,7 +83,7 @@ def test_beams_themselves_have_the_medians_of_the_table(place: float | None) -> 
 
 
 def test_a_floor_at_grade_is_the_ground() -> None:
-    ground = draw_ground(GROUND, GRID, seed=1, axis="X", group=2, progress=SILENT)
+    ground = draw_ground(GROUND, Phases(GRID, 1, "X"), 2, SILENT)
     for place in (0.0, -0.1):
         found = realise(FloorTarget(place=place, pfa=3.0, pfv=0.32, meets="nothing", factor=2.5), 2 * GROUP, GROUP)
         np.testing.assert_array_equal(found, np.float32(2.5) * ground)
@@ -166,7 +167,7 @@ def test_modes_are_made_once_for_all_floors_and_threads() -> None:
 
     def draw(group: int) -> Single:
         made.append(group)
-        return draw_ground(GROUND, GRID, seed=1, axis="X", group=group, progress=SILENT)
+        return draw_ground(GROUND, Phases(GRID, 1, "X"), group, SILENT)
 
     beams = Beams(BUILDING, GRID, 1, "counted", draw)
     with ThreadPoolExecutor(3) as pool:

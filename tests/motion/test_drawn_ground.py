@@ -9,6 +9,7 @@ from assess.arrays import FloatArray, Single
 from assess.intensity import RATIO
 from assess.motion.assumed import ALONG, CUT, RATIO_SCATTER, Building, Ground, draw_places, estimate_period
 from assess.motion.drawn_ground import AMPLIFIED, build_beam_grid, draw_ground, find_shape
+from assess.motion.noise import Phases
 from assess.motion.rows import GROUP
 from assess.motion.sweep import Sweep
 from assess.motion.target_fit import measure_peaks
@@ -23,7 +24,7 @@ EACH = pytest.mark.parametrize("ground", KNOWN, ids=["PGA", "PGV", "both, fast",
 @cache
 def make(ground: Ground, axis: str = "X", seed: int = 1) -> Single:
     groups = range(DRAWS // GROUP)
-    made = [draw_ground(ground, GRID, seed=seed, axis=axis, group=group, progress=SILENT) for group in groups]
+    made = [draw_ground(ground, Phases(GRID, seed, axis), group, SILENT) for group in groups]
     return np.concatenate(made)
 
 
@@ -71,10 +72,10 @@ def test_the_shape_by_hand() -> None:
 
 def test_draws_depend_on_seed_axis_and_number_alone() -> None:
     ground = KNOWN[0]
-    afresh = draw_ground(ground, GRID, seed=1, axis="X", group=3, progress=SILENT)
+    afresh = draw_ground(ground, Phases(GRID, 1, "X"), 3, SILENT)
     np.testing.assert_array_equal(afresh, make(ground)[3 * GROUP : 4 * GROUP])
     for axis, seed in (("Y", 1), ("X", 2)):
-        other = draw_ground(ground, GRID, seed=seed, axis=axis, group=3, progress=SILENT)
+        other = draw_ground(ground, Phases(GRID, seed, axis), 3, SILENT)
         assert np.abs(np.diag(np.corrcoef(afresh, other)[:GROUP, GROUP:])).mean() < 0.1
     np.testing.assert_allclose(make(Ground(pga=6.0))[:GROUP], 2 * make(ground)[:GROUP], rtol=1e-4, atol=1e-4)
 

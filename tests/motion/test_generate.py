@@ -125,7 +125,7 @@ def test_realisations_beyond_those_calibrated_match_too() -> None:
     """Fifty others have a mean of their own: its standard error alone is 3 %."""
     generator = build(cut(TWELFTH, 0, 15))
     motions = generator.realise(100, 50)
-    assert motions.shape == (50, generator.grid.count)
+    assert motions.shape == (50, generator.phases.grid.count)
     figures = measure(generator.target, motions)
     assert figures.mean_deviation < 0.06
     assert figures.worst_deviation < 0.2

@@ -6,7 +6,7 @@ import pytest
 from assess.arrays import FloatArray
 from assess.motion import noise
 from assess.motion.kept import Kept
-from assess.motion.noise import draw_bands, draw_noise, find_rates
+from assess.motion.noise import Phases, draw_bands, draw_noise, find_rates
 from assess.motion.rows import GROUP
 from assess.motion.target import STRETCH, Envelopes, Grid, octaves
 from assess.progress import SILENT
@@ -18,7 +18,7 @@ FLAT = Envelopes(octaves(), np.ones((9, 2000)), 5.0)
 
 def draw(envelopes: Envelopes, *, seed: int = 1, axis: str = "X", groups: int = 1) -> FloatArray:
     grid = Grid(STEP, envelopes.values.shape[1])
-    made = [draw_noise(envelopes, grid, seed=seed, axis=axis, group=group, progress=SILENT) for group in range(groups)]
+    made = [draw_noise(envelopes, Phases(grid, seed, axis), group, SILENT) for group in range(groups)]
     assert made[0].shape == (GROUP, find_rates(grid).frequencies.size)
     return np.concatenate([np.fft.irfft(one, find_rates(grid).length, axis=1) for one in made])
 
@@ -110,9 +110,7 @@ def test_given_stretches_take_the_place_of_drawn_ones() -> None:
     values = np.zeros((9, 4000))
     values[8, 1000:3000] = 1.0
     stretches, grid = np.linspace(0.5, 1.5, GROUP), Grid(STEP, 4000)
-    made = draw_noise(
-        Envelopes(octaves(), values, 10.0), grid, seed=1, axis="X", group=0, progress=SILENT, stretches=stretches
-    )
+    made = draw_noise(Envelopes(octaves(), values, 10.0), Phases(grid, 1, "X"), 0, SILENT, stretches=stretches)
     lengths = measure_lengths(np.fft.irfft(made, find_rates(grid).length, axis=1)[:, :4000])
     np.testing.assert_allclose(lengths, 2000 * stretches, rtol=0.05)
 
@@ -122,22 +120,22 @@ def test_given_stretches_take_the_place_of_drawn_ones() -> None:
 
 @pytest.mark.usefixtures("nothing_kept")
 def test_noise_is_drawn_once_for_all_floors() -> None:
-    first = draw_bands(GRID, 1, "X", 0, SILENT)
-    assert draw_bands(GRID, 1, "X", 0, SILENT) is first
-    other = draw_bands(GRID, 1, "X", 1, SILENT)
+    first = draw_bands(Phases(GRID, 1, "X"), 0, SILENT)
+    assert draw_bands(Phases(GRID, 1, "X"), 0, SILENT) is first
+    other = draw_bands(Phases(GRID, 1, "X"), 1, SILENT)
     assert other is not first
-    assert draw_bands(GRID, 1, "Y", 0, SILENT) is not first
-    assert draw_bands(Grid(STEP, 2001), 1, "X", 0, SILENT) is not first
+    assert draw_bands(Phases(GRID, 1, "Y"), 0, SILENT) is not first
+    assert draw_bands(Phases(Grid(STEP, 2001), 1, "X"), 0, SILENT) is not first
 
 
 @pytest.mark.usefixtures("nothing_kept")
 def test_what_is_kept_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    first = draw_bands(GRID, 1, "X", 0, SILENT)
+    first = draw_bands(Phases(GRID, 1, "X"), 0, SILENT)
     monkeypatch.setattr(noise.KEPT, "most", 2 * first.nbytes)
     for group in (1, 2, 3):
-        draw_bands(GRID, 1, "X", group, SILENT)
+        draw_bands(Phases(GRID, 1, "X"), group, SILENT)
         assert noise.KEPT.nbytes <= 2 * first.nbytes
-    again = draw_bands(GRID, 1, "X", 0, SILENT)
+    again = draw_bands(Phases(GRID, 1, "X"), 0, SILENT)
     assert again is not first
     for one, other in zip(again.octaves, first.octaves, strict=True):
         np.testing.assert_array_equal(one, other)

@@ -13,6 +13,7 @@ from assess.errors import CancelledError
 from assess.motion import shared_motions
 from assess.motion.generate import CALIBRATED, build_generator
 from assess.motion.kept import Kept
+from assess.motion.noise import Phases
 from assess.motion.shared_motions import SharedMotions, share_motions
 from assess.motion.target import Grid, Target, recorded_target
 from assess.progress import Progress
@@ -38,7 +39,7 @@ def nothing_kept(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
 
 def share(target: Target = TARGET, factor: float = 1.0, axis: str = "X", threads: int = 1) -> SharedMotions:
-    return share_motions(target, GRID, factor=factor, seed=1, axis=axis, threads=threads)
+    return share_motions(target, Phases(GRID, 1, axis), factor=factor, threads=threads)
 
 
 @cache
@@ -88,10 +89,10 @@ def test_targets_axes_seeds_and_signs_that_differ_at_all_share_nothing(nothing_k
         assert not np.array_equal(share(other).realise(0, 2), first)
         assert len(nothing_kept) == built
     share(axis="Y")
-    share_motions(TARGET, GRID, factor=1.0, seed=2, axis="X")
-    share_motions(TARGET, GRID, factor=1.0, seed=1, axis="X", signs=(1, 1, 1, -1, 1, 1, 1, 1, 1))
+    share_motions(TARGET, Phases(GRID, 2, "X"), factor=1.0)
+    share_motions(TARGET, Phases(GRID, 1, "X", (1, 1, 1, -1, 1, 1, 1, 1, 1)), factor=1.0)
     assert len(nothing_kept) == 8
-    share_motions(TARGET, GRID, factor=1.0, seed=1, axis="X", signs=(1,) * 9)  # signs that turn nothing
+    share_motions(TARGET, Phases(GRID, 1, "X", (1,) * 9), factor=1.0)  # signs that turn nothing
     assert len(nothing_kept) == 8
 
 
@@ -117,7 +118,7 @@ def test_whoever_waits_can_stop(monkeypatch: pytest.MonkeyPatch) -> None:
         assert begun.wait(PATIENCE)
         cancel.set()
         with pytest.raises(CancelledError):
-            share_motions(TARGET, GRID, factor=1.0, seed=1, axis="X", progress=Progress(cancel=cancel))
+            share_motions(TARGET, Phases(GRID, 1, "X"), factor=1.0, progress=Progress(cancel=cancel))
         go_on.set()
         np.testing.assert_array_equal(first.result().realise(0, 3), alone(0, 3))
 
@@ -126,7 +127,7 @@ def test_a_failure_is_not_kept(nothing_kept: list[int]) -> None:
     cancel = threading.Event()
     cancel.set()
     with pytest.raises(CancelledError):
-        share_motions(TARGET, GRID, factor=1.0, seed=1, axis="X", progress=Progress(cancel=cancel))
+        share_motions(TARGET, Phases(GRID, 1, "X"), factor=1.0, progress=Progress(cancel=cancel))
     np.testing.assert_array_equal(share().realise(0, 3), alone(0, 3))
 
 

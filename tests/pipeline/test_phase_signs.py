@@ -10,7 +10,7 @@ import pytest
 import assess
 from assess.motion.floor_signs import find_coherence
 from assess.motion.generate import build_generator
-from assess.motion.noise import draw_bands
+from assess.motion.noise import Phases, draw_bands
 from assess.motion.rows import GROUP
 from assess.motion.target import Grid, octaves, put_on_grid
 from assess.pipeline.demand import build_demands, scale_demands
@@ -109,14 +109,14 @@ def test_channels_that_point_the_other_way_are_turned_first():
 
 def test_without_a_minus_the_noise_is_that_of_all_floors():
     grid = Grid(0.01, 600)
-    common = draw_bands(grid, 7, "X", 0, SILENT)
-    assert draw_bands(grid, 7, "X", 0, SILENT, (1,) * 9) is common
-    turned = draw_bands(grid, 7, "X", 0, SILENT, (1, 1, 1, -1, 1, 1, 1, 1, 1))
-    assert turned is draw_bands(grid, 7, "X", 0, SILENT, (1, 1, 1, -1, 1, 1, 1, 1, 1))
+    common = draw_bands(Phases(grid, 7, "X"), 0, SILENT)
+    assert draw_bands(Phases(grid, 7, "X", (1,) * 9), 0, SILENT) is common
+    turned = draw_bands(Phases(grid, 7, "X", (1, 1, 1, -1, 1, 1, 1, 1, 1)), 0, SILENT)
+    assert turned is draw_bands(Phases(grid, 7, "X", (1, 1, 1, -1, 1, 1, 1, 1, 1)), 0, SILENT)
     assert (turned.stretches == common.stretches).all()
     assert turned.octaves[AT[0.1]].shape == (GROUP, common.octaves[AT[0.1]].shape[1])
     assert not (turned.octaves[AT[0.8]] == common.octaves[AT[0.8]]).any()
-    against = draw_bands(grid, 7, "X", 0, SILENT, (-1,) * 9)
+    against = draw_bands(Phases(grid, 7, "X", (-1,) * 9), 0, SILENT)
     for one, other in zip(against.octaves, common.octaves, strict=True):
         np.testing.assert_allclose(one, -other, atol=1e-5 * np.abs(other).max())
 

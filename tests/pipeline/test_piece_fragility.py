@@ -171,7 +171,7 @@ def test_the_ratio_of_the_motions(tmp_path):
         assert one.mean_pfa == pytest.approx(np.abs(motions).max(axis=1).mean(), rel=1e-6)
         assert one.mean_pfv == pytest.approx(np.abs(velocity).max(axis=1).mean(), rel=1e-4)
         assert one.pfv_per_pfa == one.mean_pfv / one.mean_pfa
-    assert (recorded.spectrum, recorded.source) == ("that of the record", "slow.csv")
+    assert (recorded.spectrum, recorded.demand.label) == ("that of the record", "slow.csv")
     assert generic.spectrum == "drawn, nothing known of the building"
     assert (generic.mean_pfa, generic.mean_pfv) == pytest.approx((0.4 * GRAVITY, 0.5), rel=0.02), "in every draw"
     assert [(one.is_assumed, one.is_unknown) for one in (recorded, generic)] == [(False, False), (True, True)]

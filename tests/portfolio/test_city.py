@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from assess.motion.spatial_field import EARTH, SCATTERS, correlate
+from assess.motion.spatial_field import EARTH, SCATTERS
 from assess.portfolio.city import FIRST, City, build_spread, find_sampling
 from assess.risk import RiskClass
 from assess.rocking.draws import Earthquakes
@@ -139,7 +139,7 @@ def test_variance_of_a_sum_of_falls_is_that_of_both_parts(city):
     places, numbers = city
     quantity = 1 + np.arange(len(places)) % 20
     falls = quantity[:, None] * (numbers > 0)
-    correlation = np.minimum(1, SHARED + (1 - SHARED) * correlate(find_distances(places)))
+    correlation = np.minimum(1, SHARED + (1 - SHARED) * np.exp(-3 * find_distances(places) / SCATTERS["PGA"].range_km))
     wanted = quantity @ (np.arcsin(correlation) / (2 * math.pi)) @ quantity
     assert falls.sum(axis=0).var() == pytest.approx(wanted, rel=4 * math.sqrt(2 / RUNS))
 

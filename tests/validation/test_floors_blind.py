@@ -19,6 +19,7 @@ from assess.motion.beam_motions import Beams, open_floor
 from assess.motion.drawn_ground import build_beam_grid, draw_ground
 from assess.motion.floor_medians import find_medians
 from assess.motion.formats import read_records
+from assess.motion.noise import Phases
 from assess.motion.record import treat
 from assess.motion.target_fit import measure_peaks
 from assess.progress import SILENT
@@ -94,7 +95,7 @@ def test_the_velocity_at_the_top_of_a_tower_is_among_those_drawn_where_nothing_i
     grid = build_beam_grid(building.longest)
 
     def draw(group: int) -> Single:
-        return draw_ground(ground, grid, seed=1, axis="X", group=group, progress=SILENT)
+        return draw_ground(ground, Phases(grid, 1, "X"), group, SILENT)
 
     target = FloorTarget(place=None, pfa=pga * by_pga, pfv=pgv * by_pgv, meets="medians")
     opened = open_floor(Beams(building, grid, 1, "tower", draw), target, 1, SILENT)

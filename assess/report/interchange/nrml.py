@@ -102,7 +102,7 @@ def find_ground_pga(assessment: Assessment, im: str) -> float:
 
 
 def _find_ratio(one: PieceFragility, floor: str, pga: float) -> float:
-    return pga / max(motion.pfa for motion in one.motions if motion.floor == floor)
+    return pga / max(motion.demand.pfa for motion in one.motions if motion.floor == floor)
 
 
 def _judge(one: PieceFragility) -> Text | None:
