@@ -5,7 +5,7 @@ Readers fill it in (`ifc_model`), and `model_rows`, `floor_drawing` and `draft_r
 """
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -187,8 +187,3 @@ class BuildingModel:
     shift: Point = (0.0, 0.0)
     warnings: tuple[Text, ...] = ()
     remarks: tuple[Text, ...] = ()
-
-
-def name_some(names: Sequence[str], most: int) -> str:
-    """Return the first of some names."""
-    return ", ".join([*names[:most], *["..."] * (len(names) > most)])

@@ -59,12 +59,8 @@ def find_ground(model: BuildingModel) -> Storey | None:
     return max(storeys, key=lambda one: one.elevation, default=None)
 
 
-def find_kinds(model: BuildingModel, sides: Mapping[str, Sides] | None = None) -> dict[str, DoorKind]:
-    """Return what each door is, by its key.
-
-    `sides`: from `find_sides`, where they are known already.
-    """
-    sides = find_sides(model) if sides is None else sides
+def find_kinds(model: BuildingModel, sides: Mapping[str, Sides]) -> dict[str, DoorKind]:
+    """Return what each door is, by its key, from `find_sides`."""
     ground = find_ground(model)
 
     def classify(door: Door) -> DoorKind:

@@ -1,7 +1,7 @@
 """The plan of one storey for the drafting of routes: rooms, walls, furniture, and what joins rooms."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -208,20 +208,15 @@ def find_room_points(model: BuildingModel) -> dict[str, Point]:
     Drafted routes begin there. A space without an area has its first corner.
     """
     found: dict[str, Point] = {}
+    ends: tuple[Door | Stair, ...] = (*model.doors, *model.stairs)
     for storey in model.storeys:
-        plan = build_plan(model, storey)
-        found |= place_rooms(model, plan, build_rooms(plan, ()))
+        taken = shapely.MultiPoint([(one.x, one.y) for one in ends if one.storey == storey.key])
+        rooms = build_rooms(build_plan(model, storey), ())
+        found |= {key: _find_middle(room.free, taken) for key, room in rooms.items()}
     return {
         space.key: found.get(space.key) or next((ring[0] for ring in space.area if ring), (0.0, 0.0))
         for space in model.spaces
     }
-
-
-def place_rooms(model: BuildingModel, plan: FloorPlan, rooms: Mapping[str, Room]) -> dict[str, Point]:
-    """Return the same for the rooms of one storey."""
-    ends: tuple[Door | Stair, ...] = (*model.doors, *model.stairs)
-    taken = shapely.MultiPoint([(one.x, one.y) for one in ends if one.storey == plan.storey.key])
-    return {key: _find_middle(room.free, taken) for key, room in rooms.items()}
 
 
 def _find_middle(area: BaseGeometry, taken: BaseGeometry) -> Point:

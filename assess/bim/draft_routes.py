@@ -17,8 +17,8 @@ import networkx as nx
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from assess.bim.building_model import BuildingModel, Point, Storey, name_some
-from assess.bim.door_sides import DoorKind, Sides, find_ground, find_kinds, find_sides
+from assess.bim.building_model import BuildingModel, Point, Storey
+from assess.bim.door_sides import DoorKind, Sides, find_ground, find_kinds
 from assess.bim.draft_floor import (
     DOOR_LESS,
     JAMB,
@@ -28,7 +28,6 @@ from assess.bim.draft_floor import (
     build_rooms,
     link_door,
     link_stairs,
-    place_rooms,
 )
 from assess.bim.draft_openings import NARROWEST_OPENING, find_openings
 from assess.bim.draft_paths import find_ways
@@ -36,6 +35,7 @@ from assess.bim.plan_shapes import box_at, list_polygons
 from assess.i18n import Text, fill, gettext, nfill
 from assess.natural import natural_key
 from assess.workbook.draft_names import DRAFT, mark_draft
+from assess.workbook.habits import name_some
 from assess.workbook.names import key
 from assess.workbook.schema import DEFAULT_WIDTH, ROUTES
 
@@ -83,8 +83,13 @@ class Network:
 
     `graph` joins nodes by name, with the cost, the space and the width of each way.
     `plans` are those of storeys by their keys, `rooms` the nodes of rooms by the keys of their spaces, `openings` those
-    of openings, and `exits` and `stairs` the nodes to which ways lead.
+    of openings, and `exits` and `stairs` the nodes to which ways lead. `sides` and `kinds` are those of doors, `places`
+    the positions of rooms.
     """
+
+    sides: Mapping[str, Sides]
+    kinds: Mapping[str, DoorKind]
+    places: Mapping[str, Point]
 
     graph: "nx.Graph[str]" = field(default_factory=nx.Graph)
     nodes: dict[str, Node] = field(default_factory=dict)
@@ -100,12 +105,10 @@ class Network:
             self.graph.add_edge(one, other, space=space, **way)
 
 
-def _build_network(model: BuildingModel) -> Network:
-    sides = find_sides(model)
-    kinds = find_kinds(model, sides)
-    network = Network()
+def _build_network(model: BuildingModel, sides: Mapping[str, Sides], places: Mapping[str, Point]) -> Network:
+    network = Network(sides, find_kinds(model, sides), places)
     for storey in model.storeys:
-        _add_storey(network, model, storey, sides, kinds)
+        _add_storey(network, model, storey)
     levels = {storey.key: storey.level for storey in model.storeys}
     for stair in dict.fromkeys(one.key for one in model.stairs):
         foot, head = (network.nodes.get(f"stair {stair} {end}") for end in ("foot", "head"))
@@ -116,20 +119,18 @@ def _build_network(model: BuildingModel) -> Network:
     return network
 
 
-def _add_storey(
-    network: Network, model: BuildingModel, storey: Storey, sides: Mapping[str, Sides], kinds: Mapping[str, DoorKind]
-) -> None:
+def _add_storey(network: Network, model: BuildingModel, storey: Storey) -> None:
     plan = build_plan(model, storey)
     if not plan.spaces:
         return
     network.plans[storey.key] = plan
     doors = [door for door in model.doors if door.storey == storey.key]
     links: list[Link] = []
-    for door in (door for door in doors if kinds[door.key] in ("inside", "exit")):
-        link = link_door(door, sides[door.key])
+    for door in (door for door in doors if network.kinds[door.key] in ("inside", "exit")):
+        link = link_door(door, network.sides[door.key])
         links.append(link)
         network.nodes[link.name] = Node(link.at, storey.key, door.key, link)
-        if kinds[door.key] == "exit":
+        if network.kinds[door.key] == "exit":
             network.exits.append(link.name)
     openings, stairs = find_openings(plan, doors), link_stairs(model, plan)
     for link in stairs:
@@ -138,12 +139,11 @@ def _add_storey(
     network.nodes |= {link.name: Node(link.at, storey.key, "", link) for link in openings}
     network.openings += openings
     rooms = build_rooms(plan, [*links, *openings, *stairs])
-    places = place_rooms(model, plan, rooms)
     for space, room in rooms.items():
         own = f"room {space}"
         network.rooms[space] = own
-        network.nodes[own] = Node(places[space], storey.key, space)
-        ways = find_ways(room, own, places[space])
+        network.nodes[own] = Node(network.places[space], storey.key, space)
+        ways = find_ways(room, own, network.places[space])
         network.nodes |= {name: Node(at, storey.key) for name, at in ways.points.items()}
         for one, other, way in ways.found:
             network.join(one, other, space, **way)
@@ -279,16 +279,19 @@ class DraftRoutes:
     remarks: tuple[Text, ...] = ()
 
 
-def draft_routes(model: BuildingModel, names: Mapping[str, str]) -> DraftRoutes:
+def draft_routes(
+    model: BuildingModel, names: Mapping[str, str], sides: Mapping[str, Sides], places: Mapping[str, Point]
+) -> DraftRoutes:
     """Draft the evacuation routes of a building.
 
     `names`: the names of places: of rooms and doors by their keys, of ends of stairs by key and end (``KEY foot``).
-    Rooms lie at `assess.bim.draft_floor.find_room_points`. Names of floors by the keys of storeys, where they are not
-    those of the model.
+    Names of floors by the keys of storeys, where they are not those of the model.
+    `sides`: of doors, from `assess.bim.door_sides.find_sides`.
+    `places`: of rooms, from `assess.bim.draft_floor.find_room_points`.
 
     The draft is empty, with remarks that say why, where there is nothing to draft.
     """
-    network = _build_network(model)
+    network = _build_network(model, sides, places)
     steps = _find_steps(network)
     sheet = _Sheet(model, network, steps, names)
     routes = list(sheet.list_routes())
@@ -406,7 +409,7 @@ def _note_draft(model: BuildingModel, network: Network, routes: Rows, lost: Sequ
     if ground is not None:
         yield fill("{storey} is taken as the ground storey: doors there with a room on one side only count as exits.",
                    storey=ground.name)  # fmt: skip
-    others = sum(kind == "outside" for kind in find_kinds(model).values())
+    others = sum(kind == "outside" for kind in network.kinds.values())
     if others:
         yield nfill(
             "{n} door of other storeys has a room on one side only: it does not count as an exit.",

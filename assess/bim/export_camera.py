@@ -86,7 +86,7 @@ def find_doors(
         lines = [
             shapely.LineString([(x + shift[0], y + shift[1]) for x, y in one.ends])
             for one in segments
-            if one.ends and piece.past.item in one.items
+            if one.ends and piece.item in one.items
         ]
         ends = [shapely.Point(end) for line in lines for end in line.coords]
         here, bottom = shapely.Point(find_middle(element.box)[:2]), element.box[0][2]

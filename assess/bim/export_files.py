@@ -56,13 +56,13 @@ def build_export(
             sharing.setdefault(one.source_id, []).append(one)
     placed = None
     if with_topics:
-        keys = {one.past.item: one.source_id for one in found.pieces if one.source_id}
+        keys = {one.item: one.source_id for one in found.pieces if one.source_id}
         placed = [keys[item] for entry in list_entries(found, keys) for item in list_items(entry) if item in keys]
     part = run_apart(model.name, progress, read_elements, model.resolve(), model.name, list(sharing), placed)
     elements = {one.key: one for one in part.elements}
     pairs = [(one, elements[one.source_id]) for one in found.pieces if one.source_id in elements]
     worst = [
-        (max(own, key=lambda one: (one.upper, one.past.chance.probability)), elements[key])
+        (max(own, key=lambda one: (one.upper, one.chance.probability)), elements[key])
         for key, own in sharing.items()
         if key in elements
     ]
@@ -76,7 +76,7 @@ def build_export(
             raise unreadable(model.name, error) from None
 
     def list_names(keys: Iterable[str]) -> tuple[str, ...]:
-        return tuple(one.past.item for key in keys for one in sharing[key])
+        return tuple(one.item for key in keys for one in sharing[key])
 
     refused: dict[str, list[str]] = {}
     for key, name in part.refused.items():
@@ -85,7 +85,7 @@ def build_export(
         model=changed,
         topics=write_topics(model.name, part, found, pairs) if with_topics else None,
         written=len(worst),
-        without_id=tuple(one.past.item for one in found.pieces if not one.source_id),
+        without_id=tuple(one.item for one in found.pieces if not one.source_id),
         missing=list_names(key for key in sharing if key not in elements and key not in part.refused),
         refused={name: list_names(own) for name, own in refused.items()},
         repeated=list_names(key for key, own in sharing.items() if key in elements and len(own) > 1),

@@ -15,7 +15,7 @@ from itertools import groupby
 from assess.bim.export_camera import Pair
 from assess.bim.export_model import PROPERTY_SET, ModelPart
 from assess.bim.export_results import ExportPiece, ExportRun
-from assess.bim.export_words import BASES, describe, list_routes, say_class, say_program, say_report, say_scenario
+from assess.bim.export_words import describe, list_routes, say_class, say_program, say_report, say_scenario
 from assess.details import DETAILS
 from assess.errors import ModelError
 from assess.i18n import fill
@@ -68,17 +68,16 @@ def _list_properties(found: ExportRun, one: ExportPiece) -> Iterator[tuple[str, 
 
     RiskClass is the class in the words of the report, so that what is outside its classes is no class here either.
     """
-    past, run = one.past, found.run
-    chance, inputs = past.chance, past.inputs
+    run, chance, inputs = found.run, one.chance, one.inputs
     yield "RiskClass", write_label(say_class(run, one, one.upper, is_short=True))
-    if one.upper != past.risk:
+    if one.upper != one.risk:
         yield "ClassUpper", write_label(words.risk_word(one.upper))
     yield "Probability", write_real(chance.probability)
     if chance.low is not None and chance.high is not None:
         yield "ProbabilityLow", write_real(chance.low)
         yield "ProbabilityHigh", write_real(chance.high)
-    yield "Basis", write_label(_(BASES[past.basis]))
-    yield "Item", write_label(past.item)
+    yield "Basis", write_label(_(words.BASES[one.basis]))
+    yield "Item", write_label(one.item)
     yield "Description", write_label(describe(one))
     if inputs.get("anchored"):
         yield "Anchored", write_label(_(str(inputs["anchored"])))
@@ -88,12 +87,12 @@ def _list_properties(found: ExportRun, one: ExportPiece) -> Iterator[tuple[str, 
             yield key, write_real(value)
     if one.pfa_source:
         yield "PFASource", write_label(one.pfa_source)
-    if routes := list_routes(found, [past.item]):
+    if routes := list_routes(found, [one.item]):
         yield "MayBlockRoutes", _write_long_text(", ".join(routes))
     if one.importance:
         yield "Importance", write_label(_(one.importance))
-    if past.item in found.works:
-        entry, work = found.works[past.item]
+    if one.item in found.works:
+        entry, work = found.works[one.item]
         yield "FixOrder", f"IFCINTEGER({entry.place})"
         yield "FixingDetail", write_label(_(DETAILS[work.detail].title))
         forces = {

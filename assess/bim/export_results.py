@@ -24,15 +24,14 @@ Point = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ExportPiece:
-    """A piece of the results, and what a comparison does not know of it; "" or None where it is not known.
+class ExportPiece(PastPiece):
+    """A piece of the results with what a comparison does not need of it; "" or None where it is not known.
 
     `has_simulated` tells whether its chance is that of a simulation, be it confirmed or not. `place` is the centre of
     its plan in the axes of the workbook [m], `faces` the direction in which it falls, or may fall, anticlockwise from X
     [deg]; it falls one way where it falls in that direction alone, away from a wall.
     """
 
-    past: PastPiece
     source_id: str
     upper: RiskClass
     has_simulated: bool
@@ -99,7 +98,7 @@ def read_export(path: Path) -> ExportRun:
                  "model, or fill in Source ID in Items with GlobalIds, and run assess again.", path=run.path)
         )  # fmt: skip
     routes, schedule = (reader.part(record, name, "") for name in ("routes", "schedule"))
-    places = {one.past.item: at for at, one in enumerate(pieces)}
+    places = {one.item: at for at, one in enumerate(pieces)}
     return ExportRun(
         run=run,
         language=str(reader.part(record, "assess", "").get("language") or ""),
@@ -120,7 +119,7 @@ def _read_piece(reader: Reader, row: Mapping[str, Any], past: PastPiece, place: 
     adopted, inside = reader.part(row, "adopted", place), f"{place}.adopted"
     toward = _number(row, "falls_toward_deg")
     return ExportPiece(
-        past=past,
+        **{one.name: getattr(past, one.name) for one in fields(past)},
         source_id=text("source_id").strip(),
         upper=CLASSES[reader.choice(adopted, "class_upper", inside, [risk.word for risk in RiskClass])],
         has_simulated=adopted.get("method") is not None and reader.text(adopted, "method", inside) == simulation().key,

@@ -75,7 +75,7 @@ def write_topics(name: str, part: ModelPart, found: ExportRun, pairs: Sequence[P
 
     `part`: what was found of it, with the boxes of the pieces in the schedule.
     """
-    by_item = {piece.past.item: (piece, element) for piece, element in pairs}
+    by_item = {piece.item: (piece, element) for piece, element in pairs}
     entries = list_entries(found, by_item)
     middles = [find_middle(box) for box in {one.key: one.box for _piece, one in pairs}.values() if box is not None]
     x, y, _z = np.mean(middles, axis=0).tolist() if middles else (0.0, 0.0, 0.0)
@@ -88,7 +88,7 @@ def write_topics(name: str, part: ModelPart, found: ExportRun, pairs: Sequence[P
         doors = find_doors(own, found.segments, part.doors, shift)
         with_door += bool(doors)
         # of pieces that share an element the names tell the topics apart
-        names = (one.key if counts[one.key] == 1 else f"{one.key} {piece.past.item}" for piece, one in own)
+        names = (one.key if counts[one.key] == 1 else f"{one.key} {piece.item}" for piece, one in own)
         topic = _Topic(str(make_uuid("topic", *sorted(names))), entry, own, doors, find_camera(own, doors, (x, y)))
         files |= _write_topic(name, part, found, topic)
     all_placed = sum(any(item in by_item for item in list_items(one)) for one in found.entries)
@@ -131,14 +131,14 @@ def _write_topic(name: str, part: ModelPart, found: ExportRun, topic: _Topic) ->
 def _build_topic(found: ExportRun, topic: _Topic) -> _Element:
     entry, run = topic.entry, found.run
     pieces = [piece for piece, _element in topic.pairs]
-    risk, upper = max(one.past.risk for one in pieces), max(one.upper for one in pieces)
+    risk, upper = max(one.risk for one in pieces), max(one.upper for one in pieces)
     one = _Element("Topic", Guid=topic.guid, TopicType=TYPE, TopicStatus=STATUS)
     _add(one, "Title", say_title(found, entry, pieces))
     _add(one, "Priority", PRIORITIES[upper])
     _add(one, "Index", str(entry.place))
     # by labels programs group topics
     labels = [_("earthquake"), *map(words.risk_word, sorted({risk, upper})), entry.floor]
-    apart = dict.fromkeys(one.past.basis for one in pieces if one.past.basis != run.main_basis)
+    apart = dict.fromkeys(one.basis for one in pieces if one.basis != run.main_basis)
     labels += [_("unconfirmed") if basis == UNCONFIRMED else _("by formula only") for basis in apart]
     if list_routes(found, list_items(entry)):
         labels.append(_("evacuation route"))
@@ -151,7 +151,7 @@ def _build_topic(found: ExportRun, topic: _Topic) -> _Element:
         *(_("Also selected: door {name} ({key}), on the route that may be blocked.", name=door.name, key=door.key)
           for door in topic.doors),
     ]  # fmt: skip
-    known = {piece.past.item for piece in pieces}
+    known = {piece.item for piece in pieces}
     missing = [item for item in list_items(entry) if item not in known]
     if missing:
         lines.append(_("Not in this model: {names}.", names=words.name_first(missing, 8)))

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from assess.bim.export_results import ExportPiece, ExportRun, list_items
 from assess.compare.past_run import UNCONFIRMED, PastRun
 from assess.details import DETAILS
-from assess.i18n import fill, ngettext
+from assess.i18n import ngettext
 from assess.i18n import gettext as _
 from assess.intensity import SHAKINGS
 from assess.report import words
@@ -24,12 +24,6 @@ from assess.risk import RiskClass, classify
 from assess.schedule_results import ScheduleRow, WorkRow
 from assess.settings import SCENARIOS
 
-BASES = {
-    "simulated": fill("simulated"),
-    "formula": fill("formula"),
-    "unconfirmed": fill("unconfirmed"),
-    CANNOT_ROCK: fill("cannot rock"),
-}
 LONGEST = 60
 """Characters of a description that a title shows."""
 MOST_KINDS = 3
@@ -40,26 +34,25 @@ MOST_CHANCES = 20
 
 def say_risk(run: PastRun, pieces: Sequence[ExportPiece]) -> str:
     """Return the highest class of some pieces in words, with what any of them could be, and why it is no lower."""
-    highest = max(pieces, key=lambda one: one.past.risk)
+    highest = max(pieces, key=lambda one: one.risk)
     return say_class(run, highest, max(one.upper for one in pieces), is_short=False)
 
 
 def say_class(run: PastRun, one: ExportPiece, upper: RiskClass, *, is_short: bool) -> str:
     """Return the class of a piece in words, with what it could be; of one outside the classes, on what it rests."""
-    past = one.past
-    apart = "" if past.basis in (run.main_basis, CANNOT_ROCK) else past.basis
-    is_by_faster = past.basis == UNCONFIRMED and one.has_simulated  # nothing is known of the building
-    notes = [words.say_apart(past.risk, apart, has_simulated=one.has_simulated) or words.risk_word(past.risk)]
-    if not (is_short or is_by_faster) and classify(past.chance.probability) != past.risk:
+    apart = "" if one.basis in (run.main_basis, CANNOT_ROCK) else one.basis
+    is_by_faster = one.basis == UNCONFIRMED and one.has_simulated  # nothing is known of the building
+    notes = [words.say_apart(one.risk, apart, has_simulated=one.has_simulated) or words.risk_word(one.risk)]
+    if not (is_short or is_by_faster) and classify(one.chance.probability) != one.risk:
         notes.append(_("as it overturns under the record itself"))
-    if upper > past.risk:
+    if upper > one.risk:
         notes.append(words.could_be(words.risk_word(upper)))
-    return words.join_notes(notes, is_anchored=past.is_held)
+    return words.join_notes(notes, is_anchored=one.is_held)
 
 
 def describe(one: ExportPiece) -> str:
     """Return what a piece is."""
-    return one.past.description or str(one.past.inputs.get("type") or "") or _("no description")
+    return one.description or str(one.inputs.get("type") or "") or _("no description")
 
 
 def list_routes(found: ExportRun, items: Sequence[str]) -> list[str]:
@@ -118,7 +111,7 @@ def say_title(found: ExportRun, entry: ScheduleRow, pieces: Sequence[ExportPiece
 
 
 def _name_with_kind(entry: ScheduleRow, pieces: Sequence[ExportPiece]) -> str:
-    names, kind = join_names(shorten_names(one.past.item for one in pieces)), name_kinds(map(describe, pieces))
+    names, kind = join_names(shorten_names(one.item for one in pieces)), name_kinds(map(describe, pieces))
     names = _("{names} together", names=names) if entry.is_together else names
     return names if kind == names else f"{names} ({kind})"
 
@@ -141,8 +134,8 @@ def list_lines(found: ExportRun, entry: ScheduleRow, pieces: Sequence[ExportPiec
     yield _("Risk of overturning: {risk}.", risk=say_risk(run, pieces))
     are_alike = len(set(map(describe, pieces))) == 1
     for one in pieces[:MOST_CHANCES]:
-        item, kind, pfa, chance = one.past.item, describe(one), one.past.inputs.get("pfa_g"), one.past.chance
-        said = f"{words.say_chance(chance.probability, chance.low, chance.high)}, {_(BASES[one.past.basis])}"
+        item, kind, pfa, chance = one.item, describe(one), one.inputs.get("pfa_g"), one.chance
+        said = f"{words.say_chance(chance.probability, chance.low, chance.high)}, {_(words.BASES[one.basis])}"
         yield _("{item}: chance of overturning {chance}; PFA {pfa} g ({source}).",
                 item=item if are_alike or kind == item else f"{item} ({kind})", chance=said,
                 pfa=words.in_g(float(pfa)) if isinstance(pfa, int | float) else words.DASH,

@@ -86,7 +86,7 @@ def list_building(model: BuildingModel, routes: Drafts = "none") -> ImportedBuil
     if routes != "none":
         from assess.bim.draft_routes import draft_routes
 
-        draft = draft_routes(model, {**own.places, **own.floors})
+        draft = draft_routes(model, {**own.places, **own.floors}, own.sides, own.points)
         places, drafted, remarks = [*draft.places], [*draft.routes], [*draft.remarks]
     return ImportedBuilding(
         source=model.source,
@@ -126,6 +126,7 @@ class _Building:
         self.sides = find_sides(model)
         self.kinds = find_kinds(model, self.sides)
         self.places = self._name_places()
+        self.points = find_room_points(model)
         self.pieces, self.outside = self._size_pieces()
 
     def _name_places(self) -> dict[str, str]:
@@ -215,12 +216,12 @@ class _Building:
             yield {field: value for field, value in row.items() if value != ""}
 
     def list_places(self) -> Iterator[Row]:
-        points, search = find_room_points(self.model), SpaceSearch(self.model.spaces)
+        search = SpaceSearch(self.model.spaces)
         held = (search.find(one.storey, (one.x, one.y), REACH) for one in self.model.stairs)
         with_stair = {own[0].key for own in held if own}
         doors = Counter(key for sides in self.sides.values() for key in set(sides))
         for one in self.spaces:
-            x, y = points[one.key]
+            x, y = self.points[one.key]
             kind = find_kind(one, doors[one.key], holds_stair=one.key in with_stair)
             row = {"place": self.places[one.key], "floor": self.floors[one.storey], "x": x, "y": y, "kind": kind}
             outline = _write_outline(one.area)

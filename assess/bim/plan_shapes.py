@@ -13,8 +13,9 @@ import shapely
 from numpy.typing import NDArray
 from shapely import MultiPoint, Polygon
 
-from assess.bim.building_model import Area, Point, Space, half_turn, name_some
+from assess.bim.building_model import Area, Point, Space, half_turn
 from assess.i18n import Text, nfill
+from assess.workbook.habits import name_some
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

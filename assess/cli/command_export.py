@@ -88,6 +88,8 @@ def _check_names(files: Mapping[str, Path | None], sources: set[Path], *, replac
 
 def describe_export(export: "Export", model: str) -> Iterator[str]:
     """Yield what was written, and which pieces could not be."""
+    from assess.report.words import name_first
+
     if export.model is not None:
         yield f"{model}: a property set Assess_OverturningRisk on {count(export.written, 'piece')}."
     if (topics := export.topics) is not None:
@@ -109,12 +111,8 @@ def describe_export(export: "Export", model: str) -> Iterator[str]:
     }
     for why, names in groups.items():
         if names:
-            yield f"Not written, {count(len(names), 'piece')} {why}: {_name_first(names)}."
+            yield f"Not written, {count(len(names), 'piece')} {why}: {name_first(names, MOST_NAMED)}."
     if export.repeated:
         set_of = "" if export.model is None else "; the property set is that of the worse"
-        yield f"{count(len(export.repeated), 'piece')} that share a Source ID{set_of}: {_name_first(export.repeated)}."
-
-
-def _name_first(names: Sequence[str]) -> str:
-    more = f" and {len(names) - MOST_NAMED:,} more" if len(names) > MOST_NAMED else ""
-    return ", ".join(names[:MOST_NAMED]) + more
+        names = name_first(export.repeated, MOST_NAMED)
+        yield f"{count(len(export.repeated), 'piece')} that share a Source ID{set_of}: {names}."

@@ -55,7 +55,6 @@ from assess.report.pages.html import render_document
 from assess.report.pages.pdf import attach, print_page
 from assess.report.provenance import say_date
 from assess.report.report_options import ReportOptions
-from assess.results import CANNOT_ROCK
 from assess.risk import RiskClass
 from assess.route_results import RouteState
 from assess.version import __version__
@@ -103,12 +102,6 @@ _KINDS: Mapping[Direction, tuple[Text, Text, str]] = {
 """Name, what its tile counts, and tone of each direction, in the order of the tiles."""
 _APART = {UNCONFIRMED: "unconfirmed", BY_FORMULA: "formula", ANCHORED: "anchored"}
 """What stands outside the classes, as the reports call it."""
-_BASES: Mapping[str, Text] = {
-    "simulated": fill("simulated"),
-    "formula": fill("by formula"),
-    "unconfirmed": fill("unconfirmed"),
-    CANNOT_ROCK: fill("cannot rock"),
-}
 _PIECES: Mapping[Direction, Text] = {
     Direction.WORSE: nfill("{n:,} piece goes to a higher class or is no longer anchored: {names}.",
                            "{n:,} pieces go to a higher class or are no longer anchored: {names}.", 0, names=""),
@@ -159,7 +152,7 @@ def find_tone(direction: Direction) -> str:
 
 def name_basis(basis: str) -> str:
     """Return what a chance rests on."""
-    return _(_BASES[basis])
+    return _("by formula") if basis == "formula" else _(words.BASES[basis])
 
 
 def name_state(state: str) -> str:

@@ -4,10 +4,10 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from assess.i18n import Text, fill, ngettext, number
 from assess.i18n import gettext as _
-from assess.i18n import ngettext, number
 from assess.model import SCANNED
-from assess.results import ItemResult
+from assess.results import CANNOT_ROCK, ItemResult
 from assess.risk import LIMITS, RiskClass, classify
 from assess.workbook.draft_names import is_draft
 
@@ -20,6 +20,13 @@ LONGEST = 160
 MOST_DECIMALS = 6
 """Decimals of a percentage at most, however near a limit it lies."""
 DASH = "–"
+BASES: Mapping[str, Text] = {
+    "simulated": fill("simulated"),
+    "formula": fill("formula"),
+    "unconfirmed": fill("unconfirmed"),
+    CANNOT_ROCK: fill("cannot rock"),
+}
+"""What a chance rests on, by `assess.results.BASES`."""
 LONGEST_WORD = 18
 """Letters of a word that a table never breaks."""
 _WORD = re.compile(r"(\s+|(?<=[\w)])-(?=\w))")

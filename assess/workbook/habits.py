@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from assess.errors import Gap, Problem, Severity
-from assess.i18n import Text, fill, nfill
+from assess.i18n import Text, fill, join, nfill
 from assess.plain_text import UNCLEAN, plain_text
 
 SHOWN = 60
@@ -168,12 +168,17 @@ def _merge(alike: Sequence[Problem]) -> Problem:
     return replace(first, message=merged)
 
 
-def _list_cells(alike: Sequence[Problem]) -> str:
+def name_some(names: Sequence[Text | str], most: int) -> Text:
+    """Return the first of some names, with dots where there are more."""
+    return join(", ", [*names[:most], *["..."] * (len(names) > most)])
+
+
+def _list_cells(alike: Sequence[Problem]) -> Text:
     shown = alike[:SHOWN_CELLS]
     held = [_held(one) for one in shown]
     is_told = len(set(held)) > 1 and all(held)
     cells = [f"{one.cell} {what}" if is_told else one.cell for one, what in zip(shown, held, strict=True)]
-    return ", ".join([*cells, *["..."] * (len(alike) > SHOWN_CELLS)])
+    return name_some([*cells, *(one.cell for one in alike[SHOWN_CELLS:])], SHOWN_CELLS)
 
 
 def _held(problem: Problem) -> str:

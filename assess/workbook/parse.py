@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from assess.errors import Correction, FurnitureGap, Gap, Problem, Severity
 from assess.i18n import Text, fill, join, nfill
 from assess.units import QUANTITIES, read_unit
-from assess.workbook.habits import CellError, shorten
+from assess.workbook.habits import CellError, name_some, shorten
 from assess.workbook.names import ENGLISH, find_column, find_near_column, is_live, plain, split_header, versions
 from assess.workbook.open import HEADER_ROWS, MAX_COLUMNS, MAX_ROWS, UNSAVED, Cells, SheetCells
 from assess.workbook.plain_rows import column_letters, split_range
@@ -560,4 +560,4 @@ def list_ranges(numbers: Sequence[int]) -> Text:
         str(run[0]) if len(run) == 1 else fill("{first} to {last}", first=str(run[0]), last=str(run[-1]))
         for run in runs
     ]
-    return join(", ", [*parts[:_MOST_RANGES], *["..."] * (len(parts) > _MOST_RANGES)])
+    return name_some(parts, _MOST_RANGES)

@@ -23,7 +23,7 @@ def model(*doors, spaces=TWO, elevations=(0.0,)) -> BuildingModel:
 
 
 def count(found: BuildingModel) -> dict[str, Counter[str]]:
-    kinds, names = find_kinds(found), {one.key: one.name for one in found.storeys}
+    kinds, names = find_kinds(found, find_sides(found)), {one.key: one.name for one in found.storeys}
     counts: dict[str, Counter[str]] = {}
     for one in found.doors:
         counts.setdefault(names[one.storey], Counter())[kinds[one.key]] += 1
@@ -49,7 +49,7 @@ def test_doors_of_published_models(large, duplex):
 )
 def test_each_side_has_a_space_or_none(at, kind, sides):
     found = model(door("d", *at))
-    assert (find_sides(found), find_kinds(found)) == ({"d": sides}, {"d": kind})
+    assert (find_sides(found), find_kinds(found, find_sides(found))) == ({"d": sides}, {"d": kind})
 
 
 def test_of_spaces_in_each_other_the_smallest_counts_and_those_of_other_storeys_are_on_no_side():
@@ -66,13 +66,13 @@ def test_a_leaf_at_one_face_of_a_thick_wall_joins_both_rooms(x):
     leaf = replace(door("d", x, 2.0, 0.0), thickness=0.06)
     found = model(leaf, spaces=(room("a", 0, 0, 4, 4), room("b", 5, 0, 9, 4)))
     walled = replace(found, walls={"0": (rectangle(4, -1, 5, 5),)})
-    assert (find_sides(walled), find_kinds(walled)) == ({"d": ("b", "a")}, {"d": "inside"})
+    assert (find_sides(walled), find_kinds(walled, find_sides(walled))) == ({"d": ("b", "a")}, {"d": "inside"})
 
 
 def test_an_outer_wall_that_is_thick_leads_out_all_the_same():
     leaf = replace(door("d", 4.03, 2.0, 0.0), thickness=0.06)
     found = replace(model(leaf, spaces=(room("a", 0, 0, 4, 4),)), walls={"0": (rectangle(4, -1, 5, 5),)})
-    assert find_kinds(found) == {"d": "exit"}
+    assert find_kinds(found, find_sides(found)) == {"d": "exit"}
 
 
 def test_a_wall_behind_another_is_not_that_of_the_door():
@@ -102,7 +102,7 @@ def test_the_ground_is_the_lowest_storey_with_doors_that_is_no_basement(elevatio
         elevations=elevations,
     )
     assert find_ground(found).name == ground
-    kinds = find_kinds(found)
+    kinds = find_kinds(found, find_sides(found))
     assert {key: kinds[f"d{key}"] for key in keys} == {
         key: "exit" if f"Level {key}" == ground else "outside" for key in keys
     }

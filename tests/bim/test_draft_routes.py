@@ -14,7 +14,7 @@ from shapely import LineString, Point, union_all
 
 import assess
 from assess.bim.building_model import BuildingModel, Door, Piece, Space, Stair, Storey
-from assess.bim.door_sides import find_kinds
+from assess.bim.door_sides import find_kinds, find_sides
 from assess.bim.draft_floor import FAR, build_plan, find_room_points, link_door
 from assess.bim.draft_routes import DraftRoutes, draft_routes, measure_gap
 from assess.bim.import_workbook import build_workbook
@@ -40,8 +40,8 @@ OFFICES = {
 }
 
 
-def draft(model: BuildingModel) -> DraftRoutes:
-    return draft_routes(model, name_all(model))
+def draft(model: BuildingModel, names: Mapping[str, str] | None = None) -> DraftRoutes:
+    return draft_routes(model, names or name_all(model), find_sides(model), find_room_points(model))
 
 
 @pytest.fixture(scope="module", params=["duplex", "large", *OFFICES])
@@ -101,7 +101,7 @@ def test_every_segment_lies_in_its_rooms_and_their_doors_and_crosses_no_wall_or_
 def test_every_room_is_joined_to_an_exit(drafted):
     """Over stairs, too: a row of the route to a stair is its flight."""
     model, found = drafted
-    names, kinds = name_all(model), find_kinds(model)
+    names, kinds = name_all(model), find_kinds(model, find_sides(model))
     graph = nx.Graph([(row["start"], row["end"]) for row in found.routes])
     exits = {names[one] for one, kind in kinds.items() if kind == "exit"}
     lost = {names[one.key] for one in model.spaces if one.title == "Roof"}
@@ -173,7 +173,7 @@ def test_names_are_each_their_own_and_one_with_a_semicolon_leaves_the_room_blank
     office = build_office(1, 3)
     names = {one: name.replace("r00", "r;0") for one, name in name_all(office).items()}
     names |= {"0": "Ground", "0 c0 r01": "Ground POINT 1"}
-    found = draft_routes(office, names)
+    found = draft(office, names)
     added = [one["place"] for one in found.places]
     assert len({key(name) for name in (*names.values(), *added)}) == len(names) + len(added)
     assert "Ground point 2" in added
@@ -330,7 +330,7 @@ def test_two_columns_before_an_exit_bound_the_segment_to_it():
     for x in (6.0, 9.0, 9.7):
         assert measure_in(hall(column(x, 2.4), column(x, 3.6)), (4.0, 3.0), (10.05, 3.0)) == pytest.approx(0.8)
     model = hall(column(9.0, 2.4), column(9.0, 3.6))  # people walk between them: they begin in the widest part
-    last = next(row for row in draft_routes(model, name_all(model)).routes if row["end"] == "Door out")
+    last = next(row for row in draft(model).routes if row["end"] == "Door out")
     assert last["clear_width"] == pytest.approx(0.8, abs=0.011)
     assert "Clear width: between the walls of the model." in last["notes"]
 
@@ -413,7 +413,7 @@ def test_the_door_bounds_its_segment():
         (EXIT, 1.2, "the door's 1.30 m"),
         (replace(EXIT, width=0.9, overall=1.8), 0.8, "the door's 0.90 m in the model less 0.1 m"),
     ):
-        (row,) = draft_routes(hall(doors=(leaf,)), name_all(hall())).routes
+        (row,) = draft(hall(doors=(leaf,))).routes
         assert row["clear_width"] == pytest.approx(clear)
         assert row["notes"].startswith(f"Clear width: {words}")
     assert row["required_width"] == 0.8
