@@ -25,7 +25,7 @@ from typing import Any, TypeVar
 
 from assess.bim.building_model import count_skipped
 from assess.bim.cobie_sheets import CobieSheet, Row, is_cobie, read_sheets, say
-from assess.bim.import_workbook import LOWEST_ROOF, ImportedBuilding, build_workbook, name_apart, note_datum
+from assess.bim.import_workbook import LOWEST_ROOF, ImportedBuilding, name_apart, note_datum
 from assess.errors import Problem, WorkbookError
 from assess.i18n import Text, fill, nfill
 from assess.progress import SILENT, Progress
@@ -37,7 +37,7 @@ from assess.workbook.ranges import is_within
 from assess.workbook.schema import BUILDING, CATALOGUE, FLOORS, Column
 from assess.workbook.values import cell_reader
 
-__all__ = ["convert", "is_cobie", "read_cobie"]
+__all__ = ["is_cobie", "read_cobie"]
 
 THIN, SLENDER = 0.10, 0.10
 """A piece thinner than this [m], or with less breadth to height [-], probably hangs on a wall or a window."""
@@ -49,13 +49,10 @@ NO_STOREYS = frozenset({"site", "roof", "foundation"})
 MOVEABLE, FIXED = frozenset({"moveable", "movable", "mobile"}), frozenset({"fixed"})
 """AssetType as COBie 2.4 writes it, and as files have it."""
 SIZES = ("NominalLength", "NominalWidth", "NominalHeight")
+Left = tuple[str, Text, bool]
+"""A type whose components are left out: its name, the reason, and whether it may be furniture."""
 _Found = TypeVar("_Found")
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d{1,3})?", re.ASCII)
-
-
-def convert(data: bytes, name: str = "COBie.xlsx") -> bytes:
-    """Return the inventory workbook of a COBie file; raises WorkbookError as `read_cobie`."""
-    return build_workbook(read_cobie(data, name))
 
 
 def read_cobie(source: Path | bytes, name: str, progress: Progress = SILENT) -> ImportedBuilding:
@@ -73,26 +70,23 @@ def read_cobie(source: Path | bytes, name: str, progress: Progress = SILENT) -> 
     _check_unit(facility, sheets["Type"], unit)
     faults: list[Text] = []
     floors = _by_name(sheets["Floor"], partial(_read_floor, sheets["Floor"], unit, faults))
-    types = _by_name(sheets["Type"], lambda kind, _, row: _read_type(kind, row, unit))
+    origin = fill("COBie file {name}, sheet Type: nominal sizes", name=name)
+    types = _by_name(sheets["Type"], lambda kind, _, row: _read_type(kind, row, unit, origin))
     spaces = _by_name(sheets["Space"], lambda room, _, row: (room, floors.get(key(say(row.get("FloorName"))))))
     found = _Sorted(types, spaces)
     for _, row in sheets["Component"].rows:
         found.take(row)
-    rows, height, doubts = _list_floors(floors, {row["floor"] for _, row in found.pieces})
+    rows, height, doubts = _list_floors(floors, {row["floor"] for row in found.items})
     own = facility.rows[0][1] if facility.rows else {}
     building = {"building": say(own.get("Name")), "address": say(own.get("SiteName")),
                 "use": _CODE.sub("", say(own.get("Category")))}  # fmt: skip
-    origin = fill("COBie file {name}, sheet Type: nominal sizes", name=name)
-    names = name_apart(row["item"] for _, row in found.pieces)
+    names = name_apart(row["item"] for row in found.items)
     return ImportedBuilding(
         source=name,
         building={name: text for name, text in building.items() if text} | height,
         floors=rows,
-        items=[{**row, "item": own_name} for own_name, (_, row) in zip(names, found.pieces, strict=True)],
-        types=[
-            {"type": kind.name, **kind.sizes_cm(), "source": origin}
-            for kind in dict.fromkeys(kind for kind, _ in found.pieces)
-        ],
+        items=[{**row, "item": own_name} for own_name, row in zip(names, found.items, strict=True)],
+        types=list(found.used.values()),
         skipped=count_skipped(found.skipped),
         warnings=(*faults, *doubts),
         remarks=tuple(_list_remarks(facility, found)),
@@ -118,8 +112,8 @@ def _list_remarks(facility: CobieSheet, found: "_Sorted") -> Iterator[Text]:
             "{n:,} pieces name several spaces; the first that is known was taken.",
             found.with_several_spaces,
         )
-    kinds = [kind for kind, _ in found.pieces]
-    thin = list(dict.fromkeys(one.name for one in kinds if one.breadth < THIN or one.breadth < SLENDER * one.height))
+    sizes = ((name, one["breadth"] / 100, one["height"] / 100) for name, one in found.used.items())
+    thin = [name for name, breadth, height in sizes if breadth < max(THIN, SLENDER * height)]
     if thin:
         more = fill(" and {n} more", n=len(thin) - MOST_NAMED) if len(thin) > MOST_NAMED else ""
         yield fill(
@@ -127,7 +121,7 @@ def _list_remarks(facility: CobieSheet, found: "_Sorted") -> Iterator[Text]:
             "a wall or a window: they do not stand on the floor.",
             types=", ".join(thin[:MOST_NAMED]), more=more,
         )  # fmt: skip
-    if found.pieces:
+    if found.items:
         yield fill(
             "COBie files do not record fixings or positions: fill in Anchored where you have seen the fixing; blank "
             "counts as free-standing. Pieces without a position are not checked against evacuation routes."
@@ -191,25 +185,6 @@ def _list_floors(
 # ---------------------------------------------------------------- types and their sizes
 
 
-@dataclass(frozen=True, slots=True)
-class CobieType:
-    """One type: sizes in m, or the reason why its components are left out.
-
-    `is_furniture` is False where the file says that it is fixed.
-    """
-
-    name: str
-    breadth: float = math.nan
-    width: float = math.nan
-    height: float = math.nan
-    reason: Text | None = None
-    is_furniture: bool = True
-
-    def sizes_cm(self) -> dict[str, float]:
-        """Return its sizes by field, in cm."""
-        return {name: round(100 * getattr(self, name), 2) for name in ("breadth", "width", "height")}
-
-
 def _find_unit(sheet: CobieSheet) -> str:
     """Return the unit of lengths of the file, one of `assess.units.LENGTH`.
 
@@ -255,25 +230,26 @@ def _check_unit(facility: CobieSheet, types: CobieSheet, unit: str) -> None:
     raise WorkbookError([Problem("error", facility.name, f"{facility.letters['LinearUnits']}{line}", message, fix)])
 
 
-def _read_type(name: str, row: Mapping[str, Any], unit: str) -> CobieType:
-    kind = CobieType(name)
+def _read_type(name: str, row: Row, unit: str, origin: Text) -> dict[str, Any] | Left:
+    """Return a type as its row of the Catalogue, or why its components are left out."""
     asset = say(row.get("AssetType"))
     if asset.casefold() in FIXED:
-        return replace(kind, reason=fill("AssetType is Fixed"), is_furniture=False)
+        return name, fill("AssetType is Fixed"), False
     if asset.casefold() not in MOVEABLE:
         reason = fill("AssetType is blank, so that it is not known whether they are furniture")
         if asset:
             reason = fill("AssetType is {value}, expected Fixed or Moveable", value=shorten(asset))
-        return replace(kind, reason=reason)
+        return name, reason, True
     # 0 is what programs write of a size that they do not know
     missing = [one for one in SIZES if row.get(one) in (None, UNSAVED) or _read_number(row.get(one)) == 0]
     if missing:
-        return replace(kind, reason=fill("no {columns}", columns=", ".join(missing)))
+        return name, fill("no {columns}", columns=", ".join(missing)), True
     try:
         length, width, height = (_read_length(CATALOGUE.column("height"), one, row[one], unit) for one in SIZES)
     except CellError as error:
-        return replace(kind, reason=fill("{message}", message=error.message.rstrip(".")))
-    return replace(kind, breadth=min(length, width), width=max(length, width), height=height)
+        return name, fill("{message}", message=error.message.rstrip(".")), True
+    sizes = {"breadth": min(length, width), "width": max(length, width), "height": height}
+    return {"type": name, **{size: round(100 * value, 2) for size, value in sizes.items()}, "source": origin}
 
 
 def _read_length(column: Column, label: str, value: object, unit: str) -> float:
@@ -304,15 +280,16 @@ def _read_number(value: object) -> float | None:
 
 @dataclass(slots=True)
 class _Sorted:
-    """Components sorted into pieces, each with its type and its row of Items, and what is left out.
+    """Components sorted into rows of Items, with the types that they use by name, and what is left out.
 
     `spaces`: room and floor by the name of a space as names are compared.
     """
 
-    types: Mapping[str, CobieType]
+    types: Mapping[str, dict[str, Any] | Left]
     spaces: Mapping[str, tuple[str, CobieFloor | None]]
-    pieces: list[tuple[CobieType, dict[str, Any]]] = field(default_factory=list)
-    skipped: list[tuple[str, Text, bool]] = field(default_factory=list)
+    items: list[dict[str, Any]] = field(default_factory=list)
+    used: dict[str, dict[str, Any]] = field(default_factory=dict)
+    skipped: list[Left] = field(default_factory=list)
     with_several_spaces: int = 0
 
     def take(self, row: Row) -> None:
@@ -322,21 +299,22 @@ class _Sorted:
             reason = fill("not in the sheet Type") if named else fill("TypeName is blank")
             self.skipped.append((named or "-", reason, True))
             return
-        if kind.reason is not None:
-            self.skipped.append((kind.name, kind.reason, kind.is_furniture))
+        if isinstance(kind, tuple):
+            self.skipped.append(kind)
             return
         room, floor = self._find_space(space)
         if floor is None:
             reason = fill("Space is blank, so that the floor is not known")
             if space:
                 reason = fill("its Space is not in the sheet Space, or that has no floor of the sheet Floor")
-            self.skipped.append((kind.name, reason, True))
+            self.skipped.append((kind["type"], reason, True))
             return
         own = say(row.get("ExtIdentifier")) or say(row.get("ExternalIdentifier"))
-        name = say(row.get("Name")) or own or kind.name
-        item = {"item": name, "floor": floor.name, "room": room, "description": kind.name, "type": kind.name,
-                **kind.sizes_cm(), "source_id": own or name}  # fmt: skip
-        self.pieces.append((kind, item))
+        name = say(row.get("Name")) or own or kind["type"]
+        sizes = {size: kind[size] for size in ("type", "breadth", "width", "height")}
+        self.used[kind["type"]] = kind
+        self.items.append({"item": name, "floor": floor.name, "room": room, "description": kind["type"], **sizes,
+                           "source_id": own or name})  # fmt: skip
 
     def _find_space(self, named: str) -> tuple[str, CobieFloor | None]:
         if key(named) in self.spaces:

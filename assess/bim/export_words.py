@@ -5,8 +5,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from assess.bim.export_results import ExportPiece, ExportRun, list_items
 from assess.compare.past_run import UNCONFIRMED, PastRun
 from assess.details import DETAILS
-from assess.i18n import ngettext
 from assess.i18n import gettext as _
+from assess.i18n import ngettext
 from assess.intensity import SHAKINGS
 from assess.report import words
 from assess.report.say.work import (

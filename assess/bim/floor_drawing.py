@@ -5,7 +5,7 @@ import re
 import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import chain
+from itertools import chain, count
 
 from assess.bim.building_model import Area, BuildingModel, Door, Piece, Point, Storey
 from assess.bim.plan_shapes import direction_of
@@ -23,18 +23,11 @@ LINE = 0.02
 _HEAD = re.compile(rb'<svg xmlns="http://www\.w3\.org/2000/svg" viewBox="0 0 [\d.]+ [\d.]+"><style>\.wall\{')
 
 
-@dataclass(frozen=True, slots=True)
-class Drawn:
-    """A plan: its SVG, and where it lies: its left and bottom edge, and its width [m]."""
+def draw_storey(model: BuildingModel, storey: Storey) -> tuple[bytes, dict[str, float]] | None:
+    """Return the plan of a storey as an SVG, with the fields of Floors that tell where it lies [m].
 
-    svg: bytes
-    left: float
-    bottom: float
-    width: float
-
-
-def draw_storey(model: BuildingModel, storey: Storey) -> Drawn | None:
-    """Return the plan of a storey, None where nothing of it is known."""
+    None where nothing of it is known.
+    """
     walls, windows = model.walls.get(storey.key, ()), model.windows.get(storey.key, ())
     rooms = [one.area for one in model.spaces if one.storey == storey.key]
     doors = [one for one in model.doors if one.storey == storey.key]
@@ -53,7 +46,7 @@ def draw_storey(model: BuildingModel, storey: Storey) -> Drawn | None:
     size = f"{frame.width:.3f} {frame.height:.3f}"
     head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {size}"><style>{STYLE}</style>'
     svg = f'{head}<g stroke-width="{LINE}">{"".join(parts)}</g></svg>\n'
-    return Drawn(svg.encode(), frame.left, frame.bottom, frame.width)
+    return svg.encode(), {"plan_left": frame.left, "plan_bottom": frame.bottom, "plan_width": frame.width}
 
 
 def is_drawn(data: bytes) -> bool:
@@ -73,14 +66,15 @@ def name_plans(source: str, storeys: Iterable[str]) -> list[str]:
     found: list[str] = []
     taken: set[str] = set()
     for storey in storeys:
-        one = bare = name_plan(source, storey)
-        number = 1
-        while one.casefold() in taken:
-            number += 1
-            one = f"{bare.removesuffix('.svg')}-{number}.svg"
-        taken.add(one.casefold())
-        found.append(one)
+        found.append(next(one for one in number_plan(name_plan(source, storey)) if one.casefold() not in taken))
+        taken.add(found[-1].casefold())
     return found
+
+
+def number_plan(name: str) -> Iterator[str]:
+    """Yield the name of a plan, then the same with numbers: ``a-1.svg``, ``a-1-2.svg``."""
+    yield name
+    yield from (f"{name.removesuffix('.svg')}-{number}.svg" for number in count(2))
 
 
 def _span(door: Door) -> tuple[Point, Point]:

@@ -71,16 +71,16 @@ def _understand(model: Any, name: str, also: Sequence[str]) -> BuildingModel:
         )  # fmt: skip
     known = {one.key for one in storeys}
     spaces = tuple(_list_spaces(model, known))
-    found = find_pieces(model, storeys, spaces, also)
-    walls, windows = _cut_walls(model, found.storeys)
+    pieces, levelled, skipped, doubts = find_pieces(model, storeys, spaces, also)
+    walls, windows = _cut_walls(model, levelled)
     title, address = _find_names(model)
     latitude, longitude = _find_position(model) or (None, None)
     read = BuildingModel(
-        source=name, schema=model.schema_identifier, name=title, address=address, storeys=tuple(found.storeys),
-        spaces=spaces, doors=tuple(_list_doors(model, known, unit)), stairs=tuple(_list_stairs(model, found.storeys)),
-        pieces=tuple(found.pieces), walls=walls, windows=windows, skipped=found.skipped,
+        source=name, schema=model.schema_identifier, name=title, address=address, storeys=levelled,
+        spaces=spaces, doors=tuple(_list_doors(model, known, unit)), stairs=tuple(_list_stairs(model, levelled)),
+        pieces=tuple(pieces), walls=walls, windows=windows, skipped=skipped,
         azimuth_deg=_find_azimuth(model), latitude=latitude, longitude=longitude,
-        warnings=(*warnings, *found.warnings), remarks=tuple(_note_rooms(model, spaces, found.pieces)),
+        warnings=(*warnings, *doubts), remarks=tuple(_note_rooms(model, spaces, pieces)),
     )  # fmt: skip
     return bring_near(read)
 

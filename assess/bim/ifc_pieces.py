@@ -1,7 +1,7 @@
 """The furniture of a building model: which elements are pieces, where they stand, and what is left out."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
@@ -59,20 +59,10 @@ _NEAR_FLOOR = 0.3
 """How far below the floor of a room a piece may begin to stand in it [m]."""
 
 
-@dataclass(frozen=True, slots=True)
-class FoundPieces:
-    """Pieces, storeys with the levels of their floors, what was left out, and warnings."""
-
-    storeys: Sequence[Storey]
-    pieces: Sequence[Piece]
-    skipped: tuple[Skipped, ...]
-    warnings: Sequence[Text]
-
-
 def find_pieces(
     model: Any, storeys: Sequence[Storey], spaces: Sequence[Space], also: Sequence[str] = ()
-) -> FoundPieces:
-    """Return the pieces of a model.
+) -> tuple[list[Piece], tuple[Storey, ...], tuple[Skipped, ...], list[Text]]:
+    """Return the pieces of a model, its storeys with the levels of their floors, what was left out, and warnings.
 
     Raises ModelError if `also` names a class that the schema of the model does not have, or there are over
     `MOST_PIECES` pieces.
@@ -113,8 +103,7 @@ def find_pieces(
             skip(element, NOT_ON_FLOOR)
         elif piece is not None:
             pieces.append(piece)
-    own = tuple(shaped.storeys.values())
-    return FoundPieces(own, pieces, count_skipped(skipped), [*warnings, *shaped.note_stacked()])
+    return pieces, tuple(shaped.storeys.values()), count_skipped(skipped), [*warnings, *shaped.note_stacked()]
 
 
 class _Shaped:

@@ -29,7 +29,7 @@ from assess.bim.building_model import (
 )
 from assess.bim.door_sides import REACH, find_kinds, find_sides
 from assess.bim.draft_floor import find_room_points
-from assess.bim.floor_drawing import Drawn, draw_storey, name_plans
+from assess.bim.floor_drawing import draw_storey, name_plans
 from assess.bim.import_workbook import LOWEST_ROOF, ImportedBuilding, name_apart, note_datum
 from assess.bim.plan_shapes import SpaceSearch, find_rectangle, find_width, to_polygon
 from assess.i18n import Text, fill, gettext, nfill
@@ -75,6 +75,7 @@ def list_building(model: BuildingModel, routes: Drafts = "none") -> ImportedBuil
     own = _Building(model)
     drawn = {one.key: plan for one in own.storeys if (plan := draw_storey(model, one)) is not None}
     files = dict(zip(drawn, name_plans(model.source, (own.floors[key] for key in drawn)), strict=True))
+    plans = {key: {"plan": files[key], **place} for key, (_, place) in drawn.items()}
     found = dict.fromkeys(one.type_key for one in own.pieces)
     types = dict(zip(found, name_apart(one[0] for one in found), strict=True))
     source = gettext("shapes in {name}", name=model.source)
@@ -91,7 +92,7 @@ def list_building(model: BuildingModel, routes: Drafts = "none") -> ImportedBuil
     return ImportedBuilding(
         source=model.source,
         building={name: value for name, value in values.items() if value not in (None, "")},
-        floors=[own.list_floor(one, drawn.get(one.key), files) for one in own.storeys],
+        floors=[own.list_floor(one) | plans.get(one.key, {}) for one in own.storeys],
         items=list(own.list_items(types)),
         places=[*own.list_places(), *places],
         routes=drafted,
@@ -102,7 +103,7 @@ def list_building(model: BuildingModel, routes: Drafts = "none") -> ImportedBuil
         skipped=(*model.skipped, *own.outside),
         warnings=(*model.warnings, *own.warn(), *remarks),
         remarks=(*model.remarks, *own.remark()),
-        files={files[key]: plan.svg for key, plan in drawn.items()},
+        files={files[key]: svg for key, (svg, _) in drawn.items()},
     )
 
 
@@ -195,13 +196,10 @@ class _Building:
         top = max(tops, default=0.0)
         return round(top, 2) if max(highest, LOWEST_ROOF) < top <= TALLEST else None
 
-    def list_floor(self, storey: Storey, plan: Drawn | None, files: Mapping[str, str]) -> Row:
+    def list_floor(self, storey: Storey) -> Row:
         row: Row = {"floor": self.floors[storey.key]}
         if LOWEST <= storey.elevation <= HIGHEST:
             row["elevation"] = round(storey.elevation, 3) + 0.0
-        if plan is not None:
-            row |= {"plan": files[storey.key], "plan_left": plan.left, "plan_bottom": plan.bottom,
-                    "plan_width": plan.width}  # fmt: skip
         return row
 
     def list_items(self, types: Mapping[Any, str]) -> Iterator[Row]:

@@ -6,11 +6,11 @@ it. Only such files are replaced, and only plans that Floors names in the end ar
 
 import re
 from collections.abc import Collection, Iterable, Mapping
-from itertools import chain, count
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from assess.bim.floor_drawing import is_drawn, name_plan
+from assess.bim.floor_drawing import is_drawn, name_plan, number_plan
 from assess.bim.import_workbook import ImportedBuilding
 from assess.bim.update_cells import SheetUpdate
 from assess.i18n import fill
@@ -55,7 +55,7 @@ class PlanUpdate:
         data = self._imported.files.get(model.get("plan", ""))
         if data is None or not self._sheet.can_hold("plan"):
             return dict(model)
-        name = self._find_name(model["plan"], data, (model["plan"],))
+        name = self._find_name(model["plan"], data)
         self._give(name, data)
         return {**model, "plan": name}
 
@@ -73,7 +73,7 @@ class PlanUpdate:
         if data is not None:
             # that of today first, where it is the one that is wanted but for its number
             is_same = own is not None and key(_NUMBER.sub("", own)) in (key(name), key(_NUMBER.sub("", name)))
-            name = self._find_name(name, data, (own, name) if own is not None and is_same else (name,))
+            name = self._find_name(name, data, (own,) if own is not None and is_same else ())
         for field in PLAN:
             sheet.replace(row, field, name if field == "plan" else model.get(field))
         if data is not None and sheet.can_hold("plan"):
@@ -86,16 +86,18 @@ class PlanUpdate:
         if self._read(name) != data:
             self.files[name] = data
 
-    def _find_name(self, wanted: str, data: bytes, first: Iterable[str]) -> str:
-        """Return the first name under which a plan can be written: no file of users has it, and no other plan."""
+    def _find_name(self, wanted: str, data: bytes, first: Iterable[str] = ()) -> str:
+        """Return the first name under which a plan can be written: no file of users has it, and no other plan.
+
+        `first` are tried before the one that is wanted.
+        """
         others = self._taken | self._wanted - {key(wanted)}
 
         def is_free(name: str) -> bool:
             there = self._read(name)
             return there is None or there == data or (key(name) in self._named and is_drawn(there))
 
-        numbered = (f"{wanted.removesuffix('.svg')}-{number}.svg" for number in count(2))
-        return next(one for one in chain(first, numbered) if key(one) not in others and is_free(one))
+        return next(one for one in chain(first, number_plan(wanted)) if key(one) not in others and is_free(one))
 
     def _is_imported(self, model: Mapping[str, Any], row: Row) -> bool:
         """Tell whether the plan of a floor is one that an import wrote: of this model, or of an earlier name of it."""

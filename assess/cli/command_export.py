@@ -1,6 +1,6 @@
 """``assess export``: risk classes back into the building model, and what to fix as topics for it."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -114,5 +114,5 @@ def describe_export(export: "Export", model: str) -> Iterator[str]:
             yield f"Not written, {count(len(names), 'piece')} {why}: {name_first(names, MOST_NAMED)}."
     if export.repeated:
         set_of = "" if export.model is None else "; the property set is that of the worse"
-        names = name_first(export.repeated, MOST_NAMED)
-        yield f"{count(len(export.repeated), 'piece')} that share a Source ID{set_of}: {names}."
+        first = name_first(export.repeated, MOST_NAMED)
+        yield f"{count(len(export.repeated), 'piece')} that share a Source ID{set_of}: {first}."

@@ -7,8 +7,8 @@ import pytest
 from openpyxl import load_workbook
 
 from assess.bim import cobie_sheets
-from assess.bim.cobie import convert, is_cobie, read_cobie
-from assess.bim.import_workbook import ImportedBuilding
+from assess.bim.cobie import is_cobie, read_cobie
+from assess.bim.import_workbook import ImportedBuilding, build_workbook
 from assess.errors import WorkbookError
 from assess.workbook.read import read_inventory
 from tests.bim.cobie_files import COMPONENTS, FLOORS, TYPES, make_sheets, one_type, write_cobie
@@ -318,7 +318,7 @@ def test_names_stay_text(tmp_path: Path) -> None:
     spaces = [{"Name": name, "FloorName": "Ground"} for name in HOSTILE]
     sheets = make_sheets(types=types, components=components, spaces=spaces)
     path = write_shared(tmp_path / "c.xlsx", sheets, strings_to_formulas=False, strings_to_urls=False)
-    (tmp_path / "w.xlsx").write_bytes(convert(path.read_bytes(), "c.xlsx"))
+    (tmp_path / "w.xlsx").write_bytes(build_workbook(read_cobie(path, "c.xlsx")))
     items = read_inventory(tmp_path / "w.xlsx", building={"ground_pga": 0.3}).items
     clean = [name.replace("\u202e", "").replace("\u0007", "\ufffd")[:120] for name in HOSTILE]
     assert [(one.item, one.room, one.type) for one in items] == [(name, name, name) for name in clean]
@@ -363,7 +363,7 @@ def test_thin_pieces_are_named_as_what_may_hang_on_a_wall(tmp_path: Path) -> Non
 def test_a_type_named_as_one_of_the_catalogue_takes_its_place(tmp_path: Path) -> None:
     types = ({**TYPES[0], "Name": "Sideboard"},)
     path = write_cobie(tmp_path / "c.xlsx", types=types, components=({**COMPONENTS[0], "TypeName": "Sideboard"},))
-    inventory = read_inventory(convert(path.read_bytes()), building=SHAKEN)
+    inventory = read_inventory(build_workbook(read_cobie(path, "COBie.xlsx")), building=SHAKEN)
     (kind,) = (one for one in inventory.catalogue if one.type == "Sideboard")
     assert kind.breadth == pytest.approx(0.303)
     assert kind.source == "COBie file COBie.xlsx, sheet Type: nominal sizes"

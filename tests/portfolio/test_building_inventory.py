@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from assess.bim.cobie import convert
+from assess.bim.cobie import read_cobie
+from assess.bim.import_workbook import build_workbook
 from assess.errors import InputError, WorkbookError
 from assess.portfolio.building_inventory import Quantity, _is_near, build_assumed, read_building, spread_pieces
 from assess.portfolio.index_file import IndexRow
@@ -34,7 +35,7 @@ def test_a_cobie_file_is_as_its_imported_workbook(tmp_path):
     """A building of a city can be assessed alone: import it, and run the workbook."""
     path = write_cobie(tmp_path / "c.xlsx")
     _, inventory = _read(Source(path="c.xlsx", file=path, index=SHAKEN), path)
-    alone = read_inventory(convert(path.read_bytes(), "c.xlsx"), building={"ground_pga": 0.3})
+    alone = read_inventory(build_workbook(read_cobie(path, "c.xlsx")), building={"ground_pga": 0.3})
     for name in ("item", "floor", "breadth", "height", "type"):
         assert [getattr(one, name) for one in inventory.items] == [getattr(one, name) for one in alone.items]
     assert [one.elevation for one in inventory.floors] == [one.elevation for one in alone.floors]
