@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from assess.compare.past_run import CLASSES, PastPiece, PastRun, Reader, read_record
+from assess.compare.past_run import Part, PastPiece, PastRun, read_record
 from assess.details import DETAILS
 from assess.errors import InputError
 from assess.i18n import fill
@@ -86,43 +86,35 @@ def read_export(path: Path) -> ExportRun:
     Raises InputError if it cannot be read (see `assess.compare.past_run.read_run`), or holds no identifier of any
     piece.
     """
-    run, record, reader = read_record(path)
-    rows = reader.rows(record, "items", "")
-    pieces = tuple(
-        _read_piece(reader, row, past, f"items[{at}]")
-        for at, (row, past) in enumerate(zip(rows, run.pieces, strict=True))
-    )
+    run, record = read_record(path)
+    pieces = tuple(map(_read_piece, record.rows("items"), run.pieces))
     if not any(one.source_id for one in pieces):
         raise InputError(
             fill("{path} holds no Source ID, by which a piece is found in the model. Import the workbook from the "
                  "model, or fill in Source ID in Items with GlobalIds, and run assess again.", path=run.path)
         )  # fmt: skip
-    routes, schedule = (reader.part(record, name, "") for name in ("routes", "schedule"))
+    routes, schedule = record.part("routes"), record.part("schedule")
     places = {one.item: at for at, one in enumerate(pieces)}
     return ExportRun(
         run=run,
-        language=str(reader.part(record, "assess", "").get("language") or ""),
+        language=str(record.part("assess").values.get("language") or ""),
         pieces=pieces,
-        entries=tuple(
-            _read_entry(reader, row, f"schedule.entries[{at}]", places)
-            for at, row in enumerate(reader.rows(schedule, "entries", "schedule"))
-        ),
-        segments=tuple(_read_segments(reader, routes)),
-        steps=tuple(_read_steps(reader, routes, {key(item): at for item, at in places.items()})),
+        entries=tuple(_read_entry(row, places) for row in schedule.rows("entries")),
+        segments=tuple(_read_segments(routes)),
+        steps=tuple(_read_steps(routes, {key(item): at for item, at in places.items()})),
     )
 
 
-def _read_piece(reader: Reader, row: Mapping[str, Any], past: PastPiece, place: str) -> ExportPiece:
+def _read_piece(row: Part, past: PastPiece) -> ExportPiece:
     def text(name: str) -> str:
-        return "" if row.get(name) is None else reader.text(row, name, place)
+        return "" if row.values.get(name) is None else row.text(name)
 
-    adopted, inside = reader.part(row, "adopted", place), f"{place}.adopted"
-    toward = _number(row, "falls_toward_deg")
+    adopted, toward = row.part("adopted"), _number(row, "falls_toward_deg")
     return ExportPiece(
         **{one.name: getattr(past, one.name) for one in fields(past)},
         source_id=text("source_id").strip(),
-        upper=CLASSES[reader.choice(adopted, "class_upper", inside, [risk.word for risk in RiskClass])],
-        has_simulated=adopted.get("method") is not None and reader.text(adopted, "method", inside) == simulation().key,
+        upper=adopted.risk("class_upper"),
+        has_simulated=adopted.values.get("method") is not None and adopted.text("method") == simulation().key,
         importance=text("importance"),
         pfa_source=text("pfa_source"),
         place=_point(row, "x_m", "y_m"),
@@ -131,81 +123,73 @@ def _read_piece(reader: Reader, row: Mapping[str, Any], past: PastPiece, place: 
     )
 
 
-def _number(row: Mapping[str, Any], name: str) -> float | None:
-    value = row.get(name)
+def _number(row: Part, name: str) -> float | None:
+    value = row.values.get(name)
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
     return float(value) if is_number and abs(value) < 1e9 else None  # type: ignore[arg-type]
 
 
-def _point(row: Mapping[str, Any], *names: str) -> Point | None:
+def _point(row: Part, *names: str) -> Point | None:
     x, y = (_number(row, name) for name in names)
     return None if x is None or y is None else (x, y)
 
 
-_READ = {"int": Reader.count, "float": Reader.number, "str": Reader.text}
+_READ = {"int": Part.count, "float": Part.number, "str": Part.text}
 
 
-def _read_plain(reader: Reader, kind: type, row: Mapping[str, Any], place: str, other: set[str]) -> dict[str, Any]:
+def _read_plain(kind: type, row: Part, other: set[str]) -> dict[str, Any]:
     """Return the numbers and texts of a row of the schedule, but for `other` fields."""
     wanted = {one.name: getattr(one.type, "__name__", "") for one in fields(kind) if one.name not in other}
-    return {name: _READ[type_](reader, row, name, place) for name, type_ in wanted.items() if type_ in _READ}
+    return {name: _READ[type_](row, name) for name, type_ in wanted.items() if type_ in _READ}
 
 
-def _read_entry(reader: Reader, row: Mapping[str, Any], place: str, known: Mapping[str, int]) -> ScheduleRow:
-    works = tuple(
-        _read_work(reader, work, f"{place}.works[{at}]", known)
-        for at, work in enumerate(reader.rows(row, "works", place))
-    )
+def _read_entry(row: Part, known: Mapping[str, int]) -> ScheduleRow:
+    works = tuple(_read_work(work, known) for work in row.rows("works"))
     return ScheduleRow(
-        **_read_plain(reader, ScheduleRow, row, place, set()),
+        **_read_plain(ScheduleRow, row, set()),
         item_indices=tuple(at for work in works for at in work.item_indices),
-        is_together=row.get("only_together") is True,
+        is_together=row.values.get("only_together") is True,
         works=works,
     )
 
 
-def _read_work(reader: Reader, row: Mapping[str, Any], place: str, known: Mapping[str, int]) -> WorkRow:
+def _read_work(row: Part, known: Mapping[str, int]) -> WorkRow:
     """Return a part of an entry, without its costs; pieces that the results do not hold are left out."""
-    items = tuple(one for one in reader.list_texts(row, "items", place) if one in known)
-    has_code = row.get("tension_code_kn") is not None
+    items = tuple(one for one in row.list_texts("items") if one in known)
+    has_code = row.values.get("tension_code_kn") is not None
     return WorkRow(
-        **_read_plain(reader, WorkRow, row, place, {"detail", "cost_source"}),
+        **_read_plain(WorkRow, row, {"detail", "cost_source"}),
         items=items,
         item_indices=tuple(known[one] for one in items),
-        detail=reader.choice(row, "detail", place, tuple(DETAILS)),
-        tension_code_kn=reader.number(row, "tension_code_kn", place) if has_code else None,
-        is_per_metre=row.get("is_per_metre") is True,
+        detail=row.choice("detail", tuple(DETAILS)),
+        tension_code_kn=row.number("tension_code_kn") if has_code else None,
+        is_per_metre=row.values.get("is_per_metre") is True,
         unit_cost=None,
         cost=None,
         cost_source="",
     )
 
 
-def _read_segments(reader: Reader, routes: Mapping[str, Any]) -> Iterator[ExportSegment]:
-    for at, row in enumerate(reader.rows(routes, "segments", "routes")):
-        place = f"routes.segments[{at}]"
-        is_open = reader.text(row, "state", place) == RouteState.OPEN
+def _read_segments(routes: Part) -> Iterator[ExportSegment]:
+    for row in routes.rows("segments"):
+        is_open = row.text("state") == RouteState.OPEN
         items = frozenset(
-            reader.text(one, "item", f"{place}.pieces[{number}]")
-            for number, one in enumerate(reader.rows(row, "pieces", place))
-            if not is_open or one.get("blocks_alone") is True
+            one.text("item") for one in row.rows("pieces") if not is_open or one.values.get("blocks_alone") is True
         )
         if items:
             start, end = (_point(row, f"{side}_x_m", f"{side}_y_m") for side in ("start", "end"))
             ends = None if start is None or end is None else (start, end)
-            yield ExportSegment(route=reader.text(row, "route", place), ends=ends, items=items)
+            yield ExportSegment(route=row.text("route"), ends=ends, items=items)
 
 
-def _read_steps(reader: Reader, routes: Mapping[str, Any], index: Mapping[str, int]) -> Iterator[RouteStep]:
+def _read_steps(routes: Part, index: Mapping[str, int]) -> Iterator[RouteStep]:
     """Yield what to fix for every route, as `assess.report.say.work.list_steps` does of results."""
-    for at, row in enumerate(reader.rows(routes, "routes", "routes")):
-        place = f"routes.routes[{at}]"
-        route, fixes = reader.text(row, "route", place), reader.rows(row, "fixes", place)
-        left = [reader.share(one, "left", f"{place}.fixes[{number}]") for number, one in enumerate(fixes)]
+    for row in routes.rows("routes"):
+        route, fixes = row.text("route"), row.rows("fixes")
+        left = [one.share("left") for one in fixes]
         for number, one in enumerate(fixes):
-            inside = f"{place}.fixes[{number}]"
-            known = index.get(key(reader.text(one, "item", inside)))
+            known = index.get(key(one.text("item")))
             if known is not None:
-                before = left[number] + reader.share(one, "gain", inside)
-                is_bound = row.get("blocked_if_unconfirmed_fall") is not None
+                before = left[number] + one.share("gain")
+                is_bound = row.values.get("blocked_if_unconfirmed_fall") is not None
                 yield RouteStep(route, known, number + 1, len(fixes), before, left[number], left[-1], is_bound)

@@ -157,7 +157,6 @@ _TOP = ("building", "floors", "items", "routes")
 _MISSING = object()
 _MOST = 1e15
 """Size of a number that is shown as it is."""
-Record = Mapping[str, Any]
 _Row = TypeVar("_Row")
 
 
@@ -172,13 +171,12 @@ def read_run(path: Path) -> PastRun:
     return read_record(path)[0]
 
 
-def read_record(path: Path) -> tuple[PastRun, Record, "Reader"]:
-    """Read the results of a run, and return its record as well, with what reads further values of it."""
+def read_record(path: Path) -> tuple[PastRun, "Part"]:
+    """Read the results of a run, and return its record as well, of which further values can be read."""
     file = path / DATA if path.is_dir() else path
     data, written = _load(path, file)
-    record = _parse(file, data)
-    reader = Reader(file)
-    return reader.run(record, hashlib.sha256(data).hexdigest(), written), record, reader
+    record = Part(file, "", _parse(file, data))
+    return _read_run(record, hashlib.sha256(data).hexdigest(), written), record
 
 
 def _load(path: Path, file: Path) -> tuple[bytes, datetime.datetime]:
@@ -205,7 +203,7 @@ def _explain_missing(path: Path, file: Path) -> str:
     return fill("{path} does not exist: name a {name}, or the folder that holds it.", path=path, name=DATA)
 
 
-def _parse(file: Path, data: bytes) -> Record:
+def _parse(file: Path, data: bytes) -> Mapping[str, Any]:
     """Return the record, which is that of a run by this major version of the schema."""
     text = ""
     try:
@@ -266,192 +264,185 @@ def _describe_version(file: Path, schema: str, ours: str, *, is_earlier: bool) -
     )
 
 
-class Reader:
-    """Turns the parts of a record into rows; `file` is named where a value is not what it may be.
+@dataclass(frozen=True, slots=True)
+class Part:
+    """An object of a record, which stands at a place in its file.
 
-    A method that takes `row`, `name` and `place` returns the value of this name in a row, which stands at a place in
-    the record; it raises InputError where the value is missing or not what it may be.
+    A method that takes `name` returns the value of this name; it raises InputError where the value is missing or not
+    what it may be.
     """
 
-    def __init__(self, file: Path) -> None:
-        self.file = file
+    file: Path
+    place: str
+    values: Mapping[str, Any]
 
-    def run(self, record: Record, sha256: str, written: datetime.datetime) -> PastRun:
-        """Return the run."""
-        items, origin = self.rows(record, "items", ""), self.part(record, "assess", "")
-        routes = self.part(record, "routes", "")
-        inputs, inside, shaking = self.part(origin, "inputs", "assess"), "assess.inputs", origin.get("shaking")
-        return PastRun(
-            path=self.file,
-            sha256=sha256,
-            written=written,
-            schema=plain_line(record["schema"])[:20],
-            version=self.text(origin, "version", "assess"),
-            code=self.text(origin, "code", "assess") if "code" in origin else "",
-            platform=self.texts(origin, "platform", "assess"),
-            settings=self.plainly(origin, "settings", "assess"),
-            building=self.plainly(record, "building", ""),
-            uncertainty=self.plainly(origin, "uncertainty", "assess"),
-            shaking=plain_line(str(shaking.get("name", ""))) if isinstance(shaking, dict) else "",
-            site_ground=self.site_ground(origin),
-            workbook=self.text(inputs, "workbook", inside),
-            workbook_sha256=self.text(inputs, "sha256", inside),
-            motions=self.texts(inputs, "records", inside) | self.texts(inputs, "motions", inside),
-            is_simulated=self.is_simulated(record, items),
-            pieces=self.unique(items, "items", self.piece, lambda one: key(one.item)),
-            routes=self.states(routes, "routes", "route", "blocked"),
-            rooms=self.states(routes, "rooms", "room", "loses_every_exit"),
-            route_risk=self.share(routes, "risk", "routes"),
-            blocked_routes=self.number(routes, "blocked_routes_expected", "routes"),
-            cut_off_rooms=self.number(routes, "cut_off_rooms_expected", "routes"),
-            unknown_routes=self.count(routes, "unknown_routes", "routes"),
-            unknown_rooms=self.count(routes, "unknown_rooms", "routes"),
-            unjoined_rooms=self.list_texts(routes, "unjoined_rooms", "routes"),
-        )
+    def find_place(self, name: str) -> str:
+        """Return the place of a value."""
+        return f"{self.place}.{name}" if self.place else name
 
-    def is_simulated(self, record: Record, items: Sequence[Record]) -> bool:
-        """Whether the run simulated any piece."""
-        demands = (
-            demand
-            for at, floor in enumerate(self.rows(record, "floors", ""))
-            for demand in self.rows(floor, "demands", f"floors[{at}]")
-        )
-        return any(one.get("ensemble") for one in demands) or any(one.get("verification") for one in items)
-
-    def piece(self, row: Record, place: str) -> PastPiece:
-        """Return a piece."""
-        adopted, anchor = self.part(row, "adopted", place), row.get("anchor")
-        inside = f"{place}.adopted"
-        held = anchor.get("counts_as_anchored") if isinstance(anchor, dict) else None
-        return PastPiece(
-            item=self.text(row, "item", place),
-            floor=self.text(row, "floor", place),
-            room=self.text(row, "room", place),
-            description=self.text(row, "description", place),
-            quantity=self.count(row, "quantity", place),
-            is_held=held if isinstance(held, bool) else row.get("anchored") == "yes",
-            basis=self.choice(adopted, "basis", inside, BASES),
-            risk=CLASSES[self.choice(adopted, "class", inside, [risk.word for risk in RiskClass])],
-            chance=self.chance(adopted, inside),
-            inputs=_read_inputs(row),
-        )
-
-    def states(self, routes: Record, name: str, kind: str, chance: str) -> tuple[PastState, ...]:
-        """Return the routes or the rooms; `chance` is the name of their chance, which may be null or absent."""
-
-        def read(row: Record, place: str) -> PastState:
-            return PastState(
-                name=self.text(row, kind, place),
-                floor=self.text(row, "floor", place) if kind == "room" else "",
-                state=self.text(row, "state", place),
-                chance=None
-                if row.get(chance) is None
-                else self.chance(self.part(row, chance, place), f"{place}.{chance}"),
-            )
-
-        rows = self.rows(routes, name, "routes")
-        return self.unique(rows, f"routes.{name}", read, lambda one: (key(one.floor), key(one.name)))
-
-    def site_ground(self, origin: Record) -> str:
-        """Return file, PGA and hash of a ShakeMap or of scenarios; "" where the motion rests on none."""
-        if origin.get("site_ground") is None:  # as in files before version 5.1 of the schema
-            return ""
-        found, place = self.part(origin, "site_ground", "assess"), "assess.site_ground"
-        file, sha256 = (self.text(found, name, place) for name in ("file", "sha256"))
-        return f"{file}, {self.number(found, 'pga_g', place):.3f} g, SHA-256 {sha256[:16]}"
-
-    def chance(self, row: Record, place: str) -> PastChance:
-        """Return a chance with its interval."""
-        ends = (self.share(row, name, place) if row.get(name) is not None else None for name in ("low", "high"))
-        return PastChance(self.share(row, "probability", place), *ends)
-
-    # ------------------------------------------------------------ values
-
-    def unique(
-        self,
-        rows: Sequence[Record],
-        place: str,
-        read: Callable[[Any, str], _Row],
-        name: Callable[[_Row], Any],
-    ) -> tuple[_Row, ...]:
-        """Return the rows that `read` makes; raises InputError where two have one name."""
-        found: dict[Any, _Row] = {}
-        for at, row in enumerate(rows):
-            where = f"{place}[{at}]"
-            one = read(row, where)
-            if name(one) in found:
-                raise InputError.about(
-                    "{path}: {place}: duplicate name. Run assess again.", path=self.file, place=where
-                )
-            found[name(one)] = one
-        return tuple(found.values())
-
-    def get(self, row: Record, name: str, place: str, expected: Text, is_right: Callable[[Any], bool]) -> Any:
+    def read(self, name: str, expected: Text, is_right: Callable[[Any], bool]) -> Any:
         """Return a value."""
-        value = row.get(name, _MISSING)
+        value = self.values.get(name, _MISSING)
         if value is not _MISSING and is_right(value):
             return value
         raise InputError.about(
             "{path}: {place} is {value}, expected {expected}. Run assess again.",
             path=self.file,
-            place=f"{place}.{name}" if place else name,
+            place=self.find_place(name),
             value=fill("missing") if value is _MISSING else repr(value)[:40],
             expected=expected,
         )
 
-    def part(self, row: Record, name: str, place: str) -> dict[str, Any]:
+    def part(self, name: str) -> "Part":
         """Return an object."""
-        return dict(self.get(row, name, place, fill("an object"), lambda value: isinstance(value, dict)))
+        found = self.read(name, fill("an object"), lambda value: isinstance(value, dict))
+        return Part(self.file, self.find_place(name), found)
 
-    def rows(self, row: Record, name: str, place: str) -> list[Record]:
+    def rows(self, name: str) -> list["Part"]:
         """Return a list of objects."""
-        return list(self.get(row, name, place, fill("a list of objects"), lambda value: _is_list(value, dict)))
+        found = self.read(name, fill("a list of objects"), lambda value: _is_list(value, dict))
+        return [Part(self.file, f"{self.find_place(name)}[{at}]", row) for at, row in enumerate(found)]
 
-    def text(self, row: Record, name: str, place: str) -> str:
+    def text(self, name: str) -> str:
         """Return a text on one line, safe to show."""
-        return plain_line(self.get(row, name, place, fill("a text"), lambda value: isinstance(value, str)))
+        return plain_line(self.read(name, fill("a text"), lambda value: isinstance(value, str)))
 
-    def texts(self, row: Record, name: str, place: str) -> dict[str, str]:
+    def texts(self, name: str) -> dict[str, str]:
         """Return an object of texts."""
-        found = self.part(row, name, place)
-        return {plain_line(one): self.text(found, one, f"{place}.{name}") for one in found}
+        found = self.part(name)
+        return {plain_line(one): found.text(one) for one in found.values}
 
-    def list_texts(self, row: Record, name: str, place: str) -> tuple[str, ...]:
+    def list_texts(self, name: str) -> tuple[str, ...]:
         """Return a list of texts, each on one line; none where an earlier version did not write it."""
-        if name not in row:
+        if name not in self.values:
             return ()
-        found = self.get(row, name, place, fill("a list of texts"), lambda value: _is_list(value, str))
+        found = self.read(name, fill("a list of texts"), lambda value: _is_list(value, str))
         return tuple(plain_line(one) for one in found)
 
-    def choice(self, row: Record, name: str, place: str, choices: Sequence[str]) -> str:
+    def choice(self, name: str, choices: Sequence[str]) -> str:
         """Return one of some words."""
         expected = fill("one of: {names}", names=", ".join(choices))
-        return str(self.get(row, name, place, expected, lambda value: value in choices))
+        return str(self.read(name, expected, lambda value: value in choices))
 
-    def count(self, row: Record, name: str, place: str) -> int:
+    def risk(self, name: str) -> RiskClass:
+        """Return a class by its word."""
+        return CLASSES[self.choice(name, [risk.word for risk in RiskClass])]
+
+    def count(self, name: str) -> int:
         """Return a whole number from 0."""
         expected = fill("a whole number, 0 or above")
-        return int(
-            self.get(row, name, place, expected, lambda value: isinstance(value, int) and _is_number(value, 1e9))
-        )
+        return int(self.read(name, expected, lambda value: isinstance(value, int) and _is_number(value, 1e9)))
 
-    def number(self, row: Record, name: str, place: str) -> float:
+    def number(self, name: str) -> float:
         """Return a number from 0."""
-        return float(self.get(row, name, place, fill("a number, 0 or above"), _is_number))
+        return float(self.read(name, fill("a number, 0 or above"), _is_number))
 
-    def share(self, row: Record, name: str, place: str) -> float:
+    def share(self, name: str) -> float:
         """Return a number from 0 to 1."""
-        return float(self.get(row, name, place, fill("a number from 0 to 1"), lambda value: _is_number(value, 1.0)))
+        return float(self.read(name, fill("a number from 0 to 1"), lambda value: _is_number(value, 1.0)))
 
-    def plainly(self, row: Record, name: str, place: str) -> dict[str, Any]:
+    def plainly(self, name: str) -> dict[str, Any]:
         """Return an object of values that are shown as they are; a list becomes a tuple of texts."""
         return {
             plain_line(key): tuple(plain_line(str(one)) for one in value) if isinstance(value, list) else _plain(value)
-            for key, value in self.part(row, name, place).items()
+            for key, value in self.part(name).values.items()
         }
 
 
-def _read_inputs(row: Record) -> dict[str, Any]:
+def _read_run(record: Part, sha256: str, written: datetime.datetime) -> PastRun:
+    items, origin, routes = record.rows("items"), record.part("assess"), record.part("routes")
+    inputs, shaking = origin.part("inputs"), origin.values.get("shaking")
+    return PastRun(
+        path=record.file,
+        sha256=sha256,
+        written=written,
+        schema=plain_line(record.values["schema"])[:20],
+        version=origin.text("version"),
+        code=origin.text("code") if "code" in origin.values else "",
+        platform=origin.texts("platform"),
+        settings=origin.plainly("settings"),
+        building=record.plainly("building"),
+        uncertainty=origin.plainly("uncertainty"),
+        shaking=plain_line(str(shaking.get("name", ""))) if isinstance(shaking, dict) else "",
+        site_ground=_read_site_ground(origin),
+        workbook=inputs.text("workbook"),
+        workbook_sha256=inputs.text("sha256"),
+        motions=inputs.texts("records") | inputs.texts("motions"),
+        is_simulated=_has_simulated(record, items),
+        pieces=_read_unique(items, _read_piece, lambda one: key(one.item)),
+        routes=_read_states(routes, "routes", "route", "blocked"),
+        rooms=_read_states(routes, "rooms", "room", "loses_every_exit"),
+        route_risk=routes.share("risk"),
+        blocked_routes=routes.number("blocked_routes_expected"),
+        cut_off_rooms=routes.number("cut_off_rooms_expected"),
+        unknown_routes=routes.count("unknown_routes"),
+        unknown_rooms=routes.count("unknown_rooms"),
+        unjoined_rooms=routes.list_texts("unjoined_rooms"),
+    )
+
+
+def _has_simulated(record: Part, items: Sequence[Part]) -> bool:
+    demands = (demand for floor in record.rows("floors") for demand in floor.rows("demands"))
+    return any(one.values.get("ensemble") for one in demands) or any(one.values.get("verification") for one in items)
+
+
+def _read_piece(row: Part) -> PastPiece:
+    adopted, anchor = row.part("adopted"), row.values.get("anchor")
+    held = anchor.get("counts_as_anchored") if isinstance(anchor, dict) else None
+    return PastPiece(
+        item=row.text("item"),
+        floor=row.text("floor"),
+        room=row.text("room"),
+        description=row.text("description"),
+        quantity=row.count("quantity"),
+        is_held=held if isinstance(held, bool) else row.values.get("anchored") == "yes",
+        basis=adopted.choice("basis", BASES),
+        risk=adopted.risk("class"),
+        chance=_read_chance(adopted),
+        inputs=_read_inputs(row.values),
+    )
+
+
+def _read_states(routes: Part, name: str, kind: str, chance: str) -> tuple[PastState, ...]:
+    """Return the routes or the rooms; `chance` is the name of their chance, which may be null or absent."""
+
+    def read(row: Part) -> PastState:
+        return PastState(
+            name=row.text(kind),
+            floor=row.text("floor") if kind == "room" else "",
+            state=row.text("state"),
+            chance=None if row.values.get(chance) is None else _read_chance(row.part(chance)),
+        )
+
+    return _read_unique(routes.rows(name), read, lambda one: (key(one.floor), key(one.name)))
+
+
+def _read_site_ground(origin: Part) -> str:
+    """Return file, PGA and hash of a ShakeMap or of scenarios; "" where the motion rests on none."""
+    if origin.values.get("site_ground") is None:  # as in files before version 5.1 of the schema
+        return ""
+    found = origin.part("site_ground")
+    file, sha256 = found.text("file"), found.text("sha256")
+    return f"{file}, {found.number('pga_g'):.3f} g, SHA-256 {sha256[:16]}"
+
+
+def _read_chance(row: Part) -> PastChance:
+    ends = (row.share(name) if row.values.get(name) is not None else None for name in ("low", "high"))
+    return PastChance(row.share("probability"), *ends)
+
+
+def _read_unique(rows: Sequence[Part], read: Callable[[Part], _Row], name: Callable[[_Row], Any]) -> tuple[_Row, ...]:
+    """Return the rows that `read` makes; raises InputError where two have one name."""
+    found: dict[Any, _Row] = {}
+    for row in rows:
+        one = read(row)
+        if name(one) in found:
+            raise InputError.about("{path}: {place}: duplicate name. Run assess again.", path=row.file, place=row.place)
+        found[name(one)] = one
+    return tuple(found.values())
+
+
+def _read_inputs(row: Mapping[str, Any]) -> dict[str, Any]:
     """Return the inputs of a piece; no height of its bracket where that is assumed."""
     found = unnest(row, INPUTS.values())
     anchor = row.get("anchor")
