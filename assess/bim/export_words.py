@@ -1,6 +1,6 @@
 """What an export says of a piece and of an entry of the schedule, in the language in use and in the report's words."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
 from assess.bim.export_results import ExportPiece, ExportRun, list_items
 from assess.compare.past_run import UNCONFIRMED, PastRun
@@ -111,14 +111,10 @@ def say_title(found: ExportRun, entry: ScheduleRow, pieces: Sequence[ExportPiece
 
 
 def _name_with_kind(entry: ScheduleRow, pieces: Sequence[ExportPiece]) -> str:
-    names, kind = join_names(shorten_names(one.item for one in pieces)), name_kinds(map(describe, pieces))
+    names = join_names(shorten_names(one.item for one in pieces))
+    kind = words.name_first(list(dict.fromkeys(words.cut(describe(one), LONGEST) for one in pieces)), MOST_KINDS, "; ")
     names = _("{names} together", names=names) if entry.is_together else names
     return names if kind == names else f"{names} ({kind})"
-
-
-def name_kinds(kinds: Iterable[str]) -> str:
-    """Return each of the kinds once: the first of them, and how many more there are."""
-    return words.name_first(list(dict.fromkeys(words.cut(one, LONGEST) for one in kinds)), MOST_KINDS, "; ")
 
 
 def list_importance(pieces: Sequence[ExportPiece]) -> list[str]:

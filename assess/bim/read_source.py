@@ -2,6 +2,7 @@
 
 import zipfile
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 from assess.bim.building_model import BuildingModel
@@ -69,9 +70,9 @@ def _choose(path: Path, name: str, start: bytes) -> Reader | None:
             ) from None
         if any(part.lower().endswith((".ifc", ".ifcxml")) for part in parts):
             check_model(path, name)
-        return _read_home if HOME in parts or OLD_HOME in parts else None
+        return partial(_read_bytes, read_sweet_home, MOST_OF_HOME) if HOME in parts or OLD_HOME in parts else None
     if start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(_BRACES):
-        return _read_scan
+        return partial(_read_bytes, read_roomplan, MOST_OF_SCAN)
     if not is_model(start) and path.suffix.lower() not in (".ifc", ""):
         raise ModelError(
             fill("{name} is of a kind that is not imported: name an IFC model (.ifc), a RoomPlan scan (.json), a Sweet "
@@ -88,11 +89,7 @@ def build(read: Reader, path: Path, name: str, routes: Drafts, also: Sequence[st
         return list_building(read(path, name, also), routes)
 
 
-def _read_scan(path: Path, name: str, _also: Sequence[str]) -> BuildingModel:
-    """Read a RoomPlan scan; errors as of `assess.bim.roomplan.read_roomplan`."""
-    return read_roomplan(read_input(path, MOST_OF_SCAN), name)
-
-
-def _read_home(path: Path, name: str, _also: Sequence[str]) -> BuildingModel:
-    """Read a home of Sweet Home 3D; errors as of `assess.bim.sweet_home.read_sweet_home`."""
-    return read_sweet_home(read_input(path, MOST_OF_HOME), name)
+def _read_bytes(
+    read: Callable[[bytes, str], BuildingModel], most: int, path: Path, name: str, _also: Sequence[str]
+) -> BuildingModel:
+    return read(read_input(path, most), name)

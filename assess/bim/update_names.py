@@ -52,7 +52,8 @@ def match_floors(model: Levels, workbook: Levels, pairs: Iterable[tuple[str, str
     kept = set(found)
 
     def is_at(one: str, own: str) -> bool:
-        return _is_level(model[one], workbook.get(own))
+        level, other = model[one], workbook.get(own)
+        return level is not None and other is not None and abs(level - other) <= SAME_LEVEL
 
     for one in model:
         own = _find_majority(counts.get(one, Counter()))
@@ -71,10 +72,6 @@ def _find_majority(counter: Counter[str]) -> str:
     """Return what more than half agree on, "" where there is nothing such."""
     best, number = max(counter.items(), key=lambda one: one[1], default=("", 0))
     return best if 2 * number > counter.total() else ""
-
-
-def _is_level(one: float | None, other: float | None) -> bool:
-    return one is not None and other is not None and abs(one - other) <= SAME_LEVEL
 
 
 def match_rooms(trios: Iterable[tuple[str, str, str]], known: Collection[str]) -> dict[tuple[str, str], str]:

@@ -133,7 +133,7 @@ class _Update:
         """Update every sheet; floors first, as what is new stands on them."""
         items = self.rows["Items"]
         self._note_duplicates()
-        own_floors = _by_floor(self.sheets["Floors"].table)
+        own_floors = {key(row.get("floor")): row for row in reversed(self.sheets["Floors"].table.with_all("floor"))}
         found = match_floors(
             {key(row["floor"]): row.get("elevation") for row in self.rows["Floors"]},
             {one: row.get("elevation") for one, row in own_floors.items()},
@@ -388,10 +388,6 @@ def _list_sources(catalogue: Table, suffix: str) -> Iterator[str]:
     for text in {row.get("source") for row in catalogue.with_all("source")}:
         words = text.split(" ") if suffix and text.endswith(suffix) else ()
         yield from (" ".join(words[at:]) for at in range(len(words)))
-
-
-def _by_floor(table: Table) -> dict[str, Row]:
-    return {key(row.get("floor")): row for row in reversed(table.with_all("floor"))}
 
 
 def _is_near(one: Sequence[Any], other: Sequence[Any]) -> bool:
