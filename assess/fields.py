@@ -385,10 +385,10 @@ MOTION_FIELDS = (
     _in_group("ensemble", "signs", kind="signs", is_optional=True, flat=_none_is_empty, help="Whether the motions "
         "move as the phases that all floors share (1) or against them (-1), by octave from 0.1 to 25.6 Hz: as the "
         "records of two floors or more of one earthquake on one clock do; null where no such records are known."),
-    _fit("matched_to_s", fill("Matched from 0.05 s to"), "0.00", "s"),
+    _fit("matched_to_s", fill("Matched from 0.05 s to"), "0.00", "s", source="ensemble.fit.matched_to"),
     _fit("mean_deviation", fill("Mean deviation"), "0.0%"),
     _fit("worst_deviation", fill("Worst deviation"), "+0.0%;-0.0%"),
-    _fit("worst_period_s", fill("at period"), "0.000", "s"),
+    _fit("worst_period_s", fill("at period"), "0.000", "s", source="ensemble.fit.worst_period"),
     _fit("pfa_ratio", fill("PFA over the target's"), "0.000"),
     _fit("pfa_scatter", fill("Scatter of PFA"), "0.0%"),
     _fit("pfv_ratio", fill("PFV over the target's"), "0.000", is_optional=True),
@@ -405,6 +405,55 @@ FLOOR_FIELDS = (
     *(replace(one, source=f"motion.{one.source}") for one in MOTION_FIELDS),
 )
 """The fields of a row of the table of floors: the floor, and one of its motions."""
+
+
+SHAKING_FIELDS = (
+    Field(key="choice", help="The class of intensity, as the workbook offers it."),
+    Field(key="name", help="The class in short."),
+    Field(key="intensity", kind="number", help="What it is taken for: MMI, or JMA instrumental intensity."),
+    *(
+        Field(key=key, kind="number", help="Published medians of the ground's peaks, before the settings' factor.")
+        for key in ("pga_g", "pgv_cm_s")
+    ),
+    Field(key="scatter", kind="number", help="Standard deviation of ln PGV given the intensity [-]."),
+    Field(key="is_derived", kind="flag", help="Whether PGA follows from PGV, by the ratio that is drawn."),
+    Field(key="is_open", kind="flag", help="Whether the class has no upper limit."),
+    *(Field(key=key, kind="list", help="The relations in short and in full.") for key in ("sources", "references")),
+)
+"""An intensity that stands in for a known motion of the ground (`assess.intensity.Shaking`)."""
+
+
+def _of_ground(key: str, kind: Kind = "text", text: str = "", source: str = "", **more: Any) -> Field:
+    return Field(key=key, source=source or f"provenance.site_ground.{key}", kind=kind, help=text, **more)
+
+
+_MEDIANS = "Medians at the building, before the settings' factor; `pgv_cm_s` is null where it is not known."
+GROUND_FIELDS = (
+    _of_ground("kind", text="Which of the two.", choices=("shakemap", "scenarios")),
+    _of_ground("file", text="Name and hash of its file."),
+    _of_ground("sha256", text="Name and hash of its file."),
+    _of_ground("pga_g", "number", _MEDIANS),
+    _of_ground("pgv_cm_s", "number", _MEDIANS, is_optional=True),
+    _of_ground("psa", "records", "Spectral accelerations, as far as they are known; for information.",
+        source="provenance.site_ground.psa_g",
+        records=(Field(key="period_s", source="0", kind="number", help="Period."),
+                 Field(key="psa_g", source="1", kind="number", help="Median, 5 % damping."))),
+    _of_ground("dispersion", "number",
+        "Standard deviation of ln PGV at the building [-], or of ln PGA where PGV is not known."),
+    _of_ground("dispersion_source", text="Where that comes from."),
+    _of_ground("own_dispersion", "number",
+        "Motion uncertainty without it [-]; both together are the root of the sum of squares.",
+        source="building.own_dispersion"),
+    _of_ground("shared", "number", "Share of its variance that is common to all places in one earthquake [-]; null "
+        "where that is not known.", is_optional=True),
+    _of_ground("distance_km", "number", "From the building to the site of the scenarios.", is_optional=True),
+    _of_ground("scenarios", "count", "Number of scenarios; 0 for a map.", source="provenance.site_ground.count"),
+    _of_ground("facts", "records", "The earthquake, version and status of the map, and the like.",
+        records=tuple(Field(key=key, source=at, help="What is told, and what it is.")
+                      for at, key in (("0", "label"), ("1", "value")))),
+    _of_ground("cautions", "list", "What makes it less certain than its dispersion tells."),
+)  # fmt: skip
+"""The ground motion at the building by a ShakeMap or scenarios, of the results."""
 
 
 # ---------------------------------------------------------------- the schedule

@@ -24,7 +24,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from assess.units import GRAVITY
+from assess.units import GRAVITY, VELOCITY, to_edge
 
 RATIO = 1.05 / GRAVITY
 """Median PGV/PGA of the ground [s], where one of them alone is known: 105 cm/s per g, the geometric mean of the 122 on
@@ -108,6 +108,16 @@ class Shaking:
     references: tuple[str, ...]
     is_derived: bool = False
     is_open: bool = False
+
+    @property
+    def pga_g(self) -> float:
+        """The median PGA [g]."""
+        return to_edge(self.pga, GRAVITY)
+
+    @property
+    def pgv_cm_s(self) -> float:
+        """The median PGV [cm/s]."""
+        return to_edge(self.pgv, VELOCITY["cm/s"])
 
 
 def _round_up(scatter_log: float) -> float:

@@ -118,6 +118,11 @@ class Building:
         by_sds = None if self.sds is None else PGA_OF_SDS * self.sds
         return by_sds if self.ground_pga is None else self.ground_pga
 
+    @property
+    def own_dispersion(self) -> float:
+        """Motion uncertainty [-], 0 where it is blank."""
+        return self.motion_uncertainty or 0.0
+
     def cell(self, name: str) -> str:
         """Address of a field; "" where the sheet lacks it."""
         return self.cells.get(name, "")

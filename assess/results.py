@@ -19,8 +19,11 @@ from numpy.typing import NDArray
 from assess.annual_results import AnnualRow, AnnualTables
 from assess.errors import InputError, Problem
 from assess.i18n import Text, count, fill, join, nfill
+from assess.intensity import Shaking
 from assess.methods import ALIKE, MethodInfo, Outcome
-from assess.model import MEASURED, Building, CatalogueType, Place
+from assess.model import MEASURED, Building, CatalogueType, FloorPlan, Place
+from assess.motion.scenario import Profile
+from assess.motion.site_ground import SiteGround
 from assess.risk import RiskClass, classify, classify_all
 from assess.rocking.draws import TRIED, Uncertainty
 from assess.route_results import RouteTables
@@ -30,6 +33,8 @@ from assess.table import PART, Columns, Table
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from assess.motion.target_fit import Fit
 
 Detail = float | str | bool | None
 
@@ -105,71 +110,22 @@ MOST_KEPT = 2000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PlanRow:
-    """Where a floor's plan lies: its lower left corner, its sides, and its turn about that corner, anticlockwise.
-
-    What is drawn is in `Results.series` as ``plan/<place of the floor in floor_rows>``: bytes of a grey JPEG or, if
-    `is_lines`, what `assess.plans.linework.unpack` reads.
-    """
-
-    file: str
-    is_lines: bool
-    left_m: float
-    bottom_m: float
-    width_m: float
-    height_m: float
-    turn_deg: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class FloorRow:
-    """One floor of the workbook; `cells` tells in which cell of the sheet a field stands."""
+    """One floor of the workbook; `cells` tells in which cell of the sheet a field stands.
+
+    The content of `plan` is left out: it is in `Results.series` as ``plan/<place of the floor in floor_rows>``.
+    """
 
     row: int
     floor: str
     name: str
     elevation_m: float | None
     cells: Mapping[str, str]
-    plan: PlanRow | None = None
+    plan: FloorPlan | None = None
 
     def cell(self, name: str) -> str:
         """Address of a field; the first column where the sheet lacks it."""
         return self.cells.get(name, f"A{self.row}")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ProfileInfo:
-    """A code's design profile in words: what `assess.motion.scenario.Profile` says of itself, without its function."""
-
-    key: str
-    title: str
-    clause: str
-    clause_without_period: str
-    equation: str
-    reference: str
-    verified: bool
-    status: str
-    remark: str
-    reduced: bool
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FitRow:
-    """How generated motions meet their target.
-
-    `matched_to_s` and `worst_period_s` are periods [s]; deviations, ratios of means and scatters (coefficients of
-    variation) are shares [-].
-    """
-
-    matched_to_s: float
-    mean_deviation: float
-    worst_deviation: float
-    worst_period_s: float
-    pfa_ratio: float
-    pfa_scatter: float
-    pfv_ratio: float
-    pfv_scatter: float
-    spectrum_scatter: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -191,7 +147,7 @@ class EnsembleRow:
     is_generated: bool
     cases: int
     fell_in_record: int | None
-    fit: FitRow | None
+    fit: "Fit | None"
     signs: tuple[int, ...] | None = None
     bands: tuple[float, float] | None = None
 
@@ -214,7 +170,7 @@ class MotionRow:
     pfv_cm_s: float | None
     flags: tuple[str, ...] = ()
     between: tuple[str, ...] = ()
-    profile: ProfileInfo | None = None
+    profile: Profile | None = None
     clause: str = ""
     height_ratio: float | None = None
     amplification: float | None = None
@@ -668,6 +624,11 @@ class DrawTable:
 NO_DRAWS = DrawTable(0, np.zeros((0, 0), dtype=np.uint8), np.zeros(0, dtype=np.bool_))
 
 
+def count_pieces(rows: Iterable[ItemResult]) -> int:
+    """Return how many pieces, not rows, there are."""
+    return sum(one.item.quantity for one in rows)
+
+
 def sum_falls(counted: Iterable[ItemResult]) -> NDArray[np.int64] | None:
     """Return how many pieces of some rows fall in each draw; None where that is not known of all of them."""
     total: NDArray[np.int64] | None = None
@@ -1073,90 +1034,6 @@ class EarthquakeDraws:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AssumedShaking:
-    """The intensity that stands in for a known motion of the ground.
-
-    * `choice`: The class of intensity, as the workbook offers it.
-    * `name`: The class in short.
-    * `intensity`: What it is taken for: MMI, or JMA instrumental intensity.
-    * `pga_g`, `pgv_cm_s`: Published medians of the ground's peaks, before the settings' factor.
-    * `scatter`: Standard deviation of ln PGV given the intensity [-].
-    * `is_derived`: Whether PGA follows from PGV, by the ratio that is drawn.
-    * `is_open`: Whether the class has no upper limit.
-    * `sources`, `references`: The relations in short and in full.
-    """
-
-    choice: str
-    name: str
-    intensity: float
-    pga_g: float
-    pgv_cm_s: float
-    scatter: float
-    is_derived: bool
-    is_open: bool
-    sources: tuple[str, ...]
-    references: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GroundPsa:
-    """Spectral acceleration of the ground.
-
-    * `period_s`: Period.
-    * `psa_g`: Median, 5 % damping.
-    """
-
-    period_s: float
-    psa_g: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GroundFact:
-    """What is known of the origin of a ground motion.
-
-    * `label`, `value`: What is told, and what it is.
-    """
-
-    label: str
-    value: str
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SiteGroundInfo:
-    """The ground motion at the building by a ShakeMap, or by computed scenarios of an earthquake.
-
-    * `kind` ("shakemap" or "scenarios"): Which of the two.
-    * `file`, `sha256`: Name and hash of its file.
-    * `pga_g`, `pgv_cm_s`: Medians at the building, before the settings' factor; `pgv_cm_s` is null where it is not
-      known.
-    * `psa`: Spectral accelerations, as far as they are known; for information.
-    * `dispersion`: Standard deviation of ln PGV at the building [-], or of ln PGA where PGV is not known.
-    * `dispersion_source`: Where that comes from.
-    * `own_dispersion`: Motion uncertainty without it [-]; both together are the root of the sum of squares.
-    * `shared`: Share of its variance that is common to all places in one earthquake [-]; null where that is not known.
-    * `distance_km`: From the building to the site of the scenarios.
-    * `scenarios`: Number of scenarios; 0 for a map.
-    * `facts`: The earthquake, version and status of the map, and the like.
-    * `cautions`: What makes it less certain than its dispersion tells.
-    """
-
-    kind: Literal["shakemap", "scenarios"]
-    file: str
-    sha256: str
-    pga_g: float
-    pgv_cm_s: float | None
-    psa: tuple[GroundPsa, ...]
-    dispersion: float
-    dispersion_source: str
-    own_dispersion: float
-    shared: float | None
-    distance_km: float | None
-    scenarios: int
-    facts: tuple[GroundFact, ...]
-    cautions: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Provenance:
     """What a run is made again from.
 
@@ -1184,8 +1061,8 @@ class Provenance:
     scenario: str
     uncertainty: Uncertainty
     earthquakes: EarthquakeDraws | None
-    shaking: AssumedShaking | None
-    site_ground: SiteGroundInfo | None
+    shaking: Shaking | None
+    site_ground: SiteGround | None
     suite: SuiteInfo | None
     language: str
     sheets: Mapping[str, str]
@@ -1193,7 +1070,7 @@ class Provenance:
     extra_columns: tuple[str, ...]
     interval_z: float
     looks: tuple[int, ...]
-    profiles: tuple[ProfileInfo, ...]
+    profiles: tuple[Profile, ...]
 
 
 class Frame:

@@ -16,10 +16,18 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 from assess import route_results as rows
 from assess.annual_results import AnnualRow, AnnualTables
 from assess.errors import Problem
-from assess.fields import ENTRY_FIELDS, MOTION_FIELDS, SIMULATION_FIELDS, STATE_FIELDS, WORK_FIELDS, item_fields
+from assess.fields import (
+    ENTRY_FIELDS,
+    GROUND_FIELDS,
+    MOTION_FIELDS,
+    SHAKING_FIELDS,
+    SIMULATION_FIELDS,
+    STATE_FIELDS,
+    item_fields,
+)
 from assess.model import AXES
 from assess.report.data import SCHEMA, VERSION, building_key
-from assess.results import AssumedShaking, EarthquakeDraws, Provenance, SiteGroundInfo
+from assess.results import EarthquakeDraws, Provenance
 from assess.risk import RiskClass
 from assess.settings import MOST_SCALE, SCENARIOS, Settings
 from assess.table import Field, Tree, build_tree
@@ -122,7 +130,10 @@ def _of_tree(tree: Tree, place: tuple[str, ...]) -> Schema:
 
 
 def _leaf(one: Field) -> Schema:
-    schema = {"enum": list(one.choices)} if one.choices else _KINDS.get(one.kind, {})
+    if one.choices:
+        schema: Schema = {"enum": list(one.choices)}
+    else:
+        schema = _list(_of_fields(one.records)) if one.records else _KINDS.get(one.kind, {})
     schema = _or_null(schema) if one.is_optional else schema
     return schema | ({"description": one.help} if one.help else {})
 
@@ -150,7 +161,6 @@ def _method() -> Schema:
 def _schedule() -> Schema:
     """Return the schema of the schedule."""
     entry, state = _of_fields(ENTRY_FIELDS), _of_fields(STATE_FIELDS)
-    entry["properties"]["works"] |= _list(_of_fields(WORK_FIELDS))
     state["properties"]["routes"] |= _map(COUNT)
     made = _object({
         "entries": _list(entry) | {"description": "The most urgent first."},
@@ -173,9 +183,9 @@ def _assess() -> Schema:
             "uncertainty": _of_row(UNCERTAINTY) | {"description": "What the draws of the simulation vary."},
             "earthquakes": _or_null(_of_row(EarthquakeDraws))
             | {"description": "How draws of the earthquake depend on the place and on scenarios; null: they do not."},
-            "shaking": _or_null(_of_row(AssumedShaking))
+            "shaking": _or_null(_of_fields(SHAKING_FIELDS))
             | {"description": "The assumed intensity that stands in for a known motion of the ground; null: none."},
-            "site_ground": _or_null(_of_row(SiteGroundInfo))
+            "site_ground": _or_null(_of_fields(GROUND_FIELDS))
             | {"description": "The ground motion at the building by a ShakeMap or scenarios; null: none."},
             "language": TEXT | {"description": "Code of the language that reports are in where none is asked for."},
             "platform": _map(TEXT),
@@ -209,8 +219,6 @@ _SPECIAL: Mapping[tuple[type, str], Schema] = {
     (rows.BesideRow, "falls_while_blocked"): {"oneOf": [SHARE, {"type": "null"}]},
     (rows.RouteFixRow, "gain"): SHARE,
     (rows.RouteFixRow, "left"): SHARE,
-    (AssumedShaking, "sources"): _list(TEXT),
-    (AssumedShaking, "references"): _list(TEXT),
     (Settings, "scenario"): {"enum": list(SCENARIOS)},
     (Settings, "anchor"): TEXT,
     (Settings, "route_risk"): INSIDE,

@@ -49,6 +49,11 @@ class Profile:
     reduced: bool = False
     clause_without_period: str = ""
 
+    @property
+    def status(self) -> str:
+        """Whether it was checked, in words."""
+        return VERIFIED if self.verified else UNVERIFIED
+
     def cite(self, period: float | None) -> str:
         """Return the clause with the equation that applies, T1 known or not."""
         return self.clause_without_period if period is None and self.clause_without_period else self.clause

@@ -11,6 +11,7 @@ from assess.errors import InputError
 from assess.i18n import Text, join
 from assess.input_file import read_input
 from assess.motion.spatial_field import Measure
+from assess.units import GRAVITY, VELOCITY, to_edge
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,6 +54,31 @@ class SiteGround:
     def measure(self) -> Measure:
         """The peak that rules, whose scatter is drawn: PGV where it is known."""
         return "PGA" if self.pgv is None else "PGV"
+
+    @property
+    def pga_g(self) -> float:
+        """The median PGA [g]."""
+        return to_edge(self.pga, GRAVITY)
+
+    @property
+    def pgv_cm_s(self) -> float | None:
+        """The median PGV [cm/s]."""
+        return None if self.pgv is None else to_edge(self.pgv, VELOCITY["cm/s"])
+
+    @property
+    def psa_g(self) -> tuple[tuple[float, float], ...]:
+        """The periods [s] and spectral accelerations [g]."""
+        return tuple((period, to_edge(value, GRAVITY)) for period, value in self.psa)
+
+    @property
+    def distance_km(self) -> float | None:
+        """The distance [km]."""
+        return None if self.distance is None else self.distance / 1000
+
+    @property
+    def count(self) -> int:
+        """The number of scenarios; 0 of a map."""
+        return len(self.scenarios)
 
 
 class GroundField(Protocol):

@@ -21,7 +21,7 @@ def find_earthquakes(inventory: Inventory, settings: Settings) -> Earthquakes:
     In a city draws differ from place to place; a building whose place is not known takes the common part alone.
     Scenarios carry the part of the variance that is not the building's own.
     """
-    ground, own = inventory.site_ground, inventory.building.motion_uncertainty or 0.0
+    ground, own = inventory.site_ground, inventory.building.own_dispersion
     measure: Measure = "PGA" if find_ground(inventory).pgv is None else "PGV"
     spread = 0.0 if ground is None else ground.dispersion
     given_share = spread**2 / (own**2 + spread**2) if spread else 0.0

@@ -4,7 +4,7 @@ Arrays by name; `m` is a place in `Results.motions`:
 
 =========================== ==========================================================================================
 ``workbook``, ``logo``      bytes of the workbook and of the logo (uint8), where there are any
-``plan/f``                  bytes of the plan of floor f of `Results.floor_rows`, where it is drawn: see `PlanRow`
+``plan/f``                  bytes of the plan of floor f of `Results.floor_rows`, where it is drawn: see `FloorPlan`
 ``photo/p``                 bytes of the p-th photo (JPEG); ``photo/of_item`` (n,) which one each item has, -1 for none
 ``motion/m/acceleration_g`` the recorded motion as treated (n,)
 ``motion/m/cases``          places in `Results.cases_table` of the c cases that were simulated under its ensemble

@@ -13,27 +13,20 @@ from assess.methods import Example, Joint, simulation
 from assess.methods.simulate import LOOKS, interval_width
 from assess.model import AXES, Floor, Inventory, Item
 from assess.motion.record import treatment
-from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED, Profile
+from assess.motion.scenario import PROFILES
 from assess.pipeline.anchors import build_anchors
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.city_draws import describe_draws
 from assess.pipeline.demand import find_shaking, find_site
 from assess.pipeline.floor_demand import Demand
 from assess.results import (
-    AssumedShaking,
     CaseTable,
     DrawTable,
     EnsembleRow,
-    FitRow,
     FloorRow,
-    GroundFact,
-    GroundPsa,
     ItemRow,
     MotionRow,
-    PlanRow,
-    ProfileInfo,
     Provenance,
-    SiteGroundInfo,
     SuiteInfo,
     WorkedMethod,
 )
@@ -74,14 +67,8 @@ def _shared(row: Any, source: type) -> list[str]:
 
 def build_floor(floor: Floor) -> FloorRow:
     """Return the row of a floor."""
-    plan = floor.plan
-    return _copy(
-        FloorRow, floor, elevation_m=floor.elevation, cells=dict(floor.cells),
-        plan=None if plan is None else _copy(
-            PlanRow, plan, file=plan.path.name, left_m=plan.left, bottom_m=plan.bottom, width_m=plan.width,
-            height_m=plan.height,
-        ),
-    )  # fmt: skip
+    plan = None if floor.plan is None else replace(floor.plan, content=b"")
+    return _copy(FloorRow, floor, elevation_m=floor.elevation, cells=dict(floor.cells), plan=plan)
 
 
 def list_demands(assessment: Assessment) -> list[Demand]:
@@ -114,7 +101,6 @@ def build_motions(assessment: Assessment, demands: Sequence[Demand]) -> tuple[Mo
             floor=demand.floor.floor,
             pfa_g=_sure(demand.pfa, "g"),
             pfv_cm_s=edge(demand.pfv, "cm/s"),
-            profile=describe_profile(demand.profile) if demand.profile else None,
             record=demand.name,
             pfv_follows=demand.drawn is not None and demand.drawn.target.meets != "peaks",
             **more,
@@ -123,13 +109,8 @@ def build_motions(assessment: Assessment, demands: Sequence[Demand]) -> tuple[Mo
     return tuple(rows)
 
 
-def describe_profile(profile: Profile) -> ProfileInfo:
-    """Return the description of a code's profile."""
-    return _copy(ProfileInfo, profile, status=VERIFIED if profile.verified else UNVERIFIED)
-
-
 def _describe_ensemble(assessment: Assessment, joint: Joint) -> EnsembleRow:
-    ensemble, fit = assessment.cases.ensembles[joint.ensemble], joint.fit
+    ensemble = assessment.cases.ensembles[joint.ensemble]
     fell = assessment.outcomes[simulation().key].detail["record_overturned"][joint.cases].astype(np.float64)
     known = fell[~np.isnan(fell)]
     return EnsembleRow(
@@ -141,7 +122,7 @@ def _describe_ensemble(assessment: Assessment, joint: Joint) -> EnsembleRow:
         is_generated=assessment.suite is None,
         cases=int(joint.cases.size),
         fell_in_record=int(known.sum()) if known.size else None,
-        fit=None if fit is None else _copy(FitRow, fit, matched_to_s=fit.matched_to, worst_period_s=fit.worst_period),
+        fit=joint.fit,
         signs=ensemble.signs,
         bands=joint.bands,
     )
@@ -281,7 +262,6 @@ def work_example(index: int, assessment: Assessment) -> Iterator[WorkedMethod]:
 def build_provenance(assessment: Assessment) -> Provenance:
     """Return what the run is made again from."""
     inventory, demands, suite = assessment.inventory, assessment.demands, assessment.suite
-    shaking, site = find_shaking(demands), find_site(demands)
     spread = max((one.dispersion for parallel in demands.values() for one in parallel), default=0.0)
     return Provenance(
         version=__version__,
@@ -293,16 +273,8 @@ def build_provenance(assessment: Assessment) -> Provenance:
         scenario=assessment.scenario,
         uncertainty=replace(assessment.cases.uncertainty, motion=spread),
         earthquakes=describe_draws(inventory, assessment.settings, assessment.cases.earthquakes),
-        shaking=None if shaking is None else _copy(
-            AssumedShaking, shaking, pga_g=_sure(shaking.pga, "g"), pgv_cm_s=_sure(shaking.pgv, "cm/s")
-        ),
-        site_ground=None if site is None else _copy(
-            SiteGroundInfo, site, pga_g=_sure(site.pga, "g"), pgv_cm_s=edge(site.pgv, "cm/s"),
-            psa=tuple(GroundPsa(period_s=period, psa_g=_sure(value, "g")) for period, value in site.psa),
-            own_dispersion=inventory.building.motion_uncertainty or 0.0,
-            distance_km=None if site.distance is None else site.distance / 1000, scenarios=len(site.scenarios),
-            facts=tuple(GroundFact(label=label, value=value) for label, value in site.facts),
-        ),
+        shaking=find_shaking(demands),
+        site_ground=find_site(demands),
         suite=None if suite is None else SuiteInfo(
             folder=suite.folder, names=tuple(name for name, _ in suite.motions), files=dict(suite.files),
             is_scaled=assessment.settings.scale_motions,
@@ -315,5 +287,5 @@ def build_provenance(assessment: Assessment) -> Provenance:
         extra_columns=tuple(inventory.extra_columns),
         interval_z=interval_width(assessment.settings),
         looks=LOOKS,
-        profiles=tuple(map(describe_profile, PROFILES.values())),
+        profiles=tuple(PROFILES.values()),
     )  # fmt: skip

@@ -15,7 +15,7 @@ from typing import Any, TextIO
 
 import numpy as np
 
-from assess.fields import MOTION_FIELDS, STATE_FIELDS
+from assess.fields import GROUND_FIELDS, MOTION_FIELDS, SHAKING_FIELDS, STATE_FIELDS
 from assess.progress import SILENT, Progress
 from assess.results import Results
 from assess.table import Kind, Table
@@ -84,8 +84,8 @@ def describe_run(results: Results, files: Mapping[str, str | None] | None = None
             "settings": results.settings.as_record() | {"scenario": origin.scenario},
             "uncertainty": asdict(origin.uncertainty),
             "earthquakes": origin.earthquakes and asdict(origin.earthquakes),
-            "shaking": origin.shaking and asdict(origin.shaking),
-            "site_ground": origin.site_ground and asdict(origin.site_ground),
+            "shaking": origin.shaking and next(Table.of(SHAKING_FIELDS, [origin.shaking]).records()),
+            "site_ground": origin.site_ground and next(Table.of(GROUND_FIELDS, [results]).records()),
             "language": origin.language,
             "platform": dict(origin.platform),
             "inputs": {

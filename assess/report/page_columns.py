@@ -107,7 +107,7 @@ def say_value(field: Field, value: Any) -> str:
     if field.kind == "number":
         return words.fixed(value, len(field.format.partition(".")[2].rstrip("%")) if field.format else 1)
     if field.kind == "flag":
-        return _("yes") if value else _("no")
+        return words.yes_or_no(value)
     if field.kind == "list":
         value = ", ".join(_(str(one)) for one in value)
     elif field.choices or field.kind == "class":

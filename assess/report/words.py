@@ -175,6 +175,11 @@ def list_limits() -> list[tuple[RiskClass, str]]:
     return list(zip(RiskClass, texts, strict=True))
 
 
+def yes_or_no(holds: bool) -> str:
+    """Return "yes" or "no"."""
+    return _("yes") if holds else _("no")
+
+
 def deviation(value: float) -> str:
     """Return a share that is no probability as a percentage with one decimal."""
     return f"{number(100 * value, '.1f')} %"
@@ -188,11 +193,6 @@ def fixed(value: float | None, decimals: int) -> str:
 def in_g(value: float | None) -> str:
     """Return an acceleration [g]."""
     return fixed(value, 3)
-
-
-def in_cm_s(value: float | None) -> str:
-    """Return a velocity [cm/s]."""
-    return fixed(value, 1)
 
 
 def in_cm(value: float | None) -> str:

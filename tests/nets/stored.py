@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from assess.i18n import Text
+from assess.motion.scenario import PROFILES, Profile
 from assess.results import Results, Series
 
 _CURVES = ("example/", "spectra_g", "acceleration_g", "contours/")
@@ -59,6 +60,8 @@ def _encode(value: Any, arrays: dict[str, np.ndarray]) -> Any:  # noqa: C901 - a
             return None
         case enum.Enum():
             return {KIND: "enum", "of": _name(type(value)), "name": value.name}
+        case Profile():
+            return {KIND: "profile", "key": value.key}
         case None | bool() | int() | float() | str():
             return value
         case np.generic():
@@ -101,6 +104,8 @@ def _decode(value: Any, arrays: Mapping[str, np.ndarray]) -> Any:  # noqa: C901 
             return text
         case "enum":
             return _find(fields["of"])[fields["name"]]
+        case "profile":
+            return PROFILES[fields["key"]]
         case "array":
             found = arrays[fields["name"]]
             return found.astype(object) if fields["is_object"] else found

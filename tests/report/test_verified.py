@@ -49,7 +49,7 @@ def test_a_large_misfit_is_reported(recorded):
     def worsen(motion):
         if motion.ensemble is None:
             return motion
-        fit = replace(motion.ensemble.fit, mean_deviation=0.15, worst_deviation=-0.4, worst_period_s=2.0)
+        fit = replace(motion.ensemble.fit, mean_deviation=0.15, worst_deviation=-0.4, worst_period=2.0)
         return replace(motion, ensemble=replace(motion.ensemble, fit=fit))
 
     assert list_misfits(recorded) == []

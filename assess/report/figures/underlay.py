@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from assess.model import Place
+from assess.model import FloorPlan, Place
 from assess.plans.linework import FloatArray, clip, unpack
 from assess.report import words
 from assess.report.embedded import data_uri
 from assess.report.figures.labels import Bounds, Corners, Point
-from assess.results import PlanRow, Results
+from assess.results import Results
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
@@ -33,7 +33,7 @@ class Underlay:
     """The user's drawing of a floor; `image` is the address of a picture, `lines` [m] those of a drawing."""
 
     file: str
-    row: PlanRow
+    plan: FloorPlan
     image: str
     lines: tuple[FloatArray, ...]
 
@@ -41,8 +41,8 @@ class Underlay:
     def corners(self) -> Corners:
         """Its frame [m], from its lower left corner anticlockwise."""
         one, two, three, four = (
-            _turned(self.row, x, y)
-            for x, y in ((0, 0), (self.row.width_m, 0), (self.row.width_m, self.row.height_m), (0, self.row.height_m))
+            _turned(self.plan, x, y)
+            for x, y in ((0, 0), (self.plan.width, 0), (self.plan.width, self.plan.height), (0, self.plan.height))
         )
         return one, two, three, four
 
@@ -59,20 +59,20 @@ class Room:
 def build_underlay(results: Results, floor: str) -> Underlay | None:
     """Return the drawing of a floor; None where there is none, or its series are gone."""
     at = [one.floor for one in results.floor_rows].index(floor)
-    row = results.floor_rows[at].plan
-    if row is None or f"plan/{at}" not in results.series:
+    plan = results.floor_rows[at].plan
+    if plan is None or f"plan/{at}" not in results.series:
         return None
     content = results.series[f"plan/{at}"].tobytes()
-    file = words.cut(row.file, 60)
-    if not row.is_lines:
-        return Underlay(file, row, data_uri(content, "image/jpeg"), ())
-    lines = tuple(np.column_stack(_turned(row, *(line * row.width_m).T)) for line in unpack(content))
-    return Underlay(file, row, "", lines)
+    file = words.cut(plan.path.name, 60)
+    if not plan.is_lines:
+        return Underlay(file, plan, data_uri(content, "image/jpeg"), ())
+    lines = tuple(np.column_stack(_turned(plan, *(line * plan.width).T)) for line in unpack(content))
+    return Underlay(file, plan, "", lines)
 
 
-def _turned(row: PlanRow, x: float, y: float) -> Point:
-    cos, sin = math.cos(math.radians(row.turn_deg)), math.sin(math.radians(row.turn_deg))
-    return row.left_m + x * cos - y * sin, row.bottom_m + x * sin + y * cos
+def _turned(plan: FloorPlan, x: float, y: float) -> Point:
+    cos, sin = math.cos(math.radians(plan.turn_deg)), math.sin(math.radians(plan.turn_deg))
+    return plan.left + x * cos - y * sin, plan.bottom + x * sin + y * cos
 
 
 def cut_lines(lines: Iterable[FloatArray], box: Bounds) -> list[FloatArray]:

@@ -2,28 +2,29 @@
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from assess.i18n import fill, ngettext, number
 from assess.i18n import gettext as _
-from assess.intensity import RATIO, name_mmi
+from assess.intensity import RATIO, Shaking, name_mmi
 from assess.model import AXES
 from assess.report import words
 from assess.results import (
     MAY_BE_LOWER,
     MOTION_FLAGS,
-    AssumedShaking,
     FloorRow,
     MotionRow,
-    ProfileInfo,
     Results,
-    SiteGroundInfo,
     SuiteInfo,
 )
 from assess.units import GRAVITY
 from assess.workbook.schema import BUILDING
+
+if TYPE_CHECKING:
+    from assess.motion.scenario import Profile
+    from assess.motion.site_ground import SiteGround
 
 ENVELOPES = fill(
     "Profiles of building codes are design envelopes, not expected values: they mostly lie above what is recorded, but "
@@ -161,25 +162,25 @@ def describe_suite(results: Results) -> str:
 # ---------------------------------------------------------------- codes' profiles
 
 
-def used_profiles(results: Results) -> list[ProfileInfo]:
+def used_profiles(results: Results) -> "list[Profile]":
     """Return the codes' profiles that serve a floor."""
     used = {one.profile.key for one in results.motions if one.profile}
     return [profile for profile in results.provenance.profiles if profile.key in used]
 
 
-def _with_status(text: str, profile: ProfileInfo) -> str:
+def _with_status(text: str, profile: "Profile") -> str:
     """Return a text on a profile, and that this was not checked against its source where that is so."""
     return text if profile.verified else f"{text} ({_(profile.status)})"
 
 
-def list_clauses(profile: ProfileInfo) -> str:
+def list_clauses(profile: "Profile") -> str:
     """Return every clause of a profile, and when each applies."""
     if not profile.clause_without_period:
         return profile.clause
     return _("{known} (T1 known); {unknown} (T1 unknown)", known=profile.clause, unknown=profile.clause_without_period)
 
 
-def profile_status(profile: ProfileInfo) -> str:
+def profile_status(profile: "Profile") -> str:
     """Return whether a profile was checked against its source, and what was left out of it."""
     status = _(profile.status)
     return f"{status[0].upper()}{status[1:]}. {_(profile.remark)}"
@@ -263,17 +264,17 @@ def _list_ground(results: Results) -> list[tuple[str, str]]:
         return []
     lines = [(_("Ground motion"), say_ground_source(results))]
     lines.append((_("File of the ground motion"), _("{file}, SHA-256 {sha256}", file=found.file, sha256=found.sha256)))
-    lines += [(_(one.label), _(one.value)) for one in found.facts]
-    if found.psa:
+    lines += [(_(label), _(value)) for label, value in found.facts]
+    if found.psa_g:
         values = ", ".join(
-            _("{psa} g at {period} s", psa=words.in_g(one.psa_g), period=number(one.period_s, "g"))
-            for one in found.psa
+            _("{psa} g at {period} s", psa=words.in_g(psa), period=number(period, "g"))
+            for period, psa in found.psa_g
         )  # fmt: skip
         text = _("{values}; for information: the motion of the floors follows from PGA and PGV", values=values)
         lines.append((_("Spectral acceleration at the building, 5 %"), text))
     if found.shared is not None:
         share = _("{share} % of the variance of ln {measure}", share=words.fixed(100 * found.shared, 0),
-                  measure=_name_measure(found))  # fmt: skip
+                  measure=found.measure)  # fmt: skip
         lines.append((_("Common to all places of the earthquake"), share))
     return lines
 
@@ -352,18 +353,18 @@ def say_ground_source(results: Results) -> str:
     if found is None:
         return _say_shaking(shaking, results) if shaking else ""
     values = {
-        "sigma": number(found.dispersion, ".3g"), "source": _(found.dispersion_source), "measure": _name_measure(found),
+        "sigma": number(found.dispersion, ".3g"), "source": _(found.dispersion_source), "measure": found.measure,
     }  # fmt: skip
     if not uses_scatter(results):
         scatter = _(
             "The standard deviation of ln {measure} there is {sigma} ({source}); the chances hold for the median alone "
             "and leave it out.", **values,
         )  # fmt: skip
-    elif found.own_dispersion:
+    elif own := results.building.own_dispersion:
         scatter = _(
             "The standard deviation of ln {measure} there is {sigma} ({source}); with {own}, Motion uncertainty, the "
             "dispersion of the motions is {motion}, the root of the sum of their squares.",
-            own=number(found.own_dispersion, ".3g"),
+            own=number(own, ".3g"),
             motion=number(results.provenance.uncertainty.motion, ".3g"), **values,
         )  # fmt: skip
     else:
@@ -382,30 +383,26 @@ def say_ground(results: Results, *, shortly: bool = False) -> str:
     return _say_shaking_shortly(shaking, results) if shaking else ""
 
 
-def name_source(found: SiteGroundInfo) -> str:
+def name_source(found: "SiteGround") -> str:
     """Return what kind of ground motion it is, with its file, for a line."""
     file = words.cut(found.file, 60)
     return _("ShakeMap {file}", file=file) if found.kind == "shakemap" else _("scenarios {file}", file=file)
 
 
-def say_dispersion(found: SiteGroundInfo) -> str:
-    """Return what the dispersion of the motions is made of."""
-    if not found.own_dispersion:
-        return _("the standard deviation of ln {measure} at the building", measure=_name_measure(found))
+def say_dispersion(found: "SiteGround", own: float) -> str:
+    """Return what the dispersion of the motions is made of; `own` is Motion uncertainty [-]."""
+    if not own:
+        return _("the standard deviation of ln {measure} at the building", measure=found.measure)
     return _(
         "the root of {own}² + {sigma}²: Motion uncertainty, and the standard deviation of ln {measure} at the building",
-        own=number(found.own_dispersion, ".3g"), sigma=number(found.dispersion, ".3g"), measure=_name_measure(found),
+        own=number(own, ".3g"), sigma=number(found.dispersion, ".3g"), measure=found.measure,
     )  # fmt: skip
 
 
-def _name_measure(found: SiteGroundInfo) -> str:
-    return "PGA" if found.pgv_cm_s is None else "PGV"
-
-
-def _say_site(found: SiteGroundInfo, results: Results) -> Iterator[str]:
+def _say_site(found: "SiteGround", results: Results) -> Iterator[str]:
     source = name_source(found)
     if found.kind == "shakemap" and found.facts:
-        event = words.cut(_(found.facts[0].value), 120)
+        event = words.cut(_(found.facts[0][1]), 120)
         source = _("{source} of the earthquake {event}", source=source, event=event)
     values = {"source": source, "pga": words.in_g(found.pga_g)}
     if found.pgv_cm_s is None:
@@ -467,7 +464,7 @@ def uses_scatter(results: Results) -> bool:
     return results.has_simulated and not results.settings.ideal
 
 
-def _say_shaking(found: AssumedShaking, results: Results) -> str:
+def _say_shaking(found: Shaking, results: Results) -> str:
     scatter = number(found.scatter, "g")
     texts = [_(
         "Assumed shaking: no motion of the ground is known for this building. {intensity} is assumed, with its "
@@ -491,7 +488,7 @@ def _say_shaking(found: AssumedShaking, results: Results) -> str:
     return " ".join(texts)
 
 
-def _say_shaking_shortly(found: AssumedShaking, results: Results) -> str:
+def _say_shaking_shortly(found: Shaking, results: Results) -> str:
     values = {
         "intensity": _(found.choice), "pga": words.in_g(found.pga_g), "pgv": words.fixed(found.pgv_cm_s, 1),
         "sources": ", ".join(found.sources),
@@ -684,7 +681,7 @@ def say_motions(floor: FloorRow, motions: Sequence[MotionRow]) -> str:
             is_one = len({one.pfa_g for one in own}) < 2
             peaks.append(peak if is_one else _("{peak} (the largest of {n})", peak=peak, n=len(own)))
         if known:
-            speeds.append(_("PFV {axis} {pfv} cm/s", axis=axis, pfv=words.in_cm_s(max(known))))
+            speeds.append(_("PFV {axis} {pfv} cm/s", axis=axis, pfv=words.fixed(max(known), 1)))
     sources = list(dict.fromkeys(map(describe_source, motions)))
     text = ": ".join(filter(None, ("; ".join([*peaks, *speeds]), words.name_first(sources, SOURCES, "; "))))
     if floor.elevation_m is None:

@@ -8,7 +8,7 @@ from assess.model import SCANNED
 from assess.report import words
 from assess.report.provenance import say_reference
 from assess.report.say.ground import describe_suite, list_narrowing, name_source, say_dispersion, say_signs
-from assess.results import EarthquakeDraws, ItemResult, Results
+from assess.results import EarthquakeDraws, ItemResult, Results, count_pieces
 from assess.risk import RiskClass, classify
 from assess.settings import AUTO
 
@@ -178,14 +178,10 @@ def count_motions(results: Results) -> str:
     return words.plural(int(runs), "motion")
 
 
-def _pieces(results: Iterable[ItemResult]) -> int:
-    return sum(one.item.quantity for one in results)
-
-
 def count_rows(results: Sequence[ItemResult]) -> str:
     """Return ``5 pieces in 3 rows``, with the number of anchored pieces, which have no class."""
-    anchored = _pieces(one for one in results if one.is_anchored)
-    pieces, rows = words.plural(_pieces(results), "piece"), words.plural(len(results), "row")
+    anchored = count_pieces(one for one in results if one.is_anchored)
+    pieces, rows = words.plural(count_pieces(results), "piece"), words.plural(len(results), "row")
     if not anchored:
         return _("{pieces} in {rows}", pieces=pieces, rows=rows)
     return _("{pieces} in {rows} ({anchored:,} of them anchored)", pieces=pieces, rows=rows, anchored=anchored)
@@ -320,7 +316,7 @@ def list_misfits(results: Results) -> list[str]:
             "Floor {floor} {axis}: PFA and the spectrum cannot both be matched. PFA takes precedence; the mean "
             "spectrum deviates by {mean} on average, and by {most} at {period:.2f} s, where it is worst.",
             floor=words.cut(motion.floor, 20), axis=motion.axis, mean=words.deviation(fit.mean_deviation),
-            most=words.deviation(abs(fit.worst_deviation)), period=fit.worst_period_s,
+            most=words.deviation(abs(fit.worst_deviation)), period=fit.worst_period,
         )
         for motion, fit in made if fit is not None and fit.mean_deviation > LARGE_MISFIT
     ]  # fmt: skip
@@ -436,7 +432,7 @@ def say_source(results: Results) -> str:
     if shaking and shaking.scatter == results.provenance.uncertainty.motion != given:
         return _("scatter of ln PGV given the intensity, {sources}", sources=", ".join(shaking.sources))
     if site := results.provenance.site_ground:
-        return say_dispersion(site)
+        return say_dispersion(site, given or 0.0)
     return _("assumed") if given is None else _("as filled in")
 
 
@@ -446,7 +442,7 @@ def _has_drawn(results: Results) -> bool:
 
 def count_scanned(results: Results) -> int:
     """Return how many pieces have sizes that were measured by a scan."""
-    return sum(one.item.quantity for one in results if one.item.sizes_from == SCANNED)
+    return count_pieces(one for one in results if one.item.sizes_from == SCANNED)
 
 
 def _say_piece(results: Results) -> str:

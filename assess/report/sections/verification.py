@@ -15,7 +15,7 @@ from assess.report.say.annual import AnnualLine
 from assess.report.say.piece import by_chance
 from assess.report.say.simulation import count_rows, describe_trials, list_misfits, name_some
 from assess.report.view import Part, View, say_left
-from assess.results import EnsembleRow, ItemResult, MotionRow
+from assess.results import EnsembleRow, ItemResult, MotionRow, count_pieces
 from assess.risk import RiskClass
 
 MOST, MISFITS = 60, 6
@@ -52,7 +52,7 @@ def _list_found(view: View) -> Iterator[str]:
         rows: Sequence[ItemResult], risk_of: Callable[[ItemResult], RiskClass | None]
     ) -> Iterator[dict[str, Any]]:
         for risk in reversed(RiskClass):
-            if n := sum(one.item.quantity for one in rows if risk_of(one) == risk):
+            if n := count_pieces(one for one in rows if risk_of(one) == risk):
                 yield {"n": n, "risk": words.risk_word(risk)}
 
     lowered = [_("{n:,} from {risk}", **one) for one in by_class(found.lowered, lambda one: one.adopted.lowered_from)]
@@ -120,7 +120,7 @@ def _list_fit(view: View, motion: MotionRow, ensemble: EnsembleRow) -> list[str]
     if suite is None and fit is not None:
         pfa, pfv = _ratio(fit.pfa_ratio, fit.pfa_scatter), _ratio(fit.pfv_ratio, fit.pfv_scatter)
         spectrum = _("{mean}; {most:+.1f} % at {period:.2f} s", mean=words.deviation(fit.mean_deviation),
-                     most=100 * fit.worst_deviation, period=fit.worst_period_s)  # fmt: skip
+                     most=100 * fit.worst_deviation, period=fit.worst_period)  # fmt: skip
     least, most = ensemble.least_motions, ensemble.motions
     count = number(most, ",") if least == most else _("{least:,} to {most:,}", least=least, most=most)
     source = words.cut(_(motion.label).rsplit("/", 1)[-1], 60)

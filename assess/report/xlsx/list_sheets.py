@@ -11,6 +11,7 @@ from assess.fields import MOTION_FIELDS
 from assess.i18n import gettext as _
 from assess.report import statements, words
 from assess.report.content import Content
+from assess.report.page_columns import say_flag
 from assess.report.provenance import say_reference
 from assess.report.say.ground import (
     ENVELOPES,
@@ -121,9 +122,6 @@ def _annual_columns() -> Iterator[Column]:
     def of_row(name: str) -> Callable[[Any], Any]:
         return lambda one: getattr(one[1].row, name)
 
-    def yes_or_no(name: str) -> Callable[[Any], str]:
-        return lambda one: _("yes") if getattr(one[1].row, name) else _("no")
-
     yield Column(_("What"), 9, itemgetter(0))
     yield Column(_("Name"), 24, lambda one: one[1].name)
     yield Column(_("Description"), 32, lambda one: one[1].what)
@@ -134,8 +132,8 @@ def _annual_columns() -> Iterator[Column]:
     yield Column(_("Sampling interval, from"), 12, of_row("low"), RATE)
     yield Column(_("to"), 12, of_row("high"), RATE)
     yield Column(_("Once in [years]"), 10, lambda one: 1 / one[1].row.rate if one[1].row.rate > 0 else None, COUNT)
-    yield Column(_("Lower bound"), 8, yes_or_no("at_least"))
-    yield Column(_("Ends of the curve matter"), 10, yes_or_no("ends_matter"))
+    yield Column(_("Lower bound"), 8, lambda one: words.yes_or_no(one[1].row.at_least))
+    yield Column(_("Ends of the curve matter"), 10, lambda one: words.yes_or_no(one[1].row.ends_matter))
     yield Column(_("Integrated"), 12, lambda one: _(one[1].row.fit))
     fail = attrgetter("fail.chance_in_50_years")
     yield Column(_("If anchors fail (50 years)"), 10, lambda one: one[1].fail and fail(one[1]), "0.0%")
@@ -168,7 +166,7 @@ def _list_methods(content: Content) -> Iterator[tuple[str, str, str]]:
     yield from ((_("Verification"), done, text) for text in describe_trials(content.verified))
     yield from ((_("Verification"), _("Beware"), text) for text in list_misfits(content.run))
     flags = statements.list_flags(content.run)
-    yield from ((_("Marks"), _(flag.replace("_", " ")), meaning) for flag, meaning in flags.items())
+    yield from ((_("Marks"), say_flag(flag), meaning) for flag, meaning in flags.items())
     if content.run.has_routes:
         yield from ((routes, done, text) for text in list_cautions(content.run.route_tables))
         width = _("Required width")
