@@ -193,7 +193,7 @@ def _say_value(value: Any) -> str:
     if value is None or value in ("", ()):
         return DASH
     if isinstance(value, bool):
-        return _("yes") if value else _("no")
+        return words.yes_or_no(value)
     if isinstance(value, int | float):
         return number(value, ".6g")
     if isinstance(value, tuple):

@@ -167,4 +167,4 @@ def _write_facts(view: View, pen: Pen, page: Any) -> None:
 
 
 def _say_flag(flag: bool | None) -> str:
-    return "" if flag is None else _("yes") if flag else _("no")
+    return "" if flag is None else words.yes_or_no(flag)

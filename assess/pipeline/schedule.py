@@ -13,7 +13,7 @@ from typing import NamedTuple
 from assess.details import AT_BASE, AT_WALL, DETAILS, Detail, count_fixings, find_detail
 from assess.model import Cost, Inventory
 from assess.natural import natural_key
-from assess.results import ItemResult, ItemRow, Results, sum_falls
+from assess.results import ItemResult, ItemRow, Results, count_pieces, sum_falls
 from assess.risk import RiskClass, find_ends
 from assess.route_results import RouteRow, RouteState, RouteTables
 from assess.schedule_results import Schedule, ScheduleRow, State, WorkRow
@@ -158,7 +158,7 @@ def _describe(
         floor=first.floor,
         room=first.room,
         item_indices=indices,
-        pieces=sum(one.item.quantity for one in entry),
+        pieces=count_pieces(entry),
         is_together=any(len(one & set(indices)) > 1 for one in together),
         works=tuple(_describe_work(own, costs) for own in alike.values()),
         falls_avoided=avoided,
@@ -243,9 +243,9 @@ def _sum_up(rows: Sequence[ItemResult], routes: RouteTables, held: Collection[in
         falls=sum(map(count_falls, counted)),
         falls_low=low,
         falls_high=high,
-        apart=sum(one.item.quantity for one in free if one.apart),
+        apart=count_pieces(one for one in free if one.apart),
         classes=tuple(classes[risk] for risk in RiskClass),
-        anchored=sum(one.item.quantity for one in rows) - sum(one.item.quantity for one in free),
+        anchored=count_pieces(rows) - count_pieces(free),
         routes=tuple((str(state), states[state]) for state in RouteState if states[state]),
         blocked_routes=routes.blocked_routes_expected,
         cut_off_rooms=routes.cut_off_rooms_expected,

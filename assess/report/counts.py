@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
 from assess.report import words
-from assess.results import ItemResult, sum_falls
+from assess.results import ItemResult, count_pieces, sum_falls
 from assess.risk import RiskClass, find_ends
 
 Span = tuple[int, int]
@@ -99,13 +99,13 @@ def count(label: str, results: Iterable[ItemResult]) -> Counts:
     low, high = find_ends(sum_falls(main))
     return Counts(
         label,
-        {risk: _sum(one for one in main if one.adopted.risk == risk) for risk in RiskClass},
-        anchored=_sum(groups["anchored"]),
-        unconfirmed=_sum(groups["unconfirmed"]),
-        by_formula=_sum(groups["formula"]),
-        lowered=_sum(one for one in main if one.adopted.lowered_from is not None),
-        may_be=_sum(one for one in main if words.find_highest(one) != one.adopted.risk),
-        cannot_rock=_sum(one for one in main if not one.adopted.can_rock),
+        {risk: count_pieces(one for one in main if one.adopted.risk == risk) for risk in RiskClass},
+        anchored=count_pieces(groups["anchored"]),
+        unconfirmed=count_pieces(groups["unconfirmed"]),
+        by_formula=count_pieces(groups["formula"]),
+        lowered=count_pieces(one for one in main if one.adopted.lowered_from is not None),
+        may_be=count_pieces(one for one in main if words.find_highest(one) != one.adopted.risk),
+        cannot_rock=count_pieces(one for one in main if not one.adopted.can_rock),
         expected=sum(one.adopted.probability * one.item.quantity for one in main),
         falls_low=low,
         falls_high=high,
@@ -114,11 +114,7 @@ def count(label: str, results: Iterable[ItemResult]) -> Counts:
     )
 
 
-def _sum(results: Iterable[ItemResult]) -> int:
-    return sum(one.item.quantity for one in results)
-
-
 def _find_span(results: Sequence[ItemResult], first: RiskClass, last: RiskClass) -> Span:
     """Return how many pieces are of the classes from `first` to `last` with their whole intervals, and in part."""
-    surely = _sum(one for one in results if first <= one.adopted.lower and one.adopted.upper <= last)
-    return surely, _sum(one for one in results if one.adopted.lower <= last and one.adopted.upper >= first)
+    surely = count_pieces(one for one in results if first <= one.adopted.lower and one.adopted.upper <= last)
+    return surely, count_pieces(one for one in results if one.adopted.lower <= last and one.adopted.upper >= first)

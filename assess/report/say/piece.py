@@ -6,7 +6,7 @@ from assess.i18n import gettext as _
 from assess.i18n import ngettext
 from assess.natural import natural_key
 from assess.report import words
-from assess.results import ItemResult
+from assess.results import ItemResult, count_pieces
 from assess.risk import RiskClass
 from assess.workbook.schema import BUILDING
 
@@ -73,14 +73,14 @@ def say_apart(results: Sequence[ItemResult]) -> list[str]:
             "too weak ({names}).",
             "{n:,} pieces are unconfirmed and counted apart, as nothing is known of their building or their motions "
             "may be too weak ({names}).",
-            _count(unconfirmed), names=words.name_pieces([one.item.item for one in unconfirmed], NAMED),
+            count_pieces(unconfirmed), names=words.name_pieces([one.item.item for one in unconfirmed], NAMED),
         )  # fmt: skip
         texts.append(f"{_add_risky(text, unconfirmed)} {' '.join(list_ways_to_settle(unconfirmed))}")
     if left := list_apart(results, "formula"):
         text = ngettext(
             "{n:,} piece was not simulated and is counted apart, by formula only.",
             "{n:,} pieces were not simulated and are counted apart, by formula only.",
-            _count(left),
+            count_pieces(left),
         )
         texts.append(_add_risky(text, left))
     return texts
@@ -88,7 +88,7 @@ def say_apart(results: Sequence[ItemResult]) -> list[str]:
 
 def _add_risky(text: str, pieces: Sequence[ItemResult]) -> str:
     """Return a text on pieces followed by how many of them would be high or very high by the formula, if any."""
-    risky = _count(one for one in pieces if one.adopted.risk >= RiskClass.HIGH)
+    risky = count_pieces(one for one in pieces if one.adopted.risk >= RiskClass.HIGH)
     more = ngettext("{n:,} of them would be high or very high.", "{n:,} of them would be high or very high.", risky)
     return f"{text} {more}" if risky else text
 
@@ -105,7 +105,3 @@ def list_ways_to_settle(unconfirmed: Iterable[ItemResult]) -> list[str]:
         ways.append(_("To settle this, simulate under stronger motions: records of your own whose PFV reaches the "
                       "floor's, or scaled to it."))  # fmt: skip
     return ways
-
-
-def _count(results: Iterable[ItemResult]) -> int:
-    return sum(one.item.quantity for one in results)

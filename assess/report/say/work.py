@@ -10,7 +10,7 @@ from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
 from assess.natural import natural_key
 from assess.report import words
-from assess.results import ItemResult, Results
+from assess.results import ItemResult, Results, count_pieces
 from assess.risk import RiskClass
 from assess.route_results import RouteTables
 from assess.schedule_results import Schedule, ScheduleRow, State, WorkRow
@@ -300,7 +300,7 @@ def say_doubtful_brackets(rows: Iterable[ItemResult]) -> list[str]:
     return [ngettext(
         "{n:,} anchored piece has a bracket that fails at 84 % of PFA or by the code: {names}.",
         "{n:,} anchored pieces have brackets that fail at 84 % of PFA or by the code: {names}.",
-        sum(one.item.quantity for one in found),
+        count_pieces(found),
         names=words.name_pieces([one.item.item for one in found], MOST_NAMES, 40),
     )] if found else []  # fmt: skip
 

@@ -12,7 +12,7 @@ from assess.report.page_columns import PageColumn, build_table, mark
 from assess.report.say.methods import find_disagreements
 from assess.report.say.piece import describe, find_kind, list_apart, list_risky
 from assess.report.view import MOST_ROWS, Part, View
-from assess.results import ItemResult
+from assess.results import ItemResult, count_pieces
 
 MOST_GROUPS = 110
 """Groups of alike pieces that the client's edition has room for."""
@@ -78,7 +78,7 @@ def _list_cells(group: Sequence[ItemResult]) -> list[blocks.Words]:
         words.name_first(rooms, 2) or words.DASH,
         describe(first, 48),
         words.size(first),
-        number(sum(one.item.quantity for one in group), ",d"),
+        number(count_pieces(group), ",d"),
         say_chances(group),
         mark(first),
     ]

@@ -16,6 +16,7 @@ from assess.fields import item_fields
 from assess.i18n import gettext as _
 from assess.report import words
 from assess.report.content import Content
+from assess.report.page_columns import say_flag
 from assess.report.xlsx import item_values as values
 from assess.report.xlsx.floors_sheet import find_places, list_lines
 from assess.report.xlsx.item_formulas import (
@@ -104,7 +105,7 @@ def _front(key: str, known: Mapping[str, Field]) -> Iterator[Column]:
         yield _given(known[key])
     if key == "anchored":
         held = known["counts_as_anchored"]
-        yield _live("held", held.heading(), 10, lambda one: _("yes") if one.is_anchored else _("no"))
+        yield _live("held", held.heading(), 10, lambda one: words.yes_or_no(one.is_anchored))
 
 
 def _further(field: Field) -> Column:
@@ -187,7 +188,7 @@ def _of_method(method: "MethodInfo") -> Column:
 
 
 def _list_marks(one: ItemResult) -> str:
-    texts = [_(flag.replace("_", " ")) for flag in one.adopted.flags]
+    texts = map(say_flag, one.adopted.flags)
     return ", ".join(filter(None, (*texts, words.say_scanned(one), words.say_bracket(one))))
 
 

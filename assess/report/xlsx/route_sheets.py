@@ -81,10 +81,6 @@ def _read_if(holds: Callable[[Any], bool], read: Read, one: Any) -> Any:
     return read(one) if holds(one) else None
 
 
-def _yes_or_no(holds: bool) -> str:
-    return _("yes") if holds else _("no")
-
-
 def _say_flags(flags: Sequence[str]) -> str:
     return "; ".join(_(FLAGS[flag]) for flag in flags)
 
@@ -154,7 +150,7 @@ def _list_segment_columns(routes: RouteTables) -> list[Column]:
     said: dict[str, Read] = {
         "state": lambda one: say.say_segment_state(one, routes.risk),
         "insufficient_for_occupants": lambda one: (
-            "" if one.needed_width_m is None else _yes_or_no(one.insufficient_for_occupants)
+            "" if one.needed_width_m is None else words.yes_or_no(one.insufficient_for_occupants)
         ),
         "other_rooms": lambda one: ", ".join(other.item for other in one.other_rooms),
         "flags": lambda one: _say_flags(one.flags),
@@ -267,7 +263,7 @@ def _list_beside_columns() -> list[Column]:
         "floor": lambda row: row.result.item.floor,
     }
     near: dict[str, Read] = {key: partial(lambda read, row: read(row.near), fields[key].read) for key in BESIDE} | {
-        "blocks_alone": lambda row: _yes_or_no(row.near.blocks_alone),
+        "blocks_alone": lambda row: words.yes_or_no(row.near.blocks_alone),
         "by_plan": lambda row: _("plan") if row.near.by_plan else _("Edge distance"),
         "flags": say_remarks,
     }

@@ -33,7 +33,7 @@ from assess.report.xlsx.item_values import (
 )
 from assess.report.xlsx.items_sheet import item_areas, name_found
 from assess.report.xlsx.pen import CHANCE, HEAD, LINE, Pen, count_lines, row_height
-from assess.results import CANNOT_ROCK, ItemResult
+from assess.results import CANNOT_ROCK, ItemResult, count_pieces
 from assess.risk import RiskClass
 from assess.workbook.formulas import OUTSIDE
 
@@ -150,7 +150,7 @@ def _follow(pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequenc
         own = [one for one in content.results if one.adopted.is_unconfirmed]
         ways = "; ".join(dict.fromkeys(map(say_inputs_that_settle, own)))
         text = _("Unconfirmed pieces: {n}; to settle them: {ways}.")
-        n = sum(one.item.quantity for one in own if not one.is_anchored)
+        n = count_pieces(one for one in own if not one.is_anchored)
         free = f"({areas['held']}<>{literal(pen.terms.yes)})"
         counted = f"SUMPRODUCT(({areas['basis']}={unconfirmed})*{free},{areas['quantity']})"
         yield text.format(n=n, ways=ways), sentence(text, n=counted, ways=literal(ways))
@@ -302,14 +302,14 @@ def _write_building(plan: _Plan) -> None:
 def _count_as_run(results: Sequence[ItemResult], basis: str) -> list[int]:
     """Return the free-standing pieces of a basis by class, and their sum."""
     own = [one for one in results if (one.apart or one.main_basis) == basis and not one.is_anchored]
-    counts = [sum(one.item.quantity for one in own if one.adopted.risk == risk) for risk in RiskClass]
+    counts = [count_pieces(one for one in own if one.adopted.risk == risk) for risk in RiskClass]
     return [*counts, sum(counts)]
 
 
 def _count_apart(results: Sequence[ItemResult]) -> list[int]:
     """Return the numbers of `_list_apart` as run, when no row is to be run again."""
-    anchored = sum(one.item.quantity for one in results if one.is_anchored)
-    return [0, anchored, sum(one.item.quantity for one in results)]
+    anchored = count_pieces(one for one in results if one.is_anchored)
+    return [0, anchored, count_pieces(results)]
 
 
 def _write_floors(plan: _Plan, basis: str) -> None:
