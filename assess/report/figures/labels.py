@@ -52,7 +52,7 @@ def place_each(
     for text, piece in named:
         width = sum(3.9 if sign in _NARROW else 8.2 if sign in _WIDE else 5.8 for sign in text)  # [px], about
         size = (1.1 * width * unit, LINE * unit)  # bold
-        tried = [box for box in _around(piece, size, unit) if _is_inside(box, frame)]
+        tried = [box for box in _around(piece, size, unit) if is_inside(box, frame)]
         tried = [box for box, area in zip(tried, _covered(tried, held), strict=True) if not area]
         if not tried:
             placed.append(None)
@@ -106,7 +106,8 @@ def _lead(box: Bounds, piece: Bounds) -> tuple[Point, Point]:
     return (ends[0][0], ends[1][0]), (ends[0][1], ends[1][1])
 
 
-def _is_inside(box: Bounds, frame: Bounds) -> bool:
+def is_inside(box: Bounds, frame: Bounds) -> bool:
+    """Whether a box lies in a frame, to its edges."""
     return frame[0] <= box[0] and frame[1] <= box[1] and box[2] <= frame[2] and box[3] <= frame[3]
 
 

@@ -15,7 +15,8 @@ from assess.report import words
 from assess.report.blocks import Figure, Image
 from assess.report.embedded import data_uri
 from assess.report.figures.draw import HATCHES, draw, label
-from assess.results import ItemResult, Results
+from assess.report.figures.labels import Bounds, Point, is_inside, overlap
+from assess.results import ItemResult, Results, count_pieces
 from assess.risk import LIMITS, RiskClass
 from assess.units import ROUNDING
 
@@ -36,14 +37,10 @@ APART = {"unconfirmed": "p", "formula": "v"}
 LETTER, LINE, GAP = 3.7, 7.0, 5.0
 """About the width of a letter and the height of a line of 6 points, and a text's distance from a symbol."""
 
-Box = tuple[float, float, float, float]
-"""Left, low, right and high end."""
 INK, HALO, HATCHING = "#1c1c1c", "#ffffff", "#a08c78"
 _BACKING = {"boxstyle": "round,pad=0.1", "facecolor": HALO, "alpha": 0.75, "linewidth": 0}
 """Behind a text, so that it can be read on a hatch."""
 
-Place = tuple[float, float]
-"""Breadth [cm] and PFA [g]."""
 Line = tuple[float, FloatArray]
 """A chance [-] and the places (n, 2) that its line goes through."""
 
@@ -83,7 +80,7 @@ def paint_checked(axes: Any, method: "MethodInfo", height_cm: float) -> None:
     axes.plot(*corners, color=INK, linewidth=1.2, linestyle=":", **where)[0].set_gid("checked")
 
 
-def paint_pieces(axes: Any, places: Mapping[Place, Sequence[ItemResult]]) -> None:
+def paint_pieces(axes: Any, places: Mapping[Point, Sequence[ItemResult]]) -> None:
     """Paint a symbol for each place and class, the worst on top, and below them one for those that stand apart."""
     shown = dict.fromkeys((place, one.adopted.risk, one.apart) for place, ones in places.items() for one in ones)
     for (x, y), risk, apart in sorted(shown, key=lambda found: (not found[2], found[1])):
@@ -99,13 +96,13 @@ def _in_points(axes: Any, places: Any) -> FloatArray:
     return np.asarray((np.reshape(np.array(list(places), dtype=np.float64), (-1, 2)) - first) / (last - first) * PANEL)
 
 
-def paint_chances(axes: Any, lines: Sequence[Line], places: Mapping[Place, object]) -> list[Box]:
+def paint_chances(axes: Any, lines: Sequence[Line], places: Mapping[Point, object]) -> list[Bounds]:
     """Write its chance on each line, where it is clearest of the symbols; return the boxes that are taken."""
     others = _in_points(axes, places)
     taken = [box_around(x, y, GAP, GAP) for x, y in others]
     for level, vertices in lines:
         along = _in_points(axes, vertices)
-        at = find_clearest(along, PANEL, others, 3 * GAP) if len(along) else None
+        at = find_clearest(along, others, 3 * GAP) if len(along) else None
         if at is not None:
             text = f"{number(100 * level, 'g')} %"
             axes.text(*vertices[at], text, fontsize=7, ha="center", va="center", color=INK, zorder=4,
@@ -116,12 +113,12 @@ def paint_chances(axes: Any, lines: Sequence[Line], places: Mapping[Place, objec
     return taken
 
 
-def paint_names(axes: Any, places: Mapping[Place, Sequence[ItemResult]], taken: list[Box]) -> None:
+def paint_names(axes: Any, places: Mapping[Point, Sequence[ItemResult]], taken: list[Bounds]) -> None:
     """Name the worst piece of each place, the worst place first, as long as there is room."""
     named = 0
     for place, at, ones in zip(places, _in_points(axes, places), places.values(), strict=True):
         name = label(ones[0].item.item, 14) + (f" +{len(ones) - 1}" if len(ones) > 1 else "")
-        box = find_room(tuple(at), name, PANEL, taken) if named < MOST_NAMES else None
+        box = find_room(tuple(at), name, taken) if named < MOST_NAMES else None
         if box is not None:
             offset = ((box[0] + box[2]) / 2 - at[0], (box[1] + box[3]) / 2 - at[1])
             axes.annotate(name, place, xytext=offset, textcoords="offset points", fontsize=7, ha="center", va="center",
@@ -142,12 +139,12 @@ def paint_legend(figure: Any, *, has_checked: bool = True) -> None:
     figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=7, frameon=False)
 
 
-def box_around(x: float, y: float, width: float, height: float) -> Box:
+def box_around(x: float, y: float, width: float, height: float) -> Bounds:
     """Return the box with its centre at (x, y)."""
     return x - width / 2, y - height / 2, x + width / 2, y + height / 2
 
 
-def find_room(at: tuple[float, float], text: str, panel: tuple[float, float], taken: Sequence[Box]) -> Box | None:
+def find_room(at: Point, text: str, taken: Sequence[Bounds]) -> Bounds | None:
     """Return a box for a text beside the symbol `at`, within the panel and on no box that is taken; None if none is.
 
     Tried are right, left, above and below.
@@ -156,18 +153,14 @@ def find_room(at: tuple[float, float], text: str, panel: tuple[float, float], ta
     aside, above = GAP + width / 2, GAP + LINE / 2
     for centre in ((x + aside, y), (x - aside, y), (x, y + above), (x, y - above)):
         box = box_around(*centre, width, LINE)
-        if box[0] >= 0 and box[1] >= 0 and box[2] <= panel[0] and box[3] <= panel[1] and not _hits(box, taken):
+        if is_inside(box, (0.0, 0.0, *PANEL)) and not any(overlap(box, one) for one in taken):
             return box
     return None
 
 
-def _hits(box: Box, taken: Sequence[Box]) -> bool:
-    return any(box[0] < right and left < box[2] and box[1] < high and low < box[3] for left, low, right, high in taken)
-
-
-def find_clearest(line: FloatArray, panel: tuple[float, float], others: FloatArray, margin: float) -> int | None:
+def find_clearest(line: FloatArray, others: FloatArray, margin: float) -> int | None:
     """Return the place on a line (n, 2) that is farthest from `others` (k, 2), inside by `margin`; None without one."""
-    inside = np.all((line >= margin) & (line <= np.array(panel) - margin), axis=1)
+    inside = np.all((line >= margin) & (line <= np.array(PANEL) - margin), axis=1)
     if not inside.any():
         return None
     away = np.hypot(*(line[:, np.newaxis] - others[np.newaxis]).transpose(2, 0, 1)) if len(others) else np.ones((1, 1))
@@ -197,7 +190,7 @@ def draw_contours(results: Results, progress: Progress = SILENT) -> Figure:
         "{n:,} piece on them; its chance is in the table of all pieces",
         "Maps of the chance of overturning over breadth and PFA for a height of {height:.0f} cm ({methods}), with "
         "{n:,} pieces on them; their chances are in the table of all pieces",
-        sum(one.item.quantity for one in pieces),
+        count_pieces(pieces),
         height=height,
         methods=_name(methods),
     )
@@ -220,7 +213,7 @@ def _describe_figure(height: float, pieces: Sequence[ItemResult], methods: Seque
         "motion that governs it.",
         "The symbols are the {n:,} free-standing pieces within 10 % of this height, each at its breadth and the PFA of "
         "the motion that governs it.",
-        sum(one.item.quantity for one in pieces),
+        count_pieces(pieces),
     )
     yield _(
         "A symbol shows the class adopted for the piece, which may differ from the field it lies on: the fields are "
@@ -271,7 +264,7 @@ def _paint(
     figure: Any,
 ) -> None:
     """Paint a panel a method; the pieces at each place are the worst first."""
-    places: dict[Place, list[ItemResult]] = {}
+    places: dict[Point, list[ItemResult]] = {}
     for one in pieces:
         place = round(one.item.breadth_cm, 6), round(one.governing.motion.pfa_g, 6)
         places.setdefault(place, []).append(one)
