@@ -186,7 +186,7 @@ def test_series_hold_plans_and_photos_and_results_json_does_not(folder: Path) ->
     assert results.series["photo/0"].tobytes() == inventory.photos["p.jpg"]
     row = results.floor_rows[0].plan
     assert row is not None
-    assert (row.file, row.width_m, row.is_lines) == ("p.svg", 16.0, True)
+    assert (row.path.name, row.width, row.is_lines) == ("p.svg", 16.0, True)
     text = assess.write_reports(results, folder, "json")["json"].read_text(encoding="utf-8")
     assert "p.svg" not in text
 
