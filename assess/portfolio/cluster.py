@@ -295,13 +295,13 @@ def _hand_over(
             for future in done:
                 if future.status in ("cancelled", "lost"):
                     raise lost
-                yield _take_answer(future, running.pop(future))
+                yield _take_answer(future, running.pop(future), lost)
     finally:
         with suppress(Exception):  # a scheduler that is gone
             client.cancel(list(running), force=True)
 
 
-def _take_answer(future: "Future", task: Task) -> Summary:
+def _take_answer(future: "Future", task: Task, lost: OutputError) -> Summary:
     from distributed import KilledWorker
 
     error = future.exception() if future.status == "error" else None
@@ -311,5 +311,8 @@ def _take_answer(future: "Future", task: Task) -> Summary:
         raise InputError.about("a worker that joined later cannot do the work: {why}", why=error) from None
     if error is not None:
         raise OutputError.about("a worker failed: {why}", why=f"{type(error).__name__}: {str(error)[:300]}") from error
-    summary: Summary = future.result()
+    try:
+        summary: Summary = future.result()
+    except (OSError, TimeoutError, asyncio.CancelledError):  # the scheduler died when the answer was there
+        raise lost from None
     return summary
