@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from assess.bim.building_model import count_skipped
-from assess.bim.cobie_sheets import CobieSheet, Row, is_cobie, read_sheets, say
+from assess.bim.cobie_sheets import CobieSheet, Row, read_sheets, say
 from assess.bim.import_workbook import LOWEST_ROOF, ImportedBuilding, name_apart, note_datum
 from assess.errors import Problem, WorkbookError
 from assess.i18n import Text, fill, nfill
@@ -36,8 +36,6 @@ from assess.workbook.open import UNSAVED
 from assess.workbook.ranges import is_within
 from assess.workbook.schema import BUILDING, CATALOGUE, FLOORS, Column
 from assess.workbook.values import cell_reader
-
-__all__ = ["is_cobie", "read_cobie"]
 
 THIN, SLENDER = 0.10, 0.10
 """A piece thinner than this [m], or with less breadth to height [-], probably hangs on a wall or a window."""

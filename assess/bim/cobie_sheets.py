@@ -21,23 +21,14 @@ from assess.workbook.open import DAMAGE, HEADER_ROWS, MAX_ROWS, UNSAVED, WORKBOO
 from assess.workbook.plain_rows import column_letters
 from assess.workbook.values import ERRORS, is_blank, read_text
 
-COLUMNS: Mapping[str, tuple[str, ...]] = {
-    "Facility": ("Name", "LinearUnits"),
-    "Floor": ("Name", "Elevation"),
-    "Space": ("Name", "FloorName"),
-    "Type": ("Name", "AssetType", "NominalLength", "NominalWidth", "NominalHeight"),
-    "Component": ("Name", "TypeName", "Space"),
+COLUMNS: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "Facility": (("Name", "LinearUnits"), ("Category", "SiteName")),
+    "Floor": (("Name", "Elevation"), ("Category", "Height", "Description")),
+    "Space": (("Name", "FloorName"), ()),
+    "Type": (("Name", "AssetType", "NominalLength", "NominalWidth", "NominalHeight"), ()),
+    "Component": (("Name", "TypeName", "Space"), ("ExtIdentifier", "ExternalIdentifier")),
 }
-"""Sheets that are read, with the columns that each must have."""
-
-OTHERS: Mapping[str, tuple[str, ...]] = {
-    "Facility": ("Category", "SiteName"),
-    "Floor": ("Category", "Height", "Description"),
-    "Space": (),
-    "Type": (),
-    "Component": ("ExtIdentifier", "ExternalIdentifier"),
-}
-"""Columns that are read where they are there."""
+"""Sheets that are read, with the columns that each must have, and those that are read where they are there."""
 
 _NOT_GIVEN = frozenset({"n/a", "n.a.", "#n/a", "na", "null", "-", "--"})
 _TEMPLATE = frozenset({"required", "lookup", "reference", "external reference", "if specified as required", ""})
@@ -105,7 +96,8 @@ def _find_sheets(book: Book, name: str) -> dict[str, str]:
 
 
 def _read_sheet(book: Book, sheet: str, own: str) -> CobieSheet:
-    wanted = {plain(column): column for column in (*COLUMNS[sheet], *OTHERS[sheet])}
+    needed, others = COLUMNS[sheet]
+    wanted = {plain(column): column for column in (*needed, *others)}
     columns: dict[int, str] = {}
     best: dict[int, str] = {}
     rows: list[tuple[int, Row]] = []
@@ -118,12 +110,12 @@ def _read_sheet(book: Book, sheet: str, own: str) -> CobieSheet:
             continue
         found = _find_columns(cells, wanted)
         best = max(best, found, key=len)
-        if set(COLUMNS[sheet]) <= set(found.values()):
+        if set(needed) <= set(found.values()):
             columns = found
         elif number >= HEADER_ROWS:
             break
     if not columns:
-        missing = ", ".join(column for column in COLUMNS[sheet] if column not in best.values())
+        missing = ", ".join(column for column in needed if column not in best.values())
         message = fill("the header row lacks {columns}.", columns=missing)
         if not best:
             message = fill("the sheet has no header row with {columns}.", columns=missing)

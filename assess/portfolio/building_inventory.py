@@ -27,7 +27,8 @@ from io import StringIO
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from assess.bim.cobie import is_cobie, read_cobie
+from assess.bim.cobie import read_cobie
+from assess.bim.cobie_sheets import is_cobie
 from assess.bim.import_workbook import ImportedBuilding, list_remarks, list_rows
 from assess.errors import InputError, Problem, WorkbookError
 from assess.i18n import LANGUAGES, count, fill, join, load_catalogue

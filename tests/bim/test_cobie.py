@@ -7,7 +7,8 @@ import pytest
 from openpyxl import load_workbook
 
 from assess.bim import cobie_sheets
-from assess.bim.cobie import is_cobie, read_cobie
+from assess.bim.cobie import read_cobie
+from assess.bim.cobie_sheets import is_cobie
 from assess.bim.import_workbook import ImportedBuilding, build_workbook
 from assess.errors import WorkbookError
 from assess.workbook.read import read_inventory
