@@ -287,13 +287,14 @@ def _hand_over(
                 name = hashlib.sha256(f"{task.out}\n{task.source.path}".encode()).hexdigest()
                 key = f"assess-{name[:20]}-{os.getpid()}"  # no other run on the scheduler has it
                 running[client.submit(run_checked, site, task, key=key, pure=False, retries=_RETRIES)] = task
-            while not (done := [future for future in running if future.status != "pending"]):
+            # an answer is lost with the worker that held it: the scheduler has the task done again
+            while not (done := [future for future in running if future.status not in ("pending", "lost")]):
                 progress.check()
                 if client.status != "running":
                     raise lost
                 time.sleep(_ASKED_EVERY / 10)
             for future in done:
-                if future.status in ("cancelled", "lost"):
+                if future.status == "cancelled":
                     raise lost
                 yield _take_answer(future, running.pop(future), lost)
     finally:

@@ -155,11 +155,18 @@ def test_a_scheduler_that_dies_is_told_and_what_is_done_is_kept(tmp_path, monkey
     assert len(list((tmp_path / "out" / FOLDER).glob("*/*.part"))) >= len(done) >= 1
 
 
-def test_a_scheduler_without_workers_is_told(tmp_path, monkeypatch):
+def test_no_workers_and_workers_with_several_threads_are_told(tmp_path, monkeypatch):
     write_city(tmp_path / "city", [40.0])
     monkeypatch.setattr(cluster, "JOINING", 1.0)
-    with _scheduler() as (_, own), pytest.raises(InputError, match=r"has no workers\. Start some with one thread"):
-        _run(tmp_path, "out", own)
+    with _scheduler() as (_, own):
+        with pytest.raises(InputError, match=r"has no workers\. Start some with one thread"):
+            _run(tmp_path, "out", own)
+        monkeypatch.undo()
+        with (
+            _workers(own, 1, "--nthreads", "3", "--no-nanny"),
+            pytest.raises(InputError, match=r"it has 3 threads\. Start it with"),
+        ):
+            _run(tmp_path, "out", own)
     assert not list((tmp_path / "out").glob("*.parquet"))
 
 
