@@ -22,34 +22,7 @@ from assess.compare.past_run import ANCHORED, BY_FORMULA, CLASSES, INPUTS, UNCON
 from assess.i18n import Text, fill, nfill, ngettext, number
 from assess.i18n import gettext as _
 from assess.progress import SILENT, Progress
-from assess.report import words
-from assess.report.blocks import (
-    BREAK,
-    DASH,
-    Block,
-    Box,
-    Bullets,
-    Cell,
-    Column,
-    Document,
-    Heading,
-    Paragraph,
-    Row,
-    Runs,
-    Section,
-    Span,
-    Table,
-    Tile,
-    Tiles,
-    Title,
-    Words,
-    head,
-    list_columns,
-    more,
-    note,
-    strong,
-    table,
-)
+from assess.report import blocks, words
 from assess.report.data import building_key
 from assess.report.pages.html import render_document
 from assess.report.pages.pdf import attach, print_page
@@ -157,22 +130,22 @@ def name_basis(basis: str) -> str:
 
 def name_state(state: str) -> str:
     """Return the state of a route or room in words; a dash where the run lacks it."""
-    return DASH if state == ABSENT else _(state)
+    return blocks.DASH if state == ABSENT else _(state)
 
 
 def label_standing(standing: str) -> str:
     """Return the standing of a piece with its symbol; a dash where the run lacks it."""
     if standing in CLASSES:
         return words.risk_label(CLASSES[standing])
-    return words.apart_label(_APART[standing]) if standing in _APART else DASH
+    return words.apart_label(_APART[standing]) if standing in _APART else blocks.DASH
 
 
-def _mark_standing(standing: str) -> Span:
+def _mark_standing(standing: str) -> blocks.Span:
     if standing in CLASSES:
         style = words.class_name(CLASSES[standing])
     else:
         style = standing if standing == ANCHORED else f"apart-{_APART.get(standing)}"
-    return Span(label_standing(standing), f"badge {style}")
+    return blocks.Span(label_standing(standing), f"badge {style}")
 
 
 def _say_chance(chance: PastChance) -> str:
@@ -191,7 +164,7 @@ def say_inputs(change: PieceChange) -> list[str]:
 
 def _say_value(value: Any) -> str:
     if value is None or value in ("", ()):
-        return DASH
+        return blocks.DASH
     if isinstance(value, bool):
         return words.yes_or_no(value)
     if isinstance(value, int | float):
@@ -246,7 +219,7 @@ def _say_sum(value: float) -> str:
 
 def _count_line(
     label: str, total: Total, *, is_worse_up: bool = False, is_worse_down: bool = False, style: str = ""
-) -> Row:
+) -> blocks.Row:
     """Return a count or sum of both runs; it is worse where it goes up or down as said, better the other way.
 
     A count is shown whole, an expected number with two decimals; less than half of that is no change.
@@ -259,8 +232,10 @@ def _count_line(
     if is_seen:
         change = f"{'+' if difference > 0 else '−'}{_say_sum(abs(difference))}"
         change = _("{change} (within the sampling interval)", change=change) if total.is_within else change
-    sides = (Cell(_say_sum(value), sort=value) for value in (total.before, total.after))
-    return Row((head(Span(label, style) if style else label), *sides, Cell(change, "change")), tone)
+    sides = (blocks.Cell(_say_sum(value), sort=value) for value in (total.before, total.after))
+    return blocks.Row(
+        (blocks.head(blocks.Span(label, style) if style else label), *sides, blocks.Cell(change, "change")), tone
+    )
 
 
 class Fact(NamedTuple):
@@ -411,7 +386,7 @@ class View:
 
     # ------------------------------------------------------------ counts
 
-    def list_counts(self) -> list[Row]:
+    def list_counts(self) -> list[blocks.Row]:
         """Return the pieces by class, those that stand apart, and the expected falls."""
         found = self.found
         is_fair = not found.count(Direction.UNCLEAR, *ONE_SIDED)  # else a count changes for other reasons as well
@@ -433,9 +408,9 @@ class View:
             lines.append(_count_line(label, both, is_worse_up=True))
         return lines
 
-    def list_route_counts(self) -> list[Row]:
+    def list_route_counts(self) -> list[blocks.Row]:
         """Return the routes and rooms by state, the expected numbers blocked or cut off, and the rooms not joined."""
-        found, was, now, lines = self.found, self.before, self.after, list[Row]()
+        found, was, now, lines = self.found, self.before, self.after, list[blocks.Row]()
         for label, changes, rows, other_rows, expected, sums in (
             (fill("routes: {state}", state=""), found.routes, was.routes, now.routes,
              _("expected blocked routes"), (was.blocked_routes, now.blocked_routes)),
@@ -456,35 +431,42 @@ class View:
             lines += [_count_line(line, Total(before, after, is_comparable=True))] if before or after else []
         return lines
 
-    def tabulate_counts(self) -> list[Table]:
+    def tabulate_counts(self) -> list[blocks.Table]:
         """Return the counts of pieces, and those of routes and rooms where there are any."""
         heads = ((_("BEFORE"), "w15", "num"), (_("AFTER"), "w15", "num"), (_("Change"), "w30", "num"))
         parts = ((_("Pieces"), self.list_counts()), (_("Evacuation routes"), self.list_route_counts()))
         return [
-            table(list_columns((label, ""), *heads), rows, "compared counts", is_cards=False)
+            blocks.table(blocks.list_columns((label, ""), *heads), rows, "compared counts", is_cards=False)
             for label, rows in parts
             if rows
         ]
 
-    def tabulate_moves(self) -> Table:
+    def tabulate_moves(self) -> blocks.Table:
         """Return the pieces by standing before and after; those of one run alone have a row and column of their own."""
         moves, standings = self.found.moves, self.found.standings()
         rows = [*standings, ABSENT] if any(was == ABSENT for was, _now in moves) else standings
         columns = [*standings, ABSENT] if any(now == ABSENT for _was, now in moves) else standings
 
-        def cell(pieces: int, tone: str = "") -> Cell:
-            return Cell(_say_sum(pieces) if pieces else DASH, tone if pieces or tone == "same" else "", sort=pieces)
+        def cell(pieces: int, tone: str = "") -> blocks.Cell:
+            return blocks.Cell(
+                _say_sum(pieces) if pieces else blocks.DASH, tone if pieces or tone == "same" else "", sort=pieces
+            )
 
         lines = []
         for was in rows:
             counts = [moves.get((was, now), 0) for now in columns]
             cells = [cell(count, self._tone_of(was, now)) for count, now in zip(counts, columns, strict=True)]
-            lines.append(Row((head(_mark_standing(was) if was else _("not in BEFORE")), *cells, cell(sum(counts)))))
+            lines.append(
+                blocks.Row((blocks.head(_mark_standing(was) if was else _("not in BEFORE")), *cells, cell(sum(counts))))
+            )
         totals = [sum(moves.get((was, now), 0) for was in rows) for now in columns]
-        lines.append(Row((head(_("all")), *map(cell, (*totals, sum(totals)))), "total"))
+        lines.append(blocks.Row((blocks.head(_("all")), *map(cell, (*totals, sum(totals)))), "total"))
         heads = [label_standing(one) if one else _("not in AFTER") for one in columns]
-        shown = [Column(_("BEFORE ↓ AFTER →")), *(Column(one, is_number=True) for one in (*heads, _("all")))]
-        return table(shown, lines, "matrix", is_cards=False)
+        shown = [
+            blocks.Column(_("BEFORE ↓ AFTER →")),
+            *(blocks.Column(one, is_number=True) for one in (*heads, _("all"))),
+        ]
+        return blocks.table(shown, lines, "matrix", is_cards=False)
 
     def say_moves(self) -> str:
         """Return what the rows and columns of that table are."""
@@ -508,7 +490,7 @@ class View:
         lines = {building_key(column): _(column.label) for column in BUILDING.columns}
         motions = _say_motions(before, after), _say_motions(after, before)
         settings = {name: _(label) for name, label in SETTINGS.items()}
-        was, now = ({label: words.cut(text, LONGEST_FACT) or DASH for label, text in _describe_run(run).items()}
+        was, now = ({label: words.cut(text, LONGEST_FACT) or blocks.DASH for label, text in _describe_run(run).items()}
                     for run in (before, after))  # fmt: skip
         origins = [Fact(label, text, now[label], differs=text != now[label]) for label, text in was.items()]
 
@@ -578,27 +560,27 @@ def render_comparison(
     return render_document(document, options, "compare.css", for_print=for_print, progress=progress)
 
 
-def _build_document(view: View, most_rows: int) -> Document:
+def _build_document(view: View, most_rows: int) -> blocks.Document:
     authors = [str(view.after.building.get(name) or "") for name in ("prepared_by", "organisation")]
     about = _("Overturning of furniture in an earthquake: two runs compared")
-    title = Title(view.title, words.cut(view.title, 60), view.footer, words.cut(view.conditions, 150))
+    title = blocks.Title(view.title, words.cut(view.title, 60), view.footer, words.cut(view.conditions, 150))
     sections = [
-        Section(list(_say_worse(view)), "", "worse", _("What gets worse")),
-        Section(list(_count(view)), "run-on", "counts", _("Counts before and after")),
-        Section(list(_list_moves(view)), "run-on", "moved", _("Pieces by class, before and after")),
-        Section(list(_list_pieces(view, most_rows)), "", "changes", _("Pieces that changed")),
+        blocks.Section(list(_say_worse(view)), "", "worse", _("What gets worse")),
+        blocks.Section(list(_count(view)), "run-on", "counts", _("Counts before and after")),
+        blocks.Section(list(_list_moves(view)), "run-on", "moved", _("Pieces by class, before and after")),
+        blocks.Section(list(_list_pieces(view, most_rows)), "", "changes", _("Pieces that changed")),
     ]
     if view.found.routes or view.found.rooms:
-        blocks = [
+        found = [
             *_list_states(view.found.routes, _("Route"), _("No route changed.")),
-            Heading(_("Rooms that changed")),
+            blocks.Heading(_("Rooms that changed")),
             *_list_states(view.found.rooms, _("Room"), _("No room changed."), with_floor=True),
         ]
-        sections.append(Section(blocks, "run-on", "routes", _("Evacuation routes that changed")))
-    sections.append(Section(list(_list_runs(view)), "run-on", "runs", _("The two runs")))
-    return Document(
+        sections.append(blocks.Section(found, "run-on", "routes", _("Evacuation routes that changed")))
+    sections.append(blocks.Section(list(_list_runs(view)), "run-on", "runs", _("The two runs")))
+    return blocks.Document(
         title=_("Furniture in earthquakes, before and after: {building}", building=words.cut(view.title, 80)),
-        cover=[Paragraph(about, "kind"), title],
+        cover=[blocks.Paragraph(about, "kind"), title],
         sections=sections,
         author=", ".join(filter(None, authors)),
         description=about,
@@ -607,22 +589,25 @@ def _build_document(view: View, most_rows: int) -> Document:
     )
 
 
-def _say_worse(view: View) -> Iterator[Block]:
-    yield from (Paragraph(text, "caution") for text in view.list_warnings())
+def _say_worse(view: View) -> Iterator[blocks.Block]:
+    yield from (blocks.Paragraph(text, "caution") for text in view.list_warnings())
     worse, others = view.list_worse(), view.list_others()
-    verdict: list[Block] = [Paragraph(strong(view.headline), "lead"), *([Bullets(worse)] if worse else [])]
-    yield Box(verdict, f"verdict {view.tone}")
+    verdict: list[blocks.Block] = [
+        blocks.Paragraph(blocks.strong(view.headline), "lead"),
+        *([blocks.Bullets(worse)] if worse else []),
+    ]
+    yield blocks.Box(verdict, f"verdict {view.tone}")
     if others:
-        yield Bullets(others)
+        yield blocks.Bullets(others)
     counts = {one: view.found.count(one) for one in _KINDS}
-    yield Tiles(
+    yield blocks.Tiles(
         [
-            Tile(tone if counts[one] else "", _(label), _say_sum(counts[one]), _(about))
+            blocks.Tile(tone if counts[one] else "", _(label), _say_sum(counts[one]), _(about))
             for one, (label, about, tone) in _KINDS.items()
             if counts[one] or tone in ("worse", "better")
         ]
     )
-    yield Paragraph(
+    yield blocks.Paragraph(
         _(
             "The tiles count pieces. Pieces are matched by the name of their item. A difference within the sampling "
             "interval cannot be told from chance at 95 % (Newcombe 1998, method 10, draws of both runs taken as "
@@ -632,10 +617,10 @@ def _say_worse(view: View) -> Iterator[Block]:
     )
 
 
-def _count(view: View) -> Iterator[Block]:
+def _count(view: View) -> Iterator[blocks.Block]:
     pieces, *routes = view.tabulate_counts()
     yield pieces
-    yield Paragraph(
+    yield blocks.Paragraph(
         _(
             "Expected falls are sums over the free-standing pieces that have a class in their run: BEFORE {before}, "
             "AFTER {after}. Unconfirmed pieces and pieces by formula only are not in them. For the interval of a sum "
@@ -644,99 +629,103 @@ def _count(view: View) -> Iterator[Block]:
         ),
         "small",
     )
-    yield routes[0] if routes else Paragraph(_("Neither run has evacuation routes."))
+    yield routes[0] if routes else blocks.Paragraph(_("Neither run has evacuation routes."))
 
 
-def _list_moves(view: View) -> Iterator[Block]:
+def _list_moves(view: View) -> Iterator[blocks.Block]:
     if not view.found.pieces:
-        yield Paragraph(_("There are no pieces."))
+        yield blocks.Paragraph(_("There are no pieces."))
         return
-    yield Box([view.tabulate_moves()], "scroll", label=_("Pieces by class, before and after"))
+    yield blocks.Box([view.tabulate_moves()], "scroll", label=_("Pieces by class, before and after"))
     tones = (
         _("Dark cells: a higher class or no longer anchored; light blue cells: a lower class or anchored.")
         if view.found.has_same_basis
         else _("The bases differ, so no change of class is marked as better or worse.")
     )
-    yield Paragraph(f"{view.say_moves()} {tones}", "small")
+    yield blocks.Paragraph(f"{view.say_moves()} {tones}", "small")
 
 
-def _mark_change(one: PieceChange | StateChange) -> Words:
+def _mark_change(one: PieceChange | StateChange) -> blocks.Words:
     text = name_direction(one.direction)
     if one.is_within and one.direction != Direction.SAME:
         text = _("{change} (within the sampling interval)", change=text)
-    return Span(text, f"change {find_tone(one.direction)}")
+    return blocks.Span(text, f"change {find_tone(one.direction)}")
 
 
 def _say_more(left: int) -> str:
     return ngettext("{n:,} more is in the Excel file.", "{n:,} more are in the Excel file.", left)
 
 
-def _list_pieces(view: View, most: int) -> Iterator[Block]:
+def _list_pieces(view: View, most: int) -> Iterator[blocks.Block]:
     changed = [one for one in view.found.pieces if one.direction != Direction.SAME or one.inputs]
     if not changed:
-        yield Paragraph(_("No piece changed."))
+        yield blocks.Paragraph(_("No piece changed."))
         return
     unchanged = len(view.found.pieces) - len(changed)
     lines = [
         ngettext("{n:,} row changed.", "{n:,} rows changed; the changes for the worse come first.", len(changed)),
         ngettext("{n:,} row did not change.", "{n:,} rows did not change.", unchanged) if unchanged else "",
     ]
-    yield Paragraph(" ".join(filter(None, lines)))
-    columns = list_columns(
+    yield blocks.Paragraph(" ".join(filter(None, lines)))
+    columns = blocks.list_columns(
         (_("Item"), "w14"), (_("Change"), "w18"), (_("Place"), "w9"), (_("Pieces"), "w7", "num"), (_("BEFORE"), "w18"),
         (_("AFTER"), "w18"), (_("Input that differs"), ""),
     )  # fmt: skip
-    yield table(columns, map(_show_piece, changed[:most]), "compared cards changed", is_named=True)
-    yield from more(len(changed) - most, _say_more)
+    yield blocks.table(columns, map(_show_piece, changed[:most]), "compared cards changed", is_named=True)
+    yield from blocks.more(len(changed) - most, _say_more)
 
 
-def _show_piece(one: PieceChange) -> Row:
-    piece, sides = one.row, list[Words]()
-    name: Runs = [words.cut(piece.item, 40)]
+def _show_piece(one: PieceChange) -> blocks.Row:
+    piece, sides = one.row, list[blocks.Words]()
+    name: blocks.Runs = [words.cut(piece.item, 40)]
     if piece.description:
-        name += [BREAK, note(words.cut(piece.description, 40))]
+        name += [blocks.BREAK, blocks.note(words.cut(piece.description, 40))]
     place = ", ".join(filter(None, (words.cut(piece.floor, 20), words.cut(piece.room, 30))))
     for side, state in zip(one.sides, one.states, strict=True):
         chance = _say_chance(side.chance) if side else ""
         chance = _("free-standing: {chance}", chance=chance) if side and side.is_held else chance
-        sides.append([_mark_standing(state), BREAK, note(chance)] if side else DASH)
-    inputs = "; ".join(say_inputs(one) or [DASH])
-    return Row((head(name), _mark_change(one), place, _say_sum(one.pieces), *sides, inputs), find_tone(one.direction))
+        sides.append([_mark_standing(state), blocks.BREAK, blocks.note(chance)] if side else blocks.DASH)
+    inputs = "; ".join(say_inputs(one) or [blocks.DASH])
+    return blocks.Row(
+        (blocks.head(name), _mark_change(one), place, _say_sum(one.pieces), *sides, inputs), find_tone(one.direction)
+    )
 
 
-def _list_states(rows: Sequence[StateChange], label: str, none: str, *, with_floor: bool = False) -> Iterator[Block]:
+def _list_states(
+    rows: Sequence[StateChange], label: str, none: str, *, with_floor: bool = False
+) -> Iterator[blocks.Block]:
     changed = [one for one in rows if one.direction != Direction.SAME]
     if not changed:
-        yield Paragraph(none)
+        yield blocks.Paragraph(none)
         return
-    columns = list_columns(
+    columns = blocks.list_columns(
         (label, "w20"), (_("Change"), "w20"), *([(_("Floor"), "w10")] if with_floor else []), (_("BEFORE"), ""),
         (_("AFTER"), ""),
     )  # fmt: skip
     shown = []
     for one in changed[:MOST_STATES]:
         floor = [words.cut(one.row.floor, 20)] if with_floor else []
-        cells = (head(words.cut(one.row.name, 60)), _mark_change(one), *floor, *map(_show_state, one.sides))
-        shown.append(Row(cells, find_tone(one.direction)))
-    yield table(columns, shown, "compared cards", is_named=True)
-    yield from more(len(changed) - MOST_STATES, _say_more)
+        cells = (blocks.head(words.cut(one.row.name, 60)), _mark_change(one), *floor, *map(_show_state, one.sides))
+        shown.append(blocks.Row(cells, find_tone(one.direction)))
+    yield blocks.table(columns, shown, "compared cards", is_named=True)
+    yield from blocks.more(len(changed) - MOST_STATES, _say_more)
 
 
-def _show_state(side: PastState | None) -> Words:
+def _show_state(side: PastState | None) -> blocks.Words:
     if side is None or side.chance is None or side.state == RouteState.NOT_KNOWN:
         return name_state(side.state if side else ABSENT)
-    return [name_state(side.state), BREAK, note(_say_chance(side.chance))]
+    return [name_state(side.state), blocks.BREAK, blocks.note(_say_chance(side.chance))]
 
 
-def _list_runs(view: View) -> Iterator[Block]:
+def _list_runs(view: View) -> Iterator[blocks.Block]:
     rows = []
     for fact in view.list_facts():
-        mark: Runs = [" ", Span(_("differs"), "change unclear")] if fact.differs else []
-        cells = (head([fact.label, *mark]), Cell(fact.before, "hash"), Cell(fact.after, "hash"))
-        rows.append(Row(cells, "differs" if fact.differs else ""))
-    columns = list_columns((_("What"), "w30"), (_("BEFORE"), ""), (_("AFTER"), ""))
-    yield table(columns, rows, "compared facts-of-two", is_cards=False)
-    yield Paragraph(
+        mark: blocks.Runs = [" ", blocks.Span(_("differs"), "change unclear")] if fact.differs else []
+        cells = (blocks.head([fact.label, *mark]), blocks.Cell(fact.before, "hash"), blocks.Cell(fact.after, "hash"))
+        rows.append(blocks.Row(cells, "differs" if fact.differs else ""))
+    columns = blocks.list_columns((_("What"), "w30"), (_("BEFORE"), ""), (_("AFTER"), ""))
+    yield blocks.table(columns, rows, "compared facts-of-two", is_cards=False)
+    yield blocks.Paragraph(
         _(
             "Settings and lines of the workbook that are not named are the same in both runs. Made with assess "
             "{version}.",

@@ -38,29 +38,7 @@ from assess.portfolio.city_map import (
 )
 from assess.portfolio.table_schemas import INVENTORIES
 from assess.progress import SILENT, Progress
-from assess.report import words
-from assess.report.blocks import (
-    DASH,
-    Block,
-    Box,
-    Bullets,
-    Cell,
-    Column,
-    Document,
-    Figure,
-    Heading,
-    Image,
-    Paragraph,
-    Section,
-    Table,
-    Tile,
-    Tiles,
-    Title,
-    Words,
-    head,
-    list_columns,
-    table,
-)
+from assess.report import blocks, words
 from assess.report.pages.html import render_document
 from assess.report.pages.pdf import print_page
 from assess.report.report_options import ReportOptions
@@ -132,17 +110,17 @@ def render_summary(
 
 def _build_document(
     city: City, background: Background | None, isolines: Sequence[Isoline], *, is_live: bool
-) -> Document:
+) -> blocks.Document:
     """Return the document in the language in use; the page's template puts its controls behind sections by their id."""
     kind, title, ground = ("" if is_live else "run-on"), say.say_title(city), say.say_ground(city)
     about = _("Overturning of furniture in an earthquake: many buildings")
     status = " ".join((_("In this scenario, not per year."), words.cut(ground, 120)))
     facts = "; ".join(f"{label}: {value}" for label, value in say.list_facts(city)[:3])
-    cautions: list[Block] = [Paragraph(text, "caution") for text in say.list_cautions(city)]
-    groups: list[Block] = [*map(_show_group, city.groups)]
-    groups = groups or [Paragraph(_("No building could be assessed."))]
+    cautions: list[blocks.Block] = [blocks.Paragraph(text, "caution") for text in say.list_cautions(city)]
+    groups: list[blocks.Block] = [*map(_show_group, city.groups)]
+    groups = groups or [blocks.Paragraph(_("No building could be assessed."))]
     answer = [*cautions, *groups] if is_live else [*groups, *cautions]
-    sections = [Section(answer, kind, "answer", _("What is expected"))]
+    sections = [blocks.Section(answer, kind, "answer", _("What is expected"))]
     sections += _show_map(city, background, isolines, kind, is_live=is_live)
     if is_live:
         sections += _list_ranking(city)
@@ -150,23 +128,25 @@ def _build_document(
         types = _tabulate_types(group)
         if is_live and types:
             heading = _("Types to start with: {group}", group=say.name_group(group))
-            sections.append(Section([types], "types", "", heading))
+            sections.append(blocks.Section([types], "types", "", heading))
         elif not is_live:
-            buildings = _tabulate_first(city, group) or Paragraph(say.say_nothing(group))
+            buildings = _tabulate_first(city, group) or blocks.Paragraph(say.say_nothing(group))
             heading = _("Where to start: {group}", group=say.name_group(group))
-            sections.append(Section([buildings, *([types] if types else [])], "first run-on", "", heading))
+            sections.append(blocks.Section([buildings, *([types] if types else [])], "first run-on", "", heading))
     if city.skipped:
         most = MOST_SKIPPED if is_live else MOST_PRINTED
-        sections.append(Section(list(_list_skipped(city, most)), kind, "skipped", _("Skipped buildings")))
+        sections.append(blocks.Section(list(_list_skipped(city, most)), kind, "skipped", _("Skipped buildings")))
     if is_live:
         name = _("Sums, kept apart")
-        sections.append(Section([Box([_tabulate_sums(city)], "scroll", label=name)], "", "sums", name))
+        sections.append(blocks.Section([blocks.Box([_tabulate_sums(city)], "scroll", label=name)], "", "sums", name))
     method = list(_describe_method(city, is_live=is_live))
-    sections.append(Section(method, kind, "method", _("How these numbers were made")))
-    return Document(
+    sections.append(blocks.Section(method, kind, "method", _("How these numbers were made")))
+    return blocks.Document(
         title=title,
         cover=[
-            Paragraph(about, "kind"), Title(title, title, status), Paragraph(f"{ground} {facts}." if facts else ground),
+            blocks.Paragraph(about, "kind"),
+            blocks.Title(title, title, status),
+            blocks.Paragraph(f"{ground} {facts}." if facts else ground),
         ],
         sections=sections,
         author="",
@@ -175,20 +155,25 @@ def _build_document(
     )  # fmt: skip
 
 
-def _show_group(group: Group) -> Box:
+def _show_group(group: Group) -> blocks.Box:
     apart = group.unconfirmed + group.by_formula
     tiles = [
-        Tile(words.class_name(risk), words.risk_label(risk), say.say_whole(count), _("pieces"))
+        blocks.Tile(words.class_name(risk), words.risk_label(risk), say.say_whole(count), _("pieces"))
         for risk, count in group.by_class.items()
     ]
     if apart:
         name = " ".join((words.UNCONFIRMED, words.BY_FORMULA, _("not counted")))
-        tiles.append(Tile("apart-formula", name, say.say_whole(apart), _("unconfirmed or by formula only")))
+        tiles.append(blocks.Tile("apart-formula", name, say.say_whole(apart), _("unconfirmed or by formula only")))
     name = " ".join((words.ANCHORED, _("anchored")))
-    tiles.append(Tile("anchored", name, say.say_whole(group.anchored), _("not classified")))
+    tiles.append(blocks.Tile("anchored", name, say.say_whole(group.anchored), _("not classified")))
     first, *lines = say.list_group_lines(group)
-    blocks: list[Block] = [Heading(say.name_group(group)), Paragraph(first, "lead"), Tiles(tiles), Bullets(lines)]
-    return Box(blocks, "group assumed" if group.inventory == "assumed" else "group", "article")
+    found: list[blocks.Block] = [
+        blocks.Heading(say.name_group(group)),
+        blocks.Paragraph(first, "lead"),
+        blocks.Tiles(tiles),
+        blocks.Bullets(lines),
+    ]
+    return blocks.Box(found, "group assumed" if group.inventory == "assumed" else "group", "article")
 
 
 # ---------------------------------------------------------------- the map and the filters
@@ -242,12 +227,12 @@ def list_legend(city: City, key: str) -> list[tuple[Sign, int]]:
 
 def _show_map(
     city: City, background: Background | None, isolines: Sequence[Isoline], kind: str, *, is_live: bool
-) -> Iterator[Section]:
+) -> Iterator[blocks.Section]:
     """Yield the map with its legends; on the page two sections, as its controls stand between heading and drawing."""
     points = list_points(city)
     if not points:
-        nothing = Paragraph(_("No building has Latitude and Longitude: there is nothing to draw."))
-        yield from [Section([nothing], "", "map", _("Map"))] if is_live else []
+        nothing = blocks.Paragraph(_("No building has Latitude and Longitude: there is nothing to draw."))
+        yield from [blocks.Section([nothing], "", "map", _("Map"))] if is_live else []
         return
     title = _("Map of {placed:,} buildings; the table of the buildings holds the same", placed=len(points))
     drawn = draw_map(points, background, title=title, isolines=isolines, is_live=is_live)
@@ -260,21 +245,27 @@ def _show_map(
         _("Choose a sign to see its building. Click the map first, then the wheel zooms; drag to move. The keys + and "
           "- zoom, arrows move.") if is_live else "",
     ]  # fmt: skip
-    legend = Box([*(views if is_live else views[:1]), Paragraph(" ".join(filter(None, notes)), "map-note")], "map-side")
-    figure = Figure(Image(drawn), kind="map", legend=[legend])
+    legend = blocks.Box(
+        [*(views if is_live else views[:1]), blocks.Paragraph(" ".join(filter(None, notes)), "map-note")], "map-side"
+    )
+    figure = blocks.Figure(blocks.Image(drawn), kind="map", legend=[legend])
     if is_live:
-        yield Section([], "", "map", _("Map"))
-    yield Section([figure], kind, "map-drawing" if is_live else "map", "" if is_live else _("Map"))
+        yield blocks.Section([], "", "map", _("Map"))
+    yield blocks.Section([figure], kind, "map-drawing" if is_live else "map", "" if is_live else _("Map"))
 
 
-def _show_legend(city: City, key: str, size: int) -> Box:
-    lines: list[Words] = []
+def _show_legend(city: City, key: str, size: int) -> blocks.Box:
+    lines: list[blocks.Words] = []
     for sign, count in list_legend(city, key):
         box = f'width="{size}" height="{size}" viewBox="-9 -9 18 18" aria-hidden="true"'
-        drawn = Image(f'<svg {box} data-key="{escape(sign.key)}">{draw_sign(sign)}</svg>')
+        drawn = blocks.Image(f'<svg {box} data-key="{escape(sign.key)}">{draw_sign(sign)}</svg>')
         lines.append([drawn, f" {_(sign.label)}: {say.say_whole(count)}"])
     kind = "map-view chosen" if key == next(iter(VIEWS)) else "map-view"
-    return Box([Bullets(lines, "map-legend"), Paragraph(_(VIEWS[key].note), "map-note")], kind, id=f"legend-{key}")
+    return blocks.Box(
+        [blocks.Bullets(lines, "map-legend"), blocks.Paragraph(_(VIEWS[key].note), "map-note")],
+        kind,
+        id=f"legend-{key}",
+    )
 
 
 def _list_filters(city: City) -> list[tuple[str, str, list[tuple[str, str]]]]:
@@ -300,32 +291,35 @@ def _list_filters(city: City) -> list[tuple[str, str, list[tuple[str, str]]]]:
 # ---------------------------------------------------------------- tables
 
 
-def _list_ranking(city: City) -> list[Section]:
+def _list_ranking(city: City) -> list[blocks.Section]:
     """Return the head of the ranking, behind which the page has its filters, and the table that its script fills."""
     apart = _("Buildings of different inventories and bases stand in one list and are marked; their numbers are not "
               "added up.")  # fmt: skip
     without = _("This list, the filters and the pages of the buildings need JavaScript. ranking.xlsx holds the same.")
-    note = Box([Paragraph(without, "caution")], tag="noscript")
+    note = blocks.Box([blocks.Paragraph(without, "caution")], tag="noscript")
     texts = _("Building"), _("Use"), _("Inventory"), _("Highest class")
     numbers = (_("Pieces"), _("Share expected to fall"), _("Expected falls"), _("5 to 95 % of earthquakes"),
                _("People on blocked routes"), _("Routes blocked"))  # fmt: skip
-    columns = [*map(Column, texts), *(Column(one, is_number=True) for one in numbers)]
+    columns = [*map(blocks.Column, texts), *(blocks.Column(one, is_number=True) for one in numbers)]
     return [
-        Section(
-            [Paragraph(f"{_(BUILDING_RULE)} {apart}"), note], "", "ranking", _("Buildings, those to start with first")
+        blocks.Section(
+            [blocks.Paragraph(f"{_(BUILDING_RULE)} {apart}"), note],
+            "",
+            "ranking",
+            _("Buildings, those to start with first"),
         ),
-        Section([Table(columns, [[]], "ranked", id="ranked")], "", "ranking-list"),
+        blocks.Section([blocks.Table(columns, [[]], "ranked", id="ranked")], "", "ranking-list"),
     ]
 
 
-def _tabulate(columns: list[Column], rows: Iterable[Sequence[str]], caption: str = "") -> Table | None:
+def _tabulate(columns: list[blocks.Column], rows: Iterable[Sequence[str]], caption: str = "") -> blocks.Table | None:
     """Return a table whose rows begin with a name; None without rows."""
-    found: list[Sequence[Cell | Words]] = [(head(first), *cells) for first, *cells in rows]
-    return table(columns, found, "named", caption, is_named=True) if found else None
+    found: list[Sequence[blocks.Cell | blocks.Words]] = [(blocks.head(first), *cells) for first, *cells in rows]
+    return blocks.table(columns, found, "named", caption, is_named=True) if found else None
 
 
-def _tabulate_first(city: City, group: Group) -> Table | None:
-    columns = list_columns(
+def _tabulate_first(city: City, group: Group) -> blocks.Table | None:
+    columns = blocks.list_columns(
         (_("Building"), ""), (_("Share expected to fall"), "w12", "num"), (_("Expected falls"), "w12", "num"),
         (_("People on blocked routes"), "w15", "num"), (_("Routes blocked"), "w12", "num"),
     )  # fmt: skip
@@ -337,8 +331,8 @@ def _tabulate_first(city: City, group: Group) -> Table | None:
     return _tabulate(columns, rows, _(BUILDING_RULE))
 
 
-def _tabulate_types(group: Group) -> Table | None:
-    columns = list_columns((_("Type"), ""), (_("Pieces"), "w15", "num"), (_("Buildings"), "w15", "num"),
+def _tabulate_types(group: Group) -> blocks.Table | None:
+    columns = blocks.list_columns((_("Type"), ""), (_("Pieces"), "w15", "num"), (_("Buildings"), "w15", "num"),
                            (_("Expected falls"), "w15", "num"))  # fmt: skip
     rows = [
         (words.cut(_(one.label), 80), say.say_whole(one.pieces), say.say_whole(one.buildings),
@@ -348,59 +342,62 @@ def _tabulate_types(group: Group) -> Table | None:
     return _tabulate(columns, rows, _(TYPE_RULE))
 
 
-def _list_skipped(city: City, most: int) -> Iterator[Block]:
-    yield Paragraph(_("These could not be assessed. Nothing of them is in any number above."))
-    columns = list_columns((_("Building"), "w30"), (_("First problem"), ""))
+def _list_skipped(city: City, most: int) -> Iterator[blocks.Block]:
+    yield blocks.Paragraph(_("These could not be assessed. Nothing of them is in any number above."))
+    columns = blocks.list_columns((_("Building"), "w30"), (_("First problem"), ""))
     rows = [
-        (say.name_skipped(row["building"], row["path"]), explained or DASH)
+        (say.name_skipped(row["building"], row["path"]), explained or blocks.DASH)
         for row in city.skipped[:most]
         for explained in (" ".join(say.explain_skipped(city, row["path"]).split()),)
     ]
     yield from filter(None, [_tabulate(columns, rows)])
     if (left := len(city.skipped) - most) > 0:
-        yield Paragraph(ngettext("{n:,} more is in ranking.xlsx.", "{n:,} more are in ranking.xlsx.", left))
+        yield blocks.Paragraph(ngettext("{n:,} more is in ranking.xlsx.", "{n:,} more are in ranking.xlsx.", left))
 
 
-def _tabulate_sums(city: City) -> Table:
+def _tabulate_sums(city: City) -> blocks.Table:
     """Return the table of groups; there is no line of all, as groups are never added up."""
     numbers = [
         _("Buildings"), _("Pieces"), *map(words.risk_label, RiskClass), _("unconfirmed or by formula only"),
         _("anchored"), _("Expected falls"), _("5 to 95 % of draws"), _("People on blocked routes"),
         _("People on routes of known state"), _("5 to 95 % of draws"), _("People on routes of unknown state"),
     ]  # fmt: skip
-    rows: list[Sequence[Cell | Words]] = [
+    rows: list[Sequence[blocks.Cell | blocks.Words]] = [
         [
-            head(say.name_group(group)),
+            blocks.head(say.name_group(group)),
             *map(say.say_whole, (group.buildings, group.pieces, *group.by_class.values())),
             say.say_whole(group.unconfirmed + group.by_formula),
             say.say_whole(group.anchored),
             say.say_number(group.falls.expected),
             say.say_range(group.falls.low, group.falls.high),
-            say.say_number(group.people.expected) if group.people_known else DASH,
+            say.say_number(group.people.expected) if group.people_known else blocks.DASH,
             say.say_whole(group.people_known or None),
-            say.say_range(group.people.low, group.people.high) if group.people_known else DASH,
+            say.say_range(group.people.low, group.people.high) if group.people_known else blocks.DASH,
             say.say_whole(group.people_not_known),
         ]
         for group in city.groups
     ]
-    columns = [Column(_("Buildings by inventory and basis")), *(Column(one, is_number=True) for one in numbers)]
-    return table(columns, rows, "sums")
+    columns = [
+        blocks.Column(_("Buildings by inventory and basis")),
+        *(blocks.Column(one, is_number=True) for one in numbers),
+    ]
+    return blocks.table(columns, rows, "sums")
 
 
-def _describe_method(city: City, *, is_live: bool) -> Iterator[Block]:
-    basis = [(head(label), value) for label, value in say.list_basis(city)]
-    yield table([Column(), Column()], basis, "facts")
-    yield from map(Paragraph, say.list_method(city))
+def _describe_method(city: City, *, is_live: bool) -> Iterator[blocks.Block]:
+    basis = [(blocks.head(label), value) for label, value in say.list_basis(city)]
+    yield blocks.table([blocks.Column(), blocks.Column()], basis, "facts")
+    yield from map(blocks.Paragraph, say.list_method(city))
     if references := say.list_references(city):
-        yield Heading(_("References"))
-        yield Bullets(references)
+        yield blocks.Heading(_("References"))
+        yield blocks.Bullets(references)
     made = (
         _("Made with assess {version}.", version=__version__)
         if is_live
         else _("Made with assess {version}. The page city.html has a page of every building, ranking.xlsx the whole "
                "ranking.", version=__version__)
     )  # fmt: skip
-    yield Paragraph(made, "small")
+    yield blocks.Paragraph(made, "small")
 
 
 # ---------------------------------------------------------------- the data of the page
