@@ -598,7 +598,7 @@ class DrawTable:
     """In which draws of an earthquake each of m items falls.
 
     * `draws`: Draws that all simulated items have in common, the first ones; 0 where nothing was simulated.
-    * `packed` (m, ceil(draws/8): One bit a draw, the first in the highest bit.
+    * `packed` (m, ceil(draws/8)): One bit a draw, the first in the highest bit.
     * `is_known` (m,): Which items have draws: those that were simulated, and those that cannot rock.
     """
 
