@@ -35,7 +35,7 @@ class HtmlWriter:
         """Return blocks, one below the other."""
         return "".join(f"{self._block(one)}\n" for one in found)
 
-    def _block(self, one: blocks.Block) -> str:  # noqa: C901 - one case a kind of block
+    def _block(self, one: blocks.Block) -> str:
         match one:
             case blocks.Paragraph(words, kind):
                 return f"<p{_attributes(kind=kind)}>{self.words(words)}</p>"

@@ -51,7 +51,7 @@ def read_results(path: Path, box: Path) -> Results:
     return dataclasses.replace(found, series=Series(series))
 
 
-def _encode(value: Any, arrays: dict[str, np.ndarray]) -> Any:  # noqa: C901 - a case a kind
+def _encode(value: Any, arrays: dict[str, np.ndarray]) -> Any:
     match value:
         case Text():
             parts = {"template": value.template, "many": value.many, "values": _encode(value.values, arrays)}
@@ -91,7 +91,7 @@ def _encode(value: Any, arrays: dict[str, np.ndarray]) -> Any:  # noqa: C901 - a
     raise TypeError(f"{type(value)} cannot be kept")
 
 
-def _decode(value: Any, arrays: Mapping[str, np.ndarray]) -> Any:  # noqa: C901 - a case a kind
+def _decode(value: Any, arrays: Mapping[str, np.ndarray]) -> Any:
     if isinstance(value, list):
         return tuple(_decode(one, arrays) for one in value)
     if not isinstance(value, dict):
