@@ -124,11 +124,6 @@ class Comparison:
     rooms: tuple[StateChange, ...]
 
     @property
-    def has_same_code(self) -> bool:
-        """Whether the same code of the program computed both runs, as far as they tell."""
-        return self.before.code == self.after.code
-
-    @property
     def has_same_basis(self) -> bool:
         """Whether the classes and sums of both runs rest on the same basis."""
         return self.before.main_basis == self.after.main_basis
@@ -137,11 +132,6 @@ class Comparison:
     def is_other_building(self) -> bool:
         """Whether both runs name their building, differently."""
         return len({key(run.name) for run in (self.before, self.after)} - {""}) > 1
-
-    @property
-    def is_same_file(self) -> bool:
-        """Whether both are the same results."""
-        return self.before.sha256 == self.after.sha256
 
     def count(self, *directions: Direction) -> int:
         """Count pieces, not rows, of some directions."""
@@ -204,20 +194,43 @@ class Comparison:
 
 def compare(before: PastRun, after: PastRun) -> Comparison:
     """Compare two runs; raises InputError if they have no item in common: they are of different buildings."""
-    pieces = _match(before.pieces, after.pieces, lambda one: key(one.item))
-    if (before.pieces or after.pieces) and not any(one and other for one, other in pieces):
+    pairs = _match(before.pieces, after.pieces, lambda one: key(one.item))
+    if (before.pieces or after.pieces) and not any(one and other for one, other in pairs):
         raise InputError.about(
             "{before} and {after} have no item in common: they cannot be compared. Name two runs of one building.",
             before=before.path,
             after=after.path,
         )
-    is_comparable, states = before.main_basis == after.main_basis, []
-    for was, now in ((before.routes, after.routes), (before.rooms, after.rooms)):
-        pairs = _match(was, now, lambda one: (key(one.floor), key(one.name)))
-        found = [_compare_states(*pair, is_comparable) for pair in pairs]
-        states.append(_arrange(found, lambda one: (0.0, one.row.name)))
-    changes = [_compare_piece(before, after, *pair) for pair in pieces]
-    return Comparison(before, after, _arrange(changes, lambda one: (-_difference(one), one.row.item)), *states)
+    pieces = []
+    for was, now in pairs:
+        direction, is_within = _direct(was, now)
+        values = {name: (one, now.inputs.get(name)) for name, one in was.inputs.items()} if was and now else {}
+        states = before.standing(was) if was else ABSENT, after.standing(now) if now else ABSENT
+        inputs = {name: (one, other) for name, (one, other) in values.items() if not _is_equal(one, other)}
+        pieces.append(
+            PieceChange(before=was, after=now, states=states, direction=direction, is_within=is_within, inputs=inputs)
+        )
+
+    def rises(one: PieceChange) -> float:
+        if one.before is None or one.after is None or one.direction == Direction.UNCLEAR:
+            return 0.0
+        return one.after.chance.probability - one.before.chance.probability
+
+    def compare_states(rows: Sequence[PastState], others: Sequence[PastState]) -> tuple[StateChange, ...]:
+        changes = []
+        for was, now in _match(rows, others, lambda one: (key(one.floor), key(one.name))):
+            direction, is_within = _direct_state(was, now, before.main_basis == after.main_basis)
+            states = was.state if was else ABSENT, now.state if now else ABSENT
+            changes.append(Change(before=was, after=now, states=states, direction=direction, is_within=is_within))
+        return _arrange(changes, lambda one: (0.0, one.row.name))
+
+    return Comparison(
+        before,
+        after,
+        _arrange(pieces, lambda one: (-rises(one), one.row.item)),
+        compare_states(before.routes, after.routes),
+        compare_states(before.rooms, after.rooms),
+    )
 
 
 def _match(
@@ -231,27 +244,10 @@ _Changed = TypeVar("_Changed", PieceChange, StateChange)
 
 
 def _arrange(changes: Sequence[_Changed], rank: Callable[[_Changed], tuple[float, str]]) -> tuple[_Changed, ...]:
-    """Return changes by their direction, then by a number and a name."""
     return tuple(sorted(changes, key=lambda one: (ORDER.index(one.direction), rank(one)[0], natural_key(rank(one)[1]))))
 
 
 # ---------------------------------------------------------------- one row
-
-
-def _compare_piece(was: PastRun, now: PastRun, before: PastPiece | None, after: PastPiece | None) -> PieceChange:
-    direction, is_within = _direct(before, after)
-    inputs: dict[str, tuple[object, object]] = {}
-    if before and after:
-        pairs = {name: (one, after.inputs.get(name)) for name, one in before.inputs.items()}
-        inputs = {name: pair for name, pair in pairs.items() if not _is_equal(*pair)}
-    return PieceChange(
-        before=before,
-        after=after,
-        states=(was.standing(before) if before else ABSENT, now.standing(after) if after else ABSENT),
-        direction=direction,
-        is_within=is_within,
-        inputs=inputs,
-    )
 
 
 def _direct(before: PastPiece | None, after: PastPiece | None) -> tuple[Direction, bool | None]:
@@ -269,29 +265,17 @@ def _direct(before: PastPiece | None, after: PastPiece | None) -> tuple[Directio
     return _direct_chance(before.chance, after.chance, is_within), is_within
 
 
-def _direct_chance(before: PastChance, after: PastChance, is_within: bool | None) -> Direction:
-    difference = after.probability - before.probability
-    if is_within or abs(difference) <= SAME:
-        return Direction.SAME
-    return Direction.RISES if difference > 0 else Direction.FALLS
-
-
 def _is_equal(one: object, other: object) -> bool:
     if isinstance(one, int | float) and isinstance(other, int | float):
         return math.isclose(one, other, rel_tol=SAME, abs_tol=1e-9)
     return one == other
 
 
-def _difference(change: PieceChange) -> float:
-    if change.before is None or change.after is None or change.direction == Direction.UNCLEAR:
-        return 0.0
-    return change.after.chance.probability - change.before.chance.probability
-
-
-def _compare_states(before: PastState | None, after: PastState | None, is_comparable: bool) -> StateChange:
-    direction, is_within = _direct_state(before, after, is_comparable)
-    states = (before.state if before else ABSENT, after.state if after else ABSENT)
-    return Change(before=before, after=after, states=states, direction=direction, is_within=is_within)
+def _direct_chance(before: PastChance, after: PastChance, is_within: bool | None) -> Direction:
+    difference = after.probability - before.probability
+    if is_within or abs(difference) <= SAME:
+        return Direction.SAME
+    return Direction.RISES if difference > 0 else Direction.FALLS
 
 
 def _direct_state(
@@ -339,19 +323,15 @@ def lies_within(before: PastChance, after: PastChance) -> bool | None:
 def _add_up(before: Sequence[PastPiece], after: Sequence[PastPiece], is_comparable: bool) -> Total:
     """Return the expected falls of pieces; the ends of their intervals add up, as one earthquake shakes them all."""
 
-    def add(pieces: Sequence[PastPiece], values: Sequence[float | None]) -> float | None:
-        if None in values:
-            return None
-        return math.fsum(one.quantity * (value or 0.0) for one, value in zip(pieces, values, strict=True))
+    def add(pieces: Sequence[PastPiece]) -> PastChance:
+        sums: list[float | None] = []
+        for name in ("probability", "low", "high"):
+            values = [(one.quantity, getattr(one.chance, name)) for one in pieces]
+            is_known = all(value is not None for _quantity, value in values)
+            sums.append(math.fsum(quantity * value for quantity, value in values) if is_known else None)
+        return PastChance(sums[0] or 0.0, *sums[1:])
 
-    def add_all(pieces: Sequence[PastPiece]) -> PastChance:
-        chances = [one.chance for one in pieces]
-        expected = add(pieces, [one.probability for one in chances]) or 0.0
-        return PastChance(
-            expected, add(pieces, [one.low for one in chances]), add(pieces, [one.high for one in chances])
-        )
-
-    was, now = add_all(before), add_all(after)
+    was, now = add(before), add(after)
     return Total(was.probability, now.probability, is_comparable, lies_within(was, now) if is_comparable else None)
 
 

@@ -18,7 +18,7 @@ from assess.compare.changes import (
     Total,
     count_states,
 )
-from assess.compare.past_run import ANCHORED, BY_FORMULA, CLASSES, INPUTS, UNCONFIRMED, PastChance, PastRun, PastState
+from assess.compare.past_run import ANCHORED, BY_FORMULA, CLASSES, INPUTS, UNCONFIRMED, PastChance
 from assess.i18n import Text, fill, nfill, ngettext, number
 from assess.i18n import gettext as _
 from assess.progress import SILENT, Progress
@@ -181,20 +181,7 @@ def say_anchor(value: Any) -> str:
     return _say_value(tuple(value.split(",")) if isinstance(value, str) and value else value)
 
 
-def _list_conditions(run: PastRun) -> Iterator[str]:
-    """Yield what sets a run apart from the workbook as it is: a factor, pieces taken as anchored, nothing varied."""
-    if run.shaking:
-        yield _("assumed shaking, {intensity}", intensity=words.cut(_(run.shaking), 40))
-    if run.settings.get("scale", 1) != 1:
-        yield _("motion × {scale}", scale=_say_value(run.settings.get("scale")))
-    if run.settings.get("anchor"):
-        yield _("taken as anchored: {items}", items=say_anchor(run.settings.get("anchor")))
-    if run.settings.get("ideal"):
-        yield _("if exactly this motion recurred")
-
-
 def _name_all(sentence: Text, names: Sequence[str], n: int | None = None, mark: str = ", ", **values: str) -> str:
-    """Return a sentence on things with the first of their names; "" without any."""
     if not names:
         return ""
     listed, n = words.name_first(names, NAMED, mark), len(names) if n is None else n
@@ -202,7 +189,6 @@ def _name_all(sentence: Text, names: Sequence[str], n: int | None = None, mark: 
 
 
 def _name_states(rows: Sequence[StateChange], directions: Sequence[Direction], sentence: Text) -> str:
-    """Return the sentence for the routes or rooms that go in some directions, with states or chances."""
     names = []
     for one in (one for one in rows if one.direction in directions):
         name, (before, after) = words.cut(one.row.name, 30), map(name_state, one.states)
@@ -259,8 +245,18 @@ class View:
     @property
     def conditions(self) -> str:
         """What sets the runs apart from their workbooks as they are, for every page; "" where nothing does."""
-        sides = ((_("BEFORE"), self.before), (_("AFTER"), self.after))
-        texts = [f"{name}: {found}" for name, run in sides if (found := ", ".join(_list_conditions(run)))]
+        texts = []
+        for name, run in ((_("BEFORE"), self.before), (_("AFTER"), self.after)):
+            scale, anchor, found = run.settings.get("scale", 1), run.settings.get("anchor"), list[str]()
+            if run.shaking:
+                found.append(_("assumed shaking, {intensity}", intensity=words.cut(_(run.shaking), 40)))
+            if scale != 1:
+                found.append(_("motion × {scale}", scale=_say_value(scale)))
+            if anchor:
+                found.append(_("taken as anchored: {items}", items=say_anchor(anchor)))
+            if run.settings.get("ideal"):
+                found.append(_("if exactly this motion recurred"))
+            texts += [f"{name}: {', '.join(found)}"] if found else []
         return "; ".join(texts)
 
     @property
@@ -274,7 +270,7 @@ class View:
     def list_warnings(self) -> Iterator[str]:
         """Yield what stands in the way of a comparison."""
         found = self.found
-        if not found.has_same_code:
+        if self.before.code != self.after.code:
             yield _(
                 "The two runs were computed by different code of assess: what differs between them may come from the "
                 "program, not from the furniture."
@@ -321,7 +317,7 @@ class View:
     @property
     def headline(self) -> str:
         """What changed, in one sentence."""
-        if self.found.is_same_file:
+        if self.before.sha256 == self.after.sha256:
             return _("Nothing changed: BEFORE and AFTER are the same results.")
         better, tone = self._count_rows(*BETTER), self.tone
         if tone == "worse":
@@ -338,12 +334,12 @@ class View:
         if some := found.count(*directions):
             every = found.count(*Direction)
             texts.append(ngettext("{some:,} of {n:,} piece", "{some:,} of {n:,} pieces", every, some=some))
-        if some := sum(one.direction in directions for one in found.routes):
-            n = len(found.routes)
-            texts.append(ngettext("{some:,} of {n:,} route", "{some:,} of {n:,} routes", n, some=some))
-        if some := sum(one.direction in directions for one in found.rooms):
-            n = len(found.rooms)
-            texts.append(ngettext("{some:,} of {n:,} room", "{some:,} of {n:,} rooms", n, some=some))
+        for rows, text in (
+            (found.routes, nfill("{some:,} of {n:,} route", "{some:,} of {n:,} routes", 0, some=0)),
+            (found.rooms, nfill("{some:,} of {n:,} room", "{some:,} of {n:,} rooms", 0, some=0)),
+        ):
+            if some := sum(one.direction in directions for one in rows):
+                texts.append(ngettext(text.template, text.many, len(rows), some=some))
         return ", ".join(texts)
 
     def list_worse(self) -> list[str]:
@@ -400,12 +396,11 @@ class View:
             )
             for one in found.standings()
         ]
-        every = [sum(piece.quantity for piece in run.pieces) for run in (self.before, self.after)]
-        lines.append(_count_line(_("all pieces"), Total(every[0], every[1], is_comparable=True)))
+        was, now = (sum(piece.quantity for piece in run.pieces) for run in (self.before, self.after))
+        lines.append(_count_line(_("all pieces"), Total(was, now, is_comparable=True)))
         lines.append(_count_line(_("expected falls"), found.falls, is_worse_up=is_fair))
         if both := found.falls_of_both:
-            label = _("expected falls of the pieces counted in both runs")
-            lines.append(_count_line(label, both, is_worse_up=True))
+            lines.append(_count_line(_("expected falls of the pieces counted in both runs"), both, is_worse_up=True))
         return lines
 
     def list_route_counts(self) -> list[blocks.Row]:
@@ -452,34 +447,30 @@ class View:
                 _say_sum(pieces) if pieces else blocks.DASH, tone if pieces or tone == "same" else "", sort=pieces
             )
 
+        def find_tone(was: str, now: str) -> str:
+            if was == now:
+                return "same"
+            if ANCHORED in (was, now) and ABSENT not in (was, now):
+                return "worse" if was == ANCHORED else "better"
+            if not self.found.has_same_basis or not {was, now} <= {*CLASSES}:
+                return ""
+            return "worse" if CLASSES[now] > CLASSES[was] else "better"
+
         lines = []
         for was in rows:
-            counts = [moves.get((was, now), 0) for now in columns]
-            cells = [cell(count, self._tone_of(was, now)) for count, now in zip(counts, columns, strict=True)]
-            lines.append(
-                blocks.Row((blocks.head(_mark_standing(was) if was else _("not in BEFORE")), *cells, cell(sum(counts))))
-            )
+            cells = [cell(moves.get((was, now), 0), find_tone(was, now)) for now in columns]
+            every = cell(sum(moves.get((was, now), 0) for now in columns))
+            head = blocks.head(_mark_standing(was) if was else _("not in BEFORE"))
+            lines.append(blocks.Row((head, *cells, every)))
         totals = [sum(moves.get((was, now), 0) for was in rows) for now in columns]
         lines.append(blocks.Row((blocks.head(_("all")), *map(cell, (*totals, sum(totals)))), "total"))
-        heads = [label_standing(one) if one else _("not in AFTER") for one in columns]
-        shown = [
-            blocks.Column(_("BEFORE ↓ AFTER →")),
-            *(blocks.Column(one, is_number=True) for one in (*heads, _("all"))),
-        ]
+        heads = [*(label_standing(one) if one else _("not in AFTER") for one in columns), _("all")]
+        shown = [blocks.Column(_("BEFORE ↓ AFTER →")), *(blocks.Column(one, is_number=True) for one in heads)]
         return blocks.table(shown, lines, "matrix", is_cards=False)
 
     def say_moves(self) -> str:
         """Return what the rows and columns of that table are."""
         return _("Rows: class in BEFORE ({before}). Columns: class in AFTER ({after}).", **self.bases)
-
-    def _tone_of(self, was: str, now: str) -> str:
-        if was == now:
-            return "same"
-        if ANCHORED in (was, now) and ABSENT not in (was, now):
-            return "worse" if was == ANCHORED else "better"
-        if not self.found.has_same_basis or not {was, now} <= {*CLASSES}:
-            return ""
-        return "worse" if CLASSES[now] > CLASSES[was] else "better"
 
     # ------------------------------------------------------------ the two runs
 
@@ -488,14 +479,32 @@ class View:
         before, after = self.before, self.after
         uncertainty = {"motion": _("Motion uncertainty"), "piece": _("Piece uncertainty")}
         lines = {building_key(column): _(column.label) for column in BUILDING.columns}
-        motions = _say_motions(before, after), _say_motions(after, before)
         settings = {name: _(label) for name, label in SETTINGS.items()}
-        was, now = ({label: words.cut(text, LONGEST_FACT) or blocks.DASH for label, text in _describe_run(run).items()}
-                    for run in (before, after))  # fmt: skip
-        origins = [Fact(label, text, now[label], differs=text != now[label]) for label, text in was.items()]
-
+        origins = [
+            (_("Results"), ["/".join(run.path.absolute().parts[-2:]) for run in (before, after)]),
+            (_("Building"), [before.name, after.name]),
+            (_("Workbook"), [before.workbook, after.workbook]),
+            (_("SHA-256 of the workbook"), [before.workbook_sha256, after.workbook_sha256]),
+            (_("Date of the report"), [say_date(str(run.building.get("report_date") or ""))
+                                       for run in (before, after)]),
+            (_("Results written (UTC)"), [f"{run.written:%Y-%m-%d %H:%M}" for run in (before, after)]),
+            (_("Classes rest on"), [self.bases["before"], self.bases["after"]]),
+            (_("Version of assess"), [_("{version}, schema {schema}", version=run.version, schema=run.schema)
+                                      for run in (before, after)]),
+            (_("SHA-256 of the program's code"), [before.code, after.code]),
+        ]  # fmt: skip
+        facts = []
+        for label, texts in origins:
+            was, now = (words.cut(text, LONGEST_FACT) or blocks.DASH for text in texts)
+            facts.append(Fact(label, was, now, differs=was != now))
+        motions = []
+        for run, other in ((before, after), (after, before)):
+            own = [name for name, digest in run.motions.items() if other.motions.get(name) != digest]
+            motions.append(ngettext("{n:,} file; differs: {names}", "{n:,} files; differ: {names}", len(run.motions),
+                                    names=words.name_first(own, 3))
+                           if own else ngettext("{n:,} file", "{n:,} files", len(run.motions)))  # fmt: skip
         return [
-            *origins,
+            *facts,
             *_list_differing(before.settings, after.settings, settings, always=ALWAYS),
             *_list_differing(before.uncertainty, after.uncertainty, uncertainty),
             *_list_differing({"": before.shaking}, {"": after.shaking}, {"": _("Assumed shaking")}),
@@ -504,28 +513,6 @@ class View:
             *_list_differing(before.building, after.building, lines, left_out=("building", "report_date")),
             *_list_differing(before.platform, after.platform, {}),
         ]
-
-
-def _describe_run(run: PastRun) -> dict[str, str]:
-    return {
-        _("Results"): "/".join(run.path.absolute().parts[-2:]),
-        _("Building"): run.name,
-        _("Workbook"): run.workbook,
-        _("SHA-256 of the workbook"): run.workbook_sha256,
-        _("Date of the report"): say_date(str(run.building.get("report_date") or "")),
-        _("Results written (UTC)"): f"{run.written:%Y-%m-%d %H:%M}",
-        _("Classes rest on"): name_basis(run.main_basis),
-        _("Version of assess"): _("{version}, schema {schema}", version=run.version, schema=run.schema),
-        _("SHA-256 of the program's code"): run.code,
-    }
-
-
-def _say_motions(run: PastRun, other: PastRun) -> str:
-    own = [name for name, digest in run.motions.items() if other.motions.get(name) != digest]
-    if not own:
-        return ngettext("{n:,} file", "{n:,} files", len(run.motions))
-    return ngettext("{n:,} file; differs: {names}", "{n:,} files; differ: {names}", len(run.motions),
-                    names=words.name_first(own, 3))  # fmt: skip
 
 
 def _list_differing(
@@ -556,37 +543,37 @@ def render_comparison(
     view: View, options: ReportOptions, *, for_print: bool = False, progress: Progress = SILENT
 ) -> str:
     """Return the page in the language in use (see `ReportOptions.spoken`)."""
-    document = progress.wait_for(lambda: _build_document(view, MOST_PRINTED if for_print else MOST_ROWS))
-    return render_document(document, options, "compare.css", for_print=for_print, progress=progress)
 
-
-def _build_document(view: View, most_rows: int) -> blocks.Document:
-    authors = [str(view.after.building.get(name) or "") for name in ("prepared_by", "organisation")]
-    about = _("Overturning of furniture in an earthquake: two runs compared")
-    title = blocks.Title(view.title, words.cut(view.title, 60), view.footer, words.cut(view.conditions, 150))
-    sections = [
-        blocks.Section(list(_say_worse(view)), "", "worse", _("What gets worse")),
-        blocks.Section(list(_count(view)), "run-on", "counts", _("Counts before and after")),
-        blocks.Section(list(_list_moves(view)), "run-on", "moved", _("Pieces by class, before and after")),
-        blocks.Section(list(_list_pieces(view, most_rows)), "", "changes", _("Pieces that changed")),
-    ]
-    if view.found.routes or view.found.rooms:
-        found = [
-            *_list_states(view.found.routes, _("Route"), _("No route changed.")),
-            blocks.Heading(_("Rooms that changed")),
-            *_list_states(view.found.rooms, _("Room"), _("No room changed."), with_floor=True),
+    def build() -> blocks.Document:
+        authors = [str(view.after.building.get(name) or "") for name in ("prepared_by", "organisation")]
+        about = _("Overturning of furniture in an earthquake: two runs compared")
+        title = blocks.Title(view.title, words.cut(view.title, 60), view.footer, words.cut(view.conditions, 150))
+        pieces = _list_pieces(view, MOST_PRINTED if for_print else MOST_ROWS)
+        sections = [
+            blocks.Section(list(_say_worse(view)), "", "worse", _("What gets worse")),
+            blocks.Section(_list_counts(view), "run-on", "counts", _("Counts before and after")),
+            blocks.Section(_list_moves(view), "run-on", "moved", _("Pieces by class, before and after")),
+            blocks.Section(list(pieces), "", "changes", _("Pieces that changed")),
         ]
-        sections.append(blocks.Section(found, "run-on", "routes", _("Evacuation routes that changed")))
-    sections.append(blocks.Section(list(_list_runs(view)), "run-on", "runs", _("The two runs")))
-    return blocks.Document(
-        title=_("Furniture in earthquakes, before and after: {building}", building=words.cut(view.title, 80)),
-        cover=[blocks.Paragraph(about, "kind"), title],
-        sections=sections,
-        author=", ".join(filter(None, authors)),
-        description=about,
-        conditions=view.conditions,
-        kind="comparison",
-    )
+        if view.found.routes or view.found.rooms:
+            found = [
+                *_list_states(view.found.routes, _("Route"), _("No route changed.")),
+                blocks.Heading(_("Rooms that changed")),
+                *_list_states(view.found.rooms, _("Room"), _("No room changed."), with_floor=True),
+            ]
+            sections.append(blocks.Section(found, "run-on", "routes", _("Evacuation routes that changed")))
+        sections.append(blocks.Section(_list_runs(view), "run-on", "runs", _("The two runs")))
+        return blocks.Document(
+            title=_("Furniture in earthquakes, before and after: {building}", building=words.cut(view.title, 80)),
+            cover=[blocks.Paragraph(about, "kind"), title],
+            sections=sections,
+            author=", ".join(filter(None, authors)),
+            description=about,
+            conditions=view.conditions,
+            kind="comparison",
+        )
+
+    return render_document(progress.wait_for(build), options, "compare.css", for_print=for_print, progress=progress)
 
 
 def _say_worse(view: View) -> Iterator[blocks.Block]:
@@ -617,32 +604,43 @@ def _say_worse(view: View) -> Iterator[blocks.Block]:
     )
 
 
-def _count(view: View) -> Iterator[blocks.Block]:
+def _list_counts(view: View) -> list[blocks.Block]:
     pieces, *routes = view.tabulate_counts()
-    yield pieces
-    yield blocks.Paragraph(
-        _(
-            "Expected falls are sums over the free-standing pieces that have a class in their run: BEFORE {before}, "
-            "AFTER {after}. Unconfirmed pieces and pieces by formula only are not in them. For the interval of a sum "
-            "the pieces are taken as fully correlated.",
-            **view.bases,
-        ),
-        "small",
+    sums = _(
+        "Expected falls are sums over the free-standing pieces that have a class in their run: BEFORE {before}, "
+        "AFTER {after}. Unconfirmed pieces and pieces by formula only are not in them. For the interval of a sum "
+        "the pieces are taken as fully correlated.",
+        **view.bases,
     )
-    yield routes[0] if routes else blocks.Paragraph(_("Neither run has evacuation routes."))
+    none = blocks.Paragraph(_("Neither run has evacuation routes."))
+    return [pieces, blocks.Paragraph(sums, "small"), routes[0] if routes else none]
 
 
-def _list_moves(view: View) -> Iterator[blocks.Block]:
+def _list_moves(view: View) -> list[blocks.Block]:
     if not view.found.pieces:
-        yield blocks.Paragraph(_("There are no pieces."))
-        return
-    yield blocks.Box([view.tabulate_moves()], "scroll", label=_("Pieces by class, before and after"))
+        return [blocks.Paragraph(_("There are no pieces."))]
     tones = (
         _("Dark cells: a higher class or no longer anchored; light blue cells: a lower class or anchored.")
         if view.found.has_same_basis
         else _("The bases differ, so no change of class is marked as better or worse.")
     )
-    yield blocks.Paragraph(f"{view.say_moves()} {tones}", "small")
+    table = blocks.Box([view.tabulate_moves()], "scroll", label=_("Pieces by class, before and after"))
+    return [table, blocks.Paragraph(f"{view.say_moves()} {tones}", "small")]
+
+
+def _list_runs(view: View) -> list[blocks.Block]:
+    rows = []
+    for fact in view.list_facts():
+        mark: blocks.Runs = [" ", blocks.Span(_("differs"), "change unclear")] if fact.differs else []
+        cells = (blocks.head([fact.label, *mark]), blocks.Cell(fact.before, "hash"), blocks.Cell(fact.after, "hash"))
+        rows.append(blocks.Row(cells, "differs" if fact.differs else ""))
+    columns = blocks.list_columns((_("What"), "w30"), (_("BEFORE"), ""), (_("AFTER"), ""))
+    same = _(
+        "Settings and lines of the workbook that are not named are the same in both runs. Made with assess {version}.",
+        version=__version__,
+    )
+    table = blocks.table(columns, rows, "compared facts-of-two", is_cards=False)
+    return [table, blocks.Paragraph(same, "small")]
 
 
 def _mark_change(one: PieceChange | StateChange) -> blocks.Words:
@@ -671,24 +669,22 @@ def _list_pieces(view: View, most: int) -> Iterator[blocks.Block]:
         (_("Item"), "w14"), (_("Change"), "w18"), (_("Place"), "w9"), (_("Pieces"), "w7", "num"), (_("BEFORE"), "w18"),
         (_("AFTER"), "w18"), (_("Input that differs"), ""),
     )  # fmt: skip
-    yield blocks.table(columns, map(_show_piece, changed[:most]), "compared cards changed", is_named=True)
+    shown = []
+    for one in changed[:most]:
+        piece, sides = one.row, list[blocks.Words]()
+        name: blocks.Runs = [words.cut(piece.item, 40)]
+        if piece.description:
+            name += [blocks.BREAK, blocks.note(words.cut(piece.description, 40))]
+        place = ", ".join(filter(None, (words.cut(piece.floor, 20), words.cut(piece.room, 30))))
+        for side, state in zip(one.sides, one.states, strict=True):
+            chance = _say_chance(side.chance) if side else ""
+            chance = _("free-standing: {chance}", chance=chance) if side and side.is_held else chance
+            sides.append([_mark_standing(state), blocks.BREAK, blocks.note(chance)] if side else blocks.DASH)
+        inputs = "; ".join(say_inputs(one) or [blocks.DASH])
+        cells = (blocks.head(name), _mark_change(one), place, _say_sum(one.pieces), *sides, inputs)
+        shown.append(blocks.Row(cells, find_tone(one.direction)))
+    yield blocks.table(columns, shown, "compared cards changed", is_named=True)
     yield from blocks.more(len(changed) - most, _say_more)
-
-
-def _show_piece(one: PieceChange) -> blocks.Row:
-    piece, sides = one.row, list[blocks.Words]()
-    name: blocks.Runs = [words.cut(piece.item, 40)]
-    if piece.description:
-        name += [blocks.BREAK, blocks.note(words.cut(piece.description, 40))]
-    place = ", ".join(filter(None, (words.cut(piece.floor, 20), words.cut(piece.room, 30))))
-    for side, state in zip(one.sides, one.states, strict=True):
-        chance = _say_chance(side.chance) if side else ""
-        chance = _("free-standing: {chance}", chance=chance) if side and side.is_held else chance
-        sides.append([_mark_standing(state), blocks.BREAK, blocks.note(chance)] if side else blocks.DASH)
-    inputs = "; ".join(say_inputs(one) or [blocks.DASH])
-    return blocks.Row(
-        (blocks.head(name), _mark_change(one), place, _say_sum(one.pieces), *sides, inputs), find_tone(one.direction)
-    )
 
 
 def _list_states(
@@ -704,32 +700,11 @@ def _list_states(
     )  # fmt: skip
     shown = []
     for one in changed[:MOST_STATES]:
-        floor = [words.cut(one.row.floor, 20)] if with_floor else []
-        cells = (blocks.head(words.cut(one.row.name, 60)), _mark_change(one), *floor, *map(_show_state, one.sides))
+        floor, sides = [words.cut(one.row.floor, 20)] if with_floor else [], list[blocks.Words]()
+        for side, state in zip(one.sides, one.states, strict=True):
+            chance = side.chance if side and side.state != RouteState.NOT_KNOWN else None
+            sides.append([name_state(state), *([blocks.BREAK, blocks.note(_say_chance(chance))] if chance else [])])
+        cells = (blocks.head(words.cut(one.row.name, 60)), _mark_change(one), *floor, *sides)
         shown.append(blocks.Row(cells, find_tone(one.direction)))
     yield blocks.table(columns, shown, "compared cards", is_named=True)
     yield from blocks.more(len(changed) - MOST_STATES, _say_more)
-
-
-def _show_state(side: PastState | None) -> blocks.Words:
-    if side is None or side.chance is None or side.state == RouteState.NOT_KNOWN:
-        return name_state(side.state if side else ABSENT)
-    return [name_state(side.state), blocks.BREAK, blocks.note(_say_chance(side.chance))]
-
-
-def _list_runs(view: View) -> Iterator[blocks.Block]:
-    rows = []
-    for fact in view.list_facts():
-        mark: blocks.Runs = [" ", blocks.Span(_("differs"), "change unclear")] if fact.differs else []
-        cells = (blocks.head([fact.label, *mark]), blocks.Cell(fact.before, "hash"), blocks.Cell(fact.after, "hash"))
-        rows.append(blocks.Row(cells, "differs" if fact.differs else ""))
-    columns = blocks.list_columns((_("What"), "w30"), (_("BEFORE"), ""), (_("AFTER"), ""))
-    yield blocks.table(columns, rows, "compared facts-of-two", is_cards=False)
-    yield blocks.Paragraph(
-        _(
-            "Settings and lines of the workbook that are not named are the same in both runs. Made with assess "
-            "{version}.",
-            version=__version__,
-        ),
-        "small",
-    )

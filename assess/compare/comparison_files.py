@@ -146,20 +146,43 @@ def dump(record: Mapping[str, Any]) -> str:
 
 def describe(found: Comparison, files: Mapping[str, str | None] | None = None) -> dict[str, Any]:
     """Return the document; `files` are listed where it is written among them."""
+    was, now, both = found.before, found.after, found.falls_of_both
+
+    def pair(before: float, after: float) -> dict[str, float]:
+        return {"before": before, "after": after}
+
+    def total(one: Total) -> dict[str, Any]:
+        return {
+            **pair(one.before, one.after),
+            "comparable": one.is_comparable,
+            "within_sampling_interval": one.is_within,
+        }
+
     return {
         "schema": SCHEMA,
         "assess": {"version": __version__, **({} if files is None else {"files": dict(files)})},
         COMPARISON: {
-            "same_code": found.has_same_code,
+            "same_code": was.code == now.code,
             "same_basis": found.has_same_basis,
-            "same_results": found.is_same_file,
+            "same_results": was.sha256 == now.sha256,
             "other_building": found.is_other_building,
         },
-        "before": _run(found.before),
-        "after": _run(found.after),
-        "counts": _counts(found),
+        "before": _run(was),
+        "after": _run(now),
+        "counts": {
+            "pieces": {one: total(found.count_standing(one)) for one in found.standings()},
+            "expected_falls": total(found.falls),
+            "expected_falls_counted_in_both": both and total(both),
+            "routes": {state: pair(*sides) for state, sides in count_states(was.routes, now.routes).items()},
+            "blocked_routes_expected": pair(was.blocked_routes, now.blocked_routes),
+            "rooms": {state: pair(*sides) for state, sides in count_states(was.rooms, now.rooms).items()},
+            "unknown_routes": pair(was.unknown_routes, now.unknown_routes),
+            "unknown_rooms": pair(was.unknown_rooms, now.unknown_rooms),
+            "unjoined_rooms": pair(len(was.unjoined_rooms), len(now.unjoined_rooms)),
+            "cut_off_rooms_expected": pair(was.cut_off_rooms, now.cut_off_rooms),
+        },
         "moves": [
-            {"before": was or None, "after": now or None, "pieces": count} for (was, now), count in found.moves.items()
+            {"before": one or None, "after": to or None, "pieces": count} for (one, to), count in found.moves.items()
         ],
         "items": [_piece(one) for one in found.pieces],
         "routes": [{"route": one.row.name} | _state(one) for one in found.routes],
@@ -181,34 +204,6 @@ def _run(run: PastRun) -> dict[str, Any]:
         "basis": run.main_basis,
         "settings": dict(run.settings),
         "unjoined_rooms": list(run.unjoined_rooms),
-    }
-
-
-def _counts(found: Comparison) -> dict[str, Any]:
-    was, now = found.before, found.after
-
-    def pair(before: float, after: float) -> dict[str, float]:
-        return {"before": before, "after": after}
-
-    def total(one: Total) -> dict[str, Any]:
-        return {
-            **pair(one.before, one.after),
-            "comparable": one.is_comparable,
-            "within_sampling_interval": one.is_within,
-        }
-
-    both = found.falls_of_both
-    return {
-        "pieces": {one: total(found.count_standing(one)) for one in found.standings()},
-        "expected_falls": total(found.falls),
-        "expected_falls_counted_in_both": both and total(both),
-        "routes": {state: pair(*sides) for state, sides in count_states(was.routes, now.routes).items()},
-        "blocked_routes_expected": pair(was.blocked_routes, now.blocked_routes),
-        "rooms": {state: pair(*sides) for state, sides in count_states(was.rooms, now.rooms).items()},
-        "unknown_routes": pair(was.unknown_routes, now.unknown_routes),
-        "unknown_rooms": pair(was.unknown_rooms, now.unknown_rooms),
-        "unjoined_rooms": pair(len(was.unjoined_rooms), len(now.unjoined_rooms)),
-        "cut_off_rooms_expected": pair(was.cut_off_rooms, now.cut_off_rooms),
     }
 
 

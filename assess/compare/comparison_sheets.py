@@ -18,8 +18,6 @@ from assess.report.provenance import report_time
 from assess.report.xlsx.pen import CHANCE, COUNT, Column, Pen, write_sheets
 from assess.route_results import RouteState
 
-LONGEST_HEAD = 80
-"""Characters of the texts above and below a printed page, of which Excel takes 255 in all."""
 _TONES: dict[str, dict[str, Any]] = {
     "worse": {"bg_color": "#8c1d3f", "font_color": "#ffffff", "bold": True},
     "better": {"bg_color": "#d5e9f6", "font_color": "#1c1c1c"},
@@ -31,10 +29,38 @@ _TONES: dict[str, dict[str, Any]] = {
 def write_tables(view: View, path: Path, progress: Progress = SILENT) -> None:
     """Write compare.xlsx in the language in use, as `assess.report.xlsx.pen.write_sheets` does."""
     found = view.found
+
+    def write_moves(pen: Pen, page: Any) -> None:
+        table = view.tabulate_moves()
+        labels = [plain_words(one.heading) for one in table.columns]
+        pen.heads(page, labels, [24, *(14 for _label in labels[1:])])
+        below = _write_rows(pen, page, 1, table)
+        pen.put(page, below, 0, view.say_moves(), pen.style("plain"))
+
+    items = [
+        *_list_change_columns(),
+        Column(_("Item"), 14, lambda one: one.row.item),
+        Column(_("Description"), 22, lambda one: one.row.description),
+        Column(_("Floor"), 8, lambda one: one.row.floor),
+        Column(_("Room"), 14, lambda one: one.row.room),
+        *_of_both(lambda run: _("Pieces, {run}", run=run), 9,
+                  lambda one, at: getattr(one.sides[at], "quantity", None), COUNT),
+        *_of_both(lambda run: _("Class, {run}", run=run), 16, lambda one, at: say.label_standing(one.states[at])),
+        *_list_chances(lambda piece: piece.chance),
+        *_of_both(lambda run: _("Basis, {run}", run=run), 13,
+                  lambda one, at: say.name_basis(one.sides[at].basis) if one.sides[at] else None),
+        Column(_("Input that differs"), 40, lambda one: "; ".join(say.say_inputs(one))),
+    ]  # fmt: skip
+    facts = [
+        Column(_("What"), 40, lambda one: one.label),
+        Column(_("BEFORE"), 44, lambda one: one.before),
+        Column(_("AFTER"), 44, lambda one: one.after),
+        Column(_("Differs"), 10, lambda one: words.yes_or_no(one.differs)),
+    ]
     sheets: dict[str, Callable[[Pen, Any], object]] = {
         _("Summary"): partial(_write_summary, view),
-        _("Moved classes"): partial(_write_moves, view),
-        _("Items"): lambda pen, page: pen.listing(page, _list_item_columns(), found.pieces),
+        _("Moved classes"): write_moves,
+        _("Items"): lambda pen, page: pen.listing(page, items, found.pieces),
     }
     column = partial(Column, width=20, read=lambda one: one.row.name)
     if found.routes:
@@ -42,14 +68,14 @@ def write_tables(view: View, path: Path, progress: Progress = SILENT) -> None:
     if found.rooms:
         own = [column(_("Room")), Column(_("Floor"), 8, lambda one: one.row.floor)]
         sheets[_("Rooms")] = partial(_write_states, own, found.rooms)
-    sheets[_("The two runs")] = partial(_write_facts, view)
-    head, conditions = words.cut(view.title, LONGEST_HEAD // 2), words.cut(view.conditions, LONGEST_HEAD)
+    sheets[_("The two runs")] = lambda pen, page: pen.listing(page, facts, view.list_facts())
     write_sheets(
         path,
         [(title, title, write) for title, write in sheets.items()],
         title=_("Furniture in earthquakes, before and after: {building}", building=words.cut(view.title, 120)),
         created=datetime.datetime.combine(report_time().date(), datetime.time()),
-        texts=(head, conditions, words.cut(view.footer, 2 * LONGEST_HEAD)),
+        # Excel takes 255 characters in all above or below a printed page
+        texts=(words.cut(view.title, 40), words.cut(view.conditions, 80), words.cut(view.footer, 160)),
         progress=progress,
     )
 
@@ -74,14 +100,6 @@ def _write_summary(view: View, pen: Pen, page: Any) -> None:
         below = _write_rows(pen, page, below + 2, table)
 
 
-def _write_moves(view: View, pen: Pen, page: Any) -> None:
-    table = view.tabulate_moves()
-    labels = [plain_words(one.heading) for one in table.columns]
-    pen.heads(page, labels, [24, *(14 for _label in labels[1:])])
-    below = _write_rows(pen, page, 1, table)
-    pen.put(page, below, 0, view.say_moves(), pen.style("plain"))
-
-
 def _write_rows(pen: Pen, page: Any, top: int, table: Table) -> int:
     """Write the rows of a table, its numbers as what they are sorted by, and return the row below it."""
     for number, row in enumerate(table.groups[0], top):
@@ -92,27 +110,6 @@ def _write_rows(pen: Pen, page: Any, top: int, table: Table) -> int:
             look = _TONES.get(row.kind if cell.kind == "change" else cell.kind, {})
             pen.put(page, number, at, value, pen.style("total" if row.kind == "total" else "plain", form, **look))
     return top + len(table.groups[0])
-
-
-def _list_item_columns() -> list[Column]:
-    return [
-        *_list_change_columns(),
-        Column(_("Item"), 14, lambda one: one.row.item),
-        Column(_("Description"), 22, lambda one: one.row.description),
-        Column(_("Floor"), 8, lambda one: one.row.floor),
-        Column(_("Room"), 14, lambda one: one.row.room),
-        *_of_both(
-            lambda run: _("Pieces, {run}", run=run), 9, lambda one, at: getattr(one.sides[at], "quantity", None), COUNT
-        ),
-        *_of_both(lambda run: _("Class, {run}", run=run), 16, lambda one, at: say.label_standing(one.states[at])),
-        *_list_chances(lambda piece: piece.chance),
-        *_of_both(
-            lambda run: _("Basis, {run}", run=run),
-            13,
-            lambda one, at: say.name_basis(one.sides[at].basis) if one.sides[at] else None,
-        ),
-        Column(_("Input that differs"), 40, lambda one: "; ".join(say.say_inputs(one))),
-    ]
 
 
 def _write_states(own: Sequence[Column], rows: Sequence[StateChange], pen: Pen, page: Any) -> None:
@@ -129,7 +126,11 @@ def _write_states(own: Sequence[Column], rows: Sequence[StateChange], pen: Pen, 
 def _list_change_columns() -> list[Column]:
     return [
         Column(_("Change"), 20, lambda one: say.name_direction(one.direction)),
-        Column(_("Within the sampling interval"), 12, lambda one: _say_flag(one.is_within)),
+        Column(
+            _("Within the sampling interval"),
+            12,
+            lambda one: "" if one.is_within is None else words.yes_or_no(one.is_within),
+        ),
     ]
 
 
@@ -154,17 +155,3 @@ def _list_chances(find: Callable[[Any], PastChance | None]) -> list[Column]:
             (_("Interval high, {run}", run=run), "high"),
         )
     ]
-
-
-def _write_facts(view: View, pen: Pen, page: Any) -> None:
-    columns = [
-        Column(_("What"), 40, lambda one: one.label),
-        Column(_("BEFORE"), 44, lambda one: one.before),
-        Column(_("AFTER"), 44, lambda one: one.after),
-        Column(_("Differs"), 10, lambda one: _say_flag(one.differs)),
-    ]
-    pen.listing(page, columns, view.list_facts())
-
-
-def _say_flag(flag: bool | None) -> str:
-    return "" if flag is None else words.yes_or_no(flag)

@@ -153,10 +153,8 @@ COMPARISON = "comparison"
 """Entry that tells compare.json, which is no run, from results.json."""
 MOST_BYTES = 1 << 30
 """Size [bytes] above which a file is not read: 20,000 items take a tenth of it."""
-_TOP = ("building", "floors", "items", "routes")
 _MISSING = object()
-_MOST = 1e15
-"""Size of a number that is shown as it is."""
+
 _Row = TypeVar("_Row")
 
 
@@ -174,37 +172,32 @@ def read_run(path: Path) -> PastRun:
 def read_record(path: Path) -> tuple[PastRun, "Part"]:
     """Read the results of a run, and return its record as well, of which further values can be read."""
     file = path / DATA if path.is_dir() else path
-    data, written = _load(path, file)
-    record = Part(file, "", _parse(file, data))
-    return _read_run(record, hashlib.sha256(data).hexdigest(), written), record
-
-
-def _load(path: Path, file: Path) -> tuple[bytes, datetime.datetime]:
     try:
         if not file.exists():
-            raise InputError(_explain_missing(path, file))
+            if is_unfinished(file.parent, file.name):
+                raise InputError(explain_unfinished(file.parent))
+            if path.is_dir():
+                raise InputError.about(
+                    "{folder} contains no {name}: name the folder of a report, or its {name}.", folder=path, name=DATA
+                )
+            raise InputError.about(
+                "{path} does not exist: name a {name}, or the folder that holds it.", path=path, name=DATA
+            )
         status = file.stat()
         if status.st_size > MOST_BYTES:
             sizes = {"size": status.st_size >> 20, "most": MOST_BYTES >> 20}
             raise InputError.about(
                 "{path} is too large: {size:,} MB, at most {most:,} MB are read.", path=file, **sizes
             )
-        return read_input(file, MOST_BYTES), datetime.datetime.fromtimestamp(status.st_mtime, datetime.UTC)
+        data = read_input(file, MOST_BYTES)
     except OSError as error:
         why = error.strerror or str(error)
         raise InputError.about("{path} cannot be read: {why}.", path=file, why=why) from None
-
-
-def _explain_missing(path: Path, file: Path) -> str:
-    if is_unfinished(file.parent, file.name):
-        return explain_unfinished(file.parent)
-    if path.is_dir():
-        return fill("{folder} contains no {name}: name the folder of a report, or its {name}.", folder=path, name=DATA)
-    return fill("{path} does not exist: name a {name}, or the folder that holds it.", path=path, name=DATA)
+    record, written = Part(file, "", _parse(file, data)), datetime.datetime.fromtimestamp(status.st_mtime, datetime.UTC)
+    return _read_run(record, hashlib.sha256(data).hexdigest(), written), record
 
 
 def _parse(file: Path, data: bytes) -> Mapping[str, Any]:
-    """Return the record, which is that of a run by this major version of the schema."""
     text = ""
     try:
         text = data.decode("utf-8-sig")
@@ -223,8 +216,19 @@ def _parse(file: Path, data: bytes) -> Mapping[str, Any]:
     if not (major.isascii() and major.isdigit() and len(major) < 6):
         raise InputError(foreign)
     if major.lstrip("0") != ours:
-        raise InputError(_describe_version(file, schema, ours, is_earlier=int(major) < int(ours)))
-    if missing := [name for name in _TOP if name not in record]:
+        values = {"path": file, "schema": schema[:20], "ours": ours}
+        if int(major) < int(ours):
+            raise InputError.about(
+                "{path} was written by an earlier version of assess: its schema is {schema}, this version reads "
+                "{ours}.x. Run its workbook again.",
+                **values,
+            )
+        raise InputError.about(
+            "{path} was written by a later version of assess: its schema is {schema}, this version reads {ours}.x. "
+            "Update assess.",
+            **values,
+        )
+    if missing := [name for name in ("building", "floors", "items", "routes") if name not in record]:
         raise InputError.about("{path} is incomplete: {name} is missing. Run assess again.", path=file, name=missing[0])
     return record
 
@@ -234,7 +238,7 @@ def _refuse(name: str) -> Never:
 
 
 def _describe_fault(file: Path, text: str, error: Exception) -> Text:
-    """Return what is wrong with a text that is no JSON: it is cut off, or something else than a results.json."""
+
     whole = text.strip()
     if isinstance(error, UnicodeDecodeError) or (whole and not whole.startswith(("{", "["))):
         return fill("{path} is not a JSON file: name a {name} written by assess, or its folder.", path=file, name=DATA)
@@ -247,21 +251,6 @@ def _describe_fault(file: Path, text: str, error: Exception) -> Text:
         line = f"{error.lineno}"
         return fill("{path} is damaged: line {line} is not valid JSON. Run assess again.", path=file, line=line)
     return fill("{path} is damaged: it is not valid JSON. Run assess again.", path=file)
-
-
-def _describe_version(file: Path, schema: str, ours: str, *, is_earlier: bool) -> Text:
-    values = {"path": file, "schema": schema[:20], "ours": ours}
-    if is_earlier:
-        return fill(
-            "{path} was written by an earlier version of assess: its schema is {schema}, this version reads {ours}.x. "
-            "Run its workbook again.",
-            **values,
-        )
-    return fill(
-        "{path} was written by a later version of assess: its schema is {schema}, this version reads {ours}.x. Update "
-        "assess.",
-        **values,
-    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -351,7 +340,25 @@ class Part:
 
 def _read_run(record: Part, sha256: str, written: datetime.datetime) -> PastRun:
     items, origin, routes = record.rows("items"), record.part("assess"), record.part("routes")
-    inputs, shaking = origin.part("inputs"), origin.values.get("shaking")
+    inputs, shaking, site_ground = origin.part("inputs"), origin.values.get("shaking"), ""
+    if origin.values.get("site_ground") is not None:  # absent before version 5.1 of the schema
+        found = origin.part("site_ground")
+        site_ground = f"{found.text('file')}, {found.number('pga_g'):.3f} g, SHA-256 {found.text('sha256')[:16]}"
+    demands = (demand for floor in record.rows("floors") for demand in floor.rows("demands"))
+
+    def read_states(kind: str, chance: str) -> tuple[PastState, ...]:
+        """Return the routes or the rooms; their chance, of this name, may be null or absent."""
+
+        def read(row: Part) -> PastState:
+            return PastState(
+                name=row.text(kind),
+                floor=row.text("floor") if kind == "room" else "",
+                state=row.text("state"),
+                chance=None if row.values.get(chance) is None else _read_chance(row.part(chance)),
+            )
+
+        return _read_unique(routes.rows(f"{kind}s"), read, lambda one: (key(one.floor), key(one.name)))
+
     return PastRun(
         path=record.file,
         sha256=sha256,
@@ -364,14 +371,15 @@ def _read_run(record: Part, sha256: str, written: datetime.datetime) -> PastRun:
         building=record.plainly("building"),
         uncertainty=origin.plainly("uncertainty"),
         shaking=plain_line(str(shaking.get("name", ""))) if isinstance(shaking, dict) else "",
-        site_ground=_read_site_ground(origin),
+        site_ground=site_ground,
         workbook=inputs.text("workbook"),
         workbook_sha256=inputs.text("sha256"),
         motions=inputs.texts("records") | inputs.texts("motions"),
-        is_simulated=_has_simulated(record, items),
+        is_simulated=any(one.values.get("ensemble") for one in demands)
+        or any(one.values.get("verification") for one in items),
         pieces=_read_unique(items, _read_piece, lambda one: key(one.item)),
-        routes=_read_states(routes, "routes", "route", "blocked"),
-        rooms=_read_states(routes, "rooms", "room", "loses_every_exit"),
+        routes=read_states("route", "blocked"),
+        rooms=read_states("room", "loses_every_exit"),
         route_risk=routes.share("risk"),
         blocked_routes=routes.number("blocked_routes_expected"),
         cut_off_rooms=routes.number("cut_off_rooms_expected"),
@@ -381,14 +389,13 @@ def _read_run(record: Part, sha256: str, written: datetime.datetime) -> PastRun:
     )
 
 
-def _has_simulated(record: Part, items: Sequence[Part]) -> bool:
-    demands = (demand for floor in record.rows("floors") for demand in floor.rows("demands"))
-    return any(one.values.get("ensemble") for one in demands) or any(one.values.get("verification") for one in items)
-
-
 def _read_piece(row: Part) -> PastPiece:
     adopted, anchor = row.part("adopted"), row.values.get("anchor")
-    held = anchor.get("counts_as_anchored") if isinstance(anchor, dict) else None
+    anchor = anchor if isinstance(anchor, dict) else {}
+    held, inputs = anchor.get("counts_as_anchored"), unnest(row.values, INPUTS.values())
+    if anchor.get("is_height_assumed") is True:
+        inputs["bracket_height_cm"] = None
+    inputs["sizes_from"] = inputs["sizes_from"] or MEASURED  # absent before version 5.2 of the schema
     return PastPiece(
         item=row.text("item"),
         floor=row.text("floor"),
@@ -399,31 +406,8 @@ def _read_piece(row: Part) -> PastPiece:
         basis=adopted.choice("basis", BASES),
         risk=adopted.risk("class"),
         chance=_read_chance(adopted),
-        inputs=_read_inputs(row.values),
+        inputs={name: _plain(value) for name, value in inputs.items()},
     )
-
-
-def _read_states(routes: Part, name: str, kind: str, chance: str) -> tuple[PastState, ...]:
-    """Return the routes or the rooms; `chance` is the name of their chance, which may be null or absent."""
-
-    def read(row: Part) -> PastState:
-        return PastState(
-            name=row.text(kind),
-            floor=row.text("floor") if kind == "room" else "",
-            state=row.text("state"),
-            chance=None if row.values.get(chance) is None else _read_chance(row.part(chance)),
-        )
-
-    return _read_unique(routes.rows(name), read, lambda one: (key(one.floor), key(one.name)))
-
-
-def _read_site_ground(origin: Part) -> str:
-    """Return file, PGA and hash of a ShakeMap or of scenarios; "" where the motion rests on none."""
-    if origin.values.get("site_ground") is None:  # as in files before version 5.1 of the schema
-        return ""
-    found = origin.part("site_ground")
-    file, sha256 = found.text("file"), found.text("sha256")
-    return f"{file}, {found.number('pga_g'):.3f} g, SHA-256 {sha256[:16]}"
 
 
 def _read_chance(row: Part) -> PastChance:
@@ -432,7 +416,7 @@ def _read_chance(row: Part) -> PastChance:
 
 
 def _read_unique(rows: Sequence[Part], read: Callable[[Part], _Row], name: Callable[[_Row], Any]) -> tuple[_Row, ...]:
-    """Return the rows that `read` makes; raises InputError where two have one name."""
+
     found: dict[Any, _Row] = {}
     for row in rows:
         one = read(row)
@@ -442,20 +426,10 @@ def _read_unique(rows: Sequence[Part], read: Callable[[Part], _Row], name: Calla
     return tuple(found.values())
 
 
-def _read_inputs(row: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the inputs of a piece; no height of its bracket where that is assumed."""
-    found = unnest(row, INPUTS.values())
-    anchor = row.get("anchor")
-    if isinstance(anchor, dict) and anchor.get("is_height_assumed") is True:
-        found["bracket_height_cm"] = None
-    found["sizes_from"] = found["sizes_from"] or MEASURED  # results before 5.2 do not have it
-    return {name: _plain(value) for name, value in found.items()}
-
-
 def _plain(value: Any) -> Any:
     if isinstance(value, str):
         return plain_line(value)
-    is_shown = isinstance(value, bool) or (isinstance(value, int | float) and -_MOST < value < _MOST)
+    is_shown = isinstance(value, bool) or (isinstance(value, int | float) and -1e15 < value < 1e15)
     return value if is_shown else None
 
 
