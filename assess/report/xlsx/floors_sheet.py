@@ -17,7 +17,7 @@ from assess.model import AXES
 from assess.report.content import Content, order_floors
 from assess.report.say.ground import describe_source, factors
 from assess.report.xlsx import charts
-from assess.report.xlsx.item_formulas import FLOOR_AT, FLOOR_KEYS, edited_motion, top_motion
+from assess.report.xlsx.item_formulas import FLOOR_AT, FLOOR_KEYS, differs, literal
 from assess.report.xlsx.pen import HEAD, LINE, Pen, count_lines
 from assess.results import FloorRow, MotionRow, Results
 
@@ -38,11 +38,11 @@ class MotionLine:
 
 
 def list_lines(results: Results) -> list[MotionLine]:
-    """Return the lines in order."""
+    """Return the lines in order; of parallel motions, that of the largest ruling peak first."""
     peak = attrgetter({"pfa": "pfa_g", "pfv": "pfv_cm_s"}[results.formula.ruled_by])
 
     def sort(motions: Sequence[MotionRow]) -> list[MotionRow]:
-        """Return parallel motions, that of the largest ruling peak first; in the results' order otherwise."""
+
         largest = max(motions, key=lambda one: round(peak(one) or 0.0, 9), default=None)
         return sorted(motions, key=lambda one: one is not largest)
 
@@ -70,7 +70,16 @@ def write_floors(pen: Pen, page: Any, content: Content) -> None:
     """Write the motions: Items and Summary follow what is edited here."""
     run, rows = content.run, len(content.floors)
     lines, ruling = list_lines(run), run.formula.ruled_by
-    pen.heads(page, _list_heads(), [_WIDTHS.get(key.split("_")[0], 20) for key in FLOOR_KEYS])
+    heads = (
+        (_("Floor"), ""), (_("Name"), ""), (_("PFA X"), "g"), (_("PFV X"), "cm/s"), (_("Source X"), ""),
+        (_("PFA Y"), "g"), (_("PFV Y"), "cm/s"), (_("Source Y"), ""), (_("Elevation"), "m"),
+        (_("X since the run"), ""), (_("Y since the run"), ""), (_("PFA X as run"), "g"), (_("PFV X as run"), "cm/s"),
+        (_("PFA Y as run"), "g"), (_("PFV Y as run"), "cm/s"),
+        (_("PFA X of the stronger record"), "g"), (_("PFV X of that record"), "cm/s"),
+        (_("PFA Y of the stronger record"), "g"), (_("PFV Y of that record"), "cm/s"),
+    )  # fmt: skip
+    labels = [f"{label} [{unit}]" if unit else label for label, unit in heads]
+    pen.heads(page, labels, [_WIDTHS.get(key.split("_")[0], 20) for key in FLOOR_KEYS])
     edit_here = _(
         "Edit the PFA and PFV here: rows that were not simulated follow; simulated rows on the floor say 'run again' "
         "and leave all counts. Where several records serve a floor, the one with the largest {peak} stands in its "
@@ -86,12 +95,9 @@ def write_floors(pen: Pen, page: Any, content: Content) -> None:
         page.set_row(row, LINE * max(heights))
         pen.put(page, row, FLOOR_AT["floor"], line.floor.floor, pen.style("text"))
         pen.put(page, row, FLOOR_AT["name"], line.floor.name, pen.style("text"))
-        for axis, motion in line.motions.items():
-            further = [at for at in line.further if axis in lines[at].motions]
-            _write_motion(pen, page, row, motion)
-            _write_as_run(pen, page, row, [motion, *(lines[at].motions[axis] for at in further)], further)
-            if row < HEAD + rows:
-                _write_top(page, row, motion, further, ruling)
+        for axis in line.motions:
+            records = {HEAD + at: lines[at].motions[axis] for at in line.further if axis in lines[at].motions}
+            _write_motion(pen, page, {row: line.motions[axis], **records}, ruling, is_own=row < HEAD + rows)
         pen.put(page, row, FLOOR_AT["elevation"], line.floor.elevation_m, pen.style("plain"))
     page.freeze_panes(1, 1)
     page.repeat_rows(0)
@@ -107,21 +113,16 @@ def write_floors(pen: Pen, page: Any, content: Content) -> None:
     charts.add_motion(pen, page, (HEAD + len(lines) + 1, 0), (HEAD, HEAD + rows - 1), tops)
 
 
-def _list_heads() -> list[str]:
-    heads = (
-        (_("Floor"), ""), (_("Name"), ""), (_("PFA X"), "g"), (_("PFV X"), "cm/s"), (_("Source X"), ""),
-        (_("PFA Y"), "g"), (_("PFV Y"), "cm/s"), (_("Source Y"), ""), (_("Elevation"), "m"),
-        (_("X since the run"), ""), (_("Y since the run"), ""), (_("PFA X as run"), "g"), (_("PFV X as run"), "cm/s"),
-        (_("PFA Y as run"), "g"), (_("PFV Y as run"), "cm/s"),
-        (_("PFA X of the stronger record"), "g"), (_("PFV X of that record"), "cm/s"),
-        (_("PFA Y of the stronger record"), "g"), (_("PFV Y of that record"), "cm/s"),
-    )  # fmt: skip
-    return [f"{label} [{unit}]" if unit else label for label, unit in heads]
+def _write_motion(pen: Pen, page: Any, records: Mapping[int, MotionRow], ruling: str, *, is_own: bool) -> None:
+    """Write the motion of a line along an axis, as run and now, and whether it was edited.
 
-
-def _write_motion(pen: Pen, page: Any, row: int, motion: MotionRow) -> None:
+    `records` are those of the axis by their rows, that of the line first; `is_own`: in the floor's own line, which
+    also holds the peaks of the record of the largest ruling peak.
+    """
+    row, motion = next(iter(records.items()))
     axis, other = motion.axis, "Y" if motion.axis == "X" else "X"
-    for peak, value in (("pfa", motion.pfa_g), ("pfv", motion.pfv_cm_s)):
+    values = {"pfa": motion.pfa_g, "pfv": motion.pfv_cm_s}
+    for peak, value in values.items():
         at, formula = FLOOR_AT[f"{peak}_{axis}"], ""
         if motion.is_borrowed:  # what serves this axis is the other one's: it follows when that is edited
             cell = _cell(f"{peak}_{other}", row)
@@ -132,32 +133,29 @@ def _write_motion(pen: Pen, page: Any, row: int, motion: MotionRow) -> None:
             page.write_formula(row, at, formula, pen.style("live", _CODES[peak]), "" if value is None else value)
         else:
             pen.put(page, row, at, value, pen.style("input", _CODES[peak]))
+        pen.put(page, row, FLOOR_AT[f"{peak}_run_{axis}"], value)
     pen.put(page, row, FLOOR_AT[f"source_{axis}"], _say_source(motion), pen.style("text"))
-
-
-def _write_as_run(pen: Pen, page: Any, row: int, motions: Sequence[MotionRow], further: Sequence[int]) -> None:
-    """Write the motion of an axis as run, and whether it, or one of the further lines, was edited since."""
-    axis = motions[0].axis
-    pen.put(page, row, FLOOR_AT[f"pfa_run_{axis}"], motions[0].pfa_g)
-    pen.put(page, row, FLOOR_AT[f"pfv_run_{axis}"], motions[0].pfv_cm_s)
-    names = ("pfa", "pfv", "pfa_run", "pfv_run")
-    cells = [{name: _cell(f"{name}_{axis}", at) for name in names} for at in (row, *(HEAD + at for at in further))]
-    formula = edited_motion(
-        pen.terms, [(own, one.pfv_cm_s is not None) for own, one in zip(cells, motions, strict=True)]
-    )
-    page.write_formula(row, FLOOR_AT[f"edited_{axis}"], formula, pen.style("warning"), "")
-
-
-def _write_top(page: Any, row: int, motion: MotionRow, further: Sequence[int], ruling: str) -> None:
-    """Write the peaks of the record of the largest ruling peak along an axis: as run, that of the floor's own line."""
-    axis, rows = motion.axis, (row, *(HEAD + at for at in further))
-    values = {"pfa": motion.pfa_g, "pfv": motion.pfv_cm_s}
+    tests = []
+    for at, one in records.items():
+        pfa, pfv, pfa_run, pfv_run = (_cell(f"{name}_{axis}", at) for name in ("pfa", "pfv", "pfa_run", "pfv_run"))
+        # where PFV was not known as run, any value differs
+        tests += [differs(pfa, pfa_run), f'{pfv}<>""' if one.pfv_cm_s is None else differs(pfv, pfv_run)]
+    edited = f'=IF(IFERROR(OR({",".join(tests)}),TRUE),{literal(pen.terms.edited)},"")'
+    page.write_formula(row, FLOOR_AT[f"edited_{axis}"], edited, pen.style("warning"), "")
+    if not is_own:
+        return
     peaks = sorted(values, key=lambda peak: peak != ruling)
-    first, second = ([_cell(f"{peak}_{axis}", at) for at in rows] for peak in peaks)
-    formulas = top_motion(first, second, _cell(f"{ruling}_top_{axis}", row))
+    first, second = ([_cell(f"{peak}_{axis}", at) for at in records] for peak in peaks)
+    if len(records) == 1:
+        formulas = [f'=IF({cell}="","",{cell})' for cell in (*first, *second)]
+    else:
+        found = '""'
+        for peak, beside in zip(reversed(first), reversed(second), strict=True):
+            found = f'IF({peak}={_cell(f"{ruling}_top_{axis}", row)},IF({beside}="","",{beside}),{found})'
+        formulas = [f'=IF(COUNT({",".join(first)})=0,"",MAX({",".join(first)}))', f"={found}"]
     for peak, formula in zip(peaks, formulas, strict=True):
-        value = values[peak]
-        page.write_formula(row, FLOOR_AT[f"{peak}_top_{axis}"], formula, None, "" if value is None else value)
+        known = values[peak]
+        page.write_formula(row, FLOOR_AT[f"{peak}_top_{axis}"], formula, None, "" if known is None else known)
 
 
 def _cell(key: str, row: int) -> str:

@@ -6,7 +6,7 @@ formulas write and compare is in the report's language.
 """
 
 import string
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from xlsxwriter.utility import xl_col_to_name
@@ -60,6 +60,11 @@ def sentence(template: str, **expressions: str) -> str:
     return "&".join(parts)
 
 
+def differs(now: str, as_run: str) -> str:
+    """Return whether a number is not the one as run, but for its last digits."""
+    return f"ABS({now}-{as_run})>1E-9*{as_run}"
+
+
 @dataclass(frozen=True, slots=True)
 class Terms:
     """What formulas write and compare."""
@@ -88,40 +93,6 @@ def build_terms() -> Terms:
         yes=_("yes"), no=_("no"), partly=_("partly"), edited=_("edited"), check=_("check"), again=_("run again"),
         bases=bases, labels=tuple(map(say_class, RiskClass)),
     )  # fmt: skip
-
-
-def _differs(now: str, as_run: str) -> str:
-    """Return whether a number is not the one as run, but for its last digits."""
-    return f"ABS({now}-{as_run})>1E-9*{as_run}"
-
-
-# ---------------------------------------------------------------- Floors
-
-
-def edited_motion(terms: Terms, motions: Sequence[tuple[Mapping[str, str], bool]]) -> str:
-    """Return the formula that shows whether a floor's motion along an axis differs from the one as run.
-
-    `motions` are those of its parallel records: cells, which hold pfa and pfv, and both as run, and whether PFV was
-    known as run; where it was not, any value differs.
-    """
-    tests = []
-    for cells, had_pfv in motions:
-        tests.append(_differs(cells["pfa"], cells["pfa_run"]))
-        tests.append(_differs(cells["pfv"], cells["pfv_run"]) if had_pfv else f'{cells["pfv"]}<>""')
-    return f'=IF(IFERROR(OR({",".join(tests)}),TRUE),{literal(terms.edited)},"")'
-
-
-def top_motion(ruling: Sequence[str], other: Sequence[str], top: str) -> tuple[str, str]:
-    """Return the formulas of the largest peak that rules of parallel records, and of the other of the same record.
-
-    `ruling` and `other` are their cells, `top` is the cell of the former formula.
-    """
-    if len(ruling) == 1:
-        return f'=IF({ruling[0]}="","",{ruling[0]})', f'=IF({other[0]}="","",{other[0]})'
-    found = '""'
-    for peak, beside in zip(reversed(ruling), reversed(other), strict=True):
-        found = f'IF({peak}={top},IF({beside}="","",{beside}),{found})'
-    return f'=IF(COUNT({",".join(ruling)})=0,"",MAX({",".join(ruling)}))', f"={found}"
 
 
 # ---------------------------------------------------------------- Items
@@ -156,7 +127,7 @@ class ItemFormulas:
                 "AND(OR({anchored}={YES},{anchored}={PARTLY}),"
                 'OR({bracket_capacity_kn}<>"",{bracket_capacity_kn_run}<>""))'
             ),
-            "BRACKET_TESTS": ",".join(_differs(cells[key], cells[f"{key}_run"]) for key in BRACKET),
+            "BRACKET_TESTS": ",".join(differs(cells[key], cells[f"{key}_run"]) for key in BRACKET),
         }
 
     def _fill(self, template: str, **more: str) -> str:
@@ -165,36 +136,47 @@ class ItemFormulas:
     def of(self, basis: str, *, is_run: bool) -> dict[str, str]:
         """Return the formulas of a row whose class rests on one of `assess.results.BASES`, by keys of columns.
 
-        `is_run`: whether it holds for the inputs as run alone.
+        `is_run`: whether it holds for the inputs as run alone; else it follows its inputs, unless they may change
+        whether its bracket holds.
         """
-        found = self._of_any(is_run=is_run) | (self._of_run(basis) if is_run else self._of_formula())
+        found = self._of_any(is_run=is_run)
+        if is_run:
+            found |= self._of_run(basis)
+        else:
+            risk = self._cells[self._formula.key]
+            templates = {
+                "edited": 'IF({BRACKET_DECIDES},{found},"")',
+                "can_rock": "IFERROR(IF({rocks},1,0),1)",  # 1 while its sizes or its motion are no numbers
+                "basis": "IF({edited}={EDITED},{AGAIN},IF({can_rock}=0,{CANNOT_ROCK},{BY_FORMULA}))",
+                "class": "IF({edited}={EDITED},{AGAIN},IF({can_rock}=0,{MARK}&{LOW},{class_formula}))",
+                "order_formula": 'IF(OR({edited}={EDITED},{can_rock}=0),"",{order})',
+            }
+            more = {
+                "found": self._edited(self._known["BRACKET_TESTS"]),
+                "rocks": self._rocks_at(self._cells["pfa_g"]),
+                "order": self._order(risk, _rank(risk), risk),
+            }
+            found |= {key: self._fill(template, **more) for key, template in templates.items()}
         return {key: f"={one}" for key, one in found.items()}
-
-    def _of_formula(self) -> dict[str, str]:
-        """Return the formulas of a row that follows its inputs, unless they may change whether its bracket holds."""
-        risk = self._cells[self._formula.key]
-        templates = {
-            "edited": 'IF({BRACKET_DECIDES},{found},"")',
-            "can_rock": "IFERROR(IF({rocks},1,0),1)",  # 1 while its sizes or its motion are no numbers
-            "basis": "IF({edited}={EDITED},{AGAIN},IF({can_rock}=0,{CANNOT_ROCK},{BY_FORMULA}))",
-            "class": "IF({edited}={EDITED},{AGAIN},IF({can_rock}=0,{MARK}&{LOW},{class_formula}))",
-            "order_formula": 'IF(OR({edited}={EDITED},{can_rock}=0),"",{order})',
-        }
-        more = {
-            "found": self._edited(self._known["BRACKET_TESTS"]),
-            "rocks": self._rocks_at(self._cells["pfa_g"]),
-            "order": self._order(risk, _rank(risk), risk),
-        }
-        return {key: self._fill(template, **more) for key, template in templates.items()}
 
     def _of_run(self, basis: str) -> dict[str, str]:
         """Return the formulas of a row whose class holds while its inputs are as run."""
         cells, mark, label = self._cells, self._known["MARK"], self._terms.label
-        rank, upper, again = cells["rank"], cells["rank_upper"], self._known["AGAIN"]
+        rank, upper, formula = cells["rank"], cells["rank_upper"], cells["rank_formula"]
+        again, is_settled = self._known["AGAIN"], basis != "unconfirmed"
 
         def while_as_run(value: str, edited: str = '""') -> str:
             return f"IF(ISNUMBER({rank}),{value},{edited})"
 
+        lowered = sentence(", " + _("lowered by simulation (formula: {risk})"), risk=label(formula))
+        notes = [
+            (f"{upper}>{rank}", sentence(", " + _("could be {risk}"), risk=label(upper))),
+            *([(f"{formula}>{rank}", lowered)] if is_settled else []),
+            (self._fill("{fell}=1"), literal(", " + _("as it overturns under the record itself"))),
+            (self._fill('AND({held}={YES},{bracket_held}<>"")'), self._fill('", "&{bracket_held}')),
+        ]
+        texts = [] if is_settled else [self._fill('", "&{settle}')]
+        texts += [f'IF({test},{text},"")' for test, text in notes]
         found = {
             "edited": self._edited(self._fill("AND({BRACKET_DECIDES},OR({BRACKET_TESTS}))")),
             "rank": self._fill(
@@ -205,7 +187,7 @@ class ItemFormulas:
             "basis": while_as_run(literal(self._terms.bases[basis]), again),
             "class": while_as_run(f"{mark}&{label(rank)}", again),
             "class_upper": while_as_run(f"{mark}&{label(upper)}"),
-            "class_notes": while_as_run(self._notes(is_settled=basis != "unconfirmed")),
+            "class_notes": while_as_run(f"MID({'&'.join(texts)},3,300)"),
             "rank_formula": while_as_run(rank if basis == CANNOT_ROCK else _rank(cells["formula_run"])),
             f"order_{basis}": self._order(rank, upper, cells["chance_run"]),
         }  # fmt: skip
@@ -224,8 +206,17 @@ class ItemFormulas:
             known = live.risk_class(method, risk, ratio, pfa, LIMITS)
             return f'IF(ISNUMBER({risk}),{known},IF(AND({risk}="",{live.is_stocky(ratio)}),{low},{check}))'
 
+        # the axis given, else that of the larger ruling peak; by velocity first one along which the piece can rock
+        ruling = self._formula.ruled_by
+        x, y = (f"MAX({self._floor(f'{ruling}_top_{axis}')})" for axis in AXES)  # of a reference: a blank counts as 0
+        if ruling != "pfa":  # 1E5 weighs more than any peak [cm/s]
+            x, y = (
+                f"IF({fastest}>0,1E5+{fastest},{peak})"
+                for peak, fastest in zip((x, y), map(self._fastest, AXES), strict=True)
+            )
+        axis = self._fill('IF({axis_given}<>"",{axis_given},{worse})', worse=live.worse_axis(x, y))
         found = {
-            "axis": (cells["axis_run"], self._axis()),
+            "axis": (cells["axis_run"], axis),
             "pfa_g": self._peaks("pfa"),
             "pfv_cm_s": self._peaks("pfv"),
             "class_formula": (
@@ -258,7 +249,7 @@ class ItemFormulas:
         """Return whether piece, floor, axis or its motion differ from those as run; `more` are further tests."""
         cells = self._cells
         tests = [
-            *(_differs(cells[key], cells[f"{key}_run"]) for key in SAME),
+            *(differs(cells[key], cells[f"{key}_run"]) for key in SAME),
             *(f"{cells[key]}<>{cells[f'{key}_run']}" for key in SAME_WORDS),
             *(
                 self._fill('IF({axis_given}="{other}",FALSE,{found}={EDITED})', other=other,
@@ -274,22 +265,6 @@ class ItemFormulas:
         template = 'IF(AND({held}<>{YES},ISNUMBER({known})),{weight}*{rank_}+{chance_}-ROW()*1E-9,"")'
         return self._fill(template, known=known, weight=str(CLASS_WEIGHT), rank_=rank, chance_=chance)
 
-    def _notes(self, *, is_settled: bool) -> str:
-        """Return what is to be said of a class that holds for the inputs as run."""
-        rank, upper, formula = (self._cells[key] for key in ("rank", "rank_upper", "rank_formula"))
-        could_be = sentence(", " + _("could be {risk}"), risk=self._terms.label(upper))
-        lowered = sentence(", " + _("lowered by simulation (formula: {risk})"), risk=self._terms.label(formula))
-        fell = literal(", " + _("as it overturns under the record itself"))
-        notes = [
-            (f"{upper}>{rank}", could_be),
-            *([(f"{formula}>{rank}", lowered)] if is_settled else []),
-            (self._fill("{fell}=1"), fell),
-            (self._fill('AND({held}={YES},{bracket_held}<>"")'), self._fill('", "&{bracket_held}')),
-        ]
-        texts = [] if is_settled else [self._fill('", "&{settle}')]
-        texts += [f'IF({test},{text},"")' for test, text in notes]
-        return f"MID({'&'.join(texts)},3,300)"
-
     # ------------------------------------------------------------ the motion of the row's floor
 
     def _area(self, key: str, last: int) -> str:
@@ -300,17 +275,6 @@ class ItemFormulas:
     def _floor(self, key: str) -> str:
         """Return the value in a column of Floors for the row's floor."""
         return f"INDEX({self._area(key, self._last)},MATCH({self._cells['floor']},{self._area('floor', self._last)},0))"
-
-    def _axis(self) -> str:
-        """Return the axis given, else that of the larger ruling peak; by velocity first one along which it can rock."""
-        ruling = self._formula.ruled_by
-        x, y = (f"MAX({self._floor(f'{ruling}_top_{axis}')})" for axis in AXES)  # of a reference: a blank counts as 0
-        if ruling != "pfa":  # 1E5 weighs more than any peak [cm/s]
-            x, y = (
-                f"IF({fastest}>0,1E5+{fastest},{peak})"
-                for peak, fastest in zip((x, y), map(self._fastest, AXES), strict=True)
-            )
-        return self._fill('IF({axis_given}<>"",{axis_given},{worse})', worse=live.worse_axis(x, y))
 
     def _rocks_at(self, pfa: str) -> str:
         """Return whether the piece may rock at a PFA [g]; an error while its sizes are no numbers."""
@@ -331,22 +295,24 @@ class ItemFormulas:
             "SUMPRODUCT(MAX(({floors}={floor})*" + template + "))", floors=floors, pfa=pfa, pfv=pfv, **more
         )
 
-    def _top(self, peak: str, axis: str) -> str:
-        """Return the peak of the record along an axis that governs: by velocity, first of those that can rock it."""
-        top = self._floor(f"{peak}_top_{axis}")
-        if self._formula.ruled_by == "pfa" or self._lowest == self._last:
-            return top
-        fastest = self._fastest(axis)
-        found = fastest if peak == "pfv" else self._among(axis, "({pfv}={fastest})*{pfa}", fastest=fastest)
-        return f"IF({fastest}>0,{found},{top})"
-
     def _peaks(self, peak: str) -> tuple[str, str]:
-        """Return the peak along the row's axis of the record that governed the run, and of the one that governs now."""
-        areas = (self._area(f"{peak}_{axis}", self._lowest) for axis in AXES)
-        as_run = (f"INDEX({area},{self._cells['motion_run']})" for area in areas)
-        now = (self._top(peak, axis) for axis in AXES)
-        found = [self._fill('IF({axis}="X",{x},{y})', x=x, y=y) for x, y in (as_run, now)]
-        return f'IF({found[0]}="","",{found[0]})', f'IF({found[1]}="","",{found[1]})'
+        """Return the peak along the row's axis of the record that governed the run, and of the one that governs now.
+
+        By velocity, those that can rock the piece come first.
+        """
+        found = []
+        for axis in AXES:
+            as_run = f"INDEX({self._area(f'{peak}_{axis}', self._lowest)},{self._cells['motion_run']})"
+            now = self._floor(f"{peak}_top_{axis}")
+            if self._formula.ruled_by != "pfa" and self._lowest != self._last:
+                fastest = own = self._fastest(axis)
+                if peak != "pfv":
+                    own = self._among(axis, "({pfv}={fastest})*{pfa}", fastest=fastest)
+                now = f"IF({fastest}>0,{own},{now})"
+            found.append((as_run, now))
+        of_axis = (self._fill('IF({axis}="X",{x},{y})', x=x, y=y) for x, y in zip(*found, strict=True))
+        first, second = (f'IF({one}="","",{one})' for one in of_axis)
+        return first, second
 
 
 def live_formulas(cells: Mapping[str, str]) -> dict[str, str]:

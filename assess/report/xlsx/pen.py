@@ -55,7 +55,7 @@ class Column:
     """One column of a sheet: its heading in the language in use, its width in characters, and what reads a row.
 
     `format` is how Excel shows a number, `look` one of `LOOKS` ("" goes by the value), `align` "center" or "". In Items
-    a column has a key, by which formulas name it, and `is_live` where it holds formulas, whose results `read` returns.
+    a column has a key, by which formulas name it; `read` returns what they result in as run.
     """
 
     label: str
@@ -64,7 +64,6 @@ class Column:
     format: str = ""
     key: str = ""
     look: str = ""
-    is_live: bool = False
     is_hidden: bool = False
     align: str = ""
 
@@ -170,21 +169,17 @@ class Pen:
         return self._rows(page, row + 2, columns, widths, rows)
 
     def _rows(self, page: Any, top: int, columns: Sequence[Column], widths: Sequence[int], rows: Sequence[Any]) -> int:
-        shown = [self.style("plain", one.format) for one in columns]
+        shown, text = [self.style("plain", one.format) for one in columns], self.style("text")
         for number, row in enumerate(rows, top):
             self.progress.check()
             values = [one.read(row) for one in columns]
             page.set_row(number, row_height(values, widths))
             for at, value in enumerate(values):
-                self.put(page, number, at, value, self._style_of(value) or shown[at])
+                style = shown[at]
+                if isinstance(value, str):  # a text has the colour of the class or state whose symbol it begins with
+                    style = self._marked.get(value[:1], text) if value[1:2] == " " else text
+                self.put(page, number, at, value, style)
         return top + len(rows)
-
-    def _style_of(self, value: Any) -> Any:
-        """Return the style of a text, that of a class or state where it begins with its symbol; None for a number."""
-        if not isinstance(value, str):
-            return None
-        text = self.style("text")
-        return self._marked.get(value[0], text) if value[1:2] == " " else text
 
     def colour(self, page: Any, area: str) -> None:
         """Colour the cells of an area by the symbol of the class that they begin with."""

@@ -4,7 +4,7 @@ All of it is as run. A table is named by the fields of its rows (`assess.fields.
 their columns; one that stands below another has its widths. Some fields the sheet puts in words.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -15,7 +15,7 @@ from assess.report import words
 from assess.report.content import Content
 from assess.report.say import route as say
 from assess.report.say.work import list_steps
-from assess.report.xlsx.item_formulas import ANCHORED, build_terms
+from assess.report.xlsx.item_formulas import ANCHORED
 from assess.report.xlsx.pen import CHANCE, COUNT, Column, Pen, of_field
 from assess.results import ItemResult
 from assess.route_results import (
@@ -71,13 +71,8 @@ def _columns(row: type, chosen: Mapping[str, int] | Iterable[str], said: Mapping
     return [of_field(fields[key], width=width, read=said.get(key, fields[key].read)) for key, width in widths.items()]
 
 
-def _if_known(row: type, keys: Iterable[str], is_known: Callable[[Any], bool]) -> dict[str, Read]:
-    """Return what reads numbers where they are known: a 0 would say more than is known."""
-    fields = route_fields(row)
-    return {key: partial(_read_if, is_known, fields[key].read) for key in keys}
-
-
 def _read_if(holds: Callable[[Any], bool], read: Read, one: Any) -> Any:
+    """Return what is read where it is known: a 0 would say more than is known."""
     return read(one) if holds(one) else None
 
 
@@ -87,12 +82,10 @@ def _say_flags(flags: Sequence[str]) -> str:
 
 def _list_said(routes: RouteTables) -> dict[str, Read]:
     """Return what reads the fields that routes and rooms have in common."""
-
-    def name_segment(one: RouteRow | RoomRow) -> str:
-        return "" if one.decisive_segment is None else _name_segments(routes, [one.decisive_segment])
-
     return {
-        "decisive_segment": name_segment,
+        "decisive_segment": lambda one: _name_segments(
+            routes, [] if one.decisive_segment is None else [one.decisive_segment]
+        ),
         "fixes": lambda one: ", ".join(fix.item for fix in one.fixes),
         "missing": lambda one: say.say_missing(one.missing),
         "missing_after": lambda one: say.say_missing(one.missing_after),
@@ -110,7 +103,15 @@ def _name_segments(routes: RouteTables, places: Iterable[int]) -> str:
 def write_routes(pen: Pen, page: Any, content: Content) -> None:
     """Write every segment, every route and every floor with its chances."""
     routes = content.run.route_tables
-    columns = _list_segment_columns(routes)
+    of_segment: dict[str, Read] = {
+        "state": lambda one: say.say_segment_state(one, routes.risk),
+        "insufficient_for_occupants": lambda one: (
+            "" if one.needed_width_m is None else words.yes_or_no(one.insufficient_for_occupants)
+        ),
+        "other_rooms": lambda one: ", ".join(other.item for other in one.other_rooms),
+        "flags": lambda one: _say_flags(one.flags),
+    }
+    columns = _columns(SegmentRow, SEGMENTS, _list_outlook(SegmentRow, routes) | of_segment)
     widths = [one.width for one in columns]
     if not content.run.has_routes:
         message = replace(columns[0], read=str, format="")
@@ -120,7 +121,18 @@ def write_routes(pen: Pen, page: Any, content: Content) -> None:
     row = pen.listing(page, columns, routes.segments)
     for letter in "GJ":
         pen.bar(page, f"{letter}2:{letter}{row}")
-    row = pen.below(page, row + 1, _("Routes"), _list_route_columns(routes), widths, routes.routes)
+    names = ("floors", "from_places", "to_places", "unevaluated_segments")
+    of_route = _list_outlook(RouteRow, routes) | {
+        "state": lambda one: say.say_route_state(one, routes.risk),
+        **{key: partial(lambda key, one: ", ".join(getattr(one, key)), key) for key in names},
+    }
+    ways = [
+        *_columns(RouteRow, ("route", "fixes", "floors", "from_places", "to_places", "state", *OUTLOOK), of_route),
+        Column(_("Chance left then"), 0, lambda one: one.fixes[-1].left if one.fixes else None, CHANCE),
+        of_field(route_fields(RouteRow)["segment_indices"], read=lambda one: len(one.segment_indices), format=COUNT),
+        *_columns(RouteRow, ("decisive_segment", "unevaluated_segments", "missing_after"), of_route),
+    ]
+    row = pen.below(page, row + 1, _("Routes"), ways, widths, routes.routes)
     floors = _columns(FloorRoutesRow, FLOORS, {})
     row = pen.below(page, row + 1, _("To be expected floor by floor"), floors, widths, routes.floors)
     as_run = _("All of this is as run: it does not follow when a cell of another sheet is edited.")
@@ -133,47 +145,17 @@ def write_routes(pen: Pen, page: Any, content: Content) -> None:
 
 def _list_outlook(row: type, routes: RouteTables) -> dict[str, Read]:
     """Return what reads the chances of a segment or a route; blank where it is not evaluated."""
-
-    def of(read: Read) -> Read:
-        return partial(_read_if, lambda one: one.blocked is not None, read)
-
-    said = _list_said(routes)
-    return said | {
-        **_if_known(row, CHANCES, lambda one: one.state != RouteState.NOT_KNOWN),
-        "under_record": of(lambda one: "" if one.under_record is None else say.say_state(one.under_record)),
-        "most_likely_piece": of(said["most_likely_piece"]),
-        "blocked_is_joint": of(lambda one: say.say_basis(one.blocked)),
+    fields, said = route_fields(row), _list_said(routes)
+    evaluated: dict[str, Read] = {
+        "under_record": lambda one: "" if one.under_record is None else say.say_state(one.under_record),
+        "most_likely_piece": said["most_likely_piece"],
+        "blocked_is_joint": lambda one: say.say_basis(one.blocked),
     }
-
-
-def _list_segment_columns(routes: RouteTables) -> list[Column]:
-    said: dict[str, Read] = {
-        "state": lambda one: say.say_segment_state(one, routes.risk),
-        "insufficient_for_occupants": lambda one: (
-            "" if one.needed_width_m is None else words.yes_or_no(one.insufficient_for_occupants)
-        ),
-        "other_rooms": lambda one: ", ".join(other.item for other in one.other_rooms),
-        "flags": lambda one: _say_flags(one.flags),
-    }
-    return _columns(SegmentRow, SEGMENTS, _list_outlook(SegmentRow, routes) | said)
-
-
-def _list_route_columns(routes: RouteTables) -> list[Column]:
-    fields = route_fields(RouteRow)
-    said = _list_outlook(RouteRow, routes) | {
-        key: partial(_join, key) for key in ("floors", "from_places", "to_places", "unevaluated_segments")
-    }
-    said["state"] = lambda one: say.say_route_state(one, routes.risk)
-    return [
-        *_columns(RouteRow, ("route", "fixes", "floors", "from_places", "to_places", "state", *OUTLOOK), said),
-        Column(_("Chance left then"), 0, lambda one: one.fixes[-1].left if one.fixes else None, CHANCE),
-        of_field(fields["segment_indices"], read=lambda one: len(one.segment_indices), format=COUNT),
-        *_columns(RouteRow, ("decisive_segment", "unevaluated_segments", "missing_after"), said),
-    ]
-
-
-def _join(name: str, one: RouteRow) -> str:
-    return ", ".join(getattr(one, name))
+    return (
+        said
+        | {key: partial(_read_if, lambda one: one.state != RouteState.NOT_KNOWN, fields[key].read) for key in CHANCES}
+        | {key: partial(_read_if, lambda one: one.blocked is not None, read) for key, read in evaluated.items()}
+    )
 
 
 # ---------------------------------------------------------------- Route pieces
@@ -208,50 +190,7 @@ def has_pieces(content: Content) -> bool:
 
 def write_route_pieces(pen: Pen, page: Any, content: Content) -> None:
     """Write the pieces beside every segment, and the steps of every route."""
-    routes, results, columns = content.run.route_tables, content.results, _list_beside_columns()
-    rows = [_Beside(one, near, results[near.item_index]) for one in routes.segments for near in one.pieces]
-    below = pen.listing(page, columns, rows)
-    page.repeat_columns(0, 3)
-    if rows:
-        pen.bar(page, f"H2:H{below}")
-    title = _("What to anchor or move for each route, step by step")
-    steps = [
-        *_columns(SegmentRow, ("route",), {"route": lambda row: row.route}),
-        Column(_("Step"), 0, lambda row: row.text if row.result else ""),
-        *_columns(SegmentRow, ("floor",), {"floor": lambda row: row.floor}),
-        *_list_piece_columns(),
-        Column(_("Chance blocked before"), 0, lambda row: row.before, CHANCE),
-        Column(_("Chance blocked after"), 0, lambda row: row.after, CHANCE),
-    ]
-    pen.below(page, below + 1, title, steps, [one.width for one in columns], list(_list_steps(routes, results)))
-
-
-def _list_piece_columns() -> list[Column]:
-    def of(read: Callable[[ItemResult], Any]) -> Read:
-        return lambda row: None if row.result is None else read(row.result)
-
-    return [
-        *_columns(BesideRow, {"item": 14}, {"item": of(lambda one: one.item.item)}),
-        Column(_("Description"), 30, _describe),
-        Column(_("Pieces"), 8, of(lambda one: one.item.quantity), COUNT),
-        Column(_("Class (as run)"), 34, of(_say_class)),
-    ]
-
-
-def _describe(row: _Beside | _Step) -> str:
-    if row.result is None:
-        return row.text if isinstance(row, _Step) else ""
-    return row.result.item.description or row.result.item.type
-
-
-def _say_class(one: ItemResult) -> str:
-    if one.is_anchored:
-        return ANCHORED + "; ".join(filter(None, (words.risk_words(one), words.say_bracket(one))))
-    return ", ".join([say_class(one.adopted.risk), *words.risk_notes(one)])
-
-
-def _list_beside_columns() -> list[Column]:
-    bases, fields = build_terms().bases, route_fields(BesideRow)
+    routes, results, fields = content.run.route_tables, content.results, route_fields(BesideRow)
 
     def say_remarks(row: _Beside) -> str:
         held = _("anchored: its chances are those without the anchor") if row.result.is_anchored else ""
@@ -267,24 +206,57 @@ def _list_beside_columns() -> list[Column]:
         "by_plan": lambda row: _("plan") if row.near.by_plan else _("Edge distance"),
         "flags": say_remarks,
     }
-    return [
+    columns = [
         *_columns(SegmentRow, {"route": 16, "segment": 18, "floor": 9}, of_segment),
         *_list_piece_columns(),
         Column(_("Chance of overturning"), 11, lambda row: row.result.adopted.probability, CHANCE),
-        Column(_("Basis"), 12, lambda row: bases[row.result.adopted.basis]),
+        Column(_("Basis"), 12, lambda row: pen.terms.bases[row.result.adopted.basis]),
         *_columns(BesideRow, BESIDE, near),
     ]
-
-
-def _list_steps(routes: RouteTables, results: Sequence[ItemResult]) -> Iterator[_Step]:
-    """Yield every step of every route; then the routes that no step fixes."""
+    rows = [_Beside(one, near, results[near.item_index]) for one in routes.segments for near in one.pieces]
+    below = pen.listing(page, columns, rows)
+    page.repeat_columns(0, 3)
+    if rows:
+        pen.bar(page, f"H2:H{below}")
+    title = _("What to anchor or move for each route, step by step")
+    heads = [
+        *_columns(SegmentRow, ("route",), {"route": lambda row: row.route}),
+        Column(_("Step"), 0, lambda row: row.text if row.result else ""),
+        *_columns(SegmentRow, ("floor",), {"floor": lambda row: row.floor}),
+        *_list_piece_columns(),
+        Column(_("Chance blocked before"), 0, lambda row: row.before, CHANCE),
+        Column(_("Chance blocked after"), 0, lambda row: row.after, CHANCE),
+    ]
+    steps = []
     for step in list_steps(routes):
-        one = results[step.item_index]
-        text = _("{place:,} of {steps:,}", place=step.place, steps=step.steps)
-        yield _Step(step.route, text, one.item.floor, one, step.before, step.after)
+        one, text = results[step.item_index], _("{place:,} of {steps:,}", place=step.place, steps=step.steps)
+        steps.append(_Step(step.route, text, one.item.floor, one, step.before, step.after))
     for route, where in say.list_unfixable(routes):
         text, chance = _("blocked with nothing fallen: {segments}", segments=where), say.find_chance(route)
-        yield _Step(route.route, text, ", ".join(route.floors), None, chance, chance)
+        steps.append(_Step(route.route, text, ", ".join(route.floors), None, chance, chance))
+    pen.below(page, below + 1, title, heads, [one.width for one in columns], steps)
+
+
+def _list_piece_columns() -> list[Column]:
+    def of(read: Callable[[ItemResult], Any]) -> Read:
+        return lambda row: None if row.result is None else read(row.result)
+
+    def describe(row: _Beside | _Step) -> str:
+        if row.result is None:
+            return row.text if isinstance(row, _Step) else ""
+        return row.result.item.description or row.result.item.type
+
+    def classify(one: ItemResult) -> str:
+        if one.is_anchored:
+            return ANCHORED + "; ".join(filter(None, (words.risk_words(one), words.say_bracket(one))))
+        return ", ".join([say_class(one.adopted.risk), *words.risk_notes(one)])
+
+    return [
+        *_columns(BesideRow, {"item": 14}, {"item": of(lambda one: one.item.item)}),
+        Column(_("Description"), 30, describe),
+        Column(_("Pieces"), 8, of(lambda one: one.item.quantity), COUNT),
+        Column(_("Class (as run)"), 34, of(classify)),
+    ]
 
 
 # ---------------------------------------------------------------- Route rooms
@@ -293,46 +265,42 @@ def _list_steps(routes: RouteTables, results: Sequence[ItemResult]) -> Iterator[
 def write_route_rooms(pen: Pen, page: Any, content: Content) -> None:
     """Write every room with its safest way out, and the next, which shares as few segments with it as possible."""
     routes = content.run.route_tables
-    below = pen.listing(page, _list_room_columns(routes), routes.rooms)
-    pen.bar(page, f"I2:I{below}")
-    page.freeze_panes(1, 1)
-    page.repeat_columns(0)
-
-
-def _list_room_columns(routes: RouteTables) -> list[Column]:
-    name = partial(_name_segments, routes)
+    name, fields = partial(_name_segments, routes), route_fields(RoomRow)
 
     def say_exits(one: RoomRow) -> str:
         exits = ", ".join(one.exits)
         return _("{stairs} (stairs: beyond them nothing is known)", stairs=exits) if one.by_stairs else exits
 
-    def find_shared(one: RoomRow) -> list[int]:
-        """Return the segments of the alternative that the safest way has, too."""
+    def name_shared(one: RoomRow) -> str:
         ways = [way.segment_indices for way in one.ways[:2]]
-        return [at for at in ways[1] if at in ways[0]] if len(ways) > 1 else []
+        return name([at for at in ways[1] if at in ways[0]]) if len(ways) > 1 else ""
 
     def of_way(place: int, read: Read) -> Read:
         return lambda one: read(one.ways[place]) if len(one.ways) > place else None
 
-    known = _if_known(RoomRow, (key for key in ROOMS if key.startswith("loses_every")), lambda one: one.is_known)
-    said = _list_said(routes) | known | {
+    said = _list_said(routes) | {
+        **{key: partial(_read_if, lambda one: one.is_known, fields[key].read)
+           for key in ROOMS if key.startswith("loses_every")},
         "exits": say_exits,
         "state": say.say_room_state,
         "loses_every_exit_is_joint": lambda one: say.say_basis(one.loses_every_exit),
         "ways": lambda one: len(one.ways),
         "unevaluated_indices": lambda one: name(one.unevaluated_indices),
     }  # fmt: skip
-    ways = (
-        (_("Safest way: to"), _("Safest way: by"), _("Safest way: chance of a blockage")),
-        (_("Alternative: to"), _("Alternative: by"), _("Alternative: chance of a blockage")),
-    )
     columns = _columns(RoomRow, ROOMS, said)
     columns[-1] = replace(columns[-1], format=COUNT)
-    for place, (end, by, chance) in enumerate(ways):
+    for place, (end, by, chance) in enumerate((
+        (_("Safest way: to"), _("Safest way: by"), _("Safest way: chance of a blockage")),
+        (_("Alternative: to"), _("Alternative: by"), _("Alternative: chance of a blockage")),
+    )):  # fmt: skip
         columns += [
             Column(end, 16, of_way(place, lambda way: way.end)),
             Column(by, 60, of_way(place, lambda way: name(way.segment_indices))),
             Column(chance, 11, of_way(place, lambda way: way.blocked.probability if way.is_known else None), CHANCE),
         ]
-    shared = Column(_("Alternative: shared with the safest way"), 40, lambda one: name(find_shared(one)))
-    return [*columns, shared, *_columns(RoomRow, {"unevaluated_indices": 40}, said)]
+    columns.append(Column(_("Alternative: shared with the safest way"), 40, name_shared))
+    columns += _columns(RoomRow, {"unevaluated_indices": 40}, said)
+    below = pen.listing(page, columns, routes.rooms)
+    pen.bar(page, f"I2:I{below}")
+    page.freeze_panes(1, 1)
+    page.repeat_columns(0)

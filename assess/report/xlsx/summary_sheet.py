@@ -22,16 +22,16 @@ from assess.report.say.simulation import INTERVAL, say_scenario
 from assess.report.sections.summary import ROUTES
 from assess.report.xlsx import charts
 from assess.report.xlsx.item_formulas import AT_RUN, literal, sentence
-from assess.report.xlsx.item_values import (
+from assess.report.xlsx.items_sheet import (
     class_in_force,
-    list_bases,
+    class_notes,
+    item_areas,
     list_simulated,
     listed_chance,
+    name_found,
     order_number,
     say_inputs_that_settle,
-    say_listed_class,
 )
-from assess.report.xlsx.items_sheet import item_areas, name_found
 from assess.report.xlsx.pen import CHANCE, HEAD, LINE, Pen, count_lines, row_height
 from assess.results import CANNOT_ROCK, ItemResult, count_pieces
 from assess.risk import RiskClass
@@ -81,8 +81,16 @@ def write_summary(pen: Pen, page: Any, content: Content) -> None:
         page.set_column(at, at, width)
     title = _("Furniture in earthquakes: {title}", title=words.cut(content.title, 100))
     page.write_string(0, 0, title, pen.style("title"))
-    areas, bases = item_areas(pen, content), list_bases(content.run)
-    worst = {basis: _find_worst(content.results, basis) for basis in bases}
+    areas, there = item_areas(pen, content), {one.apart or one.main_basis for one in content.run}
+    bases = [basis for basis in ("simulated", "formula", "unconfirmed") if basis in there]
+    worst: dict[str, Found] = {}
+    for basis in bases:
+        known = (
+            (number, row, one)
+            for row, one in enumerate(content.results, HEAD)
+            if one.adopted.basis == basis and (number := order_number(one, row)) is not None
+        )
+        worst[basis] = [(row, one) for _number, row, one in heapq.nlargest(LISTED, known, key=itemgetter(0))]
     lines = list(_list_lines(pen, content, areas, bases))
     top = 2 + len(lines)
     row = first = top + 3 + len(bases) + len(_list_apart()) + CHART_ROWS
@@ -133,49 +141,35 @@ def _list_lines(
         yield verified.sentence, ""
         if len(bases) > 1:
             yield _("What was simulated, what was not, and what is unconfirmed are counted apart."), ""
-        yield from _follow(pen, content, areas, bases)
+        unconfirmed = literal(pen.terms.bases["unconfirmed"])
+        if "unconfirmed" in bases:
+            own = [one for one in content.results if one.adopted.is_unconfirmed]
+            ways = "; ".join(dict.fromkeys(map(say_inputs_that_settle, own)))
+            text = _("Unconfirmed pieces: {n}; to settle them: {ways}.")
+            n = count_pieces(one for one in own if not one.is_anchored)
+            free = f"({areas['held']}<>{literal(pen.terms.yes)})"
+            counted = f"SUMPRODUCT(({areas['basis']}={unconfirmed})*{free},{areas['quantity']})"
+            yield text.format(n=n, ways=ways), sentence(text, n=counted, ways=literal(ways))
+        rank, n = areas["rank"], sum(one.adopted.lowered_from is not None for one in content.results)
+        is_lowered = f'({rank}<>"")*({rank}<{areas["rank_formula"]})'
+        lowered = f"SUMPRODUCT({is_lowered}*({areas['basis']}<>{unconfirmed}))"
+        text = _("Rows whose class simulation lowers: {n}.")
+        yield text.format(n=n), sentence(text, n=lowered)
     file, again = run.provenance.workbook, f"COUNTIF({areas['basis']},{literal(pen.terms.again)})"
     text = _("Rows to be run again, as an input was edited: {n}. They are in no count by class, list or chart. To "
              "count them, make the same changes in {file} and run it again; a report cannot be run.")  # fmt: skip
     yield text.format(n=0, file=file), sentence(text, n=again, file=literal(file))
     yield _("Counts and chances follow the sheets Floors, Items and Assumptions when those are edited."), ""
-    annual = content.annual.paragraphs[:1] if content.annual else ()
-    yield from ((one, "") for one in (*(each.text for each in content.cautions), *annual, *_say_routes(content)))
-
-
-def _follow(pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequence[str]) -> Iterator[tuple[str, str]]:
-    """Yield the sentences with numbers that follow an edit."""
-    unconfirmed = literal(pen.terms.bases["unconfirmed"])
-    if "unconfirmed" in bases:
-        own = [one for one in content.results if one.adopted.is_unconfirmed]
-        ways = "; ".join(dict.fromkeys(map(say_inputs_that_settle, own)))
-        text = _("Unconfirmed pieces: {n}; to settle them: {ways}.")
-        n = count_pieces(one for one in own if not one.is_anchored)
-        free = f"({areas['held']}<>{literal(pen.terms.yes)})"
-        counted = f"SUMPRODUCT(({areas['basis']}={unconfirmed})*{free},{areas['quantity']})"
-        yield text.format(n=n, ways=ways), sentence(text, n=counted, ways=literal(ways))
-    rank = areas["rank"]
-    is_lowered = f'({rank}<>"")*({rank}<{areas["rank_formula"]})'
-    lowered = f"SUMPRODUCT({is_lowered}*({areas['basis']}<>{unconfirmed}))"
-    text = _("Rows whose class simulation lowers: {n}.")
-    yield text.format(n=sum(one.adopted.lowered_from is not None for one in content.results)), sentence(text, n=lowered)
-
-
-def _say_routes(content: Content) -> Iterator[str]:
-    """Yield what the summary says of the routes, and a line for each of those at risk that it names."""
-    said, routes = route.say_routes(content.run), content.run.route_tables
-    if not said:
-        return
-    found = route.list_at_risk(routes)
-    yield _("Evacuation routes: {text}", text=" ".join(said))
-    yield from (route.describe_at_risk(one, routes.risk) for one in found[:ROUTES])
-    if more := len(found[ROUTES:]):
-        yield ngettext(
-            "{n:,} more route at risk is in the sheet Routes.",
-            "{n:,} more routes at risk are in the sheet Routes.",
-            more,
-        )
-    yield _("The text on routes is as run: it does not follow when a cell is edited.")
+    yield from ((one.text, "") for one in content.cautions)
+    yield from ((one, "") for one in (content.annual.paragraphs[:1] if content.annual else ()))
+    if said := route.say_routes(run):
+        found = route.list_at_risk(run.route_tables)
+        yield _("Evacuation routes: {text}", text=" ".join(said)), ""
+        yield from ((route.describe_at_risk(one, run.route_tables.risk), "") for one in found[:ROUTES])
+        if more := len(found[ROUTES:]):
+            yield ngettext("{n:,} more route at risk is in the sheet Routes.",
+                           "{n:,} more routes at risk are in the sheet Routes.", more), ""  # fmt: skip
+        yield _("The text on routes is as run: it does not follow when a cell is edited."), ""
 
 
 # ---------------------------------------------------------------- the pieces most likely to fall
@@ -184,16 +178,7 @@ Found = Sequence[tuple[int, ItemResult]]
 """Pieces with their places in Items, 1 for the first."""
 
 
-def _find_worst(results: Sequence[ItemResult], basis: str) -> Found:
-    """Return the pieces of a basis of highest class and chance."""
-    own = ((row, one) for row, one in enumerate(results, HEAD) if one.adopted.basis == basis)
-    numbers = ((order_number(one, row), row, one) for row, one in own)
-    known = ((number, row, one) for number, row, one in numbers if number is not None)
-    return [(row, one) for _number, row, one in heapq.nlargest(LISTED, known, key=itemgetter(0))]
-
-
 def _write_worst(plan: _Plan, basis: str, found: Found) -> None:
-    """Write the list of a basis."""
     pen, page, row, is_ideal = plan.pen, plan.page, plan.lists[basis], plan.content.run.settings.ideal
     is_simulated = basis == "simulated"
     title = _("The pieces most likely to fall: {basis}", basis=pen.terms.bases[basis])
@@ -201,18 +186,29 @@ def _write_worst(plan: _Plan, basis: str, found: Found) -> None:
     chances = name_found(is_ideal=is_ideal) if is_simulated else (_("Chance by formula"), "", "", "")
     heads = _("Item"), _("Floor"), _("Room"), _("Pieces"), *chances, _("Class")
     pen.heads(page, heads, WIDTHS, row + 1)
-    text, live, chance = pen.style("text"), pen.style("live"), pen.style("plain", CHANCE)
-    looks = (text, text, text, live, *(chance,) * len(AT_RUN), text)
+    plain, live, chance = pen.style("text"), pen.style("live"), pen.style("plain", CHANCE)
+    looks = (plain, plain, plain, live, *(chance,) * len(AT_RUN), plain)
     areas, order = plan.areas, plan.areas[f"order_{basis}"]
     for number, (place, one) in enumerate(found, 1):
         at, cell = row + 1 + number, f"${xl_col_to_name(PLACE)}{row + 2 + number}"
         known = list_simulated(one, is_ideal=is_ideal) if is_simulated else (listed_chance(one), None, None, None)
         kind = one.item.description or one.item.type
         name = (one.item.item + (f": {kind}" if kind else ""))[:LONGEST]
-        values = (name, one.item.floor, one.item.room, one.item.quantity, *known, say_listed_class(one))
+        label = ", ".join(filter(None, (class_in_force(one), class_notes(one))))
+        values = (name, one.item.floor, one.item.room, one.item.quantity, *known, label)
         page.set_row(at, row_height(values, WIDTHS))
         page.write_formula(at, PLACE, f'=IFERROR(MATCH(LARGE({order},{number}),{order},0),"")', None, place)
-        formulas = _list_formulas(areas, cell, basis, plan.content.run.formula.key)
+        of = {key: f"INDEX({areas[key]},{cell})" for key in areas}
+        text = f'IF({of["description"]}<>"",": "&{of["description"]},IF({of["type"]}<>"",": "&{of["type"]},""))'
+        by_formula = of["chance_run" if basis == "unconfirmed" else plan.content.run.formula.key]
+        formulas = [
+            f"LEFT({of['item']}&{text},{LONGEST})",
+            of["floor"],
+            f'{of["room"]}&""',
+            of["quantity"],
+            *([of[key] for key in AT_RUN] if is_simulated else [by_formula, *['""'] * 3]),
+            f'{of["class"]}&IF({of["class_notes"]}="","",", "&{of["class_notes"]})',
+        ]
         for column, (formula, value, look) in enumerate(zip(formulas, values, looks, strict=True)):
             page.write_formula(at, column, f'=IF({cell}="","",{formula})', look, "" if value is None else value)
         for risk, label in zip(RiskClass, pen.terms.labels, strict=True):
@@ -224,26 +220,6 @@ def _write_worst(plan: _Plan, basis: str, found: Found) -> None:
         pen.colour(page, f"I{row + 3}:I{row + 2 + len(found)}")
         pen.bar(page, f"E{row + 3}:E{row + 2 + len(found)}")
     page.set_column(PLACE, CHANCES + len(RiskClass) - 1, 10, None, {"hidden": True})
-
-
-def _list_formulas(areas: Mapping[str, str], cell: str, basis: str, formula: str) -> list[str]:
-    """Return the formulas of a row of a list; `cell` holds the place of its piece, `formula` is the adopted one."""
-
-    def of(key: str) -> str:
-        return f"INDEX({areas[key]},{cell})"
-
-    text = f'IF({of("description")}<>"",": "&{of("description")},IF({of("type")}<>"",": "&{of("type")},""))'
-    chance = of("chance_run" if basis == "unconfirmed" else formula)
-    found = [of(key) for key in AT_RUN] if basis == "simulated" else [chance, *['""'] * 3]
-    notes = of("class_notes")
-    return [
-        f"LEFT({of('item')}&{text},{LONGEST})",
-        of("floor"),
-        f'{of("room")}&""',
-        of("quantity"),
-        *found,
-        f'{of("class")}&IF({notes}="","",", "&{notes})',
-    ]
 
 
 # ---------------------------------------------------------------- charts and pages
@@ -314,26 +290,41 @@ def _count_apart(results: Sequence[ItemResult]) -> list[int]:
 
 def _write_floors(plan: _Plan, basis: str) -> None:
     """Write the counts of a basis by floor, and below them those of the building."""
-    pen, page, content, top = plan.pen, plan.page, plan.content, plan.tables[basis]
+    pen, page, content, top, below = plan.pen, plan.page, plan.content, plan.tables[basis], plan.total(basis)
     title = _("Pieces by class and floor: {basis}", basis=pen.terms.bases[basis])
     page.write_string(top, 0, title, pen.style("heading"))
     is_first = basis == plan.bases[0]
     _write_heads(plan, top + 1, _("Floor"), [_("pieces"), *(_list_apart() if is_first else ())])
+    areas, terms, quantity, letter = plan.areas, pen.terms, plan.areas["quantity"], xl_col_to_name(SUM)
+    anchored = f"({areas['held']}={literal(terms.yes)})"
+    again = f"({areas['basis']}={literal(terms.again)})"
+    bases = (basis, CANNOT_ROCK) if basis == content.run.main_basis else (basis,)
+    rests = "+".join(f"({areas['basis']}={literal(terms.bases[one])})" for one in bases)
+    classes = [f"({areas['class']}={literal(label)})" for label in terms.labels]
+    if basis == "formula":
+        outside = (f"({areas['class']}={literal(label + OUTSIDE)})" for label in terms.labels)
+        classes = [f"({inside}+{marked})" for inside, marked in zip(classes, outside, strict=True)]
     for number, floor in enumerate(content.floors, 1):
         row = top + 1 + number
         pen.put(page, row, 0, floor.title, pen.style("text"))
         page.set_row(row, row_height([floor.title], WIDTHS))
-        values = _count_as_run(floor.results, basis) + (_count_apart(floor.results) if is_first else [])
-        formulas = _count(plan, basis, number, row + 1)
+        on_floor = f"({areas['floor']}={pen.refer('Floors')}$A${HEAD + number})"  # SUMIFS takes names for criteria
+        formulas = [f"=SUMPRODUCT({on_floor}*(1-{anchored})*({rests})*{one},{quantity})" for one in classes]
+        formulas.append(f"=SUM(B{row + 1}:{xl_col_to_name(SUM - 1)}{row + 1})")
+        values = _count_as_run(floor.results, basis)
+        if is_first:  # what has no class on a floor, and all pieces
+            apart = [f"{on_floor}*{again}", f"{on_floor}*(1-{again})*{anchored}"]
+            sums = [f"{letter}{plan.tables[one] + 2 + number}" for one in plan.bases]
+            sums += [f"{xl_col_to_name(SUM + at)}{row + 1}" for at in range(1, 1 + len(apart))]
+            formulas += [*(f"=SUMPRODUCT({one},{quantity})" for one in apart), f"={'+'.join(sums)}"]
+            values += _count_apart(floor.results)
         for at, (formula, count) in enumerate(zip(formulas, values, strict=True), 1):
             page.write_formula(row, at, formula, pen.style("live"), count)
-    values = _count_as_run(content.results, basis)
-    values += _count_apart(content.results) if is_first else []
-    page.write_string(plan.total(basis), 0, _("All floors"), pen.style("total"))
+    page.write_string(below, 0, _("All floors"), pen.style("total"))
+    values = _count_as_run(content.results, basis) + (_count_apart(content.results) if is_first else [])
     for at, value in enumerate(values, 1):
-        letter = xl_col_to_name(at)
-        formula = f"=SUM({letter}{top + 3}:{letter}{plan.total(basis)})"
-        page.write_formula(plan.total(basis), at, formula, pen.style("total"), value)
+        column = xl_col_to_name(at)
+        page.write_formula(below, at, f"=SUM({column}{top + 3}:{column}{below})", pen.style("total"), value)
 
 
 def _write_heads(plan: _Plan, row: int, label: str, more: Sequence[str]) -> None:
@@ -343,26 +334,3 @@ def _write_heads(plan: _Plan, row: int, label: str, more: Sequence[str]) -> None
         page.write_string(row, at, pen.terms.labels[risk], pen.classes[risk])
     for at, text in enumerate(more, SUM):
         page.write_string(row, at, text, pen.style("head"))
-
-
-def _count(plan: _Plan, basis: str, number: int, row: int) -> list[str]:
-    """Return the formulas that count the pieces of a floor, the `number`-th, in the row `row` of its table."""
-    areas, terms, quantity, letter = plan.areas, plan.pen.terms, plan.areas["quantity"], xl_col_to_name(SUM)
-    on_floor = f"({areas['floor']}={plan.pen.refer('Floors')}$A${HEAD + number})"  # SUMIFS would read names as criteria
-    anchored = f"({areas['held']}={literal(terms.yes)})"
-    bases = (basis, CANNOT_ROCK) if basis == plan.content.run.main_basis else (basis,)
-    rests = "+".join(f"({areas['basis']}={literal(terms.bases[one])})" for one in bases)
-    formulas = []
-    for label in terms.labels:
-        classed = f"({areas['class']}={literal(label)})"
-        if basis == "formula":
-            classed = f"({classed}+({areas['class']}={literal(label + OUTSIDE)}))"
-        formulas.append(f"=SUMPRODUCT({on_floor}*(1-{anchored})*({rests})*{classed},{quantity})")
-    formulas.append(f"=SUM(B{row}:{xl_col_to_name(SUM - 1)}{row})")
-    if basis != plan.bases[0]:
-        return formulas
-    again = f"({areas['basis']}={literal(terms.again)})"  # what has no class on a floor, and all pieces
-    apart = [f"{on_floor}*{again}", f"{on_floor}*(1-{again})*{anchored}"]
-    sums = [f"{letter}{plan.tables[one] + 2 + number}" for one in plan.bases]
-    own = [f"{xl_col_to_name(SUM + at)}{row}" for at in range(1, 1 + len(apart))]
-    return [*formulas, *(f"=SUMPRODUCT({one},{quantity})" for one in apart), f"={'+'.join(sums + own)}"]

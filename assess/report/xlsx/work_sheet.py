@@ -3,8 +3,8 @@
 All of it is as run, but for the costs: number of pieces times unit cost, so that another unit cost can be tried.
 """
 
-from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
@@ -18,7 +18,6 @@ from assess.report.say import work as say_work
 from assess.report.say.work import Work
 from assess.report.xlsx.pen import COUNT, LINE, Column, Pen, count_lines, of_field, row_height, widen
 from assess.schedule_results import Schedule, ScheduleRow, WorkRow
-from assess.table import Field
 
 BOX = "☐"
 """To be ticked on paper."""
@@ -56,7 +55,14 @@ def write_work(pen: Pen, page: Any, content: Content) -> None:
                 page.write_formula(row, place, formula, style, "" if value is None else value)
             else:
                 pen.put(page, row, place, value, style)
-    _write_sums(pen, page, works, at)
+    below = len(works) + 1
+    page.write_string(below, at["room"], _("Sum"), pen.style("total"))
+    pieces, cost = (f"{xl_col_to_name(at[name])}2:{xl_col_to_name(at[name])}{below}" for name in ("pieces", "cost"))
+    total = sum(one.row.pieces for one in works)
+    page.write_formula(below, at["pieces"], f"=SUM({pieces})", pen.style("total", COUNT), total)
+    costs = [work.row.cost for work in works if work.row.cost is not None]
+    formula, known = f'=IF(COUNT({cost})=0,"",SUM({cost}))', sum(costs) if costs else ""
+    page.write_formula(below, at["cost"], formula, pen.style("total", MONEY), known)
     texts = [
         _("This list is as run: it does not follow what is edited in Items and Floors."),
         *say_work.say_effect_of_all(schedule),
@@ -65,7 +71,7 @@ def write_work(pen: Pen, page: Any, content: Content) -> None:
         say_work.say_disagreement(),
         *say_work.list_marks(schedule),
     ]
-    for row, text in enumerate(texts, len(works) + 3):
+    for row, text in enumerate(texts, below + 2):
         page.merge_range(row, 0, row, len(widths) - 1, "", pen.style("text"))
         page.set_row(row, LINE * count_lines(text, sum(widths)))
         pen.put(page, row, 0, text, pen.style("text"))
@@ -73,9 +79,6 @@ def write_work(pen: Pen, page: Any, content: Content) -> None:
 
 
 def _list_columns(schedule: Schedule) -> list[Column]:
-    def of_work(field: Field) -> Column:
-        code = MONEY if field.key in ("unit_cost", "cost") else field.format
-        return of_field(field, key=field.key, read=lambda one: field.read(one.row), format=code)
 
     def of_entry(name: str, width: int, *, only_first: bool = False, align: str = "") -> Column:
         """Return a column of the whole entry, which stands with the most urgent part of it alone if `only_first`."""
@@ -86,7 +89,15 @@ def _list_columns(schedule: Schedule) -> list[Column]:
 
         return of_field(field, key=name, width=width, read=read, align=align)
 
-    own = {name: of_work(field) for name, field in schedule_fields(WorkRow).items()}
+    def say_why(one: Work) -> str:
+        first = one.results[0]
+        return f"{words.class_symbol(first)} {words.risk_words(first)}; {one.chance}; {one.reason}"
+
+    own = {
+        name: of_field(field, key=name, read=partial(lambda field, one: field.read(one.row), field),
+                       format=MONEY if name in ("unit_cost", "cost") else field.format)
+        for name, field in schedule_fields(WorkRow).items()
+    }  # fmt: skip
     screening = say_work.say_screening()
     has_code = any(work.tension_code_kn is not None for row in schedule.rows for work in row.works)
     forces = [own[name] for name in FORCES if name != "tension_code_kn" or has_code]
@@ -98,7 +109,7 @@ def _list_columns(schedule: Schedule) -> list[Column]:
         replace(own["pieces"], align="center"),
         Column(_("Names"), 14, lambda one: ", ".join(sorted(one.row.items, key=natural_key))),
         Column(_("Description"), 16, lambda one: one.described),
-        Column(_("Why, as run"), 34, _say_why, key="why"),
+        Column(_("Why, as run"), 34, say_why, key="why"),
         Column(own["detail"].label, 13, lambda one: _(one.detail.title)),
         *(replace(one, label=f"{one.label}: {screening}", format=FORCE) for one in forces),
         replace(own["fixings"], align="center", read=lambda one: say_work.say_fixings(one.row)),
@@ -106,55 +117,26 @@ def _list_columns(schedule: Schedule) -> list[Column]:
         own["cost"],
         of_entry("falls_avoided", 8, only_first=True),
         of_entry("falls_left", 8, only_first=True),
-        Column(_("Remarks on the forces"), 26, _list_remarks, key="remarks"),
-        Column(_("Photo"), 10, _name_photos),
+        Column(_("Remarks on the forces"), 26, key="remarks", read=lambda one: "; ".join(
+            filter(None, (say_work.say_held() if one.is_held_by_weight else "", one.marks)))),
+        Column(_("Photo"), 10, lambda one: ", ".join(
+            dict.fromkeys(str(each.item.field("photo")) for each in one.results if each.item.field("photo")))),
         Column(_("Notes"), 18, lambda _one: ""),
-    ]
-
-
-def _say_why(work: Work) -> str:
-    first = work.results[0]
-    return f"{words.class_symbol(first)} {words.risk_words(first)}; {work.chance}; {work.reason}"
-
-
-def _list_remarks(work: Work) -> str:
-    """Return what a tension of 0 means, and the marks of what the forces rest on."""
-    return "; ".join(filter(None, (say_work.say_held() if work.is_held_by_weight else "", work.marks)))
-
-
-def _name_photos(work: Work) -> str:
-    """Return the file names of the photos of the pieces, as the workbook has them."""
-    named = (str(one.item.field("photo") or "") for one in work.results)
-    return ", ".join(dict.fromkeys(filter(None, named)))
-
-
-def _write_sums(pen: Pen, page: Any, works: Sequence[Work], at: Mapping[str, int]) -> None:
-    """Write how many pieces there are and what they cost, below the list."""
-    row = len(works) + 1
-    page.write_string(row, at["room"], _("Sum"), pen.style("total"))
-    pieces, cost = (f"{xl_col_to_name(at[name])}2:{xl_col_to_name(at[name])}{row}" for name in ("pieces", "cost"))
-    total = sum(one.row.pieces for one in works)
-    page.write_formula(row, at["pieces"], f"=SUM({pieces})", pen.style("total", COUNT), total)
-    costs = [work.row.cost for work in works if work.row.cost is not None]
-    formula, known = f'=IF(COUNT({cost})=0,"",SUM({cost}))', sum(costs) if costs else ""
-    page.write_formula(row, at["cost"], formula, pen.style("total", MONEY), known)
+    ]  # fmt: skip
 
 
 def _write_changes(pen: Pen, page: Any, row: int, schedule: Schedule) -> None:
+    """Write the table before and after: its labels take the columns before those of its numbers."""
     page.write_string(row, 0, _("Before and after"), pen.style("heading"))
-    for at, text in enumerate(("", _("Before"), _("After"))):
-        _put_wide(pen, page, row + 1, at, text, pen.style("head"))
-    for at, one in enumerate((change for part in say_work.list_changes(schedule) for change in part), row + 2):
-        _put_wide(pen, page, at, 0, one.label, pen.style("text"))
-        page.set_row(at, row_height([one.label], [40]))
-        for place, value in enumerate((one.before, one.after), 1):
-            _put_wide(pen, page, at, place, value, pen.style("plain", FORCE if one.decimals else COUNT))
-
-
-def _put_wide(pen: Pen, page: Any, row: int, at: int, value: Any, style: Any) -> None:
-    """Write a cell of the table before and after: its labels take the columns before the numbers."""
-    if at:
-        pen.put(page, row, CHANGE + at - 1, value, style)
-    else:
-        page.merge_range(row, 0, row, CHANGE - 1, "", style)
-        pen.put(page, row, 0, value, style)
+    head = pen.style("head")
+    lines = [(("", _("Before"), _("After")), head, head)]
+    for one in (change for part in say_work.list_changes(schedule) for change in part):
+        form = pen.style("plain", FORCE if one.decimals else COUNT)
+        lines.append(((one.label, one.before, one.after), pen.style("text"), form))
+    for at, ((label, *values), wide, form) in enumerate(lines, row + 1):
+        page.merge_range(at, 0, at, CHANGE - 1, "", wide)
+        pen.put(page, at, 0, label, wide)
+        if label:
+            page.set_row(at, row_height([label], [40]))
+        for place, value in enumerate(values, CHANGE):
+            pen.put(page, at, place, value, form)
