@@ -509,7 +509,7 @@ class View:
             *_list_differing(before.uncertainty, after.uncertainty, uncertainty),
             *_list_differing({"": before.shaking}, {"": after.shaking}, {"": _("Assumed shaking")}),
             *_list_differing({"": before.site_ground}, {"": after.site_ground}, {"": _("Ground motion")}),
-            *([Fact(_("Recorded motions"), *motions, differs=True)] if before.motions != after.motions else []),
+            *([Fact(_("Recorded motions"), motions[0], motions[1], True)] if before.motions != after.motions else []),
             *_list_differing(before.building, after.building, lines, left_out=("building", "report_date")),
             *_list_differing(before.platform, after.platform, {}),
         ]

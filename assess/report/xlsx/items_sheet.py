@@ -206,8 +206,8 @@ def item_columns(results: Results) -> list[Column]:
     shown = []
     for key in FRONT:
         if key == "centre_of_gravity":  # in percent of the piece's height, as in the workbook
-            field = ITEMS.column(key)
-            label = f"{_(field.label)} [{field.unit}]"
+            centre = ITEMS.column(key)
+            label = f"{_(centre.label)} [{centre.unit}]"
             shown.append(Column(label, 9, lambda one: 100 * one.item.centre_of_gravity, "0.#", key, "input"))
         else:
             shown.append(_given(known[key]))

@@ -82,7 +82,7 @@ def write_summary(pen: Pen, page: Any, content: Content) -> None:
     title = _("Furniture in earthquakes: {title}", title=words.cut(content.title, 100))
     page.write_string(0, 0, title, pen.style("title"))
     areas, there = item_areas(pen, content), {one.apart or one.main_basis for one in content.run}
-    bases = [basis for basis in ("simulated", "formula", "unconfirmed") if basis in there]
+    bases: list[str] = [basis for basis in ("simulated", "formula", "unconfirmed") if basis in there]
     worst: dict[str, Found] = {}
     for basis in bases:
         known = (

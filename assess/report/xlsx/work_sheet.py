@@ -129,7 +129,7 @@ def _write_changes(pen: Pen, page: Any, row: int, schedule: Schedule) -> None:
     """Write the table before and after: its labels take the columns before those of its numbers."""
     page.write_string(row, 0, _("Before and after"), pen.style("heading"))
     head = pen.style("head")
-    lines = [(("", _("Before"), _("After")), head, head)]
+    lines: list[tuple[tuple[str, Any, Any], Any, Any]] = [(("", _("Before"), _("After")), head, head)]
     for one in (change for part in say_work.list_changes(schedule) for change in part):
         form = pen.style("plain", FORCE if one.decimals else COUNT)
         lines.append(((one.label, one.before, one.after), pen.style("text"), form))
