@@ -59,7 +59,6 @@ def read_background(path: Path) -> Background:
 
 
 def _parse(path: Path) -> Mapping[str, Any]:
-    """Return the object at the top of a file; InputError if it is not GeoJSON, or not of longitudes and latitudes."""
     try:
         with path.open("rb") as file:
             data = file.read(MOST_BYTES + 1)
@@ -118,20 +117,22 @@ def _read_shapes(kind: str, shapes: Any, where: str) -> list[Any]:
     for _level in range(3 - _DIMENSIONS[kind]):
         shapes = [shapes]
     least = 4 if "Polygon" in kind else 2
+    found = []
     try:
-        return [tuple(_read_line(line, least, where) for line in shape) for shape in shapes if shape]
+        for shape in filter(None, shapes):
+            lines = []
+            for given in shape:
+                line = tuple(_read_point(point, where) for point in given)
+                if len(line) < least:
+                    raise InputError(fill("{where}: a ring or line has {count} points, expected at least {least}",
+                                          where=where, count=len(line), least=least))  # fmt: skip
+                lines.append(line)
+            found.append(tuple(lines))
     except TypeError:
         raise InputError(
             fill("{where}: the coordinates are not lists of points as a {kind} has them", where=where, kind=kind)
         ) from None
-
-
-def _read_line(given: Any, least: int, where: str) -> tuple[Place, ...]:
-    line = tuple(_read_point(point, where) for point in given)
-    if len(line) < least:
-        raise InputError(fill("{where}: a ring or line has {count} points, expected at least {least}",
-                              where=where, count=len(line), least=least))  # fmt: skip
-    return line
+    return found
 
 
 def _read_point(given: Any, where: str) -> Place:

@@ -24,15 +24,14 @@ from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
 from io import StringIO
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from assess.bim.cobie import read_cobie
 from assess.bim.cobie_sheets import is_cobie
-from assess.bim.import_workbook import ImportedBuilding, list_remarks, list_rows
+from assess.bim.import_workbook import list_remarks, list_rows
 from assess.errors import InputError, Problem, WorkbookError
 from assess.i18n import LANGUAGES, count, fill, join, load_catalogue
-from assess.model import Building, Inventory
+from assess.model import Inventory
 from assess.motion.site_ground import GroundField
 from assess.portfolio.building_rows import Origin, spell_use
 from assess.portfolio.index_file import IndexRow
@@ -61,17 +60,11 @@ def read_building(source: Source, data: bytes | None, ground: GroundField | None
     if source.file is None:
         raise WorkbookError([Problem("error", "", "", fill("it has no workbook."))])
     row = source.index or IndexRow()
-    if data is not None and is_cobie(data):
-        imported = read_cobie(data, source.file.name)
-        left_out = sum(one.count for one in imported.skipped if one.is_furniture)
-        origin = Origin(inventory="handover", left_out=left_out)
-        return origin, _compare(_read_handover(imported, source.file, row, ground), row, is_survey=False)
-    inventory = read_inventory(source.file, building=row.as_building(), ground=ground)
-    return Origin(inventory="surveyed"), _compare(inventory, row, is_survey=True)
-
-
-def _read_handover(imported: ImportedBuilding, file: Path, row: IndexRow, ground: GroundField | None) -> Inventory:
-    """Return the inventory of a COBie file; WorkbookError with what was left out where no furniture is found."""
+    if data is None or not is_cobie(data):
+        inventory = read_inventory(source.file, building=row.as_building(), ground=ground)
+        return Origin(inventory="surveyed"), _compare(inventory, row, is_survey=True)
+    imported = read_cobie(data, source.file.name)
+    left_out = sum(one.count for one in imported.skipped if one.is_furniture)
     if row.building:  # what a building model calls itself is no name that people gave it
         imported = replace(imported, building={**imported.building, "building": row.building})
     remarks = list_remarks(imported)
@@ -79,7 +72,8 @@ def _read_handover(imported: ImportedBuilding, file: Path, row: IndexRow, ground
         fault = fill("no furniture with sizes is found in the COBie file.")
         fix = fill("Fill in NominalLength, NominalWidth and NominalHeight of its Moveable types.")
         raise WorkbookError([Problem("error", "", "", fault, fix), *remarks])
-    return replace(_read_rows(list_rows(imported), remarks, row.as_building(), ground), source=file)
+    inventory = replace(_read_rows(list_rows(imported), remarks, row.as_building(), ground), source=source.file)
+    return Origin(inventory="handover", left_out=left_out), _compare(inventory, row, is_survey=False)
 
 
 def _read_rows(
@@ -90,8 +84,11 @@ def _read_rows(
 
 
 def _compare(inventory: Inventory, row: IndexRow, *, is_survey: bool) -> Inventory:
-    """Return an inventory with a warning where the index says something else of the building."""
-    found = list(_list_other(row, inventory.building))
+    found = []
+    for name, value in row.as_building().items():
+        own = getattr(inventory.building, name)
+        if own not in (None, "") and name in _ALIKE and not _ALIKE[name](value, own):
+            found.append((BUILDING.column(name).label, _show(value), _show(own)))
     if not found:
         return inventory
     index = join(", ", [join(" ", (fill(label), value)) for label, value, _ in found])
@@ -104,14 +101,6 @@ def _compare(inventory: Inventory, row: IndexRow, *, is_survey: bool) -> Invento
         fix = fill("Check that the line of the index belongs to this COBie file.")
     warning = Problem("warning", inventory.sheets.get(BUILDING.name, BUILDING.name), "", fault, fix)
     return replace(inventory, problems=(warning, *inventory.problems))
-
-
-def _list_other(row: IndexRow, building: Building) -> Iterator[tuple[str, str, str]]:
-    """Yield label, value in the index and value in the workbook of what the index gives and the workbook has other."""
-    for name, value in row.as_building().items():
-        own = getattr(building, name)
-        if own not in (None, "") and name in _ALIKE and not _ALIKE[name](value, own):
-            yield BUILDING.column(name).label, _show(value), _show(own)
 
 
 def _show(value: str | float) -> str:
@@ -185,7 +174,15 @@ def build_assumed(row: IndexRow) -> tuple[Origin, Mapping[str, Sequence[Mapping[
     Raises InputError if one of them is blank, the use is none that P-58 gives quantities for, or the area is too small
     or too large.
     """
-    use = find_use(row.use)
+    if not row.use.strip():
+        fault = "no inventory can be assumed without use. Give it in the index, or survey the building."
+        raise InputError.about(fault)
+    if (use := _name_uses().get(key(row.use))) is None:
+        fault = (
+            "no inventory can be assumed for the use {use}: FEMA P-58 gives quantities of furniture for office, "
+            "healthcare and laboratory only. Survey the building, and name its workbook in the column path."
+        )
+        raise InputError.about(fault, use=repr(row.use[:60]))
     if row.storeys is None or row.floor_area_m2 is None:
         missing = [name for name in ("storeys", "floor_area_m2") if getattr(row, name) is None]
         text = "no inventory can be assumed without {columns}. Give it in the index, or survey the building."
@@ -225,23 +222,8 @@ def build_assumed(row: IndexRow) -> tuple[Origin, Mapping[str, Sequence[Mapping[
     return origin, rows, tuple(_describe(row, use, counts, height))
 
 
-def find_use(text: str) -> str:
-    """Return the occupancy of P-58 that a use means; InputError if it is blank, or P-58 gives no quantities of it."""
-    if not text.strip():
-        fault = "no inventory can be assumed without use. Give it in the index, or survey the building."
-        raise InputError.about(fault)
-    if (use := _names().get(key(text))) is not None:
-        return use
-    fault = (
-        "no inventory can be assumed for the use {use}: FEMA P-58 gives quantities of furniture for office, healthcare "
-        "and laboratory only. Survey the building, and name its workbook in the column path."
-    )
-    raise InputError.about(fault, use=repr(text[:60]))
-
-
 @cache
-def _names() -> dict[str, str]:
-    """Return the occupancies by their names in every language, as names are compared."""
+def _name_uses() -> dict[str, str]:
     languages = [load_catalogue(code) for code in LANGUAGES]
     return {
         key(said): use
@@ -266,7 +248,6 @@ def spread_pieces(total: Quantity, storeys: int) -> list[Quantity]:
 
 @cache
 def _read_kinds() -> dict[str, tuple[_Kind, ...]]:
-    """Return the kinds of pieces by occupancy."""
     text = (files("assess.portfolio") / "p58_quantities.csv").read_text(encoding="utf-8")
     catalogue = {line["type"]: line for line in catalogue_rows()}
     found: dict[str, tuple[_Kind, ...]] = {}
@@ -283,7 +264,6 @@ def _read_kinds() -> dict[str, tuple[_Kind, ...]]:
 
 
 def _describe(row: IndexRow, use: str, counts: Sequence[tuple[_Kind, Quantity]], height: float) -> Iterator[Problem]:
-    """Yield that the inventory is assumed, and what else is."""
     pieces = ", ".join(f"{count(one.median, kind.piece)} ({one.low:,} to {one.high:,})" for kind, one in counts)
     text = fill(
         "inventory assumed: no piece of this building has been seen. {pieces}, by its use ({use}) and its gross floor "

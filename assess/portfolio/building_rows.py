@@ -18,8 +18,7 @@ from assess.report.say.ground import uses_scatter
 from assess.report.say.route import say_missing
 from assess.results import Results
 from assess.risk import find_ends
-from assess.route_results import RouteRow, RouteState, RouteTables
-from assess.table import Kind
+from assess.route_results import RouteState
 from assess.units import to_edge
 from assess.workbook.schema import BUILDING, USES
 
@@ -86,23 +85,18 @@ def to_row(name: str, record: Record) -> list[Any]:
     unknown = set(record) - {field.source.partition(".")[0] for field in TABLES[name]}
     if unknown:
         raise ValueError(f"the table {name} has no column {', '.join(sorted(unknown))}")
-    return [_to_plain(field.read(record), field.kind) for field in TABLES[name]]
-
-
-def _to_plain(value: Any, kind: Kind) -> Any:
-    if value is None or (isinstance(value, str | tuple | list) and not value):
-        return None
-    if kind == "text":
-        return "; ".join(value) if isinstance(value, tuple | list) else str(value)
-    if kind == "flag":
-        return bool(value)
-    if kind == "count":
-        return int(value)
-    number = float(value)
-    return number if math.isfinite(number) else None
-
-
-# ---------------------------------------------------------------- the building
+    row: list[Any] = []
+    for field in TABLES[name]:
+        value = field.read(record)
+        if value is None or (isinstance(value, str | tuple | list) and not value):
+            row.append(None)
+        elif field.kind == "text":
+            row.append("; ".join(value) if isinstance(value, tuple | list) else str(value))
+        elif field.kind == "number":
+            row.append(float(value) if math.isfinite(float(value)) else None)
+        else:
+            row.append(bool(value) if field.kind == "flag" else int(value))
+    return row
 
 
 def _describe_building(
@@ -154,7 +148,6 @@ def _describe_building(
 
 
 def _describe_shaking(inventory: Inventory) -> Record:
-    """Return what the motion of the ground rests on, its PGA and its PGV."""
     site, ground, building = inventory.site_ground, find_ground(inventory), inventory.building
     source, pga, pgv, distance = "", ground.pga, ground.pgv, None
     if building.ground_pga is None and building.sds is None and site is not None:
@@ -172,18 +165,15 @@ def _describe_shaking(inventory: Inventory) -> Record:
     }
 
 
-# ---------------------------------------------------------------- its pieces, routes and problems
-
-
-def _list_pieces(path: str, origin: Origin, results: Results) -> Iterator[Record]:
+def _list_pieces(path: str, origin: Origin, results: Results) -> list[Record]:
     works = {
         index: {"work_place": entry.place, "detail": DETAILS[work.detail].title, "unit_cost": work.unit_cost}
         for entry in results.schedule.rows
         for work in entry.works
         for index in work.item_indices
     }
-    for one in results:
-        yield {
+    return [
+        {
             "path": path,
             "inventory": origin.inventory,
             "one": one,
@@ -191,6 +181,8 @@ def _list_pieces(path: str, origin: Origin, results: Results) -> Iterator[Record
             "quantity_low": None if origin.low is None else origin.low[one.item.item],
             "quantity_high": None if origin.high is None else origin.high[one.item.item],
         }
+        for one in results
+    ]
 
 
 def _list_routes(path: str, results: Results) -> Iterator[Record]:
@@ -199,26 +191,20 @@ def _list_routes(path: str, results: Results) -> Iterator[Record]:
     for one in tables.routes:
         blocked = None if one.state is RouteState.NOT_KNOWN else one.blocked
         ranged = blocked if results.main_basis == SIMULATED and blocked and blocked.low < blocked.high else None
+        chances: dict[str, float] = {}
+        for near in (near for at in one.segment_indices for near in tables.segments[at].pieces):
+            chance = 1.0 if near.falls_while_blocked is None else near.falls_while_blocked
+            chances[near.item] = max(chance, chances.get(near.item, 0.0))
+        likeliest = sorted((-chance, item) for item, chance in chances.items() if chance > 0)
         yield {
             "path": path,
             "one": one,
             "chance": blocked,
             "range": ranged,
             "occupants": count_people(tables, one),
-            "blockers": _list_blockers(tables, one),
+            "blockers": [item for _chance, item in likeliest[:MOST_BLOCKERS]],
             "to_fill_in": say_missing(one.missing),
         }
-
-
-def _list_blockers(tables: RouteTables, route: RouteRow) -> list[str]:
-    """Return the pieces that may block a route, the likeliest first."""
-    chances: dict[str, float] = {}
-    for at in route.segment_indices:
-        for near in tables.segments[at].pieces:
-            chance = 1.0 if near.falls_while_blocked is None else near.falls_while_blocked
-            chances[near.item] = max(chance, chances.get(near.item, 0.0))
-    able = [(-chance, item) for item, chance in chances.items() if chance > 0]
-    return [item for _chance, item in sorted(able)[:MOST_BLOCKERS]]
 
 
 def list_problems(path: str, problems: Sequence[Problem]) -> list[list[Any]]:

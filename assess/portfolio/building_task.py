@@ -90,17 +90,21 @@ class Summary:
 
 def run_task(task: Task) -> Summary:
     """Assess a building and write its part, unless it is there already."""
-    source = task.source
-    data = _read_workbook(source)
-    content = None if data is None else hashlib.sha256(data).hexdigest()
+    from assess.workbook.open import read_file
+
+    source, data, content = task.source, None, None
+    if source.file is not None and not source.refused:
+        with suppress(AssessError, OSError):  # reported when the building is assessed
+            data = read_file(source.file)
+            content = hashlib.sha256(data).hexdigest()
     ground = None if task.ground is None else (type(task.ground).__name__, task.ground.file, task.ground.sha256)
     row = None if source.index is None else asdict(replace(source.index, line=0))  # a row may move in the index
     key = find_key(source.path, source.kind, content, row, task.settings.as_record(), ground, find_code())
     lost = None
     part = read_part(task.out, key)
-    is_kept = is_done(part, None if source.file is None else source.file.parent)
+    is_kept = _is_done(part, None if source.file is None else source.file.parent)
     if part is None or not is_kept:
-        part = _assess_surely(task, key, data)
+        part = _assess(task, key, data)
         try:
             write_part(task.out, part)
         except OSError as error:
@@ -121,33 +125,33 @@ def give_up(task: Task) -> Summary:
 
 
 def _skip(source: Source, key: str, fault: str, fix: str = "", problems: Sequence[Problem] = ()) -> Part:
-    """Return the part of a building that is not assessed, with the reason and how to fix it, or with its problems."""
     tables = build_skipped(source, problems or [Problem("error", "", "", fault, fix)])
     return Part(path=source.path, key=key, status="skipped", tables=tables)
 
 
-def _read_workbook(source: Source) -> bytes | None:
-    """Return the bytes of the workbook of a building; None where it has none, or where they cannot be read."""
-    if source.file is None or source.refused:
-        return None
-    from assess.workbook.open import read_file
-
-    try:
-        return read_file(source.file)
-    except (AssessError, OSError):
-        return None
-
-
-# ---------------------------------------------------------------- a building
-
-
-def _assess_surely(task: Task, key: str, data: bytes | None) -> Part:
-    """Return the part of a building, skipped with the reason if anything is wrong with it."""
+def _assess(task: Task, key: str, data: bytes | None) -> Part:
     source = task.source
     if source.refused:
         return _skip(source, key, source.refused, source.fix)
     try:
-        return _assess(task, key, data)
+        from assess.pipeline.draw_sums import sum_draws
+        from assess.pipeline.run import build_results, compute
+        from assess.portfolio.building_inventory import read_building
+
+        origin, inventory = read_building(source, data, task.ground)
+        assessment = compute(inventory, task.settings, jobs=1)
+        results = build_results(assessment, figures=False)
+        sums = sum_draws(assessment, results)
+        drawn = {"falls": sums.falls, "people_blocked": sums.people_blocked, "routes_blocked": sums.routes_blocked}
+        known = {name: values.tolist() for name, values in drawn.items() if values is not None}
+        return Part(
+            path=source.path,
+            key=key,
+            status="assessed",
+            tables=build_tables(source, origin, inventory, results, sums),
+            draws=known if len(known) == len(drawn) else {},
+            files={} if source.file is None else _list_files(inventory, source.file.resolve().parent),
+        )
     except WorkbookError as error:
         return _skip(source, key, "", problems=error.problems)
     except AssessError as error:
@@ -163,32 +167,8 @@ def _assess_surely(task: Task, key: str, data: bytes | None) -> Part:
         return _skip(source, key, fault, fill("Please report it, with the file {file}.", file=f"{trace}"))
 
 
-def _assess(task: Task, key: str, data: bytes | None) -> Part:
-    from assess.pipeline.draw_sums import sum_draws
-    from assess.pipeline.run import build_results, compute
-    from assess.portfolio.building_inventory import read_building
-
-    origin, inventory = read_building(task.source, data, task.ground)
-    assessment = compute(inventory, task.settings, jobs=1)
-    results = build_results(assessment, figures=False)
-    sums = sum_draws(assessment, results)
-    drawn = {"falls": sums.falls, "people_blocked": sums.people_blocked, "routes_blocked": sums.routes_blocked}
-    known = {name: values.tolist() for name, values in drawn.items() if values is not None}
-    return Part(
-        path=task.source.path,
-        key=key,
-        status="assessed",
-        tables=build_tables(task.source, origin, inventory, results, sums),
-        draws=known if len(known) == len(drawn) else {},
-        files=_list_files(inventory, task.source.file),
-    )
-
-
-def _list_files(inventory: Inventory, file: Path | None) -> Mapping[str, str]:
+def _list_files(inventory: Inventory, folder: Path) -> Mapping[str, str]:
     """Return the files that a workbook names, relative to its folder, with their SHA-256."""
-    if file is None:
-        return {}
-    folder = file.resolve().parent
     named = {name.replace("\\", "/"): digest for name, digest in inventory.files.items()}
     pictures = [inventory.building.logo, *(floor.plan.path for floor in inventory.floors if floor.plan)]
     paths = [one for one in pictures if one is not None] + [folder / name for name in inventory.photos]
@@ -196,9 +176,6 @@ def _list_files(inventory: Inventory, file: Path | None) -> Mapping[str, str]:
         if digest := find_digest(path):
             named[path.relative_to(folder).as_posix()] = digest
     return dict(sorted(named.items()))
-
-
-# ---------------------------------------------------------------- parts
 
 
 def find_key(*parts: object) -> str:
@@ -238,21 +215,16 @@ def read_part(out: Path, key: str) -> Part | None:
         part = Part(**json.loads(gzip.decompress(find_place(out, key).read_bytes())))
     except (OSError, EOFError, zlib.error, ValueError, TypeError, RecursionError):
         return None
-    is_whole = (
-        part.key == key
-        and part.status != ""
-        and all(
-            len(row) == len(columns) for name, columns in TABLES.items() if name != "draws" for row in part.rows(name)
-        )
-    )
+    widths = {name: len(columns) for name, columns in TABLES.items() if name != "draws"}
+    is_whole = part.key == key and part.status != ""
+    is_whole = is_whole and all(len(row) == width for name, width in widths.items() for row in part.rows(name))
     return part if is_whole else None
 
 
-def is_done(part: Part | None, folder: Path | None) -> bool:
-    """Whether a part need not be computed again.
+def _is_done(part: Part | None, folder: Path | None) -> bool:
+    """Whether a part need not be computed again: it was assessed, and the files that its workbook names are the same.
 
-    It was assessed, and the files that its workbook names are what they were. What was skipped is tried again: a file
-    may have been put there, or memory be free now.
+    What was skipped is tried again: a file may have been put there, or memory be free now.
     """
     if part is None or part.status != "assessed":
         return False

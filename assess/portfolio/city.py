@@ -96,9 +96,6 @@ def find_sampling(total: FloatArray, most: float) -> tuple[float, float]:
     return low, min(high, max(most, mean))
 
 
-# ---------------------------------------------------------------- the city
-
-
 BASES = ("simulated", "formula")
 GROUPS = tuple((inventory, basis) for inventory in INVENTORIES for basis in BASES)
 """Inventory and basis of each group, in the order in which they are shown."""
@@ -222,7 +219,12 @@ class City:
     @cached_property
     def ranked(self) -> list[Row]:
         """The buildings in the order of `BUILDING_RULE`, over all groups; skipped ones come last, by path."""
-        return sorted(list_records(self.buildings), key=_rank)
+
+        def rank(row: Row) -> tuple[Any, ...]:
+            people, falls = row["people_blocked"] or 0.0, row["expected_falls"] or 0.0
+            return row["status"] != "assessed", -round(people), -round(falls, 6), row["path"]
+
+        return sorted(list_records(self.buildings), key=rank)
 
     @property
     def skipped(self) -> list[Row]:
@@ -275,12 +277,18 @@ class City:
         if falls.draws:
             falls = replace(falls, apart=0.0)  # pieces alike have one chance, and draws of their own
         known = round(add("occupants") - add("people_not_known"))
+        if self.settings.ideal:
+            range_over = _MOTIONS
+        elif self.ground is None:
+            range_over = _OWN_GROUNDS
+        else:
+            range_over = _KNOWN_GROUND if self.ground.is_known else _EARTHQUAKES
         return Group(
             inventory=inventory,
             basis=basis,
             buildings=len(rows),
             by_class=by_class,
-            range_over=self._find_range(),
+            range_over=range_over,
             falls=falls,
             falls_low_inventory=add_known("falls_low_inventory"),
             falls_high_inventory=add_known("falls_high_inventory"),
@@ -294,13 +302,6 @@ class City:
             first_types=_list_types(pieces, basis),
             **{name: round(add(name)) for name in _ADDED},
         )
-
-    def _find_range(self) -> Text:
-        if self.settings.ideal:
-            return _MOTIONS
-        if self.ground is None:
-            return _OWN_GROUNDS
-        return _KNOWN_GROUND if self.ground.is_known else _EARTHQUAKES
 
     def name_building(self, row: Row) -> str:
         """Return the name of a building, its path where it has none, and both where others have the same name."""
@@ -336,11 +337,6 @@ def _group(frame: pd.DataFrame) -> dict[str, list[Row]]:
     return found
 
 
-def _rank(row: Row) -> tuple[Any, ...]:
-    people, falls = row["people_blocked"] or 0.0, row["expected_falls"] or 0.0
-    return row["status"] != "assessed", -round(people), -round(falls, 6), row["path"]
-
-
 _ADDED = (
     "pieces", "unconfirmed", "by_formula", "cannot_rock", "anchored", "left_out", "works", "works_without_cost",
     "occupants", "people_not_known",
@@ -358,12 +354,20 @@ def _list_types(pieces: pd.DataFrame, basis: str) -> tuple[FirstType, ...]:
     counted = pieces[pieces["basis"].isin([basis, CANNOT_ROCK]) & ~pieces["is_held"].astype("boolean").fillna(False)]
     names = counted["type"].astype(object).where(counted["type"].notna(), "")
     quantity = _numbers(counted, "quantity")
-    kinds = list(map(_name_type, names, _numbers(counted, "breadth_cm"), _numbers(counted, "height_cm")))
-    labels = dict(reversed(kinds))  # the first spelling of a type is shown
+    keys: list[str] = []
+    labels: dict[str, str | Text] = {}
+    for name, *sizes in zip(names, _numbers(counted, "breadth_cm"), _numbers(counted, "height_cm"), strict=True):
+        label: str | Text = name
+        sorted_by = " ".join(name.casefold().split())
+        if not sorted_by:
+            b, h = (int(size // step * step) for size, step in zip(sizes, (BREADTH_STEP, HEIGHT_STEP), strict=True))
+            label = fill("no Type: Breadth {b} to {b_end} cm, Height {h} to {h_end} cm",
+                         b=b, b_end=b + BREADTH_STEP, h=h, h_end=h + HEIGHT_STEP)  # fmt: skip
+            sorted_by = f"\uffff{b:06d} {h:06d}"
+        keys.append(sorted_by)
+        labels.setdefault(sorted_by, label)  # the first spelling of a type is shown
     sums = (
-        counted.assign(
-            key=[key for key, _label in kinds], n=quantity, falls=quantity * _numbers(counted, "probability")
-        )
+        counted.assign(key=keys, n=quantity, falls=quantity * _numbers(counted, "probability"))
         .groupby("key")
         .agg(pieces=("n", "sum"), buildings=("path", "nunique"), falls=("falls", "sum"))
     )
@@ -371,15 +375,3 @@ def _list_types(pieces: pd.DataFrame, basis: str) -> tuple[FirstType, ...]:
     rows.sort(key=lambda one: (-round(one[3], 6), one[0]))
     first = [one for one in rows if one[3] > 0][:FIRST]
     return tuple(FirstType(labels[key], round(n), int(count), falls) for key, n, count, falls in first)
-
-
-def _name_type(name: str, breadth: float, height: float) -> tuple[str, str | Text]:
-    """Return what a type is sorted by, and its name; without one its size group."""
-    if name.strip():
-        return " ".join(name.casefold().split()), name
-    b, h = (int(size // step * step) for size, step in ((breadth, BREADTH_STEP), (height, HEIGHT_STEP)))
-    label = fill(
-        "no Type: Breadth {b} to {b_end} cm, Height {h} to {h_end} cm",
-        b=b, b_end=b + BREADTH_STEP, h=h, h_end=h + HEIGHT_STEP,
-    )  # fmt: skip
-    return f"\uffff{b:06d} {h:06d}", label

@@ -122,7 +122,6 @@ def sign_of_class(row: Row) -> Sign:
 
 
 def _sign_without_class(row: Row) -> Sign:
-    """Return the sign of a building of which nothing is in the classes."""
     if row["status"] != "assessed":
         return BY_CLASS["skipped"]
     found = next((column for column in ("unconfirmed", "by_formula", "anchored") if row[column]), "none")
@@ -210,11 +209,10 @@ class Frame:
 
 
 def build_frame(places: Sequence[Place]) -> Frame:
-    """Return what to show so that all places are in it.
-
-    Places on both sides of the date line stay together.
-    """
-    longitudes, latitudes = _unwrap([place[0] for place in places]), [place[1] for place in places]
+    """Return what to show so that all places are in it; those on both sides of the date line stay together."""
+    longitudes, latitudes = [place[0] for place in places], [place[1] for place in places]
+    if max(longitudes) - min(longitudes) > 180:
+        longitudes = [one + 360 if one < 0 else one for one in longitudes]  # west of the date line: a turn further
     south, north = min(latitudes), max(latitudes)
     middle = (south + north) / 2
     degree = math.radians(1) * EARTH
@@ -230,13 +228,6 @@ def build_frame(places: Sequence[Place]) -> Frame:
 def _shorten(latitude: float) -> float:
     """Return the length of a degree of longitude over one of latitude; near a pole that of 85 deg, for a finite map."""
     return math.cos(math.radians(min(abs(latitude), 85.0)))
-
-
-def _unwrap(longitudes: Sequence[float]) -> list[float]:
-    """Return longitudes that lie together: those west of the date line a turn further where that is closer."""
-    if max(longitudes) - min(longitudes) <= 180:
-        return list(longitudes)
-    return [one + 360 if one < 0 else one for one in longitudes]
 
 
 def draw_map(
@@ -261,9 +252,21 @@ def draw_map(
         *(_draw_background(background, frame) if background else ()),
         *_draw_graticule(frame),
         *_draw_isolines(isolines, frame),
-        *_draw_marks(points, frame, is_live=is_live),
+        '<g class="marks">',
+    ]
+    for one in sorted(points, key=lambda point: (point.sign.severity, -point.size, point.at)):
+        x, y = frame.place(one.longitude, one.latitude)
+        size = f" scale({one.size:g})" if one.size != 1 else ""
+        live = f' data-at="{one.at}" data-x="{x:.1f}" data-y="{y:.1f}" data-size="{one.size:g}"' if is_live else ""
+        said = "" if is_live else f"<title>{escape(one.name)}</title>"
+        parts.append(f'<g transform="translate({x:.1f} {y:.1f}){size}"{live}>{draw_sign(one.sign)}{said}</g>')
+    x, said = frame.wide - 28, _("N")
+    parts += [
+        "</g>",
         _draw_scale(frame),
-        _draw_north(frame),
+        f'<g class="north"><rect x="{x - 16:g}" y="8" width="32" height="48" fill="#ffffff" fill-opacity="0.85"/>'
+        f'<path d="M{x:g} 12L{x + 8:g} 34L{x:g} 29L{x - 8:g} 34Z" fill="#1c1c1c"/>'
+        f'<text x="{x:g}" y="51" text-anchor="middle" font-weight="bold" fill="#1c1c1c">{said}</text></g>',
     ]
     role = "group" if is_live else "img"
     widest = f"max-width: {TALLEST * frame.wide / frame.high:.1f}rem"
@@ -278,7 +281,6 @@ def draw_map(
 
 
 def _draw_background(background: Background, frame: Frame) -> Iterable[str]:
-    """Yield the areas and lines, cut to the frame and as fine as it shows."""
     import shapely
 
     box = shapely.box(-4, -4, frame.wide + 4, frame.high + 4)
@@ -287,7 +289,10 @@ def _draw_background(background: Background, frame: Frame) -> Iterable[str]:
         cut = shapely.intersection(shapely.make_valid(shape), box)
         return shapely.simplify(cut, FINE)
 
-    areas = [fit(_polygon(area, frame)) for area in background.areas]
+    areas = []
+    for area in background.areas:
+        outer, *holes = ([frame.place(*one) for one in ring] for ring in area)
+        areas.append(fit(shapely.Polygon(outer, holes)))
     outline = "".join(_write_path(shape, "Polygon") for shape in areas)
     if outline:
         yield f'<path class="land" d="{outline}" fill="#fbfaf7" stroke="{_EDGE}" stroke-width="1" fill-rule="evenodd"/>'
@@ -297,15 +302,7 @@ def _draw_background(background: Background, frame: Frame) -> Iterable[str]:
         yield f'<path class="lines" d="{lines}" fill="none" stroke="{_EDGE}" stroke-width="1"/>'
 
 
-def _polygon(area: Sequence[Sequence[Place]], frame: Frame) -> "shapely.Geometry":  # type: ignore[name-defined]  # noqa: F821
-    import shapely
-
-    outer, *holes = ([frame.place(*one) for one in ring] for ring in area)
-    return shapely.Polygon(outer, holes)
-
-
 def _write_path(shape: "shapely.Geometry", kind: str) -> str:  # type: ignore[name-defined]  # noqa: F821
-    """Return the outline of the parts of one kind of a shape as an SVG path."""
     import shapely
 
     found = [one for one in shapely.get_parts(shape) if one.geom_type == kind and not one.is_empty]
@@ -315,7 +312,6 @@ def _write_path(shape: "shapely.Geometry", kind: str) -> str:  # type: ignore[na
 
 
 def _draw_graticule(frame: Frame) -> Iterable[str]:
-    """Yield lines of whole steps of longitude and latitude with their degrees at the frame."""
     step = next((one for one in _DEGREES if frame.wide / frame.per_degree[0] / one >= 3), _DEGREES[-1])
     decimals = max(0, 1 - math.floor(math.log10(step))) if step < 1 else 0
     across, down = frame.per_degree
@@ -339,7 +335,6 @@ def _say_degree(value: float, decimals: int, sides: str) -> str:
 
 
 def _draw_isolines(isolines: Sequence[Isoline], frame: Frame) -> Iterable[str]:
-    """Yield lines of equal shaking, each with its value once, where it is inside the frame."""
     for one in isolines:
         line = [frame.place(*place) for place in one.line]
         path = " ".join(f"{x:.1f} {y:.1f}" for x, y in line)
@@ -354,20 +349,6 @@ def _draw_isolines(isolines: Sequence[Isoline], frame: Frame) -> Iterable[str]:
             yield f'{halo}{said}</text><text class="isoline" {place} fill="#5c3a80">{said}</text>'
 
 
-# ---------------------------------------------------------------- buildings
-
-
-def _draw_marks(points: Sequence[MapPoint], frame: Frame, *, is_live: bool) -> Iterable[str]:
-    yield '<g class="marks">'
-    for one in sorted(points, key=lambda point: (point.sign.severity, -point.size, point.at)):
-        x, y = frame.place(one.longitude, one.latitude)
-        size = f" scale({one.size:g})" if one.size != 1 else ""
-        live = f' data-at="{one.at}" data-x="{x:.1f}" data-y="{y:.1f}" data-size="{one.size:g}"' if is_live else ""
-        title = "" if is_live else f"<title>{escape(one.name)}</title>"
-        yield f'<g transform="translate({x:.1f} {y:.1f}){size}"{live}>{draw_sign(one.sign)}{title}</g>'
-    yield "</g>"
-
-
 def draw_sign(sign: Sign) -> str:
     """Return the mark of a building round its centre, with a light edge so that marks beside it stay apart."""
     if sign.is_open:
@@ -377,9 +358,6 @@ def draw_sign(sign: Sign) -> str:
         )
     dash = ' stroke-dasharray="2.5 1.8"' if sign.is_dashed else ""
     return f'<path d="{sign.path}" fill="{sign.fill}" stroke="{sign.ink}" stroke-width="1.2"{dash}/>'
-
-
-# ---------------------------------------------------------------- scale and north
 
 
 def find_bar(frame: Frame) -> float:
@@ -399,15 +377,6 @@ def _draw_scale(frame: Frame) -> str:
         f'<g class="scale-bar" data-km="{length:g}">{box}'
         f'<path d="{path}" fill="none" stroke="#1c1c1c" stroke-width="2"/>'
         f'<text x="{22 + long / 2:.1f}" y="{y - 8:.1f}" text-anchor="middle" fill="#1c1c1c">{said}</text></g>'
-    )
-
-
-def _draw_north(frame: Frame) -> str:
-    x, said = frame.wide - 28, _("N")
-    return (
-        f'<g class="north"><rect x="{x - 16:g}" y="8" width="32" height="48" fill="#ffffff" fill-opacity="0.85"/>'
-        f'<path d="M{x:g} 12L{x + 8:g} 34L{x:g} 29L{x - 8:g} 34Z" fill="#1c1c1c"/>'
-        f'<text x="{x:g}" y="51" text-anchor="middle" font-weight="bold" fill="#1c1c1c">{said}</text></g>'
     )
 
 

@@ -12,11 +12,11 @@ import shlex
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from html import escape
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 from assess.delivery.folders import private_folder
 from assess.environment import find_source_date
-from assess.i18n import Text, fill, ngettext
+from assess.i18n import Text, fill, ngettext, number
 from assess.i18n import gettext as _
 from assess.intensity import name_mmi
 from assess.portfolio import city_words as say
@@ -125,21 +125,25 @@ def _build_document(
     if is_live:
         sections += _list_ranking(city)
     for group in city.groups:
-        types = _tabulate_types(group)
-        if is_live and types:
-            heading = _("Types to start with: {group}", group=say.name_group(group))
-            sections.append(blocks.Section([types], "types", "", heading))
-        elif not is_live:
-            buildings = _tabulate_first(city, group) or blocks.Paragraph(say.say_nothing(group))
-            heading = _("Where to start: {group}", group=say.name_group(group))
-            sections.append(blocks.Section([buildings, *([types] if types else [])], "first run-on", "", heading))
+        sections += _list_first(city, group, is_live=is_live)
     if city.skipped:
-        most = MOST_SKIPPED if is_live else MOST_PRINTED
-        sections.append(blocks.Section(list(_list_skipped(city, most)), kind, "skipped", _("Skipped buildings")))
+        skipped = list(_list_skipped(city, MOST_SKIPPED if is_live else MOST_PRINTED))
+        sections.append(blocks.Section(skipped, kind, "skipped", _("Skipped buildings")))
     if is_live:
         name = _("Sums, kept apart")
         sections.append(blocks.Section([blocks.Box([_tabulate_sums(city)], "scroll", label=name)], "", "sums", name))
-    method = list(_describe_method(city, is_live=is_live))
+    basis = [(blocks.head(label), value) for label, value in say.list_basis(city)]
+    method: list[blocks.Block] = [blocks.table([blocks.Column(), blocks.Column()], basis, "facts"),
+                                  *map(blocks.Paragraph, say.list_method(city))]  # fmt: skip
+    if references := say.list_references(city):
+        method += [blocks.Heading(_("References")), blocks.Bullets(references)]
+    made = (
+        _("Made with assess {version}.", version=__version__)
+        if is_live
+        else _("Made with assess {version}. The page city.html has a page of every building, ranking.xlsx the whole "
+               "ranking.", version=__version__)
+    )  # fmt: skip
+    method.append(blocks.Paragraph(made, "small"))
     sections.append(blocks.Section(method, kind, "method", _("How these numbers were made")))
     return blocks.Document(
         title=title,
@@ -174,9 +178,6 @@ def _show_group(group: Group) -> blocks.Box:
         blocks.Bullets(lines),
     ]
     return blocks.Box(found, "group assumed" if group.inventory == "assumed" else "group", "article")
-
-
-# ---------------------------------------------------------------- the map and the filters
 
 
 class SignView(NamedTuple):
@@ -236,7 +237,20 @@ def _show_map(
         return
     title = _("Map of {placed:,} buildings; the table of the buildings holds the same", placed=len(points))
     drawn = draw_map(points, background, title=title, isolines=isolines, is_live=is_live)
-    views = [_show_legend(city, key, 20 if is_live else 14) for key in VIEWS]
+    views: list[blocks.Block] = []
+    for key, view in list(VIEWS.items())[: None if is_live else 1]:
+        size = 20 if is_live else 14
+        box = f'width="{size}" height="{size}" viewBox="-9 -9 18 18" aria-hidden="true"'
+        lines: list[blocks.Words] = [
+            [
+                blocks.Image(f'<svg {box} data-key="{escape(sign.key)}">{draw_sign(sign)}</svg>'),
+                f" {_(sign.label)}: {say.say_whole(count)}",
+            ]
+            for sign, count in list_legend(city, key)
+        ]
+        note = blocks.Paragraph(_(view.note), "map-note")
+        kind_of = "map-view" if views else "map-view chosen"
+        views.append(blocks.Box([blocks.Bullets(lines, "map-legend"), note], kind_of, id=f"legend-{key}"))
     notes = [
         _("The numbers beside the signs count all buildings, whatever the filters leave.") if is_live else "",
         _("Larger from 3 and from 10 expected falls. The worst lie on top."),
@@ -245,32 +259,14 @@ def _show_map(
         _("Choose a sign to see its building. Click the map first, then the wheel zooms; drag to move. The keys + and "
           "- zoom, arrows move.") if is_live else "",
     ]  # fmt: skip
-    legend = blocks.Box(
-        [*(views if is_live else views[:1]), blocks.Paragraph(" ".join(filter(None, notes)), "map-note")], "map-side"
-    )
+    legend = blocks.Box([*views, blocks.Paragraph(" ".join(filter(None, notes)), "map-note")], "map-side")
     figure = blocks.Figure(blocks.Image(drawn), kind="map", legend=[legend])
     if is_live:
         yield blocks.Section([], "", "map", _("Map"))
     yield blocks.Section([figure], kind, "map-drawing" if is_live else "map", "" if is_live else _("Map"))
 
 
-def _show_legend(city: City, key: str, size: int) -> blocks.Box:
-    lines: list[blocks.Words] = []
-    for sign, count in list_legend(city, key):
-        box = f'width="{size}" height="{size}" viewBox="-9 -9 18 18" aria-hidden="true"'
-        drawn = blocks.Image(f'<svg {box} data-key="{escape(sign.key)}">{draw_sign(sign)}</svg>')
-        lines.append([drawn, f" {_(sign.label)}: {say.say_whole(count)}"])
-    kind = "map-view chosen" if key == next(iter(VIEWS)) else "map-view"
-    return blocks.Box(
-        [blocks.Bullets(lines, "map-legend"), blocks.Paragraph(_(VIEWS[key].note), "map-note")],
-        kind,
-        id=f"legend-{key}",
-    )
-
-
 def _list_filters(city: City) -> list[tuple[str, str, list[tuple[str, str]]]]:
-    """Return the filters: key, label, and the choices that are in use as value and words."""
-
     def say_storeys(low: int, high: int) -> str:
         if low == high:
             return str(low)
@@ -286,9 +282,6 @@ def _list_filters(city: City) -> list[tuple[str, str, list[tuple[str, str]]]]:
         ("inventory", _("Inventory"), [(one, say.name(one)) for one in INVENTORIES if one in used]),
         ("storeys", _("Storeys"), [(f"{low}-{high}", say_storeys(low, high)) for low, high in STOREYS]),
     ]
-
-
-# ---------------------------------------------------------------- tables
 
 
 def _list_ranking(city: City) -> list[blocks.Section]:
@@ -313,12 +306,24 @@ def _list_ranking(city: City) -> list[blocks.Section]:
 
 
 def _tabulate(columns: list[blocks.Column], rows: Iterable[Sequence[str]], caption: str = "") -> blocks.Table | None:
-    """Return a table whose rows begin with a name; None without rows."""
     found: list[Sequence[blocks.Cell | blocks.Words]] = [(blocks.head(first), *cells) for first, *cells in rows]
     return blocks.table(columns, found, "named", caption, is_named=True) if found else None
 
 
-def _tabulate_first(city: City, group: Group) -> blocks.Table | None:
+def _list_first(city: City, group: Group, *, is_live: bool) -> Iterator[blocks.Section]:
+    """Yield what to start with: types on the page, whose ranking has the buildings, and both in the summary."""
+    type_columns = blocks.list_columns((_("Type"), ""), (_("Pieces"), "w15", "num"), (_("Buildings"), "w15", "num"),
+                                       (_("Expected falls"), "w15", "num"))  # fmt: skip
+    type_rows = [
+        (words.cut(_(one.label), 80), say.say_whole(one.pieces), say.say_whole(one.buildings),
+         say.say_number(one.expected_falls))
+        for one in group.first_types
+    ]  # fmt: skip
+    types = _tabulate(type_columns, type_rows, _(TYPE_RULE))
+    if is_live:
+        heading = _("Types to start with: {group}", group=say.name_group(group))
+        yield from [blocks.Section([types], "types", "", heading)] if types else []
+        return
     columns = blocks.list_columns(
         (_("Building"), ""), (_("Share expected to fall"), "w12", "num"), (_("Expected falls"), "w12", "num"),
         (_("People on blocked routes"), "w15", "num"), (_("Routes blocked"), "w12", "num"),
@@ -328,18 +333,9 @@ def _tabulate_first(city: City, group: Group) -> blocks.Table | None:
          say.say_falls(row), say.say_people(row), say.say_blocked(row))
         for row in group.first_buildings
     ]  # fmt: skip
-    return _tabulate(columns, rows, _(BUILDING_RULE))
-
-
-def _tabulate_types(group: Group) -> blocks.Table | None:
-    columns = blocks.list_columns((_("Type"), ""), (_("Pieces"), "w15", "num"), (_("Buildings"), "w15", "num"),
-                           (_("Expected falls"), "w15", "num"))  # fmt: skip
-    rows = [
-        (words.cut(_(one.label), 80), say.say_whole(one.pieces), say.say_whole(one.buildings),
-         say.say_number(one.expected_falls))
-        for one in group.first_types
-    ]  # fmt: skip
-    return _tabulate(columns, rows, _(TYPE_RULE))
+    buildings = _tabulate(columns, rows, _(BUILDING_RULE)) or blocks.Paragraph(say.say_nothing(group))
+    heading = _("Where to start: {group}", group=say.name_group(group))
+    yield blocks.Section([buildings, *([types] if types else [])], "first run-on", "", heading)
 
 
 def _list_skipped(city: City, most: int) -> Iterator[blocks.Block]:
@@ -356,7 +352,6 @@ def _list_skipped(city: City, most: int) -> Iterator[blocks.Block]:
 
 
 def _tabulate_sums(city: City) -> blocks.Table:
-    """Return the table of groups; there is no line of all, as groups are never added up."""
     numbers = [
         _("Buildings"), _("Pieces"), *map(words.risk_label, RiskClass), _("unconfirmed or by formula only"),
         _("anchored"), _("Expected falls"), _("5 to 95 % of draws"), _("People on blocked routes"),
@@ -384,32 +379,12 @@ def _tabulate_sums(city: City) -> blocks.Table:
     return blocks.table(columns, rows, "sums")
 
 
-def _describe_method(city: City, *, is_live: bool) -> Iterator[blocks.Block]:
-    basis = [(blocks.head(label), value) for label, value in say.list_basis(city)]
-    yield blocks.table([blocks.Column(), blocks.Column()], basis, "facts")
-    yield from map(blocks.Paragraph, say.list_method(city))
-    if references := say.list_references(city):
-        yield blocks.Heading(_("References"))
-        yield blocks.Bullets(references)
-    made = (
-        _("Made with assess {version}.", version=__version__)
-        if is_live
-        else _("Made with assess {version}. The page city.html has a page of every building, ranking.xlsx the whole "
-               "ranking.", version=__version__)
-    )  # fmt: skip
-    yield blocks.Paragraph(made, "small")
-
-
-# ---------------------------------------------------------------- the data of the page
-
-
 MOST_ROWS = 150
 """Rows of one table of a building that the page holds; the tables of the portfolio have all."""
 LONGEST = 300
 """Characters of a text that the page holds."""
 STOREYS = ((1, 1), (2, 3), (4, 7), (8, 300))
 """Groups of storeys in the filter."""
-_Row = TypeVar("_Row")
 
 
 def write_data(city: City, repeat: str, indexed: Collection[str] = ()) -> str:
@@ -418,9 +393,34 @@ def write_data(city: City, repeat: str, indexed: Collection[str] = ()) -> str:
     `repeat` is the command that assesses one building alone, with ``{path}`` in it; "" where there is none. `indexed`
     are the paths of the buildings of which an index fills in something.
     """
-    facts = _list_facts()
+
+    def list_cells(row: Row) -> list[str]:
+        """Return the cells of the ranking after the first, in its columns; the class is written by its sign."""
+        if row["status"] != "assessed":
+            return [str(row["use"] or ""), "", "", *("" for _at in range(6))]
+        inventory = say.name(row["inventory"])
+        basis = "" if row["basis"] == "simulated" else f", {say.name(row['basis'])}"
+        return [
+            words.cut(str(row["use"] or ""), 60), say.mark_own_motions(f"{inventory}{basis}", row), "",
+            say.say_whole(row["pieces"]), words.percent(find_share(row)), say.say_falls(row),
+            say.say_range(row["falls_p05"], row["falls_p95"]), say.say_people(row), say.say_blocked(row),
+        ]  # fmt: skip
+
+    def find_command(row: Row) -> str:
+        is_workbook = row["status"] == "assessed" and row["inventory"] == "surveyed"
+        if not repeat or not is_workbook or not row["path"].isprintable():
+            return ""
+        return repeat.replace("{path}", shlex.quote(row["path"]))
+
+    apart = {words.ANCHORED: "anchored", words.UNCONFIRMED: "apart-unconfirmed", words.BY_FORMULA: "apart-formula"}
     data = {
-        "heads": [label for label, _read in facts],
+        "heads": [
+            _("File"), _("Inventory"), _("Results"), _("Use"), _("Place"), _("Storeys"), _("Height [m]"),
+            _("Ground motion"), _("Largest PFA of its floors [g]"), _("Standard deviation of ln PFA"),
+            _("Pieces by class"), _("Expected falls"), _("Share of its pieces in the classes that is expected to fall"),
+            _("Falls with few and with many pieces (10 and 90 % quantities)"), _("People on blocked routes"),
+            _("Falls that the work list avoids"), _("Known costs"),
+        ],
         "buildings": [
             {
                 "name": words.cut(city.name_building(row), LONGEST),
@@ -432,141 +432,91 @@ def write_data(city: City, repeat: str, indexed: Collection[str] = ()) -> str:
                 "inventory": row["inventory"] or "",
                 "basis": row["basis"] or "",
                 "storeys": row["storeys"],
-                "cells": _list_cells(row),
-                "facts": [words.cut(read(row), LONGEST) for _label, read in facts if row["status"] == "assessed"],
-                "command": _write_command(row, repeat),
+                "cells": list_cells(row),
+                "facts": [words.cut(text, LONGEST) for text in _list_facts(row)],
+                "command": find_command(row),
                 "indexed": row["path"] in indexed,
             }
             for row in city.ranked
         ],
         "tables": _pack_tables(city),
-        "styles": _list_styles(),
-    }
+        "styles": {
+            **dict(zip("○◇▲■", ("low", "medium", "high", "very-high"), strict=True)),
+            **apart,
+            **{state.symbol: f"way-state {state.replace(' ', '-')}" for state in RouteState},
+        },
+    }  # fmt: skip
     text = json.dumps(data, ensure_ascii=True, separators=(",", ":"), allow_nan=False)
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 
-def _write_command(row: Row, repeat: str) -> str:
-    """Return the command that assesses a building alone; "" of one that was skipped or has no inventory workbook."""
-    is_workbook = row["status"] == "assessed" and row["inventory"] == "surveyed"
-    if not repeat or not is_workbook or not row["path"].isprintable():
-        return ""
-    return repeat.replace("{path}", shlex.quote(row["path"]))
-
-
-def _list_cells(row: Row) -> list[str]:
-    """Return the cells of the ranking after the first, in its columns; the class is written by its sign."""
+def _list_facts(row: Row) -> list[str]:
+    """Return what the page of a building says of it, in the order of the heads of `write_data`; nothing if skipped."""
     if row["status"] != "assessed":
-        return [str(row["use"] or ""), "", "", *("" for _at in range(6))]
-    inventory = say.name(row["inventory"])
-    basis = "" if row["basis"] == "simulated" else f", {say.name(row['basis'])}"
-    return [
-        words.cut(str(row["use"] or ""), 60), say.mark_own_motions(f"{inventory}{basis}", row), "",
-        say.say_whole(row["pieces"]), words.percent(find_share(row)), say.say_falls(row),
-        say.say_range(row["falls_p05"], row["falls_p95"]), say.say_people(row), say.say_blocked(row),
-    ]  # fmt: skip
-
-
-def _list_facts() -> list[tuple[str, Callable[[Row], str]]]:
-    """Return what the page of a building says of it: label, and how it is read from its row."""
-    return [
-        (_("File"), lambda row: str(row["path"])),
-        (_("Inventory"), lambda row: say.name(row["inventory"])),
-        (_("Results"), lambda row: say.name(row["basis"])),
-        (_("Use"), lambda row: str(row["use"] or words.DASH)),
-        (_("Place"), say.say_place),
-        (_("Storeys"), lambda row: say.say_whole(row["storeys"])),
-        (_("Height [m]"), lambda row: words.fixed(row["height_m"], 1)),
-        (_("Ground motion"), _say_ground),
-        (_("Largest PFA of its floors [g]"), lambda row: words.in_g(row["largest_pfa_g"])),
-        (_("Standard deviation of ln PFA"), lambda row: words.fixed(row["motion_uncertainty"], 2)),
-        (_("Pieces by class"), _say_classes),
-        (_("Expected falls"), _say_falls),
-        (_("Share of its pieces in the classes that is expected to fall"), lambda row: words.percent(find_share(row))),
-        (_("Falls with few and with many pieces (10 and 90 % quantities)"), _say_assumed),
-        (_("People on blocked routes"), say.say_people),
-        (_("Falls that the work list avoids"), lambda row: say.say_number(row["falls_avoided"])),
-        (_("Known costs"), _say_cost),
-    ]
-
-
-def _say_ground(row: Row) -> str:
-    if row["ground_pga_g"] is None:
-        return _("the floors have motions of their own")
-    source = {
-        "shakemap": _("ShakeMap"), "scenarios": _("scenarios"), "ground_pga": _("Ground PGA as given"),
-        "sds": _("SDS as given"), "shaking": _("assumed from the intensity"),
-    }.get(row["ground_source"] or "", "")  # fmt: skip
-    own = _("; {floors} floors keep a motion of their own", floors=row["own_motions"]) if row["own_motions"] else ""
-    pga_g, pgv = row["ground_pga_g"], row["ground_pgv_cm_s"]
-    intensity = name_mmi(pga_g * GRAVITY, None if pgv is None else pgv / 100)
-    peaks = [_("PGA {pga} g", pga=words.in_g(pga_g))]
-    peaks += [] if pgv is None else [_("PGV {pgv} cm/s", pgv=words.fixed(pgv, 1))]
-    peaks += [_("about {intensity}", intensity=_(intensity))] if intensity else []
-    return _("{peaks} ({source}){own}", peaks=", ".join(peaks), source=source, own=own)
-
-
-def _say_classes(row: Row) -> str:
+        return []
+    ground = _("the floors have motions of their own")
+    if (pga_g := row["ground_pga_g"]) is not None:
+        source = {
+            "shakemap": _("ShakeMap"), "scenarios": _("scenarios"), "ground_pga": _("Ground PGA as given"),
+            "sds": _("SDS as given"), "shaking": _("assumed from the intensity"),
+        }.get(row["ground_source"] or "", "")  # fmt: skip
+        own = _("; {floors} floors keep a motion of their own", floors=row["own_motions"]) if row["own_motions"] else ""
+        pgv = row["ground_pgv_cm_s"]
+        intensity = name_mmi(pga_g * GRAVITY, None if pgv is None else pgv / 100)
+        peaks = [_("PGA {pga} g", pga=words.in_g(pga_g))]
+        peaks += [] if pgv is None else [_("PGV {pgv} cm/s", pgv=words.fixed(pgv, 1))]
+        peaks += [_("about {intensity}", intensity=_(intensity))] if intensity else []
+        ground = _("{peaks} ({source}){own}", peaks=", ".join(peaks), source=source, own=own)
     named = {
         "low": _("low"), "medium": _("medium"), "high": _("high"), "very_high": _("very high"),
         "unconfirmed": _("unconfirmed"), "by_formula": _("by formula only"), "anchored": _("anchored"),
         "left_out": _("left out of the COBie file"),
     }  # fmt: skip
-    return "; ".join(f"{label} {say.say_whole(row[name])}" for name, label in named.items() if row[name])
-
-
-def _say_falls(row: Row) -> str:
-    expected = say.say_falls(row)
-    if row["falls_p05"] is None or row["falls_p95"] is None:
-        return expected
-    return _("{expected}; in nine of ten earthquakes like this one {range}",
-             expected=expected,
-             range=say.say_range(row["falls_p05"], row["falls_p95"]))  # fmt: skip
-
-
-def _say_assumed(row: Row) -> str:
-    is_assumed = row["inventory"] == "assumed"
-    return say.say_range(row["falls_low_inventory"], row["falls_high_inventory"], say.say_number) if is_assumed else ""
-
-
-def _say_cost(row: Row) -> str:
+    falls = say.say_falls(row)
+    if row["falls_p05"] is not None and row["falls_p95"] is not None:
+        falls = _("{expected}; in nine of ten earthquakes like this one {range}",
+                  expected=falls, range=say.say_range(row["falls_p05"], row["falls_p95"]))  # fmt: skip
+    assumed = ""
+    if row["inventory"] == "assumed":
+        assumed = say.say_range(row["falls_low_inventory"], row["falls_high_inventory"], say.say_number)
     if row["cost"] is None:
-        return _("not known") if row["works"] else ""
-    missing = say.say_whole(row["works_without_cost"]) if row["works_without_cost"] else ""
-    return say.say_whole(row["cost"]) + (_(" and {pieces} pieces without a cost", pieces=missing) if missing else "")
-
-
-# ---------------------------------------------------------------- rows of a building
-
-
-def _pack(
-    heads: Sequence[str],
-    numeric: Sequence[int],
-    buildings: Iterable[Sequence[_Row]],
-    read: Callable[[_Row], Sequence[str]],
-) -> dict[str, Any]:
-    """Return the rows of all buildings: per column its distinct texts, and per row their numbers."""
-    known: list[dict[str, int]] = [{} for _head in heads]
-    columns: list[list[int]] = [[] for _head in heads]
-    starts, left = [0], []
-    for rows in buildings:
-        for row in rows[:MOST_ROWS]:
-            for texts, column, text in zip(known, columns, read(row), strict=True):
-                column.append(texts.setdefault(words.cut(text, LONGEST), len(texts)))
-        starts.append(len(columns[0]))
-        left.append(max(0, len(rows) - MOST_ROWS))
-    return {"heads": heads, "numeric": numeric, "texts": [list(one) for one in known], "columns": columns,
-            "starts": starts, "left": left}  # fmt: skip
+        cost = _("not known") if row["works"] else ""
+    else:
+        missing = say.say_whole(row["works_without_cost"]) if row["works_without_cost"] else ""
+        cost = say.say_whole(row["cost"]) + (
+            _(" and {pieces} pieces without a cost", pieces=missing) if missing else ""
+        )
+    is_placed = row["latitude"] is not None and row["longitude"] is not None
+    return [
+        str(row["path"]),
+        say.name(row["inventory"]),
+        say.name(row["basis"]),
+        str(row["use"] or words.DASH),
+        f"{number(row['latitude'], '.5f')}, {number(row['longitude'], '.5f')}" if is_placed else words.DASH,
+        say.say_whole(row["storeys"]),
+        words.fixed(row["height_m"], 1),
+        ground,
+        words.in_g(row["largest_pfa_g"]),
+        words.fixed(row["motion_uncertainty"], 2),
+        "; ".join(f"{label} {say.say_whole(row[name])}" for name, label in named.items() if row[name]),
+        falls,
+        words.percent(find_share(row)),
+        assumed,
+        say.say_people(row),
+        say.say_number(row["falls_avoided"]),
+        cost,
+    ]
 
 
 def _pack_tables(city: City) -> dict[str, Any]:
+    """Return the rows of all buildings by table: per column its distinct texts, and per row their numbers."""
+
     def order(row: Row) -> tuple[float, float, int]:
         """Pieces as the building's work list has them, then the others, the likeliest to fall first."""
         place = float("inf") if row["work_place"] is None else row["work_place"]
         return place, -(row["probability"] or 0.0), row["row"] or 0
 
-    def read_piece(one: tuple[str | None, Row]) -> list[str]:
-        basis, row = one
+    def read_piece(row: Row, basis: str | None) -> list[str]:
         place = "" if row["work_place"] is None else say.say_whole(row["work_place"])
         return [
             row["item"] or "", row["floor"] or "", row["room"] or "", row["description"] or row["type"] or "",
@@ -574,33 +524,35 @@ def _pack_tables(city: City) -> dict[str, Any]:
             place, row["detail"] or "",
         ]  # fmt: skip
 
-    def read_route(row: Row) -> list[str]:
+    def read_route(row: Row, _basis: str | None) -> list[str]:
         return [row["route"] or "", say.label_state(row["state"]), say.say_probability(row),
                 say.say_whole(row["occupants"]), row["blockers"] or "", row["to_fill_in"] or ""]  # fmt: skip
 
-    def read_problem(row: Row) -> list[str]:
+    def read_problem(row: Row, _basis: str | None) -> list[str]:
         return [say.name(row["severity"]), say.say_spot(row), row["message"] or "", row["fix"] or ""]
 
-    ranked = [(one["path"], one["basis"]) for one in city.ranked]
     piece_heads = [_("Item"), _("Floor"), _("Room"), _("What"), _("Size [cm]"), _("Pieces"), _("Class"), _("Chance"),
                    _("Fix: place"), _("How to fix it")]  # fmt: skip
     route_heads = [_("Route"), _("State"), _("Chance of a blockage"), _("People"), _("Pieces that may block it"),
                    _("To fill in")]  # fmt: skip
     problem_heads = [_("Severity"), _("Place"), _("What"), _("How to fix it")]
-    pieces = ([(basis, row) for row in sorted(city.pieces_of.get(path, []), key=order)] for path, basis in ranked)
-    routes = (city.routes_of.get(path, []) for path, _basis in ranked)
-    problems = (city.problems_of.get(path, []) for path, _basis in ranked)
-    return {
-        "pieces": _pack(piece_heads, [5, 7, 8], pieces, read_piece),
-        "routes": _pack(route_heads, [2, 3], routes, read_route),
-        "problems": _pack(problem_heads, [], problems, read_problem),
-    }
-
-
-def _list_styles() -> dict[str, str]:
-    """Return the style of a cell by the sign that it begins with."""
-    risks = ("low", "medium", "high", "very-high")
-    signs = dict(zip("○◇▲■", risks, strict=True))
-    apart = {words.ANCHORED: "anchored", words.UNCONFIRMED: "apart-unconfirmed", words.BY_FORMULA: "apart-formula"}
-    states = {state.symbol: f"way-state {state.replace(' ', '-')}" for state in RouteState}
-    return signs | apart | states
+    pieces = {path: sorted(rows, key=order) for path, rows in city.pieces_of.items()}
+    packed: dict[str, Any] = {}
+    for name, heads, numeric, rows_of, read in (
+        ("pieces", piece_heads, [5, 7, 8], pieces, read_piece),
+        ("routes", route_heads, [2, 3], city.routes_of, read_route),
+        ("problems", problem_heads, [], city.problems_of, read_problem),
+    ):
+        known: list[dict[str, int]] = [{} for _head in heads]
+        columns: list[list[int]] = [[] for _head in heads]
+        starts, left = [0], []
+        for building in city.ranked:
+            rows = rows_of.get(building["path"], [])
+            for row in rows[:MOST_ROWS]:
+                for texts, column, text in zip(known, columns, read(row, building["basis"]), strict=True):
+                    column.append(texts.setdefault(words.cut(text, LONGEST), len(texts)))
+            starts.append(len(columns[0]))
+            left.append(max(0, len(rows) - MOST_ROWS))
+        packed[name] = {"heads": heads, "numeric": numeric, "texts": [list(one) for one in known], "columns": columns,
+                        "starts": starts, "left": left}  # fmt: skip
+    return packed

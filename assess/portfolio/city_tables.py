@@ -51,9 +51,6 @@ def build_frame(name: str, rows: Sequence[Sequence[Any]]) -> "pd.DataFrame":
     )
 
 
-# ---------------------------------------------------------------- Parquet
-
-
 def write_tables(parts: Iterable[Part], folder: Path | None) -> "dict[str, pd.DataFrame]":
     """Write all tables from parts in their order, each read once; return them as frames.
 
@@ -73,8 +70,21 @@ def write_tables(parts: Iterable[Part], folder: Path | None) -> "dict[str, pd.Da
     def flush(name: str) -> None:
         block, rows[name] = rows[name][:ROWS], rows[name][ROWS:]
         frames[name].append(build_frame(name, block))
-        if folder is not None:
-            _write_file(name, frames[name][-1], find_path(name, len(frames[name])))
+        if folder is None:
+            return
+        path = find_path(name, len(frames[name]))
+        columns = ", ".join(f'"{one.key}"::{SQL_TYPES[one.kind]} AS "{one.key}"' for one in TABLES[name])
+        duckdb = check_tables()
+        try:
+            with _connect(duckdb) as connection:
+                connection.register("found", frames[name][-1])
+                connection.execute(
+                    f"COPY (SELECT {columns} FROM found) TO {_quote(path)} "  # noqa: S608 - names of our own
+                    f"(FORMAT parquet, COMPRESSION zstd, ROW_GROUP_SIZE {ROWS})"
+                )
+        except duckdb.Error as error:
+            why = str(error).splitlines()[0]
+            raise OutputError.about("{path} could not be written: {why}", path=path.name, why=why) from None
 
     for part in parts:
         for name in TABLES:
@@ -87,21 +97,6 @@ def write_tables(parts: Iterable[Part], folder: Path | None) -> "dict[str, pd.Da
         if folder is not None and len(frames[name]) == 1:
             find_path(name, 1).rename(folder / f"{name}.parquet")
     return {name: own[0] if len(own) == 1 else pd.concat(own, ignore_index=True) for name, own in frames.items()}
-
-
-def _write_file(name: str, frame: "pd.DataFrame", path: Path) -> None:
-    duckdb = check_tables()
-    columns = ", ".join(f'"{one.key}"::{SQL_TYPES[one.kind]} AS "{one.key}"' for one in TABLES[name])
-    try:
-        with _connect(duckdb) as connection:
-            connection.register("found", frame)
-            connection.execute(
-                f"COPY (SELECT {columns} FROM found) TO {_quote(path)} "  # noqa: S608 - names of our own
-                f"(FORMAT parquet, COMPRESSION zstd, ROW_GROUP_SIZE {ROWS})"
-            )
-    except duckdb.Error as error:
-        why = str(error).splitlines()[0]
-        raise OutputError.about("{path} could not be written: {why}", path=path.name, why=why) from None
 
 
 def _connect(duckdb: Any) -> "duckdb.DuckDBPyConnection":

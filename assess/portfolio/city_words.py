@@ -106,8 +106,36 @@ def list_facts(city: City) -> list[tuple[str, str]]:
 
 def list_group_lines(group: Group) -> list[str]:
     """Return the answer of one group, a paragraph each: falls, people, what fixing helps with its cost, assumptions."""
-    parts = (_say_falls(group), _say_cannot_rock(group), _say_people(group), _say_works(group), _say_assumed(group))
-    return [text for text in map(" ".join, parts) if text]
+    lines = [" ".join(_say_falls(group))]
+    if group.cannot_rock:
+        lines.append(ngettext(
+            "{n:,} of the pieces is low as it cannot rock: it is too stocky, or no motion that may be drawn can start "
+            "it.",
+            "{n:,} of the pieces are low as they cannot rock: they are too stocky, or no motion that may be drawn can "
+            "start them.", group.cannot_rock,
+        ))  # fmt: skip
+    if people := " ".join(_say_people(group)):
+        lines.append(people)
+    if group.works:
+        works = [ngettext("Fixing the {n:,} piece on the work list avoids {avoided} falls, if the anchors hold.",
+                          "Fixing the {n:,} pieces on the work lists avoids {avoided} falls, if the anchors hold.",
+                          group.works, avoided=say_number(group.falls_avoided))]  # fmt: skip
+        if group.cost is not None:
+            works.append(_("Known costs of that work: {cost}, as the workbooks give them, taken as one currency.",
+                           cost=say_whole(group.cost)))  # fmt: skip
+        if group.works_without_cost:
+            works.append(ngettext(
+                "{n:,} piece on the work lists has no cost.", "{n:,} pieces on the work lists have no cost.",
+                group.works_without_cost,
+            ))  # fmt: skip
+        lines.append(" ".join(works))
+    if group.falls_low_inventory is not None and group.falls_high_inventory is not None:
+        lines.append(_(
+            "Bookcases and lateral files are assumed from the use and the floor area; other furniture is in no number. "
+            "With few pieces everywhere (10 % quantities) {low} falls are expected, with many (90 %) {high}.",
+            low=say_number(group.falls_low_inventory), high=say_number(group.falls_high_inventory),
+        ))  # fmt: skip
+    return lines
 
 
 def _say_falls(group: Group) -> Iterator[str]:
@@ -134,14 +162,6 @@ def _say_falls(group: Group) -> Iterator[str]:
                        "and are in no number.", group.left_out)  # fmt: skip
 
 
-def _say_cannot_rock(group: Group) -> Iterator[str]:
-    if group.cannot_rock:
-        yield ngettext("{n:,} of the pieces is low as it cannot rock: it is too stocky, or no motion that may be drawn "
-                       "can start it.",
-                       "{n:,} of the pieces are low as they cannot rock: they are too stocky, or no motion that may be "
-                       "drawn can start them.", group.cannot_rock)  # fmt: skip
-
-
 def _say_people(group: Group) -> Iterator[str]:
     people = group.people
     if not group.occupants and any(group.routes.values()):
@@ -158,28 +178,6 @@ def _say_people(group: Group) -> Iterator[str]:
         yield ngettext("{n:,} person is on a route whose state is not known, and is in no number.",
                        "{n:,} people are on routes whose state is not known, and are in no number.",
                        group.people_not_known)  # fmt: skip
-
-
-def _say_works(group: Group) -> Iterator[str]:
-    if not group.works:
-        return
-    yield ngettext("Fixing the {n:,} piece on the work list avoids {avoided} falls, if the anchors hold.",
-                   "Fixing the {n:,} pieces on the work lists avoids {avoided} falls, if the anchors hold.",
-                   group.works, avoided=say_number(group.falls_avoided))  # fmt: skip
-    if group.cost is not None:
-        yield _("Known costs of that work: {cost}, as the workbooks give them, taken as one currency.",
-                cost=say_whole(group.cost))  # fmt: skip
-    if group.works_without_cost:
-        yield ngettext("{n:,} piece on the work lists has no cost.", "{n:,} pieces on the work lists have no cost.",
-                       group.works_without_cost)  # fmt: skip
-
-
-def _say_assumed(group: Group) -> Iterator[str]:
-    if group.falls_low_inventory is not None and group.falls_high_inventory is not None:
-        yield _("Bookcases and lateral files are assumed from the use and the floor area; other furniture is in no "
-                "number. With few pieces everywhere (10 % quantities) {low} falls are expected, with many (90 %) "
-                "{high}.",
-                low=say_number(group.falls_low_inventory), high=say_number(group.falls_high_inventory))  # fmt: skip
 
 
 def say_nothing(group: Group) -> str:
@@ -250,13 +248,6 @@ def list_ground_cautions(city: City) -> Iterator[str]:
 
 
 # ---------------------------------------------------------------- rows
-
-
-def say_place(row: Row) -> str:
-    """Return the place of a building in degrees; a dash where it is not known."""
-    if row["latitude"] is None or row["longitude"] is None:
-        return words.DASH
-    return f"{number(row['latitude'], '.5f')}, {number(row['longitude'], '.5f')}"
 
 
 def label_piece(row: Row, basis: str | None) -> str:
@@ -430,7 +421,6 @@ def list_method(city: City) -> Iterator[str]:
 
 
 def _say_draws(city: City, drawn: Spread) -> str:
-    """Return what the draws of a city have in common."""
     ends = _("The range from 5 to 95 % of the draws is that of the sum over buildings, draw by draw.")
     if city.settings.ideal:
         start = _("Each of the {draws:,} draws is one motion of each floor, without the uncertainty of the earthquake.",

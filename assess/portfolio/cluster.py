@@ -90,14 +90,33 @@ def run_on_cluster(tasks: Sequence[Task], scheduler: str, progress: Progress = S
 
     Raises InputError if dask is not installed, the address is none, no scheduler can be reached there or it has no
     workers, or a worker has another version of a package, several threads, or does not see the folders; OutputError if
-    the scheduler is lost; parts that are written stay; CancelledError if the work was cancelled; parts that are written
-    stay.
+    the scheduler is lost; CancelledError if the work was cancelled; in both cases parts that are written stay.
     """
     check_cluster(scheduler)
-    with _connect(scheduler, progress) as client, _probe(tasks) as site:
-        _wait_for_worker(client, scheduler, progress)
-        check_workers(client, site)
-        yield from _hand_over(client, site, tasks, scheduler, progress)
+    token, folder = os.urandom(8).hex(), tasks[0].out / FOLDER
+    workbook = next((one.source.file for one in tasks if one.source.file is not None and not one.source.refused), None)
+    files = (workbook, getattr(tasks[0].ground, "path", None))
+    seen = tuple(one for one in files if one is not None)
+    with _connect(scheduler, progress) as client:
+        probe = folder / f"{_PROBE}{token}"  # every worker has to read it, and to answer next to it
+        probe.write_text(token, encoding="ascii")
+        try:
+            latest = time.monotonic() + JOINING
+            while not client.nthreads():
+                progress.check()
+                if time.monotonic() > latest:
+                    raise InputError.about(
+                        "scheduler {address} has no workers. Start some with one thread each, by the command: dask "
+                        "worker", address=scheduler,
+                    )  # fmt: skip
+                time.sleep(_ASKED_EVERY)
+            site = Site(versions=list_versions(), probe=probe, token=token, seen=seen)
+            check_workers(client, site)
+            yield from _hand_over(client, site, tasks, scheduler, progress)
+        finally:
+            for path in folder.glob(f"{_PROBE}{token}*"):
+                with suppress(OSError):
+                    path.unlink()
 
 
 @contextmanager
@@ -114,7 +133,19 @@ def _connect(scheduler: str, progress: Progress) -> Iterator["Client"]:
     except CancelledError:
         raise
     except Exception as error:  # whatever dask makes of what it was sent
-        raise _explain_silence(scheduler, error) from None
+        # a TypeError: there is no certificate; an ImportError: no package for the protocol
+        if isinstance(error, TimeoutError) or not isinstance(error, OSError | TypeError | ImportError):
+            raise InputError.about(
+                "scheduler {address}: what is there does not answer as a dask scheduler of this version. Check host "
+                "and port: a scheduler prints its address when it starts.", address=scheduler,
+            ) from None  # fmt: skip
+        inner: BaseException | None = error
+        while inner is not None and not (isinstance(inner, OSError) and inner.strerror):
+            inner = getattr(inner, "real_error", None) or inner.__cause__  # what the system refused, which dask wraps
+        why = plain_line(str(getattr(inner, "strerror", None) or error)).strip() or type(error).__name__
+        raise InputError.about(
+            "scheduler {address} cannot be reached: {why}. Is it running?", address=scheduler, why=why
+        ) from None
     try:
         yield client
     finally:
@@ -145,57 +176,6 @@ async def _ask(scheduler: str, progress: Progress) -> Any:
         return asking.result()
     finally:
         asking.cancel()
-
-
-def _explain_silence(scheduler: str, error: Exception) -> InputError:
-    """Return an error that says that nobody is at the address, or something that is not a scheduler."""
-    # a TypeError: there is no certificate; an ImportError: no package for the protocol
-    if isinstance(error, OSError | TypeError | ImportError) and not isinstance(error, TimeoutError):
-        inner: BaseException | None = error
-        while inner is not None and not (isinstance(inner, OSError) and inner.strerror):
-            inner = getattr(inner, "real_error", None) or inner.__cause__  # what the system refused, which dask wraps
-        why = plain_line(str(getattr(inner, "strerror", None) or error)).strip() or type(error).__name__
-        return InputError.about(
-            "scheduler {address} cannot be reached: {why}. Is it running?", address=scheduler, why=why
-        )
-    return InputError.about(
-        "scheduler {address}: what is there does not answer as a dask scheduler of this version. Check host and "
-        "port: a scheduler prints its address when it starts.",
-        address=scheduler,
-    )
-
-
-def _wait_for_worker(client: "Client", scheduler: str, progress: Progress) -> None:
-    latest = time.monotonic() + JOINING
-    while not client.nthreads():
-        progress.check()
-        if time.monotonic() > latest:
-            raise InputError.about(
-                "scheduler {address} has no workers. Start some with one thread each, by the command: dask worker",
-                address=scheduler,
-            )
-        time.sleep(_ASKED_EVERY)
-
-
-# ---------------------------------------------------------------- what workers have to have
-
-
-@contextmanager
-def _probe(tasks: Sequence[Task]) -> Iterator[Site]:
-    """Write a probe that every worker has to read, and answer beside it."""
-    token = os.urandom(8).hex()
-    folder = tasks[0].out / FOLDER
-    place = folder / f"{_PROBE}{token}"
-    workbook = next((one.source.file for one in tasks if one.source.file is not None and not one.source.refused), None)
-    files = (workbook, getattr(tasks[0].ground, "path", None))
-    seen = tuple(one for one in files if one is not None)
-    place.write_text(token, encoding="ascii")
-    try:
-        yield Site(versions=list_versions(), probe=place, token=token, seen=seen)
-    finally:
-        for path in folder.glob(f"{_PROBE}{token}*"):
-            with suppress(OSError):
-                path.unlink()
 
 
 def check_workers(client: "Client", site: Site) -> None:
@@ -271,6 +251,8 @@ def _hand_over(
     client: "Client", site: Site, tasks: Sequence[Task], scheduler: str, progress: Progress
 ) -> Iterator[Summary]:
     """Keep a window of tasks with the scheduler, and yield what comes back; OutputError if the scheduler is gone."""
+    from distributed import KilledWorker
+
     lost = OutputError.about(
         "the scheduler {address} is gone. What is done is kept: start it and run the same command again.",
         address=scheduler,
@@ -296,24 +278,21 @@ def _hand_over(
             for future in done:
                 if future.status == "cancelled":
                     raise lost
-                yield _take_answer(future, running.pop(future), lost)
+                task = running.pop(future)
+                error = future.exception() if future.status == "error" else None
+                if isinstance(error, KilledWorker):
+                    yield give_up(task)
+                    continue
+                if isinstance(error, WorkerUnfitError):
+                    raise InputError.about("a worker that joined later cannot do the work: {why}", why=error) from None
+                if error is not None:
+                    why = f"{type(error).__name__}: {str(error)[:300]}"
+                    raise OutputError.about("a worker failed: {why}", why=why) from error
+                try:
+                    summary: Summary = future.result()
+                except (OSError, TimeoutError, asyncio.CancelledError):  # the scheduler died when the answer was there
+                    raise lost from None
+                yield summary
     finally:
         with suppress(Exception):  # a scheduler that is gone
             client.cancel(list(running), force=True)
-
-
-def _take_answer(future: "Future", task: Task, lost: OutputError) -> Summary:
-    from distributed import KilledWorker
-
-    error = future.exception() if future.status == "error" else None
-    if isinstance(error, KilledWorker):
-        return give_up(task)
-    if isinstance(error, WorkerUnfitError):
-        raise InputError.about("a worker that joined later cannot do the work: {why}", why=error) from None
-    if error is not None:
-        raise OutputError.about("a worker failed: {why}", why=f"{type(error).__name__}: {str(error)[:300]}") from error
-    try:
-        summary: Summary = future.result()
-    except (OSError, TimeoutError, asyncio.CancelledError):  # the scheduler died when the answer was there
-        raise lost from None
-    return summary

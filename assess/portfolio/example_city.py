@@ -101,7 +101,12 @@ def _write_city(folder: Path, city: list[Building]) -> None:
         if one.path:
             (folder / one.path).parent.mkdir(exist_ok=True)
             write_workbook(folder / one.path, _fill_workbook(one), spare=10)
-    _write_index(folder / INDEX, city)
+    with (folder / INDEX).open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(COLUMNS)
+        for one in city:  # of a building with a workbook its floor area alone, which the workbook does not hold
+            known = (one.name, one.latitude, one.longitude, one.use, one.storeys, one.height)
+            writer.writerow((one.path, *(("",) * len(known) if one.path else known), one.area, ""))
     for name in (GRID, COAST):
         shutil.copyfile(resources.city_file(name), folder / name)
     text = DRAWN["readme"].format(buildings=len(city), unsurveyed=sum(not one.path for one in city))
@@ -115,29 +120,29 @@ def list_buildings(count: int) -> list[Building]:
     coast = read_background(resources.city_file(COAST))
     land = shapely.union_all([shapely.Polygon(area[0], area[1:]) for area in coast.areas]).buffer(-OFFSHORE)
     shapely.prepare(land)
-    return [_make_building(number, land) for number in range(1, count + 1)]
-
-
-def _make_building(number: int, land: Any) -> Building:
-    import shapely
-
-    draw = Random(SEED + number)  # noqa: S311 - an example, no secret
-    is_surveyed = number % (BUILDINGS // UNSURVEYED) != 0
-    town, latitude_of, longitude_of, _share, spread = _choose(draw, [(one, one[3]) for one in DRAWN["towns"]])
+    towns = [(one, one[3]) for one in DRAWN["towns"]]
     uses = [(use, one["share"]) for use, one in DRAWN["uses"].items()]
-    use = _choose(draw, uses if is_surveyed else DRAWN["unsurveyed"])
-    kind = DRAWN["uses"].get(use, {"storeys": (2, 5), "storey_height": 3.8, "storey_area": 300})
-    low, high = kind["storeys"]
-    storeys = low + int((high - low + 1) * draw.random() ** 1.8)
-    for _attempt in range(200):
-        latitude, longitude = latitude_of + spread * _bell(draw), longitude_of + spread * 1.26 * _bell(draw)
-        if land.contains(shapely.Point(longitude, latitude)):
-            break
-    name = f"{use.capitalize()} {number:03}, {town} {MADE_UP}"
-    path = f"{town.lower().replace(' ', '-')}/{use.lower()}-{number:03}.xlsx" if is_surveyed else ""
-    height = round(storeys * (kind["storey_height"] + 0.4 * draw.random()), 1)
-    area = storeys * kind["storey_area"] * (1 + int(4 * draw.random()))
-    return Building(number, path, name, town, round(latitude, 5), round(longitude, 5), use, storeys, height, area)
+    buildings = []
+    for number in range(1, count + 1):
+        draw = Random(SEED + number)  # noqa: S311 - an example, no secret
+        is_surveyed = number % (BUILDINGS // UNSURVEYED) != 0
+        town, latitude_of, longitude_of, _share, spread = _choose(draw, towns)
+        use = _choose(draw, uses if is_surveyed else DRAWN["unsurveyed"])
+        kind = DRAWN["uses"].get(use, {"storeys": (2, 5), "storey_height": 3.8, "storey_area": 300})
+        low, high = kind["storeys"]
+        storeys = low + int((high - low + 1) * draw.random() ** 1.8)
+        for _attempt in range(200):
+            latitude, longitude = latitude_of + spread * _bell(draw), longitude_of + spread * 1.26 * _bell(draw)
+            if land.contains(shapely.Point(longitude, latitude)):
+                break
+        name = f"{use.capitalize()} {number:03}, {town} {MADE_UP}"
+        path = f"{town.lower().replace(' ', '-')}/{use.lower()}-{number:03}.xlsx" if is_surveyed else ""
+        height = round(storeys * (kind["storey_height"] + 0.4 * draw.random()), 1)
+        area = storeys * kind["storey_area"] * (1 + int(4 * draw.random()))
+        buildings.append(
+            Building(number, path, name, town, round(latitude, 5), round(longitude, 5), use, storeys, height, area)
+        )
+    return buildings
 
 
 def _choose(draw: Random, weighted: Any) -> Any:
@@ -155,23 +160,12 @@ def _bell(draw: Random) -> float:
     return sum(draw.random() for _at in range(12)) - 6.0
 
 
-def _write_index(path: Path, city: list[Building]) -> None:
-    """Write the index: of a building with a workbook its floor area alone, which the workbook does not hold."""
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(COLUMNS)
-        for one in city:
-            known = (one.name, one.latitude, one.longitude, one.use, one.storeys, one.height)
-            writer.writerow((one.path, *(("",) * len(known) if one.path else known), one.area, ""))
-
-
-# ---------------------------------------------------------------- a workbook
-
-
 def _fill_workbook(one: Building) -> Content:
     """Return what stands in the workbook of a building: nothing of the shaking, which the ShakeMap gives."""
     draw = Random(SEED * 7 + one.number)  # noqa: S311 - an example, no secret
-    furnished = _choose_floors(one, draw)
+    furnished = tuple(range(1, one.storeys + 1))
+    if one.storeys > 4:  # four storeys at most have been surveyed, the top one among them
+        furnished = tuple(sorted({1, one.storeys} | {2 + int((one.storeys - 2) * draw.random()) for _at in range(2)}))
     rise = one.height / one.storeys
     has_routes, is_drawn, has_costs = (draw.random() < share for share in (0.7, 0.7, 0.6))
     corridors = furnished if has_routes else ()
@@ -183,7 +177,7 @@ def _fill_workbook(one: Building) -> Content:
     floors = [
         {"floor": str(at), "name": f"Storey {at}", "elevation": round((at - 1) * rise, 2)} for at in furnished
     ]  # fmt: skip
-    items = [*_list_pieces(one, furnished, draw), *_list_corridor(one, corridors, draw)]
+    items = [*_list_pieces(one, furnished, corridors, draw)]
     use = DRAWN["uses"][one.use]
     named = {name for _room, types in use["rooms"] for name in types} | set(use["corridor"])
     rows = {
@@ -191,8 +185,22 @@ def _fill_workbook(one: Building) -> Content:
         CATALOGUE.name: [row for row in read_catalogue("si") if row["type"] in named],
     }  # fmt: skip
     if has_routes:
-        rows["Places"] = [place for floor in corridors for place in _list_places(floor)] if is_drawn else []
-        rows["Routes"] = [_make_segment(one, floor, draw, is_drawn=is_drawn) for floor in corridors]
+        rows["Places"], rows["Routes"] = [], []
+        for floor in corridors:
+            way_out = f"{'Exit' if floor == 1 else 'Stair'} {floor}"  # to the street, or to a stair
+            ends = {"start": f"Corridor end {floor}", "end": way_out, "room": "Corridor"}
+            rows["Routes"].append({
+                "route": f"Way out, storey {floor}", "segment": "corridor", "floor": str(floor),
+                "clear_width": round(use["clear_width"] + 0.8 * draw.random(), 2),
+                "occupants": 1 + int(use["people"] * (0.5 + draw.random())),
+                **(ends if is_drawn else {}),
+            })  # fmt: skip
+            if is_drawn:
+                end = {"kind": "exit" if floor == 1 else "stair", "x": 30.0, "y": 1.0}
+                rows["Places"] += [
+                    {"place": ends["start"], "floor": str(floor), "kind": "door", "x": 1.0, "y": 1.0},
+                    {"place": way_out, "floor": str(floor), **end},
+                ]
     prices = DRAWN["costs"].items()
     costs = [{"detail": detail, "unit_cost": cost, "source": "made-up price"} for detail, cost in prices]
     return Content({**rows, **({"Costs": costs} if has_costs else {})})
@@ -213,25 +221,10 @@ def _place(items: Iterable[dict[str, Any]]) -> Iterator[dict[str, Any]]:
             yield row | {"item": name, "quantity": 1, "x": round(x, 1), "y": round(y, 1), "angle_deg": 90 * (cell % 2)}
 
 
-def _list_places(floor: int) -> list[dict[str, Any]]:
-    """Return the ends of the corridor of a storey: it leads to the street, or to a stair."""
-    end = {"kind": "exit" if floor == 1 else "stair", "x": 30.0, "y": 1.0}
-    return [
-        {"place": f"Corridor end {floor}", "floor": str(floor), "kind": "door", "x": 1.0, "y": 1.0},
-        {"place": f"{'Exit' if floor == 1 else 'Stair'} {floor}", "floor": str(floor), **end},
-    ]
-
-
-def _choose_floors(one: Building, draw: Random) -> tuple[int, ...]:
-    """Return the storeys that have been surveyed: four at most, the top one among them."""
-    if one.storeys <= 4:
-        return tuple(range(1, one.storeys + 1))
-    inner = {2 + int((one.storeys - 2) * draw.random()) for _at in range(2)}
-    return tuple(sorted({1, one.storeys} | inner))
-
-
-def _list_pieces(one: Building, floors: tuple[int, ...], draw: Random) -> Iterator[dict[str, Any]]:
-    """Yield rows of Items until the pieces are as many as were drawn: 12 to 36."""
+def _list_pieces(
+    one: Building, floors: tuple[int, ...], corridors: tuple[int, ...], draw: Random
+) -> Iterator[dict[str, Any]]:
+    """Yield rows of Items until the pieces are as many as were drawn, 12 to 36, then those next to some ways out."""
     left, number, rooms = 12 + int(25 * draw.random()), 0, DRAWN["uses"][one.use]["rooms"]
     while left > 0:
         number += 1
@@ -245,11 +238,7 @@ def _list_pieces(one: Building, floors: tuple[int, ...], draw: Random) -> Iterat
             "anchored": _choose(draw, DRAWN["anchored"]),
             "importance": _choose(draw, DRAWN["importance"]),
         }  # fmt: skip
-
-
-def _list_corridor(one: Building, floors: tuple[int, ...], draw: Random) -> Iterator[dict[str, Any]]:
-    """Yield what stands beside the way out: one piece on a floor of the route, on some of them."""
-    for floor in floors:
+    for floor in corridors:
         if draw.random() < 0.6:
             yield {
                 "item": f"{floor}-R1", "floor": str(floor), "room": "Corridor",
@@ -258,14 +247,3 @@ def _list_corridor(one: Building, floors: tuple[int, ...], draw: Random) -> Iter
                 "route": f"Way out, storey {floor}", "segment": "corridor",
                 "edge_distance": round(0.6 * draw.random(), 2), "importance": "life safety",
             }  # fmt: skip
-
-
-def _make_segment(one: Building, floor: int, draw: Random, *, is_drawn: bool) -> dict[str, Any]:
-    use = DRAWN["uses"][one.use]
-    ends = {"start": f"Corridor end {floor}", "end": f"{'Exit' if floor == 1 else 'Stair'} {floor}", "room": "Corridor"}
-    return {
-        "route": f"Way out, storey {floor}", "segment": "corridor", "floor": str(floor),
-        "clear_width": round(use["clear_width"] + 0.8 * draw.random(), 2),
-        "occupants": 1 + int(use["people"] * (0.5 + draw.random())),
-        **(ends if is_drawn else {}),
-    }  # fmt: skip

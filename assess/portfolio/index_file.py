@@ -79,25 +79,18 @@ def read_index(file: Path) -> tuple[IndexRow, ...]:
     name of a building without one stands there twice; the message names the file and the line.
     """
     try:
-        return tuple(_read_rows(_split(_read_text(file))))
+        try:
+            data = read_input(file, LARGEST_FILE)
+        except (OSError, ValueError) as error:  # ValueError: a zero character in the name
+            why = getattr(error, "strerror", None) or str(error)
+            raise InputError.about("the index cannot be read: {why}.", why=why) from None
+        if len(data) > LARGEST_FILE:
+            raise InputError.about("the index is larger than {most:.0f} MB. Split it.", most=LARGEST_FILE / 1e6)
+        if b"\0" in data or data.startswith((b"PK", b"\xff\xfe", b"\xfe\xff")):
+            raise InputError.about("the index is not plain text. Save it as CSV UTF-8.")
+        return _read_rows(_split(decode(data)))
     except InputError as error:
         raise InputError(join(": ", (plain_line(file.name), error.message))) from None
-
-
-# ---------------------------------------------------------------- text to cells
-
-
-def _read_text(file: Path) -> str:
-    try:
-        data = read_input(file, LARGEST_FILE)
-    except (OSError, ValueError) as error:  # ValueError: a zero character in the name
-        why = getattr(error, "strerror", None) or str(error)
-        raise InputError.about("the index cannot be read: {why}.", why=why) from None
-    if len(data) > LARGEST_FILE:
-        raise InputError.about("the index is larger than {most:.0f} MB. Split it.", most=LARGEST_FILE / 1e6)
-    if b"\0" in data or data.startswith((b"PK", b"\xff\xfe", b"\xfe\xff")):
-        raise InputError.about("the index is not plain text. Save it as CSV UTF-8.")
-    return decode(data)
 
 
 def _split(text: str) -> Iterator[tuple[int, list[str]]]:
@@ -110,33 +103,21 @@ def _split(text: str) -> Iterator[tuple[int, list[str]]]:
         try:
             (cells,) = csv.reader([line], delimiter=mark, strict=True)
         except csv.Error as error:
-            raise InputError(_describe_cut(number, str(error))) from None
+            fault = fill("line {line} cannot be read: {why}.", line=number, why=error)
+            if "unexpected end" in str(error):
+                fault = fill("line {line}: a quotation mark is not closed. Close it on the same line, or remove it: a "
+                             "cell cannot hold a line break.", line=number)  # fmt: skip
+            elif "expected after" in str(error):
+                fault = fill("line {line}: characters follow a closing quotation mark. Write a quotation mark inside a "
+                             "quoted cell twice, or remove the marks.", line=number)  # fmt: skip
+            raise InputError(fault) from None
         if any(len(cell) > LONGEST for cell in cells):
             raise InputError.about("line {line}: a cell is longer than {most:,} characters.", line=number, most=LONGEST)
         if any(cell.strip() for cell in cells):
             yield number, [cell.strip() for cell in cells]
 
 
-def _describe_cut(line: int, why: str) -> Text:
-    if "unexpected end" in why:
-        return fill(
-            "line {line}: a quotation mark is not closed. Close it on the same line, or remove it: a cell cannot hold "
-            "a line break.",
-            line=line,
-        )
-    if "expected after" in why:
-        return fill(
-            "line {line}: characters follow a closing quotation mark. Write a quotation mark inside a quoted cell "
-            "twice, or remove the marks.",
-            line=line,
-        )
-    return fill("line {line} cannot be read: {why}.", line=line, why=why)
-
-
-# ---------------------------------------------------------------- cells to rows
-
-
-def _read_rows(lines: Iterator[tuple[int, list[str]]]) -> list[IndexRow]:
+def _read_rows(lines: Iterator[tuple[int, list[str]]]) -> tuple[IndexRow, ...]:
     line, heading = next(lines, (0, []))
     if not line:
         raise InputError.about("the index is empty. Its first line holds the names of the columns.")
@@ -147,7 +128,7 @@ def _read_rows(lines: Iterator[tuple[int, list[str]]]) -> list[IndexRow]:
         raise InputError.about("no building is listed below the headings.")
     if len(rows) > MOST_ROWS:
         raise InputError.about("more than {most:,} buildings are listed. Split the index.", most=MOST_ROWS)
-    found = [_read_row(number, names, cells, faults) for number, cells in rows]
+    found = tuple(_read_row(number, names, cells, faults) for number, cells in rows)
     every = [*faults, *_list_repeated(found)]
     if every:
         more = (fill("and {n:,} more.", n=len(every) - MOST_FAULTS),) if len(every) > MOST_FAULTS else ()
@@ -156,7 +137,6 @@ def _read_rows(lines: Iterator[tuple[int, list[str]]]) -> list[IndexRow]:
 
 
 def _read_heading(line: int, heading: Sequence[str]) -> list[str]:
-    """Return the columns of the index in their order."""
     names = [cell.lower() for cell in heading]
     while names and not names[-1]:
         names.pop()

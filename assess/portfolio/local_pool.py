@@ -57,8 +57,6 @@ def run_local(tasks: Sequence[Task], jobs: int, progress: Progress = SILENT) -> 
 
 
 class _Processes:
-    """Processes that are started as they are needed, and used again."""
-
     def __init__(self) -> None:
         self._idle: list[Process] = []
         self._all: set[Process] = set()
@@ -102,7 +100,16 @@ class _Processes:
                     raise CancelledError
                 if self._idle:
                     return self._idle.pop()
-                process = _start()
+                package = str(Path(__file__).parents[2])
+                path = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH"))))
+                process = subprocess.Popen(
+                    [sys.executable, "-m", "assess.portfolio.local_worker"],
+                    stdin=subprocess.PIPE,
+                    stdout=subprocess.PIPE,
+                    env=os.environ | dict.fromkeys(ALONE, "1") | {"PYTHONPATH": path},
+                    start_new_session=True,  # Ctrl-C in the terminal does not reach it
+                    creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),  # of Windows alone
+                )
                 self._all.add(process)
             with suppress(EOFError, OSError):
                 _receive(process)  # that it is ready
@@ -121,20 +128,6 @@ class _Processes:
             with suppress(OSError):  # what it does not read any more
                 stream.close()
         return process.wait()
-
-
-def _start() -> Process:
-    """Return a new process; Ctrl-C in the terminal does not reach it, as the process that started it ends it."""
-    package = str(Path(__file__).parents[2])
-    path = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH"))))
-    return subprocess.Popen(
-        [sys.executable, "-m", "assess.portfolio.local_worker"],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        env=os.environ | dict.fromkeys(ALONE, "1") | {"PYTHONPATH": path},
-        start_new_session=True,
-        creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),  # of Windows alone
-    )
 
 
 def _receive(process: Process) -> Any:

@@ -56,11 +56,7 @@ def _write_list(find: Callable[[City], "Listing"], city: City, pen: Pen, page: A
     pen.listing(page, *find(city))
 
 
-# ---------------------------------------------------------------- sums
-
-
 def _write_summary(city: City, pen: Pen, page: Any) -> None:
-    """Write the answer in words, then the table of the groups."""
     page.set_column(0, 0, 62)
     page.set_column(1, 1 + len(city.groups), 24)
     texts = [(say.say_title(city), "title"), (say.say_ground(city), "plain")]
@@ -81,8 +77,6 @@ def _write_summary(city: City, pen: Pen, page: Any) -> None:
 
 
 def _list_sums() -> list[tuple[str, Callable[[Group], float | None], str]]:
-    """Return the lines of the table of groups: label, what is read from a group, and how Excel shows it."""
-
     def if_known(name: str) -> Callable[[Group], float | None]:
         read = attrgetter(name)
         return lambda group: read(group) if group.people_known else None
@@ -122,20 +116,11 @@ def _list_sums() -> list[tuple[str, Callable[[Group], float | None], str]]:
     ]
 
 
-# ---------------------------------------------------------------- rows
-
 Listing = tuple[list[Column], Sequence[Any]]
 """The columns of a sheet, and its rows."""
 
 
 def _list_buildings(city: City) -> Listing:
-    def find_class(row: Row) -> str:
-        sign = sign_of_class(row)
-        return f"{sign.symbol} {_(sign.label)}"
-
-    def find_known_people(row: Row) -> int | None:
-        return None if row["occupants"] is None else row["occupants"] - (row["people_not_known"] or 0)
-
     def find_blocked(row: Row) -> int | str | None:
         """Return the routes that are blocked, as a number; what is not known is said where it is so of all routes."""
         if row["routes"] and row["routes_not_known"] < row["routes"]:
@@ -149,7 +134,7 @@ def _list_buildings(city: City) -> Listing:
         Column(_("Results"), 14, lambda row: say.name(row["basis"])),
         Column(_("Use"), 12, itemgetter("use")),
         Column(_("Storeys"), 8, itemgetter("storeys"), COUNT),
-        Column(_("Highest class"), 14, find_class),
+        Column(_("Highest class"), 14, lambda row: f"{sign_of_class(row).symbol} {_(sign_of_class(row).label)}"),
         Column(_("Share expected to fall"), 10, find_share, CHANCE),
         Column(_("Expected falls"), 10, itemgetter("expected_falls"), SUM),
         Column(_("Unconfirmed"), 12, itemgetter("unconfirmed"), COUNT),
@@ -158,7 +143,8 @@ def _list_buildings(city: City) -> Listing:
         Column(_("Falls, 5 % of earthquakes"), 11, itemgetter("falls_p05"), COUNT),
         Column(_("Falls, 95 % of earthquakes"), 11, itemgetter("falls_p95"), COUNT),
         Column(_("People on blocked routes, expected"), 12, itemgetter("people_blocked"), SUM),
-        Column(_("People on routes whose state is known"), 11, find_known_people, COUNT),
+        Column(_("People on routes whose state is known"), 11, lambda row: None if row["occupants"] is None
+               else row["occupants"] - (row["people_not_known"] or 0), COUNT),
         Column(_("People on routes not known"), 10, itemgetter("people_not_known"), COUNT),
         Column(_("Routes blocked"), 9, find_blocked, COUNT),
         Column(_("Routes not known"), 9, itemgetter("routes_not_known"), COUNT),
@@ -177,7 +163,7 @@ def _list_buildings(city: City) -> Listing:
         Column(_("Longitude [deg]"), 11, itemgetter("longitude"), "0.00000"),
         Column(_("Floors with motions of their own"), 10, itemgetter("own_motions"), COUNT),
         Column(_("Warnings"), 9, itemgetter("warnings"), COUNT),
-    ], city.ranked
+    ], city.ranked  # fmt: skip
 
 
 def _list_types(city: City) -> Listing:

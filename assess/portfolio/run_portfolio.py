@@ -63,8 +63,6 @@ class PortfolioResult:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Job:
-    """One run: its buildings, what they are assessed by, and what is written where; see `run_portfolio`."""
-
     sources: tuple[Source, ...]
     out: Path
     settings: Settings
@@ -112,13 +110,31 @@ def run_portfolio(
     CancelledError if the work was cancelled; nothing was written, but the buildings that are done are kept.
     """
     source, out = Path(source), Path(out).absolute()
-    path = getattr(ground, "path", None)  # other processes may be in another folder
     check_extras(formats, scheduler)
-    _check_out(source, out, formats)
+    shown = plain_line(str(out))
+    if out.exists() and not out.is_dir():
+        raise InputError.about("out: {folder} is a file; name a folder.", folder=shown)
+    if out.resolve() == source.resolve():
+        raise InputError.about("out: {folder} holds the workbooks; name another folder.", folder=shown)
+    check_folder(out)
+    if out.is_dir():
+        _find_old(out, _list_names(formats))
+    sources = find_sources(source, out)
+    settings = settings or Settings()
+    if settings.verify != "none":
+        if settings.runs == AUTO:
+            raise InputError.about(
+                "runs is {runs}: all buildings of a city need the same draws. Give a number, such as 200.", runs=AUTO
+            )
+        if scenarios := getattr(ground, "event_count", 0):
+            from assess.pipeline.city_draws import choose_runs
+
+            choose_runs(scenarios, settings.runs)  # raises if they do not fit
+    path = getattr(ground, "path", None)  # other processes may be in another folder
     job = _Job(
-        sources=find_sources(source, out),
+        sources=sources,
         out=out,
-        settings=_check_settings(settings or Settings(), ground),
+        settings=replace(settings, city=True),
         ground=ground if path is None else replace(ground, path=path.resolve()),  # type: ignore[type-var]
         formats=tuple(name for name in FORMATS if name in formats),
         background=background,
@@ -129,7 +145,11 @@ def run_portfolio(
     with _reserving(out):
         summaries = _assess_all(job, jobs or count_processors(), scheduler)
         files, removed, city = _write_output(job, summaries)
-        _remove_unused(out, {one.key for one in summaries.values()})
+        keys = {one.key for one in summaries.values()}
+        for place in (out / FOLDER).glob("??/*"):  # parts of buildings that are gone, or of other settings
+            if _KEY.fullmatch(place.stem) and place.suffix in (ENDING, ".txt") and place.stem not in keys:
+                with suppress(OSError):
+                    place.unlink()
     from assess.portfolio.city_words import explain_skipped
 
     return PortfolioResult(
@@ -140,9 +160,6 @@ def run_portfolio(
         skipped=tuple((row["path"], explain_skipped(city, row["path"])) for row in city.skipped),
         city=city,
     )
-
-
-# ---------------------------------------------------------------- before the work
 
 
 def check_extras(formats: Sequence[str], scheduler: str | None) -> None:
@@ -161,18 +178,6 @@ def check_extras(formats: Sequence[str], scheduler: str | None) -> None:
         check_cluster(scheduler)
 
 
-def _check_out(source: Path, out: Path, formats: Sequence[str]) -> None:
-    """Raise unless results can be written to the folder."""
-    shown = plain_line(str(out))
-    if out.exists() and not out.is_dir():
-        raise InputError.about("out: {folder} is a file; name a folder.", folder=shown)
-    if out.resolve() == source.resolve():
-        raise InputError.about("out: {folder} holds the workbooks; name another folder.", folder=shown)
-    check_folder(out)
-    if out.is_dir():
-        _find_old(out, _list_names(formats))
-
-
 def _list_names(formats: Sequence[str]) -> list[str]:
     """Return the names of the files of some formats, where no table takes more than one."""
     tables = [f"{name}.parquet" for name in TABLES] if "parquet" in formats else []
@@ -184,20 +189,6 @@ def _find_old(out: Path, wanted: Collection[str]) -> frozenset[str]:
     tables = "|".join(TABLES)
     written = re.compile(rf"(?:{tables})(?:-\d{{4}})?\.parquet|" + "|".join(map(re.escape, FILES.values())))
     return find_reports(out, wanted, lambda name: written.fullmatch(name) is not None, DATA)
-
-
-def _check_settings(settings: Settings, ground: GroundField | None) -> Settings:
-    """Return the settings of all buildings; InputError if none of them could be assessed with their draws."""
-    if settings.runs == AUTO and settings.verify != "none":
-        raise InputError.about(
-            "runs is {runs}: all buildings of a city need the same draws. Give a number, such as 200.", runs=AUTO
-        )
-    scenarios = getattr(ground, "event_count", 0)
-    if scenarios and settings.verify != "none":
-        from assess.pipeline.city_draws import choose_runs
-
-        choose_runs(scenarios, settings.runs)
-    return replace(settings, city=True)
 
 
 @contextmanager
@@ -218,11 +209,7 @@ def _reserving(out: Path) -> Iterator[None]:
         lock.release()
 
 
-# ---------------------------------------------------------------- the work
-
-
 def _assess_all(job: _Job, jobs: int, scheduler: str | None) -> dict[str, Summary]:
-    """Return the summary of every building by its path."""
     tasks = [Task(source=one, settings=job.settings, ground=job.ground, out=job.out) for one in job.sources]
     if scheduler is None:
         from assess.portfolio.local_pool import run_local
@@ -251,29 +238,27 @@ def _assess_all(job: _Job, jobs: int, scheduler: str | None) -> dict[str, Summar
     return found
 
 
-def _remove_unused(out: Path, keys: set[str]) -> None:
-    """Remove parts that this run has no use for: of buildings that are gone, or of other settings."""
-    for path in (out / FOLDER).glob("??/*"):
-        if _KEY.fullmatch(path.stem) and path.suffix in (ENDING, ".txt") and path.stem not in keys:
-            with suppress(OSError):
-                path.unlink()
-
-
-# ---------------------------------------------------------------- what is written
-
-
 def _write_output(job: _Job, summaries: Mapping[str, Summary]) -> "tuple[tuple[Path, ...], tuple[Path, ...], City]":
     """Write tables and reports; return the files, those that were removed, and the city.
 
     Whatever it raises leaves all as it was; but PdfUnavailableError is raised once all else has been written.
     """
+    from assess.portfolio.city import City
+    from assess.portfolio.city_tables import write_tables
+
     names = _list_names(job.formats)
+    missing: PdfUnavailableError | None = None
     try:
         with stage_for(job.out) as stage, job.progress.stage("rendering", ", ".join(job.formats)):
-            city = _build_city(job, summaries, stage / NEW)
-            missing = _write_reports(job, city, stage / NEW)
-            names = sorted(path.name for path in (stage / NEW).iterdir())
-            write_through(stage / NEW / DATA, _describe_run(job, city, stage / NEW, names))
+            folder = stage / NEW
+            frames = write_tables(_list_parts(job, summaries), folder if "parquet" in job.formats else None)
+            city = City(**frames, settings=job.settings, ground=_describe_ground(job.ground, frames["buildings"]))
+            try:
+                _write_reports(job, city, folder)
+            except PdfUnavailableError as error:
+                missing = error
+            names = sorted(path.name for path in folder.iterdir())
+            write_through(folder / DATA, _describe_run(job, city, folder, names))
             names.append(DATA)
             gone = deliver(stage, job.out, lambda target: _find_old(target, names), DATA, job.progress)
     except OSError as error:
@@ -283,17 +268,8 @@ def _write_output(job: _Job, summaries: Mapping[str, Summary]) -> "tuple[tuple[P
     return tuple(job.out / name for name in names), tuple(job.out / name for name in gone), city
 
 
-def _build_city(job: _Job, summaries: Mapping[str, Summary], folder: Path) -> "City":
-    """Write the tables, where they are wanted, and return the city of them."""
-    from assess.portfolio.city import City
-    from assess.portfolio.city_tables import write_tables
-
-    frames = write_tables(_list_parts(job, summaries), folder if "parquet" in job.formats else None)
-    return City(**frames, settings=job.settings, ground=_describe_ground(job.ground, frames["buildings"]))
-
-
 def _list_parts(job: _Job, summaries: Mapping[str, Summary]) -> Iterator[Part]:
-    """Yield the parts in the order of paths; one whose workbook is a copy of an earlier one notes that."""
+    """Yield the parts in the order of paths; one whose workbook is a copy notes that, unlike the one on the disk."""
     first: dict[str, str] = {}
     for source in job.progress.checked(job.sources):
         summary = summaries[source.path]
@@ -306,31 +282,26 @@ def _list_parts(job: _Job, summaries: Mapping[str, Summary]) -> Iterator[Part]:
             )
         is_counted = summary.content and summary.status == "assessed"
         same = first.setdefault(summary.content, part.path) if is_counted else part.path
-        yield part if same == part.path else _note_alike(part, same)
+        if same != part.path:
+            fault = fill("its workbook has the same content as {path}: it counts as a building of its own.",
+                         path=plain_line(same))  # fmt: skip
+            fix = fill("Remove one of them if they are the same building.")
+            notes = list_problems(part.path, [Problem("note", "", "", fault, fix)])
+            at = [field.key for field in TABLES["buildings"]].index("same_as")
+            rows = [[*row[:at], same, *row[at + 1 :]] for row in part.rows("buildings")]
+            changed = {"buildings": rows, "problems": [*part.rows("problems"), *notes]}
+            part = replace(part, tables={**part.tables, **changed})
+        yield part
 
 
-def _note_alike(part: Part, first: str) -> Part:
-    """Return a part with a note that its workbook is a copy; what is kept on the disk has none."""
-    fault = fill("its workbook has the same content as {path}: it counts as a building of its own.",
-                 path=plain_line(first))  # fmt: skip
-    fix = fill("Remove one of them if they are the same building.")
-    notes = list_problems(part.path, [Problem("note", "", "", fault, fix)])
-    at = [field.key for field in TABLES["buildings"]].index("same_as")
-    rows = [[*row[:at], first, *row[at + 1 :]] for row in part.rows("buildings")]
-    return replace(part, tables={**part.tables, "buildings": rows, "problems": [*part.rows("problems"), *notes]})
-
-
-def _write_reports(job: _Job, city: "City", folder: Path) -> PdfUnavailableError | None:
-    """Write the reports; return why there is no PDF, where one was to be written.
-
-    What writes a format is imported only where it is wanted.
-    """
+def _write_reports(job: _Job, city: "City", folder: Path) -> None:
+    """Write the reports, the PDF last; what writes a format is imported only where it is wanted."""
     if "xlsx" in job.formats:
         from assess.portfolio.ranking_workbook import render_ranking
 
         write_through(folder / FILES["xlsx"], render_ranking(city, options=job.options, progress=job.progress))
     if not {"html", "pdf"} & set(job.formats):
-        return None
+        return
     from assess.portfolio.city_map import list_isolines
     from assess.portfolio.city_page import render_page, render_summary
 
@@ -341,15 +312,10 @@ def _write_reports(job: _Job, city: "City", folder: Path) -> PdfUnavailableError
         page = render_page(city, job.background, repeat=job.repeat, indexed=indexed, **common)
         write_through(folder / FILES["html"], page)
     if "pdf" in job.formats:
-        try:
-            write_through(folder / FILES["pdf"], render_summary(city, job.background, **common))
-        except PdfUnavailableError as error:
-            return error
-    return None
+        write_through(folder / FILES["pdf"], render_summary(city, job.background, **common))
 
 
 def _describe_ground(ground: GroundField | None, buildings: Any) -> "RunGround | None":
-    """Return the ground motion of the run, with the facts that hold for all its buildings."""
     if ground is None:
         return None
     from assess.portfolio.city import RunGround
@@ -360,10 +326,9 @@ def _describe_ground(ground: GroundField | None, buildings: Any) -> "RunGround |
         with suppress(InputError):
             sites.append(ground.at(float(latitude), float(longitude)))
     common = [fact for fact in sites[0].facts if all(fact in one.facts for one in sites)] if sites else []
-    kind = sites[0].kind if sites else "scenarios" if hasattr(ground, "event_count") else "shakemap"
     cautions = [text for text in sites[0].cautions if all(text in one.cautions for one in sites)] if sites else []
     return RunGround(
-        kind=kind,
+        kind=sites[0].kind if sites else "scenarios" if hasattr(ground, "event_count") else "shakemap",
         file=ground.file,
         sha256=ground.sha256,
         facts=tuple(common),
@@ -373,7 +338,6 @@ def _describe_ground(ground: GroundField | None, buildings: Any) -> "RunGround |
 
 
 def _describe_run(job: _Job, city: "City", folder: Path, names: Sequence[str]) -> bytes:
-    """Return portfolio.json: what the run rests on, its files with their hashes, and the columns of the tables."""
     ground: dict[str, Any] | None = None
     if city.ground is not None:
         facts = [[str(label), str(value)] for label, value in city.ground.facts]

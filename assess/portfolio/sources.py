@@ -90,39 +90,40 @@ def _search(root: Path, out: Path | None) -> Iterator[Source]:
             continue
         names = {one.name for one in entries}
         for entry in entries:
-            path = folder / entry.name
+            path, lower = folder / entry.name, entry.name.lower()
             if entry.name.startswith((".", "~$")) or path == out:
                 continue
+            name = _name(path, root)
             if entry.is_dir(follow_symlinks=False):
                 waiting.append(path)
-            elif found := _take_entry(entry, path, root, names):
-                yield found
-
-
-def _take_entry(entry: "os.DirEntry[str]", path: Path, root: Path, names: set[str]) -> Source | None:
-    """Return the building of an entry that is no folder; None where it is no workbook."""
-    name, lower = _name(path, root), entry.name.lower()
-    if lower.endswith(OTHER_ENDINGS):
-        fix = fill("Save it as .xlsx (Excel Workbook) and remove this file.")
-        return Source(path=name, refused=_refuse_format(lower), fix=fix)
-    if entry.is_symlink() and path.is_dir():
-        fault = fill("it is a link to a folder, which is not searched.")
-        return Source(path=name, refused=fault, fix=fill("Copy the folder here."))
-    if not lower.endswith(ENDINGS) or OURS.get(entry.name) in names:
-        return None
-    refused, hint = _judge(path, root)
-    return Source(path=name, file=path, refused=refused, fix=hint)
+            elif lower.endswith(OTHER_ENDINGS):
+                fix = fill("Save it as .xlsx (Excel Workbook) and remove this file.")
+                yield Source(path=name, refused=_refuse_format(lower), fix=fix)
+            elif entry.is_symlink() and path.is_dir():
+                fault = fill("it is a link to a folder, which is not searched.")
+                yield Source(path=name, refused=fault, fix=fill("Copy the folder here."))
+            elif lower.endswith(ENDINGS) and OURS.get(entry.name) not in names:
+                refused, hint = _judge(path, root)
+                yield Source(path=name, file=path, refused=refused, fix=hint)
 
 
 def _take_row(row: IndexRow, root: Path) -> Source:
-    """Return the building of a row of an index in the folder `root`."""
     if not row.path:
         return Source(path=row.building, kind="assumed", index=row)
     name = tidy_path(row.path)
-    if unusable := _judge_text(name):  # before the file system sees it
-        return Source(path=name, index=row, refused=unusable[0], fix=unusable[1])
-    refused, fix = _judge(root / name, root)
-    return Source(path=name, file=root / name, index=row, refused=refused, fix=fix)
+    lower = name.lower()
+    # before the file system sees the path
+    if name.startswith("/") or name[1:2] == ":" or ".." in name.split("/") or "\0" in name:
+        refused = fill("the path leads out of the folder of the index.")
+        return Source(path=name, index=row, refused=refused, fix=fill("Write it relative to that folder."))
+    if lower.endswith(OTHER_ENDINGS):
+        fix = fill("Save it as .xlsx (Excel Workbook) and name that file.")
+        return Source(path=name, index=row, refused=_refuse_format(lower), fix=fix)
+    if not lower.endswith(ENDINGS):
+        refused = fill("it is not a workbook: its name has to end in .xlsx or .xlsm.")
+        return Source(path=name, index=row, refused=refused, fix=fill("Correct the path in the index."))
+    fault, hint = _judge(root / name, root)
+    return Source(path=name, file=root / name, index=row, refused=fault, fix=hint)
 
 
 def _name(path: Path, root: Path) -> str:
@@ -133,19 +134,6 @@ def _name(path: Path, root: Path) -> str:
 
 def _refuse_format(name: str) -> Text:
     return fill("workbooks ending in {ending} are not read.", ending=Path(name).suffix)
-
-
-def _judge_text(name: str) -> tuple[Text, Text] | None:
-    """Return why a path of an index is refused, and what to do; None if it is not."""
-    lower = name.lower()
-    if name.startswith("/") or name[1:2] == ":" or ".." in name.split("/") or "\0" in name:
-        return fill("the path leads out of the folder of the index."), fill("Write it relative to that folder.")
-    if lower.endswith(OTHER_ENDINGS):
-        return _refuse_format(lower), fill("Save it as .xlsx (Excel Workbook) and name that file.")
-    if not lower.endswith(ENDINGS):
-        fault = fill("it is not a workbook: its name has to end in .xlsx or .xlsm.")
-        return fault, fill("Correct the path in the index.")
-    return None
 
 
 def _judge(path: Path, root: Path) -> tuple[Text | str, Text | str]:
