@@ -12,7 +12,7 @@ import importlib
 import os
 import pkgutil
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from types import ModuleType
 from typing import Annotated, TextIO
 
@@ -53,36 +53,24 @@ GARBAGE = 50_000
 def main() -> None:
     """Run the command line: only the module of the command that is named is imported, where one is.
 
-    A shell that asks for completions names the command in its own way.
+    A shell that asks for completions names the command in its own way. Whatever the output does, there is one line and
+    an exit status, and no traceback. A blank word is refused: as a path it would mean the folder that one is in.
     """
     answer_signals()
     gc.set_threshold(GARBAGE)
     typed = sys.argv[1] if len(sys.argv) > 1 else ""
-    if ASKED in os.environ:
-        typed = find_typed_command()
+    if ASKED in os.environ:  # the command in the line that is to be completed, if it is typed to its end
+        line = next((os.environ[name] for name in TYPED if os.environ.get(name)), "")
+        words = line.split()
+        typed = words[1] if len(words) > 2 or (len(words) == 2 and line[-1].isspace()) else ""
         os.environ["COLUMNS"] = ONE_LINE
     app = build_app([typed] if typed in list_names() else ())
-    run_to_the_end(lambda: app(prog_name=PROGRAM), sys.argv[1:])
-
-
-def find_typed_command() -> str:
-    """Return the command in the line that is to be completed, if it is typed to its end; else an empty text."""
-    line = next((os.environ[name] for name in TYPED if os.environ.get(name)), "")
-    words = line.split()
-    return words[1] if len(words) > 2 or (len(words) == 2 and line[-1].isspace()) else ""
-
-
-def run_to_the_end(app: Callable[[], object], words: Sequence[str]) -> None:
-    """Call the command line; whatever its output does, there is one line and an exit status, and no traceback.
-
-    A blank word is refused: as a path it would mean the folder that one is in.
-    """
-    if (blank := find_blank(words)) is not None:
+    if (blank := find_blank(sys.argv[1:])) is not None:
         print_error(f"{blank} is blank: fill it in, or leave it out.")
         sys.exit(BAD_USAGE)
     try:
         try:
-            app()
+            app(prog_name=PROGRAM)
         finally:
             # None where it was closed before the program began
             if sys.stdout is not None and not sys.stdout.closed:

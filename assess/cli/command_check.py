@@ -1,6 +1,6 @@
 """``assess check``: every problem of a workbook, by sheet and cell; what is only typed otherwise can be corrected."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Never
 
@@ -13,9 +13,7 @@ from assess.i18n import count
 from assess.settings import Settings
 
 if TYPE_CHECKING:
-    from assess.errors import Correction
     from assess.model import Inventory
-    from assess.pipeline.corrected import Corrected
 
 ORDER = 2
 EXAMPLES = (
@@ -53,7 +51,20 @@ def command(
         else:
             with show_progress() as progress:
                 inventory = read_inventory(path, progress=progress)
-        _report(inventory, path)
+        from assess.pipeline.demand import find_shaking
+        from assess.pipeline.run import compute
+        from assess.workbook.habits import BETTER
+
+        with show_progress() as progress:
+            assessment = compute(inventory, Settings(verify="none"), progress=progress)
+        if any(isinstance(one, Gap) for one in assessment.problems):
+            _end_incomplete(path, assessment.problems)
+        print_problems(assessment.problems)
+        if find_shaking(assessment.demands) is not None:
+            print_numbered("To know the shaking better:", BETTER)
+        rows, floors = count(len(inventory.items), "row"), count(len(inventory.floors), "floor")
+        segments = count(len(inventory.routes), "route segment")
+        say(f"{path.name}: no errors. {rows} of furniture on {floors}, {segments}.")
     except WorkbookError as error:
         if error.is_incomplete:
             _end_incomplete(path, error.problems)
@@ -65,26 +76,7 @@ def command(
         raise typer.Exit(2) from None
 
 
-def _report(inventory: "Inventory", path: Path) -> None:
-    """Print what a workbook without errors holds, and what is remarkable."""
-    from assess.pipeline.demand import find_shaking
-    from assess.pipeline.run import compute
-    from assess.workbook.habits import BETTER
-
-    with show_progress() as progress:
-        assessment = compute(inventory, Settings(verify="none"), progress=progress)
-    if any(isinstance(one, Gap) for one in assessment.problems):
-        _end_incomplete(path, assessment.problems)
-    print_problems(assessment.problems)
-    if find_shaking(assessment.demands) is not None:
-        print_numbered("To know the shaking better:", BETTER)
-    rows, floors = count(len(inventory.items), "row"), count(len(inventory.floors), "floor")
-    segments = count(len(inventory.routes), "route segment")
-    say(f"{path.name}: no errors. {rows} of furniture on {floors}, {segments}.")
-
-
 def _end_incomplete(path: Path, problems: Sequence[Problem]) -> Never:
-    """Print what a workbook lacks and what completes it."""
     print_problems(problems)
     say(f"{path.name} is incomplete: what is filled in can be used.", err=True)
     print_ways(problems)
@@ -93,7 +85,8 @@ def _end_incomplete(path: Path, problems: Sequence[Problem]) -> Never:
 
 def _write_corrected(path: Path, out: Path, *, replaces: bool) -> "Inventory":
     """Write the corrected workbook, if there is anything to correct, and print what was changed."""
-    from assess.pipeline.corrected import correct_workbook
+    from assess.pipeline.corrected import correct_workbook, group_corrections
+    from assess.workbook.habits import shorten
 
     check_file(out, "copy", (path.suffix.lower() or ".xlsx",))
     if is_same(out, path):
@@ -101,43 +94,27 @@ def _write_corrected(path: Path, out: Path, *, replaces: bool) -> "Inventory":
     check_new(out, replaces=replaces)
     with show_progress() as progress:
         done = correct_workbook(path, progress)
-    if done.changed:
-        save_files({out: done.inventory.data or b""})
-    for line in _describe(done, path, out):
-        say(line)
-    return done.inventory
-
-
-def _describe(done: "Corrected", path: Path, out: Path) -> Iterator[str]:
-    """Yield what was changed, and what was not."""
-    from assess.pipeline.corrected import group_corrections
-    from assess.workbook.habits import shorten
-
-    if done.changed:
-        yield f"wrote {out}: {count(len(done.changed), 'cell')} corrected."
-        for group in group_corrections(done.changed):
-            yield _describe_group(group)
-    else:
-        yield f"{path.name}: no cell to correct; {out} was not written."
-    for one in done.kept:
-        yield f"{one.sheet}!{one.cell} holds a formula and is left as it is: {shorten(one.was)}"
     own = done.inventory
+    if not done.changed:
+        say(f"{path.name}: no cell to correct; {out} was not written.")
+    else:
+        save_files({out: own.data or b""})
+        say(f"wrote {out}: {count(len(done.changed), 'cell')} corrected.")
+    for group in group_corrections(done.changed):
+        shown = []
+        for one in group[:MOST_SHOWN]:
+            now = f"{one.value:.12g}" if isinstance(one.value, int | float) else "blank"
+            now = shorten(one.value) if isinstance(one.value, str) else now
+            shown.append(f"{one.cell} {shorten(one.was)} -> {now}")
+        first, more = group[0], len(group) - MOST_SHOWN
+        listed = ", ".join(shown) + (f" and {more:,} more" if more > 0 else "")
+        where = (
+            f"{first.sheet}!{listed}" if len(group) == 1 else f"{first.sheet}, {count(len(group), 'cell')}: {listed}"
+        )
+        say(f"  {where}. {first.why}")
+    for one in done.kept:
+        say(f"{one.sheet}!{one.cell} holds a formula and is left as it is: {shorten(one.was)}")
     names_files = own.files or any(floor.plan for floor in own.floors) or own.building.logo
     if done.changed and names_files and path.resolve().parent != out.resolve().parent:
-        yield f"The files that the workbook names lie next to {path.name}: copy them next to {out.name} as well."
-
-
-def _describe_group(group: "Sequence[Correction]") -> str:
-    """Return the first corrections of one kind, and how many there are."""
-    from assess.workbook.habits import shorten
-
-    shown = []
-    for one in group[:MOST_SHOWN]:
-        now = f"{one.value:.12g}" if isinstance(one.value, int | float) else "blank"
-        now = shorten(one.value) if isinstance(one.value, str) else now
-        shown.append(f"{one.cell} {shorten(one.was)} -> {now}")
-    first, more = group[0], len(group) - MOST_SHOWN
-    if len(group) == 1:
-        return f"  {first.sheet}!{shown[0]}. {first.why}"
-    listed = ", ".join(shown) + (f" and {more:,} more" if more > 0 else "")
-    return f"  {first.sheet}, {count(len(group), 'cell')}: {listed}. {first.why}"
+        say(f"The files that the workbook names lie next to {path.name}: copy them next to {out.name} as well.")
+    return own

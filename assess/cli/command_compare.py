@@ -80,7 +80,7 @@ def command(
     with show_progress() as progress:
         runs = [progress.wait_for(partial(read_run, path)) for path in (before, after)]
         if not as_is:
-            check_code(*runs)
+            _check_code(*runs)
         found = compare(*runs)
         with contextlib.suppress(InputError):  # the workbook may name one that is not known
             code = code or find_language(str(found.after.building.get("language") or LANGUAGES[0]))
@@ -94,35 +94,31 @@ def command(
     say_written(written.values(), written.removed)
 
 
-def check_code(before: "PastRun", after: "PastRun") -> None:
+def _check_code(before: "PastRun", after: "PastRun") -> None:
     """Raise InputError where two runs were computed by different code, with the commands that make them comparable."""
     if before.code == after.code:
         return
-    fault = (
+    lines = [
         f"{before.path.parent} and {after.path.parent} were computed by different code of assess: what differs between "
         "them may come from the program, not from the furniture."
-    )
-    runs = {"BEFORE": before, "AFTER": after}
-    ways = [way for name, run in runs.items() if run.code != find_code() for way in _list_ways(name, run)]
-    raise InputError("\n".join((fault, *ways, "To compare them as they are: --as-is.")))
-
-
-def _list_ways(name: str, run: "PastRun") -> Iterator[str]:
-    """Yield the command that assesses the workbook of a run again, and where that workbook is."""
-    folder, workbook = run.path.parent, Path(run.workbook).name  # a name alone: results.json may come from anybody
-
-    def is_it(path: Path) -> bool:
-        try:
-            return hashlib.sha256(read_input(path, MOST_BYTES)).hexdigest() == run.workbook_sha256
-        except (OSError, ValueError):
-            return False
-
-    found = next(filter(is_it, (folder / workbook, folder.parent / workbook, Path(workbook))), None)
-    own = {option: value for option, value in run.settings.items() if value not in _FILLED}
-    parts = ["assess", "run", str(found or workbook), "--out", f"{folder.resolve().name}-again"]
-    yield f"Assess {name} again, and compare that: {shlex.join([*parts, *spell_options(own, OPTIONS)])}"
-    if found is None and (folder / PDF).is_file():
-        yield f"{workbook} is attached to {folder / PDF}: save it from there."
+    ]
+    for name, run in (("BEFORE", before), ("AFTER", after)):
+        if run.code == find_code():
+            continue
+        folder, workbook = run.path.parent, Path(run.workbook).name  # a name alone: results.json may come from anybody
+        found = None
+        for path in (folder / workbook, folder.parent / workbook, Path(workbook)):
+            with contextlib.suppress(OSError, ValueError):
+                if hashlib.sha256(read_input(path, MOST_BYTES)).hexdigest() == run.workbook_sha256:
+                    found = path
+                    break
+        own = {option: value for option, value in run.settings.items() if value not in _FILLED}
+        parts = ["assess", "run", str(found or workbook), "--out", f"{folder.resolve().name}-again"]
+        command_line = shlex.join([*parts, *spell_options(own, OPTIONS)])
+        lines.append(f"Assess {name} again, and compare that: {command_line}")
+        if found is None and (folder / PDF).is_file():
+            lines.append(f"{workbook} is attached to {folder / PDF}: save it from there.")
+    raise InputError("\n".join((*lines, "To compare them as they are: --as-is.")))
 
 
 def describe_comparison(found: "Comparison") -> Iterator[str]:

@@ -3,7 +3,6 @@
 import platform
 import re
 import tomllib
-from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
@@ -34,7 +33,23 @@ def command() -> None:
 
     Versions of the dependencies, native libraries of the PDF, fonts and templates.
     """
-    findings = list(examine())
+    from assess.report.pages.pdf import find_weasyprint
+
+    findings = [Finding("assess", True, f"{__version__}, Python {platform.python_version()}, {platform.platform()}")]
+    findings += map(examine_package, list_requirements())
+    templates = resources.templates()
+    findings.append(Finding("templates", (templates / "page.html.j2").is_file(), str(templates)))
+    fonts = [path.name for path in resources.fonts().values()]
+    fix = "pip install --force-reinstall assess matplotlib"
+    findings.append(Finding("fonts", len(fonts) == FONTS, ", ".join(fonts) if len(fonts) == FONTS else fix))
+    try:
+        findings.append(Finding("PDF", True, f"WeasyPrint {find_weasyprint()} with its native libraries"))
+    except PdfUnavailableError as error:
+        findings.append(Finding("PDF", False, str(error)))
+    folder, fault = choose_folder()  # one that others can write to is not used
+    used = f"kept in {folder}" if folder else "not kept: every run compiles anew, which takes half a minute"
+    fix = "Give the folder to yourself alone (chmod go-w), or name another one with NUMBA_CACHE_DIR"
+    findings.append(Finding("compiled code", not fault, f"{fault}. {used}. {fix}" if fault else used))
     for finding in findings:
         say(f"{'ok     ' if finding.works else 'missing'}  {finding.what}: {finding.detail}")
     if not all(finding.works for finding in findings):
@@ -57,27 +72,6 @@ class Requirement:
     name: str
     least: str
     extra: str
-
-
-def examine() -> Iterator[Finding]:
-    """Yield versions, templates, fonts, the libraries of the PDF and the folder of compiled code."""
-    yield Finding("assess", True, f"{__version__}, Python {platform.python_version()}, {platform.platform()}")
-    yield from map(examine_package, list_requirements())
-    templates = resources.templates()
-    yield Finding("templates", (templates / "page.html.j2").is_file(), str(templates))
-    fonts = [path.name for path in resources.fonts().values()]
-    fix = "pip install --force-reinstall assess matplotlib"
-    yield Finding("fonts", len(fonts) == FONTS, ", ".join(fonts) if len(fonts) == FONTS else fix)
-    from assess.report.pages.pdf import find_weasyprint
-
-    try:
-        yield Finding("PDF", True, f"WeasyPrint {find_weasyprint()} with its native libraries")
-    except PdfUnavailableError as error:
-        yield Finding("PDF", False, str(error))
-    folder, fault = choose_folder()  # one that others can write to is not used
-    used = f"kept in {folder}" if folder else "not kept: every run compiles anew, which takes half a minute"
-    fix = "Give the folder to yourself alone (chmod go-w), or name another one with NUMBA_CACHE_DIR"
-    yield Finding("compiled code", not fault, f"{fault}. {used}. {fix}" if fault else used)
 
 
 def list_requirements() -> list[Requirement]:

@@ -1,6 +1,6 @@
 """``assess export``: risk classes back into the building model, and what to fix as topics for it."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -54,7 +54,17 @@ def command(
     found. Texts are in the language of the workbook. The exit status is 1 where a piece is not furniture in the model,
     or shares its Source ID.
     """
-    _check_names({"--out": out, "--bcf": bcf}, {ifc, results}, replaces=replaces)
+    wanted = {option: path for option, path in {"--out": out, "--bcf": bcf}.items() if path is not None}
+    if not wanted:
+        raise InputError("nothing is to be written: add --out MODEL.ifc, --bcf TOPICS.bcfzip or both.")
+    if len(set(map(Path.resolve, wanted.values()))) < len(wanted):
+        raise InputError("--out and --bcf name the same file: name two.")
+    for option, path in wanted.items():
+        endings = TOPICS if option == "--bcf" else (".ifc",)
+        check_file(path, "topics" if option == "--bcf" else "model", endings)
+        if any(is_same(path, source) for source in (ifc, results)):
+            raise InputError(f"{option}: {path} is read for this: name another file, so that it stays as it is.")
+        check_new(path, replaces=replaces)
     from assess.bim.export_files import build_export
     from assess.bim.export_results import read_export
 
@@ -69,21 +79,6 @@ def command(
     say_written(filter(None, (out, bcf)))
     if not export.is_complete:
         raise typer.Exit(1)
-
-
-def _check_names(files: Mapping[str, Path | None], sources: set[Path], *, replaces: bool) -> None:
-    """Raise InputError or OutputError unless the files may be written, as far as is known before the work."""
-    wanted = {option: path for option, path in files.items() if path is not None}
-    if not wanted:
-        raise InputError("nothing is to be written: add --out MODEL.ifc, --bcf TOPICS.bcfzip or both.")
-    if len(set(map(Path.resolve, wanted.values()))) < len(wanted):
-        raise InputError("--out and --bcf name the same file: name two.")
-    for option, path in wanted.items():
-        endings = TOPICS if option == "--bcf" else (".ifc",)
-        check_file(path, "topics" if option == "--bcf" else "model", endings)
-        if any(is_same(path, source) for source in sources):
-            raise InputError(f"{option}: {path} is read for this: name another file, so that it stays as it is.")
-        check_new(path, replaces=replaces)
 
 
 def describe_export(export: "Export", model: str) -> Iterator[str]:

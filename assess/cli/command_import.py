@@ -1,6 +1,6 @@
 """``assess import``: an inventory workbook out of a building model, a scan or a handover file of a building."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -15,7 +15,6 @@ from assess.progress import Progress
 
 if TYPE_CHECKING:
     from assess.bim.import_workbook import ImportedBuilding
-    from assess.bim.update_workbook import Updated
 
 ORDER = 2
 EXAMPLES = (
@@ -68,19 +67,42 @@ def command(
         raise InputError(
             f"--update: --routes {routes}: routes are drafted into a new workbook only: leave out one of the two."
         )
-    _check_names(source, out, replaces=replaces, updates=update)
-    from assess.bim.import_workbook import describe
+    if out.suffix.lower() != ".xlsx":
+        raise InputError(f"--out: {out} does not end in .xlsx: name it {out.stem or 'building'}.xlsx.")
+    if is_same(out, source):
+        raise InputError(f"--out: {out} is the file to import: name another file, so that the original stays as it is.")
+    if update and not out.exists():
+        raise InputError(f"--update: {out} does not exist: name the workbook of an earlier import, or leave it out.")
+    if out.exists() and not (replaces or update):
+        raise OutputError(
+            f"{out} already exists: add --update to take the changes of the model into it, --force to replace it, or "
+            "choose another name."
+        )
+    from assess.bim.import_workbook import build_workbook, describe
+    from assess.bim.read_source import read_source
 
-    choices = {"routes": routes, "also": also or ()}
+    choices: Mapping[str, Any] = {"routes": routes, "also": also or ()}
     with show_progress() as progress, progress.stage("reading", source.name):
         if update:
             made = _update(source, out, progress, choices)
         else:
-            made = _build(source, out, progress, choices, replaces=replaces)
+            found = read_source(source, source.name, progress, **choices)
+            plans = {out.parent / name: data for name, data in found.files.items()}
+            there = next((path for path in plans if path.exists()), None)
+            if there is not None and not replaces:
+                raise OutputError(
+                    f"{there} already exists: add --force to replace it, or write the workbook into another folder."
+                )
+            made = _Made(progress.wait_for(lambda: build_workbook(found)), plans, found, found.is_complete)
     save_files({**({out: made.data} if made.data is not None else {}), **made.plans})
     for line in (*describe(made.found), *made.lines):
         say(line)
-    say(_describe_written(out, made, is_new=not update), err=True)
+    drawn = sum(path.suffix == ".svg" for path in made.plans)
+    parts = [*([str(out)] if made.data is not None else ()), *([count(drawn, "plan")] if drawn else ())]
+    written = f"{', '.join(parts)} and this list beside it" if parts else "this list beside it"
+    then = "Now run" if update else "Choose Shaking in Building or fill in Floors, then run"
+    start = "" if made.data is not None else f"{out} stays as it is; "
+    say(f"{start}wrote {written}. {then}: assess check {quote(out)}", err=True)
     if not made.is_complete:
         raise typer.Exit(1)
 
@@ -96,25 +118,11 @@ class _Made:
     lines: tuple[str, ...] = ()
 
 
-def _build(source: Path, out: Path, progress: Progress, choices: Mapping[str, Any], *, replaces: bool) -> _Made:
-    from assess.bim.import_workbook import build_workbook
-    from assess.bim.read_source import read_source
-
-    found = read_source(source, source.name, progress, **choices)
-    plans = {out.parent / name: data for name, data in found.files.items()}
-    there = next((path for path in plans if path.exists()), None)
-    if there is not None and not replaces:
-        raise OutputError(
-            f"{there} already exists: add --force to replace it, or write the workbook into another folder."
-        )
-    return _Made(progress.wait_for(lambda: build_workbook(found)), plans, found, found.is_complete)
-
-
 def _update(source: Path, out: Path, progress: Progress, choices: Mapping[str, Any]) -> _Made:
     """Read the model in the workbook's language, for the names of places; OutputError if it was saved meanwhile."""
     from assess.bim.import_workbook import ENDING
     from assess.bim.read_source import read_source
-    from assess.bim.update_workbook import update_workbook
+    from assess.bim.update_workbook import describe, update_workbook
     from assess.workbook.open import read_file
     from assess.workbook.read import hold_sheets
 
@@ -123,7 +131,17 @@ def _update(source: Path, out: Path, progress: Progress, choices: Mapping[str, A
         found = read_source(source, source.name, progress, **choices)
         updated = progress.wait_for(lambda: update_workbook(data, found, out.name, progress, records=out.parent))
     is_whole = not updated.problems and not any(one.kind == "left_out" for one in updated.changes)
-    lines = tuple(describe_changes(updated))
+    lines, (x, y) = [], updated.moved
+    if x or y:
+        lines.append(
+            f"Positions of the model were moved by {x:,.0f} m along X and {y:,.0f} m along Y, as in the workbook."
+        )
+    if not updated.changes:
+        lines.append("The workbook is up to date with the model: nothing was changed.")
+    lines += [str(describe(change)) for change in updated.changes[:MOST_CHANGES]]
+    if len(updated.changes) > MOST_CHANGES:
+        lines.append(f"and {len(updated.changes) - MOST_CHANGES:,} changes more.")
+    lines += map(str, updated.problems)
     records = {name: text for name, text in found.files.items() if name.endswith(ENDING)}
     plans = {out.parent / name: one for name, one in {**updated.plans, **records}.items()}
     try:
@@ -133,42 +151,4 @@ def _update(source: Path, out: Path, progress: Progress, choices: Mapping[str, A
     if not is_unchanged:
         raise OutputError(f"{out.name} was changed while the model was read: run the import again.")
     written = updated.data if updated.is_changed else None
-    return _Made(written, plans, found, found.is_complete and is_whole, lines)
-
-
-def _describe_written(out: Path, made: _Made, *, is_new: bool) -> str:
-    drawn = sum(path.suffix == ".svg" for path in made.plans)
-    parts = [*([str(out)] if made.data is not None else ()), *([count(drawn, "plan")] if drawn else ())]
-    written = f"{', '.join(parts)} and this list beside it" if parts else "this list beside it"
-    then = "Choose Shaking in Building or fill in Floors, then run" if is_new else "Now run"
-    start = "" if made.data is not None else f"{out} stays as it is; "
-    return f"{start}wrote {written}. {then}: assess check {quote(out)}"
-
-
-def _check_names(source: Path, out: Path, *, replaces: bool, updates: bool) -> None:
-    if out.suffix.lower() != ".xlsx":
-        raise InputError(f"--out: {out} does not end in .xlsx: name it {out.stem or 'building'}.xlsx.")
-    if is_same(out, source):
-        raise InputError(f"--out: {out} is the file to import: name another file, so that the original stays as it is.")
-    if updates and not out.exists():
-        raise InputError(f"--update: {out} does not exist: name the workbook of an earlier import, or leave it out.")
-    if out.exists() and not (replaces or updates):
-        raise OutputError(
-            f"{out} already exists: add --update to take the changes of the model into it, --force to replace it, or "
-            "choose another name."
-        )
-
-
-def describe_changes(updated: "Updated") -> Iterator[str]:
-    """Yield what an update changed, added, kept or missed in the workbook."""
-    from assess.bim.update_workbook import describe
-
-    x, y = updated.moved
-    if x or y:
-        yield f"Positions of the model were moved by {x:,.0f} m along X and {y:,.0f} m along Y, as in the workbook."
-    if not updated.changes:
-        yield "The workbook is up to date with the model: nothing was changed."
-    yield from (str(describe(change)) for change in updated.changes[:MOST_CHANGES])
-    if len(updated.changes) > MOST_CHANGES:
-        yield f"and {len(updated.changes) - MOST_CHANGES:,} changes more."
-    yield from (str(problem) for problem in updated.problems)
+    return _Made(written, plans, found, found.is_complete and is_whole, tuple(lines))

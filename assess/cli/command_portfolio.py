@@ -109,7 +109,14 @@ def command(
         from assess.portfolio.run_portfolio import check_extras
 
         check_extras(wanted, scheduler)
-        source, shakemap, background = _prepare_example(source, folder, shakemap, ground_motions, background)
+        if folder.resolve().is_relative_to(source.resolve()):
+            raise InputError(f"--out: {folder} lies in the folder of the example; name another one")
+        from assess.portfolio.example_city import write_example_city
+
+        if write_example_city(source):
+            say(f"wrote {source}", err=True)
+        shakemap = shakemap if shakemap or ground_motions else source / EXAMPLE_MAP
+        source, background = source / EXAMPLE_INDEX, background or source / EXAMPLE_COAST
     ground = options.read_ground(shakemap, ground_motions)
     if runs is None:
         settings = options.fit_runs(settings, getattr(ground, "event_count", 0))
@@ -126,21 +133,19 @@ def command(
         except (KeyboardInterrupt, CancelledError):
             kept = f"the buildings that are done are kept in {plain_line(str(folder))}; the same command goes on"
             raise InterruptedWorkError(kept) from None
-    _tell(result)
+    from assess.portfolio.city_words import name_skipped
 
-
-def _prepare_example(
-    folder: Path, out: Path, shakemap: Path | None, ground_motions: Path | None, background: Path | None
-) -> tuple[Path, Path | None, Path | None]:
-    """Write the worked city unless it is there; return its index, and the ground motion and background of the run."""
-    if out.resolve().is_relative_to(folder.resolve()):
-        raise InputError(f"--out: {out} lies in the folder of the example; name another one")
-    from assess.portfolio.example_city import write_example_city
-
-    if write_example_city(folder):
-        say(f"wrote {folder}", err=True)
-    shaken = shakemap if shakemap or ground_motions else folder / EXAMPLE_MAP
-    return folder / EXAMPLE_INDEX, shaken, background or folder / EXAMPLE_COAST
+    for line in describe_city(result):
+        say(line)
+    say_written(result.files, result.removed)
+    names = {row["path"]: row["building"] for row in result.city.skipped}
+    for path, why in result.skipped[:MOST_SKIPPED]:
+        print_error(f"{plain_line(name_skipped(names.get(path), path))}: skipped. {plain_line(why)}")
+    if len(result.skipped) > MOST_SKIPPED:
+        more = count(len(result.skipped) - MOST_SKIPPED, "more building")
+        say(f"... and {more} skipped: see the table problems.", err=True)
+    if result.skipped:
+        raise typer.Exit(1)
 
 
 def _say_repeat(source: Path, settings: Settings, shakemap: Path | None, ground_motions: Path | None) -> str:
@@ -158,26 +163,6 @@ def _quote(path: Path) -> str:
     """Return a path for a shell; one that begins with a dash would be taken for an option."""
     text = str(path)
     return shlex.quote(f"./{text}" if text.startswith("-") else text).rstrip("/")
-
-
-# ---------------------------------------------------------------- what is printed at the end
-
-
-def _tell(result: "PortfolioResult") -> None:
-    """Print what was found; exit status 1 where a building was skipped."""
-    from assess.portfolio.city_words import name_skipped
-
-    for line in describe_city(result):
-        say(line)
-    say_written(result.files, result.removed)
-    names = {row["path"]: row["building"] for row in result.city.skipped}
-    for path, why in result.skipped[:MOST_SKIPPED]:
-        print_error(f"{plain_line(name_skipped(names.get(path), path))}: skipped. {plain_line(why)}")
-    if len(result.skipped) > MOST_SKIPPED:
-        more = count(len(result.skipped) - MOST_SKIPPED, "more building")
-        say(f"... and {more} skipped: see the table problems.", err=True)
-    if result.skipped:
-        raise typer.Exit(1)
 
 
 def describe_city(result: "PortfolioResult") -> Iterator[str]:

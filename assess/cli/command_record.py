@@ -17,7 +17,7 @@ from assess.units import GRAVITY
 if TYPE_CHECKING:
     from assess.arrays import FloatArray
     from assess.motion.formats import Channel
-    from assess.motion.record import Motion, Record
+    from assess.motion.record import Motion
 
 ORDER = 6
 EXAMPLES = (
@@ -43,8 +43,16 @@ def command(
     object, several files give a list.
     """
     check_file(plot, "figure")
+    found = []
     with show_progress():
-        found = [channels for name in files if (channels := _read(name))]
+        from assess.motion.formats import read_channels
+
+        for name in files:
+            try:
+                if channels := read_channels(name):
+                    found.append(channels)
+            except InputError as error:
+                print_error(str(error))
         documents = [describe(channels) for channels in found]
     if not found:
         raise typer.Exit(2)
@@ -57,57 +65,44 @@ def command(
         raise typer.Exit(1)
 
 
-def _read(name: str) -> "list[Channel]":
-    """Return the channels of a file; none where it cannot be used, which is printed."""
-    from assess.motion.formats import read_channels
-
-    try:
-        return read_channels(name)
-    except InputError as error:
-        print_error(str(error))
-        return []
-
-
-# ---------------------------------------------------------------- document and text
-
-
 def describe(channels: Sequence["Channel"]) -> dict[str, Any]:
     """Return the document of `assess record --json` for the channels of one file."""
-    return {
-        "file": channels[0].record.file.split("/")[0],
-        "format": ", ".join(dict.fromkeys(one.record.format for one in channels)),
-        "channels": [_describe(*one) for one in channels],
-    }
-
-
-def _describe(name: str, record: "Record", motion: "Motion") -> dict[str, Any]:
     from assess.motion.record import treatment
 
     return {
-        "channel": record.channel,
-        "name": name,
-        "member": record.file,
-        "location": record.location,
-        "azimuth_deg": record.azimuth_deg,
-        "vertical": record.vertical,
-        "station": record.station,
-        "event": record.event,
-        "start": record.start,
-        "time_step_s": record.time_step,
-        "samples": int(record.acceleration.size),
-        "pfa_header_g": None if record.header_pfa is None else record.header_pfa / GRAVITY,
-        "pfa_file_g": record.file_pfa / GRAVITY,
-        "pfa_g": motion.pfa / GRAVITY,
-        "pfv_cm_s": motion.pfv * 100,
-        "pfd_cm": motion.pfd * 100,
-        "corrected": record.corrected,
-        "treatment": treatment(record),
-        "notes": list(record.notes),
-        "spectrum": {
-            "damping": 0.05,
-            "periods_s": list(PERIODS),
-            "pseudo_acceleration_g": [float(value) / GRAVITY for value in _pseudo_acceleration(motion, PERIODS)],
-        },
+        "file": channels[0].record.file.split("/")[0],
+        "format": ", ".join(dict.fromkeys(one.record.format for one in channels)),
+        "channels": [
+            {
+                "channel": record.channel,
+                "name": name,
+                "member": record.file,
+                "location": record.location,
+                "azimuth_deg": record.azimuth_deg,
+                "vertical": record.vertical,
+                "station": record.station,
+                "event": record.event,
+                "start": record.start,
+                "time_step_s": record.time_step,
+                "samples": int(record.acceleration.size),
+                "pfa_header_g": None if record.header_pfa is None else record.header_pfa / GRAVITY,
+                "pfa_file_g": record.file_pfa / GRAVITY,
+                "pfa_g": motion.pfa / GRAVITY,
+                "pfv_cm_s": motion.pfv * 100,
+                "pfd_cm": motion.pfd * 100,
+                "corrected": record.corrected,
+                "treatment": treatment(record),
+                "notes": list(record.notes),
+                "spectrum": {
+                    "damping": 0.05,
+                    "periods_s": list(PERIODS),
+                    "pseudo_acceleration_g": [
+                        float(value) / GRAVITY for value in _pseudo_acceleration(motion, PERIODS)
+                    ],
+                },
+            }
+            for name, record, motion in channels
+        ],
     }
 
 
@@ -149,9 +144,6 @@ def _say_direction(vertical: bool | None, azimuth_deg: float | None, sign: str) 
     return "direction not known" if vertical is None else "vertical" if vertical else "horizontal"
 
 
-# ---------------------------------------------------------------- figure
-
-
 def draw_channels(channels: Sequence["Channel"], kind: str) -> tuple[bytes, int]:
     """Return acceleration, velocity and spectrum of each channel, and how many channels are not drawn."""
     from assess.report.figures.draw import draw
@@ -172,11 +164,18 @@ def _paint(shown: Sequence["Channel"], figure: Any) -> None:
         direction = _say_direction(record.vertical, record.azimuth_deg, "°")
         title = ", ".join(part for part in (name, record.location, direction) if part)
         first.set_title(title.replace("$", r"\$")[:90], loc="left", fontsize=8)
-        for axes, values, unit in (
-            (first, motion.acceleration / GRAVITY, "g"),
-            (second, motion.velocity * 100, "cm/s"),
+        for axes, values, unit, what in (
+            (first, motion.acceleration / GRAVITY, "g", "acceleration"),
+            (second, motion.velocity * 100, "cm/s", "velocity"),
         ):
-            _paint_history(axes, times, values, unit)
+            at = int(abs(values).argmax())
+            axes.plot(times, values, color="#444444", linewidth=0.5)
+            axes.plot(times[at], values[at], "o", color="#b03a2e", markersize=4, fillstyle="none")
+            axes.annotate(f"{abs(values[at]):.3g} {unit} at {times[at]:.4g} s", (times[at], values[at]), fontsize=7,
+                          xytext=(4, 0), textcoords="offset points", va="center", color="#b03a2e",
+                          bbox={"facecolor": "white", "edgecolor": "none", "pad": 1, "alpha": 0.85})  # fmt: skip
+            axes.set_ylabel(f"{what} [{unit}]")
+            axes.margins(x=0)
         third.semilogx(periods, _pseudo_acceleration(motion, periods) / GRAVITY, color="#1b4f72", linewidth=1)
         third.set_ylabel("PSA, 5 % [g]")
         third.set_ylim(bottom=0)
@@ -185,14 +184,3 @@ def _paint(shown: Sequence["Channel"], figure: Any) -> None:
         third.minorticks_off()
     for axes, label in zip(rows[-1], ("time [s]", "time [s]", "period [s]"), strict=True):
         axes.set_xlabel(label)
-
-
-def _paint_history(axes: Any, times: Any, values: Any, unit: str) -> None:
-    at = int(abs(values).argmax())
-    axes.plot(times, values, color="#444444", linewidth=0.5)
-    axes.plot(times[at], values[at], "o", color="#b03a2e", markersize=4, fillstyle="none")
-    axes.annotate(f"{abs(values[at]):.3g} {unit} at {times[at]:.4g} s", (times[at], values[at]), fontsize=7,
-                  xytext=(4, 0), textcoords="offset points", va="center", color="#b03a2e",
-                  bbox={"facecolor": "white", "edgecolor": "none", "pad": 1, "alpha": 0.85})  # fmt: skip
-    axes.set_ylabel(f"acceleration [{unit}]" if unit == "g" else f"velocity [{unit}]")
-    axes.margins(x=0)

@@ -16,7 +16,6 @@ from assess.settings import ROUTE_RISK
 
 if TYPE_CHECKING:
     from assess.results import Results
-    from assess.route_results import RouteTables
 
 ORDER = 3
 EXAMPLES = (
@@ -118,8 +117,16 @@ def command(
     ] = False,
 ) -> None:
     """Assess a workbook and write the reports."""
+    from assess.report import list_formats, write_reports
+    from assess.report.report_options import ReportOptions
+
     folder = out or Path(f"{path.stem}-report")
-    wanted = _read_formats(formats, verify, open_report)
+    named = options.read_formats(formats, (*FILES, ALL))
+    wanted = [one for one in list_formats(named) if one != "npz" or verify != "none" or "npz" in named]
+    if "npz" in named and verify == "none":
+        raise InputError("--formats: npz holds results of the simulation: leave out npz or --verify none.")
+    if open_report and not set(wanted) & set(OPENED):
+        raise InputError(f"--open opens a report: write one of {', '.join(OPENED)} with --formats.")
     if motions is not None and (verify == "none" or runs is not None or seed is not None):
         raise InputError(
             "--motions: the simulation uses each of your own motions once; leave out --verify none, --runs and --seed"
@@ -131,9 +138,6 @@ def command(
         route_risk=route_risk, anchor=anchor, city=city, class_by=class_by,
     )  # fmt: skip
     options.check_out(folder, wanted)
-    from assess.report import write_reports
-    from assess.report.report_options import ReportOptions
-
     code = find_language(language) if language else ""
     style = ReportOptions(language=code, templates=templates, accessible=accessible)
     if templates is not None:
@@ -179,27 +183,10 @@ def _read_methods(models: Sequence[Path], motions: Path | None, progress: Progre
     return found
 
 
-# ---------------------------------------------------------------- what was given
-
-
-def _read_formats(formats: str, verify: str, open_report: bool) -> list[str]:
-    from assess.report import list_formats
-
-    named = options.read_formats(formats, (*FILES, ALL))
-    wanted = [one for one in list_formats(named) if one != "npz" or verify != "none" or "npz" in named]
-    if "npz" in named and verify == "none":
-        raise InputError("--formats: npz holds results of the simulation: leave out npz or --verify none.")
-    if open_report and not set(wanted) & set(OPENED):
-        raise InputError(f"--open opens a report: write one of {', '.join(OPENED)} with --formats.")
-    return wanted
-
-
-# ---------------------------------------------------------------- what is printed at the end
-
-
 def describe_result(results: "Results") -> Iterator[str]:
     """Yield the pieces of each class and those apart, what settles these, the routes at risk, and what was assumed."""
     from assess.report.counts import count
+    from assess.report.say import route as say_route
     from assess.report.say.piece import list_apart, list_ways_to_settle
     from assess.report.say.simulation import describe_verification, list_conditions, say_assumed, say_sensitivity
     from assess.risk import RiskClass
@@ -226,21 +213,12 @@ def describe_result(results: "Results") -> Iterator[str]:
         depends = "it depends on its anchors" if counts.anchored == 1 else "they depend on their anchors"
         yield line("  anchored", counts.anchored, f", not classified: {depends}")
     if results.has_routes:
-        yield _describe_routes(results.route_tables)
+        routes = results.route_tables
+        held = sum(say_route.is_held(one, routes.risk) for one in routes.routes)
+        worse = [f"If anchors fail, {held:,} would be worse."] if held else []
+        yield " ".join((*say_route.count_all(routes), *worse, *say_route.say_to_fill_in(routes)))
     verified = describe_verification(results) if results.has_simulated else "Not simulated."
     yield f"Chance of overturning in this scenario, not per year. {verified}"
     yield from (f"{text}." for text in list_conditions(results))
     if assumed := " ".join(filter(None, (say_assumed(results), say_sensitivity(results, rows)))):
         yield assumed
-
-
-def _describe_routes(routes: "RouteTables") -> str:
-    from assess.report.say import route as say_route
-
-    held = sum(say_route.is_held(one, routes.risk) for one in routes.routes)
-    texts = [
-        *say_route.count_all(routes),
-        *([f"If anchors fail, {held:,} would be worse."] if held else []),
-        *say_route.say_to_fill_in(routes),
-    ]
-    return " ".join(texts)

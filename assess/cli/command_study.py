@@ -10,7 +10,6 @@ import typer
 from assess.cli.console import InterruptedWorkError, say, show_progress
 from assess.cli.options import SIZE, Jobs, check_size, one_of
 from assess.errors import CancelledError, InputError
-from assess.progress import Progress
 from assess.settings import count_processors
 from assess.units import LENGTH
 
@@ -76,39 +75,32 @@ def command(
     for option, folder in (("out", out), ("records", records)):
         if folder is not None and not folder.strip():
             raise InputError(f"--{option} is empty: name a folder, or leave out --{option}")
+    target = Path(out)
     given = {"records": None if records is None else Path(records), "breadth": breadth, "height": height}
     try:
         with show_progress() as progress:
-            _run(name, Path(out), runs, seed, jobs or count_processors(), given, progress)
+            from assess.studies import PAGE, PARTS, Options, all_studies, build_page, check_folder, run_all, write_files
+
+            every = all_studies()
+            chosen = [one for one in every if name.lower() in (one.name, ALL)]
+            if not chosen:
+                raise InputError(f"{name!r} is an unknown study; expected one of: {NAMES}, {ALL}")
+            options = Options(out=target, runs=runs, seed=seed, jobs=jobs or count_processors())
+            options = _add_own(given, options, chosen, every)
+            check_folder(target)
+            findings = run_all(chosen, options, progress)
+            if name.lower() == ALL:
+                write_files(target, {PAGE: build_page(chosen, findings, options).encode("utf-8")})
+            for sentence in (text for one in chosen for text in findings[one.name].summary):
+                say(sentence)
+            page = target / (f"{chosen[0].name}.md" if len(chosen) == 1 else PAGE)
+            kept = f"; {target / PARTS} keeps the long integrations for the next run"
+            say(f"wrote {page}{kept if (target / PARTS).is_dir() else ''}", err=True)
     except (KeyboardInterrupt, CancelledError):
         from assess.studies import PARTS
 
-        parts = Path(out) / PARTS
-        kept = f"finished parts are kept in {parts}; the same command continues from there"
-        raise InterruptedWorkError(kept if parts.is_dir() else "nothing was written") from None
-
-
-def _run(
-    name: str, out: Path, runs: int, seed: int, jobs: int, given: Mapping[str, Path | float | None], progress: Progress
-) -> None:
-    from assess.studies import PAGE, PARTS, Options, all_studies, build_page, check_folder, run_all, write_files
-
-    every = all_studies()
-    chosen = [one for one in every if name.lower() in (one.name, ALL)]
-    if not chosen:
-        raise InputError(f"{name!r} is an unknown study; expected one of: {NAMES}, {ALL}")
-    options = Options(out=out, runs=runs, seed=seed, jobs=jobs)
-    options = _add_own(given, options, chosen, every)
-    check_folder(out)
-    findings = run_all(chosen, options, progress)
-    if name.lower() == ALL:
-        write_files(out, {PAGE: build_page(chosen, findings, options).encode("utf-8")})
-    for one in chosen:
-        for sentence in findings[one.name].summary:
-            say(sentence)
-    page = out / (f"{chosen[0].name}.md" if len(chosen) == 1 else PAGE)
-    kept = f"; {out / PARTS} keeps the long integrations for the next run" if (out / PARTS).is_dir() else ""
-    say(f"wrote {page}{kept}", err=True)
+        kept = f"finished parts are kept in {target / PARTS}; the same command continues from there"
+        raise InterruptedWorkError(kept if (target / PARTS).is_dir() else "nothing was written") from None
 
 
 def _add_own(

@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from functools import wraps
 from pathlib import Path
-from typing import Any, Never, TextIO, get_type_hints
+from typing import Any, TextIO, get_type_hints
 
 import typer
 from typer.models import OptionInfo
@@ -85,9 +85,26 @@ def guard(command: Callable[..., None]) -> Callable[..., None]:
         except InterruptedWorkError as error:
             interrupts.end_surely(str(error))
         except BaseException as error:
-            if interrupts.is_interrupted() or isinstance(error, KeyboardInterrupt | CancelledError):
+            if interrupts.heard or isinstance(error, KeyboardInterrupt | CancelledError):
                 interrupts.end_surely()  # whatever became of the interrupt on its way
-            _explain(error, command)
+            if isinstance(error, WorkbookError):
+                print_problems(error.problems)
+                print_ways(error.problems)
+                say(f"{count_errors(error.problems)}; nothing was written.", err=True)
+                raise typer.Exit(2) from None
+            if isinstance(error, AssessError):
+                is_input, message = isinstance(error, InputError), str(error)
+                if is_input and not isinstance(error, RecordError):  # with the option in place of the keyword argument
+                    names = _list_options(command)
+                    message = re.sub(r"^\w+(?=:| )", lambda found: names.get(found[0], found[0]), message)
+                print_error(message)
+                raise typer.Exit(2 if is_input else 1) from None
+            if (
+                isinstance(error, OSError) and error.filename is not None
+            ):  # else the output itself, see `assess.cli.app`
+                print_error(describe_fault(error))
+                raise typer.Exit(2 if error.errno == errno.ENAMETOOLONG else 1) from None
+            raise
 
     return run
 
@@ -101,28 +118,7 @@ def describe_fault(error: OSError) -> str:
     return f"{name[:LONGEST_NAME]}{'…' if len(name) > LONGEST_NAME else ''} cannot be used: {why}."
 
 
-def _explain(error: BaseException, command: Callable[..., None]) -> Never:
-    """Print what went wrong and raise the exit status; what is no error of the library is raised as it is."""
-    if isinstance(error, WorkbookError):
-        print_problems(error.problems)
-        print_ways(error.problems)
-        say(f"{count_errors(error.problems)}; nothing was written.", err=True)
-        raise typer.Exit(2) from None
-    if isinstance(error, AssessError):
-        is_input, message = isinstance(error, InputError), str(error)
-        if is_input and not isinstance(error, RecordError):  # with the option in place of the keyword argument
-            options = _list_options(command)
-            message = re.sub(r"^\w+(?=:| )", lambda found: options.get(found[0], found[0]), message)
-        print_error(message)
-        raise typer.Exit(2 if is_input else 1) from None
-    if isinstance(error, OSError) and error.filename is not None:  # else the output itself, see `assess.cli.app`
-        print_error(describe_fault(error))
-        raise typer.Exit(2 if error.errno == errno.ENAMETOOLONG else 1) from None
-    raise error
-
-
 def _list_options(command: Callable[..., None]) -> Mapping[str, str]:
-    """Return the options of a command by their keyword arguments."""
     found: dict[str, str] = {}
     for name, hint in get_type_hints(command, include_extras=True).items():
         for info in getattr(hint, "__metadata__", ()):
@@ -192,19 +188,26 @@ def show_progress() -> Iterator[Progress]:
 
     On a terminal one line keeps changing. Elsewhere nothing is printed in the first `QUIET` seconds; then each stage
     gets a line when it begins, and one every `REPEAT` seconds, also while nothing is reported: during an import, a
-    compilation or the layout of a PDF.
-
-    Yields
-    ------
-    Progress
-        For the library. Work that does not stop `interrupts.PATIENCE` after it is cancelled gets a KeyboardInterrupt.
+    compilation or the layout of a PDF. Work that does not stop `interrupts.PATIENCE` after it is cancelled gets a
+    KeyboardInterrupt.
     """
-    cancel, line = threading.Event(), _Line(sys.stderr)
-    with interrupts.cancel_by_signal(cancel), _repeat(line):
+    cancel, done, line = threading.Event(), threading.Event(), _Line(sys.stderr)
+
+    def repeat() -> None:
+        while not done.wait(LOOK):
+            line.repeat()
+
+    watching = threading.Thread(target=repeat, name="assess-progress", daemon=True)
+    with interrupts.cancel_by_signal(cancel):
+        if not line.is_terminal:
+            watching.start()
         try:
             yield Progress(line, cancel)
         finally:
             line.clear()
+            done.set()
+            if not line.is_terminal:
+                watching.join()
 
 
 class _Line:
@@ -259,26 +262,6 @@ class _Line:
 
 _NOTHING = Report("", 1.0, "", None)
 """The state between two stages."""
-
-
-@contextmanager
-def _repeat(line: _Line) -> Iterator[None]:
-    """Have a line printed every `REPEAT` seconds away from a terminal, whatever the work is busy with."""
-    done = threading.Event()
-
-    def look() -> None:
-        while not done.wait(LOOK):
-            line.repeat()
-
-    watching = threading.Thread(target=look, name="assess-progress", daemon=True)
-    if not line.is_terminal:
-        watching.start()
-    try:
-        yield
-    finally:
-        done.set()
-        if not line.is_terminal:
-            watching.join()
 
 
 def describe_progress(report: Report) -> str:

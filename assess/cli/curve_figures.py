@@ -2,7 +2,7 @@
 
 import math
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any, TypeVar
 
@@ -13,7 +13,7 @@ from assess.cli.route_output import Sweep
 from assess.fragility import lognormal_chance
 from assess.i18n import count
 from assess.pipeline.piece_fragility import UNITS, PieceFragility
-from assess.pipeline.route_sweep import Fragility, RouteFragility, find_jumps
+from assess.pipeline.route_sweep import RouteFragility, find_jumps
 from assess.report import words
 from assess.report.figures.draw import draw, label
 from assess.report.interchange.exchange_files import LABELS
@@ -46,9 +46,6 @@ _Row = TypeVar("_Row")
 Panels = Sequence[Sequence[_Row]]
 
 
-# ---------------------------------------------------------------- panels
-
-
 def _split(rows: Sequence[_Row], a_panel: int, most: int) -> tuple[list[list[_Row]], int]:
     """Return the rows panel by panel, about as many in each, and how many there is no room for."""
     shown = rows[: a_panel * most]
@@ -73,9 +70,6 @@ def _dress(axes: Any) -> None:
     axes.grid(visible=True, color="#eeeeee", linewidth=0.5)
     axes.spines[["top", "right"]].set_visible(False)
     axes.legend(fontsize=7, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0), handlelength=4)
-
-
-# ---------------------------------------------------------------- routes
 
 
 def draw_routes(sweep: Sweep, kind: str) -> tuple[bytes, int]:
@@ -110,10 +104,25 @@ def paint_routes(sweep: Sweep, panels: Panels[RouteFragility], figure: Any) -> N
         lowest = max(row for row in range(len(every)) if row * columns + column < len(panels))
         every[lowest, column].set_xlabel("PFA on the route's floors [g]")
         every[lowest, column].tick_params(labelbottom=True)
+    found = sweep.fragility.uncertainty
+    uncertain = "PFA and pieces exact."
+    if found is not None:
+        pieces = "pieces uncertain" if found.piece else "pieces exact"
+        uncertain = f"PFA uncertain by {found.motion:g} in ln, the same on all floors; {pieces}."
+    texts = [f"{MEANING} {uncertain}"]
+    flat = [one for one in sweep.fragility.routes if max(chance.high for chance in one.blocked) == 0]
+    weak = [one for one in sweep.fragility.routes if one.doubtful]
+    for what, routes in (
+        ("Lower bounds, as motions of pieces beside them may be too weak", weak),
+        ("Always 0 %, as no free-standing piece can block them", [one for one in flat if one.is_evaluated]),
+        ("Not evaluated, as the workbook places no furniture there", [one for one in flat if not one.is_evaluated]),
+    ):
+        if routes:
+            texts.append(f"{what}: {words.name_first([label(one.route) for one in routes], MOST_NAMED)}.")
     wide = ROOM * columns
     verdict = textwrap.wrap(label(sweep.verdict.say(), LONGEST), wide * 5 // 6)
     figure.suptitle("\n".join(verdict), x=0.01, ha="left", fontsize=9)
-    notes = (line for text in _list_notes(sweep.fragility) for line in textwrap.wrap(text, wide))
+    notes = (line for text in texts for line in textwrap.wrap(text, wide))
     figure.supxlabel("\n".join(notes), x=0.01, ha="left", fontsize=7)
 
 
@@ -136,44 +145,18 @@ def _paint_route(axes: Any, one: RouteFragility, pfa_g: Sequence[float], style: 
     for at in jumps:
         pair = slice(at, at + 2)
         axes.plot(pfa_g[pair], ways[0][pair], color=colour, linestyle=(0, (1, 4)), linewidth=0.7)
-    if one.scenario_pfa is not None:
-        _paint_scenario(axes, [peak / GRAVITY for peak in one.scenario_pfa], pfa_g, ways[0], colour)
-
-
-def _paint_scenario(
-    axes: Any, peaks: Sequence[float], pfa_g: Sequence[float], chances: Sequence[float], colour: str
-) -> None:
-    """Paint the curve broad from one peak to the other, but for where it jumps."""
-    low, high = max(peaks[0], pfa_g[0]), min(peaks[1], pfa_g[-1])
-    if low > high:
+    if one.scenario_pfa is None:
         return
-    bounds = [0, *(side for at in find_jumps(chances) for side in (at, at + 1)), len(pfa_g) - 1]
-    for number, (first, last) in enumerate(pairwise(bounds)):
-        start, end = max(low, pfa_g[first]), min(high, pfa_g[last])
+    # the curve is broad from one peak of the scenario to the other, but for where it jumps
+    peaks = [peak / GRAVITY for peak in one.scenario_pfa]
+    first, last = max(peaks[0], pfa_g[0]), min(peaks[1], pfa_g[-1])
+    bounds = [0, *(side for at in jumps for side in (at, at + 1)), len(pfa_g) - 1]
+    for number, (begin, stop) in enumerate(pairwise(bounds)):
+        start, end = max(first, pfa_g[begin]), min(last, pfa_g[stop])
         if number % 2 == 0 and start <= end:
-            at = np.unique([start, *(pfa for pfa in pfa_g if start < pfa < end), end])
-            axes.plot(at, np.interp(at, pfa_g, chances), color=colour, linewidth=5, alpha=0.35, solid_capstyle="round")
-
-
-def _list_notes(fragility: Fragility) -> Iterator[str]:
-    found = fragility.uncertainty
-    if found is None:
-        uncertain = "PFA and pieces exact."
-    else:
-        pieces = "pieces uncertain" if found.piece else "pieces exact"
-        uncertain = f"PFA uncertain by {found.motion:g} in ln, the same on all floors; {pieces}."
-    yield f"{MEANING} {uncertain}"
-    flat = [one for one in fragility.routes if max(chance.high for chance in one.blocked) == 0]
-    for what, routes in (
-        ("Lower bounds, as motions of pieces beside them may be too weak", [r for r in fragility.routes if r.doubtful]),
-        ("Always 0 %, as no free-standing piece can block them", [one for one in flat if one.is_evaluated]),
-        ("Not evaluated, as the workbook places no furniture there", [one for one in flat if not one.is_evaluated]),
-    ):
-        if routes:
-            yield f"{what}: {words.name_first([label(one.route) for one in routes], MOST_NAMED)}."
-
-
-# ---------------------------------------------------------------- fragility
+            between = np.unique([start, *(pfa for pfa in pfa_g if start < pfa < end), end])
+            axes.plot(between, np.interp(between, pfa_g, ways[0]), color=colour, linewidth=5, alpha=0.35,
+                      solid_capstyle="round")  # fmt: skip
 
 
 def draw_curves(curves: Curves, kind: str) -> tuple[bytes, int]:
@@ -194,10 +177,24 @@ def paint_curves(curves: Curves, panels: Panels[PieceFragility], figure: Any) ->
     every = _lay_out(figure, panels, "Chance of overturning")
     unit, name = UNITS[curves.found.im], LABELS[curves.found.im]
     for axes, drawn in zip(every.flat, panels, strict=False):
-        limits = min(_shown(one)[0] for one in drawn) / unit, max(_shown(one)[1] for one in drawn) / unit
-        for one, style in zip(drawn, LINES, strict=False):
-            _paint_curve(axes, one, curves, style, limits)
-        low, high = limits
+        spans = [_find_span(one) for one in drawn]
+        low, high = min(span[0] for span in spans) / unit, max(span[1] for span in spans) / unit
+        for one, (colour, style, marker) in zip(drawn, LINES, strict=False):
+            curve, levels = one.curve, one.curve.levels / unit
+            kept = (levels >= low) & (levels <= high)
+            marks = {"marker": marker, "markersize": 4.0, "color": colour}
+            axes.plot(levels[kept], curve.shares[kept], linestyle="", clip_on=False, **marks)
+            if curve.kind == "fitted":
+                at = np.geomspace(low, high, POINTS)
+                chances = lognormal_chance(at, curve.median / unit, curve.dispersion)
+                axes.plot(at, chances, color=colour, linestyle=style, linewidth=1.3)
+                said = f"median {curve.median / unit:.3g} {name}, beta {curve.dispersion:.2f}"
+                said += "" if curve.is_lognormal else f", misfit {curve.misfit:.3f}"
+            else:  # without a lognormal, thin dots from point to point
+                axes.plot(levels[kept], curve.shares[kept], color=colour, linestyle=(0, (1, 4)), linewidth=0.7)
+                said = curve.kind
+            line, weak = style if curve.kind == "fitted" else "", " *" if one.may_be_too_low else ""
+            axes.plot([], [], linestyle=line, linewidth=1.3, label=f"{label(one.name)}{weak}\n{said}", **marks)
         axes.set_xscale("log")
         decades = range(math.floor(math.log10(low)) - 1, math.ceil(math.log10(high)) + 1)
         ticks = [first * 10.0**decade for decade in decades for first in TICKS]
@@ -206,50 +203,23 @@ def paint_curves(curves: Curves, panels: Panels[PieceFragility], figure: Any) ->
         axes.set_xlim(low / 1.03, high * 1.03)
         _dress(axes)
         axes.set_xlabel(f"{curves.measure} of the floor [{name}]")
-    notes = (line for text in _list_meanings(curves, ROOM * len(every[0])) for line in text)
+    ratios = [ratio for one in curves.found.curves for ratio in one.pfv_per_pfa]
+    pieces = "pieces uncertain" if curves.found.has_drawn_pieces else "pieces exactly as filled in"
+    notes = textwrap.wrap(
+        f"Points: share of {count(curves.found.runs, 'draw')} that overturned; lines: lognormal fitted. Given the "
+        f"floor's {curves.measure}: the uncertainty of the motion is not in it; {pieces}. Holds for motions of this "
+        f"shape of spectrum: PFV/PFA {min(ratios):.2f} to {max(ratios):.2f} s.",
+        ROOM * len(every[0]),
+    )
+    if any(one.may_be_too_low for one in curves.found.curves):
+        notes.append("* Its motions may be too weak: pieces may overturn at lower levels than the curve says.")
     figure.suptitle("\n".join(notes), x=0.01, ha="left", fontsize=7.5)
 
 
-def _paint_curve(
-    axes: Any, one: PieceFragility, curves: Curves, style: tuple[str, str, str], limits: tuple[float, float]
-) -> None:
-    """Paint the shares that fell as points and the lognormal as a line; without one, thin dots from point to point."""
-    colour, line, marker = style
-    curve, unit = one.curve, UNITS[curves.found.im]
-    levels = curve.levels / unit
-    kept = (levels >= limits[0]) & (levels <= limits[1])
-    marks = {"marker": marker, "markersize": 4.0, "color": colour}
-    axes.plot(levels[kept], curve.shares[kept], linestyle="", clip_on=False, **marks)
-    if curve.kind == "fitted":
-        at = np.geomspace(*limits, POINTS)
-        axes.plot(at, lognormal_chance(at, curve.median / unit, curve.dispersion), color=colour, linestyle=line,
-                  linewidth=1.3)  # fmt: skip
-        said = f"median {curve.median / unit:.3g} {LABELS[curves.found.im]}, beta {curve.dispersion:.2f}"
-        said += "" if curve.is_lognormal else f", misfit {curve.misfit:.3f}"
-    else:
-        axes.plot(levels[kept], curve.shares[kept], color=colour, linestyle=(0, (1, 4)), linewidth=0.7)
-        said, line = curve.kind, ""
-    weak = " *" if one.may_be_too_low else ""
-    axes.plot([], [], linestyle=line, linewidth=1.3, label=f"{label(one.name)}{weak}\n{said}", **marks)
-
-
-def _shown(one: PieceFragility) -> tuple[float, float]:
+def _find_span(one: PieceFragility) -> tuple[float, float]:
     """Return the levels between which a curve is shown: from the last at which nothing falls to where all do."""
     curve = one.curve
     some = np.flatnonzero((curve.shares > 0) & (curve.shares < 1))
     if not some.size:
         return float(curve.levels[0]), float(curve.levels[-1])
     return float(curve.levels[max(some[0] - 1, 0)]), float(curve.levels[min(some[-1] + 1, curve.levels.size - 1)])
-
-
-def _list_meanings(curves: Curves, wide: int) -> Iterator[list[str]]:
-    ratios = [ratio for one in curves.found.curves for ratio in one.pfv_per_pfa]
-    pieces = "pieces uncertain" if curves.found.has_drawn_pieces else "pieces exactly as filled in"
-    yield textwrap.wrap(
-        f"Points: share of {count(curves.found.runs, 'draw')} that overturned; lines: lognormal fitted. Given the "
-        f"floor's {curves.measure}: the uncertainty of the motion is not in it; {pieces}. Holds for motions of this "
-        f"shape of spectrum: PFV/PFA {min(ratios):.2f} to {max(ratios):.2f} s.",
-        wide,
-    )
-    if any(one.may_be_too_low for one in curves.found.curves):
-        yield ["* Its motions may be too weak: pieces may overturn at lower levels than the curve says."]

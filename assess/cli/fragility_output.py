@@ -50,15 +50,6 @@ class Curves:
         """The intensity measure in words."""
         return self.found.im.upper()
 
-    @property
-    def conditions(self) -> str:
-        """What a curve is conditional on, in short."""
-        pieces = "that of the pieces is" if self.found.has_drawn_pieces else "neither is that of the pieces"
-        return (
-            f"chance of overturning given the floor's {self.measure}; the uncertainty of the motion is not in it, "
-            f"{pieces}; holds for motions of the stated PFV/PFA"
-        )
-
     def say(self) -> Iterator[str]:
         """Yield what the numbers mean, in paragraphs."""
         measure, unit = self.measure, LABELS[self.found.im]
@@ -100,8 +91,6 @@ class Curves:
         if stocky := sum(item.quantity for item in self.found.stocky):
             yield f"Left out: {count(stocky, 'piece')} too stocky to rock."
 
-    # ------------------------------------------------------------ the document
-
     def describe(self) -> dict[str, Any]:
         """Return the document of `assess fragility --json` and fragility.json."""
         found = self.found
@@ -118,8 +107,24 @@ class Curves:
             "seed": found.seed,
             "uncertainty": {"motion": 0.0, "piece": found.has_drawn_pieces},
             "too_stocky": [item.item for item in found.stocky],
-            "motions": [_describe_motions(one) for one in motions.values()],
-            "curves": [self._describe(curve) | {"table": list(self._tabulate(curve))} for curve in found.curves],
+            "motions": [
+                {
+                    "floor": one.floor,
+                    "axis": one.demand.axis,
+                    "source": str(one.demand.label),
+                    "spectrum": str(one.spectrum),
+                    "pfa_g": one.demand.pfa / GRAVITY,
+                    "pfv_cm_s": finite(100 * one.demand.pfv),
+                    "mean_pfa_g": one.mean_pfa / GRAVITY,
+                    "mean_pfv_cm_s": 100 * one.mean_pfv,
+                    "pfv_per_pfa_s": one.pfv_per_pfa,
+                    "assumed_motion": one.is_assumed,
+                    "unknown_building": one.is_unknown,
+                    "weak_motions": one.is_weak,
+                }
+                for one in motions.values()
+            ],
+            "curves": [self._describe(curve) | {"table": list(self.tabulate(curve))} for curve in found.curves],
         }
 
     def _describe(self, one: PieceFragility) -> dict[str, Any]:
@@ -158,7 +163,8 @@ class Curves:
             "may_be_too_low": one.may_be_too_low,
         }
 
-    def _tabulate(self, one: PieceFragility) -> Iterator[dict[str, Any]]:
+    def tabulate(self, one: PieceFragility) -> Iterator[dict[str, Any]]:
+        """Yield the levels of a curve with what fell at each."""
         curve, unit = one.curve, UNITS[self.found.im]
         fitted = lognormal_chance(curve.levels, curve.median, curve.dispersion) if curve.kind == "fitted" else None
         for at, level in enumerate(curve.levels.tolist()):
@@ -174,59 +180,53 @@ class Curves:
         """Return the document as text."""
         return json.dumps(self.describe(), ensure_ascii=False, allow_nan=False, indent=1)
 
-    # ------------------------------------------------------------ the tables
-
     def to_csv(self) -> str:
         """Return a line a curve, for other programs; the last column says what it is conditional on."""
-        own = {"by": self.found.by, "draws": self.found.runs, "seed": self.found.seed, "conditions": self.conditions}
-        return write_rows({**self._describe(curve), **own} for curve in self.found.curves)
-
-    def to_table(self) -> str:
-        """Return a line a curve and level."""
-        return write_rows(
-            {"name": curve.name, "type": curve.type or None, "items": [item.item for item in curve.items], **row}
-            for curve in self.found.curves
-            for row in self._tabulate(curve)
+        pieces = "that of the pieces is" if self.found.has_drawn_pieces else "neither is that of the pieces"
+        conditions = (
+            f"chance of overturning given the floor's {self.measure}; the uncertainty of the motion is not in it, "
+            f"{pieces}; holds for motions of the stated PFV/PFA"
         )
-
-    # ------------------------------------------------------------ the text
+        own = {"by": self.found.by, "draws": self.found.runs, "seed": self.found.seed, "conditions": conditions}
+        return write_rows({**self._describe(curve), **own} for curve in self.found.curves)
 
     def to_text(self) -> str:
         """Return what a person reads."""
-        return "\n".join(self._list_lines())
-
-    def _list_lines(self) -> Iterator[str]:
-        found = self.found
-        yield f"{say_run(self.assessment, found.runs, found.seed)}; against the floor's {self.measure}"
-        yield ""
+        found, unit = self.found, UNITS[self.found.im]
         heads = [found.by, "pieces", "floors", "B/H", f"median [{LABELS[found.im]}]", "beta", "misfit", "PFV/PFA [s]"]
-        rows = [[*heads, ""], *(self._cells(one) for one in found.curves[:MOST_LINES])]
+        rows = [[*heads, ""]]
+        for one in found.curves[:MOST_LINES]:
+            curve = one.curve
+            fitted, remarks = ["-", "-", "-"], [str(curve.why)]
+            if curve.kind == "fitted":
+                fitted = [f"{curve.median / unit:.3g}", f"{curve.dispersion:.2f}", f"{curve.misfit:.3f}"]
+                remarks = [] if curve.is_lognormal else ["use the table"]
+            remarks += ["may be too low"] if one.may_be_too_low else []
+            rows.append([
+                words.cut(one.name, 34), f"{one.pieces:,}", words.cut(", ".join(one.floors), 16),
+                _spread([item.breadth / item.height for item in one.items]), *fitted, _spread(one.pfv_per_pfa),
+                "; ".join(remarks),
+            ])  # fmt: skip
+        lines = [f"{say_run(self.assessment, found.runs, found.seed)}; against the floor's {self.measure}", ""]
         wide = [max(map(len, column)) for column in zip(*rows, strict=True)]
         for first, *middle, last in rows:  # the first and the last to the left, the others to the right
             numbers = (f"{text:>{width}}" for text, width in zip(middle, wide[1:-1], strict=True))
-            yield "  ".join([f"{first:<{wide[0]}}", *numbers, last]).rstrip()
+            lines.append("  ".join([f"{first:<{wide[0]}}", *numbers, last]).rstrip())
         if len(found.curves) > MOST_LINES:
-            yield f"... and {len(found.curves) - MOST_LINES:,} more, which files and --json hold."
+            lines.append(f"... and {len(found.curves) - MOST_LINES:,} more, which files and --json hold.")
         for paragraph in (*self.cautions(), *self.say()):
-            yield ""
-            yield from textwrap.wrap(paragraph, WIDE)
-
-    def _cells(self, one: PieceFragility) -> list[str]:
-        curve, unit = one.curve, UNITS[self.found.im]
-        fitted = [f"{curve.median / unit:.3g}", f"{curve.dispersion:.2f}", f"{curve.misfit:.3f}"]
-        return [
-            words.cut(one.name, 34),
-            f"{one.pieces:,}",
-            words.cut(", ".join(one.floors), 16),
-            _spread([item.breadth / item.height for item in one.items]),
-            *(fitted if curve.kind == "fitted" else ["-", "-", "-"]),
-            _spread(one.pfv_per_pfa),
-            "; ".join(_remark(one)),
-        ]
+            lines += ["", *textwrap.wrap(paragraph, WIDE)]
+        return "\n".join(lines)
 
 
 def _write_csv(curves: Curves) -> Exchange:
-    tables = {"fragility.csv": curves.to_csv(), "fragility_table.csv": curves.to_table()}
+    """Write a line a curve, and a line a curve and level."""
+    table = write_rows(
+        {"name": curve.name, "type": curve.type or None, "items": [item.item for item in curve.items], **row}
+        for curve in curves.found.curves
+        for row in curves.tabulate(curve)
+    )
+    tables = {"fragility.csv": curves.to_csv(), "fragility_table.csv": table}
     return Exchange({name: text.encode("utf-8-sig") for name, text in tables.items()}, ())
 
 
@@ -249,33 +249,6 @@ def say_left_out(exchange: Exchange) -> Iterator[str]:
         more = f", and {len(names) - MOST_NAMES:,} more" if len(names) > MOST_NAMES else ""
         listed = ", ".join(names[:MOST_NAMES])
         yield f"left out of {file}: {count(len(names), 'curve')} ({listed}{more}): {why}"
-
-
-def _remark(one: PieceFragility) -> Iterator[str]:
-    if one.curve.kind != "fitted":
-        yield str(one.curve.why)
-    elif not one.curve.is_lognormal:
-        yield "use the table"
-    if one.may_be_too_low:
-        yield "may be too low"
-
-
-def _describe_motions(one: FloorMotions) -> dict[str, Any]:
-    demand = one.demand
-    return {
-        "floor": one.floor,
-        "axis": demand.axis,
-        "source": str(demand.label),
-        "spectrum": str(one.spectrum),
-        "pfa_g": demand.pfa / GRAVITY,
-        "pfv_cm_s": finite(100 * demand.pfv),
-        "mean_pfa_g": one.mean_pfa / GRAVITY,
-        "mean_pfv_cm_s": 100 * one.mean_pfv,
-        "pfv_per_pfa_s": one.pfv_per_pfa,
-        "assumed_motion": one.is_assumed,
-        "unknown_building": one.is_unknown,
-        "weak_motions": one.is_weak,
-    }
 
 
 def _spread(values: Sequence[float]) -> str:

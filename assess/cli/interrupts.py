@@ -30,28 +30,33 @@ CLEANING = 2.0
 MOST = 3
 """Interrupts after which the process is ended wherever it is."""
 
-_heard: list[int] = []
-"""The signals of this command, in their order: a process has one set of them."""
+heard: list[int] = []
+"""The signals since this command began, in their order: a process has one set of them."""
 
 
 def answer_signals() -> None:
     """Have signals end the process without a traceback; one that is ignored, as with nohup, stays ignored."""
+
+    def stop(number: int, _frame: object = None) -> None:
+        heard.append(number)
+        end()
+
+    def hide_interrupts(error: "sys.UnraisableHookArgs") -> None:
+        """Show what a destructor raised, unless it was interrupted."""
+        if not (heard and issubclass(error.exc_type, KeyboardInterrupt)):
+            sys.__unraisablehook__(error)
+
     for number in NUMBERS:
         if signal.getsignal(number) not in (signal.SIG_IGN, None):
-            signal.signal(number, _stop)
-    sys.unraisablehook = _hide_interrupts
+            signal.signal(number, stop)
+    sys.unraisablehook = hide_interrupts
 
 
 def start() -> None:
     """Note that a command begins."""
-    _heard.clear()
+    heard.clear()
     if traces := sys.modules.get("assess.delivery.traces"):
         traces.start()
-
-
-def is_interrupted() -> bool:
-    """Whether a signal has come since the command began."""
-    return bool(_heard)
 
 
 def end(remains: str = "") -> None:
@@ -70,7 +75,7 @@ def end(remains: str = "") -> None:
         os.write(2, f"\nInterrupted; {remains}.\n".encode("utf-8", "replace"))
     if traces is not None:
         traces.remove_all()
-    os._exit(128 + (_heard[0] if _heard else signal.SIGINT))
+    os._exit(128 + (heard[0] if heard else signal.SIGINT))
 
 
 def end_surely(remains: str = "") -> None:
@@ -78,17 +83,6 @@ def end_surely(remains: str = "") -> None:
     while True:
         end(remains)
         time.sleep(0.01)
-
-
-def _stop(number: int, _frame: object = None) -> None:
-    _heard.append(number)
-    end()
-
-
-def _hide_interrupts(error: "sys.UnraisableHookArgs") -> None:
-    """Show what a destructor raised, unless it was interrupted."""
-    if not (_heard and issubclass(error.exc_type, KeyboardInterrupt)):
-        sys.__unraisablehook__(error)
 
 
 @contextmanager
@@ -100,7 +94,7 @@ def cancel_by_signal(cancel: threading.Event) -> Iterator[None]:
     signalled, done = threading.Event(), threading.Event()
 
     def stop(number: int, _frame: object = None) -> None:
-        _heard.append(number)
+        heard.append(number)
         traces = sys.modules.get("assess.delivery.traces")
         if traces is not None and traces.is_moving():
             return
@@ -109,11 +103,26 @@ def cancel_by_signal(cancel: threading.Event) -> Iterator[None]:
         cancel.set()
         signalled.set()
 
+    def insist() -> None:
+        """Interrupt until the work has ended, as what a compiled library swallows is lost; at last, end the process."""
+        signalled.wait()
+        wait = PATIENCE
+        for _ in range(MOST):
+            if done.wait(wait):
+                return
+            wait = CLEANING
+            if hasattr(signal, "pthread_kill"):
+                signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+            else:
+                _thread.interrupt_main()
+        if not done.wait(wait):
+            end_surely()
+
     before = {number: signal.getsignal(number) for number in NUMBERS}
     taken = [number for number, handler in before.items() if handler not in (signal.SIG_IGN, None)]
     for number in taken:
         signal.signal(number, stop)
-    threading.Thread(target=_insist, args=(signalled, done), daemon=True).start()
+    threading.Thread(target=insist, daemon=True).start()
     try:
         yield
     finally:
@@ -121,19 +130,3 @@ def cancel_by_signal(cancel: threading.Event) -> Iterator[None]:
             signal.signal(number, before[number])
         done.set()
         signalled.set()
-
-
-def _insist(signalled: threading.Event, done: threading.Event) -> None:
-    """Interrupt until the work has ended, as what a compiled library swallows is lost; at last, end the process."""
-    signalled.wait()
-    wait = PATIENCE
-    for _ in range(MOST):
-        if done.wait(wait):
-            return
-        wait = CLEANING
-        if hasattr(signal, "pthread_kill"):
-            signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
-        else:
-            _thread.interrupt_main()
-    if not done.wait(wait):
-        end_surely()

@@ -37,9 +37,6 @@ BOX = {"facecolor": "white", "edgecolor": "none", "pad": 1, "alpha": 0.85}
 """What stands behind a note in the figure."""
 
 
-# ---------------------------------------------------------------- what was given
-
-
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Case:
     """What `assess rock` was asked for: sizes in m, the height of the centre of gravity as a share of the height.
@@ -113,9 +110,6 @@ def read_case(
     )
 
 
-# ---------------------------------------------------------------- what is found
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Found:
     """What the block does, with the vertical motion where one was given, and what else was asked for.
@@ -167,10 +161,16 @@ def evaluate(case: Case, *, wall: bool = False, vertical: str | None = None, fri
         sides = {where: follow(away) for where, away in SIDES.items()}
         verdicts = {where: describe_verdict(one) for where, one in sides.items()}
         document["wall"] = {"rebound": float(body.rebound)} | verdicts
-        lines += _list_wall(body, sides)
+        for begin, (where, one) in zip(("Wall ", "     "), sides.items(), strict=True):
+            lines.append(f"{begin}    on the {where.replace('_', ' ')} of the record: {_tell(one)}")
+        lines += [
+            f"         rebound {float(body.rebound):.4f} times the velocity (after Sorrentino et al. 2011, to be "
+            "checked)",
+            "         the wall is taken to move with the floor, without pounding: this lowers no risk",
+        ]
     if friction is not None:
-        document["friction"] = _slide(case, centre_height / case.height, friction)
-        lines += _list_friction(document["friction"])
+        document["friction"], said = _slide(case, centre_height / case.height, friction)
+        lines += said
     return Found(response, document, tuple(lines))
 
 
@@ -202,21 +202,28 @@ def read_vertical(name: str, case: Case) -> tuple[str, FloatArray]:
     return upright[0].name, case.factor * np.asarray(found, dtype=np.float64)
 
 
-def _slide(case: Case, share: float, friction: float) -> dict[str, Any]:
-    """Return how the block starts to move and how far it slides; `share` is the height of its centre of gravity [-]."""
+def _slide(case: Case, share: float, friction: float) -> tuple[dict[str, Any], list[str]]:
+    """Return how the block starts to move and how far it slides, as data and lines; `share` as `Case.centre`."""
     sizes, peak = (case.breadth, case.height), case.pfa_g * GRAVITY
     needed = float(critical_friction(*sizes, peak, centre=share))
     slip = peak_slip(friction, case.motion.acceleration[np.newaxis], case.motion.time_step)[0, 0]
+    start, is_outside = Branch(int(branch(*sizes, friction, peak, centre=share)[0])), bool(is_outside_shenton(share))
+    starts = "the block stays at rest" if start is Branch.REST else f"the block starts to {start.word}"
+    lines = [f"Friction {friction:g}: at the peak acceleration {starts} (Shenton 1996)"]
+    if not math.isnan(needed):
+        lines.append(f"         it rocks without sliding from a friction of {needed:.4f} on")
+    if is_outside:
+        lines.append("         extended from Shenton's centre of gravity at half height to this block's")
+    slip_cm = float(slip) / LENGTH["cm"]
+    lines.append(f"         sliding without rocking, it slips by {slip_cm:.2f} cm at most (Newmark 1965)")
+    lines.append("         the outcome above is that without sliding")
     return {
         "coefficient": friction,
-        "branch": Branch(int(branch(*sizes, friction, peak, centre=share)[0])).word,
+        "branch": start.word,
         "critical_friction": None if math.isnan(needed) else needed,
-        "outside_shenton": bool(is_outside_shenton(share)),
-        "peak_slip_cm": float(slip) / LENGTH["cm"],
-    }
-
-
-# ---------------------------------------------------------------- document and text
+        "outside_shenton": is_outside,
+        "peak_slip_cm": slip_cm,
+    }, lines
 
 
 def describe(case: Case, found: Found) -> dict[str, Any]:
@@ -303,30 +310,6 @@ def _tell(response: Response) -> str:
     return f"rotates to {response.rotation:.3f} of the critical angle, {impacts}"
 
 
-def _list_wall(body: Body, sides: Mapping[str, Response]) -> Iterator[str]:
-    for begin, (where, one) in zip(("Wall ", "     "), sides.items(), strict=True):
-        yield f"{begin}    on the {where.replace('_', ' ')} of the record: {_tell(one)}"
-    yield (
-        f"         rebound {float(body.rebound):.4f} times the velocity (after Sorrentino et al. 2011, to be checked)"
-    )
-    yield "         the wall is taken to move with the floor, without pounding: this lowers no risk"
-
-
-def _list_friction(found: Mapping[str, Any]) -> Iterator[str]:
-    rests = found["branch"] == Branch.REST.word
-    starts = "the block stays at rest" if rests else f"the block starts to {found['branch']}"
-    yield f"Friction {found['coefficient']:g}: at the peak acceleration {starts} (Shenton 1996)"
-    if found["critical_friction"] is not None:
-        yield f"         it rocks without sliding from a friction of {found['critical_friction']:.4f} on"
-    if found["outside_shenton"]:
-        yield "         extended from Shenton's centre of gravity at half height to this block's"
-    yield f"         sliding without rocking, it slips by {found['peak_slip_cm']:.2f} cm at most (Newmark 1965)"
-    yield "         the outcome above is that without sliding"
-
-
-# ---------------------------------------------------------------- figure
-
-
 def draw_figure(case: Case, response: Response, kind: str) -> bytes:
     """Draw the motion and the block's rotation over time, as "svg", "pdf" or "png"."""
     return draw(8, 4.6, lambda figure: paint(case, response, figure), kind)
@@ -343,8 +326,24 @@ def paint(case: Case, response: Response, figure: Any) -> None:
     block = f"{_size(case, '×')}, B/H {case.breadth / case.height:.3f}{centre}"
     under = f"{block}, under {name}, PFA {case.pfa_g:.3f} g{scaled}"
     top.text(0, 1.03, under, transform=top.transAxes, va="bottom")
-    _paint_motion(top, case, response)
-    _paint_path(bottom, response)
+    values = case.motion.acceleration / GRAVITY
+    times, values = thin_out(case.motion.time_step * np.arange(values.size), values)
+    after = times > response.fall_time  # nowhere, where it is NaN
+    top.plot(times[~after], values[~after], color=RECORD, linewidth=0.6)
+    top.plot(times[after], values[after], color=AFTER, linewidth=0.6)
+    most = 1.3 * max(case.pfa_g, case.threshold_g)
+    top.set_ylim(-most, most)
+    top.set_ylabel("acceleration [g]")
+    limit = f"±{case.threshold_name} = ±{case.threshold_g:.3f} g, above which it starts to rock"
+    _paint_limits(top, case.threshold_g, limit)
+    times, ratio = thin_out(response.times, response.theta / response.critical_angle, MOST_POINTS)
+    bottom.plot(times, ratio, color=PATH, linewidth=1.1)
+    low, high = (min(HIGHEST_DRAWN, float((side * ratio).max())) for side in (-1, 1))
+    bottom.set_ylim(-max(1.5, 1.15 * low), max(1.5, 1.15 * high))
+    bottom.vlines(response.impact_times, 0, 0.04, transform=bottom.get_xaxis_transform(), color="#000000",
+                  linewidth=0.4)  # fmt: skip
+    bottom.set_ylabel("rotation / critical angle [-]")
+    _paint_limits(bottom, 1.0, f"±1, the critical angle{'; ticks: impacts' if response.impacts else ''}")
     end = max((case.motion.acceleration.size - 1) * case.motion.time_step, response.times[-1])
     bottom.set_xlabel("time [s]")
     bottom.set_xlim(0, end)
@@ -358,29 +357,6 @@ def paint(case: Case, response: Response, figure: Any) -> None:
                         textcoords="offset points", ha="left" if side > 0 else "right", va="center", color=MARK,
                         bbox=BOX)  # fmt: skip
     figure.align_ylabels()
-
-
-def _paint_motion(axes: Any, case: Case, response: Response) -> None:
-    values = case.motion.acceleration / GRAVITY
-    times, values = thin_out(case.motion.time_step * np.arange(values.size), values)
-    after = times > response.fall_time  # nowhere, where it is NaN
-    axes.plot(times[~after], values[~after], color=RECORD, linewidth=0.6)
-    axes.plot(times[after], values[after], color=AFTER, linewidth=0.6)
-    most = 1.3 * max(case.pfa_g, case.threshold_g)
-    axes.set_ylim(-most, most)
-    axes.set_ylabel("acceleration [g]")
-    limit = f"±{case.threshold_name} = ±{case.threshold_g:.3f} g, above which it starts to rock"
-    _paint_limits(axes, case.threshold_g, limit)
-
-
-def _paint_path(axes: Any, response: Response) -> None:
-    times, ratio = thin_out(response.times, response.theta / response.critical_angle, MOST_POINTS)
-    axes.plot(times, ratio, color=PATH, linewidth=1.1)
-    low, high = (min(HIGHEST_DRAWN, float((side * ratio).max())) for side in (-1, 1))
-    axes.set_ylim(-max(1.5, 1.15 * low), max(1.5, 1.15 * high))
-    axes.vlines(response.impact_times, 0, 0.04, transform=axes.get_xaxis_transform(), color="#000000", linewidth=0.4)
-    axes.set_ylabel("rotation / critical angle [-]")
-    _paint_limits(axes, 1.0, f"±1, the critical angle{'; ticks: impacts' if response.impacts else ''}")
 
 
 def _paint_limits(axes: Any, limit: float, meaning: str) -> None:

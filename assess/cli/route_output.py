@@ -58,9 +58,6 @@ NOTES = (
 """What ends the text: always, where values are inserted, and where a wide step has a jump."""
 
 
-# ---------------------------------------------------------------- verdict
-
-
 @dataclass(frozen=True, eq=False)
 class Verdict:
     """What a sweep comes to, at the values of PFA that were evaluated; a value is None where there is none [g].
@@ -110,48 +107,48 @@ class Verdict:
 
     def say(self) -> str:
         """Return it in a sentence or two, with what decides how far it can be relied on."""
-        return " ".join(self._list_sentences())
-
-    def _list_sentences(self) -> Iterator[str]:
-        level = f"{100 * self.fragility.limit:g} %"
-        if self.evaluated:
-            yield from self._say_reached(level)
-        elif any(one.is_evaluated for one in self.not_evaluated):
-            yield "No route can be evaluated as a whole."
-        else:
-            yield "No route can be evaluated: the workbook places no furniture next to any."
-            return
-        if self.anchored_at_g is not None:
-            named = _name([one.route for one in self.anchored], VERDICT_ROUTES)
-            yield f"If the anchors fail, {named} {_reaches(self.anchored)} {level} from {self.anchored_at_g:.4g} g."
-        if self.lower_bounds:
-            yield f"The chances of {_name(self.lower_bounds, VERDICT_ROUTES)} are lower bounds."
-        for what, routes in (
-            ("Not evaluated", self.not_evaluated),
-            ("Counted without what is not evaluated", [one for one in self.evaluated if one.unevaluated]),
-        ):
-            if routes:
-                yield f"{what}: {words.name_first([_name_part(one) for one in routes], VERDICT_ROUTES)}."
-        if self.fragility.unplaced:
-            yield f"Left out: {count(self.fragility.unplaced, 'piece')} without a usable position or route."
-
-    def _say_reached(self, level: str) -> Iterator[str]:
-        number = len(self.evaluated)
+        level, number, first = f"{100 * self.fragility.limit:g} %", len(self.evaluated), self.first
         whole = count(number, "evaluated route" if self.not_evaluated else "route")
-        if self.below_up_to_g is not None:
+        if not number and not any(one.is_evaluated for one in self.not_evaluated):
+            return "No route can be evaluated: the workbook places no furniture next to any."
+        said = [] if number else ["No route can be evaluated as a whole."]
+        if number and self.below_up_to_g is not None:
             every = f"All {whole} stay" if number > 1 else f"The only {whole.removeprefix('1 ')} stays"
             every = every.replace("All 2", "Both") if number == 2 else every
             last = "" if self.reached_at_g else ", the largest PFA evaluated"
-            yield f"{every} below {level} up to {self.below_up_to_g:.4g} g{last}."
-        if self.reached_at_g is None:
-            return
-        first = self.first
-        more = f"; up to {self.pfa_g[-1]:.4g} g, {self.reaching} of {whole} do" if self.reaching > len(first) else ""
-        where = f"From {self.reached_at_g:.4g} g"
-        if self.below_up_to_g is None:
-            where = f"Already at {self.pfa_g[0]:.4g} g, the smallest PFA evaluated,"
-        named = [f"{_quote(one.route)} ({_blame(one)})" for one in first]
-        yield f"{where} {words.name_first(named, VERDICT_ROUTES)} {_reaches(first)} {level}{more}."
+            said.append(f"{every} below {level} up to {self.below_up_to_g:.4g} g{last}.")
+        if number and self.reached_at_g is not None:
+            more = (
+                f"; up to {self.pfa_g[-1]:.4g} g, {self.reaching} of {whole} do" if self.reaching > len(first) else ""
+            )
+            where = f"From {self.reached_at_g:.4g} g"
+            if self.below_up_to_g is None:
+                where = f"Already at {self.pfa_g[0]:.4g} g, the smallest PFA evaluated,"
+            named = []
+            for one in first:  # fixing no piece would help a route that is blocked with nothing fallen
+                pieces = _name([piece.item for piece in one.causes], VERDICT_PIECES)
+                blame = f"because of {pieces}" if one.causes else "blocked with nothing fallen"
+                named.append(f"{_quote(one.route)} ({blame})")
+            said.append(f"{where} {words.name_first(named, VERDICT_ROUTES)} {_reaches(first)} {level}{more}.")
+        if self.anchored_at_g is not None:
+            routes = _name([one.route for one in self.anchored], VERDICT_ROUTES)
+            said.append(
+                f"If the anchors fail, {routes} {_reaches(self.anchored)} {level} from {self.anchored_at_g:.4g} g."
+            )
+        if self.lower_bounds:
+            said.append(f"The chances of {_name(self.lower_bounds, VERDICT_ROUTES)} are lower bounds.")
+        parts = [one for one in self.evaluated if one.unevaluated]
+        for what, others in (
+            ("Not evaluated", self.not_evaluated), ("Counted without what is not evaluated", parts),
+        ):  # fmt: skip
+            named = []
+            for one in others:
+                segments = f"segment{'' if len(one.unevaluated) == 1 else 's'} {_name(one.unevaluated, VERDICT_PIECES)}"
+                named.append(f"{_quote(one.route)} ({segments})" if one.is_evaluated else _quote(one.route))
+            said += [f"{what}: {words.name_first(named, VERDICT_ROUTES)}."] if named else []
+        if self.fragility.unplaced:
+            said.append(f"Left out: {count(self.fragility.unplaced, 'piece')} without a usable position or route.")
+        return " ".join(said)
 
 
 def judge(fragility: Fragility, pfa_g: Sequence[float]) -> Verdict:
@@ -188,12 +185,6 @@ def judge(fragility: Fragility, pfa_g: Sequence[float]) -> Verdict:
     )  # fmt: skip
 
 
-def _blame(route: RouteFragility) -> str:
-    """Return the pieces that cause it; fixing none would help a route that is blocked with nothing fallen."""
-    named = _name([one.item for one in route.causes], VERDICT_PIECES)
-    return f"because of {named}" if route.causes else "blocked with nothing fallen"
-
-
 def _name(names: Sequence[str], most: int) -> str:
     return words.name_first([_quote(name) for name in names], most)
 
@@ -202,19 +193,8 @@ def _quote(name: str) -> str:
     return repr(words.cut(name, LONGEST))
 
 
-def _name_part(route: RouteFragility) -> str:
-    """Return a route with its segments that are not evaluated, unless none is."""
-    if not route.is_evaluated:
-        return _quote(route.route)
-    plural = "" if len(route.unevaluated) == 1 else "s"
-    return f"{_quote(route.route)} (segment{plural} {_name(route.unevaluated, VERDICT_PIECES)})"
-
-
 def _reaches(routes: Sequence[RouteFragility]) -> str:
     return "reaches" if len(routes) == 1 else "reach"
-
-
-# ---------------------------------------------------------------- sweep
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,21 +222,6 @@ class Sweep:
                 "formula's chance at each PFA is used, with bounds on the correlation."
             )
 
-    def say_uncertain(self) -> str:
-        """Return what is taken as uncertain from one draw to the next."""
-        found = self.fragility.uncertainty
-        parts = []
-        if found is not None and found.motion > 0:
-            parts.append(
-                f"the strength of the earthquake, a factor on the motions of all floors (standard deviation of ln: "
-                f"{found.motion:g}), so that the PFA given is its median"
-            )
-        if found is not None and found.piece:
-            parts.append("base, height, centre of gravity and restitution of each piece")
-        if not parts:
-            return "Nothing is taken as uncertain but the phases of the motions: the PFA and every piece are exact."
-        return f"Taken as uncertain in each draw: {'; '.join(parts)}. All pieces of a draw share its earthquake."
-
     @cached_property
     def verdict(self) -> Verdict:
         """Up to which PFA every route stays below the limit, and which one first does not."""
@@ -264,16 +229,29 @@ class Sweep:
 
     def describe(self) -> dict[str, Any]:
         """Return the document of `assess routes --json`."""
-        fragility = self.fragility
+        fragility, found = self.fragility, self.fragility.uncertainty
+        uncertain = []
+        if found is not None and found.motion > 0:
+            uncertain.append(
+                f"the strength of the earthquake, a factor on the motions of all floors (standard deviation of ln: "
+                f"{found.motion:g}), so that the PFA given is its median"
+            )
+        if found is not None and found.piece:
+            uncertain.append("base, height, centre of gravity and restitution of each piece")
+        drawn = "Nothing is taken as uncertain but the phases of the motions: the PFA and every piece are exact."
+        if uncertain:
+            drawn = (
+                f"Taken as uncertain in each draw: {'; '.join(uncertain)}. All pieces of a draw share its earthquake."
+            )
         return {
             **describe_run(self.assessment, has_routes=True),
             "verdict": self.verdict.describe(),
-            "meaning": " ".join((*MEANING, self.say_uncertain())),
+            "meaning": " ".join((*MEANING, drawn)),
             "cautions": list(self.cautions()),
             "scenario": self.assessment.scenario,
             "runs": fragility.runs,
             "seed": fragility.seed,
-            "uncertainty": None if fragility.uncertainty is None else asdict(fragility.uncertainty),
+            "uncertainty": None if found is None else asdict(found),
             "pfa_g": self.pfa_g,
             "inserted_g": [_in_g(value) for value in fragility.values if value in fragility.inserted],
             "routes": [self._describe(route) for route in fragility.routes],
@@ -339,77 +317,67 @@ class Sweep:
 
     def to_text(self) -> str:
         """Return what a person reads."""
-        return "\n".join(self._lines())
-
-    def _lines(self) -> Iterator[str]:
         fragility = self.fragility
-        yield from textwrap.wrap(self.verdict.say(), WIDE)
-        blocks = [list(self._route_lines(one)) for one in fragility.routes]
+        lines = textwrap.wrap(self.verdict.say(), WIDE)
+        blocks = [self._list_lines(one) for one in fragility.routes]
         for block in (one for one in blocks if len(one) > 1):
-            yield from ("", *block)
+            lines += ["", *block]
         if short := [line for block in blocks if len(block) == 1 for line in block]:
-            yield from ("", *short)
-        yield ""
-        for paragraph in (*self.cautions(), *self._notes()):
-            yield from textwrap.wrap(paragraph, WIDE)
-        yield say_run(self.assessment, fragility.runs, fragility.seed)
-
-    def _notes(self) -> Iterator[str]:
-        """Yield what the table leaves open, shortly."""
+            lines += ["", *short]
         always, inserted, finer = NOTES
-        if self.fragility.inserted:
-            yield inserted
-        every = [way for one in self.fragility.routes for way in (one.blocked, one.if_anchors_fail) if way]
+        notes = [*self.cautions(), *([inserted] if fragility.inserted else [])]
+        every = [way for one in fragility.routes for way in (one.blocked, one.if_anchors_fail) if way]
         passed = (self._find_passing(way, level) for way in every for level in LEVELS)
         if any(one.is_jump and one.high - one.low >= FINEST * one.high for one in passed):
-            yield finer
-        yield always
+            notes.append(finer)
+        lines += ["", *(line for text in (*notes, always) for line in textwrap.wrap(text, WIDE))]
+        return "\n".join([*lines, say_run(self.assessment, fragility.runs, fragility.seed)])
 
-    def _shown(self, one: RouteFragility) -> list[int]:
-        """Return the numbers of the values that the text gives: those asked for, and inserted ones at a jump of it."""
-        asked = [at for at, is_inserted in enumerate(self._inserted) if not is_inserted]
-        shown = set(asked)
-        for way in (one.blocked, one.if_anchors_fail or ()):
-            for jump in find_jumps([way[at].probability for at in asked] if way else []):
-                shown |= set(range(asked[jump], asked[jump + 1]))
-        return sorted(shown)
-
-    def _route_lines(self, one: RouteFragility) -> Iterator[str]:
+    def _list_lines(self, one: RouteFragility) -> list[str]:
+        """Return the lines of a route at the values that were asked for, and at inserted ones where it jumps there."""
         first, floors = one.blocked[0], ", ".join(one.floors)
         where = f" (floor{'' if len(one.floors) == 1 else 's'} {words.cut(floors, 60)})" if floors else ""
-        shown = self._shown(one)
+        lines = [f"{words.cut(one.route, 60)}{where}: {_describe_pieces(one)}"]
+        asked = [at for at, is_inserted in enumerate(self._inserted) if not is_inserted]
+        steps = set(asked)
+        for way in (one.blocked, one.if_anchors_fail or ()):
+            for jump in find_jumps([way[at].probability for at in asked] if way else []):
+                steps |= set(range(asked[jump], asked[jump + 1]))
+        shown = sorted(steps)
         rows = {"PFA [g]": [f"{self.pfa_g[at]:.4g}*" if self._inserted[at] else f"{self.pfa_g[at]:g}" for at in shown]}
         if first.pieces:
             for label, name in (("chance [%]", "probability"), ("  from", "low"), ("  to", "high")):
                 rows[label] = [words.in_percent(getattr(one.blocked[at], name)) for at in shown]
         if one.if_anchors_fail:
             rows["if anchors fail"] = [words.in_percent(one.if_anchors_fail[at].probability) for at in shown]
-        yield f"{words.cut(one.route, 60)}{where}: {_describe_pieces(one)}"
-        yield from _grid(rows) if len(rows) > 1 else ()
+        wide = 1 + max(len(text) for row in rows.values() for text in row)
+        for start in range(0, len(shown) if len(rows) > 1 else 0, A_LINE):
+            for label, row in rows.items():
+                lines.append(f"  {label:<16}" + "".join(f"{text:>{wide}}" for text in row[start : start + A_LINE]))
         if first.pieces:
-            yield f"  reaches {self._describe_levels(one.blocked)}"
+            lines.append(f"  reaches {self._describe_levels(one.blocked)}")
         if one.causes:
             named = _name([piece.item for piece in one.causes], MOST_CAUSES)
-            yield f"  {100 * self.fragility.limit:g} % first because of {named}"
+            lines.append(f"  {100 * self.fragility.limit:g} % first because of {named}")
         if one.if_anchors_fail:
-            yield f"  if anchors fail, {self._describe_levels(one.if_anchors_fail)}"
+            lines.append(f"  if anchors fail, {self._describe_levels(one.if_anchors_fail)}")
+        return lines
 
     def _describe_levels(self, chances: Sequence[Chance]) -> str:
-        texts = []
+        values, texts = self.pfa_g, []
         for level in LEVELS:
             found = self._find_passing(chances, level)
-            low, high, first, last = (self._format_pfa(one) for one in found)
+            named = []
+            for value in found:  # one of the values as it was typed
+                if math.isfinite(value):
+                    named.append(f"{value:.4g}" if value in values else f"{value:.2f}")
+                else:
+                    named.append(f"below {values[0]:g}" if value < 0 else f"above {values[-1]:g}")
+            low, high, first, last = named
             spread = "" if first == last or (first, last) == (low, high) else f" ({first} to {last})"
             at = f"between {low} and {high}" if found.is_jump else f"at {low}" if math.isfinite(found.low) else low
             texts.append(f"{100 * level:g} % {at} g{spread}")
         return "; ".join(texts)
-
-    def _format_pfa(self, value: float) -> str:
-        """Return a PFA [g], or on which side of the values it lies; one of the values as it was typed."""
-        values = self.pfa_g
-        if math.isfinite(value):
-            return f"{value:.4g}" if value in values else f"{value:.2f}"
-        return f"below {values[0]:g}" if value < 0 else f"above {values[-1]:g}"
 
 
 class _Passing(NamedTuple):
@@ -444,9 +412,6 @@ def _describe_pieces(one: RouteFragility) -> str:
         known = "0 % if the anchors hold: no other piece can obstruct it"
     named = _name(one.unevaluated, MOST_CAUSES)
     return f"{known}; without segments that are not evaluated: {named}" if one.unevaluated else known
-
-
-# ---------------------------------------------------------------- what `assess fragility` has as well
 
 
 def describe_run(assessment: Assessment, *, has_routes: bool = False) -> dict[str, Any]:
@@ -491,13 +456,6 @@ def name_floors(floors: Sequence[str]) -> str:
     """Return floors by name in running text, the first of many."""
     named = words.name_first([repr(words.cut(floor, 20)) for floor in floors], 8)
     return f"{'floor' if len(floors) == 1 else 'floors'} {named}"
-
-
-def _grid(rows: dict[str, list[str]]) -> Iterator[str]:
-    wide = 1 + max(len(text) for row in rows.values() for text in row)
-    for start in range(0, len(rows["PFA [g]"]), A_LINE):
-        for label, row in rows.items():
-            yield f"  {label:<16}" + "".join(f"{text:>{wide}}" for text in row[start : start + A_LINE])
 
 
 def _describe_chance(chance: Chance, fails: Chance | None) -> dict[str, Any]:
