@@ -1,10 +1,10 @@
-"""What the program takes from the variables of its environment."""
+"""What the program takes from the variables of its environment, and how to install what it lacks there."""
 
 import datetime
 import os
 
 from assess.errors import InputError
-from assess.i18n import fill
+from assess.i18n import Text, fill
 
 DATE = "SOURCE_DATE_EPOCH"
 """The variable that dates reports, for builds that can be repeated (reproducible-builds.org)."""
@@ -28,3 +28,12 @@ def find_source_date() -> datetime.datetime | None:
         )  # fmt: skip
         raise InputError(message)
     return datetime.datetime(1970, 1, 1, tzinfo=datetime.UTC) + datetime.timedelta(seconds=int(text))
+
+
+def say_install(extra: str) -> Text:
+    """Return how to install an extra of pyproject.toml; the name `assess` on PyPI is another project's."""
+    return fill(
+        "Install it from the folder of the source code of assess: python -m pip install '.[{extra}]', or with pipx: "
+        "pipx install --force '.[{extra}]'",
+        extra=extra,
+    )

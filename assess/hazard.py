@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from assess.errors import InputError
 from assess.i18n import Text, fill, join, nfill
-from assess.input_file import read_input
 from assess.motion.formats.plain_csv import decode, is_comment
-from assess.plain_text import split_text
+from assess.resources import read_input
+from assess.text import split_text
 from assess.units import GRAVITY
 
 FloatArray = NDArray[np.float64]

@@ -19,8 +19,7 @@ from typing import Any
 
 from assess import resources
 from assess.errors import InputError
-from assess.plain_text import plain_text
-from assess.text import Text, count, fill, join, nfill
+from assess.text import Text, count, fill, join, nfill, plain_text
 
 __all__ = [
     "ENGLISH", "LANGUAGES", "Catalogue", "Text", "count", "fill", "find_language", "gettext", "join", "list_languages",

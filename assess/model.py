@@ -17,8 +17,8 @@ from assess.motion.formats import parse_records, select
 from assess.motion.record import Record
 from assess.motion.scenario import PGA_OF_SDS
 from assess.motion.site_ground import SiteGround
-from assess.plain_text import plain_line
 from assess.rocking.block import MIDDLE
+from assess.text import plain_line
 from assess.units import LENGTH, to_edge
 
 if TYPE_CHECKING:

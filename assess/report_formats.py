@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from assess.environment import say_install
 from assess.errors import InputError
-from assess.extras import say_install
 from assess.i18n import fill
 
 if TYPE_CHECKING:

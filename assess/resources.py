@@ -1,7 +1,15 @@
-"""Files that are not code: templates beside the package in a checkout, inside it once installed."""
+"""Files to read: those that users name, and those that come with the package.
 
+The latter, such as templates, lie next to the package in a checkout and inside it once installed.
+"""
+
+import errno
 import importlib.util
+import io
+import stat
 from pathlib import Path
+
+from assess.text import fill
 
 
 def templates() -> Path:
@@ -78,3 +86,23 @@ def web_fonts() -> dict[tuple[str, str], Path]:
         ("Report", "bold"): plex / "IBMPlexSans-SemiBold.woff2",
     }
     return {style: path for style, path in found.items() if path.is_file()}
+
+
+def open_input(path: Path) -> io.BufferedReader:
+    """Open a file to read its bytes; OSError if it cannot be opened, or is a pipe, a device or a socket.
+
+    A pipe would be waited for without end, and a device may never end.
+    """
+    mode = path.stat().st_mode
+    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
+        raise OSError(errno.EINVAL, fill("it is a pipe or a device, not a file"), str(path))
+    return path.open("rb")
+
+
+def read_input(path: Path, most: int) -> bytes:
+    """Return the bytes of a file; of one that is larger than `most`, just more, by which its reader knows.
+
+    Raises OSError as `open_input`; ValueError if its name holds a zero character.
+    """
+    with open_input(path) as file:
+        return file.read(most + 1)

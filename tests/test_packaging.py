@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from assess.extras import say_install
+from assess.environment import say_install
 from tests.other_pythons import find_pythons, list_versions
 from tests.workbooks import write
 

@@ -10,9 +10,9 @@ from assess.cli.console import describe_progress, print_error, print_problems
 from assess.errors import Problem
 from assess.i18n import Catalogue, fill, gettext, join, nfill, speaking
 from assess.motion.formats import read_records
-from assess.plain_text import plain_line, plain_text
 from assess.progress import Report
 from assess.report import write_reports
+from assess.text import plain_line, plain_text
 from tests.cli.calling import run
 from tests.report.reading import render
 from tests.shaking import RECORDS

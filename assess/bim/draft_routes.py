@@ -33,7 +33,7 @@ from assess.bim.draft_openings import NARROWEST_OPENING, find_openings
 from assess.bim.draft_paths import find_ways
 from assess.bim.plan_shapes import box_at, list_polygons
 from assess.i18n import Text, fill, gettext, nfill
-from assess.natural import natural_key
+from assess.text import natural_key
 from assess.workbook.draft_names import DRAFT, mark_draft
 from assess.workbook.habits import name_some
 from assess.workbook.names import key

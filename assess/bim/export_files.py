@@ -13,8 +13,8 @@ from assess.bim.ifc_file import check_installed, check_model, unreadable
 from assess.bim.model_process import run_apart
 from assess.errors import ModelError
 from assess.i18n import fill
-from assess.input_file import open_input
 from assess.progress import Progress
+from assess.resources import open_input
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,8 +20,8 @@ from assess.details import DETAILS
 from assess.errors import ModelError
 from assess.i18n import fill
 from assess.i18n import gettext as _
-from assess.plain_text import plain_line
 from assess.report import words
+from assess.text import plain_line
 
 LONGEST_LABEL = 255
 """Characters of an IfcLabel."""

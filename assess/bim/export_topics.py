@@ -26,10 +26,10 @@ from assess.bim.export_words import list_importance, list_lines, list_routes, sa
 from assess.compare.past_run import UNCONFIRMED, PastRun
 from assess.environment import find_source_date
 from assess.i18n import gettext as _
-from assess.plain_text import plain_text
 from assess.report import words
 from assess.risk import RiskClass
 from assess.schedule_results import ScheduleRow
+from assess.text import plain_text
 
 MOST = 200
 """Topics in a file; the rest are counted."""

@@ -9,10 +9,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
+from assess.environment import say_install
 from assess.errors import ModelError
-from assess.extras import say_install
 from assess.i18n import Text, fill
-from assess.input_file import open_input
+from assess.resources import open_input
 
 MOST_BYTES = 512 * 2**20
 """Size of a model that is read [bytes]."""

@@ -14,9 +14,9 @@ from assess.bim.building_model import LONGEST_NAME, Skipped
 from assess.delivery.folders import private_folder
 from assess.errors import Problem
 from assess.i18n import Text, count, fill
-from assess.input_file import open_input
 from assess.pipeline.live_values import store_live
-from assess.plain_text import plain_text
+from assess.resources import open_input
+from assess.text import plain_text
 from assess.version import __version__
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.habits import clean

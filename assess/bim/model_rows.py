@@ -33,7 +33,7 @@ from assess.bim.floor_drawing import draw_storey, name_plans
 from assess.bim.import_workbook import LOWEST_ROOF, ImportedBuilding, name_apart, note_datum
 from assess.bim.plan_shapes import SpaceSearch, find_rectangle, find_width, to_polygon
 from assess.i18n import Text, fill, gettext, nfill
-from assess.natural import natural_key
+from assess.text import natural_key
 from assess.workbook.names import key
 from assess.workbook.outlines import MOST, OutlineError, parse_outline
 from assess.workbook.schema import BUILDING, FLOORS, ITEMS

@@ -18,8 +18,8 @@ from assess.bim.sweet_home import HOME, OLD_HOME, read_sweet_home
 from assess.bim.sweet_home import MOST_BYTES as MOST_OF_HOME
 from assess.errors import InputError, ModelError
 from assess.i18n import fill, load_catalogue, speaking, spoken
-from assess.input_file import open_input, read_input
 from assess.progress import SILENT, Progress
+from assess.resources import open_input, read_input
 
 Reader = Callable[[Path, str, Sequence[str]], BuildingModel]
 """Reads a file, by its path, its name and further classes of furniture."""

@@ -14,7 +14,7 @@ from assess.cli.console import say, say_written, show_progress
 from assess.cli.options import AsJson, language_of, list_of, read_formats, spell_options
 from assess.errors import InputError
 from assess.i18n import LANGUAGES, find_language
-from assess.input_file import read_input
+from assess.resources import read_input
 from assess.settings import CLASS_BY, SCENARIOS
 from assess.version import find_code
 

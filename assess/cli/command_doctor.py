@@ -12,8 +12,8 @@ import typer
 from assess import resources
 from assess.cache_folder import choose_folder
 from assess.cli.console import say
+from assess.environment import say_install
 from assess.errors import PdfUnavailableError
-from assess.extras import say_install
 from assess.version import __version__
 
 ORDER = 9

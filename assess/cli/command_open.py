@@ -12,8 +12,8 @@ import typer
 from assess.cli import interrupts
 from assess.cli.console import open_address, say
 from assess.cli.options import language_of
+from assess.environment import say_install
 from assess.errors import AssessError, InputError
-from assess.extras import say_install
 from assess.i18n import find_language
 
 if TYPE_CHECKING:

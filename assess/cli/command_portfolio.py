@@ -11,8 +11,8 @@ from assess.cli import options
 from assess.cli.console import InterruptedWorkError, print_error, say, say_written, show_progress
 from assess.errors import CancelledError, InputError
 from assess.i18n import LANGUAGES, count, find_language
-from assess.plain_text import plain_line
 from assess.settings import ROUTE_RISK, Settings
+from assess.text import plain_line
 
 if TYPE_CHECKING:
     from assess.portfolio.run_portfolio import PortfolioResult

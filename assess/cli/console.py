@@ -26,8 +26,8 @@ from assess.cli import interrupts
 from assess.environment import find_source_date
 from assess.errors import AssessError, CancelledError, InputError, Problem, RecordError, WorkbookError
 from assess.i18n import count
-from assess.plain_text import plain_line, plain_text
 from assess.progress import Progress, Report
+from assess.text import plain_line, plain_text
 
 MOST_PRINTED = 200
 """Problems printed in one run; the rest are counted."""

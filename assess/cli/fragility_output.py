@@ -12,11 +12,11 @@ from assess.fragility import MOST_MISFIT, lognormal_chance
 from assess.i18n import count
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.piece_fragility import UNITS, FloorMotions, PieceFragilities, PieceFragility
-from assess.plain_text import plain_line
 from assess.report import words
 from assess.report.interchange.exchange_files import LABELS, Exchange
 from assess.report.interchange.nrml import write_nrml
 from assess.report.interchange.pelicun import write_pelicun
+from assess.text import plain_line
 from assess.units import GRAVITY, LENGTH, to_edge
 
 SCHEMA = "1.0"

@@ -14,9 +14,9 @@ from typing import Generic, TypeVar
 
 from assess.compare.past_run import ANCHORED, APART, CLASSES, PastChance, PastPiece, PastRun, PastState
 from assess.errors import InputError
-from assess.natural import natural_key
 from assess.results import CANNOT_ROCK
 from assess.route_results import RouteState
+from assess.text import natural_key
 from assess.workbook.names import key
 
 SAME = 1e-6

@@ -17,14 +17,14 @@ from assess.delivery.deliver import explain_unfinished, is_unfinished
 from assess.errors import InputError
 from assess.fields import item_fields
 from assess.i18n import Text, fill
-from assess.input_file import read_input
 from assess.model import MEASURED
-from assess.plain_text import plain_line
 from assess.report.data import VERSION
 from assess.report.ownership import DATA
+from assess.resources import read_input
 from assess.results import BASES, CANNOT_ROCK
 from assess.risk import RiskClass
 from assess.table import Field, unnest
+from assess.text import plain_line
 from assess.workbook.names import key
 
 CLASSES: Mapping[str, RiskClass] = {risk.word: risk for risk in reversed(RiskClass)}

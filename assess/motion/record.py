@@ -17,8 +17,8 @@ import numpy as np
 from assess.arrays import FloatArray
 from assess.errors import RecordError
 from assess.i18n import Text, fill, nfill
-from assess.plain_text import plain_line
 from assess.progress import SILENT, Progress
+from assess.text import plain_line
 from assess.units import GRAVITY
 
 PASS_ORDER = 2

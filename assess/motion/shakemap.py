@@ -33,7 +33,7 @@ from assess.errors import InputError
 from assess.i18n import Text, fill, join, nfill
 from assess.motion.site_ground import SiteGround, find_no_number, naming, read_again, read_ground_file
 from assess.motion.spatial_field import MAGNITUDES, SCATTERS, Measure
-from assess.plain_text import plain_text
+from assess.text import plain_text
 from assess.units import GRAVITY
 
 LARGEST_FILE = 64_000_000

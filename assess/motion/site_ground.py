@@ -9,8 +9,8 @@ from typing import Literal, Protocol, TypeVar
 
 from assess.errors import InputError
 from assess.i18n import Text, join
-from assess.input_file import read_input
 from assess.motion.spatial_field import Measure
+from assess.resources import read_input
 from assess.units import GRAVITY, VELOCITY, to_edge
 
 

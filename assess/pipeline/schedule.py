@@ -12,11 +12,11 @@ from typing import NamedTuple
 
 from assess.details import AT_BASE, AT_WALL, DETAILS, Detail, count_fixings, find_detail
 from assess.model import Cost, Inventory
-from assess.natural import natural_key
 from assess.results import ItemResult, ItemRow, Results, count_pieces, sum_falls
 from assess.risk import RiskClass, find_ends
 from assess.route_results import RouteRow, RouteState, RouteTables
 from assess.schedule_results import Schedule, ScheduleRow, State, WorkRow
+from assess.text import natural_key
 
 APART = ("", "unconfirmed", "formula")
 """The bases in the order of lists: that of the run, and what stands apart."""

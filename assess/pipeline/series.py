@@ -33,12 +33,12 @@ from numpy.typing import NDArray
 
 from assess.errors import CancelledError
 from assess.methods import Cases, Joint
-from assess.natural import natural_key
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.floor_demand import Demand
 from assess.progress import SILENT, Progress
 from assess.results import ItemResult
 from assess.risk import RiskClass
+from assess.text import natural_key
 from assess.units import ACCELERATION, GRAVITY, LENGTH, ROUNDING, VELOCITY
 
 if TYPE_CHECKING:

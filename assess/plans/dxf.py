@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from assess.extras import say_install
+from assess.environment import say_install
 from assess.pictures import PictureError, damaged
 from assess.plans.linework import FARTHEST, MOST_ELEMENTS, MOST_RAW, describe_left_out, find_box, pack, too_many
 

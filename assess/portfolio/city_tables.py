@@ -8,8 +8,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from assess.environment import say_install
 from assess.errors import InputError, OutputError
-from assess.extras import say_install
 from assess.portfolio.building_task import Part
 from assess.portfolio.table_schemas import TABLES
 from assess.table import Kind

@@ -9,13 +9,13 @@ from assess.i18n import gettext as _
 from assess.methods import adopted_formula
 from assess.motion.ground_scenarios import FAR_CAUTION
 from assess.motion.spatial_field import SCATTERS, Measure
-from assess.plain_text import plain_text
 from assess.portfolio.city import PEOPLE_RULE, City, Group, Row, Spread
 from assess.report import words
 from assess.report.provenance import say_reference
 from assess.report.say.route import say_state
 from assess.risk import LIMITS, RiskClass
 from assess.route_results import BLOCKED_FROM, RouteState
+from assess.text import plain_text
 from assess.version import __version__
 
 REFERENCES = (

@@ -20,12 +20,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from assess.environment import say_install
 from assess.errors import CancelledError, InputError, OutputError
-from assess.extras import say_install
 from assess.i18n import fill, join
-from assess.plain_text import plain_line
 from assess.portfolio.building_task import FOLDER, Summary, Task, give_up, run_task
 from assess.progress import SILENT, Progress
+from assess.text import plain_line
 from assess.version import __version__, find_code
 
 if TYPE_CHECKING:

@@ -20,10 +20,10 @@ from assess.delivery.disk import find_digest
 from assess.delivery.folders import NEW, staging
 from assess.delivery.traces import moving
 from assess.errors import InputError
-from assess.plain_text import plain_line
 from assess.portfolio.background import read_background
 from assess.portfolio.index_file import COLUMNS
 from assess.portfolio.table_schemas import MADE_UP
+from assess.text import plain_line
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.schema import CATALOGUE
 from assess.workbook.template import Content, write_workbook

@@ -12,9 +12,9 @@ from typing import Any
 
 from assess.errors import InputError
 from assess.i18n import Text, fill, join
-from assess.input_file import read_input
 from assess.motion.formats.plain_csv import decode, is_comment
-from assess.plain_text import plain_line
+from assess.resources import read_input
+from assess.text import plain_line
 from assess.workbook.schema import BUILDING
 from assess.workbook.typed import read_digits, straighten
 

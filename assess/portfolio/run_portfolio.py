@@ -19,7 +19,6 @@ from assess.delivery.folders import NEW, FolderLock
 from assess.errors import InputError, OutputError, PdfUnavailableError, Problem
 from assess.i18n import fill
 from assess.motion.site_ground import GroundField
-from assess.plain_text import plain_line
 from assess.portfolio.building_rows import list_problems
 from assess.portfolio.building_task import ENDING, FOLDER, Part, Summary, Task, read_part, sweep_parts
 from assess.portfolio.sources import Source, find_sources
@@ -29,6 +28,7 @@ from assess.report import check_folder
 from assess.report.ownership import find_reports
 from assess.report.report_options import ReportOptions
 from assess.settings import AUTO, Settings, count_processors
+from assess.text import plain_line
 from assess.version import __version__, find_code
 
 if TYPE_CHECKING:

@@ -15,8 +15,8 @@ from typing import Literal
 
 from assess.errors import InputError
 from assess.i18n import Text, fill
-from assess.plain_text import plain_line
 from assess.portfolio.index_file import IndexRow, read_index, tidy_path
+from assess.text import plain_line
 
 ENDINGS = (".xlsx", ".xlsm")
 OTHER_ENDINGS = (".xls", ".xlsb", ".ods", ".numbers")

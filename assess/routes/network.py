@@ -8,8 +8,8 @@ from itertools import chain, pairwise
 import networkx as nx
 
 from assess.model import Place, Segment
-from assess.natural import natural_key
 from assess.routes.chances import union
+from assess.text import natural_key
 
 MOST_WAYS = 3
 """Ways out of a room that are listed."""

@@ -11,7 +11,6 @@ from functools import partial
 from assess.errors import Problem
 from assess.i18n import fill, nfill
 from assess.model import Inventory, Item, Place
-from assess.natural import natural_key
 from assess.route_results import (
     BLOCKED_FROM,
     Chance,
@@ -29,6 +28,7 @@ from assess.routes.missing import combine
 from assess.routes.network import Blocked, Part, build_course, build_graph, find_parts, find_rooms, find_ways
 from assess.routes.scene import Scene, Verdict
 from assess.routes.widths import kinds_of
+from assess.text import natural_key
 from assess.workbook.names import key
 
 ROOMS = ("room", "corridor")

@@ -12,7 +12,7 @@ from io import StringIO
 from typing import TYPE_CHECKING, Any
 
 from assess.i18n import LANGUAGES, gettext, load_catalogue
-from assess.natural import natural_key
+from assess.text import natural_key
 from assess.units import QUANTITIES
 from assess.workbook.names import key
 from assess.workbook.schema import CATALOGUE

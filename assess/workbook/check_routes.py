@@ -7,7 +7,7 @@ from math import hypot
 from assess.errors import Problem
 from assess.i18n import fill, nfill
 from assess.model import split_names
-from assess.natural import natural_key
+from assess.text import natural_key
 from assess.workbook.check import check_references, check_unique, duplicates
 from assess.workbook.habits import shorten
 from assess.workbook.names import find_near_name, key

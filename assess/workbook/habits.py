@@ -7,7 +7,7 @@ from typing import Any
 
 from assess.errors import Gap, Problem, Severity
 from assess.i18n import Text, fill, join, nfill
-from assess.plain_text import UNCLEAN, plain_text
+from assess.text import UNCLEAN, plain_text
 
 SHOWN = 60
 """Characters of a value that its message quotes."""

@@ -18,8 +18,8 @@ from xml.parsers import expat
 
 from assess.errors import Problem, WorkbookError
 from assess.i18n import Text, fill
-from assess.input_file import open_input
 from assess.progress import SILENT, Progress
+from assess.resources import open_input
 from assess.workbook.plain_rows import (
     PlainCell,
     RowCutter,

@@ -9,11 +9,11 @@ from typing import TypeVar
 
 from assess.errors import Problem
 from assess.i18n import Text, fill, join, nfill
-from assess.input_file import open_input, read_input
 from assess.model import FloorPlan
 from assess.pictures import PictureError, check_picture, count_pixels, prepare_photo
 from assess.plans import MOST_FILE, Drawing, count_side, is_picture, read_plan
 from assess.progress import Progress
+from assess.resources import open_input, read_input
 from assess.workbook.habits import CellError, shorten
 from assess.workbook.kept_files import Allowance, KeptFiles, find_key
 from assess.workbook.parse import Row, Table, Tables

@@ -26,7 +26,7 @@ from assess.bim.export_properties import (
 )
 from assess.errors import InputError, ModelError
 from assess.i18n import load_catalogue, speaking
-from assess.plain_text import plain_line
+from assess.text import plain_line
 from tests.bim.export_runs import (
     CUPBOARD_1,
     CUPBOARD_2,

@@ -15,7 +15,7 @@ from assess.cli import command_doctor
 from assess.cli.app import app, find_commands
 from assess.cli.command_doctor import Requirement
 from assess.cli.console import _list_options
-from assess.extras import say_install
+from assess.environment import say_install
 from tests.waiting import PATIENCE
 from tests.workbooks import write
 

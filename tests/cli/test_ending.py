@@ -9,8 +9,8 @@ import pytest
 
 import assess
 from assess.cli.app import find_blank
+from assess.environment import say_install
 from assess.errors import InputError
-from assess.extras import say_install
 from assess.report.provenance import report_time
 from tests.bim.export_runs import DUPLEX, write_results
 from tests.cli.calling import run

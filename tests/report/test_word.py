@@ -10,8 +10,8 @@ import pytest
 from lxml import html
 
 import assess
+from assess.environment import say_install
 from assess.errors import CancelledError, InputError
-from assess.extras import say_install
 from assess.progress import Progress
 from assess.report.content import Content
 from assess.report.pages.html import render

@@ -9,13 +9,13 @@ from typing import NamedTuple
 
 from assess.errors import RecordError
 from assess.i18n import fill, join
-from assess.input_file import read_input
 from assess.motion.formats._archive import is_archive, read_archive
 from assess.motion.formats._choice import list_addresses, rename_duplicates, select
 from assess.motion.formats._direction import settle_directions
 from assess.motion.formats._format import Format
 from assess.motion.record import Baseline, Motion, Record, treat
 from assess.progress import SILENT, Progress
+from assess.resources import read_input
 
 __all__ = [
     "Channel",

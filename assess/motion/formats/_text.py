@@ -19,8 +19,8 @@ from assess.errors import RecordError
 from assess.i18n import Text, fill, nfill
 from assess.motion.formats._format import MOST_CHANNELS, Format, check_channels, keep_readable, read_real
 from assess.motion.record import MOST_SAMPLES, Record
-from assess.plain_text import with_line_feeds
 from assess.progress import check_waits
+from assess.text import with_line_feeds
 
 LONGEST_TEXT = 160
 """Characters kept of a line of a header."""

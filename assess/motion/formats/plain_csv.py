@@ -29,8 +29,8 @@ from assess.motion.formats._format import (
     too_many_values,
 )
 from assess.motion.record import MOST_SAMPLES, Record, build_series
-from assess.plain_text import split_text
 from assess.progress import check_waits
+from assess.text import split_text
 from assess.units import ACCELERATION, TIME, read_unit
 
 TITLE = "plain CSV"

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
-from assess.natural import natural_key
 from assess.progress import SILENT, Progress
 from assess.report import words
 from assess.report.blocks import Figure, Image
@@ -20,6 +19,7 @@ from assess.report.figures.draw import draw, label, thin_out
 from assess.results import ItemResult, MotionRow, Results
 from assess.risk import LIMITS, RiskClass, wilson_interval
 from assess.settings import AUTO
+from assess.text import natural_key
 
 FloatArray = NDArray[np.float64]
 

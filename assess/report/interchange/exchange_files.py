@@ -11,7 +11,7 @@ from assess.errors import InputError
 from assess.i18n import Text, fill
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.piece_fragility import UNITS, PieceFragilities, PieceFragility
-from assess.plain_text import plain_line
+from assess.text import plain_line
 from assess.units import LENGTH
 from assess.version import __version__
 

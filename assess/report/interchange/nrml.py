@@ -23,7 +23,6 @@ from assess.i18n import Text, fill
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.known_ground import find_ground
 from assess.pipeline.piece_fragility import PieceFragilities, PieceFragility
-from assess.plain_text import plain_line
 from assess.report.interchange.exchange_files import (
     Exchange,
     LeftOut,
@@ -34,6 +33,7 @@ from assess.report.interchange.exchange_files import (
     name_safely,
     round_number,
 )
+from assess.text import plain_line
 from assess.units import GRAVITY
 
 NAMESPACE = "http://openquake.org/xmlns/nrml/0.5"

@@ -23,7 +23,6 @@ from assess.fragility import MOST_MISFIT
 from assess.i18n import Text, fill
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.piece_fragility import PieceFragilities, PieceFragility
-from assess.plain_text import plain_line
 from assess.report.interchange.exchange_files import (
     Exchange,
     LeftOut,
@@ -35,6 +34,7 @@ from assess.report.interchange.exchange_files import (
     round_number,
     say_sizes,
 )
+from assess.text import plain_line
 from assess.units import GRAVITY
 from assess.version import __version__
 

@@ -8,10 +8,10 @@ from typing import NamedTuple
 from assess.annual_results import YEARS, AnnualRow, AnnualTables
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
-from assess.natural import natural_key
 from assess.report import words
 from assess.report.say.piece import describe
 from assess.results import ItemResult, Results
+from assess.text import natural_key
 
 LEAST, MOST = 1e-5, 0.999
 """Chances beyond which no digits are shown [-]."""

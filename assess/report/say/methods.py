@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number, placeholders
-from assess.natural import natural_key
 from assess.report import words
 from assess.results import ItemResult, Results
 from assess.risk import RiskClass, classify
+from assess.text import natural_key
 
 if TYPE_CHECKING:
     from assess.methods import MethodInfo, Reason

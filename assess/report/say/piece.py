@@ -4,10 +4,10 @@ from collections.abc import Iterable, Sequence
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext
-from assess.natural import natural_key
 from assess.report import words
 from assess.results import ItemResult, count_pieces
 from assess.risk import RiskClass
+from assess.text import natural_key
 from assess.workbook.schema import BUILDING
 
 NAMED = 3

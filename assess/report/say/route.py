@@ -5,7 +5,6 @@ from typing import TypeVar
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
-from assess.natural import natural_key
 from assess.report import words
 from assess.report.provenance import say_reference
 from assess.results import ItemResult, Results
@@ -25,6 +24,7 @@ from assess.route_results import (
     join_missing,
 )
 from assess.routes.widths import LEVEL, RULES, STAIR
+from assess.text import natural_key
 from assess.units import LENGTH
 from assess.workbook.draft_names import is_draft
 from assess.workbook.schema import DEFAULT_WIDTH

@@ -8,12 +8,12 @@ from assess.details import DETAILS, LEAST_FIXINGS, Detail
 from assess.fields import schedule_fields
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
-from assess.natural import natural_key
 from assess.report import words
 from assess.results import ItemResult, Results, count_pieces
 from assess.risk import RiskClass
 from assess.route_results import RouteTables
 from assess.schedule_results import Schedule, ScheduleRow, State, WorkRow
+from assess.text import natural_key
 
 NAMED = 2
 """Routes that a reason names; the rest are counted."""

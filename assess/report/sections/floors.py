@@ -5,7 +5,6 @@ from collections.abc import Iterator, Sequence
 from assess.i18n import fill, ngettext, number
 from assess.i18n import gettext as _
 from assess.model import AXES
-from assess.natural import natural_key
 from assess.report import blocks, words
 from assess.report.content import FloorPage
 from assess.report.counts import Counts, count
@@ -18,6 +17,7 @@ from assess.report.say.piece import list_apart, list_risky
 from assess.report.view import Part, View
 from assess.results import ItemResult
 from assess.risk import RiskClass
+from assess.text import natural_key
 
 BRIEF = 12
 """Rows up to which a floor without a plan shares a page with the next."""

@@ -6,13 +6,13 @@ from itertools import groupby
 
 from assess.i18n import fill, ngettext, number
 from assess.i18n import gettext as _
-from assess.natural import natural_key
 from assess.report import blocks, words
 from assess.report.page_columns import PageColumn, build_table, mark
 from assess.report.say.methods import find_disagreements
 from assess.report.say.piece import describe, find_kind, list_apart, list_risky
 from assess.report.view import MOST_ROWS, Part, View
 from assess.results import ItemResult, count_pieces
+from assess.text import natural_key
 
 MOST_GROUPS = 110
 """Groups of alike pieces that the client's edition has room for."""

@@ -5,12 +5,12 @@ from typing import Any, NamedTuple, TypeVar
 
 from assess.i18n import fill, ngettext
 from assess.i18n import gettext as _
-from assess.natural import natural_key
 from assess.report import blocks, words
 from assess.report.page_columns import PageColumn, flags, route_columns, say_flag
 from assess.report.say import route
 from assess.report.view import Part, View, say_left
 from assess.route_results import BesideRow, Chance, RoomRow, RouteRow, RouteState, SegmentRow
+from assess.text import natural_key
 
 MOST_LINES, MOST_FIXES, MOST_NAMES, LONGEST = 12, 10, 16, 20
 """Lines of either table of the page, pieces and names of a line, and characters of the name of a piece."""

@@ -8,12 +8,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from assess.plain_text import plain_text
 from assess.report import blocks
 from assess.report.word.document import HEAD, SIDE, WIDTH, Word, make, make_run, shade, write_margins
 from assess.report.word.drawings import Drawing, draw_all, measure
 from assess.report.words import NO_BREAK, class_name
 from assess.risk import RiskClass
+from assess.text import plain_text
 
 STYLES = {"lead": "Lead", "caution": "Caution", "small": "Small", "legend": "Small", "note": "Small",
           "kind": "Subtitle", "scenario": "Subtitle"}  # fmt: skip

@@ -11,13 +11,13 @@ from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 
 from assess.fields import schedule_fields
 from assess.i18n import gettext as _
-from assess.natural import natural_key
 from assess.report import words
 from assess.report.content import Content
 from assess.report.say import work as say_work
 from assess.report.say.work import Work
 from assess.report.xlsx.pen import COUNT, LINE, Column, Pen, count_lines, of_field, row_height, widen
 from assess.schedule_results import Schedule, ScheduleRow, WorkRow
+from assess.text import natural_key
 
 BOX = "☐"
 """To be ticked on paper."""

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from assess.natural import natural_key
 from assess.report.content import Content
 from assess.report.say.piece import list_apart
 from assess.report.sections.floors import count_rooms
+from assess.text import natural_key
 from tests.workbooks import UNVERIFIED, assessed
 
 
