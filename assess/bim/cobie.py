@@ -33,8 +33,8 @@ from assess.units import LENGTH, read_unit
 from assess.workbook.habits import CellError, shorten
 from assess.workbook.names import key
 from assess.workbook.open import UNSAVED
-from assess.workbook.ranges import is_within
 from assess.workbook.schema import BUILDING, CATALOGUE, FLOORS, Column
+from assess.workbook.typed import is_within
 from assess.workbook.values import cell_reader
 
 THIN, SLENDER = 0.10, 0.10

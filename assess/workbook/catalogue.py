@@ -50,8 +50,20 @@ def read_catalogue(units: "Units" = "si", use: str = "") -> list[dict[str, Any]]
     `units`: of the headers that the values belong to.
     `use`: one of `assess.workbook.schema.USES`: the types of this use alone. Blank: every type.
     """
-    wanted = (line for line in catalogue_rows() if not use or use.lower() in line["uses"].split())
-    return sorted((_read_type(line, units) for line in wanted), key=lambda row: natural_key(row["type"]))
+    rows = []
+    for line in catalogue_rows():
+        if use and use.lower() not in line["uses"].split():
+            continue
+        source = line["source"]
+        row: dict[str, Any] = {"type": gettext(line["type"])}
+        for name, header in _NUMBERS.items():
+            if line[header]:
+                column = CATALOGUE.column(name)
+                factors = QUANTITIES[column.quantity]
+                factor = 1.0 if units == "si" else factors[column.unit] / factors[column.imperial]
+                row[name] = round(float(line[header]) * factor, _DECIMALS)
+        rows.append({**row, "source": gettext(source) if source.startswith(ASSUMED) else source})
+    return sorted(rows, key=lambda row: natural_key(row["type"]))
 
 
 def find_contents(name: str, language: str = "en") -> str:
@@ -62,8 +74,8 @@ def find_contents(name: str, language: str = "en") -> str:
 
 @cache
 def _contents(language: str) -> dict[str, str]:
-    said = load_catalogue(language)
-    return {key(said.find(line["type"])): line["contents"] for line in catalogue_rows()}
+    find = load_catalogue(language).find
+    return {key(find(line["type"])): line["contents"] for line in catalogue_rows()}
 
 
 def catalogue_texts() -> list[str]:
@@ -84,17 +96,3 @@ def _words_for_assumed() -> frozenset[str]:
     catalogues = [load_catalogue(code) for code in LANGUAGES]
     found = {one.find(source, "", 1).split(":")[0].casefold() for one in catalogues for source in sources}
     return frozenset({ASSUMED, *found})
-
-
-def _read_type(line: dict[str, str], units: "Units") -> dict[str, Any]:
-    kind, source = line["type"], line["source"]
-    row: dict[str, Any] = {"type": gettext(kind)}
-    for name, header in _NUMBERS.items():
-        if line[header]:
-            column = CATALOGUE.column(name)
-            factors = QUANTITIES[column.quantity]
-            row[name] = round(
-                float(line[header]) * (1.0 if units == "si" else factors[column.unit] / factors[column.imperial]),
-                _DECIMALS,
-            )
-    return {**row, "source": gettext(source) if source.startswith(ASSUMED) else source}

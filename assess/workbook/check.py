@@ -66,13 +66,11 @@ def check_unique(table: Table, *, is_looked_up: bool = False) -> Iterator[Proble
             yield table.problem(name, row, message, fix, "warning")
 
 
-def check_references(
-    table: Table, tables: Tables, is_spare: Callable[[Table, str, Row], bool] = lambda *_: False
-) -> Iterator[Problem]:
+def check_references(table: Table, tables: Tables) -> Iterator[Problem]:
     """Report names that the first column of another sheet does not define.
 
     A missing column, or a missing sheet that is required, has been reported; a sheet that is not is reported here,
-    once for the whole column. A name that `is_spare`, by table, field and row, is warned of.
+    once for the whole column. The Type of a piece whose row has its sizes is only warned of.
     """
     for column in table.sheet.columns:
         if not column.source:
@@ -84,28 +82,34 @@ def check_references(
             slips = {key(row.get(name)) for row in unknown}
             near = {slip: known.get(find_near_name(slip, known) or "") for slip in slips}
             for row in unknown:
-                meant = near[key(row.get(name))]
-                yield _unknown(table, name, row, source.sheet.name, meant, is_spare=is_spare(table, name, row))
+                values = {"label": table.label(name), "name": row.quote(name), "sheet": source.sheet.name}
+                fix = fill("Choose one of the {sheet} sheet, or add it there.", **values)
+                if meant := near[key(row.get(name))]:
+                    values["near"] = meant
+                    fix = fill("Choose one of the {sheet} sheet, or add it there. Did you mean {near}?", **values)
+                if not _has_own_sizes(table, name, row):
+                    yield table.habit(name, row, fill("{label} {name} is not in the {sheet} sheet.", **values), fix)
+                    continue
+                values["label"] = fill(table.label(name))
+                message = fill(
+                    "{label} {name} is not in the {sheet} sheet; the sizes typed in its row are used.", **values
+                )
+                yield table.habit(name, row, message, fix, "warning")
         elif not source.found and not source.sheet.required:
-            for wanted in (False, True):
-                if rows := [row for row in named if is_spare(table, name, row) is wanted]:
-                    yield _lacks_sheet(table, name, rows, source.sheet.name, is_spare=wanted)
+            for is_spare in (False, True):
+                if rows := [row for row in named if _has_own_sizes(table, name, row) is is_spare]:
+                    yield _report_no_sheet(table, name, rows, source.sheet.name, is_spare=is_spare)
 
 
-def _unknown(table: Table, name: str, row: Row, sheet: str, near: str | None, *, is_spare: bool) -> Problem:
-    values = {"label": table.label(name), "name": row.quote(name), "sheet": sheet}
-    fix = fill("Choose one of the {sheet} sheet, or add it there.", **values)
-    if near:
-        values["near"] = near
-        fix = fill("Choose one of the {sheet} sheet, or add it there. Did you mean {near}?", **values)
-    if is_spare:
-        values["label"] = fill(table.label(name))
-        message = fill("{label} {name} is not in the {sheet} sheet; the sizes typed in its row are used.", **values)
-        return table.habit(name, row, message, fix, "warning")
-    return table.habit(name, row, fill("{label} {name} is not in the {sheet} sheet.", **values), fix)
+def _has_own_sizes(table: Table, name: str, row: Row) -> bool:
+    """Tell whether a row does without what its type would give: the width counts where the piece may block a route."""
+    if name != "type":
+        return False
+    may_block = table.says(row, "x", "y", "route", "edge_distance")
+    return all(table.says(row, size) for size in ("breadth", "height", *(["width"] if may_block else ())))
 
 
-def _lacks_sheet(table: Table, name: str, named: Sequence[Row], sheet: str, *, is_spare: bool) -> Problem:
+def _report_no_sheet(table: Table, name: str, named: Sequence[Row], sheet: str, *, is_spare: bool) -> Problem:
     values = {"label": fill(table.label(name)) if is_spare else table.label(name)}
     values |= {"name": named[0].quote(name), "sheet": sheet}
     message = nfill(
@@ -154,52 +158,39 @@ def check_costs(tables: Tables) -> Iterator[Problem]:
             message = fill("Detail {name} is the same as that in {cell}.", name=row.quote("detail"), cell=cell)
             yield table.problem("detail", row, message, fill("Give each detail one cost."))
         elif detail.key not in (AT_WALL, AT_BASE) and row.get("unit_cost") is not None:
-            yield _report_alternative(table, row)
-
-
-def _report_alternative(table: Table, row: Row) -> Problem:
-    wall, base = (DETAILS[key].title for key in (AT_WALL, AT_BASE))
-    message = fill(
-        "Detail {name} is an alternative, which the schedule does not price: its cost is left out.",
-        name=row.quote("detail"),
-    )
-    fix = fill("The schedule prices these: {wall}, {base}.", wall=wall, base=base)
-    return table.problem("detail", row, message, fix, "warning")
+            message = fill(
+                "Detail {name} is an alternative, which the schedule does not price: its cost is left out.",
+                name=row.quote("detail"),
+            )
+            priced = {"wall": DETAILS[AT_WALL].title, "base": DETAILS[AT_BASE].title}
+            fix = fill("The schedule prices these: {wall}, {base}.", **priced)
+            yield table.problem("detail", row, message, fix, "warning")
 
 
 def check_floors(tables: Tables, *, is_shaken: bool = False) -> Iterator[Problem]:
     """Check the names of the floors, and that something tells how each shakes, whatever the scenario.
 
-    `is_shaken`: whether the ground's motion is given for the run.
+    A motion at grade serves all floors, one above it only those of known height. `is_shaken`: whether the ground's
+    motion is given for the run.
     """
-    table = tables["Floors"]
+    table, building = tables["Floors"], tables["Building"]
     yield from check_unique(table, is_looked_up=True)
-    building = tables["Building"]  # what is filled in there counts, be it usable or not
-    has_ground = is_shaken or any(building.says(row, *SHAKEN) for row in building.rows)
-    if not has_ground:
-        yield from _check_demands(table, has_storeys=any(building.says(row, "storeys") for row in building.rows))
-
-
-def _check_demands(table: Table, *, has_storeys: bool) -> Iterator[Problem]:
-    """Report floors that nothing can serve: a motion at grade serves all, one above it only those of known height."""
+    if is_shaken or any(building.says(row, *SHAKEN) for row in building.rows):  # be it usable or not
+        return
     rows = table.with_all("floor")
-    is_numbered = has_storeys and not any(table.spoilt("elevation", row) for row in rows)
-    lowest = find_lowest_number((row.get("floor"), row.get("elevation")) for row in rows) if is_numbered else None
-
-    def find_level(row: Row) -> float | None:
-        elevation: float | None = row.get("elevation")
-        if elevation is not None or lowest is None:
-            return elevation
-        number = find_storey(row.get("floor"))
-        return None if number is None else number - lowest
-
+    levels: dict[int, float | None] = {row.number: row.get("elevation") for row in rows}
+    has_storeys = any(building.says(row, "storeys") for row in building.rows)
+    if has_storeys and not any(table.spoilt("elevation", row) for row in rows):
+        lowest = find_lowest_number((row.get("floor"), row.get("elevation")) for row in rows)
+        numbers = {row.number: find_storey(row.get("floor")) for row in rows if levels[row.number] is None}
+        if lowest is not None:
+            levels |= {at: None if number is None else number - lowest for at, number in numbers.items()}
     known = [row for row in rows if table.says(row, "pfa_x", "pfa_y", "record_x", "record_y")]
-    heights = [level for row in known if (level := find_level(row)) is not None]
-    is_sure = not any(table.spoilt("elevation", row) for row in known)
-    if min(heights, default=1.0) <= 0 or not is_sure:
+    heights = [level for row in known if (level := levels[row.number]) is not None]
+    if min(heights, default=1.0) <= 0 or any(table.spoilt("elevation", row) for row in known):
         return
     for row in rows:
-        level = find_level(row)
+        level = levels[row.number]
         if row in known or (level is None and table.spoilt("elevation", row)):
             continue
         if level is None or not heights:
@@ -209,23 +200,20 @@ def _check_demands(table: Table, *, has_storeys: bool) -> Iterator[Problem]:
 
 
 def describe_unserved(floor: str, *, has_elevation: bool) -> tuple[Text, Text]:
-    """Say of a floor, its name in quotes, that its motion is not known, and what would give it."""
+    """Return that the motion of a floor, its name in quotes, is not known, and what would give it."""
+    message = fill(
+        "floor {floor} has neither a record nor a PFA, no Elevation by which its motion follows from other floors, "
+        "and Building gives neither Ground PGA nor Ground PGV nor SDS nor a ShakeMap file nor Shaking.",
+        floor=floor,
+    )
     if has_elevation:
         message = fill(
             "floor {floor} has neither a record nor a PFA, no other floor has one and an Elevation, and Building gives "
             "neither Ground PGA nor Ground PGV nor SDS nor a ShakeMap file nor Shaking.",
             floor=floor,
         )
-        return message, _FILL_IN
-    message = fill(
-        "floor {floor} has neither a record nor a PFA, no Elevation by which its motion follows from other floors, "
-        "and Building gives neither Ground PGA nor Ground PGV nor SDS nor a ShakeMap file nor Shaking.",
-        floor=floor,
-    )
-    return message, _FILL_IN
-
-
-_FILL_IN = fill("Fill in PFA X or PFA Y, or name a record; or fill in Ground PGA, or choose Shaking, in Building.")
+    fix = fill("Fill in PFA X or PFA Y, or name a record; or fill in Ground PGA, or choose Shaking, in Building.")
+    return message, fix
 
 
 def check_velocities(tables: Tables) -> Iterator[Problem]:
@@ -246,14 +234,7 @@ def check_item_names(tables: Tables) -> Iterator[Problem]:
     """Check that items have names of their own, a floor that is there, and a type and a route that are."""
     table = tables["Items"]
     yield from check_unique(table)
-    yield from check_references(table, tables, _has_own_sizes)
-
-
-def _has_own_sizes(table: Table, name: str, row: Row) -> bool:
-    """Tell whether a row does without what its type would give: the width counts where the piece may block a route."""
-    may_block = table.says(row, "x", "y", "route", "edge_distance")
-    sizes = ("breadth", "height", "width") if may_block else ("breadth", "height")
-    return name == "type" and all(table.says(row, size) for size in sizes)
+    yield from check_references(table, tables)
 
 
 def check_items(tables: Tables) -> Iterator[Problem]:
@@ -274,40 +255,37 @@ def check_items(tables: Tables) -> Iterator[Problem]:
                 message = fill("{label} is blank and no {type} gives it.", **values)
                 yield table.habit(name, row, message, fill("Fill it in, or choose a {type} that has one.", **values))
         yield from _check_sizes(table, row, sizes, types.get(key(row.get("type") or "")))
-        yield from _check_position(table, row)
-        axis, turned = row.get("axis"), turned_axis(row)
-        if axis is not None and turned is not None and axis != turned:
-            values = {"axis": axis, "angle": row.get("angle_deg"), "turned": turned}
-            message = fill(
-                "Axis is {axis}, but an Angle of {angle:g} deg lies along {turned}; {axis} is used.", **values
-            )
-            yield table.habit("axis", row, message, fill("Correct one of the two."), "warning")
-        if "bracket_height" in row.values or "bracket_capacity" in row.values:
-            yield from _check_bracket(table, row, sizes.get("height"))
-        if "width" not in sizes:
-            yield from _check_reach(table, row)
+        yield from _check_item(table, row, sizes)
     for name, rows in lacking.items():
-        yield _describe_no_column(table, name, rows)
-
-
-def _check_reach(table: Table, row: Row) -> Iterator[Problem]:
-    if not table.spoilt("width", row) and not table.spoilt("type", row) and table.says(row, "x", "y", "route"):
-        label, kind, breadth = (fill(table.label(name)) for name in ("width", "type", "breadth"))
-        message = fill(
-            "{label} is blank and no {type} gives it: the piece is taken as wide as its {breadth}, so the area that it "
-            "may cover can be too small.",
-            label=label, type=kind, breadth=breadth,
+        message = nfill(
+            "the column {header} is missing, and row {row} has no Type that gives it.",
+            "the column {header} is missing, and {n:,} rows, from row {row} on, have no Type that gives it.",
+            len(rows), header=table.sheet.column(name).header(), row=str(rows[0].number),
         )  # fmt: skip
-        fix = fill("Fill it in, or choose a {type} that has one.", type=kind)
-        yield table.habit("width", row, message, fix, "warning")
+        yield table.problem_at_top(message, fill("Add the column, or give those rows such a Type."))
 
 
-def _check_bracket(table: Table, row: Row, height: float | None) -> Iterator[Problem]:
-    at, label = row.get("bracket_height"), table.label("bracket_height")
+def _check_item(table: Table, row: Row, sizes: dict[str, float]) -> Iterator[Problem]:
+    """Check the position of a piece, its axis, its bracket, and the width by which it may block a route."""
+    x, y, quantity = (row.get(name) for name in ("x", "y", "quantity"))
+    if (x is not None or y is not None) and (quantity or 1) > 1:
+        message = fill(
+            "{label} is {quantity} on a row with a position.", label=table.label("quantity"), quantity=quantity
+        )
+        yield table.habit("quantity", row, message, fill("Write one row a piece, or clear X and Y."))
+    if (x is None) != (y is None) and not (table.spoilt("x", row) or table.spoilt("y", row)):
+        fix = fill("Fill in the other, or clear both.")
+        yield table.habit("y" if y is None else "x", row, fill("a position needs both X and Y."), fix, "warning")
+    axis, turned = row.get("axis"), turned_axis(row)
+    if axis is not None and turned is not None and axis != turned:
+        values = {"axis": axis, "angle": row.get("angle_deg"), "turned": turned}
+        message = fill("Axis is {axis}, but an Angle of {angle:g} deg lies along {turned}; {axis} is used.", **values)
+        yield table.habit("axis", row, message, fill("Correct one of the two."), "warning")
+    at, height = row.get("bracket_height"), sizes.get("height")
     if at is not None and height is not None and at > height * (1 + ROUNDING):
         message = fill(
-            "{label} {at:g} cm is greater than {other} {height:g} cm.",
-            label=label, at=at * 100, other=table.label("height"), height=height * 100,
+            "{label} {at:g} cm is greater than {other} {height:g} cm.", label=table.label("bracket_height"),
+            at=at * 100, other=table.label("height"), height=height * 100,
         )  # fmt: skip
         yield table.habit("bracket_height", row, message, fill("A bracket holds a piece at its top or below."))
     given = next((name for name in ("bracket_height", "bracket_capacity") if row.get(name) is not None), None)
@@ -316,16 +294,16 @@ def _check_bracket(table: Table, row: Row, height: float | None) -> Iterator[Pro
         message = fill("{label} is given, but {anchored} is no.", **values)
         fix = fill("Set {anchored} to yes or partly, or clear {label}.", **values)
         yield table.habit(given, row, message, fix, "warning")
-
-
-def _describe_no_column(table: Table, name: str, rows: Sequence[Row]) -> Problem:
-    header = table.sheet.column(name).header()
-    message = nfill(
-        "the column {header} is missing, and row {row} has no Type that gives it.",
-        "the column {header} is missing, and {n:,} rows, from row {row} on, have no Type that gives it.",
-        len(rows), header=header, row=str(rows[0].number),
-    )  # fmt: skip
-    return table.problem_at_top(message, fill("Add the column, or give those rows such a Type."))
+    is_known = "width" in sizes or table.spoilt("width", row) or table.spoilt("type", row)
+    if not is_known and table.says(row, "x", "y", "route"):
+        label, kind, breadth = (fill(table.label(name)) for name in ("width", "type", "breadth"))
+        message = fill(
+            "{label} is blank and no {type} gives it: the piece is taken as wide as its {breadth}, so the area that it "
+            "may cover can be too small.",
+            label=label, type=kind, breadth=breadth,
+        )  # fmt: skip
+        fix = fill("Fill it in, or choose a {type} that has one.", type=kind)
+        yield table.habit("width", row, message, fix, "warning")
 
 
 def _check_plan_sides(table: Table, row: Row, breadth: float | None, width: float | None) -> Iterator[Problem]:
@@ -348,25 +326,13 @@ def _check_sizes(table: Table, row: Row, sizes: dict[str, float], kind: Catalogu
         message = fill("Breadth {breadth:g} cm is greater than Height {height:g} cm.", **values)
         if kind is None or kind.breadth is None or kind.height is None:
             yield table.habit("breadth", row, message, fill("Are the two exchanged?"), "warning")
-        elif _fits(breadth, kind.height) and _fits(height, kind.breadth) and kind.breadth < kind.height:
+            return
+        exchanged = ((breadth, kind.height), (height, kind.breadth))
+        is_like = all(usual / _LIKE <= size <= usual * _LIKE for size, usual in exchanged)
+        if is_like and kind.breadth < kind.height:
             sides = {"breadth": kind.breadth * 100, "height": kind.height * 100}
             fix = fill("Its Type is {breadth:g} cm deep and {height:g} cm high: exchange the two.", **sides)
             yield table.habit("breadth", row, message, fix)
-
-
-def _fits(size: float, usual: float) -> bool:
-    return usual / _LIKE <= size <= usual * _LIKE
-
-
-def _check_position(table: Table, row: Row) -> Iterator[Problem]:
-    x, y, quantity = row.get("x"), row.get("y"), row.get("quantity")
-    if (x is not None or y is not None) and (quantity or 1) > 1:
-        label = table.label("quantity")
-        message = fill("{label} is {quantity} on a row with a position.", label=label, quantity=quantity)
-        yield table.habit("quantity", row, message, fill("Write one row a piece, or clear X and Y."))
-    if (x is None) != (y is None) and not (table.spoilt("x", row) or table.spoilt("y", row)):
-        fix = fill("Fill in the other, or clear both.")
-        yield table.habit("y" if y is None else "x", row, fill("a position needs both X and Y."), fix, "warning")
 
 
 def check_source_ids(tables: Tables) -> Iterator[Problem]:

@@ -1,18 +1,17 @@
 """Rows to problems: evacuation routes, the places that they join, and the furniture next to them."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
 from math import hypot
 
 from assess.errors import Problem
-from assess.i18n import fill, nfill
+from assess.i18n import Text, fill, nfill
 from assess.model import split_names
 from assess.text import natural_key
 from assess.workbook.check import check_references, check_unique, duplicates
 from assess.workbook.habits import shorten
 from assess.workbook.names import find_near_name, key
 from assess.workbook.parse import Row, Table, Tables
-from assess.workbook.resolve import Segments, defined, defined_by, list_segments, places_by_name
+from assess.workbook.resolve import defined, defined_by, list_segments, places_by_name
 from assess.workbook.schema import DEFAULT_WIDTH
 
 SAME_POINT, SAME_WIDTH = 0.01, 1e-6
@@ -46,18 +45,50 @@ def check_segments(tables: Tables) -> Iterator[Problem]:
     table, places = tables["Routes"], tables["Places"]
     known = places_by_name(places)
     yield from _check_clear_width(table, places)
-    yield from _check_twice_joined(table)
     for row in table.rows:
         lone_start = fill("From is filled in without To: the segment is evaluated, but joins nothing in the network.")
         lone_end = fill("To is filled in without From: the segment is evaluated, but joins nothing in the network.")
         for given, blank, message in (("start", "end", lone_start), ("end", "start", lone_end)):
             if table.lacks(row, blank) and row.get(given) is not None:
                 yield table.problem(blank, row, message, fill("Fill in the other, or clear both."), "warning")
-        yield from _check_widths(table, row)
+        clear, required = row.get("clear_width"), row.get("required_width")
+        is_wide = clear is None or (required or DEFAULT_WIDTH) <= clear + SAME_WIDTH
+        if not is_wide and not table.spoilt("required_width", row):
+            message, fix = fill(
+                "Required width {required:.4g} m is wider than Clear width {clear:.4g} m: the segment is blocked with "
+                "nothing fallen.", required=required or DEFAULT_WIDTH, clear=clear,
+            ), fill("Are the two exchanged?")  # fmt: skip
+            if required is None:
+                message, fix = fill(
+                    "Required width is blank and taken as {default:.4g} m, which is wider than Clear width {clear:.4g} "
+                    "m: the segment is blocked with nothing fallen.", default=DEFAULT_WIDTH, clear=clear,
+                ), fill("Fill in the width that must stay free.")  # fmt: skip
+            yield table.problem("required_width", row, message, fix, "warning")
         start, end = (known.get(key(table.sound(name, row) or "")) for name in ("start", "end"))
         if start and end:
-            yield from _check_length(table, row, start, end)
-            yield from _check_floor(table, row, [places.sound("floor", start), places.sound("floor", end)])
+            yield from _check_ends(table, row, places, start, end)
+
+
+def _check_ends(table: Table, row: Row, places: Table, start: Row, end: Row) -> Iterator[Problem]:
+    """Check that a segment has a length, and the floor of one of its ends."""
+    labels = {"one": table.label("start"), "other": table.label("end")}
+    ends = [(start.get(name), end.get(name)) for name in ("x", "y")]
+    is_placed = start.get("floor") == end.get("floor") and all(None not in pair for pair in ends)
+    if start is end:
+        message = fill("{one} and {other} are the same place: the segment has no length.", **labels)
+        yield table.problem("end", row, message, fill("Choose another place, or delete the row."))
+    elif is_placed and hypot(*(other - one for one, other in ends)) <= SAME_POINT:
+        message = fill("{one} and {other} are at the same point of the plan: the segment has no length.", **labels)
+        yield table.problem("end", row, message, fill("Correct their positions in Places, or choose another place."))
+    own, floors = table.sound("floor", row), [places.sound("floor", one) for one in (start, end)]
+    if own is not None and not {None, own} & {*floors}:
+        one, other = map(shorten, floors)
+        message = fill(
+            "{label} {floor} is that of neither {one} nor {other}, which lie on {floors}.",
+            label=table.label("floor"), floor=shorten(own), **labels,
+            floors=fill("{one} and {two}", one=one, two=other) if floors[0] != floors[1] else one,
+        )  # fmt: skip
+        yield table.problem("floor", row, message, fill("Correct it, or clear the cell."))
 
 
 def _check_clear_width(table: Table, places: Table) -> Iterator[Problem]:
@@ -70,26 +101,17 @@ def _check_clear_width(table: Table, places: Table) -> Iterator[Problem]:
         "Clear width is blank: it is taken as the required width, so anything that reaches into it blocks it."
     )
     fix, known = fill("Fill in Clear width."), places_by_name(places)
-    lack = {
-        row.number: of_stair if _is_stair(table, row, known, places) else of_level
-        for row in table.rows
-        if table.lacks(row, "clear_width")
-    }
-    if "clear_width" in table.places:
-        rows = (row for row in table.rows if row.number in lack)
-        yield from (table.habit("clear_width", row, lack[row.number], fix, "warning") for row in rows)
-        return
-    yield from (table.problem_at_top(message, fix, "warning") for message in dict.fromkeys(lack.values()))
-
-
-def _is_stair(table: Table, row: Row, known: Mapping[str, Row], places: Table) -> bool:
-    ends = [known.get(key(table.sound(name, row) or "")) for name in ("start", "end")]
-    floors = {places.sound("floor", one) for one in ends if one is not None}
-    return table.lacks(row, "floor") and len(floors) > 1
-
-
-def _check_twice_joined(table: Table) -> Iterator[Problem]:
+    messages: dict[Text, None] = {}
+    for row in table.rows:
+        if table.lacks(row, "clear_width"):
+            ends = [known.get(key(table.sound(name, row) or "")) for name in ("start", "end")]
+            floors = {places.sound("floor", one) for one in ends if one is not None}
+            message = of_stair if table.lacks(row, "floor") and len(floors) > 1 else of_level
+            messages[message] = None
+            if "clear_width" in table.places:
+                yield table.habit("clear_width", row, message, fix, "warning")
     if "clear_width" not in table.places:
+        yield from (table.problem_at_top(message, fix, "warning") for message in messages)
         return
     wide: dict[frozenset[str], list[Row]] = {}
     for row in table.with_all("route", "start", "end", "clear_width"):
@@ -108,47 +130,6 @@ def _check_twice_joined(table: Table) -> Iterator[Problem]:
 
 def _ends_of(row: Row) -> frozenset[str]:
     return frozenset(key(row.get(name)) for name in ("start", "end"))
-
-
-def _check_widths(table: Table, row: Row) -> Iterator[Problem]:
-    clear, required = row.get("clear_width"), row.get("required_width")
-    if clear is None or table.spoilt("required_width", row) or (required or DEFAULT_WIDTH) <= clear + SAME_WIDTH:
-        return
-    message, fix = fill(
-        "Required width {required:.4g} m is wider than Clear width {clear:.4g} m: the segment is blocked with "
-        "nothing fallen.", required=required or DEFAULT_WIDTH, clear=clear,
-    ), fill("Are the two exchanged?")  # fmt: skip
-    if required is None:
-        message, fix = fill(
-            "Required width is blank and taken as {default:.4g} m, which is wider than Clear width {clear:.4g} m: the "
-            "segment is blocked with nothing fallen.", default=DEFAULT_WIDTH, clear=clear,
-        ), fill("Fill in the width that must stay free.")  # fmt: skip
-    yield table.problem("required_width", row, message, fix, "warning")
-
-
-def _check_length(table: Table, row: Row, start: Row, end: Row) -> Iterator[Problem]:
-    labels = {"one": table.label("start"), "other": table.label("end")}
-    ends = [(start.get(name), end.get(name)) for name in ("x", "y")]
-    is_placed = start.get("floor") == end.get("floor") and all(None not in pair for pair in ends)
-    if start is end:
-        message = fill("{one} and {other} are the same place: the segment has no length.", **labels)
-        yield table.problem("end", row, message, fill("Choose another place, or delete the row."))
-    elif is_placed and hypot(*(other - one for one, other in ends)) <= SAME_POINT:
-        message = fill("{one} and {other} are at the same point of the plan: the segment has no length.", **labels)
-        yield table.problem("end", row, message, fill("Correct their positions in Places, or choose another place."))
-
-
-def _check_floor(table: Table, row: Row, floors: Sequence[str | None]) -> Iterator[Problem]:
-    own = table.sound("floor", row)
-    if None in floors or own is None or own in floors:
-        return
-    message = fill(
-        "{label} {floor} is that of neither {one} nor {other}, which lie on {floors}.",
-        label=table.label("floor"), floor=shorten(own), one=table.label("start"), other=table.label("end"),
-        floors=fill("{one} and {two}", one=shorten(floors[0]), two=shorten(floors[1]))
-        if floors[0] != floors[1] else shorten(floors[0]),
-    )  # fmt: skip
-    yield table.problem("floor", row, message, fill("Correct it, or clear the cell."))
 
 
 # ---------------------------------------------------------------- the network
@@ -194,63 +175,39 @@ def check_next_to_routes(tables: Tables) -> Iterator[Problem]:
             message = fill("Edge distance is filled in without a Route: it is not used.")
             fix = fill("Fill in the Route, or clear the cell.")
             yield items.problem("edge_distance", row, message, fix, "warning")
-        yield from _check_segment(items, row, routes, segments)
-
-
-def _check_segment(items: Table, row: Row, routes: Table, segments: Segments) -> Iterator[Problem]:
-    route, segment = items.sound("route", row), items.sound("segment", row)
-    own = segments.get(key(route or ""), {})
-    if segment and items.lacks(row, "route"):
-        part, whole = items.label("segment"), items.label("route")
-        message = fill("a {part} is named without its {whole}.", part=part, whole=whole)
-        yield items.problem("segment", row, message, fill("Fill in {whole}.", whole=whole))
-    elif own and segment and key(segment) in own:
-        yield from _check_item_floor(items, row, "segment", {routes.sound("floor", own[key(segment)])})
-    elif (
-        own
-        and segment
-        and not any(
-            row.get("segment") is None for row in routes.with_all("route") if key(row.get("route")) == key(route)
-        )
-    ):
-        values = {"label": items.label("route"), "route": shorten(route), "segment": shorten(segment)}
-        message = fill("{label} {route} has no segment {segment}.", **values)
-        fix = fill("Add it to {sheet}, or clear the cell.", sheet=routes.sheet.name)
-        yield items.problem("segment", row, message, fix)
-    elif own and not segment and not items.spoilt("segment", row):
-        yield from _check_item_floor(items, row, "route", {routes.sound("floor", one) for one in own.values()})
-
-
-def _check_item_floor(items: Table, row: Row, name: str, floors: set[str | None]) -> Iterator[Problem]:
-    own = items.sound("floor", row)
-    if own is None or None in floors or own in floors:
-        return
-    message = fill(
-        "{label} {name} is not on floor {floor} but on {others}.",
-        label=items.label(name), name=row.quote(name), floor=shorten(own),
-        others=", ".join(map(shorten, sorted((one for one in floors if one is not None), key=natural_key))),
-    )  # fmt: skip
-    fix = fill("Choose one of the item's floor, or correct the {label}.", label=items.label("floor"))
-    yield items.problem(name, row, message, fix)
-
-
-@dataclass(frozen=True, slots=True)
-class _OnPlan:
-    """A segment with those of its places that are known, by end, and the floor that it is on.
-
-    `may_be_drawn` also where what would tell that has been reported as wrong.
-    """
-
-    row: Row
-    places: Mapping[str, Row]
-    floor: str
-    may_be_drawn: bool
+        route, segment = items.sound("route", row), items.sound("segment", row)
+        own, name = segments.get(key(route or ""), {}), "segment" if segment else "route"
+        if segment and items.lacks(row, "route"):
+            part, whole = items.label("segment"), items.label("route")
+            message = fill("a {part} is named without its {whole}.", part=part, whole=whole)
+            yield items.problem("segment", row, message, fill("Fill in {whole}.", whole=whole))
+        elif not own or items.spoilt("segment", row):
+            continue
+        elif not segment or key(segment) in own:
+            used = [own[key(segment)]] if segment else own.values()
+            floor, floors = items.sound("floor", row), {routes.sound("floor", one) for one in used}
+            if floor is not None and not {None, floor} & floors:
+                message = fill(
+                    "{label} {name} is not on floor {floor} but on {others}.",
+                    label=items.label(name), name=row.quote(name), floor=shorten(floor),
+                    others=", ".join(map(shorten, sorted(floors, key=natural_key))),
+                )  # fmt: skip
+                fix = fill("Choose one of the item's floor, or correct the {label}.", label=items.label("floor"))
+                yield items.problem(name, row, message, fix)
+        elif all(one.get("segment") for one in routes.with_all("route") if key(one.get("route")) == key(route)):
+            values = {"label": items.label("route"), "route": shorten(route), "segment": shorten(segment)}
+            message = fill("{label} {route} has no segment {segment}.", **values)
+            fix = fill("Add it to {sheet}, or clear the cell.", sheet=routes.sheet.name)
+            yield items.problem("segment", row, message, fix)
 
 
 def check_positions(tables: Tables) -> Iterator[Problem]:
     """Warn, once a floor that has segments, of pieces that cannot count, and note the segments that cannot be drawn."""
-    items, segments = tables["Items"], list(_on_plan(tables))
-    for floor in dict.fromkeys(one.floor for one in segments):
+    items, routes, places = (tables[name] for name in ("Items", "Routes", "Places"))
+    segments = list(_list_on_plan(routes, places))
+    drawable = {floor for _, _, floor, may_be_drawn in segments if may_be_drawn}
+    placed_rows = [row for row in items.rows if None not in (items.sound("x", row), items.sound("y", row))]
+    for floor in dict.fromkeys(floor for _, _, floor, _ in segments):
         rows = [row for row in items.rows if items.sound("floor", row) == floor]
         free = [row for row in rows if items.lacks(row, "route")]
         if lost := [row for row in free if not items.says(row, "x", "y")]:
@@ -262,8 +219,8 @@ def check_positions(tables: Tables) -> Iterator[Problem]:
                 _count_pieces(lost), total=_count_pieces(rows), floor=shorten(floor),
             )  # fmt: skip
             yield items.problem("x", lost[0], message, fill("Fill in X, Y and Angle, or name the Route."), "warning")
-        placed = [row for row in free if _is_placed(items, row)]
-        if placed and not any(one.may_be_drawn for one in segments if one.floor == floor):
+        placed = [row for row in placed_rows if items.sound("floor", row) == floor and items.lacks(row, "route")]
+        if placed and floor not in drawable:
             message = nfill(
                 "{n} piece of floor {floor} has a position, but no segment of that floor has both its places placed, "
                 "and it names no Route: it is not counted.",
@@ -273,12 +230,23 @@ def check_positions(tables: Tables) -> Iterator[Problem]:
             )  # fmt: skip
             fix = fill("Fill in X and Y of the places, or name the Route.")
             yield items.problem("x", placed[0], message, fix, "warning")
-    yield from _note_undrawn(tables, segments)
+    drawn = {items.sound("floor", row) for row in placed_rows}
+    for segment, ends, floor, _ in segments:
+        lack = [name for name, place in ends.items() if not (places.says(place, "x") and places.says(place, "y"))]
+        if lack and len(ends) == 2 and floor in drawn:
+            message = fill(
+                "{place} has no position in Places: pieces count beside this segment only where they name it.",
+                place=shorten(ends[lack[0]].get("place")),
+            )
+            yield routes.problem(lack[0], segment, message, fill("Fill in its X and Y."), "note")
 
 
-def _on_plan(tables: Tables) -> Iterator[_OnPlan]:
-    """Yield the segments that lie on one floor, which is that of their places where they name none."""
-    routes, places = tables["Routes"], tables["Places"]
+def _list_on_plan(routes: Table, places: Table) -> Iterator[tuple[Row, dict[str, Row], str, bool]]:
+    """Yield the segments that lie on one floor, with their known places by end, and that floor.
+
+    The floor is that of the places where a segment names none. The last value tells whether the segment may be drawn,
+    also where what would tell that has been reported as wrong.
+    """
     known = places_by_name(places)
     for row in routes.rows:
         names = {name: key(routes.sound(name, row) or "") for name in ("start", "end")}
@@ -288,28 +256,11 @@ def _on_plan(tables: Tables) -> Iterator[_OnPlan]:
         if floor is not None and len(on) <= 1 and not routes.spoilt("floor", row):
             wrong = {name for name in names if routes.spoilt(name, row)}
             drawn = {name for name, place in own.items() if places.says(place, "x") and places.says(place, "y")}
-            yield _OnPlan(row, own, floor, len(wrong | drawn) == len(names))
-
-
-def _is_placed(table: Table, row: Row) -> bool:
-    return table.sound("x", row) is not None and table.sound("y", row) is not None
+            yield row, own, floor, len(wrong | drawn) == len(names)
 
 
 def _count_pieces(rows: Iterable[Row]) -> int:
     return sum(row.get("quantity") or 1 for row in rows)
-
-
-def _note_undrawn(tables: Tables, segments: Sequence[_OnPlan]) -> Iterator[Problem]:
-    items, routes, places = (tables[name] for name in ("Items", "Routes", "Places"))
-    drawn = {items.sound("floor", row) for row in items.rows if _is_placed(items, row)}
-    for one in segments:
-        lack = [name for name, place in one.places.items() if not (places.says(place, "x") and places.says(place, "y"))]
-        if lack and len(one.places) == 2 and one.floor in drawn:
-            message = fill(
-                "{place} has no position in Places: pieces count beside this segment only where they name it.",
-                place=shorten(one.places[lack[0]].get("place")),
-            )
-            yield routes.problem(lack[0], one.row, message, fill("Fill in its X and Y."), "note")
 
 
 # ---------------------------------------------------------------- rooms
@@ -352,15 +303,12 @@ def check_item_rooms(tables: Tables) -> Iterator[Problem]:
         near = {floor: find_near_name(room, [one for one in every[floor] if one in stood_in]) for floor in floors}
         meant = next((every[floor][one] for floor, one in near.items() if one), None)
         if meant is not None:
-            yield _warn_room(items, [row for floor, own in floors.items() if near[floor] for row in own], meant)
-
-
-def _warn_room(items: Table, rows: Sequence[Row], meant: str) -> Problem:
-    message = nfill(
-        "Room {room} is not that of any segment, so the piece does not count beside those of {meant} unless it names "
-        "them.",
-        "Room {room} is not that of any segment, so its {n} pieces do not count beside those of {meant} unless they "
-        "name them.",
-        _count_pieces(rows), room=rows[0].quote("room"), meant=shorten(meant),
-    )  # fmt: skip
-    return items.problem("room", rows[0], message, fill("Did you mean {room}?", room=meant), "warning")
+            wrong = [row for floor, own in floors.items() if near[floor] for row in own]
+            message = nfill(
+                "Room {room} is not that of any segment, so the piece does not count beside those of {meant} unless it "
+                "names them.",
+                "Room {room} is not that of any segment, so its {n} pieces do not count beside those of {meant} unless "
+                "they name them.",
+                _count_pieces(wrong), room=wrong[0].quote("room"), meant=shorten(meant),
+            )  # fmt: skip
+            yield items.problem("room", wrong[0], message, fill("Did you mean {room}?", room=meant), "warning")

@@ -11,12 +11,11 @@ from assess.errors import Problem
 from assess.i18n import LANGUAGES, fill, gettext, load_catalogue, nfill
 from assess.workbook.habits import shorten
 from assess.workbook.names import key
-from assess.workbook.parse import Row, Table, Tables
+from assess.workbook.parse import Row, Tables
 from assess.workbook.schema import DEFAULT_WIDTH
 
 DRAFT = fill("(draft)")
 """The mark, in English; it is known in every language."""
-
 
 LONGEST = 60
 """Characters of a marked name: a longer one would be cut in messages, and lose its mark there."""
@@ -45,34 +44,27 @@ def check_drafts(tables: Tables) -> Iterator[Problem]:
     for row in table.with_all("route"):
         if is_draft(row.get("route")):
             drafts.setdefault(key(row.get("route")), row)
-    if drafts:
-        first = next(iter(drafts.values()))
-        name = first.get("route")
-        message = nfill(
-            "Route {route} was drafted from a building model.",
-            "{n} routes were drafted from a building model, such as {route}.",
-            len(drafts),
-            route=shorten(name),
-        )
-        fix = nfill(
-            "Walk it, correct it, and take '{mark}' off its name.",
-            "Walk them, correct them, and take '{mark}' off their names.",
-            len(drafts),
-            mark=name[name.rindex("(") :].strip(),
-        )
-        yield table.problem("route", first, message, fix, "warning")
-        yield from _check_widths(table)
-
-
-def _check_widths(table: Table) -> Iterator[Problem]:
-    own = [row for row in table.with_all("route", "required_width") if is_draft(row.get("route"))]
-    narrow = [row for row in own if row.get("required_width") < DEFAULT_WIDTH]
-    if narrow:
+    if not drafts:
+        return
+    first = next(iter(drafts.values()))
+    name = first.get("route")
+    message = nfill(
+        "Route {route} was drafted from a building model.",
+        "{n} routes were drafted from a building model, such as {route}.",
+        len(drafts), route=shorten(name),
+    )  # fmt: skip
+    fix = nfill(
+        "Walk it, correct it, and take '{mark}' off its name.",
+        "Walk them, correct them, and take '{mark}' off their names.",
+        len(drafts), mark=name[name.rindex("(") :].strip(),
+    )  # fmt: skip
+    yield table.problem("route", first, message, fix, "warning")
+    given = [row for row in table.with_all("route", "required_width") if is_draft(row.get("route"))]
+    if narrow := [row for row in given if row.get("required_width") < DEFAULT_WIDTH]:
         message = nfill(
             "{n} drafted segment asks for less than {width:g} m: its Required width is that of its door.",
             "{n} drafted segments ask for less than {width:g} m: their Required width is that of their doors.",
             len(narrow), width=DEFAULT_WIDTH,
         )  # fmt: skip
-        yield table.problem(
-            "required_width", narrow[0], message, fill("Fill in the width that must stay free."), "warning"
-        )
+        fix = fill("Fill in the width that must stay free.")
+        yield table.problem("required_width", narrow[0], message, fix, "warning")

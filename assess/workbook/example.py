@@ -9,7 +9,7 @@ from typing import Any
 from assess.i18n import gettext
 from assess.units import QUANTITIES
 from assess.workbook.catalogue import read_catalogue, read_table
-from assess.workbook.schema import BUILDING, CATALOGUE, FLOORS, ITEMS, SHEETS, Column, Sheet
+from assess.workbook.schema import BUILDING, CATALOGUE, FLOORS, ITEMS, SHEETS, Sheet
 from assess.workbook.template import Content, Units
 
 SCENARIO = "Example values, not a real building"
@@ -97,16 +97,15 @@ def example_content(units: Units = "si") -> Content:
 
 def convert_row(sheet: Sheet, row: Mapping[str, Any], units: Units) -> dict[str, Any]:
     """Return a row in English and SI headers' units in the language in use and in the units of the headers."""
-    return {name: _in_units(sheet.column(name), value, units) for name, value in row.items()}
-
-
-def _in_units(column: Column, value: Any, units: Units) -> Any:
-    if isinstance(value, str):
-        return value if column.choices else gettext(value)  # choices are translated where they are written
-    if units == "si" or column.imperial == column.unit:
-        return value
-    factors = QUANTITIES[column.quantity]
-    return round(value * factors[column.unit] / factors[column.imperial], _DECIMALS[column.imperial])
+    converted = dict(row)
+    for name, value in row.items():
+        column = sheet.column(name)
+        if isinstance(value, str) and not column.choices:  # choices are translated where they are written
+            converted[name] = gettext(value)
+        elif not isinstance(value, str) and units == "imperial" and column.imperial != column.unit:
+            factors = QUANTITIES[column.quantity]
+            converted[name] = round(value * factors[column.unit] / factors[column.imperial], _DECIMALS[column.imperial])
+    return converted
 
 
 # ---------------------------------------------------------------- the types and the example room of one use
@@ -127,7 +126,12 @@ def room_content(use: str, units: Units = "si", *, is_shaken: bool = False) -> C
     """
     building = {"use": use} | ({"scenario": SCENARIO} if is_shaken else {})
     floor = FLOOR | (SHAKING if is_shaken else {})
-    items = [_read_item(line) for line in read_table("rooms.csv") if line["use"] == use]
+    items: list[dict[str, Any]] = []
+    for line in read_table("rooms.csv"):
+        if line["use"] == use:
+            texts = {name: text for name, text in line.items() if text and name not in ("use", "quantity")}
+            quantity = int(line["quantity"])
+            items.append({**texts, "floor": "1", "room": ROOM} | ({"quantity": quantity} if quantity > 1 else {}))
     filled = ((BUILDING, [building]), (FLOORS, [floor]), (ITEMS, items))
     rows = {sheet.name: [convert_row(sheet, row, units) for row in rows] for sheet, rows in filled}
     return Content({**rows, CATALOGUE.name: read_catalogue(units, use)})
@@ -138,9 +142,3 @@ def room_texts() -> Iterator[str]:
     yield from (ROOM, str(FLOOR["name"]))
     lines = read_table("rooms.csv")
     yield from dict.fromkeys(line[name] for line in lines for name in ("description", "notes") if line[name])
-
-
-def _read_item(line: dict[str, str]) -> dict[str, Any]:
-    row = {name: text for name, text in line.items() if text and name not in ("use", "quantity")}
-    quantity = int(line["quantity"])
-    return {**row, "floor": "1", "room": ROOM} | ({"quantity": quantity} if quantity > 1 else {})

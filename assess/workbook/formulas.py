@@ -5,7 +5,7 @@ The formulas are written by the methods' own functions, so the sheet and the pro
 workbooks in a spreadsheet engine and holds both to 1e-9.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from assess.i18n import LANGUAGES, gettext
@@ -125,13 +125,11 @@ def is_among(cell: str, words: str) -> str:
 
 def list_words(choices: tuple[str, ...], choice: str) -> str:
     """Return the ways to type a choice, in every language and short, as one text: ``|yes|y|``."""
-    return f"|{'|'.join(dict.fromkeys(_spell(choices, choice)))}|"
-
-
-def _spell(choices: tuple[str, ...], choice: str) -> Iterator[str]:
+    ways: list[str] = []
     for code in LANGUAGES:
-        said = dict(zip(choices, say_choices(choices, code), strict=True))
-        word, others = said.pop(choice), [fold(other) for other in said.values()]
-        yield from (fold(word), plain(word), f"{plain(word)}'")
+        words = dict(zip(choices, say_choices(choices, code), strict=True))
+        word, others = words.pop(choice), [fold(other) for other in words.values()]
+        ways += [fold(word), plain(word), f"{plain(word)}'"]
         if not any(other.startswith(plain(word)[0]) for other in others):
-            yield plain(word)[0]
+            ways.append(plain(word)[0])
+    return f"|{'|'.join(dict.fromkeys(ways))}|"

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import zip_longest
 from typing import Any
 
 from assess.errors import Gap, Problem, Severity
@@ -108,8 +109,8 @@ class CellError(Exception):
 class Remark:
     """What is remarkable about a cell that can be read.
 
-    `severity` is a note where it was merely typed otherwise than asked for, by a `habit`, "" for none. `value` belongs
-    into the cell instead, as in a `Correction`, which `why` tells; None where nothing is to be corrected.
+    A note where it was merely typed otherwise than asked for, by a `habit`, "" for none; `value` then belongs into the
+    cell instead, as `why` says.
     """
 
     message: Text
@@ -126,8 +127,8 @@ def note(habit: str, column: Text | str, text: str, value: object, corrected: fl
     `column` is its header with the unit, `text` what it holds in quotes, `value` what it is read as and `corrected`
     what belongs into it.
     """
-    said, why = _HABITS[habit]
-    message = nfill(said.template, said.many, 1, **{**_BLANK, "column": column, "text": text, "value": value})
+    known, why = _HABITS[habit]
+    message = nfill(known.template, known.many, 1, **{**_BLANK, "column": column, "text": text, "value": value})
     return Remark(message, "", "note", habit, corrected, why)
 
 
@@ -144,46 +145,37 @@ def list_groups(problems: Iterable[Problem]) -> list[tuple[Problem, list[Problem
     """Return problems as `group_problems` does, each with those that it stands for."""
     grouped: dict[tuple[object, ...], list[Problem]] = {}
     for at, problem in enumerate(problems):
-        grouped.setdefault(_kind(problem) if problem.group else (at,), []).append(problem)
+        kind: tuple[object, ...] = (at,)
+        if problem.group:
+            values = problem.message.values if isinstance(problem.message, Text) else {}
+            texts = (problem.message, problem.fix, *(one for one in values.values() if isinstance(one, Text)))
+            templates = (one.template if isinstance(one, Text) else one for one in texts)
+            column = re.sub(r"\d+", "", problem.cell)
+            kind = (problem.severity, problem.sheet, column, problem.group, *templates, values.get("name"))
+        grouped.setdefault(kind, []).append(problem)
     return [(_merge(alike) if len(alike) > 1 else alike[0], alike) for alike in grouped.values()]
 
 
-def _kind(problem: Problem) -> tuple[object, ...]:
-    message, fix = problem.message, problem.fix
-    name = message.values.get("name") if isinstance(message, Text) else None
-    parts = message.values.values() if isinstance(message, Text) else ()
-    reasons = [one for one in parts if isinstance(one, Text)]
-    said = [one.template if isinstance(one, Text) else one for one in (message, fix, *reasons)]
-    return problem.severity, problem.sheet, re.sub(r"\d+", "", problem.cell), problem.group, *said, name
-
-
 def _merge(alike: Sequence[Problem]) -> Problem:
-    first, cells = alike[0], _list_cells(alike)
-    message = first.message
+    quoted = []  # what the cells that are named hold, where it differs
+    for one in alike[:SHOWN_CELLS]:
+        values: Mapping[str, Any] = one.message.values if isinstance(one.message, Text) else {}
+        quoted.append(str(values.get("text", values.get("typed", ""))))
+    if len(set(quoted)) == 1 or not all(quoted):
+        quoted = []
+    shown = (f"{one.cell} {text}" if text else one.cell for one, text in zip_longest(alike, quoted))
+    cells, message = name_some([*shown], SHOWN_CELLS), alike[0].message
     if isinstance(message, Text) and "cells" in message.values:
         values = {name: value for name, value in message.values.items() if name != "n"}
         merged = nfill(message.template, message.many, len(alike), **values | {"cells": cells})
     else:
         merged = fill("{message} The same in {n:,} cells ({cells}).", message=message, n=len(alike), cells=cells)
-    return replace(first, message=merged)
+    return replace(alike[0], message=merged)
 
 
 def name_some(names: Sequence[Text | str], most: int) -> Text:
     """Return the first of some names, with dots where there are more."""
     return join(", ", [*names[:most], *["..."] * (len(names) > most)])
-
-
-def _list_cells(alike: Sequence[Problem]) -> Text:
-    shown = alike[:SHOWN_CELLS]
-    held = [_held(one) for one in shown]
-    is_told = len(set(held)) > 1 and all(held)
-    cells = [f"{one.cell} {what}" if is_told else one.cell for one, what in zip(shown, held, strict=True)]
-    return name_some([*cells, *(one.cell for one in alike[SHOWN_CELLS:])], SHOWN_CELLS)
-
-
-def _held(problem: Problem) -> str:
-    values: Mapping[str, Any] = problem.message.values if isinstance(problem.message, Text) else {}
-    return str(next((values[name] for name in ("text", "typed") if name in values), ""))
 
 
 def count_kinds(problems: Sequence[Problem], severity: Severity = "error") -> tuple[int, int]:

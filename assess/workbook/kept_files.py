@@ -40,43 +40,36 @@ class Allowance:
         self.taken: Counter[str] = Counter()
 
     def take(self, **amounts: int) -> None:
-        """Count what is read of files, by the names of `_list_limits`; CellError where it is too much."""
+        """Count what is read of files, by the names of the limits below; CellError where it is too much."""
         self.taken.update(amounts)
-        limits = _list_limits()
+        fewer = fill("Name fewer files, with the channels that are needed, cut to the shaking.")
+        drawings = (
+            fill("this workbook names more than {most} drawings as plans, or drawings of more than {size:.0f} MB.",
+                 most=MOST_DRAWINGS, size=MOST_DRAWING_BYTES / 1e6),
+            fill("Save the walls and doors alone, or name fewer."),
+        )  # fmt: skip
+        photos = (
+            fill("this workbook names more than {most} photos, or photos of more than {size:.0f} MB when prepared.",
+                 most=MOST_PHOTOS, size=MOST_PHOTO_BYTES / 1e6),
+            fill("Name fewer: those of the pieces to fix."),
+        )  # fmt: skip
+        limits: dict[str, tuple[int, Text, Text]] = {
+            "record_bytes": (MOST_RECORD_BYTES, fill("the record files of this workbook have more than {most:.0f} MB.",
+                                                     most=MOST_RECORD_BYTES / 1e6), fewer),
+            "archives": (MOST_ARCHIVES, fill("this workbook names more than {most} zip archives.", most=MOST_ARCHIVES),
+                         fewer),
+            "samples": (MOST_RECORD_SAMPLES, fill("the record files of this workbook have more than {most:,} samples.",
+                                                  most=MOST_RECORD_SAMPLES), fewer),
+            "pixels": (MOST_PICTURE_PIXELS,
+                       fill("the pictures of this workbook have more than {most:.0f} million pixels.",
+                            most=MOST_PICTURE_PIXELS / 1e6), fill("Save them smaller, or name fewer.")),
+            "drawings": (MOST_DRAWINGS, *drawings), "drawing_bytes": (MOST_DRAWING_BYTES, *drawings),
+            "photos": (MOST_PHOTOS, *photos), "photo_bytes": (MOST_PHOTO_BYTES, *photos),
+        }  # fmt: skip
         for name in amounts:
             most, message, fix = limits[name]
             if self.taken[name] > most:
                 raise CellError(message, fix)
-
-
-def _list_limits() -> dict[str, tuple[int, Text, Text]]:
-    fewer = fill("Name fewer files, with the channels that are needed, cut to the shaking.")
-    drawings = (
-        fill("this workbook names more than {most} drawings as plans, or drawings of more than {size:.0f} MB.",
-             most=MOST_DRAWINGS, size=MOST_DRAWING_BYTES / 1e6),
-        fill("Save the walls and doors alone, or name fewer."),
-    )  # fmt: skip
-    photos = (
-        fill("this workbook names more than {most} photos, or photos of more than {size:.0f} MB when prepared.",
-             most=MOST_PHOTOS, size=MOST_PHOTO_BYTES / 1e6),
-        fill("Name fewer: those of the pieces to fix."),
-    )  # fmt: skip
-    record_bytes = fill("the record files of this workbook have more than {most:.0f} MB.", most=MOST_RECORD_BYTES / 1e6)
-    samples = fill("the record files of this workbook have more than {most:,} samples.", most=MOST_RECORD_SAMPLES)
-    archives = fill("this workbook names more than {most} zip archives.", most=MOST_ARCHIVES)
-    pixels = fill(
-        "the pictures of this workbook have more than {most:.0f} million pixels.", most=MOST_PICTURE_PIXELS / 1e6
-    )
-    return {
-        "record_bytes": (MOST_RECORD_BYTES, record_bytes, fewer),
-        "archives": (MOST_ARCHIVES, archives, fewer),
-        "samples": (MOST_RECORD_SAMPLES, samples, fewer),
-        "pixels": (MOST_PICTURE_PIXELS, pixels, fill("Save them smaller, or name fewer.")),
-        "drawings": (MOST_DRAWINGS, *drawings),
-        "drawing_bytes": (MOST_DRAWING_BYTES, *drawings),
-        "photos": (MOST_PHOTOS, *photos),
-        "photo_bytes": (MOST_PHOTO_BYTES, *photos),
-    }
 
 
 Key = tuple[Hashable, ...]

@@ -71,18 +71,16 @@ def find_near_name(name: str, names: Collection[str]) -> str | None:
 
     Each word has to be near, not only the whole: Mystery cabinet is no slip of Tray cabinet.
     """
-    near = difflib.get_close_matches(name, names, MOST_NEAR, NEAR)
-    return next((one for one in near if _could_be(name, one)), None)
-
-
-def _could_be(name: str, other: str) -> bool:
-    """Tell whether a name can be a slip of another: Room 12 is none of Room 11, nor South office of North office."""
-    if re.findall(r"\d+", name) != re.findall(r"\d+", other):
-        return False
-    pairs = list(zip(name.split(), other.split(), strict=False))
-    if len(pairs) < 2 or len(name.split()) != len(other.split()):
-        return True
-    return all(difflib.SequenceMatcher(None, one, two).ratio() >= NEAR_WORD for one, two in pairs)
+    for other in difflib.get_close_matches(name, names, MOST_NEAR, NEAR):
+        if re.findall(r"\d+", name) != re.findall(r"\d+", other):
+            continue  # Room 12 is no slip of Room 11
+        words, others = name.split(), other.split()
+        if len(words) != len(others) or min(len(words), len(others)) < 2:
+            return other
+        pairs = zip(words, others, strict=True)
+        if all(difflib.SequenceMatcher(None, one, two).ratio() >= NEAR_WORD for one, two in pairs):
+            return other  # South office is no slip of North office
+    return None
 
 
 @cache
@@ -122,22 +120,18 @@ def find_near_column(sheet: Sheet, own: Sheet, header: str, labels: Collection[s
     """
     label, unit = split_header(header)
     folded = plain(label)
-    for one in chain(own.columns, *(said.columns for said in versions(sheet))):
-        known = plain(one.label)
-        if unit is None and _has_bare_unit(folded, known, one):
+    for one in chain(own.columns, *(version.columns for version in versions(sheet))):
+        known, units = plain(one.label), QUANTITIES.get(one.quantity, {})
+        bare = folded.removeprefix(known).strip("()_,;:-/.")  # Height (cm)
+        if unit is None and folded.startswith(known) and read_unit(bare) in units:
             return one
-        if unit is not None and read_unit(unit) not in QUANTITIES.get(one.quantity, {}):
+        if unit is not None and read_unit(unit) not in units:
             continue
         if difflib.SequenceMatcher(None, folded, known).ratio() < 0.8:
             continue
         if known not in labels or folded[:1] == known[:1]:
             return one
     return None
-
-
-def _has_bare_unit(folded: str, known: str, column: Column) -> bool:
-    rest = folded.removeprefix(known).strip("()_,;:-/.")
-    return folded.startswith(known) and read_unit(rest) in QUANTITIES.get(column.quantity, {})
 
 
 def find_sheet(name: str) -> tuple[str, str] | None:
@@ -187,9 +181,9 @@ def find_choice(text: str, choices: tuple[str, ...]) -> str | None:
     if (choice := match_choice(text, choices)) is not None:
         return choice
     for code in _OTHERS:
-        said = {_bare(word): choice for word, choice in zip(say_choices(choices, code), choices, strict=True)}
-        if (word := match_choice(_bare(text), said)) is not None:
-            return said[word]
+        words = {_bare(word): choice for word, choice in zip(say_choices(choices, code), choices, strict=True)}
+        if (word := match_choice(_bare(text), words)) is not None:
+            return words[word]
     return next((choice for choice in choices if "," in choice and fold(choice.partition(",")[0]) == fold(text)), None)
 
 

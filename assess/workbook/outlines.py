@@ -3,7 +3,6 @@
 import math
 import re
 from itertools import combinations
-from math import hypot
 
 from assess.i18n import Text, fill, nfill
 from assess.model import Outline
@@ -38,9 +37,25 @@ def parse_outline(text: str, factor: float) -> Outline:
     Raises OutlineError if a corner is not two numbers or can be read in two ways (``1,500 0``), two that follow each
     other are the same, there are fewer than three or more than 200, or its sides cross or touch each other.
     """
-    parts = [part.split() for part in text.replace("\n", ";").split(";") if part.strip()]
-    corners = [_read_corner(at, part, factor) for at, part in enumerate(parts, 1)]
-    if len(corners) > 1 and _is_same(corners[0], corners[-1]):
+    corners: list[Corner] = []
+    parts = (part.strip() for part in text.replace("\n", ";").split(";"))
+    for number, typed in enumerate(filter(None, parts), 1):
+        part = typed.split()
+        shown, count = " ".join(part)[:40], len(part)
+        if count == 2 and all(_NUMBER.fullmatch(one) or _DECIMAL_COMMA.fullmatch(one) for one in part):
+            if any(_MAYBE_THOUSANDS.fullmatch(one) for one in part):
+                raise OutlineError(
+                    fill("corner {n} is '{text}', which can be read in two ways: write decimals with a point.",
+                         n=number, text=shown)
+                )  # fmt: skip
+            part = [one.replace(",", ".") for one in part]
+        if count != 2 or not all(_NUMBER.fullmatch(one) for one in part):
+            raise OutlineError(fill("corner {n} is '{text}', expected two numbers, x and y.", n=number, text=shown))
+        x, y = (float(one) * factor for one in part)
+        if max(abs(x), abs(y)) > FARTHEST:
+            raise OutlineError(fill("corner {n} lies more than {most:,} km away.", n=number, most=int(FARTHEST / 1000)))
+        corners.append((x, y))
+    if len(corners) > 1 and math.dist(corners[0], corners[-1]) <= SAME:
         corners.pop()
     if not LEAST <= len(corners) <= MOST:
         raise OutlineError(nfill(
@@ -49,72 +64,34 @@ def parse_outline(text: str, factor: float) -> Outline:
             len(corners), least=LEAST, most=MOST,
         ))  # fmt: skip
     for at, corner in enumerate(corners):
-        if _is_same(corner, corners[at - 1]):
+        if math.dist(corner, corners[at - 1]) <= SAME:
             raise OutlineError(fill("corner {n} is the same as the one before it.", n=at + 1))
-    _check_sides(corners)
+    sides = list(zip(corners, [*corners[1:], corners[0]], strict=True))
+    for one, other in combinations(range(len(sides)), 2):
+        if _cross(sides, one, other):
+            names = {"one": one + 1, "other": other + 1}
+            raise OutlineError(fill("its sides {one} and {other} cross or touch each other.", **names))
     return tuple(corners)
 
 
-def _read_corner(number: int, part: list[str], factor: float) -> Corner:
-    part = _take_commas(number, part)
-    if len(part) != 2 or not all(_NUMBER.fullmatch(one) for one in part):
-        shown = " ".join(part)[:40]
-        raise OutlineError(fill("corner {n} is '{text}', expected two numbers, x and y.", n=number, text=shown))
-    x, y = (float(one) * factor for one in part)
-    if max(abs(x), abs(y)) > FARTHEST:
-        raise OutlineError(fill("corner {n} lies more than {most:,} km away.", n=number, most=int(FARTHEST / 1000)))
-    return x, y
-
-
-def _take_commas(number: int, part: list[str]) -> list[str]:
-    if len(part) != 2 or not all(_NUMBER.fullmatch(one) or _DECIMAL_COMMA.fullmatch(one) for one in part):
-        return part
-    if any(_MAYBE_THOUSANDS.fullmatch(one) for one in part):
-        shown = " ".join(part)[:40]
-        raise OutlineError(
-            fill("corner {n} is '{text}', which can be read in two ways: write decimals with a point.",
-                 n=number, text=shown)
-        )  # fmt: skip
-    return [one.replace(",", ".") for one in part]
-
-
-def _is_same(one: Corner, other: Corner) -> bool:
-    return hypot(one[0] - other[0], one[1] - other[1]) <= SAME
-
-
-def _check_sides(corners: list[Corner]) -> None:
-    """Raise OutlineError where two sides meet other than at the corner that they share, or fold back there."""
-    count = len(corners)
-    sides = [(corners[at], corners[(at + 1) % count]) for at in range(count)]
-    for one, other in combinations(range(count), 2):
-        is_next = other - one == 1 or (one == 0 and other == count - 1)
-        if _fold_back(sides, one, other) if is_next else _meet(*sides[one], *sides[other]):
-            names = {"one": one + 1, "other": other + 1}
-            raise OutlineError(fill("its sides {one} and {other} cross or touch each other.", **names))
-
-
-def _fold_back(sides: list[tuple[Corner, Corner]], one: int, other: int) -> bool:
-    first, last = (one, other) if other - one == 1 else (other, one)
-    (a, b), (_, c) = sides[first], sides[last]
-    back, on = (a[0] - b[0], a[1] - b[1]), (c[0] - b[0], c[1] - b[1])
-    turn = back[0] * on[1] - back[1] * on[0]
-    along = back[0] * on[0] + back[1] * on[1]
-    return along > 0 and abs(turn) <= ROUNDING * math.hypot(*back) * math.hypot(*on)
-
-
-def _meet(a: Corner, b: Corner, c: Corner, d: Corner) -> bool:
-    turns = _turn(a, b, c), _turn(a, b, d), _turn(c, d, a), _turn(c, d, b)
+def _cross(sides: list[tuple[Corner, Corner]], one: int, other: int) -> bool:
+    """Return whether two sides meet other than at the corner that they share, or fold back there."""
+    if other - one == 1 or (one == 0 and other == len(sides) - 1):
+        (a, b), (_, c) = (sides[at] for at in ((one, other) if other - one == 1 else (other, one)))
+        along = (a[0] - b[0]) * (c[0] - b[0]) + (a[1] - b[1]) * (c[1] - b[1])
+        return along > 0 and _turn(b, a, c) == 0
+    (a, b), (c, d) = sides[one], sides[other]
+    ends = ((a, b, c), (a, b, d), (c, d, a), (c, d, b))
+    turns = [_turn(*end) for end in ends]
     if turns[0] * turns[1] < 0 and turns[2] * turns[3] < 0:
         return True
-    ends = ((a, b, c), (a, b, d), (c, d, a), (c, d, b))
-    return any(turn == 0 and _is_between(*end) for turn, end in zip(turns, ends, strict=True))
+    return any(
+        turn == 0 and all(min(x, y) - SAME <= at <= max(x, y) + SAME for x, y, at in zip(*end, strict=True))
+        for turn, end in zip(turns, ends, strict=True)
+    )
 
 
 def _turn(a: Corner, b: Corner, c: Corner) -> float:
+    """Return twice the area of a triangle, 0 where its corners lie on one line."""
     cross = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-    size = hypot(b[0] - a[0], b[1] - a[1]) * hypot(c[0] - a[0], c[1] - a[1])
-    return 0.0 if abs(cross) <= ROUNDING * size else cross
-
-
-def _is_between(a: Corner, b: Corner, c: Corner) -> bool:
-    return all(min(one, two) - SAME <= at <= max(one, two) + SAME for one, two, at in zip(a, b, c, strict=True))
+    return 0.0 if abs(cross) <= ROUNDING * math.dist(a, b) * math.dist(a, c) else cross

@@ -12,7 +12,7 @@ from itertools import chain, groupby, islice
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from assess.errors import Correction, FurnitureGap, Gap, Problem, Severity
-from assess.i18n import Text, fill, join, nfill
+from assess.i18n import fill, join, nfill
 from assess.units import QUANTITIES, read_unit
 from assess.workbook.habits import CellError, name_some, shorten
 from assess.workbook.names import ENGLISH, find_column, find_near_column, is_live, plain, split_header, versions
@@ -105,8 +105,6 @@ class Table:
       0 where none was found and in a form.
     * `blind`: Fields whose header gives no known unit, which has been reported; `units` are those of the others.
     * `failed`: Addresses of the cells that have been reported as wrong.
-    * `corrections`: Cells that were understood although they are not typed as their column asks.
-    * `source`: Knows how messages call a cell.
     """
 
     sheet: Sheet
@@ -181,13 +179,6 @@ class Table:
         return replace(self, failed=self.failed | cells) if cells - self.failed else self
 
 
-def _repeats(cells: Cells, headers: Cells, needed: Sequence[int]) -> bool:
-    return (
-        all(cells.get(at) == headers[at] for at in needed)
-        and sum(headers.get(at) == it for at, it in cells.items()) > 1
-    )
-
-
 def first_row(cell: str) -> int:
     """Return the number of the first row that an address names, 0 for none."""
     return next(iter(row_numbers(cell)), 0)
@@ -208,26 +199,25 @@ Tables = Mapping[str, Table]
 def parse_sheet(english: Sheet, own: Sheet, language: str, source: Source) -> tuple[Table, list[Problem]]:
     """Read a sheet: `english` with its English names, `own` with the name and the labels of its `language`."""
     parser = _Parser(english, own, source)
-    table = Table(sheet=own, language=language, found=True, source=source)
-    read = parser.read_form() if own.layout == "form" else parser.read_table()
+    rows = parser.read_form() if own.layout == "form" else parser.read_table()
     if source.last_row > MAX_ROWS or source.far:
-        parser.problems.clear()
-        parser.report(*_describe_far(source))
-        return table.with_failed(parser.problems), parser.problems
+        cell, message = source.far, fill(
+            "a value far to the right of the table; at most {most} columns are read.", most=MAX_COLUMNS
+        )  # fmt: skip
+        fix = fill("Delete the columns right of the table.")
+        if source.last_row > MAX_ROWS:
+            cell, fix = source.address(source.last_row), fill("Delete the rows below the table.")
+            message = fill("a value far below the table; at most {most:,} rows are read.", most=MAX_ROWS)
+        problems = [Problem("error", own.name, cell, message, fix)]
+        return Table(sheet=own, language=language, found=True, source=source).with_failed(problems), problems
     named = {column.name: column for column in parser.headers.values()}
     sheet = replace(own, columns=tuple(named.get(column.name, column) for column in own.columns))
-    table = replace(table, sheet=sheet, blind=frozenset(parser.blind), places=parser.places, rows=tuple(read))
-    table = replace(table, extra=tuple(parser.others.values()), corrections=tuple(parser.corrections))
-    table = replace(table, header=parser.header, units=parser.units)
-    return replace(table, failed=frozenset(parser.covered)).with_failed(parser.problems), parser.problems
-
-
-def _describe_far(source: Source) -> tuple[str, Text, Text]:
-    if source.last_row > MAX_ROWS:
-        message = fill("a value far below the table; at most {most:,} rows are read.", most=MAX_ROWS)
-        return source.address(source.last_row), message, fill("Delete the rows below the table.")
-    message = fill("a value far to the right of the table; at most {most} columns are read.", most=MAX_COLUMNS)
-    return source.far, message, fill("Delete the columns right of the table.")
+    table = Table(
+        sheet=sheet, language=language, found=True, source=source, places=parser.places, rows=tuple(rows),
+        extra=tuple(parser.others.values()), blind=frozenset(parser.blind), failed=frozenset(parser.covered),
+        corrections=tuple(parser.corrections), header=parser.header, units=parser.units,
+    )  # fmt: skip
+    return table.with_failed(parser.problems), parser.problems
 
 
 class _Parser:
@@ -280,27 +270,32 @@ class _Parser:
             if self.own.required or candidates:
                 needed = [column.header() for column in self.own.columns if column.required]
                 message = fill("no header row was found in the first {rows} rows.", rows=HEADER_ROWS)
-                self.report(
-                    self.source.top, message, fill("It needs the headers: {headers}.", headers=", ".join(needed))
-                )
+                fix = fill("It needs the headers: {headers}.", headers=", ".join(needed))
+                self.report(self.source.top, message, fix)
             for _ in body:  # the rest is read for the bounds of the sheet
                 pass
             return []
-        self.header, cells = best
-        number = self.header
-        self._read_headers(number, cells)
+        self.header, headers = best
+        self._read_headers(headers)
         if self.source.kept is not None:
             self.source.kept.serve((self.columns, self.others, self.units, self.blind))
-        found = self._read_rows(number, cells, body)
-        self._check_merged([number, *(row.number for row in found)])
+        found = self._read_rows(headers, body)
+        self._check_merged([self.header, *(row.number for row in found)])
         self._note_hidden(found)
         if self.own.required and not found and not self._missing():
-            self._report_no_rows(self.source.address(number + 1))
+            # a building may have no furniture, yet no report can do without a floor
+            cell, fix = self.source.address(self.header + 1), fill("Fill in at least one.")
+            if self.own.columns[0].name == "item":
+                message = fill("the table has no rows: nothing is assessed.")
+                self.problems.append(FurnitureGap("warning", self.own.name, cell, message, fix))
+            else:
+                self.problems.append(Gap("error", self.own.name, cell, fill("the table has no rows."), fix))
         return found
 
-    def _read_rows(self, header: int, headers: Cells, body: Iterable[tuple[int, Cells]]) -> list[Row]:
+    def _read_rows(self, headers: Cells, body: Iterable[tuple[int, Cells]]) -> list[Row]:
+        """Return the rows that are entries; those that hold a text alone only where a table asks for no more."""
         known, first = {*self.columns, *self.others}, sorted(self.columns)[:FIRST_COLUMNS]
-        needed = sorted(self.required)
+        header, needed, kept = self.header, sorted(self.required), self.source.kept
         found: dict[int, Row | None] = {}
         lone: dict[int, tuple[int, Cells]] = {}
         for number, cells in body:
@@ -308,21 +303,28 @@ class _Parser:
                 continue
             if (at := find_lone_text(cells, known, first)) is not None:
                 lone[number] = at, cells
-            elif needed and cells.get(needed[0]) == headers[needed[0]] and _repeats(cells, headers, needed):
+            elif (
+                needed
+                and cells.get(needed[0]) == headers[needed[0]]
+                and all(cells.get(at) == headers[at] for at in needed)
+                and sum(headers.get(at) == value for at, value in cells.items()) > 1
+            ):
                 message = nfill(
                     "the row repeats the headers; it is skipped.",
                     "{n:,} rows repeat the headers; they are skipped ({cells}).",
                     1, cells="",
                 )  # fmt: skip
                 self.report(self.source.address(number, needed[0]), message, "", "note", "headers")
+            elif kept is None:
+                found[number] = self._row(number, cells)
+            elif (known_row := kept.rows.get(number)) is not None and known_row[0] is cells:  # from an earlier reading
+                found[number] = known_row[1]
+                self.problems += known_row[2]
+                self.corrections += known_row[3]
             else:
-                found[number] = self._keep_row(number, cells)
-        found |= self._read_lone(lone)
-        return [row for _, row in sorted(found.items()) if row]
-
-    def _read_lone(self, lone: Mapping[int, tuple[int, Cells]]) -> dict[int, Row | None]:
-        """Return the entries among the rows that hold a text alone: where a table asks for no more than that."""
-        found: dict[int, Row | None] = {}
+                reported, corrected = len(self.problems), len(self.corrections)
+                row = found[number] = self._row(number, cells)
+                kept.rows[number] = cells, row, self.problems[reported:], self.corrections[corrected:]
         ranges = (match for one in self.source.merged if (match := _RANGE.fullmatch(one)))
         spanned = {int(one[2]) for one in ranges if one[1] != one[3] and one[2] == one[4]}
         needs_more = sum(column.required for column in self.own.columns) > 1
@@ -336,33 +338,35 @@ class _Parser:
                 self.report(self.source.address(number, at), message, "", "note", "heading")
             else:
                 found[number] = self._row(number, cells)
-        return found
+        return [row for _, row in sorted(found.items()) if row]
 
     def _check_merged(self, rows: Sequence[int]) -> None:
+        """Report merged cells in these rows; that the cells which a merge hides are blank is no error of its own."""
         for reference in self.source.merged:
             merged = row_numbers(reference)
             at = bisect_left(rows, merged.start)
-            if at < len(rows) and rows[at] < merged.stop:
-                message = fill("cells are merged inside the table.")
-                self.report(reference, message, fill("Unmerge them and fill each cell."))
-                self._cover(reference, rows[at : bisect_left(rows, merged.stop)])
+            if at == len(rows) or rows[at] >= merged.stop:
+                continue
+            message = fill("cells are merged inside the table.")
+            self.report(reference, message, fill("Unmerge them and fill each cell."))
+            own, span = rows[at : bisect_left(rows, merged.stop)], split_range(reference)
+            if span is not None and len(self.covered) + len(own) * len(self.columns) <= MAX_ROWS:
+                left, right, top, _ = span
+                cells = ((row, at) for row in own for at in self.columns if left <= at + 1 <= right)
+                self.covered += [self.source.address(*one) for one in cells if one != (top, left - 1)]
         covered = set(self.covered)
         self.problems = [one for one in self.problems if one.severity != "error" or one.cell not in covered]
-
-    def _cover(self, reference: str, rows: Sequence[int]) -> None:
-        """Note the cells that a merge hides, all but its first: that they are blank is no error of its own."""
-        found = split_range(reference)
-        if found is None or len(self.covered) + len(rows) * len(self.columns) > MAX_ROWS:
-            return
-        left, right, top, _ = found
-        cells = ((row, at) for row in rows for at in self.columns if left <= at + 1 <= right)
-        self.covered += [self.source.address(*one) for one in cells if one != (top, left - 1)]
 
     def _note_hidden(self, found: Sequence[Row]) -> None:
         hidden = set(self.source.hidden_rows)
         rows = [row.number for row in found if row.number in hidden] if hidden else []
         if rows:
-            named = {"rows": list_ranges(rows)}
+            runs = [[number for _, number in run] for _, run in groupby(enumerate(rows), lambda one: one[1] - one[0])]
+            ranges = [
+                str(run[0]) if len(run) == 1 else fill("{first} to {last}", first=str(run[0]), last=str(run[-1]))
+                for run in runs
+            ]
+            named = {"rows": name_some(ranges, _MOST_RANGES)}
             message = nfill(
                 "hidden row {rows} is read as well.", "{n:,} hidden rows are read as well: {rows}.", len(rows), **named
             )
@@ -394,13 +398,13 @@ class _Parser:
                 break
         return None if best is None else top[best]
 
-    def _read_headers(self, number: int, cells: Cells) -> None:
+    def _read_headers(self, cells: Cells) -> None:
         texts = {at: read_text(value) for at, value in sorted(cells.items()) if _shown(value) is not None}
         labels = {plain(split_header(text)[0]) for text in texts.values()}
         for at, text in texts.items():
             if not text or is_live(self.english, split_header(text)[0]):
                 continue
-            cell = self.source.address(number, at)
+            cell = self.source.address(self.header, at)
             column, is_wrong = self._match(text, cell, labels)
             if column:
                 self.columns[at], self.places[column.name] = column, at
@@ -412,7 +416,7 @@ class _Parser:
                 self.report(cell, message, severity="note")
         for column in self._missing():
             message = fill("the column {header} is missing.", header=column.header())
-            self.report(self.source.address(number), message, fill("Add it to the header row."))
+            self.report(self.source.address(self.header), message, fill("Add it to the header row."))
 
     def _missing(self) -> list[Column]:
         found = {column.name for column in self.headers.values()}
@@ -437,12 +441,7 @@ class _Parser:
                 twice = fill("duplicate column {label}, also in {cell}.", label=column.label, cell=also)
             self.report(cell, twice, fill("Delete one of them."))
             return None, True
-        self.headers[cell] = column
-        self._read_unit(column, unit, cell)
-        return column, False
-
-    def _read_unit(self, column: Column, unit: str | None, cell: str) -> None:
-        spelt = read_unit(unit or "")
+        self.headers[cell], spelt = column, read_unit(unit or "")
         self.units[column.name] = spelt if column.quantity else ""
         self.readers[column.name] = cell_reader(column, self.units[column.name])
         if column.quantity and spelt not in QUANTITIES[column.quantity]:
@@ -456,32 +455,7 @@ class _Parser:
                 units=", ".join(QUANTITIES[column.quantity]),
             )
             self.report(cell, wrong, fix)
-
-    def _report_no_rows(self, cell: str) -> None:
-        """Report a table without rows: a building may have no furniture, yet no report can do without a floor."""
-        if self.own.columns[0].name == "item":
-            message = fill("the table has no rows: nothing is assessed.")
-            fix = fill("Fill in at least one.")
-            self.problems.append(FurnitureGap("warning", self.own.name, cell, message, fix))
-        else:
-            message = fill("the table has no rows.")
-            self.problems.append(Gap("error", self.own.name, cell, message, fill("Fill in at least one.")))
-
-    def _keep_row(self, number: int, cells: Cells) -> Row | None:
-        """Return what `_row` does, from an earlier reading where the cells are held in memory and are the same."""
-        kept = self.source.kept
-        if kept is None:
-            return self._row(number, cells)
-        known = kept.rows.get(number)
-        if known is None or known[0] is not cells:
-            reported, corrected = len(self.problems), len(self.corrections)
-            row = self._row(number, cells)
-            kept.rows[number] = cells, row, self.problems[reported:], self.corrections[corrected:]
-            return row
-        self.problems += known[2]
-        self.corrections += known[3]
-        found: Row | None = known[1]
-        return found
+        return column, False
 
     def _row(self, number: int, cells: Cells) -> Row | None:
         columns = self.columns
@@ -551,13 +525,3 @@ def find_lone_text(cells: Cells, known: Collection[int], first: Collection[int])
     value = cells.get(filled) if filled in first and filled is not None else None
     is_text = isinstance(value, str) and value.strip() not in ERRORS and any(map(str.isalpha, value))
     return filled if is_text else None
-
-
-def list_ranges(numbers: Sequence[int]) -> Text:
-    """Return numbers in words, those that follow one another as a range: "12, 15 to 16"."""
-    runs = [[number for _, number in run] for _, run in groupby(enumerate(numbers), lambda one: one[1] - one[0])]
-    parts = [
-        str(run[0]) if len(run) == 1 else fill("{first} to {last}", first=str(run[0]), last=str(run[-1]))
-        for run in runs
-    ]
-    return name_some(parts, _MOST_RANGES)

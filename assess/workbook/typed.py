@@ -1,4 +1,4 @@
-"""What a person means: a cell as it was typed, as the cell that its column asks for.
+"""What a person means: a cell as it was typed, as the cell that its column asks for, and numbers out of its range.
 
 `understand` takes what can be read in one way only, and says so in a note; what can be read in two ways is an error
 that offers both. Cells that are typed as asked for, numbers above all, do not come here.
@@ -7,16 +7,16 @@ that offers both. Cells that are typed as asked for, numbers above all, do not c
 import datetime
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache
+from itertools import product
 
 from assess.i18n import LANGUAGES, Text, fill
 from assess.units import GRAVITY, QUANTITIES, read_unit
 from assess.workbook.habits import CellError, Remark, note, shorten
 from assess.workbook.names import DASHES, ENGLISH, find_choice, plain, say_choices
 from assess.workbook.open import Percent
-from assess.workbook.ranges import is_within
 from assess.workbook.schema import NO, YES, Column
 
 LONGEST = 60
@@ -72,6 +72,81 @@ def _name_column(column: Column, unit: str = "") -> Text:
     return fill("{label} [{unit}]", label=label, unit=unit) if unit else label
 
 
+# ---------------------------------------------------------------- the range of a column
+
+_PERCENT_OF_G = "%g"
+_METRIC, _IMPERIAL = ("cm", "m", "mm", "m/s", "cm/s", "kg", "kN", "N"), ("in", "ft", "in/s", "lb", "lbf")
+_ACCELERATIONS = (_PERCENT_OF_G, "m/s2", "cm/s2", "g")
+
+
+def _scale(column: Column, unit: str) -> float:
+    """Return the factor from a unit to that of the column's range."""
+    if unit == _PERCENT_OF_G:
+        return 0.01 * GRAVITY / column.factor
+    return QUANTITIES[column.quantity][unit] / column.factor if column.quantity else 1.0
+
+
+def is_within(column: Column, number: float, unit: str) -> bool:
+    """Tell whether a number may stand in a column."""
+    value = number * _scale(column, unit)
+    slack = 1e-9 * abs(value)
+    return (column.low is None or value >= column.low - slack) and (column.high is None or value <= column.high + slack)
+
+
+def is_unusual(column: Column, number: float, unit: str) -> bool:
+    """Tell whether a number lies outside what is usual in a column."""
+    value = number * _scale(column, unit)
+    return (column.usual_low is not None and value < column.usual_low) or (
+        column.usual_high is not None and value > column.usual_high
+    )
+
+
+def span(low: float | None, high: float | None, column: Column, unit: str) -> Text:
+    """Return a range in words, in the header's unit."""
+    scale, suffix = _scale(column, unit), f" {unit}" if unit else ""
+    least, most = (float(f"{(limit or 0) / scale:.4g}") for limit in (low, high))
+    if low is not None and high is not None:
+        return fill("{low:g} to {high:g}{unit}", low=least, high=most, unit=suffix)
+    if low is not None:
+        return fill("at least {low:g}{unit}", low=least, unit=suffix)
+    return fill("at most {high:g}{unit}", high=most, unit=suffix)
+
+
+def find_slip(column: Column, number: float, unit: str) -> Text | str:
+    """Return what a number outside the range may mean: the units in which it would be usual, with what it is then."""
+    if number == 0:
+        return fill("Clear the cell if it is not known.")
+    if number < 0:
+        return fill("Remove the minus sign.") if (column.low or 0) >= 0 else ""
+    if unit == "%" and number < 1 and is_within(column, 100 * number, unit):
+        return fill("Write {percent:g} for {percent:g} %.", percent=100 * number)
+    if (
+        not unit
+        and column.kind == "number"
+        and number > 3 * (column.high or number)
+        and is_within(column, number / 100, unit)
+    ):
+        return fill("Did you mean {number:g}?", number=number / 100)
+    systems: tuple[tuple[str, ...], ...] = (_IMPERIAL, _METRIC) if unit in _IMPERIAL else (_METRIC, _IMPERIAL)
+    if column.quantity == "acceleration":
+        systems = (_ACCELERATIONS,)
+    known = {*QUANTITIES.get(column.quantity, {}), _PERCENT_OF_G} - {unit}
+    for system in systems:
+        readings = [
+            fill(
+                "{number:.10g} {other} = {converted:.4g} {unit}",
+                number=number, other=other, converted=number * _scale(column, other) / _scale(column, unit), unit=unit,
+            )
+            for other in system
+            if other in known and is_within(column, number, other) and not is_unusual(column, number, other)
+        ]  # fmt: skip
+        if len(readings) > 1:
+            return fill("Did you mean {one}, or {other}?", one=readings[0], other=readings[1])
+        if readings:
+            return fill("Did you mean {name}?", name=readings[0])
+    return fill("Check the number and the unit in the header.")
+
+
 # ---------------------------------------------------------------- numbers
 
 
@@ -89,14 +164,30 @@ def _take_number(column: Column, value: object, unit: str) -> tuple[object, Rema
     factor = _find_factor(match["unit"].strip(), column, unit) if match else None
     if match is None or factor is None:
         return value, None
-    readings = [_convert(match, digits, factor) for digits in read_digits(match["digits"].rstrip())]
+    digits, suffix = match["digits"].rstrip(), f" {unit}" if unit else ""
+    sign_and_power = float(f"1{match['power'] or 'e0'}") * (-1 if match["sign"] == "-" else 1)
+    readings = [one * sign_and_power for one in read_digits(digits)]
+    if factor != 1:  # without the noise of binary fractions
+        readings = [float(f"{one * factor:.12g}") for one in readings]
     if len(readings) == 2:
-        raise _describe_two(column, unit, shorten(value), readings)
+        one, other = (fill("{number:.10g}{unit}", number=number, unit=suffix) for number in readings)
+        message = fill(
+            "{label} is the text {text}, which can be read as {one} or as {other}.",
+            label=column.label, text=shorten(value), one=one, other=other,
+        )  # fmt: skip
+        raise CellError(message, fill("Type the number without a separator between thousands."))
     if not readings or not math.isfinite(readings[0]):
         return value, None
-    number = readings[0]
-    typed = fill("{number:g}{unit}", number=number, unit=f" {unit}" if unit else "")
-    return number, note(_find_habit(column, value, match), _name_column(column, unit), shorten(value), typed, number)
+    if named := match["unit"].strip():
+        habit = "percent" if named.startswith("%") and column.quantity != "share" else "unit"
+    elif _GROUPED.fullmatch(digits):
+        habit = "thousands"
+    elif "," in digits:
+        habit = "comma"
+    else:
+        habit = "text" if value.translate(_PLAIN_SIGNS) == value else "signs"
+    typed = fill("{number:g}{unit}", number=readings[0], unit=suffix)
+    return readings[0], note(habit, _name_column(column, unit), shorten(value), typed, readings[0])
 
 
 def is_converted(column: Column, value: object, unit: str) -> bool:
@@ -136,12 +227,6 @@ def read_digits(digits: str) -> list[float]:
     return found
 
 
-def _convert(match: re.Match[str], digits: float, factor: float) -> float:
-    """Return a number in the header's unit, without the noise of binary fractions where it is converted."""
-    number = digits * float(f"1{match['power'] or 'e0'}") * (-1 if match["sign"] == "-" else 1)
-    return number if factor == 1 else float(f"{number * factor:.12g}")
-
-
 def _find_factor(typed: str, column: Column, unit: str) -> float | None:
     if not typed:
         return 1.0
@@ -153,27 +238,6 @@ def _find_factor(typed: str, column: Column, unit: str) -> float | None:
     if spelt not in known:
         return None
     return 1.0 if spelt == unit else known[spelt] / known[unit]
-
-
-def _find_habit(column: Column, value: str, match: re.Match[str]) -> str:
-    if unit := match["unit"].strip():
-        return "percent" if unit.startswith("%") and column.quantity != "share" else "unit"
-    digits = match["digits"].rstrip()
-    if _GROUPED.fullmatch(digits):
-        return "thousands"
-    if "," in digits:
-        return "comma"
-    return "text" if value.translate(_PLAIN_SIGNS) == value else "signs"
-
-
-def _describe_two(column: Column, unit: str, shown: str, readings: list[float]) -> CellError:
-    suffix = f" {unit}" if unit else ""
-    one, other = (fill("{number:.10g}{unit}", number=number, unit=suffix) for number in readings)
-    message = fill(
-        "{label} is the text {text}, which can be read as {one} or as {other}.",
-        label=column.label, text=shown, one=one, other=other,
-    )  # fmt: skip
-    return CellError(message, fill("Type the number without a separator between thousands."))
 
 
 # ---------------------------------------------------------------- choices
@@ -203,32 +267,23 @@ def find_meant(text: str, choices: tuple[str, ...], language: str) -> tuple[str 
     language. Understood are letter case, spaces and accents left out, the first letters of one choice alone (of these
     the words for yes and no come first), and an intensity in Arabic numerals: ``MMI 7``.
     """
-    typed = text.casefold()
+    typed, short, full = text.casefold(), plain(text), text
     if any(typed == choice.casefold() for choice in choices):
         return find_choice(text, choices), ""
-    choice = find_choice(_with_roman(text), choices) or _find_short(plain(text), choices, language)
+    match = _ARABIC.fullmatch(straighten(text))
+    if match and int(match[1]) < len(_ROMAN):
+        full = f"MMI {_ROMAN[int(match[1])]}{match[2]}"
+    choice = find_choice(full, choices)
+    if choice is None and short:
+        for among, code in product(((YES, NO), choices), dict.fromkeys((language, ENGLISH, *LANGUAGES))):
+            words = zip(choices, say_choices(choices, code), strict=True)
+            found = [one for one, word in words if one in among and plain(word).startswith(short)]
+            if found:
+                choice = found[0] if len(found) == 1 else None
+                break
     if choice is None or any(typed == word.casefold() for code in LANGUAGES for word in say_choices(choices, code)):
         return choice, ""
     return choice, say_choices(choices, language)[choices.index(choice)]
-
-
-def _with_roman(text: str) -> str:
-    """Return the text of an MMI with its number as the scale writes it, in Roman numerals; any other as it is."""
-    match = _ARABIC.fullmatch(straighten(text))
-    return f"MMI {_ROMAN[int(match[1])]}{match[2]}" if match and int(match[1]) < len(_ROMAN) else text
-
-
-def _find_short(typed: str, choices: tuple[str, ...], language: str) -> str | None:
-    """Return the one choice that begins with some letters: yes or no, else in the column's language, else in others."""
-    if not typed:
-        return None
-    for among in ((YES, NO), choices):
-        for code in dict.fromkeys((language, ENGLISH, *LANGUAGES)):
-            words = zip(choices, say_choices(choices, code), strict=True)
-            found = [choice for choice, word in words if choice in among and plain(word).startswith(typed)]
-            if found:
-                return found[0] if len(found) == 1 else None
-    return None
 
 
 # ---------------------------------------------------------------- dates and names
@@ -238,8 +293,8 @@ def _take_date(column: Column, value: object, unit: str) -> tuple[object, Remark
     if not isinstance(value, str):
         return value, None
     text = straighten(value[:LONGEST])
-    date = read_date(column.label, text, shorten(value))
-    if date is None and not is_month(text):
+    date, month = _read_date(column.label, text, shorten(value)), _MONTH.fullmatch(text)
+    if date is None and (month is None or (month[1] and not _find_month(month[1]))):
         message = fill(
             "{label} is {text}, which is not read as a date; it is shown as typed.",
             label=_name_column(column), text=shorten(value),
@@ -255,11 +310,9 @@ def _take_name(column: Column, value: object, unit: str) -> tuple[object, Remark
     if not isinstance(value, str):
         return value, None
     name = " ".join(value.split())
-    return (
-        (value, None)
-        if name == value
-        else (name, note("spaces", _name_column(column), shorten(value), shorten(name), name))
-    )
+    if name == value:
+        return value, None
+    return name, note("spaces", _name_column(column), shorten(value), shorten(name), name)
 
 
 _Taker = Callable[[Column, object, str], tuple[object, Remark | None]]
@@ -286,10 +339,11 @@ _SHORT_YEAR = re.compile(r"\d{1,2} ?([-/.]) ?\d{1,2} ?\1 ?\d{2}", re.ASCII)
 _DAY_FIRST = re.compile(r"(\d{1,2})(?:st|nd|rd|th|[.º°])?[ -]*([^\W\d_]{3,12})[., -]*(\d{4})", re.ASCII)
 _MONTH_FIRST = re.compile(r"([^\W\d_]{3,12})[. -]*(\d{1,2})(?:st|nd|rd|th)?[, -]+(\d{4})", re.ASCII)
 _MONTH = re.compile(r"(?:([^\W\d_]{3,12})\.?,? |\d{1,2}/|)\d{4}|\d{4}-\d{1,2}", re.ASCII)
+"""A month and its year, such as March 2026, or a year: a date without its day."""
 AS_ISO = fill("Write it as year-month-day: 2026-12-31.")
 
 
-def read_date(label: str, text: str, shown: str) -> str | None:
+def _read_date(label: str, text: str, shown: str) -> str | None:
     """Return a date as an ISO date, None for a text that is not written as one.
 
     Understood are 2026-12-31, 31/12/2026, 12.31.2026, 31 Dec 2026, December 31, 2026 and 31 dicembre 2026.
@@ -301,8 +355,17 @@ def read_date(label: str, text: str, shown: str) -> str | None:
     if _SHORT_YEAR.fullmatch(text):
         message = fill("{label} is {text}: the year has two digits.", label=label, text=shown)
         raise CellError(message, AS_ISO)
-    found = list(dict.fromkeys(_list_readings(text)))
-    if not found:
+    found: list[tuple[int, int, int]] = []
+    if match := _ISO.fullmatch(text):
+        found = [(int(match[1]), int(match[3]), int(match[4]))]
+    elif match := _NUMBERS.fullmatch(text):
+        first, second, year = int(match[1]), int(match[3]), int(match[4])
+        found = [(year, second, first)] + ([(year, first, second)] if first != second else [])
+    elif (match := _DAY_FIRST.fullmatch(text)) and (month := _find_month(match[2])):
+        found = [(int(match[3]), month, int(match[1]))]
+    elif (match := _MONTH_FIRST.fullmatch(text)) and (month := _find_month(match[1])):
+        found = [(int(match[3]), month, int(match[2]))]
+    else:
         return None
     days = [day for reading in found if isinstance(day := _build(*reading), datetime.date)]
     if not days:
@@ -318,24 +381,6 @@ def read_date(label: str, text: str, shown: str) -> str | None:
         )  # fmt: skip
         raise CellError(message, fill("Write {one} or {other}.", one=one, other=other))
     return days[0].isoformat()
-
-
-def is_month(text: str) -> bool:
-    """Tell whether a text is a month and its year, such as March 2026, or a year: a date without its day."""
-    match = _MONTH.fullmatch(text)
-    return match is not None and (not match[1] or bool(_find_month(match[1])))
-
-
-def _list_readings(text: str) -> Iterator[tuple[int, int, int]]:
-    if match := _ISO.fullmatch(text):
-        yield int(match[1]), int(match[3]), int(match[4])
-    elif match := _NUMBERS.fullmatch(text):
-        first, second, year = int(match[1]), int(match[3]), int(match[4])
-        yield from ((year, second, first), (year, first, second))
-    elif (match := _DAY_FIRST.fullmatch(text)) and (month := _find_month(match[2])):
-        yield int(match[3]), month, int(match[1])
-    elif (match := _MONTH_FIRST.fullmatch(text)) and (month := _find_month(match[1])):
-        yield int(match[3]), month, int(match[2])
 
 
 def _find_month(word: str) -> int:

@@ -16,9 +16,8 @@ from assess.workbook.habits import SHOWN, CellError, Remark, clean, shorten
 from assess.workbook.names import find_choice, find_near, plain, say_choices
 from assess.workbook.open import UNSAVED
 from assess.workbook.outlines import OutlineError, parse_outline
-from assess.workbook.ranges import find_slip, is_unusual, is_within, span
 from assess.workbook.schema import YES, Column
-from assess.workbook.typed import is_free, understand
+from assess.workbook.typed import find_slip, is_free, is_unusual, is_within, span, understand
 
 CellReader = Callable[[object], tuple[object, tuple[Remark, ...]]]
 """Returns a cell's value in SI, and what is remarkable about it; raises CellError."""
@@ -67,7 +66,7 @@ def cell_reader(column: Column, unit: str) -> CellReader:
 
 
 def _read_cell(column: Column, unit: str, value: object) -> tuple[object, tuple[Remark, ...]]:
-    meant, remark = value, None
+    meant, remarks = value, list[Remark]()
     if not (type(value) is float or type(value) is int):
         if is_blank(value):
             return None, ()
@@ -80,27 +79,23 @@ def _read_cell(column: Column, unit: str, value: object) -> tuple[object, tuple[
             )
         if not is_free(column):
             meant, remark = understand(column, value, unit)
-    found, more = READERS[column.kind](column, meant, unit), _remark_on(column, value, meant, unit)
-    return found, () if remark is more is None else tuple(one for one in (remark, more) if one)
-
-
-def _remark_on(column: Column, typed: object, value: object, unit: str) -> Remark | None:
-    if column.kind == "number" and isinstance(value, int | float) and is_unusual(column, float(value), unit):
+            remarks += [remark] if remark else []
+    found = READERS[column.kind](column, meant, unit)
+    if column.kind == "number" and isinstance(meant, int | float) and is_unusual(column, float(meant), unit):
         usual = span(column.usual_low, column.usual_high, column, unit)
         message = fill(
             "{column} is {number:g} {unit}, usual is {usual}.",
-            column=fill(column.label), number=value, unit=unit, usual=usual,
+            column=fill(column.label), number=meant, unit=unit, usual=usual,
         )  # fmt: skip
-        return Remark(message, fill("Check the number and the unit."))
-    removed = clean(typed)[1] if isinstance(typed, str) and column.kind in ("text", "file", "records") else 0
-    if not removed:
-        return None
-    message = nfill(
-        "{n} control or direction character in {column} was taken out.",
-        "{n:,} control or direction characters in {column} were taken out.",
-        removed, column=fill(column.label),
-    )  # fmt: skip
-    return Remark(message)
+        remarks.append(Remark(message, fill("Check the number and the unit.")))
+    elif isinstance(value, str) and column.kind in ("text", "file", "records") and (removed := clean(value)[1]):
+        message = nfill(
+            "{n} control or direction character in {column} was taken out.",
+            "{n:,} control or direction characters in {column} were taken out.",
+            removed, column=fill(column.label),
+        )  # fmt: skip
+        remarks.append(Remark(message))
+    return found, tuple(remarks)
 
 
 def _read_plain(column: Column, value: object, unit: str) -> str | None:
