@@ -99,6 +99,12 @@ def worse_axis(x: str, y: str) -> str:
 
 # ---------------------------------------------------------------- names and choices in cells
 
+
+def quote(text: str) -> str:
+    """Return a text in the language in use as formulas write it."""
+    return f'"{gettext(text)}"'
+
+
 _SPACE = "\u00a0"
 """The space that breaks no line, which texts from documents and pages hold; TRIM leaves it."""
 

@@ -2,8 +2,7 @@
 
 from collections.abc import Mapping
 
-from assess.i18n import gettext
-from assess.methods import Method, adopted_formula, paper_formula
+from assess.methods import adopted_formula, paper_formula
 from assess.model import NEAR_AXIS
 from assess.risk import RiskClass
 from assess.rocking.block import MIDDLE
@@ -11,9 +10,9 @@ from assess.rocking.draws import BASE, CENTRE, CUT, HEIGHT, MARGIN, SCANNED_BASE
 from assess.settings import Settings
 from assess.units import ROUNDING
 from assess.workbook import formulas as live
-from assess.workbook.formulas import find_row, is_among, trim
-from assess.workbook.lists import LETTERS, NO_SHAKING, NO_UNIT, ROW, RUN_ASSESS, WRONG
-from assess.workbook.schema import CLASS_OR, ITEMS, LIVE, NO, WORKINGS, YES
+from assess.workbook.formulas import find_row, is_among, quote, trim
+from assess.workbook.lists import EMPTY, LETTERS, NO_SHAKING, NO_UNIT, ROW, RUN_ASSESS, WRONG
+from assess.workbook.schema import CLASS, CLASS_OR, ITEMS, LIVE, NO, WORKINGS, YES
 
 NO_FLOOR, NO_AXIS, NO_TYPE = "floor?", "axis?", "type?"
 """What the live columns show without a known floor, with an unknown axis, and where no known type gives the sizes."""
@@ -25,142 +24,95 @@ IS_ANCHORED = "anchored"
 def list_live() -> dict[str, str]:
     """Return a formula for each of `schema.LIVE` and `schema.WORKINGS`, with `ROW` for the number of the row."""
     cells = {label: f"${LETTERS[ITEMS.name, label]}{ROW}" for label in (*LIVE, *WORKINGS)}
+    own = {column.name: f"${LETTERS[ITEMS.name, column.name]}{ROW}" for column in ITEMS.columns}
     ratio, pfa, *_ = (cells[label] for label in LIVE)
     floor, kind, axis, pfv, breadth, height = (cells[label] for label in WORKINGS)
+    wrong, settings = quote(WRONG), Settings()
+
+    row_of_type = f"IFERROR({find_row(trim(own['type']), 'type_key')},{quote(NO_TYPE)})"
+    angle, near, worse = own["angle_deg"], f"<={NEAR_AXIS:g}", f"INDEX(floor_best,{floor})"
+    turned = f'IF(ABS(MOD({angle}+90,180)-90){near},"X",IF(ABS(MOD({angle},180)-90){near},"Y",{worse}))'
+    by_angle = f'IF(TRIM({angle})="",{worse},IF(ISNUMBER({angle}),{turned},{wrong}))'
+    used = f'IF(TRIM({own["axis"]})="",{by_angle},{trim(own["axis"])})'
+    inputs = {
+        "Row in Floors": f"IFERROR({find_row(trim(own['floor']), 'floor_key')},{quote(NO_FLOOR)})",
+        "Row in Catalogue": f'IF(TRIM({own["type"]})="","",{row_of_type})',
+        "Axis used": f"IF(ISNUMBER({floor}),{used},{floor})",
+    }
+    for label, what, otherwise in (
+        ("PFA used [g]", "pfa", f"IF({axis}={wrong},{axis},{quote(NO_AXIS)})"), ("PFV used [cm/s]", "pfv", EMPTY),
+    ):  # fmt: skip
+        x, y = (f"INDEX(floor_{what}_{letter},{floor})" for letter in "xy")
+        served = f'IF({axis}="X",{x},IF({axis}="Y",{y},{otherwise}))'
+        inputs[label] = f"IF(ISNUMBER({floor}),IFERROR({served},{wrong}),{floor})"
+    for label, name in (("Breadth used [cm]", "breadth"), ("Height used [cm]", "height")):
+        listed = f"IF(ISNUMBER({kind}),INDEX(type_{name},{kind}),{kind})"
+        number = f"IF(ISNUMBER({own[name]}),{own[name]}*unit_items_{name}*100,{wrong})"
+        inputs[label] = f'IF(sizes_unit<>"",sizes_unit,IF(TRIM({own[name]})="",{listed},{number}))'
+
+    # B/H; where one of them is no size what is shown in its place, a wrong one first. Breadth is the shorter plan side:
+    # the program refuses one above the width. No number is above a text.
+    width = f'IFERROR(IF(TRIM({own["width"]})="",INDEX(type_width,{kind}),{own["width"]}*unit_items_width*100),"")'
+    in_range = (live.between(size, ITEMS.column("breadth"), 100) for size in (breadth, height))
+    inside = f"AND({','.join(in_range)},{breadth}*{1 - ROUNDING!r}<={width})"
+    other = f"IF({height}={wrong},{height},IF(ISNUMBER({breadth}),{height},{breadth}))"
+    share = f"IF({inside},{breadth}/{height},{wrong})"
+
     references = {"breadth_to_height": ratio, "height_cm": height, "pfa_g": pfa, "pfv_cm_s": pfv}
-    return dict(zip((*LIVE, *WORKINGS), (
-        _divide(breadth, height, _width(kind)),
-        _unless_blank(_served(floor, axis, "pfa", f'IF({axis}={_say(WRONG)},{axis},{_say(NO_AXIS)})')),
-        *(_ready(ratio, pfa, _write(method, references)) for method in live.LIVE_METHODS),
-        _chosen_class(cells),
-        _paper_class(cells),
-        _ready(ratio, pfa, _can_rock(ratio, pfa, kind, floor)),
-        _unless_blank(f"IFERROR({find_row(trim(_own('floor')), 'floor_key')},{_say(NO_FLOOR)})"),
-        _unless_blank(_kind()),
-        _unless_blank(f"IF(ISNUMBER({floor}),{_axis(floor)},{floor})"),
-        _unless_blank(_served(floor, axis, "pfv", '""')),
-        *(_unless_blank(_size(name, kind)) for name in ("breadth", "height")),
-    ), strict=True))  # fmt: skip
+    results = {"Can rock": _can_rock(cells, own)}
+    for method in live.LIVE_METHODS:
+        parameters = {one.setting: f"{getattr(settings, one.setting):.12g}" for one in method.parameters}
+        results[method.short_title] = live.write_live(method, references, parameters)["value"]
+    ready = {name: f"=IF(ISNUMBER({ratio}),IF(ISNUMBER({pfa}),{one},{pfa}),{ratio})" for name, one in results.items()}
+    filled = {name: f'=IF({own["item"]}="","",{one})' for name, one in inputs.items()}
+    by_class = _write_classes(cells, own)
+    formulas = ready | filled | by_class | {LIVE[0]: f"=IF(COUNT({breadth},{height})=2,{share},{other})"}
+    return {label: formulas[label] for label in (*LIVE, *WORKINGS)}
 
 
-def _own(name: str) -> str:
-    return f"${LETTERS['Items', name]}{ROW}"
-
-
-def _unless_blank(formula: str) -> str:
-    return f'=IF({_own("item")}="","",{formula})'
-
-
-def _chosen_class(cells: Mapping[str, str]) -> str:
-    by_paper, risk = cells[CLASS_OR], cells[adopted_formula().short_title]
-    is_held = ",".join(f"{by_paper}={_say(word)}" for word in (IS_ANCHORED, RUN_ASSESS))
-    is_none = f'AND(ISNUMBER({cells[LIVE[0]]}),{live.is_stocky(cells[LIVE[0]])},{risk}="")'
-    is_known = f"OR(ISNUMBER({risk}),{is_none})"
-    found = f"IF(OR({is_held},NOT({is_known})),{by_paper},{_find_class(adopted_formula(), cells)})"
-    return f"=IF(class_by=2,{by_paper},{found})"
-
-
-def _paper_class(cells: Mapping[str, str]) -> str:
-    risk = cells[paper_formula().short_title]
-    is_anchored, is_known = is_among(_own("anchored"), "anchored_words"), _own("bracket_capacity")
+def _write_classes(cells: Mapping[str, str], own: Mapping[str, str]) -> dict[str, str]:
+    """Return the formulas of the classes: by the paper, and by the formula that the sheet Building chooses."""
+    adopted, paper, (ratio, pfa, *_, rocks) = adopted_formula(), paper_formula(), (cells[label] for label in LIVE)
+    words = {}
+    for method in (adopted, paper):
+        found = live.risk_class(method, f"SUM({cells[method.short_title]})", ratio, pfa)  # of a text: 0
+        words[method.key] = f'IF({rocks}={quote(NO)},"{live.say_class(RiskClass.LOW)}",{found})'
+    risk = cells[paper.short_title]
     # whether a bracket of known capacity holds is for the program to say
-    held = f'IF(TRIM({is_known})="",{_say(IS_ANCHORED)},{_say(RUN_ASSESS)})'
-    either = f"IF({is_anchored},{held},IF(ISNUMBER({risk}),{_find_class(paper_formula(), cells)},{risk}))"
-    is_ready = f"OR(ISNUMBER({risk}),{risk}={_say(RUN_ASSESS)},{risk}={_say(NO_SHAKING)})"
-    return f"=IF({is_ready},{either},{risk})"
+    held = f'IF(TRIM({own["bracket_capacity"]})="",{quote(IS_ANCHORED)},{quote(RUN_ASSESS)})'
+    is_anchored = is_among(own["anchored"], "anchored_words")
+    either = f"IF({is_anchored},{held},IF(ISNUMBER({risk}),{words[paper.key]},{risk}))"
+    is_ready = f"OR(ISNUMBER({risk}),{risk}={quote(RUN_ASSESS)},{risk}={quote(NO_SHAKING)})"
+    by_paper, chosen = cells[CLASS_OR], cells[adopted.short_title]
+    is_held = ",".join(f"{by_paper}={quote(word)}" for word in (IS_ANCHORED, RUN_ASSESS))
+    is_none = f'AND(ISNUMBER({ratio}),{live.is_stocky(ratio)},{chosen}="")'
+    is_known = f"OR(ISNUMBER({chosen}),{is_none})"
+    found = f"IF(OR({is_held},NOT({is_known})),{by_paper},{words[adopted.key]})"
+    return {CLASS: f"=IF(class_by=2,{by_paper},{found})", CLASS_OR: f"=IF({is_ready},{either},{risk})"}
 
 
-def _kind() -> str:
-    own = _own("type")
-    return f'IF(TRIM({own})="","",IFERROR({find_row(trim(own), "type_key")},{_say(NO_TYPE)}))'
-
-
-def _size(name: str, kind: str) -> str:
-    own, listed = _own(name), f"IF(ISNUMBER({kind}),INDEX(type_{name},{kind}),{kind})"
-    number = f"IF(ISNUMBER({own}),{own}*unit_items_{name}*100,{_say(WRONG)})"
-    return f'IF(sizes_unit<>"",sizes_unit,IF(TRIM({own})="",{listed},{number}))'
-
-
-def _width(kind: str) -> str:
-    own = _own("width")
-    return f'IFERROR(IF(TRIM({own})="",INDEX(type_width,{kind}),{own}*unit_items_width*100),"")'
-
-
-def _can_rock(ratio: str, pfa: str, kind: str, floor: str) -> str:
+def _can_rock(cells: Mapping[str, str], own: Mapping[str, str]) -> str:
     """Expression for whether the strongest motion that may be drawn can start it: PFA e^(3 s) >= 0.65 g b/z.
 
     s is as in `assess.pipeline.adopt.find_can_rock`. One that is too stocky never rocks. Where either axis serves
     the larger PFA counts, though the motion of the larger PFV governs: a row is then never lower than in a run.
     """
+    ratio, pfa, *_ = (cells[label] for label in LIVE)
+    floor, kind, *_ = (cells[label] for label in WORKINGS)
+    typed, angle, wrong = own["centre_of_gravity"], own["angle_deg"], quote(WRONG)
+    units = [f"unit_{sheet}_centre_of_gravity" for sheet in ("items", "catalogue")]
+    inside = live.between(f"{typed}*{units[0]}", ITEMS.column("centre_of_gravity"))
+    number = f"IF(ISNUMBER({typed}),IF({inside},{typed}*{units[0]},{wrong}),{wrong})"
+    of_type = f"IF(ISNUMBER({kind}),INDEX(type_centre_of_gravity,{kind}),{MIDDLE!r})"
+    centre = f'IF(TRIM({typed})="",{of_type},{number})'
     sizes = (SCANNED_BASE[1], SCANNED_HEIGHT), (BASE[1], HEIGHT)
     by_scan, usual = (f"{base**2 + height**2:.6g}" for base, height in sizes)
-    fixed = f"IF({is_among(_own('sizes_from'), 'scanned_words')},{by_scan},{usual})"
-    units = [f"unit_{sheet}_centre_of_gravity" for sheet in ("items", "catalogue")]
-    centre = _centre(units[0], kind)
+    fixed = f"IF({is_among(own['sizes_from'], 'scanned_words')},{by_scan},{usual})"
     spread = f"SQRT(INDEX(floor_spread,{floor})+{fixed}+({CENTRE!r}/({centre}))^2)"
-    strongest = f"MAX(INDEX(floor_pfa_x,{floor}),INDEX(floor_pfa_y,{floor}))"
-    pfa = f"IF({_is_free()},{strongest},{pfa})"
-    starts = f"AND({pfa}*EXP({CUT:g}*{spread})>={MARGIN / 2!r}*{ratio}/({centre}),{live.is_slender(ratio, centre)})"
-    unread = f"OR({','.join(f'ISTEXT({unit})' for unit in units)})"
-    fault = f"IF({unread},{_say(NO_UNIT)},{_say(WRONG)})"
-    return f"IFERROR(IF({starts},{_say(YES)},{_say(NO)}),{fault})"
-
-
-def _centre(unit: str, kind: str) -> str:
-    own = _own("centre_of_gravity")
-    inside = live.between(f"{own}*{unit}", ITEMS.column("centre_of_gravity"))
-    number = f"IF(ISNUMBER({own}),IF({inside},{own}*{unit},{_say(WRONG)}),{_say(WRONG)})"
-    return f'IF(TRIM({own})="",IF(ISNUMBER({kind}),INDEX(type_centre_of_gravity,{kind}),{MIDDLE!r}),{number})'
-
-
-def _is_free() -> str:
-    angle = _own("angle_deg")
     turned = f"IF(ISNUMBER({angle}),ABS(MOD({angle},90)-45)<{45 - NEAR_AXIS:g},TRUE)"
-    return f'IF(TRIM({_own("axis")})="",{turned},FALSE)'
-
-
-def _axis(floor: str) -> str:
-    axis, angle, near = trim(_own("axis")), _own("angle_deg"), f"<={NEAR_AXIS:g}"
-    worse = f"INDEX(floor_best,{floor})"
-    turned = f'IF(ABS(MOD({angle}+90,180)-90){near},"X",IF(ABS(MOD({angle},180)-90){near},"Y",{worse}))'
-    by_angle = f'IF(TRIM({angle})="",{worse},IF(ISNUMBER({angle}),{turned},{_say(WRONG)}))'
-    return f'IF(TRIM({_own("axis")})="",{by_angle},{axis})'
-
-
-def _find_class(method: Method, cells: Mapping[str, str]) -> str:
-    ratio, pfa, *_, rocks = (cells[label] for label in LIVE)
-    found = live.risk_class(method, f"SUM({cells[method.short_title]})", ratio, pfa)  # of a text: 0
-    return f'IF({rocks}={_say(NO)},"{live.say_class(RiskClass.LOW)}",{found})'
-
-
-def _say(hint: str) -> str:
-    return f'"{gettext(hint)}"'
-
-
-def _divide(breadth: str, height: str, width: str) -> str:
-    """Return the formula for B/H; where one of them is no size what is shown in its place, a wrong one first.
-
-    Breadth is the shorter side of the plan: the program refuses one above the width. No number is above a text.
-    """
-    size = ITEMS.column("breadth")
-    is_shorter = f"{breadth}*{1 - ROUNDING!r}<={width}"
-    inside = f"AND({live.between(breadth, size, 100)},{live.between(height, size, 100)},{is_shorter})"
-    ratio = f"IF({inside},{breadth}/{height},{_say(WRONG)})"
-    other = f"IF({height}={_say(WRONG)},{height},IF(ISNUMBER({breadth}),{height},{breadth}))"
-    return f"=IF(COUNT({breadth},{height})=2,{ratio},{other})"
-
-
-def _served(floor: str, axis: str, what: str, otherwise: str) -> str:
-    x, y = (f"INDEX(floor_{what}_{letter},{floor})" for letter in "xy")
-    served = f'IF({axis}="X",{x},IF({axis}="Y",{y},{otherwise}))'
-    return f"IF(ISNUMBER({floor}),IFERROR({served},{_say(WRONG)}),{floor})"
-
-
-def _write(method: Method, references: Mapping[str, str]) -> str:
-    settings = Settings()
-    parameters = {one.setting: f"{getattr(settings, one.setting):.12g}" for one in method.parameters}
-    return live.write_live(method, references, parameters)["value"]
-
-
-def _ready(ratio: str, pfa: str, formula: str) -> str:
-    return f"=IF(ISNUMBER({ratio}),IF(ISNUMBER({pfa}),{formula},{pfa}),{ratio})"
+    is_free = f'IF(TRIM({own["axis"]})="",{turned},FALSE)'
+    strongest = f"IF({is_free},MAX(INDEX(floor_pfa_x,{floor}),INDEX(floor_pfa_y,{floor})),{pfa})"
+    starts = f"{strongest}*EXP({CUT:g}*{spread})>={MARGIN / 2!r}*{ratio}/({centre})"
+    rocks = f"AND({starts},{live.is_slender(ratio, centre)})"
+    unread = f"OR({','.join(f'ISTEXT({unit})' for unit in units)})"
+    return f"IFERROR(IF({rocks},{quote(YES)},{quote(NO)}),IF({unread},{quote(NO_UNIT)},{wrong}))"

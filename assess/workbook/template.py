@@ -12,7 +12,6 @@ header, so that a header edited by another program, as when a unit is changed, m
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -82,7 +81,7 @@ COPY_NOTE = (
     "Copy the cell above down to here, and the grey columns at the right with it. The program reads the row all the "
     "same."
 )
-"""What a cell of the class says below the last row that has formulas."""
+"""Input message of the class below the last row that has formulas."""
 
 CHECKED = {ITEMS.name: 2000}
 """Rows that have drop-downs and colours, where these are more than `ROWS`."""
@@ -157,10 +156,10 @@ class _Writer:
         self.help = book.add_format({"text_wrap": True, "valign": "top", "align": "left", "indent": 1})
         self.bold = book.add_format({"bold": True, "valign": "top"})
         self.head_lines: dict[str, int] = {}
-        self.last = {
-            name: 1 + max(rows if spare is None else len(self._rows(name)) + spare, len(self._rows(name)))
-            for name, rows in ROWS.items()
-        }
+        self.rows = {sheet.name: content.rows.get(sheet.name, ()) for sheet in SHEETS}
+        self.rows[CATALOGUE.name] = self.rows[CATALOGUE.name] or read_catalogue(units)
+        filled = {name: len(self.rows[name]) for name in ROWS}
+        self.last = {name: 1 + max(ROWS[name] if spare is None else n + spare, n) for name, n in filled.items()}
 
     def write(self) -> None:
         help_sheet = self.book.add_worksheet(gettext(HELP))
@@ -179,7 +178,7 @@ class _Writer:
     # ------------------------------------------------------------ sheets to fill
 
     def _write_form(self, page: Any, sheet: Sheet) -> None:
-        values = (self._rows(sheet.name) or [{}])[0]
+        values = (self.rows[sheet.name] or [{}])[0]
         page.set_column(0, 0, max(fit_width(self._header(column).replace(" ", "_"), 22) for column in sheet.columns))
         page.set_column(1, 1, 44, self.line)
         page.set_column(2, 2, _HELP_WIDTH, self.help)
@@ -196,7 +195,7 @@ class _Writer:
             at = PLACES[sheet.name, column.name]
             self._write_head(page, at, self._header(column), column.width, self.text if column.kind == "text" else None)
             self._validate(page, column, 1, at, last)
-        for number, row in enumerate(self._rows(sheet.name), 1):
+        for number, row in enumerate(self.rows[sheet.name], 1):
             for column in sheet.columns:
                 self._write_cell(page, number, PLACES[sheet.name, column.name], column, row.get(column.name))
         page.freeze_panes(1, FROZEN.get(sheet.name, 1))
@@ -213,16 +212,11 @@ class _Writer:
         width = fit_width(heading, width)
         page.set_column(at, at, width + bool(style), style)
         page.write_string(0, at, heading, self.live_head if is_live else self.head)
-        self.head_lines[page.name] = max(self.head_lines.get(page.name, 1), count_heading_lines(heading, width))
+        room = (width - _EDGE) / _BOLD
+        lines, used = _wrap(heading, room)
+        lines += used > room - _BUTTON / _BOLD  # one for the button of the filter
+        self.head_lines[page.name] = max(self.head_lines.get(page.name, 1), lines)
         page.set_row(0, LINE * self.head_lines[page.name])
-
-    def _rows(self, sheet: str) -> Rows:
-        rows = self.content.rows.get(sheet, ())
-        return self._types if sheet == CATALOGUE.name and not rows else rows
-
-    @cached_property
-    def _types(self) -> Rows:
-        return read_catalogue(self.units)
 
     def _header(self, column: Column) -> str:
         return replace(column, label=gettext(column.label)).header(self.units)
@@ -277,9 +271,8 @@ class _Writer:
             for label, formula in formulas.items():
                 at, value = PLACES[ITEMS.name, label], values.get(label, "")
                 page.write_formula(row - 1, at, formula.replace(ROW, str(row)), self.live_formats[label], value)
-        self._colour(page, max(self.last[ITEMS.name], CHECKED[ITEMS.name] + 1))
-
-    def _colour(self, page: Any, last: int) -> None:
+        first = self.last[ITEMS.name] + 1
+        last = max(first - 1, CHECKED[ITEMS.name] + 1)
         item, column, by_paper, floor = (LETTERS[ITEMS.name, name] for name in ("item", CLASS, CLASS_OR, "floor"))
         for risk in reversed(RiskClass):
             form = self.book.add_format({"bg_color": risk.fill, "font_color": risk.ink, "bold": risk >= RiskClass.HIGH})
@@ -290,7 +283,6 @@ class _Writer:
         page.conditional_format(f"{item}2:{item}{last}", {"type": "duplicate", "format": wrong})
         blank = {"type": "formula", "criteria": f'=AND(${item}2<>"",${floor}2="")', "format": wrong}
         page.conditional_format(f"{floor}2:{floor}{last}", blank)
-        first = self.last[ITEMS.name] + 1
         if first <= last:
             bare = {"type": "formula", "criteria": f'=AND(${item}{first}<>"",${column}{first}="")', "format": wrong}
             page.conditional_format(f"{column}{first}:{column}{last}", bare)
@@ -341,7 +333,7 @@ _BOLD = 1.15
 """Width of a bold letter, of the wider fonts that stand in where the workbook's is missing."""
 
 _REGULAR = 0.95
-"""Likewise of a letter that is not bold."""
+"""Width of a letter that is not bold."""
 
 _EDGE, _BUTTON = 1, 3
 """Left free at the edges, and for the button of a filter, which covers the end of the last line."""
@@ -353,19 +345,13 @@ def fit_width(heading: str, width: float) -> float:
     return max(width, *(_BOLD * len(word) + _EDGE for word in words), _BOLD * len(words[-1]) + _EDGE + _BUTTON)
 
 
-def count_heading_lines(heading: str, width: float) -> int:
-    """Return the lines that a bold heading takes in a column of a filter, one for its button where that needs it."""
-    room = (width - _EDGE) / _BOLD
-    lines, used = _wrap(heading, room)
-    return lines + (used > room - _BUTTON / _BOLD)
-
-
 def count_text_lines(text: str, width: float) -> int:
     """Return the lines that a text which is not bold takes in a column."""
     return _wrap(text, (width - _EDGE) / _REGULAR)[0]
 
 
 def _wrap(text: str, room: float) -> tuple[int, int]:
+    """Return the lines that a text takes, and the characters of the last one."""
     lines, used = 1, 0
     for word in text.split():
         needed = used + bool(used) + len(word)
