@@ -11,7 +11,7 @@ from assess.workbook.check import check_references, check_unique, duplicates
 from assess.workbook.habits import shorten
 from assess.workbook.names import find_near_name, key
 from assess.workbook.parse import Row, Table, Tables
-from assess.workbook.resolve import defined, defined_by, list_segments, places_by_name
+from assess.workbook.resolve import defined, list_segments, places_by_name
 from assess.workbook.schema import DEFAULT_WIDTH
 
 SAME_POINT, SAME_WIDTH = 0.01, 1e-6
@@ -269,7 +269,7 @@ def _count_pieces(rows: Iterable[Row]) -> int:
 def check_segment_rooms(tables: Tables) -> Iterator[Problem]:
     """Warn of a room that neither a piece nor a place has: a slip there would leave out the pieces of the right one."""
     table = tables["Routes"]
-    known = defined(tables["Places"]) | defined_by(tables["Items"], "room")
+    known = defined(tables["Places"]) | defined(tables["Items"], "room")
     for row in table.rows:
         for room in split_names(row.get("room")):
             near = None if key(room) in known else find_near_name(key(room), known)
@@ -288,7 +288,7 @@ def check_item_rooms(tables: Tables) -> Iterator[Problem]:
     """
     items, routes = tables["Items"], tables["Routes"]
     known = defined(tables["Places"])
-    stood_in = known.keys() | defined_by(items, "room").keys()
+    stood_in = known.keys() | defined(items, "room").keys()
     every: dict[str, dict[str, str]] = {}
     for row in routes.rows:
         for name in split_names(row.get("room")):

@@ -4,6 +4,7 @@ Only files inside one folder are touched, by the rules of `assess.workbook.recor
 """
 
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import TypeVar
 
@@ -28,7 +29,7 @@ LEAST_SPREAD = 2.0
 MOST_NAMED = 3
 """Pieces that a warning names."""
 
-Taken = TypeVar("Taken")
+Made = TypeVar("Made")
 
 
 class PictureReader:
@@ -49,73 +50,80 @@ class PictureReader:
 
     def check_logo(self, tables: Tables) -> Iterator[Problem]:
         """Find the logo, or report what is wrong with it."""
+
+        def prepare(data: bytes) -> None:
+            self._allowance.take(pixels=count_pixels(data))
+            check_picture(data)
+
         table = tables["Building"]
         for row in table.with_all("logo"):
             try:
-                self.logo, _data = self._read(row.get("logo"), self._take_logo, "logo")
+                self.logo, _data = self._read(row.get("logo"), prepare, "logo")
             except CellError as error:
                 yield table.problem("logo", row, _left_out(error.message), error.fix, "warning")
 
-    def _take_logo(self, data: bytes) -> None:
-        self._allowance.take(pixels=count_pixels(data))
-        check_picture(data)
-
     def check_photos(self, tables: Tables) -> Iterator[Problem]:
         """Read the photos of the pieces, or report what is wrong with them."""
+
+        def prepare(data: bytes) -> bytes:
+            self._allowance.take(photos=1)
+            photo = prepare_photo(data)
+            self._allowance.take(photo_bytes=len(photo))
+            return photo
+
         table = tables["Items"]
         for row in table.with_all("photo"):
             text = row.get("photo")
             if text not in self.photos and text not in self._useless:
                 self.progress.check()
                 try:
-                    _path, self.photos[text] = self._read(text, self._take_photo, "photo")
+                    _path, self.photos[text] = self._read(text, prepare, "photo")
                 except CellError as error:
                     self._useless[text] = error
             if useless := self._useless.get(text):
                 yield table.habit("photo", row, _left_out(useless.message), useless.fix, "warning")
-
-    def _take_photo(self, data: bytes) -> bytes:
-        self._allowance.take(photos=1)
-        photo = prepare_photo(data)
-        self._allowance.take(photo_bytes=len(photo))
-        return photo
 
     def check_plans(self, tables: Tables) -> Iterator[Problem]:
         """Read the plans of the floors, or report what is wrong with them, their numbers or where they lie."""
         table = tables["Floors"]
         for row in table.with_all("floor"):
             if table.lacks(row, "plan"):
-                given = [name for name in (*PLACED, "plan_turn") if row.get(name) is not None]
+                given = next((name for name in (*PLACED, "plan_turn") if row.get(name) is not None), None)
                 if given:
-                    message = fill(
-                        "{label} is filled in without {other}.", label=table.label(given[0]), other=table.label("plan")
-                    )
-                    yield table.problem(
-                        given[0], row, message, fill("Name the file of the plan, or clear it."), "warning"
-                    )
-            elif row.get("plan") is not None:
-                yield from self._check_plan(table, row, tables)
-
-    def _check_plan(self, table: Table, row: Row, tables: Tables) -> Iterator[Problem]:
-        self.progress.check()
-        found = self._draw(row.get("plan"), row.get("plan_width"))
-        if isinstance(found, CellError):
-            yield table.problem("plan", row, found.message, found.fix)
-            return
-        path, drawing = found
-        if drawing.left_out:
-            message = fill(
-                "of the plan the lines alone are drawn; left out: {what}.", what=join(", ", drawing.left_out)
-            )
-            yield table.problem("plan", row, message, severity="note")
-        if any(table.spoilt(name, row) for name in (*PLACED, "plan_turn")):
-            return
-        plan = _place_plan(row, path, drawing)
-        if plan is None:
-            yield _describe_unplaced(table, row, drawing)
-        else:
-            self.plans[row.number] = plan
-            yield from _check_place(table, row, plan, tables["Items"], tables["Places"])
+                    values = {"label": table.label(given), "other": table.label("plan")}
+                    message = fill("{label} is filled in without {other}.", **values)
+                    yield table.problem(given, row, message, fill("Name the file of the plan, or clear it."), "warning")
+                continue
+            if row.get("plan") is None:
+                continue
+            self.progress.check()
+            found = self._draw(row.get("plan"), row.get("plan_width"))
+            if isinstance(found, CellError):
+                yield table.problem("plan", row, found.message, found.fix)
+                continue
+            path, drawing = found
+            if drawing.left_out:
+                what = join(", ", drawing.left_out)
+                message = fill("of the plan the lines alone are drawn; left out: {what}.", what=what)
+                yield table.problem("plan", row, message, severity="note")
+            if any(table.spoilt(name, row) for name in (*PLACED, "plan_turn")):
+                continue
+            left, bottom, width = row.get("plan_left"), row.get("plan_bottom"), row.get("plan_width") or drawing.width
+            if left is not None and bottom is not None and width is not None:
+                plan = self.plans[row.number] = FloorPlan(
+                    path=path, content=drawing.content, is_lines=drawing.is_lines, left=left, bottom=bottom,
+                    width=width, height=width * drawing.aspect, turn_deg=row.get("plan_turn") or 0.0,
+                )  # fmt: skip
+                yield from _check_place(table, row, plan, tables["Items"], tables["Places"])
+                continue
+            needed = PLACED if drawing.width is None else PLACED[:-1]
+            blank = [fill(table.label(name)) for name in needed if row.get(name) is None]
+            message = nfill(
+                "the plan is not drawn: {labels} is blank.", "the plan is not drawn: {labels} are blank.",
+                len(blank), labels=join(", ", blank),
+            )  # fmt: skip
+            fix = fill("Fill in X and Y of its lower left corner, and its width in the building.")
+            yield table.problem("plan", row, message, fix, "warning")
 
     def find_drawing(self, text: str, width: float | None) -> Drawing | None:
         """Return what is drawn of a plan, wherever it lies; None where its file cannot be used."""
@@ -125,30 +133,45 @@ class PictureReader:
     def _draw(self, text: str, width: float | None) -> tuple[Path, Drawing] | CellError:
         found = self._plans.get(text) or self._plans.get((text, width))
         if found is None:
+
+            def prepare(data: bytes) -> Drawing:
+                if is_picture(data):
+                    self._allowance.take(pixels=count_pixels(data))
+                else:
+                    self._allowance.take(drawings=1, drawing_bytes=len(data))
+                return read_plan(data, width)
+
             try:
-                found = self._read(text, lambda data: self._take_plan(data, width), "plan", count_side(width))
+                found = self._read(text, prepare, "plan", count_side(width))
             except CellError as error:
                 found = error
             is_scaled = not isinstance(found, CellError) and not found[1].is_lines
             self._plans[(text, width) if is_scaled else text] = found
         return found
 
-    def _take_plan(self, data: bytes, width: float | None) -> Drawing:
-        if is_picture(data):
-            self._allowance.take(pixels=count_pixels(data))
-        else:
-            self._allowance.take(drawings=1, drawing_bytes=len(data))
-        return read_plan(data, width)
-
-    def _read(self, text: str, take: Callable[[bytes], Taken], purpose: str, side: int = 0) -> tuple[Path, Taken]:
-        """Return where a picture is, and what `take` makes of its bytes (`side`: of pixels only); raises CellError."""
+    def _read(self, text: str, prepare: Callable[[bytes], Made], purpose: str, side: int = 0) -> tuple[Path, Made]:
+        """Return where a picture is, and what `prepare` makes of its bytes (`side`: of pixels only); or CellError."""
         name = shorten(text)
         if self.folder is None:
             message = fill("the picture {name} cannot be used: the workbook was read without a folder.", name=name)
             raise CellError(message, fill("Pass the folder in `records`."))
         path = find_file(text, self.folder)
-        key = find_key(path, purpose, side if side and _is_of_pixels(path) else 0)
-        found: Taken | PictureError = self.kept.take(key, self._allowance, lambda: _make(path, name, take))
+        if side:  # which counts for pictures only
+            with suppress(OSError), open_input(path) as file:
+                side = side if is_picture(file.read(16)) else 0
+
+        def make() -> Made | PictureError:
+            try:
+                data = read_input(path, MOST_FILE)
+            except OSError as error:
+                message = fill("the file {name} cannot be opened: {why}.", name=name, why=error.strerror)
+                raise CellError(message, fill("Check its access rights.")) from None
+            try:
+                return prepare(data)
+            except PictureError as error:
+                return error
+
+        found: Made | PictureError = self.kept.take(find_key(path, purpose, side), self._allowance, make)
         if isinstance(found, PictureError):
             message = fill("the picture {name} cannot be used: {why}.", name=name, why=found.message)
             raise CellError(message)
@@ -158,53 +181,6 @@ class PictureReader:
 def _left_out(message: Text) -> Text:
     """Return a message with what follows: a picture is no reason to do without a report."""
     return fill("{message} It is left out.", message=message)
-
-
-def _is_of_pixels(path: Path) -> bool:
-    try:
-        with open_input(path) as file:
-            return is_picture(file.read(16))
-    except OSError:
-        return False
-
-
-def _make(path: Path, name: str, take: Callable[[bytes], Taken]) -> Taken | PictureError:
-    try:
-        data = read_input(path, MOST_FILE)
-    except OSError as error:
-        message = fill("the file {name} cannot be opened: {why}.", name=name, why=error.strerror)
-        raise CellError(message, fill("Check its access rights.")) from None
-    try:
-        return take(data)
-    except PictureError as error:
-        return error
-
-
-def _place_plan(row: Row, path: Path, drawing: Drawing) -> FloorPlan | None:
-    left, bottom, width = row.get("plan_left"), row.get("plan_bottom"), row.get("plan_width") or drawing.width
-    if left is None or bottom is None or width is None:
-        return None
-    return FloorPlan(
-        path=path,
-        content=drawing.content,
-        is_lines=drawing.is_lines,
-        left=left,
-        bottom=bottom,
-        width=width,
-        height=width * drawing.aspect,
-        turn_deg=row.get("plan_turn") or 0.0,
-    )
-
-
-def _describe_unplaced(table: Table, row: Row, drawing: Drawing) -> Problem:
-    needed = PLACED if drawing.width is None else PLACED[:-1]
-    blank = [fill(table.label(name)) for name in needed if row.get(name) is None]
-    message = nfill(
-        "the plan is not drawn: {labels} is blank.", "the plan is not drawn: {labels} are blank.",
-        len(blank), labels=join(", ", blank),
-    )  # fmt: skip
-    fix = fill("Fill in X and Y of its lower left corner, and its width in the building.")
-    return table.problem("plan", row, message, fix, "warning")
 
 
 def _check_place(table: Table, row: Row, plan: FloorPlan, items: Table, places: Table) -> Iterator[Problem]:

@@ -13,6 +13,8 @@ import unicodedata
 from collections.abc import Callable, Hashable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
+from itertools import product
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Any
 
@@ -63,9 +65,8 @@ def fill_building(
     note = nfill(
         "{labels} is blank in the workbook: the value comes from the index.",
         "{labels} are blank in the workbook: the values come from the index.",
-        len(values),
-        labels=labels,
-    )
+        len(values), labels=labels,
+    )  # fmt: skip
     problems.append(Problem("note", own.sheet.name, "", note))
     base = own if own.rows else replace(new, places={}, rows=(row,))
     filled = replace(base, rows=(replace(row, values={**row.values, **values}),))
@@ -133,26 +134,15 @@ class FileReader:
         for row in table.with_all("hazard"):
             if table.spoilt("latitude", row) or table.spoilt("longitude", row):
                 continue
+            file, place = row.get("hazard"), {name: row.get(name) for name in ("latitude", "longitude")}
             try:
-                self.hazard = self._read_hazard(row.get("hazard"), row.get("latitude"), row.get("longitude"))
+                curve, self.hashes[file] = self._take(file, "hazard", partial(_parse_hazard, **place), *place.values())
             except CellError as error:
                 yield table.problem("hazard", row, error.message, error.fix)
                 continue
-            yield from (
-                table.problem("hazard", row, fill("the hazard curve: {note}.", note=note), severity="warning")
-                for note in self.hazard.remarks
-            )
-
-    def _read_hazard(self, file: str, latitude: float | None, longitude: float | None) -> HazardCurve:
-        curve: HazardCurve
-        curve, self.hashes[file] = self._take(
-            file,
-            "hazard",
-            lambda content, address: _parse_hazard(content, address, latitude, longitude),
-            latitude,
-            longitude,
-        )
-        return curve
+            self.hazard = curve
+            for note in curve.remarks:
+                yield table.problem("hazard", row, fill("the hazard curve: {note}.", note=note), severity="warning")
 
     def _take(self, file: str, purpose: str, parse: Callable[[bytes | Path, str], Any], *more: Hashable) -> Any:
         """Return what `parse` makes of a file and its address; CellError where it cannot be used."""
@@ -172,11 +162,21 @@ class FileReader:
             return
         for row in table.with_all("shakemap"):
             file = row.get("shakemap")
+            uncertainty, uncertainty_name = None, ""
+            for path in list_beside(file):
+                with suppress(CellError):
+                    uncertainty, uncertainty_name = self._find(path)[0], path
+                    break
+            given = None if uncertainty is None else find_key(uncertainty, "shakemap")
+            parse = partial(_parse_shakemap, uncertainty=uncertainty, uncertainty_name=uncertainty_name)
             try:
-                map_ = self._read_shakemap(file)
+                map_ = self._take(file, "shakemap", parse, given)
             except CellError as error:
                 yield table.problem("shakemap", row, error.message, error.fix)
                 continue
+            self.hashes[file] = map_.grid_sha256
+            if map_.uncertainty_file:
+                self.hashes[uncertainty_name] = map_.uncertainty_sha256
             if not table.says(row, *STRONGER):
                 yield from self._place(table, row, map_, file, "shakemap")
 
@@ -204,78 +204,61 @@ class FileReader:
                 fix = fill("Fill in Latitude and Longitude (cells {cells}).", cells=", ".join(cells))
             yield table.problem(name if name in table.places else lacking[0], row, message, fix)
 
-    def _read_shakemap(self, file: str) -> ShakeMap:
-        beside, name = self._find_beside(file)
-        given = None if beside is None else find_key(beside, "shakemap")
-        map_: ShakeMap = self._take(
-            file, "shakemap", lambda content, address: _parse_shakemap(content, address, beside, name), given
-        )
-        self.hashes[file] = map_.grid_sha256
-        if map_.uncertainty_file:
-            self.hashes[name] = map_.uncertainty_sha256
-        return map_
-
-    def _find_beside(self, file: str) -> tuple[bytes | Path | None, str]:
-        for path in list_beside(file):
-            with suppress(CellError):
-                return self._find(path)[0], path
-        return None, ""
-
     def check_records(self, tables: Tables) -> Iterator[Problem]:
         """Read the recorded motions of the floors, or report what is wrong with them or with their direction."""
         table = tables["Floors"]
         azimuth = next((row.get("azimuth_deg") for row in tables["Building"].rows), None)
-        for row in table.with_all("floor"):
-            for axis in AXES:
-                along = None if azimuth is None else azimuth + (90 if axis == "Y" else 0)
-                yield from self._check_cell(table, row, axis, along)
+        for row, axis in product(table.with_all("floor"), AXES):
+            name, text = f"record_{axis.lower()}", row.get(f"record_{axis.lower()}")
+            along = None if azimuth is None else azimuth + (90 if axis == "Y" else 0)
+            names, found = split_names(text), []
+            if text is not None and not names:
+                message = fill("{text} names no file.", text=shorten(text))
+                yield table.problem(name, row, message, fill("Name a record, or clear the cell."))
+            for one in names:
+                try:
+                    record = self._read_record(one)
+                except CellError as error:
+                    yield table.problem(name, row, error.message, error.fix)
+                    continue
+                found.append(record)
+                yield from _check_direction(table, name, row, record, axis, along)
+            if found:
+                self.records[row.number, axis] = tuple(found)
 
-    def _check_cell(self, table: Table, row: Row, axis: Axis, along: float | None) -> Iterator[Problem]:
-        name, found = f"record_{axis.lower()}", []
-        text = row.get(name)
-        names = split_names(text)
-        if text is not None and not names:
-            message = fill("{text} names no file.", text=shorten(text))
-            yield table.problem(name, row, message, fill("Name a record, or clear the cell."))
-        for one in names:
-            try:
-                record = self._record(one)
-            except CellError as error:
-                yield table.problem(name, row, error.message, error.fix)
-                continue
-            found.append(record)
-            yield from _check_direction(table, name, row, record, axis, along)
-        if found:
-            self.records[row.number, axis] = tuple(found)
-
-    def _record(self, text: str) -> FloorRecord:
+    def _read_record(self, text: str) -> FloorRecord:
+        """Return a recorded motion, ``file#channel``, each file read once; CellError where it cannot be used."""
         file, _, channel = (part.strip() for part in text.partition("#"))
-        known, digest = self._records(file)
+        _content, address = self._find(file)
+        if address not in self._read:
+            self.progress.check()
+            try:
+                read = self._take(file, "record", self._parse_record)
+                self._read[address], self.hashes[file] = read, read[1]
+            except CellError as error:
+                self._read[address] = error
+        known = self._read[address]
+        if isinstance(known, CellError):
+            raise known
         try:
-            record = select(known, channel or None)
+            record = select(known[0], channel or None)
         except RecordError as error:
             raise CellError(fill("{why}.", why=error.message)) from None
         if record.vertical:
             message = fill("{text} is a vertical channel.", text=shorten(text))
             raise CellError(message, fill("Choose a horizontal one."))
         path = None if self.folder is None else (self.folder / _posix(file)).resolve()
-        return FloorRecord(name=text, record=record, file=file, channel=channel, sha256=digest, path=path)
+        return FloorRecord(name=text, record=record, file=file, channel=channel, sha256=known[1], path=path)
 
-    def _records(self, file: str) -> tuple[tuple[Record, ...], str]:
-        _content, address = self._find(file)
-        if address not in self._read:
-            self.progress.check()
-            try:
-                known = self._take(
-                    file, "record", lambda content, address: _parse(content, address, self._allowance, self.progress)
-                )
-                self._read[address], self.hashes[file] = known, known[1]
-            except CellError as error:
-                self._read[address] = error
-        found = self._read[address]
-        if isinstance(found, CellError):
-            raise found
-        return found
+    def _parse_record(self, content: bytes | Path, address: str) -> tuple[tuple[Record, ...], str] | CellError:
+        try:
+            data = content if isinstance(content, bytes) else read_bytes(content)
+            self._allowance.take(record_bytes=len(data), archives=int(is_archive(data)))
+            found = parse_records(data, _name(address), progress=self.progress)
+            self._allowance.take(samples=sum(record.acceleration.size for record in found))
+            return found, hashlib.sha256(data).hexdigest()
+        except RecordError as error:
+            return CellError(fill("the record cannot be read: {why}.", why=error.message))
 
     def _find(self, file: str) -> tuple[bytes | Path, str]:
         if self.folder is not None:
@@ -288,26 +271,12 @@ class FileReader:
         return self.given[address], address
 
 
-def _parse(
-    data: bytes | Path, address: str, allowance: Allowance, progress: Progress
-) -> tuple[tuple[Record, ...], str] | CellError:
-    try:
-        read = data if isinstance(data, bytes) else read_bytes(data)
-        allowance.take(record_bytes=len(read), archives=int(is_archive(read)))
-        found = parse_records(read, PurePosixPath(_posix(address)).name, progress=progress)
-        allowance.take(samples=sum(record.acceleration.size for record in found))
-        return found, hashlib.sha256(read).hexdigest()
-    except RecordError as error:
-        return CellError(fill("the record cannot be read: {why}.", why=error.message))
-
-
 def _parse_hazard(
     content: bytes | Path, address: str, latitude: float | None, longitude: float | None
 ) -> tuple[HazardCurve, str] | CellError:
     try:
         data = content if isinstance(content, bytes) else read_hazard_bytes(content)
-        name = PurePosixPath(_posix(address)).name
-        curve = parse_hazard(data, name, latitude=latitude, longitude=longitude)
+        curve = parse_hazard(data, _name(address), latitude=latitude, longitude=longitude)
     except InputError as error:
         fix = fill("Correct the file, or give a CSV file with the columns pga_g,annual_rate.")
         return CellError(fill("the hazard curve cannot be used: {why}.", why=error.message), fix)
@@ -315,12 +284,11 @@ def _parse_hazard(
 
 
 def _parse_shakemap(
-    content: bytes | Path, address: str, beside: bytes | Path | None, beside_name: str
+    content: bytes | Path, address: str, uncertainty: bytes | Path | None, uncertainty_name: str
 ) -> ShakeMap | CellError:
     try:
-        data, more = (read_grid_file(one) if isinstance(one, Path) else one for one in (content, beside))
-        name, other = (PurePosixPath(_posix(one)).name for one in (address, beside_name))
-        return parse_shakemap(data or b"", name, uncertainty=more, uncertainty_name=other)
+        data, more = (read_grid_file(one) if isinstance(one, Path) else one for one in (content, uncertainty))
+        return parse_shakemap(data or b"", _name(address), uncertainty=more, uncertainty_name=_name(uncertainty_name))
     except InputError as error:
         fix = fill("Give the grid.xml of a ShakeMap as the USGS publishes it, unchanged.")
         return CellError(fill("the ShakeMap cannot be used: {why}.", why=error.message), fix)
@@ -366,7 +334,11 @@ def find_place(text: str, folder: Path) -> Path:
     Raises CellError if the name leads outside the folder, or can be that of no file.
     """
     name = shorten(text)
-    if not _is_inside(text):
+    windows, posix = PureWindowsPath(text), PurePosixPath(text)
+    is_odd = any(unicodedata.category(character) in ("Cc", "Cf", "Cs") for character in text) or len(text) > 500
+    is_absolute = windows.drive or windows.root or posix.is_absolute() or ":" in text
+    is_reserved = any(part.split(".")[0].upper() in _RESERVED for part in windows.parts)
+    if is_odd or is_absolute or is_reserved or ".." in windows.parts or ".." in posix.parts:
         raise CellError(
             fill("the file {name} is outside the workbook's folder.", name=name),
             fill("Copy it next to the workbook and write its name alone."),
@@ -384,7 +356,7 @@ def find_place(text: str, folder: Path) -> Path:
 
 
 def list_beside(file: str) -> list[str]:
-    """Return how the file of uncertainties beside the grid of a ShakeMap may be called, as a workbook would name it."""
+    """Return how the file of uncertainties of a ShakeMap's grid may be called, as a workbook would name it."""
     folder, _, name = _posix(file).rpartition("/")
     return [f"{folder}/{one}" if folder else one for one in name_uncertainty(name)]
 
@@ -393,9 +365,5 @@ def _posix(text: str) -> str:
     return PureWindowsPath(text).as_posix()
 
 
-def _is_inside(text: str) -> bool:
-    windows, posix = PureWindowsPath(text), PurePosixPath(text)
-    odd = any(unicodedata.category(character) in ("Cc", "Cf", "Cs") for character in text)
-    absolute = windows.drive or windows.root or posix.is_absolute() or ":" in text
-    reserved = any(part.split(".")[0].upper() in _RESERVED for part in windows.parts)
-    return not (odd or absolute or reserved or ".." in windows.parts or ".." in posix.parts or len(text) > 500)
+def _name(address: str) -> str:
+    return PurePosixPath(_posix(address)).name

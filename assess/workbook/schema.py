@@ -23,7 +23,6 @@ LANGUAGES = ("English", "Italiano")
 """Of reports: names that `assess.i18n.find_language` knows."""
 YES, NO = "yes", "no"
 
-
 DEFAULT_WIDTH = 0.9
 """Default required width of a route [m]: 900 mm, as Italy's D.M. 3 August 2015 asks for up to 300 occupants."""
 
@@ -33,21 +32,16 @@ class Column:
     """One column of a table, or one line of a form.
 
     * `name`: Field of the model in `assess.model`.
-    * `label`: Heading, without the unit.
-    * `kind`: What a cell may hold.
+    * `label`: Heading, without the unit; `aliases` are earlier ones, `language` is the code of theirs.
     * `help`: What to fill in: the input message in Excel and the README's table.
     * `quantity`, `unit`, `imperial`: Key of `assess.units.QUANTITIES`, and the unit that the empty workbook offers (SI,
       imperial).
-    * `required`: Whether the table cannot be read without it.
-    * `low`, `high`: Outside these an error, in `unit`.
-    * `usual_low`, `usual_high`: Outside these a warning, in `unit`.
+    * `low`, `high`: Outside these an error, outside `usual_low` and `usual_high` a warning, in `unit`.
     * `choices`: What a choice may be; of a flag `YES` and `NO`, which are read as True and False.
     * `offered`: What the drop-down of a text offers; any other text is kept, too.
     * `source`: Sheet whose first column lists what the cell may name.
     * `default`: What a blank means, in words.
-    * `width`: Width in the empty workbook [characters].
-    * `language`: Code of the language that `label` is in.
-    * `aliases`: Earlier labels, by which a workbook may still call it.
+    * `width`: In the empty workbook [characters].
     """
 
     name: str
