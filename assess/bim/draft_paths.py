@@ -121,37 +121,27 @@ def _walk(ways: Ways, distance: float, floor: BaseGeometry, cost: float) -> None
     places = [] if inner.is_empty else [at for at in map(shapely.Point, ways.ends.values()) if room.floor.covers(at)]
     strips = [shapely.shortest_line(at, inner).buffer(TIGHT).intersection(room.floor) for at in places]
     area = shapely.union_all([inner, *passages, *strips]).buffer(TIGHT)
-    before = []
+    bends = set[Point]()
     for link in room.links:
         if link.normal != (0.0, 0.0):
             (x, y), (u, v) = link.at, room.inward(link)
             far = room.floor.distance(shapely.Point(link.at)) + distance + TIGHT
-            before.append((x + far * u, y + far * v))
-    corners = ways.add(_choose(ways, [*before, *_list_corners(inner)]))
-    near = {
-        tuple(sorted(pair))
-        for pair in (*_near(ways.ends, ways.ends), *_near(ways.ends, corners), *_near(corners, corners))
-    }
-    ways.join(sorted((one, other) for one, other in near if one != other), area, cost)
-
-
-def _list_corners(area: BaseGeometry) -> Iterator[Point]:
-    """Yield the corners of an area round which a shortest way bends: where its edge turns to the right."""
-    for ring in list_rings(area):
+            bends.add((x + far * u, y + far * v))
+    for ring in list_rings(inner):  # a shortest way bends where the edge turns to the right
         corners = np.array(ring.simplify(SHORTEST).coords)[:-1, :2]
         before, after = corners - np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0) - corners
-        for at in np.flatnonzero(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0] < 0):
-            yield float(corners[at, 0]), float(corners[at, 1])
-
-
-def _choose(ways: Ways, points: Iterable[Point]) -> list[Point]:
-    """Return points that are not where another is, those nearest to the ends of a room if they are too many."""
-    ends = np.array([*ways.ends.values()])
-    own = np.array(sorted(set(points))).reshape(-1, 2)
-    far = np.abs(own[:, None] - ends[None]).sum(axis=2).min(axis=1)
-    own = own[np.argsort(far, kind="stable")[:MOST_OF_ROOM]]
+        right = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0] < 0
+        bends |= {(float(x), float(y)) for x, y in corners[right]}
+    # of points at one place the last; if they are too many, those nearest to the ends
+    own = np.array(sorted(bends)).reshape(-1, 2)
+    away = np.abs(own[:, None] - np.array([*ways.ends.values()])[None]).sum(axis=2).min(axis=1)
+    own = own[np.argsort(away, kind="stable")[:MOST_OF_ROOM]]
     grid = {tuple(np.round(point / SHORTEST)): (float(point[0]), float(point[1])) for point in own}
-    return list(grid.values())
+    added = ways.add(grid.values())
+    near = {
+        tuple(sorted(pair)) for pair in (*_near(ways.ends, ways.ends), *_near(ways.ends, added), *_near(added, added))
+    }
+    ways.join(sorted((one, other) for one, other in near if one != other), area, cost)
 
 
 def _near(own: Mapping[str, Point], others: Mapping[str, Point]) -> Iterator[tuple[str, str]]:
@@ -214,46 +204,25 @@ def _find_axes(room: Room) -> list[Axis]:
     walls = [wall for ring in list_rings(smooth) for wall in pairwise((x, y) for x, y, *_ in ring.coords)]
     if len(walls) > MOST_WALLS:
         return []
-    axes = [axis for at, one in enumerate(walls) for other in walls[:at] if (axis := _face(one, other, width))]
     inside = area.buffer(0.05)
-    own = [axis for axis in axes if inside.covers(shapely.LineString([axis.start, axis.end]))]
-    return sorted(own, key=lambda axis: -axis.length)
-
-
-def _face(one: tuple[Point, Point], other: tuple[Point, Point], width: float) -> Axis | None:
-    """Return the middle line between two walls, None where they do not face each other."""
-    wall, back = Axis(*one, 0.0), Axis(*other, 0.0)
-    if not (wall.length > NARROWEST and back.length > NARROWEST):
-        return None
-    (x, y), (u, v), (p, q) = wall.start, wall.direction, back.direction
-    gap = sum(u * (b - y) - v * (a - x) for a, b in other) / 2
-    if u * p + v * q > -PARALLEL or not NARROWEST <= gap <= MUCH_WIDER * width:
-        return None
-    places = [wall.find(point)[0] for point in other]
-    low, high = max(0.0, min(places)), min(wall.length, max(places))
-    if high - low < OVERLAP * gap:
-        return None
-    start, end = ((a - gap / 2 * v, b + gap / 2 * u) for a, b in one)
-    middle = Axis(start, end, 0.0)
-    return Axis(middle.point(low), middle.point(high), gap)
-
-
-def _find_spots(axis: Axis, nodes: Iterable[tuple[str, Point]]) -> list[tuple[float, list[str]]]:
-    """Return the places along an axis at which nodes are joined to it, with these nodes, and its two ends, in order."""
-    beyond = max(BESIDE, BEYOND * axis.width)
-    low, high = axis.inset, axis.length - axis.inset
-    found = [(low, ""), (high, "")]
-    for name, point in nodes:
-        along, away = axis.find(point)
-        if -beyond <= along <= axis.length + beyond and away <= axis.width / 2 + BESIDE:
-            found.append((min(max(along, low), high), name))
-    groups: list[list[tuple[float, str]]] = []
-    for one in sorted(found):
-        if groups and one[0] - groups[-1][0][0] < SNAP:
-            groups[-1].append(one)
-        else:
-            groups.append([one])
-    return [(sum(along for along, _ in own) / len(own), [name for _, name in own if name]) for own in groups]
+    axes = []
+    for one, other in ((one, other) for at, one in enumerate(walls) for other in walls[:at]):
+        wall, back = Axis(*one, 0.0), Axis(*other, 0.0)
+        if not (wall.length > NARROWEST and back.length > NARROWEST):
+            continue
+        (x, y), (u, v), (p, q) = wall.start, wall.direction, back.direction
+        gap = sum(u * (b - y) - v * (a - x) for a, b in other) / 2
+        if u * p + v * q > -PARALLEL or not NARROWEST <= gap <= MUCH_WIDER * width:
+            continue
+        places = [wall.find(point)[0] for point in other]
+        low, high = max(0.0, min(places)), min(wall.length, max(places))
+        if high - low >= OVERLAP * gap:
+            start, end = ((a - gap / 2 * v, b + gap / 2 * u) for a, b in one)
+            middle = Axis(start, end, 0.0)
+            axis = Axis(middle.point(low), middle.point(high), gap)
+            if inside.covers(shapely.LineString([axis.start, axis.end])):
+                axes.append(axis)
+    return sorted(axes, key=lambda axis: -axis.length)
 
 
 def measure_width(axis_width: float, ends: tuple[Point, Point], floor: BaseGeometry) -> float:
@@ -276,7 +245,7 @@ def _follow_axes(ways: Ways) -> None:
     own: dict[str, list[str]] = {}
     for at, axis in enumerate(axes):
         others = [one for one in every if one[0] not in (f"end {at} 0", f"end {at} 1")]
-        names = _add_axis(ways, axis, _find_spots(axis, others), own, at)
+        names = _add_axis(ways, axis, others, own, at)
         # neighbours on an axis: such ways cost no more for being many
         for one, other in pairwise(sorted(names, key=lambda name: axis.find(ways.at(name))[0])):
             ends = ways.at(one), ways.at(other)
@@ -291,18 +260,32 @@ def _follow_axes(ways: Ways) -> None:
 
 
 def _add_axis(
-    ways: Ways, axis: Axis, spots: Sequence[tuple[float, list[str]]], own: dict[str, list[str]], number: int
+    ways: Ways, axis: Axis, nodes: Iterable[tuple[str, Point]], own: dict[str, list[str]], number: int
 ) -> list[str]:
-    """Add the places on an axis, and note in `own` which nodes are joined to each; return their names."""
+    """Add the places along an axis at which nodes are joined to it, and its two ends; return their names.
 
-    def is_on(name: str) -> bool:
-        along, away = axis.find(ways.ends[name])
-        return away < SHORTEST and axis.inset <= along <= axis.length - axis.inset
-
+    `own` notes which nodes are joined to each.
+    """
+    beyond = max(BESIDE, BEYOND * axis.width)
+    low, high = axis.inset, axis.length - axis.inset
+    found, on_axis = [(low, ""), (high, "")], set[str]()
+    for name, point in nodes:
+        along, away = axis.find(point)
+        if -beyond <= along <= axis.length + beyond and away <= axis.width / 2 + BESIDE:
+            found.append((min(max(along, low), high), name))
+        if name in ways.ends and away < SHORTEST and low <= along <= high:
+            on_axis.add(name)
+    spots: list[list[tuple[float, str]]] = []
+    for one in sorted(found):
+        if spots and one[0] - spots[-1][0][0] < SNAP:
+            spots[-1].append(one)
+        else:
+            spots.append([one])
     names = []
-    for along, joined in spots:
-        on_axis = (name for name in joined if name in ways.ends and is_on(name))
-        name = next(on_axis, "") or next(iter(ways.add([axis.point(along)])))
+    for spot in spots:
+        middle = sum(along for along, _ in spot) / len(spot)
+        joined = [name for _, name in spot if name]
+        name = next((one for one in joined if one in on_axis), "") or next(iter(ways.add([axis.point(middle)])))
         names.append(name)
         for one in joined:
             own.setdefault(one, []).append(name)

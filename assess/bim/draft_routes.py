@@ -8,28 +8,31 @@ once. The route to a stair ends with the flight, at whose other end the route of
 """
 
 import math
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import count
 from typing import Any
 
 import networkx as nx
 import shapely
-from shapely.geometry.base import BaseGeometry
 
-from assess.bim.building_model import BuildingModel, Point, Storey
-from assess.bim.door_sides import DoorKind, Sides, find_ground, find_kinds
+from assess.bim.building_model import BuildingModel, Point
 from assess.bim.draft_floor import (
     DOOR_LESS,
     JAMB,
+    NARROWEST_OPENING,
+    DoorKind,
     FloorPlan,
     Link,
+    Sides,
     build_plan,
     build_rooms,
+    find_ground,
+    find_kinds,
+    find_openings,
     link_door,
     link_stairs,
 )
-from assess.bim.draft_openings import NARROWEST_OPENING, find_openings
 from assess.bim.draft_paths import find_ways
 from assess.bim.plan_shapes import box_at, list_polygons
 from assess.i18n import Text, fill, gettext, nfill
@@ -108,7 +111,31 @@ class Network:
 def _build_network(model: BuildingModel, sides: Mapping[str, Sides], places: Mapping[str, Point]) -> Network:
     network = Network(sides, find_kinds(model, sides), places)
     for storey in model.storeys:
-        _add_storey(network, model, storey)
+        plan = build_plan(model, storey)
+        if not plan.spaces:
+            continue
+        network.plans[storey.key] = plan
+        doors = [door for door in model.doors if door.storey == storey.key]
+        links: list[Link] = []
+        for door in (door for door in doors if network.kinds[door.key] in ("inside", "exit")):
+            link = link_door(door, network.sides[door.key])
+            links.append(link)
+            network.nodes[link.name] = Node(link.at, storey.key, door.key, link)
+            if network.kinds[door.key] == "exit":
+                network.exits.append(link.name)
+        openings, stairs = find_openings(plan, doors), link_stairs(model, plan)
+        for link in stairs:
+            network.nodes[link.name] = Node(link.at, storey.key, link.name.removeprefix("stair "), link)
+            network.stairs.append(link.name)
+        network.nodes |= {link.name: Node(link.at, storey.key, "", link) for link in openings}
+        network.openings += openings
+        for space, room in build_rooms(plan, [*links, *openings, *stairs]).items():
+            own = network.rooms[space] = f"room {space}"
+            network.nodes[own] = Node(network.places[space], storey.key, space)
+            ways = find_ways(room, own, network.places[space])
+            network.nodes |= {name: Node(at, storey.key) for name, at in ways.points.items()}
+            for one, other, way in ways.found:
+                network.join(one, other, space, **way)
     levels = {storey.key: storey.level for storey in model.storeys}
     for stair in dict.fromkeys(one.key for one in model.stairs):
         foot, head = (network.nodes.get(f"stair {stair} {end}") for end in ("foot", "head"))
@@ -117,36 +144,6 @@ def _build_network(model: BuildingModel, sides: Mapping[str, Sides], places: Map
             cost = math.hypot(math.dist(foot.at, head.at), PER_RISE * rise)
             network.join(f"stair {stair} foot", f"stair {stair} head", cost=cost, width=None)
     return network
-
-
-def _add_storey(network: Network, model: BuildingModel, storey: Storey) -> None:
-    plan = build_plan(model, storey)
-    if not plan.spaces:
-        return
-    network.plans[storey.key] = plan
-    doors = [door for door in model.doors if door.storey == storey.key]
-    links: list[Link] = []
-    for door in (door for door in doors if network.kinds[door.key] in ("inside", "exit")):
-        link = link_door(door, network.sides[door.key])
-        links.append(link)
-        network.nodes[link.name] = Node(link.at, storey.key, door.key, link)
-        if network.kinds[door.key] == "exit":
-            network.exits.append(link.name)
-    openings, stairs = find_openings(plan, doors), link_stairs(model, plan)
-    for link in stairs:
-        network.nodes[link.name] = Node(link.at, storey.key, link.name.removeprefix("stair "), link)
-        network.stairs.append(link.name)
-    network.nodes |= {link.name: Node(link.at, storey.key, "", link) for link in openings}
-    network.openings += openings
-    rooms = build_rooms(plan, [*links, *openings, *stairs])
-    for space, room in rooms.items():
-        own = f"room {space}"
-        network.rooms[space] = own
-        network.nodes[own] = Node(network.places[space], storey.key, space)
-        ways = find_ways(room, own, network.places[space])
-        network.nodes |= {name: Node(at, storey.key) for name, at in ways.points.items()}
-        for one, other, way in ways.found:
-            network.join(one, other, space, **way)
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,13 +165,22 @@ def _find_steps(network: Network) -> dict[str, Step]:
     Each is the shortest way to an exit, or, where no exit can be reached, to the end of a stair. A way ends where it
     meets one before it.
     """
-    tree: dict[str, Step] = {}
-    reached: set[str] = set()
+    graph, tree, reached = network.graph, dict[str, Step](), set[str]()
     for ends in (network.exits, network.stairs):
-        open_ends = [name for name in ends if name in network.graph and name not in reached]
-        grown = _grow(network.graph, open_ends, reached)
-        reached |= grown.keys() | set(open_ends)
-        tree |= grown
+        targets = {name: name for name in ends if name in graph and name not in reached}
+        if not targets:
+            continue
+        rest = graph.subgraph([name for name in graph if name not in reached])
+        shortest: Any = nx.multi_source_dijkstra(rest, dict.fromkeys(targets), weight="cost")
+        far, paths = shortest
+        for name in sorted(far, key=lambda one: (far[one], len(paths[one]))):
+            if name in targets:
+                continue
+            following = paths[name][-2]
+            is_flight = not graph.edges[name, following]["space"]
+            targets[name] = name if is_flight else targets[following]
+            tree[name] = Step(name, following, float(far[name]), targets[name])
+        reached |= targets.keys()
     found: dict[str, Step] = {}
     for first in sorted((tree[room] for room in network.rooms.values() if room in tree), key=lambda one: -one.far):
         name = first.start
@@ -182,24 +188,6 @@ def _find_steps(network: Network) -> dict[str, Step]:
             found[name] = tree[name]
             name = tree[name].end
     return found
-
-
-def _grow(graph: "nx.Graph[str]", ends: Sequence[str], without: Collection[str]) -> dict[str, Step]:
-    if not ends:
-        return {}
-    rest = graph.subgraph([name for name in graph if name not in without])
-    found: Any = nx.multi_source_dijkstra(rest, dict.fromkeys(ends), weight="cost")
-    far, paths = found
-    targets = {name: name for name in ends}
-    steps = {}
-    for name in sorted(far, key=lambda one: (far[one], len(paths[one]))):
-        if name in targets:
-            continue
-        following = paths[name][-2]
-        is_flight = not graph.edges[name, following]["space"]
-        targets[name] = name if is_flight else targets[following]
-        steps[name] = Step(name, following, float(far[name]), targets[name])
-    return steps
 
 
 # ---------------------------------------------------------------- widths
@@ -226,14 +214,13 @@ def measure_gap(plan: FloorPlan, space: str, ends: tuple[Point, Point], links: I
     stands = shapely.union_all([wide.difference(rooms), wide.intersection(solids)])
     stands = stands.difference(shapely.union_all(passages))
     parts = [one for one in shapely.get_parts(line.difference(stands)) if one.length > SHORTEST]
-    gaps = [gap for part in parts if (gap := _measure_sides(part, stands)) is not None]
+    gaps = []
+    for part in parts:
+        sides = (part.buffer(far, single_sided=True).intersection(stands) for far in (BESIDE, -BESIDE))
+        left, right = (shapely.union_all([one for one in list_polygons(side) if one.area > SLIVER]) for side in sides)
+        if not (left.is_empty or right.is_empty):
+            gaps.append(float(left.distance(right)))
     return min(gaps, default=None)
-
-
-def _measure_sides(line: shapely.LineString, stands: BaseGeometry) -> float | None:
-    sides = [line.buffer(far, single_sided=True).intersection(stands) for far in (BESIDE, -BESIDE)]
-    left, right = (shapely.union_all([one for one in list_polygons(side) if one.area > SLIVER]) for side in sides)
-    return None if left.is_empty or right.is_empty else float(left.distance(right))
 
 
 def _set_widths(links: Sequence[Link], between_walls: float | None, gap: float | None) -> dict[str, Any]:
@@ -286,8 +273,7 @@ def draft_routes(
 
     `names`: the names of places: of rooms and doors by their keys, of ends of stairs by key and end (``KEY foot``).
     Names of floors by the keys of storeys, where they are not those of the model.
-    `sides`: of doors, from `assess.bim.door_sides.find_sides`.
-    `places`: of rooms, from `assess.bim.draft_floor.find_room_points`.
+    `sides` of doors and `places` of rooms: from `find_sides` and `find_room_points` of `assess.bim.draft_floor`.
 
     The draft is empty, with remarks that say why, where there is nothing to draft.
     """
@@ -298,7 +284,7 @@ def draft_routes(
     lost = tuple(
         names[space.key] for space in model.spaces if space.key in names and network.rooms.get(space.key) not in steps
     )
-    remarks = tuple(_note_draft(model, network, routes, lost))
+    remarks = tuple(_list_remarks(model, network, routes, lost))
     return DraftRoutes(places=sheet.places, routes=routes, unreached=lost, remarks=remarks)
 
 
@@ -361,33 +347,32 @@ class _Sheet:
         return self.names.get(storey) or next(one.name for one in self.model.storeys if one.key == storey)
 
     def _describe(self, step: Step) -> dict[str, Any]:
-        ends = self.network.nodes[step.start], self.network.nodes[step.end]
+        """Return the row of a segment without its route.
+
+        Its rooms are those that it runs through, and those that are open to it there. Not where a piece of the other
+        room is next to the segment behind a wall: Room cannot tell the two apart.
+        """
+        start, end = self.network.nodes[step.start], self.network.nodes[step.end]
         row: dict[str, Any] = {"start": self._name(step.start), "end": self._name(step.end)}
-        way = self.network.graph.edges[step.start, step.end]
+        way, plan = self.network.graph.edges[step.start, step.end], self.network.plans[start.storey]
         if not way["space"]:
             return row | {"notes": gettext("Stair: fill in Clear width.")}
-        row |= {"floor": self._floor(ends[0].storey), "room": self._list_rooms(ends, way["space"])}
-        links = [node.link for node in ends if node.link is not None]
-        gap = measure_gap(self.network.plans[ends[0].storey], way["space"], (ends[0].at, ends[1].at), links)
-        row |= _set_widths(links, way["width"], gap)
+        line = shapely.LineString([start.at, end.at])
+        near = sorted(plan.tree.query(line))
+        spaces = [way["space"]]
+        spaces += [plan.spaces[at].key for at in near if plan.polygons[at].intersection(line).length > IN_ROOM]
+        for opening in self._openings.get(way["space"], ()):
+            if line.distance(shapely.Point(opening.at)) <= FALLS_OVER:
+                spaces += [one for one in opening.spaces if not plan.hides(line, one, BEHIND_WALL)]
+        rooms = [self.names[one] for one in dict.fromkeys(spaces)]
+        row["floor"] = self._floor(start.storey)
+        row["room"] = "" if any(";" in room for room in rooms) else "; ".join(rooms)
+        links = [node.link for node in (start, end) if node.link is not None]
+        row |= _set_widths(links, way["width"], measure_gap(plan, way["space"], (start.at, end.at), links))
         return {name: value for name, value in row.items() if value not in ("", None)}
 
-    def _list_rooms(self, ends: tuple[Node, Node], space: str) -> str:
-        """Return the names of the rooms that a segment runs through, and of those that are open to it there.
 
-        Not where a piece of the other room is next to the segment behind a wall: Room cannot tell the two apart.
-        """
-        line = shapely.LineString([ends[0].at, ends[1].at])
-        plan = self.network.plans[ends[0].storey]
-        found = [space, *plan.spaces_along(line, IN_ROOM)]
-        for opening in self._openings.get(space, ()):
-            if line.distance(shapely.Point(opening.at)) <= FALLS_OVER:
-                found += [one for one in opening.spaces if not plan.hides(line, one, BEHIND_WALL)]
-        rooms = [self.names[one] for one in dict.fromkeys(found)]
-        return "" if any(";" in room for room in rooms) else "; ".join(rooms)
-
-
-def _note_draft(model: BuildingModel, network: Network, routes: Rows, lost: Sequence[str]) -> Iterator[Text]:
+def _list_remarks(model: BuildingModel, network: Network, routes: Rows, lost: Sequence[str]) -> Iterator[Text]:
     if routes:
         yield nfill(
             "{n} evacuation route was drafted from the rooms and doors of the model: walk it, correct it, and take "
@@ -415,11 +400,8 @@ def _note_draft(model: BuildingModel, network: Network, routes: Rows, lost: Sequ
             "{n} door of other storeys has a room on one side only: it does not count as an exit.",
             "{n} doors of other storeys have a room on one side only: they do not count as exits.", others,
         )  # fmt: skip
-    if routes:
-        yield from _note_rows(network, routes, lost)
-
-
-def _note_rows(network: Network, routes: Rows, lost: Sequence[str]) -> Iterator[Text]:
+    if not routes:
+        return
     doors = sum("required_width" in row for row in routes)
     if doors:
         yield nfill(

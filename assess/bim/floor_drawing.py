@@ -4,10 +4,9 @@ import math
 import re
 import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import chain, count
 
-from assess.bim.building_model import Area, BuildingModel, Door, Piece, Point, Storey
+from assess.bim.building_model import Area, BuildingModel, Point, Storey
 from assess.bim.plan_shapes import direction_of
 
 MARGIN = 0.5
@@ -30,23 +29,37 @@ def draw_storey(model: BuildingModel, storey: Storey) -> tuple[bytes, dict[str, 
     """
     walls, windows = model.walls.get(storey.key, ()), model.windows.get(storey.key, ())
     rooms = [one.area for one in model.spaces if one.storey == storey.key]
-    doors = [one for one in model.doors if one.storey == storey.key]
-    pieces = [one for one in model.pieces if one.storey == storey.key]
-    points = [point for area in (*walls, *windows, *rooms) for point in area[0]]
-    points += [point for door in doors for point in _span(door)]
+    doors = []
+    for one in (one for one in model.doors if one.storey == storey.key):
+        dx, dy = (part * one.width / 2 for part in direction_of(one.normal_deg + 90))
+        doors.append(((one.x - dx, one.y - dy), (one.x + dx, one.y + dy)))
+    points = [point for ring in (*(area[0] for area in (*walls, *windows, *rooms)), *doors) for point in ring]
     if not points:
         return None
-    frame = _Frame.round([*points, *(corner for one in pieces for corner in _list_reach(one))])
+    for piece in (one for one in model.pieces if one.storey == storey.key):
+        reach = math.hypot(piece.breadth, piece.width) / 2
+        points += [(piece.x - reach, piece.y - reach), (piece.x + reach, piece.y + reach)]
+    (left, bottom), (right, top) = (tuple(end(axis) for axis in zip(*points, strict=True)) for end in (min, max))
+    left, bottom = (math.floor(100 * (one - MARGIN)) / 100 for one in (left, bottom))
+    width, height = math.ceil(100 * (right + MARGIN - left)) / 100, math.ceil(100 * (top + MARGIN - bottom)) / 100
+
+    def line(points: Sequence[Point]) -> str:
+        """Return a line as path data; Y of the SVG runs downwards from the top."""
+        numbers = chain.from_iterable((x - left, bottom + height - y) for x, y in points)
+        return "M" + " ".join(f"{number:.3f}".rstrip("0").rstrip(".") for number in numbers)
+
+    def path(area: Area) -> str:
+        return "".join(f"{line(ring)}Z" for ring in area)
+
     parts = [
-        *(f'<path class="room" d="{frame.path(one[:1])}"/>' for one in rooms),
-        *(f'<path class="window" d="{frame.path(one)}"/>' for one in windows),
-        *(f'<path class="wall" fill-rule="evenodd" d="{frame.path(one)}"/>' for one in walls),
-        *(f'<path class="door" d="{frame.line(_span(one))}"/>' for one in doors),
+        *(f'<path class="room" d="{path(one[:1])}"/>' for one in rooms),
+        *(f'<path class="window" d="{path(one)}"/>' for one in windows),
+        *(f'<path class="wall" fill-rule="evenodd" d="{path(one)}"/>' for one in walls),
+        *(f'<path class="door" d="{line(one)}"/>' for one in doors),
     ]
-    size = f"{frame.width:.3f} {frame.height:.3f}"
-    head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {size}"><style>{STYLE}</style>'
+    head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.3f} {height:.3f}"><style>{STYLE}</style>'
     svg = f'{head}<g stroke-width="{LINE}">{"".join(parts)}</g></svg>\n'
-    return svg.encode(), {"plan_left": frame.left, "plan_bottom": frame.bottom, "plan_width": frame.width}
+    return svg.encode(), {"plan_left": left, "plan_bottom": bottom, "plan_width": width}
 
 
 def is_drawn(data: bytes) -> bool:
@@ -75,40 +88,3 @@ def number_plan(name: str) -> Iterator[str]:
     """Yield the name of a plan, then the same with numbers: ``a-1.svg``, ``a-1-2.svg``."""
     yield name
     yield from (f"{name.removesuffix('.svg')}-{number}.svg" for number in count(2))
-
-
-def _span(door: Door) -> tuple[Point, Point]:
-    dx, dy = (one * door.width / 2 for one in direction_of(door.normal_deg + 90))
-    return (door.x - dx, door.y - dy), (door.x + dx, door.y + dy)
-
-
-def _list_reach(piece: Piece) -> Iterator[Point]:
-    reach = math.hypot(piece.breadth, piece.width) / 2
-    yield piece.x - reach, piece.y - reach
-    yield piece.x + reach, piece.y + reach
-
-
-@dataclass(frozen=True, slots=True)
-class _Frame:
-    """The box that is drawn [m]; Y of the SVG runs downwards from its top."""
-
-    left: float
-    bottom: float
-    width: float
-    height: float
-
-    @classmethod
-    def round(cls, points: Sequence[Point]) -> "_Frame":
-        left, right = min(x for x, _ in points) - MARGIN, max(x for x, _ in points) + MARGIN
-        bottom, top = min(y for _, y in points) - MARGIN, max(y for _, y in points) + MARGIN
-        left, bottom = math.floor(100 * left) / 100, math.floor(100 * bottom) / 100
-        return cls(left, bottom, math.ceil(100 * (right - left)) / 100, math.ceil(100 * (top - bottom)) / 100)
-
-    def path(self, area: Area) -> str:
-        """Return an area as path data."""
-        return "".join(f"{self.line(ring)}Z" for ring in area)
-
-    def line(self, points: Sequence[Point]) -> str:
-        """Return a line as path data."""
-        numbers = chain.from_iterable((x - self.left, self.bottom + self.height - y) for x, y in points)
-        return "M" + " ".join(f"{number:.3f}".rstrip("0").rstrip(".") for number in numbers)

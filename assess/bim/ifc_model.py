@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from shapely import Polygon
 
-from assess.bim.building_model import Area, BuildingModel, Door, Piece, Point, Space, Stair, Storey
+from assess.bim.building_model import Area, BuildingModel, Door, Piece, Point, Space, Stair, Storey, bring_near
 from assess.bim.ifc_elements import (
     Element,
     find_storey,
@@ -27,7 +27,6 @@ from assess.bim.ifc_elements import (
 )
 from assess.bim.ifc_file import read_with
 from assess.bim.ifc_pieces import FURNITURE, find_pieces
-from assess.bim.model_position import bring_near
 from assess.bim.plan_shapes import FloatArray, cut, find_base, find_rectangle, merge
 from assess.errors import ModelError
 from assess.i18n import Text, fill, nfill

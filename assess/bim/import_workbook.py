@@ -1,13 +1,8 @@
-"""What an import found in a building, as an inventory workbook; readers of COBie and of building models share it.
+"""What an import found in a building, as an inventory workbook: that of `assess new`, filled in, without shaking."""
 
-The workbook is that of `assess new`, filled in. Motions of the floors are not known to such files: it lacks shaking.
-"""
-
-import hashlib
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from pathlib import Path, PurePath
+from dataclasses import dataclass, field
 from typing import Any
 
 from assess.bim.building_model import LONGEST_NAME, Skipped
@@ -15,9 +10,6 @@ from assess.delivery.folders import private_folder
 from assess.errors import Problem
 from assess.i18n import Text, count, fill
 from assess.pipeline.live_values import store_live
-from assess.resources import open_input
-from assess.text import plain_text
-from assess.version import __version__
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.habits import clean
 from assess.workbook.names import key
@@ -183,15 +175,3 @@ def describe(found: ImportedBuilding) -> Iterator[str]:
         yield "No furniture was found: fill in Items by hand."
     yield from (say_skipped(group, MOST_NAMED) for _, group in group_skipped(found.skipped))
     yield from (f"Check: {text}" for text in (*found.warnings, *found.remarks))
-
-
-def keep_record(found: ImportedBuilding, path: Path) -> ImportedBuilding:
-    """Return an import with its record among its files: those lines, the hash of the model and the version.
-
-    Raises OSError if the file cannot be read again.
-    """
-    with open_input(path) as file:
-        digest = hashlib.file_digest(file, "sha256").hexdigest()
-    lines = (f"Imported by assess {__version__} from {found.source}, SHA-256 {digest}", "", *describe(found))
-    text = "\n".join(map(plain_text, lines)) + "\n"
-    return replace(found, files={**found.files, PurePath(found.source).stem + ENDING: text.encode()})

@@ -17,6 +17,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import ParamSpec, TypeVar, cast
 
@@ -34,8 +35,8 @@ _ASKED_EVERY = 0.05
 PREFIX = "assess-model-"
 ORDER, ANSWER = "order", "answer"
 """Names of the files in which a process gets its work and leaves what came out."""
-OUT_OF_MEMORY = 3
-"""Status with which the process ends when memory runs out."""
+OUT_OF_MEMORY, TOO_LONG = 3, 4
+"""Status of a process whose memory ran out, and of one that the clock stopped."""
 
 _Found = TypeVar("_Found")
 _Given = ParamSpec("_Given")
@@ -53,17 +54,32 @@ def run_apart(
     with private_folder(PREFIX) as folder:
         order = (work.__module__, work.__qualname__, args, named, SECONDS, MEMORY)
         (folder / ORDER).write_bytes(pickle.dumps(order))
-        status = _wait(str(folder), name, progress)
-        answer = folder / ANSWER
+        status, answer = _wait(str(folder), progress), folder / ANSWER
         if not answer.exists():
-            raise _explain(name, status)
+            most = MEMORY // 2**30
+            if status in (TOO_LONG, -getattr(signal, "SIGXCPU", -TOO_LONG)):
+                raise ModelError(
+                    fill("{name} takes more than {n} s of processor time to be read. Export fewer storeys, or "
+                         "furniture, spaces, doors and walls only.", name=name, n=SECONDS)
+                )  # fmt: skip
+            if status == OUT_OF_MEMORY:
+                raise ModelError(
+                    fill("{name} needs more than {most} GB of memory to be read. Export fewer storeys, or furniture, "
+                         "spaces, doors and walls only.", name=name, most=most)
+                )  # fmt: skip
+            raise ModelError(
+                fill("{name} could not be read: the library that reads building models stopped. The file may be "
+                     "damaged, or need more than {most} GB of memory. Export it again from the program that made it.",
+                     name=name, most=most)
+            )  # fmt: skip
         is_error, found = pickle.loads(answer.read_bytes())  # noqa: S301  written by our own process, just now
     if is_error:
         raise cast(AssessError, found)
     return cast(_Found, found)
 
 
-def _wait(folder: str, name: str, progress: Progress) -> int:
+def _wait(folder: str, progress: Progress) -> int:
+    """Return the status with which the process of a folder ends, `TOO_LONG` where it is stopped by the clock."""
     # in its own folder no file of the user's can take the place of a module
     root = str(Path(__file__).parents[2])
     paths = os.pathsep.join(filter(None, (root, os.environ.get("PYTHONPATH"))))
@@ -74,47 +90,27 @@ def _wait(folder: str, name: str, progress: Progress) -> int:
     )  # fmt: skip
     end = time.monotonic() + PATIENCE * SECONDS
     try:
-        while True:
+        while time.monotonic() <= end:
             progress.check()
-            try:
+            with suppress(subprocess.TimeoutExpired):
                 return process.wait(_ASKED_EVERY)
-            except subprocess.TimeoutExpired:
-                if time.monotonic() > end:
-                    raise _too_long(name) from None
+        return TOO_LONG
     finally:
         process.kill()
         process.communicate()
 
 
-def _explain(name: str, status: int) -> ModelError:
-    xcpu = getattr(signal, "SIGXCPU", 0)
-    if xcpu and status == -xcpu:
-        return _too_long(name)
-    if status == OUT_OF_MEMORY:
-        return ModelError(
-            fill("{name} needs more than {most} GB of memory to be read. Export fewer storeys, or furniture, "
-                 "spaces, doors and walls only.", name=name, most=MEMORY // 2**30)
-        )  # fmt: skip
-    return ModelError(
-        fill("{name} could not be read: the library that reads building models stopped. The file may be damaged, "
-             "or need more than {most} GB of memory. Export it again from the program that made it.",
-             name=name, most=MEMORY // 2**30)
-    )  # fmt: skip
-
-
-def _too_long(name: str) -> ModelError:
-    return ModelError(
-        fill("{name} takes more than {n} s of processor time to be read. Export fewer storeys, or "
-             "furniture, spaces, doors and walls only.", name=name, n=SECONDS)
-    )  # fmt: skip
-
-
 def main() -> None:
     """Do the work of the folder that is named, in the process of its own."""
+
+    def end_with_parent() -> None:
+        sys.stdin.buffer.read()
+        os._exit(1)
+
     folder = Path(sys.argv[1])
-    threading.Thread(target=_end_with_parent, daemon=True).start()
+    threading.Thread(target=end_with_parent, daemon=True).start()
     module, function, args, named, seconds, memory = pickle.loads((folder / ORDER).read_bytes())  # noqa: S301
-    limit(seconds, memory)
+    _limit(seconds, memory)
     try:
         work = getattr(importlib.import_module(module), function)
         answer = (False, work(*args, **named))
@@ -122,15 +118,13 @@ def main() -> None:
         answer = (True, error)
     except MemoryError:
         os._exit(OUT_OF_MEMORY)
-    data = pickle.dumps(answer)
     part = folder / f"{ANSWER}.part"
-    part.write_bytes(data)
+    part.write_bytes(pickle.dumps(answer))
     part.replace(folder / ANSWER)
     os._exit(0)  # without what libraries do at the end
 
 
-def limit(seconds: int, memory: int) -> None:
-    """Limit the processor time [s] and the memory [bytes] of this process, where the system can."""
+def _limit(seconds: int, memory: int) -> None:
     try:
         import resource
     except ImportError:  # Windows: the process that started this one looks at the clock
@@ -138,15 +132,8 @@ def limit(seconds: int, memory: int) -> None:
     for kind, most in ((resource.RLIMIT_CPU, seconds), (resource.RLIMIT_AS, memory), (resource.RLIMIT_CORE, 0)):
         _, hard = resource.getrlimit(kind)
         allowed = most if hard == resource.RLIM_INFINITY else min(most, hard)
-        try:
+        with suppress(OSError, ValueError):  # macOS does not limit addresses
             resource.setrlimit(kind, (allowed, hard))
-        except (OSError, ValueError):  # macOS does not limit addresses
-            continue
-
-
-def _end_with_parent() -> None:
-    sys.stdin.buffer.read()
-    os._exit(1)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -17,18 +18,15 @@ import numpy as np
 
 from assess.bim.building_model import (
     LONGEST_NAME,
-    Area,
     BuildingModel,
     Door,
     Piece,
     Skipped,
     Space,
     Stair,
-    Storey,
     half_turn,
 )
-from assess.bim.door_sides import REACH, find_kinds, find_sides
-from assess.bim.draft_floor import find_room_points
+from assess.bim.draft_floor import REACH, find_kinds, find_room_points, find_sides
 from assess.bim.floor_drawing import draw_storey, name_plans
 from assess.bim.import_workbook import LOWEST_ROOF, ImportedBuilding, name_apart, note_datum
 from assess.bim.plan_shapes import SpaceSearch, find_rectangle, find_width, to_polygon
@@ -68,10 +66,7 @@ FITTED = fill("fitted furniture, usually fixed: look at it, and fill in Anchored
 
 
 def list_building(model: BuildingModel, routes: Drafts = "none") -> ImportedBuilding:
-    """Return what a model tells of a building as rows, plans, and what was left out.
-
-    `routes`: whether evacuation routes are drafted from the rooms to the exits.
-    """
+    """Return what a model tells of a building as rows, plans, and what was left out."""
     own = _Building(model)
     drawn = {one.key: plan for one in own.storeys if (plan := draw_storey(model, one)) is not None}
     files = dict(zip(drawn, name_plans(model.source, (own.floors[key] for key in drawn)), strict=True))
@@ -79,9 +74,15 @@ def list_building(model: BuildingModel, routes: Drafts = "none") -> ImportedBuil
     found = dict.fromkeys(one.type_key for one in own.pieces)
     types = dict(zip(found, name_apart(one[0] for one in found), strict=True))
     source = gettext("shapes in {name}", name=model.source)
+    # the height is that of the highest storey or ceiling
+    datum = {one.key: one.elevation - one.level for one in model.storeys}
+    tops = [one.elevation for one in model.storeys]
+    top = max([*tops, *(one.top + datum[one.storey] for one in model.spaces if one.storey in datum)], default=0.0)
+    highest = max((one.elevation for one in own.storeys), default=0.0)
     values = {
         "building": model.name, "address": model.address, "latitude": model.latitude, "longitude": model.longitude,
-        "azimuth_deg": model.azimuth_deg, "height": own.find_height(),
+        "azimuth_deg": model.azimuth_deg,
+        "height": round(top, 2) if max(highest, LOWEST_ROOF) < top <= TALLEST else None,
     }  # fmt: skip
     places, drafted, remarks = list[Mapping[str, Any]](), list[Mapping[str, Any]](), list[Text]()
     if routes != "none":
@@ -92,7 +93,12 @@ def list_building(model: BuildingModel, routes: Drafts = "none") -> ImportedBuil
     return ImportedBuilding(
         source=model.source,
         building={name: value for name, value in values.items() if value not in (None, "")},
-        floors=[own.list_floor(one) | plans.get(one.key, {}) for one in own.storeys],
+        floors=[
+            {"floor": own.floors[one.key]}
+            | ({"elevation": round(one.elevation, 3) + 0.0} if LOWEST <= one.elevation <= HIGHEST else {})
+            | plans.get(one.key, {})
+            for one in own.storeys
+        ],
         items=list(own.list_items(types)),
         places=[*own.list_places(), *places],
         routes=drafted,
@@ -110,7 +116,8 @@ def list_building(model: BuildingModel, routes: Drafts = "none") -> ImportedBuil
 class _Building:
     """A model with the names of its floors, by the keys of storeys, and of its places, and its pieces in their order.
 
-    Keys of places are those of rooms and doors, and of stairs with their end: ``KEY foot``.
+    Keys of places are those of rooms and doors, and of stairs with their end: ``KEY foot``. Pieces are sorted by
+    storey, room and type, as people look for them; those in no room come last. Of `outside` a workbook takes no sizes.
     """
 
     def __init__(self, model: BuildingModel) -> None:
@@ -128,7 +135,21 @@ class _Building:
         self.kinds = find_kinds(model, self.sides)
         self.places = self._name_places()
         self.points = find_room_points(model)
-        self.pieces, self.outside = self._size_pieces()
+        order = {one.key: at for at, one in enumerate(self.storeys)}
+
+        def place(one: Piece) -> tuple[Any, ...]:
+            room = not one.space, natural_key(self.places.get(one.space, ""))
+            return order[one.storey], *room, natural_key(one.type), one.x, one.y
+
+        outside = fill("a size outside {low:g} to {high:g} cm", low=LOW, high=HIGH)
+        every = [find_sizes(one) for one in sorted(model.pieces, key=place)]
+        self.pieces = [one for one in every if all(LOW <= size <= HIGH for size in one.sizes.values())]
+        counts = Counter(
+            (one.piece.type[:LONGEST_NAME], BESIDE_BASE if one.piece.support_reach == 0 else outside)
+            for one in every
+            if not all(LOW <= size <= HIGH for size in one.sizes.values())
+        )
+        self.outside = [Skipped(kind, number, reason) for (kind, reason), number in counts.items()]
 
     def _name_places(self) -> dict[str, str]:
         counts = Counter(key(one.name) for one in self.spaces)
@@ -151,59 +172,21 @@ class _Building:
             named.append((f"{stair.key} {stair.end}", text))
         return dict(zip((key for key, _ in named), name_apart(name for _, name in named), strict=True))
 
-    def _size_pieces(self) -> "tuple[list[Sized], list[Skipped]]":
-        """Return the pieces by storey, room and type, as people look for them, and those that a workbook cannot take.
+    # ------------------------------------------------------------ rows
 
-        Those in no room come last.
-        """
-        order = {one.key: at for at, one in enumerate(self.storeys)}
-
-        def place(one: Piece) -> tuple[Any, ...]:
-            room = not one.space, natural_key(self.places.get(one.space, ""))
-            return order[one.storey], *room, natural_key(one.type), one.x, one.y
-
-        kept, counts = list[Sized](), Counter[tuple[str, Text]]()
-        for one in map(find_sizes, sorted(self.model.pieces, key=place)):
-            if all(LOW <= size <= HIGH for size in one.sizes.values()):
-                kept.append(one)
-            else:
-                outside = fill("a size outside {low:g} to {high:g} cm", low=LOW, high=HIGH)
-                counts[one.piece.type[:LONGEST_NAME], BESIDE_BASE if one.piece.support_reach == 0 else outside] += 1
-        return kept, [Skipped(kind, number, reason) for (kind, reason), number in counts.items()]
-
-    def _name_items(self) -> list[str]:
-        """Return names such as ``A203-02``: the room, or else the floor, and a number in it."""
+    def list_items(self, types: Mapping[Any, str]) -> Iterator[Row]:
+        """Yield the rows of Items, named as ``A203-02``: the room, or else the floor, and a number in it."""
         numbers: Counter[str] = Counter()
         spaces = {one.key: one for one in self.model.spaces}
         rooms = Counter(key(one.name) for one in spaces.values())
-        found = []
-        for one in self.pieces:
-            room, at = spaces.get(one.piece.space), self.floors[one.piece.storey]
+        names = []
+        for piece in (one.piece for one in self.pieces):
+            room, at = spaces.get(piece.space), self.floors[piece.storey]
             if room is not None and room.name and rooms[key(room.name)] == 1:
                 at = room.name
             numbers[key(at)] += 1
-            found.append(f"{at}-{numbers[key(at)]:02}")
-        return name_apart(found)
-
-    # ------------------------------------------------------------ rows
-
-    def find_height(self) -> float | None:
-        """Return the height of the highest storey or ceiling; None if not above all floors, or above `TALLEST`."""
-        datum = {one.key: one.elevation - one.level for one in self.model.storeys}
-        tops = [one.elevation for one in self.model.storeys]
-        tops += [one.top + datum[one.storey] for one in self.model.spaces if one.storey in datum]
-        highest = max((one.elevation for one in self.storeys), default=0.0)
-        top = max(tops, default=0.0)
-        return round(top, 2) if max(highest, LOWEST_ROOF) < top <= TALLEST else None
-
-    def list_floor(self, storey: Storey) -> Row:
-        row: Row = {"floor": self.floors[storey.key]}
-        if LOWEST <= storey.elevation <= HIGHEST:
-            row["elevation"] = round(storey.elevation, 3) + 0.0
-        return row
-
-    def list_items(self, types: Mapping[Any, str]) -> Iterator[Row]:
-        for name, one in zip(self._name_items(), self.pieces, strict=True):
+            names.append(f"{at}-{numbers[key(at)]:02}")
+        for name, one in zip(name_apart(names), self.pieces, strict=True):
             piece = one.piece
             row = {
                 "item": name, "floor": self.floors[piece.storey], "room": self.places.get(piece.space, ""),
@@ -214,6 +197,7 @@ class _Building:
             yield {field: value for field, value in row.items() if value != ""}
 
     def list_places(self) -> Iterator[Row]:
+        """Yield the rows of Places; an outline is as coarse as a cell asks for, and left out where none is taken."""
         search = SpaceSearch(self.model.spaces)
         held = (search.find(one.storey, (one.x, one.y), REACH) for one in self.model.stairs)
         with_stair = {own[0].key for own in held if own}
@@ -221,9 +205,17 @@ class _Building:
         for one in self.spaces:
             x, y = self.points[one.key]
             kind = find_kind(one, doors[one.key], holds_stair=one.key in with_stair)
-            row = {"place": self.places[one.key], "floor": self.floors[one.storey], "x": x, "y": y, "kind": kind}
-            outline = _write_outline(one.area)
-            yield row | ({"outline": outline} if outline else {})
+            row: Row = {"place": self.places[one.key], "floor": self.floors[one.storey], "x": x, "y": y, "kind": kind}
+            outer, coarse = to_polygon(one.area).exterior, 0.0
+            corners = outer.coords[:-1]
+            while len(corners) > MOST:
+                coarse = 2 * coarse or 0.01
+                corners = outer.simplify(coarse).coords[:-1]
+            outline = "; ".join(f"{round(x, 3):g} {round(y, 3):g}" for x, y in corners)
+            with suppress(OutlineError):
+                parse_outline(outline, 1.0)
+                row["outline"] = outline
+            yield row
         ends: list[tuple[Door | Stair, str, str]] = [
             *((one, one.key, "exit" if self.kinds[one.key] == "exit" else "door") for one in self.doors),
             *((one, f"{one.key} {one.end}", "stair") for one in self.stairs),
@@ -315,7 +307,7 @@ class Sized:
 
     @property
     def sizes(self) -> dict[str, float]:
-        """Return the sizes by field [cm]."""
+        """The sizes by field [cm]."""
         return {"breadth": self.breadth, "width": self.width, "height": self.height}
 
     def list_notes(self) -> Iterator[str]:
@@ -362,38 +354,17 @@ def find_sizes(piece: Piece) -> Sized:
     )  # fmt: skip
 
 
-# ---------------------------------------------------------------- values of rows
-
-
 def find_kind(space: Space, doors: int = 0, *, holds_stair: bool = False) -> Literal["room", "corridor", "stair"]:
-    """Return what a room is by the words of its name, and what bears them out.
+    """Return what a room is by the words of its name, confirmed by its `doors`, its shape or an end of a stair in it.
 
-    Rooms are checked for losing all their ways out, corridors and stairs are not: so a name alone makes none. It has so
-    many `doors`, and may hold an end of a stair.
+    Rooms are checked for losing all their ways out, corridors and stairs are not: so a name alone makes none.
     """
     words = set(re.findall(r"[^\W\d_]+", f"{space.name} {space.title}".casefold()))
     if holds_stair and words & set(STAIRS):
         return "stair"
-    is_corridor = words & set(CORRIDORS) and (doors >= MANY_DOORS or _is_slender(space.area))
-    return "corridor" if is_corridor else "room"
-
-
-def _is_slender(area: Area) -> bool:
-    polygon = to_polygon(area)
-    rectangle = find_rectangle(np.array(polygon.exterior.coords)) if polygon.area > 0 else None
-    return rectangle is not None and (rectangle.long >= SLENDER * rectangle.short or find_width(polygon) > 0)
-
-
-def _write_outline(area: Area) -> str:
-    """Return the outline of a room, as coarse as a cell asks for; "" where a workbook would not take it."""
-    polygon, coarse = to_polygon(area), 0.0
-    corners = list(polygon.exterior.coords)[:-1]
-    while len(corners) > MOST:
-        coarse = 2 * coarse or 0.01
-        corners = list(polygon.exterior.simplify(coarse).coords)[:-1]
-    text = "; ".join(f"{round(x, 3):g} {round(y, 3):g}" for x, y in corners)
-    try:
-        parse_outline(text, 1.0)
-    except OutlineError:
-        return ""
-    return text
+    if not words & set(CORRIDORS):
+        return "room"
+    polygon = to_polygon(space.area)
+    box = find_rectangle(np.array(polygon.exterior.coords)) if polygon.area > 0 else None
+    is_slender = box is not None and (box.long >= SLENDER * box.short or find_width(polygon) > 0)
+    return "corridor" if doors >= MANY_DOORS or is_slender else "room"

@@ -1,15 +1,17 @@
 """Files that an inventory is imported from: which reader takes one is told by its content, not by its name."""
 
+import hashlib
 import zipfile
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
-from pathlib import Path
+from pathlib import Path, PurePath
 
 from assess.bim.building_model import BuildingModel
 from assess.bim.cobie import read_cobie
 from assess.bim.ifc_file import check_installed, check_model, is_model, unreadable
 from assess.bim.ifc_model import read_model
-from assess.bim.import_workbook import ImportedBuilding, keep_record
+from assess.bim.import_workbook import ENDING, ImportedBuilding, describe
 from assess.bim.model_process import run_apart
 from assess.bim.model_rows import Drafts, list_building
 from assess.bim.roomplan import MOST_BYTES as MOST_OF_SCAN
@@ -20,6 +22,8 @@ from assess.errors import InputError, ModelError
 from assess.i18n import fill, load_catalogue, speaking, spoken
 from assess.progress import SILENT, Progress
 from assess.resources import open_input, read_input
+from assess.text import plain_text
+from assess.version import __version__
 
 Reader = Callable[[Path, str, Sequence[str]], BuildingModel]
 """Reads a file, by its path, its name and further classes of furniture."""
@@ -33,8 +37,7 @@ def read_source(
 ) -> ImportedBuilding:
     """Read the furniture of a building from a building model (IFC), a scan (RoomPlan), a home, or a COBie file.
 
-    `routes`: whether evacuation routes are drafted; COBie files have no positions to draft them from.
-    `also`: further classes of an IFC model whose elements are furniture.
+    `also`: further classes of an IFC model whose elements are furniture. The record of the import is among its files.
 
     Raises ModelError or WorkbookError if it is none of these, is damaged, or beyond a limit: the message tells the
     fix; InputError if it cannot be opened.
@@ -53,9 +56,13 @@ def read_source(
             raise ModelError(fill("{name} holds no positions, so that no routes can be drafted from it.", name=name))
         else:
             found = progress.wait_for(lambda: read_cobie(path, name, progress))
-        return keep_record(found, path)
+        with open_input(path) as file:
+            digest = hashlib.file_digest(file, "sha256").hexdigest()
     except OSError as error:
         raise unreadable(name, error) from None
+    head = f"Imported by assess {__version__} from {name}, SHA-256 {digest}"
+    record = "".join(f"{plain_text(line)}\n" for line in (head, "", *describe(found)))
+    return replace(found, files={**found.files, PurePath(name).stem + ENDING: record.encode()})
 
 
 def _choose(path: Path, name: str, start: bytes) -> Reader | None:

@@ -4,7 +4,7 @@ What tells is where the pieces stand that both have. Names alone would mislead: 
 the model calls 1 and 2 has a floor 1 that is another.
 
 The pieces also tell the origin of the workbook. A model far from its own is brought near in round steps; what an import
-takes off follows the outermost element, so that a single new piece may change it by `assess.bim.model_position.ROUND`.
+takes off follows the outermost element, so that a single new piece may change it by `assess.bim.building_model.ROUND`.
 People's own rows and the points of routes keep the origin of the first import.
 """
 
@@ -15,8 +15,7 @@ from dataclasses import dataclass
 from statistics import median
 from typing import Any
 
-from assess.bim.building_model import Point
-from assess.bim.model_position import ROUND
+from assess.bim.building_model import ROUND, Point
 from assess.bim.update_cells import Rows
 from assess.workbook.names import key
 from assess.workbook.parse import Row

@@ -26,9 +26,6 @@ from importlib.resources import files
 from io import StringIO
 from typing import Any, NamedTuple
 
-from assess.bim.cobie import read_cobie
-from assess.bim.cobie_sheets import is_cobie
-from assess.bim.import_workbook import list_remarks, list_rows
 from assess.errors import InputError, Problem, WorkbookError
 from assess.i18n import LANGUAGES, count, fill, join, load_catalogue
 from assess.model import Inventory
@@ -39,7 +36,7 @@ from assess.portfolio.sources import Source
 from assess.units import LENGTH
 from assess.workbook.catalogue import catalogue_rows
 from assess.workbook.names import key
-from assess.workbook.read import Rows, read_inventory
+from assess.workbook.read import Rows, is_cobie, read_inventory
 from assess.workbook.schema import BUILDING, ITEMS
 
 APART = 0.01
@@ -63,6 +60,9 @@ def read_building(source: Source, data: bytes | None, ground: GroundField | None
     if data is None or not is_cobie(data):
         inventory = read_inventory(source.file, building=row.as_building(), ground=ground)
         return Origin(inventory="surveyed"), _compare(inventory, row, is_survey=True)
+    from assess.bim.cobie import read_cobie
+    from assess.bim.import_workbook import list_remarks, list_rows
+
     imported = read_cobie(data, source.file.name)
     left_out = sum(one.count for one in imported.skipped if one.is_furniture)
     if row.building:  # what a building model calls itself is no name that people gave it

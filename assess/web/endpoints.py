@@ -175,7 +175,7 @@ def _close(asked: Asked) -> Answer:
 
 def _upload(asked: Asked) -> Answer:
     """Hold a workbook that was dropped in; a COBie file, which is no inventory yet, is read as a building model is."""
-    from assess.bim.cobie_sheets import is_cobie
+    from assess.workbook.read import is_cobie
 
     name, session = asked.name, asked.session
     if not is_cobie(asked.data):

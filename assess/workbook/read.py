@@ -1,7 +1,10 @@
 """A workbook to the inventory: bytes, cells, typed rows, problems, in that order."""
 
 import hashlib
+import io
 import json
+import re
+import zipfile
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -16,7 +19,7 @@ from assess.workbook import check, check_routes, draft_names
 from assess.workbook.check import Check
 from assess.workbook.kept_files import KeptFiles
 from assess.workbook.names import ENGLISH, find_near, find_sheet, is_cobie_list, key, plain, translate, versions
-from assess.workbook.open import Book, read_file
+from assess.workbook.open import DAMAGE, WORKBOOK, Book, read_file
 from assess.workbook.parse import CodeCells, Source, Table, Tables, first_row, parse_sheet
 from assess.workbook.picture_files import PictureReader
 from assess.workbook.records import FileReader, Files, fill_building, replace_ground
@@ -37,6 +40,8 @@ if TYPE_CHECKING:
 
     from assess.workbook.held import HeldSheets
 
+_MAX_LIST = 2**20
+_SHEET = re.compile(rb"<(?:\w+:)?sheet\s[^>]*?\bname=[\"']([^\"']*)", re.IGNORECASE)
 IN_CODE = "inventory.xlsx"
 """What an inventory without a file is called in reports."""
 
@@ -195,6 +200,17 @@ def _parse(
         else:
             tables[sheet.name] = Table(sheet=translate(sheet, language))
     return {name: table.with_failed(listed) for name, table in tables.items()}, listed
+
+
+def is_cobie(source: Path | bytes) -> bool:
+    """Tell whether a file looks like a COBie spreadsheet; only its list of sheets is read. Never an error."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(source) if isinstance(source, bytes) else source) as archive:
+            is_small = archive.getinfo(WORKBOOK).file_size <= _MAX_LIST
+            names = _SHEET.findall(archive.read(WORKBOOK)) if is_small else []
+    except DAMAGE:
+        return False
+    return is_cobie_list([name.decode("utf-8", "replace") for name in names])
 
 
 def _find_sheets(

@@ -6,12 +6,11 @@ from typing import Any
 import pytest
 from openpyxl import load_workbook
 
-from assess.bim import cobie_sheets
+from assess.bim import cobie
 from assess.bim.cobie import read_cobie
-from assess.bim.cobie_sheets import is_cobie
 from assess.bim.import_workbook import ImportedBuilding, build_workbook
 from assess.errors import WorkbookError
-from assess.workbook.read import read_inventory
+from assess.workbook.read import is_cobie, read_inventory
 from tests.bim.cobie_files import COMPONENTS, FLOORS, TYPES, make_sheets, one_type, write_cobie
 from tests.workbook.books import write_book, write_shared
 from tests.workbooks import write as write_inventory
@@ -260,7 +259,7 @@ def test_a_unit_that_is_not_known_is_an_error(tmp_path: Path) -> None:
 
 
 def test_rows_without_end_are_an_error_before_they_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cobie_sheets, "MAX_ROWS", 50)
+    monkeypatch.setattr(cobie, "MAX_ROWS", 50)
     rows = [{**COMPONENTS[0], "Name": f"B{at}"} for at in range(60)]
     path = write_cobie(tmp_path / "c.xlsx", components=rows)
     assert _error(path) == "Component!A51: the sheet has more than 50 rows. Split the file by floors."

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from assess.bim.building_model import BuildingModel, Space, Storey
-from assess.bim.door_sides import find_ground, find_kinds, find_sides
+from assess.bim.draft_floor import find_ground, find_kinds, find_sides
 from tests.bim.office_models import door, rectangle
 
 

@@ -5,8 +5,7 @@ from dataclasses import replace
 import pytest
 
 from assess.bim.building_model import BuildingModel, Space, Storey
-from assess.bim.draft_floor import build_plan
-from assess.bim.draft_openings import find_openings
+from assess.bim.draft_floor import build_plan, find_openings
 from tests.bim.office_models import door, piece, rectangle
 
 FAR_WALL = rectangle(-1, -1, -0.9, 5)

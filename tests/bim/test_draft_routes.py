@@ -14,8 +14,7 @@ from shapely import LineString, Point, union_all
 
 import assess
 from assess.bim.building_model import BuildingModel, Door, Piece, Space, Stair, Storey
-from assess.bim.door_sides import find_kinds, find_sides
-from assess.bim.draft_floor import FAR, build_plan, find_room_points, link_door
+from assess.bim.draft_floor import FAR, build_plan, find_kinds, find_room_points, find_sides, link_door
 from assess.bim.draft_routes import DraftRoutes, draft_routes, measure_gap
 from assess.bim.import_workbook import build_workbook
 from assess.bim.model_rows import list_building
