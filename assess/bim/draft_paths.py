@@ -287,8 +287,8 @@ def _add_axis(
         joined = [name for _, name in spot if name]
         name = next((one for one in joined if one in on_axis), "") or next(iter(ways.add([axis.point(middle)])))
         names.append(name)
-        for one in joined:
-            own.setdefault(one, []).append(name)
+        for node in joined:
+            own.setdefault(node, []).append(name)
     for end, name in ((0, names[0]), (1, names[-1])):
         own.setdefault(f"from end {number} {end}", []).append(name)
     return names
