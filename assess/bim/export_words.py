@@ -10,13 +10,13 @@ from assess.i18n import ngettext
 from assess.intensity import SHAKINGS
 from assess.report import words
 from assess.report.say.work import (
+    CHECKS,
+    HOLDS,
     NAMED,
     RouteStep,
     join_names,
-    say_checks,
     say_effect,
     say_force,
-    say_held,
     shorten_names,
 )
 from assess.results import CANNOT_ROCK
@@ -150,7 +150,7 @@ def list_lines(found: ExportRun, entry: ScheduleRow, pieces: Sequence[ExportPiec
         title = _capital(_(known.title))
         yield _("{title}: {what}. One fixing is: {fixing}.", title=title, what=_(known.what), fixing=_(known.fixing))
         yield _("Known against it: {weakness} ({source}).", weakness=_(known.weakness), source=_(known.source))
-    yield say_checks()
+    yield _(CHECKS)
     yield _("Entry {place:,} of {n:,} of the schedule. {report}; {program}.", place=entry.place,
             n=len(found.entries), report=say_report(run), program=say_program(run))  # fmt: skip
 
@@ -179,7 +179,7 @@ def _list_work(work: WorkRow, *, is_only: bool) -> Iterator[str]:
     if work.tension_code_kn is not None:
         lines.append(_("Tension by the code: {code} kN.", code=say_force(work.tension_code_kn)))
     if work.tension_high_kn == 0:
-        lines.append(f"{_capital(say_held())}.")
+        lines.append(f"{_capital(_(HOLDS))}.")
     if work.is_per_metre:
         lines.append(_("Forces and fixings are per metre of width, as the width is not known."))
     if work.weights_assumed:

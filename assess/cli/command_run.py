@@ -188,7 +188,7 @@ def describe_result(results: "Results") -> Iterator[str]:
     from assess.report.counts import count
     from assess.report.say import route as say_route
     from assess.report.say.piece import list_apart, list_ways_to_settle
-    from assess.report.say.simulation import describe_verification, list_conditions, say_assumed, say_sensitivity
+    from assess.report.say.simulation import Verified, list_conditions, say_assumed, say_sensitivity
     from assess.risk import RiskClass
 
     rows = tuple(results)
@@ -217,7 +217,7 @@ def describe_result(results: "Results") -> Iterator[str]:
         held = sum(say_route.is_held(one, routes.risk) for one in routes.routes)
         worse = [f"If anchors fail, {held:,} would be worse."] if held else []
         yield " ".join((*say_route.count_all(routes), *worse, *say_route.say_to_fill_in(routes)))
-    verified = describe_verification(results) if results.has_simulated else "Not simulated."
+    verified = Verified(results, rows).sentence if results.has_simulated else "Not simulated."
     yield f"Chance of overturning in this scenario, not per year. {verified}"
     yield from (f"{text}." for text in list_conditions(results))
     if assumed := " ".join(filter(None, (say_assumed(results), say_sensitivity(results, rows)))):

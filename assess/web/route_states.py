@@ -14,9 +14,8 @@ from assess.report.say.route import (
     say_blocked,
     say_lost,
     say_missing,
+    say_outlook,
     say_room_state,
-    say_route_state,
-    say_segment_state,
     say_state,
     say_to_fill_in,
     say_uncounted,
@@ -140,12 +139,12 @@ def _state(
 def _describe_route(one: RouteRow, routes: RouteTables, left_out: dict[str, str]) -> dict[str, Any]:
     if key(one.route) in left_out:
         return _unknown(left_out[key(one.route)])
-    word, detail = say_route_state(one, routes.risk), _join_details(one, say_blocked(one))
+    word, detail = say_outlook(one, routes.risk), _join_details(one, say_blocked(one))
     return _state(one.state, word, one.blocked, detail, is_standing=not one.is_fixed)
 
 
 def _describe_segment(one: SegmentRow, routes: RouteTables) -> dict[str, Any]:
-    word, detail = say_segment_state(one, routes.risk), _join_details(one, say_blocked(one))
+    word, detail = say_outlook(one, routes.risk), _join_details(one, say_blocked(one))
     return _state(one.state, word, one.blocked, detail, is_standing=one.is_blocked_standing)
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 import assess
-from assess.report.say.route import say_blocked, say_room_state, say_route_state, say_segment_state
+from assess.report.say.route import say_blocked, say_outlook, say_room_state
 from assess.route_results import RouteState
 from assess.web.route_states import describe_routes
 from assess.workbook.template import Content, write_workbook
@@ -48,10 +48,10 @@ def _compare(answer, results):
     tables = results.route_tables
     risk = tables.risk
     assert _states(answer["routes"], "route") == {
-        (one.route,): _expected(one, say_route_state(one, risk), one.blocked) for one in tables.routes
+        (one.route,): _expected(one, say_outlook(one, risk), one.blocked) for one in tables.routes
     }
     assert _states(answer["segments"], "row") == {
-        (one.workbook_row,): _expected(one, say_segment_state(one, risk), one.blocked) for one in tables.segments
+        (one.workbook_row,): _expected(one, say_outlook(one, risk), one.blocked) for one in tables.segments
     }
     rooms = {(one.room,): _expected(one, say_room_state(one), one.loses_every_exit) for one in tables.rooms}
     found = _states(answer["rooms"], "room")

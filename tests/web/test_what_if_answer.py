@@ -8,7 +8,7 @@ import pytest
 import assess
 from assess.errors import InputError
 from assess.report.counts import count
-from assess.report.say.route import say_room_state, say_route_state
+from assess.report.say.route import say_outlook, say_room_state
 from assess.risk import RiskClass
 from assess.web.what_if_answer import try_out
 from tests.web.opened import MARKET, edit, hold
@@ -37,7 +37,7 @@ def _compare(side, results):
     counts = count("", tuple(results))
     assert side["counts"] == {one.name.lower(): counts.by_class[one] for one in RiskClass} | {"": counts.anchored}
     tables = results.route_tables
-    words = {one.route: say_route_state(one, tables.risk) for one in tables.routes}
+    words = {one.route: say_outlook(one, tables.risk) for one in tables.routes}
     assert {one["route"]: one["word"] for one in side["routes"]} == words
     rooms = {one.room: say_room_state(one) for one in tables.rooms}
     assert {one["room"]: one["word"] for one in side["rooms"]} == rooms

@@ -11,8 +11,8 @@ from assess.report.say.route import (
     is_held,
     say_blocked,
     say_missing,
+    say_outlook,
     say_segment,
-    say_segment_state,
 )
 from assess.route_results import RouteState, RouteTables, SegmentRow
 from assess.routes.geometry import rectangle
@@ -117,7 +117,7 @@ def _title(one: SegmentRow, risk: float) -> str:
     said = _(
         "{segment}: {state}; chance of blockage {chance}",
         segment=say_segment(one),
-        state=say_segment_state(one, risk),
+        state=say_outlook(one, risk),
         chance=say_blocked(one),
     )
     if one.missing:

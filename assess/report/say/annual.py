@@ -57,7 +57,26 @@ def list_annual(results: Results, rows: Sequence[ItemResult]) -> Annual | None:
     rooms = [AnnualLine(one.room, "", one.floor, one.annual) for one in ways.rooms if one.annual]
     for lines in (pieces, routes, rooms):
         lines.sort(key=lambda one: (-one.row.rate, natural_key(one.name)))
-    paragraphs = (" ".join(_say_building(found)), " ".join(_say_basis(found, results)), " ".join(_say_counted(found)))
+    counted = [
+        ngettext("{n:,} free-standing piece is counted.", "{n:,} free-standing pieces are counted.", found.pieces)
+    ]
+    if found.not_evaluated:
+        counted.append(ngettext("{n:,} more was not simulated and is not counted.",
+                                "{n:,} more were not simulated and are not counted.",
+                                found.not_evaluated))  # fmt: skip
+    if found.cannot_rock:
+        counted.append(ngettext(
+            "{n:,} more is too stocky to rock and has no chance here; beside a route it falls by the formula.",
+            "{n:,} more are too stocky to rock and have no chance here; beside a route they fall by the formula.",
+            found.cannot_rock,
+        ))  # fmt: skip
+    counted += [
+        _("Anchored pieces are not counted."),
+        _("≥ marks a lower bound: the motions may be too weak, the hazard curve does not reach far enough, pieces of "
+          "one row (Quantity) were taken to fall together, or some were not simulated."),
+        _("The intervals cover the number of draws only, not what is not known of the hazard."),
+    ]  # fmt: skip
+    paragraphs = (" ".join(_say_building(found)), " ".join(_say_basis(found, results)), " ".join(counted))
     return Annual(paragraphs, pieces, routes, rooms)
 
 
@@ -130,27 +149,6 @@ def _say_basis(found: AnnualTables, results: Results) -> Iterator[str]:
         "The shares that fall were integrated over the curve by the lognormal that fits them, or as a table where that "
         "misses a share by more than 0.05."
     )
-
-
-def _say_counted(found: AnnualTables) -> Iterator[str]:
-    yield ngettext("{n:,} free-standing piece is counted.", "{n:,} free-standing pieces are counted.", found.pieces)
-    if found.not_evaluated:
-        yield ngettext(
-            "{n:,} more was not simulated and is not counted.", "{n:,} more were not simulated and are not counted.",
-            found.not_evaluated,
-        )  # fmt: skip
-    if found.cannot_rock:
-        yield ngettext(
-            "{n:,} more is too stocky to rock and has no chance here; beside a route it falls by the formula.",
-            "{n:,} more are too stocky to rock and have no chance here; beside a route they fall by the formula.",
-            found.cannot_rock,
-        )  # fmt: skip
-    yield _("Anchored pieces are not counted.")
-    yield _(
-        "≥ marks a lower bound: the motions may be too weak, the hazard curve does not reach far enough, pieces of one "
-        "row (Quantity) were taken to fall together, or some were not simulated."
-    )
-    yield _("The intervals cover the number of draws only, not what is not known of the hazard.")
 
 
 def say_share(value: float, row: AnnualRow) -> str:

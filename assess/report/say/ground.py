@@ -188,7 +188,36 @@ def profile_status(profile: "Profile") -> str:
 
 def list_assumed(results: Results) -> list[tuple[str, str]]:
     """Return what the motion of the ground and the floors rests on, where it is assumed."""
-    return [*_list_shaking(results), *_list_ground(results), *_list_profiled(results), *_list_drawn(results)]
+    shaking, site, lines = results.provenance.shaking, results.provenance.site_ground, list[tuple[str, str]]()
+    if shaking:
+        lines.append((_("Shaking"), _say_shaking(shaking, results)))
+    if shaking and shaking.is_derived:
+        lines.append((_("PGA of the assumed shaking"), _(
+            "from PGV by the ratio that is drawn, as no published relation of the JMA class to PGA was found; the "
+            "scatter is that of PGV, with the width of the class"
+        )))  # fmt: skip
+    if shaking and shaking.is_open:
+        lines.append((_("Class of the assumed shaking"), _(
+            "open above: taken as {intensity}, the middle of a class of one whole degree; the ground can shake more",
+            intensity=number(shaking.intensity, "g"),
+        )))  # fmt: skip
+    if site:
+        lines += [
+            (_("Ground motion"), say_ground_source(results)),
+            (_("File of the ground motion"), _("{file}, SHA-256 {sha256}", file=site.file, sha256=site.sha256)),
+            *((_(label), _(value)) for label, value in site.facts),
+        ]
+    if site and site.psa_g:
+        values = ", ".join(
+            _("{psa} g at {period} s", psa=words.in_g(psa), period=number(period, "g")) for period, psa in site.psa_g
+        )
+        text = _("{values}; for information: the motion of the floors follows from PGA and PGV", values=values)
+        lines.append((_("Spectral acceleration at the building, 5 %"), text))
+    if site and site.shared is not None:
+        share = _("{share} % of the variance of ln {measure}", share=words.fixed(100 * site.shared, 0),
+                  measure=site.measure)  # fmt: skip
+        lines.append((_("Common to all places of the earthquake"), share))
+    return [*lines, *_list_profiled(results), *_list_drawn(results)]
 
 
 def _list_profiled(results: Results) -> list[tuple[str, str]]:
@@ -258,47 +287,6 @@ def _list_drawn(results: Results) -> list[tuple[str, str]]:
     ]
 
 
-def _list_ground(results: Results) -> list[tuple[str, str]]:
-    found = results.provenance.site_ground
-    if found is None:
-        return []
-    lines = [(_("Ground motion"), say_ground_source(results))]
-    lines.append((_("File of the ground motion"), _("{file}, SHA-256 {sha256}", file=found.file, sha256=found.sha256)))
-    lines += [(_(label), _(value)) for label, value in found.facts]
-    if found.psa_g:
-        values = ", ".join(
-            _("{psa} g at {period} s", psa=words.in_g(psa), period=number(period, "g"))
-            for period, psa in found.psa_g
-        )  # fmt: skip
-        text = _("{values}; for information: the motion of the floors follows from PGA and PGV", values=values)
-        lines.append((_("Spectral acceleration at the building, 5 %"), text))
-    if found.shared is not None:
-        share = _("{share} % of the variance of ln {measure}", share=words.fixed(100 * found.shared, 0),
-                  measure=found.measure)  # fmt: skip
-        lines.append((_("Common to all places of the earthquake"), share))
-    return lines
-
-
-def _list_shaking(results: Results) -> list[tuple[str, str]]:
-    found = results.provenance.shaking
-    if found is None:
-        return []
-    lines = [(_("Shaking"), _say_shaking(found, results))]
-    if found.is_derived:
-        text = _(
-            "from PGV by the ratio that is drawn, as no published relation of the JMA class to PGA was found; the "
-            "scatter is that of PGV, with the width of the class"
-        )
-        lines.append((_("PGA of the assumed shaking"), text))
-    if found.is_open:
-        text = _(
-            "open above: taken as {intensity}, the middle of a class of one whole degree; the ground can shake more",
-            intensity=number(found.intensity, "g"),
-        )
-        lines.append((_("Class of the assumed shaking"), text))
-    return lines
-
-
 # ---------------------------------------------------------------- peaks of the ground
 
 PEAKS = ("ground_pga", "sds")
@@ -307,13 +295,21 @@ PEAKS = ("ground_pga", "sds")
 
 def say_peak(results: Results, name: str, given: str) -> str:
     """Return a peak of the ground, one of `PEAKS`, in words: as `given` with its unit, or what is used, and why."""
-    reason = _find_reason(results, name)
-    if not reason:
+    building, levels = results.building, {one.floor: one.elevation_m for one in results.floor_rows}
+    at_grade = [one for one in results.motions if (level := levels.get(one.floor)) is not None and level <= 0]
+    if name == "ground_pga" and building.hazard:
         return given
-    levels = {one.floor: one.elevation_m for one in results.floor_rows}
+    if all(one.source == "record" or one.between for one in results.motions):
+        reason = _("every floor has a record")
+    elif any(one.source in ("record", "given") for one in at_grade):
+        reason = _("the motion at grade is known")
+    elif name == "sds" and building.ground_pga is not None:
+        reason = _("Ground PGA is given")
+    else:  # a floor's motion follows it
+        return given
     ground = [one for one in results.motions if levels.get(one.floor) == 0 and name == "ground_pga"]
     used = max(ground, key=lambda one: (one.pfa_g, not one.is_borrowed), default=None)  # of the axis known along
-    of_anchors = name == ("sds" if results.building.sds is not None else "ground_pga")
+    of_anchors = name == ("sds" if building.sds is not None else "ground_pga")
     if used is None:
         if of_anchors:
             return _("{given}, used for the code's force on anchors only: {reason}", given=given, reason=reason)
@@ -326,22 +322,6 @@ def say_peak(results: Results, name: str, given: str) -> str:
         )  # fmt: skip
     return _("{used} g on floor {floor}, {source}; {given} of the workbook is not used: {reason}", **names, given=given,
              reason=reason)  # fmt: skip
-
-
-def _find_reason(results: Results, name: str) -> str:
-    """Return why no floor's motion follows a peak, "" where one does."""
-    building = results.building
-    if name == "ground_pga" and building.hazard:
-        return ""
-    if all(one.source == "record" or one.between for one in results.motions):
-        return _("every floor has a record")
-    levels = {one.floor: one.elevation_m for one in results.floor_rows}
-    at_grade = [one for one in results.motions if (level := levels.get(one.floor)) is not None and level <= 0]
-    if any(one.source in ("record", "given") for one in at_grade):
-        return _("the motion at grade is known")
-    if name == "sds" and building.ground_pga is not None:
-        return _("Ground PGA is given")
-    return ""
 
 
 # ---------------------------------------------------------------- the ground motion
@@ -380,7 +360,23 @@ def say_ground(results: Results, *, shortly: bool = False) -> str:
         return say_ground_source(results) or " ".join(_say_given(results))
     if found is not None:
         return " ".join(_say_site(found, results))
-    return _say_shaking_shortly(shaking, results) if shaking else ""
+    if shaking is None:
+        return ""
+    values = {
+        "intensity": _(shaking.choice), "pga": words.in_g(shaking.pga_g), "pgv": words.fixed(shaking.pgv_cm_s, 1),
+        "sources": ", ".join(shaking.sources),
+    }  # fmt: skip
+    if uses_scatter(results):
+        text = _(
+            "Assumed shaking: {intensity}, by its median PGV of {pgv} cm/s and PGA of {pga} g, scatter of ln PGV "
+            "{scatter} ({sources}).", scatter=number(shaking.scatter, "g"), **values,
+        )  # fmt: skip
+    else:
+        text = _(
+            "Assumed shaking: {intensity}, by its median PGV of {pgv} cm/s and PGA of {pga} g ({sources}); scatter is "
+            "not in the results.", **values,
+        )  # fmt: skip
+    return " ".join((text, *_say_factor(results)))
 
 
 def name_source(found: "SiteGround") -> str:
@@ -488,24 +484,6 @@ def _say_shaking(found: Shaking, results: Results) -> str:
     return " ".join(texts)
 
 
-def _say_shaking_shortly(found: Shaking, results: Results) -> str:
-    values = {
-        "intensity": _(found.choice), "pga": words.in_g(found.pga_g), "pgv": words.fixed(found.pgv_cm_s, 1),
-        "sources": ", ".join(found.sources),
-    }  # fmt: skip
-    if uses_scatter(results):
-        text = _(
-            "Assumed shaking: {intensity}, by its median PGV of {pgv} cm/s and PGA of {pga} g, scatter of ln PGV "
-            "{scatter} ({sources}).", scatter=number(found.scatter, "g"), **values,
-        )  # fmt: skip
-    else:
-        text = _(
-            "Assumed shaking: {intensity}, by its median PGV of {pgv} cm/s and PGA of {pga} g ({sources}); scatter is "
-            "not in the results.", **values,
-        )  # fmt: skip
-    return " ".join((text, *_say_factor(results)))
-
-
 def _say_factor(results: Results) -> Iterator[str]:
     if results.settings.scale != 1:
         factor = number(results.settings.scale, "g")
@@ -535,6 +513,15 @@ def build_cautions(results: Results) -> list[Caution]:
     """Return what a reader must know about the floors' motion before trusting a class."""
     motions, mixed = results.motions, _("The floors' motion comes from mixed sources: compare floors with care.")
     profiles = ", ".join(_with_status(one.key, one) for one in used_profiles(results))
+    warnings = list(dict.fromkeys(map(_, results.underestimates)))
+    short = ngettext("More is known than is used: {n:,} warning, see the data-quality log.",
+                     "More is known than is used: {n:,} warnings, see the data-quality log.",
+                     len(warnings))  # fmt: skip
+    further = ngettext("More is known than is used: {n:,} further warning of this kind, see the data-quality log.",
+                       "More is known than is used: {n:,} further warnings of this kind, see the data-quality log.",
+                       len(warnings) - MOST_WARNINGS)  # fmt: skip
+    unused = [_("More is known than is used: {warning}", warning=words.clip(one, 400))
+              for one in warnings[:MOST_WARNINGS]]  # fmt: skip
     cautions = [
         *_of_floors(
             (one.floor for one in motions if one.source == "profile"),
@@ -554,7 +541,7 @@ def build_cautions(results: Results) -> list[Caution]:
                              floors=floors),
             lambda floors: _("{floors}: the same as a known floor at the same height.", floors=floors),
         ),
-        *_list_underestimates(results),
+        *(Caution(one, short) for one in (*unused, *([further] if len(warnings) > MOST_WARNINGS else []))),
         *([Caution(mixed, mixed)] if len({motion.source for motion in motions}) > 1 else []),
     ]  # fmt: skip
     if not results.has_simulated:
@@ -573,25 +560,6 @@ def _of_floors(floors: Iterable[str], say: Callable[[str], str], shortly: Callab
         ngettext("Floor {floors}", "Floors {floors}", len(each), floors=text) for text in (", ".join(each), some)
     )
     return [Caution(say(words.clip(named, 300)), shortly(short))]
-
-
-def _list_underestimates(results: Results) -> Iterator[Caution]:
-    """Give the first warnings that more shaking is known than is used, and the number of the others."""
-    warnings = list(dict.fromkeys(map(_, results.underestimates)))
-    short = ngettext(
-        "More is known than is used: {n:,} warning, see the data-quality log.",
-        "More is known than is used: {n:,} warnings, see the data-quality log.",
-        len(warnings),
-    )
-    for warning in warnings[:MOST_WARNINGS]:
-        yield Caution(_("More is known than is used: {warning}", warning=words.clip(warning, 400)), short)
-    if len(warnings) > MOST_WARNINGS:
-        text = ngettext(
-            "More is known than is used: {n:,} further warning of this kind, see the data-quality log.",
-            "More is known than is used: {n:,} further warnings of this kind, see the data-quality log.",
-            len(warnings) - MOST_WARNINGS,
-        )
-        yield Caution(text, short)
 
 
 def list_narrowing(results: Results) -> list[str]:

@@ -58,8 +58,26 @@ class Group:
 
     @property
     def reasons(self) -> Sequence[str]:
-        """Sentences that hold for all rows, with their numbers or ranges of them."""
-        return [_say(method, reason, [row.result for row in self.rows]) for method, reason in self.rows[0].reasons]
+        """Sentences that hold for all rows, with their numbers, as ranges where they differ."""
+        rows, texts = [row.result for row in self.rows], []
+        for method, reason in self.rows[0].reasons:
+            formats, values = {column.name: column.format for column in method.columns}, dict[str, str]()
+            for name in placeholders(reason.text) - {"value"}:
+                found: list[Any] = []
+                if name in formats:  # what a simulation gives stands in a row of its own
+                    for row in rows:
+                        detail = row.governing.methods[method.key].detail
+                        found.append(detail[name] if name in detail else getattr(row.governing.simulation, name))
+                    spec = formats[name]
+                else:
+                    spec, read = _FACTS[name]
+                    found += map(read, rows)
+                known = [float(one) for one in found if one is not None]
+                ends = [number(end(known), spec) for end in (min, max)] if known else [words.DASH]
+                values[name] = ends[0] if ends[0] == ends[-1] else _("{low} to {high}", low=ends[0], high=ends[1])
+            value = words.percents([row.governing.methods[method.key].value or 0.0 for row in rows])
+            texts.append(_(reason.text, **values, value=value))
+        return texts
 
     @property
     def named(self) -> Sequence[str]:
@@ -126,13 +144,13 @@ def find_disagreements(results: Results, rows: Sequence[ItemResult]) -> tuple[st
         groups.setdefault(key, []).append(each)
     for same in groups.values():
         same.sort(key=lambda one: (-int(one.result.adopted.upper), natural_key(one.result.item.item)))
-    return " ".join(texts), [Group(same) for same in sorted(groups.values(), key=_rank)]
 
+    def rank(rows: Sequence[Disagreement]) -> tuple[bool, int, int, int]:
+        _result, highest, lowest, _reasons = rows[0]
+        is_model = any(one.method.fitted is not None for one in (highest, lowest))
+        return is_model, int(lowest.risk) - int(highest.risk), -int(highest.risk), -len(rows)
 
-def _rank(rows: Sequence[Disagreement]) -> tuple[bool, int, int, int]:
-    _result, highest, lowest, _reasons = rows[0]
-    is_model = any(one.method.fitted is not None for one in (highest, lowest))
-    return is_model, int(lowest.risk) - int(highest.risk), -int(highest.risk), -len(rows)
+    return " ".join(texts), [Group(same) for same in sorted(groups.values(), key=rank)]
 
 
 def _find_commonest(found: Sequence[Disagreement]) -> dict[str, Any]:
@@ -186,35 +204,3 @@ _FACTS: Mapping[str, tuple[str, Callable[[ItemResult], float | None]]] = {
     "pfa_to_start": (".2f", lambda one: one.governing.motion.pfa_g / one.item.breadth_to_height),
 }
 """Format and reader of each number that a `Reason` may name besides the method's own columns."""
-
-
-def _say(method: "MethodInfo", reason: "Reason", rows: Sequence[ItemResult]) -> str:
-    """Return a reason with the numbers of the rows, as ranges where they differ."""
-    formats = {column.name: column.format for column in method.columns}
-    numbers = {
-        name: (formats[name], _reader(method, name)) if name in formats else _FACTS[name]
-        for name in placeholders(reason.text) - {"value"}
-    }
-    values = {name: span([read(row) for row in rows], spec) for name, (spec, read) in numbers.items()}
-    value = words.percents([row.governing.methods[method.key].value or 0.0 for row in rows])
-    return _(reason.text, **values, value=value)
-
-
-def _reader(method: "MethodInfo", name: str) -> Callable[[ItemResult], float | None]:
-    """Return what reads a number that a method gives; that of a simulation has a row of its own."""
-
-    def read(row: ItemResult) -> float | None:
-        detail = row.governing.methods[method.key].detail
-        value = detail[name] if name in detail else getattr(row.governing.simulation, name)
-        return None if value is None else float(value)
-
-    return read
-
-
-def span(values: Sequence[float | None], spec: str) -> str:
-    """Return a number, or the range of several, as a format writes them: ``0.25`` or ``0.25 to 0.31``."""
-    there = [value for value in values if value is not None]
-    if not there:
-        return words.DASH
-    low, high = number(min(there), spec), number(max(there), spec)
-    return low if low == high else _("{low} to {high}", low=low, high=high)

@@ -4,12 +4,11 @@ from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 from assess.i18n import gettext as _
-from assess.i18n import ngettext, number
+from assess.i18n import nfill, ngettext, number
 from assess.report import words
 from assess.report.provenance import say_reference
-from assess.results import ItemResult, Results
+from assess.results import Results
 from assess.route_results import (
-    BLOCKED_FROM,
     DOUBTS,
     FLAGS,
     Chance,
@@ -31,8 +30,7 @@ from assess.workbook.schema import DEFAULT_WIDTH
 
 MOST_NAMED = 3
 """Names that stand in one cell; of a longer list it is said how many more there are."""
-NEEDED = 28
-"""Letters of what to fix or fill in for a route that the summary has room for."""
+
 UNPLACED = ("positions", "places", "ends", "stair_floor")
 """What is missing, as keys of `assess.route_results.MISSING`, where pieces are left out."""
 QUIET = ("own_rooms", "walls_unknown", "required_assumed")
@@ -58,17 +56,6 @@ def name_state(state: RouteState) -> str:
     }[state]
 
 
-def list_rules(risk: float) -> list[tuple[RouteState, str]]:
-    """Return the states, the worst first, and when each holds at the chosen risk [-]."""
-    limit = say_risk(risk)
-    return [
-        (RouteState.BLOCKED, _("chance {limit} or more", limit=say_risk(BLOCKED_FROM))),
-        (RouteState.NOT_KNOWN, _("something missing could change the state")),
-        (RouteState.DOUBTFUL, _("less, but its range reaches {limit}", limit=limit)),
-        (RouteState.OPEN, _("its whole range is below {limit}", limit=limit)),
-    ]
-
-
 def is_held(one: SegmentRow | RouteRow, risk: float) -> bool:
     """Tell whether anchors alone keep the state of something from being worse, by the chosen risk."""
     fails = one.blocked_if_anchors_fail
@@ -77,9 +64,12 @@ def is_held(one: SegmentRow | RouteRow, risk: float) -> bool:
     return find_state(fails, risk).severity > one.state.severity
 
 
-def _say_outlook(one: SegmentRow | RouteRow, risk: float, *, is_standing: bool) -> str:
-    """Return the state; with what anchors alone keep from being worse, or that it is blocked with nothing fallen."""
-    if is_standing:
+def say_outlook(one: SegmentRow | RouteRow, risk: float) -> str:
+    """Return the state of a segment or a route at the chosen risk [-].
+
+    It is said where anchors alone keep it from being worse, and where it is blocked with nothing fallen.
+    """
+    if one.is_blocked_standing if isinstance(one, SegmentRow) else not one.is_fixed:
         standing = _("blocked as it stands")
         return f"{RouteState.BLOCKED.symbol} {standing}"
     if not is_held(one, risk):
@@ -87,16 +77,6 @@ def _say_outlook(one: SegmentRow | RouteRow, risk: float, *, is_standing: bool) 
     is_open = one.state == RouteState.OPEN
     said = _("open if the anchors hold") if is_open else _("doubtful, and blocked if the anchors fail")
     return f"{one.state.symbol} {said} ⚓"
-
-
-def say_segment_state(one: SegmentRow, risk: float) -> str:
-    """Return the state of a segment, as distinct from one blocked with nothing fallen."""
-    return _say_outlook(one, risk, is_standing=one.is_blocked_standing)
-
-
-def say_route_state(one: RouteRow, risk: float) -> str:
-    """Return the state of a route, as distinct from one blocked with nothing fallen."""
-    return _say_outlook(one, risk, is_standing=not one.is_fixed)
 
 
 def say_room_state(one: RoomRow) -> str:
@@ -273,29 +253,28 @@ def say_occupants(one: SegmentRow) -> str:
 
 def say_missing(missing: Sequence[MissingRow]) -> str:
     """Return what is to be filled in, and in which cells; nothing where nothing is missing."""
-    return "; ".join(_say_one_missing(one) for one in missing)
+    texts = []
+    for one in missing:
+        names, cells = name_few(one.names), words.name_first(one.cells, MOST_NAMED)
+        said = {
+            "clear_width": _("fill in the Clear width of {names}", names=names),
+            "stair_pieces": _("check the Route of {names}: it names that stair", names=names),
+            "stair_floor": _("fill in the Clear width of {names} and, as it is a stair, no Floor", names=names),
+            "ends": _("fill in From, To and Floor of {names}", names=names),
+            "places": _("fill in X and Y of {names}", names=names),
+            "positions": _("fill in X and Y, or the Route, of {names}", names=names),
+            "furniture": _("list the furniture of the building"),
+            "beyond_stairs": _("add the way from {names} to an exit in Routes", names=names),
+            "unconfirmed_building": _("enter Storeys or the Period T1 in the sheet Building"),
+            "unconfirmed_motions": _("run with motions of your own that reach the PFA and PFV of the floor"),
+        }[one.what]
+        texts.append(f"{said} ({cells})" if cells else said)
+    return "; ".join(texts)
 
 
 def say_missing_after(one: RouteRow | RoomRow) -> str:
     """Return what keeps a route or a room's way from being known once its fixes are done; "" where nothing does."""
     return _("not known then; to settle it: {fix}", fix=say_missing(one.missing_after)) if one.missing_after else ""
-
-
-def _say_one_missing(one: MissingRow) -> str:
-    names, cells = name_few(one.names), words.name_first(one.cells, MOST_NAMED)
-    said = {
-        "clear_width": _("fill in the Clear width of {names}", names=names),
-        "stair_pieces": _("check the Route of {names}: it names that stair", names=names),
-        "stair_floor": _("fill in the Clear width of {names} and, as it is a stair, no Floor", names=names),
-        "ends": _("fill in From, To and Floor of {names}", names=names),
-        "places": _("fill in X and Y of {names}", names=names),
-        "positions": _("fill in X and Y, or the Route, of {names}", names=names),
-        "furniture": _("list the furniture of the building"),
-        "beyond_stairs": _("add the way from {names} to an exit in Routes", names=names),
-        "unconfirmed_building": _("enter Storeys or the Period T1 in the sheet Building"),
-        "unconfirmed_motions": _("run with motions of your own that reach the PFA and PFV of the floor"),
-    }[one.what]
-    return f"{said} ({cells})" if cells else said
 
 
 # ---------------------------------------------------------------- lists
@@ -312,14 +291,16 @@ def list_unfixable(routes: RouteTables) -> list[tuple[RouteRow, str]]:
 
 
 def name_few(names: Sequence[str]) -> str:
-    """Return the first of some names of the workbook, cut, and how many more there are."""
-    return words.name_first([_cut_name(name) for name in names], MOST_NAMED)
+    """Return the first of some names of the workbook, cut, and how many more there are.
 
-
-def _cut_name(name: str) -> str:
-    """Return a name, cut; of ``route: segment`` either of both, so that the mark of a draft stays."""
-    route, mark, segment = name.rpartition(": ")
-    return f"{words.cut(route, 30)}{mark}{words.cut(segment, 20)}" if is_draft(route) else words.cut(name, 40)
+    Of a draft's ``route: segment`` either is cut, so that its mark stays.
+    """
+    cut = []
+    for name in names:
+        route, mark, segment = name.rpartition(": ")
+        is_both = is_draft(route)
+        cut.append(f"{words.cut(route, 30)}{mark}{words.cut(segment, 20)}" if is_both else words.cut(name, 40))
+    return words.name_first(cut, MOST_NAMED)
 
 
 def say_way(way: WayRow, routes: RouteTables) -> str:
@@ -346,16 +327,6 @@ def say_left_out(unevaluated: Sequence[str]) -> str:
     if not unevaluated:
         return ""
     return ngettext("{n:,} segment not evaluated", "{n:,} segments not evaluated", len(unevaluated))
-
-
-def say_other_rooms(one: SegmentRow, results: Sequence[ItemResult]) -> str:
-    """Return the pieces that would reach a segment, were they not in another room; nothing where there are none."""
-    if not one.other_rooms:
-        return ""
-    items = [results[other.item_index].item for other in one.other_rooms]
-    named = [f"{words.cut(item.item, 20)} ({words.cut(item.room, 20)})" if item.room else words.cut(item.item, 20)
-             for item in items]  # fmt: skip
-    return _("not counted, in another room: {pieces}", pieces=words.name_first(named, MOST_NAMED))
 
 
 def list_widths() -> list[tuple[str, list[str]]]:
@@ -388,13 +359,22 @@ def describe_routes(routes: RouteTables) -> list[str]:
 
 def count_all(routes: RouteTables) -> list[str]:
     """Return how many routes and rooms are in which state, on what that rests, and how many would be blocked."""
-    return [
+    texts = [
         ngettext("{n:,} evacuation route: {states}.", "{n:,} evacuation routes: {states}.", len(routes.routes),
                  states=_count_states([one.state for one in routes.routes])),
         *count_rooms(routes),
         *say_reservations(routes),
-        *_say_expected(routes),
     ]  # fmt: skip
+    blocked = words.fixed(routes.blocked_routes_expected, 2)
+    if routes.rooms:
+        texts.append(_("On average {count} routes would be blocked and {rooms} rooms would lose all exits.",
+                       count=blocked, rooms=words.fixed(routes.cut_off_rooms_expected, 2)))  # fmt: skip
+    else:
+        texts.append(_("On average {count} routes would be blocked.", count=blocked))
+    if routes.unknown_routes or routes.unknown_rooms:
+        texts.append(_("Left out of these averages, as not known: routes {routes:,}, rooms {rooms:,}.",
+                       routes=routes.unknown_routes, rooms=routes.unknown_rooms))  # fmt: skip
+    return texts
 
 
 def say_reservations(routes: RouteTables) -> list[str]:
@@ -415,25 +395,9 @@ def say_reservations(routes: RouteTables) -> list[str]:
 def say_drafts(routes: RouteTables) -> list[str]:
     """Return how many routes are drafts that nobody has walked; nothing where none is."""
     drafts = sum(is_draft(one.route) for one in routes.routes)
-    if not drafts:
-        return []
     return [ngettext("{n:,} of {all:,} routes is a draft from a building model that nobody has walked yet.",
                      "{n:,} of {all:,} routes are drafts from a building model that nobody has walked yet.",
-                     drafts, all=len(routes.routes))]  # fmt: skip
-
-
-def _say_expected(routes: RouteTables) -> list[str]:
-    """Return how many routes would be blocked and rooms would lose all exits, on average, and which are left out."""
-    values = {"count": words.fixed(routes.blocked_routes_expected, 2)}
-    if routes.rooms:
-        text = _("On average {count} routes would be blocked and {rooms} rooms would lose all exits.", **values,
-                 rooms=words.fixed(routes.cut_off_rooms_expected, 2))  # fmt: skip
-    else:
-        text = _("On average {count} routes would be blocked.", **values)
-    if not routes.unknown_routes and not routes.unknown_rooms:
-        return [text]
-    return [text, _("Left out of these averages, as not known: routes {routes:,}, rooms {rooms:,}.",
-                    routes=routes.unknown_routes, rooms=routes.unknown_rooms)]  # fmt: skip
+                     drafts, all=len(routes.routes))] if drafts else []  # fmt: skip
 
 
 def count_rooms(routes: RouteTables) -> list[str]:
@@ -460,16 +424,14 @@ def count_rooms(routes: RouteTables) -> list[str]:
 
 
 def _count_states(states: Sequence[RouteState]) -> str:
-    def say(state: RouteState, n: int) -> str:
-        return {
-            RouteState.OPEN: ngettext("{n:,} open", "{n:,} open", n),
-            RouteState.DOUBTFUL: ngettext("{n:,} doubtful", "{n:,} doubtful", n),
-            RouteState.BLOCKED: ngettext("{n:,} blocked", "{n:,} blocked", n),
-            RouteState.NOT_KNOWN: ngettext("{n:,} not known", "{n:,} not known", n),
-        }[state]
-
-    counts = [(state, states.count(state)) for state in sorted(RouteState, key=lambda one: -one.severity)]
-    return ", ".join(say(state, count) for state, count in counts if count)
+    texts = {
+        RouteState.OPEN: nfill("{n:,} open", "{n:,} open", 0),
+        RouteState.DOUBTFUL: nfill("{n:,} doubtful", "{n:,} doubtful", 0),
+        RouteState.BLOCKED: nfill("{n:,} blocked", "{n:,} blocked", 0),
+        RouteState.NOT_KNOWN: nfill("{n:,} not known", "{n:,} not known", 0),
+    }
+    counts = [(texts[one], states.count(one)) for one in sorted(RouteState, key=lambda one: -one.severity)]
+    return ", ".join(ngettext(text.template, text.many, n) for text, n in counts if n)
 
 
 def say_to_fill_in(routes: RouteTables) -> list[str]:
@@ -556,36 +518,7 @@ def list_flags(routes: RouteTables) -> dict[str, str]:
     return {flag: _(text) for flag, text in FLAGS.items() if flag in found}
 
 
-def say_advice(one: RouteRow | RoomRow) -> str:
-    """Return what to do about a route or a room's way but for the pieces to fix; "" where there is nothing."""
-    if one.missing:
-        return say_missing(one.missing)
-    if not one.is_fixed:
-        return _("widen it, or move what stands inside; check the Clear width")
-    if one.state == RouteState.DOUBTFUL and not one.fixes:
-        return _("no draw blocks it: simulate more draws to settle it")
-    return say_missing_after(one)
-
-
 def list_at_risk(routes: RouteTables) -> list[RouteRow]:
     """Return the routes that are not open, the worst first."""
     found = [one for one in routes.routes if one.state != RouteState.OPEN]
     return sorted(found, key=lambda one: (-one.state.severity, -find_chance(one), natural_key(one.route)))
-
-
-def say_needed(results: Results, route: RouteRow) -> str:
-    """Return in short what to fix for a route, rows of several pieces with their number, or what to fill in."""
-    pieces = [results.result(fix.item_index).item for fix in route.fixes]
-    names = [one.item if one.quantity == 1 else f"{one.item} ({words.plural(one.quantity, 'piece')})" for one in pieces]
-    needed = words.fit_pieces(sorted(names, key=natural_key), NEEDED)
-    return needed or words.cut(say_missing(route.missing), NEEDED)
-
-
-def describe_at_risk(one: RouteRow, risk: float) -> str:
-    """Return a route at the chosen risk [-] as a sentence, with the piece that most likely blocks it."""
-    floors, likely = ", ".join(one.floors), one.most_likely_piece
-    route = _("{route} (floor {floors})", route=one.route, floors=floors) if floors else one.route
-    values = {"route": route, "state": say_route_state(one, risk), "chance": say_blocked(one)}
-    if likely is None or not likely.item or not one.is_fixed:
-        return _("{route}: {state}, blocked in {chance}.", **values)
-    return _("{route}: {state}, blocked in {chance}, most likely by {item}.", **values, item=likely.item)

@@ -165,11 +165,6 @@ class Verified:
         return "; ".join(filter(None, (extent, *changes))) + "."
 
 
-def describe_verification(results: Results) -> str:
-    """Return how much was simulated, and what that changed, in one sentence."""
-    return Verified(results, tuple(results)).sentence
-
-
 def count_motions(results: Results) -> str:
     """Return how many motions each piece was simulated under."""
     runs, looks = results.settings.runs, results.provenance.looks
@@ -202,55 +197,45 @@ def describe_trials(verified: Verified) -> list[str]:
     """Return what was simulated, under which motions and draws, in paragraphs; none where nothing was simulated."""
     if not verified.done:
         return []
-    results = verified.run
-    texts = [
-        f"{_say_extent(verified)} {_say_selection(results)}",
-        _say_motions(results),
-        f"{_say_draws(results)} {_say_restitution(results)} " + _(
-            "The sampling interval is Wilson's with z = {z:.2f}; it covers the number of draws only: not the model of "
-            "the block, not how well the floor's motion is known, not the assumed dispersions.",
-            z=results.provenance.interval_z,
-        ),
+    results, restitution = verified.run, verified.run.building.restitution
+    origin, looks = results.provenance, results.provenance.looks
+    extent = [_(
+        "The rocking of {done:,} of {rows} was integrated step by step (Housner's equations of a rigid block, see "
+        "Methods). The chance is the share of draws in which the piece overturns, each of one motion.",
+        done=len(verified.done), rows=words.plural(len(results), "row"),
+    )]  # fmt: skip
+    if n := sum("does_not_rock" in one.adopted.flags for one in results):
+        extent.append(ngettext("{n:,} row is too stocky to rock (B/H of {limit:.2f} or more).",
+                               "{n:,} rows are too stocky to rock (B/H of {limit:.2f} or more).",
+                               n, limit=1.41))  # fmt: skip
+    extent.append(
+        _("All rows were chosen.") if results.settings.verify == "all" else
+        _("Chosen were the rows of high or very high class by any of these under any of their motions: {methods}; "
+          "those outside the range in which one of these was checked: {formulas}; and those on a route.",
+          methods=", ".join(_(one.title) for one in results.methods if one.selects),
+          formulas=", ".join(_(one.title) for one in results.methods if one.selecting_flags))
+    )  # fmt: skip
+    draws = [
+        _say_draws(results),
+        _("At each impact a piece keeps 1 - 1.5 sin²α of its angular velocity (Housner 1963).") if restitution is None
+        else _("At each impact a piece keeps {share:g} of its angular velocity, as set in the workbook.",
+               share=restitution),
+        _("The sampling interval is Wilson's with z = {z:.2f}; it covers the number of draws only: not the model of "
+          "the block, not how well the floor's motion is known, not the assumed dispersions.", z=origin.interval_z),
     ]  # fmt: skip
+    texts = [" ".join(extent), _say_motions(results), " ".join(draws)]
     if results.settings.runs == AUTO:
-        looks = results.provenance.looks
         text = _(
             "Motions were added until every class was statistically resolved, each piece's interval lying within one "
             "class. This was checked after {looks} and {last:,} motions, with an interval (z = {z:g}) that holds with "
             "95 % for all {checks} checks together.",
             looks=", ".join(number(look, ",") for look in looks[:-1]), last=looks[-1],
-            z=results.provenance.interval_z, checks=len(looks),
+            z=origin.interval_z, checks=len(looks),
         )  # fmt: skip
         left = (_("Undecided after {last:,}: {pieces}.", last=looks[-1], pieces=name_some(verified.undecided))
                 if verified.undecided else _("No piece is left undecided."))  # fmt: skip
         texts.append(f"{text} {left}")
     return texts
-
-
-def _say_extent(verified: Verified) -> str:
-    n = sum("does_not_rock" in one.adopted.flags for one in verified.run)
-    text = _(
-        "The rocking of {done:,} of {rows} was integrated step by step (Housner's equations of a rigid block, see "
-        "Methods). The chance is the share of draws in which the piece overturns, each of one motion.",
-        done=len(verified.done), rows=words.plural(len(verified.run), "row"),
-    )  # fmt: skip
-    stocky = ngettext(
-        "{n:,} row is too stocky to rock (B/H of {limit:.2f} or more).",
-        "{n:,} rows are too stocky to rock (B/H of {limit:.2f} or more).",
-        n, limit=1.41,
-    )  # fmt: skip
-    return f"{text} {stocky}" if n else text
-
-
-def _say_selection(results: Results) -> str:
-    if results.settings.verify == "all":
-        return _("All rows were chosen.")
-    return _(
-        "Chosen were the rows of high or very high class by any of these under any of their motions: {methods}; those "
-        "outside the range in which one of these was checked: {formulas}; and those on a route.",
-        methods=", ".join(_(one.title) for one in results.methods if one.selects),
-        formulas=", ".join(_(one.title) for one in results.methods if one.selecting_flags),
-    )
 
 
 def _say_motions(results: Results) -> str:
@@ -299,13 +284,6 @@ def _say_draws(results: Results) -> str:
     if parts:
         parts.append(_("Normal numbers are cut at {cut:g} standard deviations.", cut=uncertainty.cut))
     return " ".join([*parts, _("“If exactly this motion recurred” is the chance without either uncertainty.")])
-
-
-def _say_restitution(results: Results) -> str:
-    own = results.building.restitution
-    if own is None:
-        return _("At each impact a piece keeps 1 - 1.5 sin²α of its angular velocity (Housner 1963).")
-    return _("At each impact a piece keeps {share:g} of its angular velocity, as set in the workbook.", share=own)
 
 
 def list_misfits(results: Results) -> list[str]:
@@ -390,7 +368,35 @@ def say_assumed(results: Results) -> str:
         return _(
             "It is assumed that exactly this motion recurs and that every piece is exactly as given: nothing is varied."
         )
-    return f"{_say_motion(results)} {_say_piece(results)}"
+    scanned, dispersion = count_scanned(results), results.provenance.uncertainty.motion
+    if dispersion:
+        motion = _(
+            "Chances hold for an earthquake like this one: each draw scales the motions of the whole building by one "
+            "factor, with a dispersion of {dispersion} (standard deviation of ln amplitude; {source}).",
+            dispersion=number(dispersion, ".3g"), source=say_source(results),
+        )  # fmt: skip
+    elif _has_drawn(results):
+        motion = _("Chances hold for earthquakes with the given peaks: ground motions and buildings are drawn.")
+    else:
+        motion = _(
+            "The motions are not scaled, as Motion uncertainty is 0 in the workbook: exactly this motion recurs."
+        )
+    if results.provenance.uncertainty.piece:
+        piece = _("Sizes, centre of gravity and restitution of each piece are varied.")
+        of_scanned = ngettext(
+            "Those of {n:,} piece were measured by a scan, which is less accurate: its sizes are varied more.",
+            "Those of {n:,} pieces were measured by a scan, which is less accurate: their sizes are varied more.",
+            scanned,
+        )
+    else:
+        piece = _("Sizes, centre of gravity and restitution are exactly as given.")
+        of_scanned = ngettext(
+            "Those of {n:,} piece were measured by a scan, which is less accurate: its chance may be higher or lower.",
+            "Those of {n:,} pieces were measured by a scan, which is less accurate: their chances may be higher or "
+            "lower.",
+            scanned,
+        )
+    return " ".join((motion, piece, *([of_scanned] if scanned else [])))
 
 
 def say_condition(results: Results) -> str:
@@ -413,19 +419,6 @@ def say_condition(results: Results) -> str:
     return _("{motion} and pieces that vary in size, centre of gravity and restitution", motion=motion)
 
 
-def _say_motion(results: Results) -> str:
-    dispersion = results.provenance.uncertainty.motion
-    if dispersion:
-        return _(
-            "Chances hold for an earthquake like this one: each draw scales the motions of the whole building by one "
-            "factor, with a dispersion of {dispersion} (standard deviation of ln amplitude; {source}).",
-            dispersion=number(dispersion, ".3g"), source=say_source(results),
-        )  # fmt: skip
-    if _has_drawn(results):
-        return _("Chances hold for earthquakes with the given peaks: ground motions and buildings are drawn.")
-    return _("The motions are not scaled, as Motion uncertainty is 0 in the workbook: exactly this motion recurs.")
-
-
 def say_source(results: Results) -> str:
     """Return where the dispersion of the motions comes from."""
     shaking, given = results.provenance.shaking, results.building.motion_uncertainty
@@ -443,26 +436,6 @@ def _has_drawn(results: Results) -> bool:
 def count_scanned(results: Results) -> int:
     """Return how many pieces have sizes that were measured by a scan."""
     return count_pieces(one for one in results if one.item.sizes_from == SCANNED)
-
-
-def _say_piece(results: Results) -> str:
-    scanned = count_scanned(results)
-    if results.provenance.uncertainty.piece:
-        text = _("Sizes, centre of gravity and restitution of each piece are varied.")
-        beside = ngettext(
-            "Those of {n:,} piece were measured by a scan, which is less accurate: its sizes are varied more.",
-            "Those of {n:,} pieces were measured by a scan, which is less accurate: their sizes are varied more.",
-            scanned,
-        )
-    else:
-        text = _("Sizes, centre of gravity and restitution are exactly as given.")
-        beside = ngettext(
-            "Those of {n:,} piece were measured by a scan, which is less accurate: its chance may be higher or lower.",
-            "Those of {n:,} pieces were measured by a scan, which is less accurate: their chances may be higher or "
-            "lower.",
-            scanned,
-        )
-    return f"{text} {beside}" if scanned else text
 
 
 def say_sensitivity(results: Results, rows: Sequence[ItemResult]) -> str:

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from assess.details import DETAILS, LEAST_FIXINGS, Detail
 from assess.fields import schedule_fields
+from assess.i18n import fill, ngettext, number
 from assess.i18n import gettext as _
-from assess.i18n import ngettext, number
 from assess.report import words
 from assess.results import ItemResult, Results, count_pieces
 from assess.risk import RiskClass
@@ -167,7 +167,7 @@ class Work:
 
     @property
     def described(self) -> str:
-        """What its pieces are."""
+        """Their description, else their type."""
         item = self.results[0].item
         return item.description or item.type or _("no description")
 
@@ -235,38 +235,19 @@ def say_cost(cost: float | None) -> str:
 
 # ---------------------------------------------------------------- sentences
 
-
-def say_screening() -> str:
-    """Return the caveat beside every force."""
-    return _("screening, not design")
-
-
-def say_checks() -> str:
-    """Return what is left to an engineer."""
-    return _(
-        "Forces are for screening, not design: a structural engineer checks wall, fixings and the body of each piece."
-    )
-
-
-def say_order() -> str:
-    """Return what the numbers of the entries stand for."""
-    return _(
-        "The numbers give the order of urgency: class (upper estimate), then life safety and routes, then expected "
-        "falls."
-    )
-
-
-def say_held() -> str:
-    """Return what a tension of 0 at 84 % of PFA means."""
-    return _("its own weight holds it at 84 % of PFA; fixings against sliding or for the rest")
-
-
-def say_disagreement() -> str:
-    """Return that sources do not agree on rigid brackets."""
-    return _(
-        "Sources disagree on rigid brackets: the Tokyo Fire Department holds L-brackets that are screwed to the wall "
-        "to be the most effective device; the Earthquake Country Alliance advises flexible straps to two studs instead."
-    )
+SCREENING = fill("screening, not design")
+CHECKS = fill(
+    "Forces are for screening, not design: a structural engineer checks wall, fixings and the body of each piece."
+)
+ORDER = fill(
+    "The numbers give the order of urgency: class (upper estimate), then life safety and routes, then expected falls."
+)
+HOLDS = fill("its own weight holds it at 84 % of PFA; fixings against sliding or for the rest")
+"""What a tension of 0 at 84 % of PFA means."""
+DISAGREEMENT = fill(
+    "Sources disagree on rigid brackets: the Tokyo Fire Department holds L-brackets that are screwed to the wall "
+    "to be the most effective device; the Earthquake Country Alliance advises flexible straps to two studs instead."
+)
 
 
 def say_effect_of_all(schedule: Schedule) -> list[str]:
@@ -276,13 +257,13 @@ def say_effect_of_all(schedule: Schedule) -> list[str]:
     before, after = (
         words.say_falls(one.falls, one.falls_low, one.falls_high) for one in (schedule.before, schedule.after)
     )
-    pieces = words.plural(sum(one.pieces for one in schedule.rows), "piece")
     effect = ngettext(
         "Fixing the {n:,} entry below ({pieces}) lowers the expected falls from {before} to {after}, if all anchors "
         "hold.",
         "Fixing the {n:,} entries below ({pieces}) lowers the expected falls from {before} to {after}, if all anchors "
         "hold.",
-        len(schedule.rows), pieces=pieces, before=before, after=after,
+        len(schedule.rows), pieces=words.plural(sum(one.pieces for one in schedule.rows), "piece"), before=before,
+        after=after,
     )  # fmt: skip
     if schedule.cost is None:
         costs = _("No cost is given: unit costs are read from the sheet {sheet} of the workbook.", sheet=_("Costs"))
@@ -328,18 +309,6 @@ def list_marks(schedule: Schedule) -> list[str]:
     return [f"{mark}: {text}." for mark, text in texts.items() if text]
 
 
-def list_details(schedule: Schedule) -> tuple[list[tuple[Detail, int]], list[Detail]]:
-    """Return the details that the schedule uses, each with the number of its pieces, and the alternatives to them."""
-    used: dict[str, int] = {}
-    for row in schedule.rows:
-        for work in row.works:
-            used[work.detail] = used.get(work.detail, 0) + work.pieces
-    return (
-        [(one, used[key]) for key, one in DETAILS.items() if key in used],
-        [one for key, one in DETAILS.items() if key not in used],
-    )
-
-
 # ---------------------------------------------------------------- before and after
 
 
@@ -378,13 +347,3 @@ def list_changes(schedule: Schedule) -> tuple[list[Change], list[Change]]:
         *(one for one in left_out if one.before or one.after),
         Change(fields["rooms_at_risk"].heading(), len(before.rooms_at_risk), len(after.rooms_at_risk)),
     ]
-
-
-def say_rooms_at_risk(schedule: Schedule) -> str:
-    """Return the rooms that may lose every exit before, and those after; "" where there are none."""
-    before, after = schedule.before.rooms_at_risk, schedule.after.rooms_at_risk
-    if not before:
-        return ""
-    text = _("Rooms that may lose every exit before: {rooms}.", rooms=words.name_first(before, MOST_NAMES))
-    left = _("after: {rooms}.", rooms=words.name_first(after, MOST_NAMES)) if after else _("after: none.")
-    return f"{text[:-1]}; {left}"

@@ -39,11 +39,16 @@ def build_floors(view: View) -> blocks.Section:
 
 
 def _build_floor(view: View, page: FloorPage, at: int) -> blocks.Box:
-    plan, risky = view.plans.get(page.floor.floor), list_risky(page.results)
+    plan, risky, counts = view.plans.get(page.floor.floor), list_risky(page.results), page.counts
+    apart = (("unconfirmed", counts.unconfirmed), ("formula", counts.by_formula), ("anchored", counts.anchored))
+    classes = [f"{words.risk_label(risk)} {counts.say(risk)}" for risk in reversed(RiskClass)]
+    classes += [f"{words.apart_label(name)} {pieces:,}" for name, pieces in apart if pieces]
+    counted = _("{pieces}: {classes}; expected falls {falls}.", pieces=words.plural(counts.total, "piece"),
+                classes=", ".join(classes), falls=counts.falls)  # fmt: skip
     found: list[blocks.Block] = [
         blocks.Heading(page.title),
         blocks.Paragraph(ground.say_motions(page.floor, page.motions), "motion"),
-        blocks.Paragraph(_say_counts(page.counts), "motion"),
+        blocks.Paragraph(counted, "motion"),
     ]
     if plan:
         kind = f"plan rows-{min(len(risky), BESIDE_PLAN)}"
@@ -55,21 +60,12 @@ def _build_floor(view: View, page: FloorPage, at: int) -> blocks.Box:
         caption = [
             _("Pieces by class and room; no piece of this floor has a position on the plan."),
             ngettext("{n:,} more room is left out.", "{n:,} more rooms are left out.", bars[1]) if bars[1] else "",
-            say_changes(page.counts),
+            say_changes(counts),
         ]  # fmt: skip
         found.append(blocks.Figure(bars[0], blocks.join_words(caption)))
     found += _list_pieces(view, page, risky, BESIDE_PLAN if plan else WITHOUT_PLAN, "" if plan else view.marks)
     is_brief = not plan and len(page.results) <= BRIEF
     return blocks.Box(found, f"floor{' brief' if is_brief else ''}", "article", f"floor-{at}")
-
-
-def _say_counts(counts: Counts) -> str:
-    """Return the pieces of a floor by class, with what stands apart, and the expected falls."""
-    parts = [f"{words.risk_label(risk)} {counts.say(risk)}" for risk in reversed(RiskClass)]
-    apart = (("unconfirmed", counts.unconfirmed), ("formula", counts.by_formula), ("anchored", counts.anchored))
-    parts += [f"{words.apart_label(name)} {pieces:,}" for name, pieces in apart if pieces]
-    return _("{pieces}: {classes}; expected falls {falls}.", pieces=words.plural(counts.total, "piece"),
-             classes=", ".join(parts), falls=counts.falls)  # fmt: skip
 
 
 def say_changes(counts: Counts) -> str:
@@ -215,13 +211,11 @@ def _count_floors(view: View) -> blocks.Table:
         yield from (number(getattr(counts, name), ",d") for _heading, _width, name in further)
         yield counts.falls
 
-    def head_class(risk: RiskClass) -> blocks.Words:
-        return [blocks.Span(risk.symbol, f"badge {words.class_name(risk)}"), " ", blocks.BREAK, words.risk_word(risk)]
-
     columns = blocks.list_columns(
         (_("Floor"), ""),
         ("PFA X, Y [g]", "w12", "num"),
-        *((head_class(risk), "w8", "num") for risk in RiskClass),
+        *(([blocks.Span(risk.symbol, f"badge {words.class_name(risk)}"), " ", blocks.BREAK, words.risk_word(risk)],
+           "w8", "num") for risk in RiskClass),
         *((heading, width, "num") for heading, width, _name in further),
         (_("Expected falls"), "w14" if total.unconfirmed else "w9", "num"),
     )  # fmt: skip

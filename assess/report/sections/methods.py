@@ -15,12 +15,12 @@ from assess.report.say.piece import describe
 from assess.report.say.route import say_risk
 from assess.report.say.simulation import WILSON, list_references, say_assumed, say_sensitivity
 from assess.report.view import Part, View, say_left
-from assess.results import MotionRow, WorkedMethod
+from assess.results import ItemResult, MotionRow
 from assess.risk import classify
 from assess.workbook.schema import BUILDING, NO, YES
 
 if TYPE_CHECKING:
-    from assess.methods import MethodInfo
+    pass
 
 WHOLE = 14
 """Lines of equations that are kept on one page."""
@@ -48,6 +48,33 @@ ELSEWHERE = frozenset((
 
 def build_methods(view: View) -> blocks.Section:
     """Return what is adopted, each method, the worked example, and the profiles of the codes."""
+    listed: list[blocks.Block] = [blocks.Paragraph(view.content.verified.adopted)]
+    for method in view.run.methods:
+        equations = [blocks.Equation(_(line)) for line in method.equations]
+        found = [
+            blocks.Heading(_(method.title)), blocks.Paragraph(_(method.predicts)),
+            blocks.Equations(equations, is_whole=len(equations) <= WHOLE),
+        ]  # fmt: skip
+        if method.valid:
+            ranges = (
+                " ".join((QUANTITIES.get(name, name), _("{low:g} to {high:g}", low=one.low, high=one.high), one.unit))
+                for name, one in method.valid.items()
+            )
+            shown = ", ".join(text.rstrip() for text in ranges)
+            found.append(blocks.Paragraph([blocks.strong(words.name_ranges(method)), f" {shown}."]))
+        for heading, texts in (
+            (_("Assumptions"), method.assumptions),
+            (_("Departures from the source"), method.departures),
+        ):
+            if texts:
+                found += [blocks.Paragraph(blocks.strong(heading), "lead-in"),
+                          blocks.Bullets([_(text) for text in texts], "")]  # fmt: skip
+        source = _("Source: {reference}", reference=say_reference(method.reference))
+        listed.append(blocks.Box([*found, blocks.Paragraph(source, "small")], "method", "article"))
+    if view.run.worked_item is not None:
+        listed.append(
+            blocks.Box(_list_worked(view, view.results[view.run.worked_item]), "method", "article", "example")
+        )
     text = _(
         "Ground PGA times a code's amplification with height is used on floors without any other motion, or on every "
         "floor where the scenario names a code."
@@ -64,60 +91,32 @@ def build_methods(view: View) -> blocks.Section:
         blocks.Paragraph(f"{text} {_(ground.ENVELOPES)}"),
         blocks.table(heads, rows),
     ]
-    return blocks.Section([
-        blocks.Paragraph(view.content.verified.adopted),
-        *(blocks.Box(list(_describe(one)), "method", "article") for one in view.run.methods),
-        *([blocks.Box(list(_work(view)), "method", "article", "example")] if view.run.worked_item is not None else []),
-        blocks.Box(profiles, "method", "article"),
-    ])  # fmt: skip
+    return blocks.Section([*listed, blocks.Box(profiles, "method", "article")])
 
 
-def _describe(method: "MethodInfo") -> Iterator[blocks.Block]:
-    yield blocks.Heading(_(method.title))
-    yield blocks.Paragraph(_(method.predicts))
-    equations = [blocks.Equation(_(line)) for line in method.equations]
-    yield blocks.Equations(equations, is_whole=len(equations) <= WHOLE)
-    if method.valid:
-        ranges = [
-            " ".join((QUANTITIES.get(name, name), _("{low:g} to {high:g}", low=one.low, high=one.high), one.unit))
-            for name, one in method.valid.items()
-        ]
-        shown = ", ".join(text.rstrip() for text in ranges)
-        yield blocks.Paragraph([blocks.strong(words.name_ranges(method)), f" {shown}."])
-    for heading, texts in (
-        (_("Assumptions"), method.assumptions),
-        (_("Departures from the source"), method.departures),
-    ):
-        if texts:
-            yield blocks.Paragraph(blocks.strong(heading), "lead-in")
-            yield blocks.Bullets([_(text) for text in texts], "")
-    yield blocks.Paragraph(_("Source: {reference}", reference=say_reference(method.reference)), "small")
-
-
-def _work(view: View) -> Iterator[blocks.Block]:
-    """Yield the calculation of each method for the piece of the worked example."""
-    example = view.results[view.run.worked_item or 0]
-    yield blocks.Heading(_("Worked example: {item}", item=words.cut(example.item.item, 40)))
-    yield blocks.Paragraph(_(
-        "{what}, floor {floor}: {size} cm, {axis}, under its governing motion. All other numbers are computed in the "
-        "same way.",
-        what=describe(example, 60), floor=words.cut(example.item.floor, 20), size=words.size(example),
-        axis=_("along {axis}", axis=example.governing.motion.axis),
-    ))  # fmt: skip
+def _list_worked(view: View, example: ItemResult) -> list[blocks.Block]:
+    """Return the calculation of each method for the piece of the worked example."""
+    found: list[blocks.Block] = [
+        blocks.Heading(_("Worked example: {item}", item=words.cut(example.item.item, 40))),
+        blocks.Paragraph(_(
+            "{what}, floor {floor}: {size} cm, {axis}, under its governing motion. All other numbers are computed in "
+            "the same way.",
+            what=describe(example, 60), floor=words.cut(example.item.floor, 20), size=words.size(example),
+            axis=_("along {axis}", axis=example.governing.motion.axis),
+        )),
+    ]  # fmt: skip
     for one in view.run.worked:
         method = next(each for each in view.run.methods if each.key == one.key)
-        yield blocks.Paragraph(blocks.strong(_(method.title)), "lead-in")
+        risk = classify(one.value)
+        if method.kind == "criterion" or risk is None:
+            result = _(method.words[0] if one.value else method.words[1])
+        else:
+            result = _("{symbol} = {value:.4f}, that is {percent}: {risk}", symbol=method.symbol, value=one.value,
+                       percent=words.percent(one.value), risk=words.risk_word(risk))  # fmt: skip
         steps = [blocks.Equation(_(step)) for step in one.steps]
-        yield blocks.Equations([*steps, blocks.strong(say_result(method, one))], is_whole=len(steps) <= WHOLE)
-
-
-def say_result(method: "MethodInfo", worked: WorkedMethod) -> str:
-    """Return the result of a worked example in words."""
-    risk = classify(worked.value)
-    if method.kind == "criterion" or risk is None:
-        return _(method.words[0] if worked.value else method.words[1])
-    return _("{symbol} = {value:.4f}, that is {percent}: {risk}", symbol=method.symbol, value=worked.value,
-             percent=words.percent(worked.value), risk=words.risk_word(risk))  # fmt: skip
+        found += [blocks.Paragraph(blocks.strong(_(method.title)), "lead-in"),
+                  blocks.Equations([*steps, blocks.strong(result)], is_whole=len(steps) <= WHOLE)]  # fmt: skip
+    return found
 
 
 def build_approach(view: View) -> blocks.Section:
@@ -169,11 +168,6 @@ def build_assumptions(view: View) -> blocks.Section:
     text = ngettext("{n:,} more is in the annex.", "{n:,} more are in the annex.", left)
     heads = blocks.list_columns((_("Where"), "w36"), (_("Assumed"), ""))
     return blocks.Section([blocks.table(heads, shown), *([blocks.Paragraph(text, "small")] if left else [])])
-
-
-def build_limits(view: View) -> blocks.Section:
-    """Return the limits of the methods."""
-    return blocks.Section([blocks.Bullets(statements.list_limits(view.run), "")])
 
 
 def build_references(view: View) -> blocks.Section:
@@ -254,49 +248,38 @@ def is_drawn(one: MotionRow) -> bool:
 # ---------------------------------------------------------------- the building, and who answers for the report
 
 
-def build_about(view: View) -> blocks.Section:
-    """Return the facts and who answers for the report: on a screen at the end, in print on the cover."""
-    return blocks.Section([list_facts(view), *list_signing(view)])
-
-
 def list_facts(view: View) -> blocks.Table:
     """Return what the workbook says of the building, and the state of the report."""
     content, is_client = view.content, view.edition == "client"
     left_out = set(ELSEWHERE)
     if view.run.provenance.scenario == "as filled" and view.run.building.scenario_kind in ("", "as filled"):
         left_out.add("scenario_kind")
-    lines = [
-        (label, words.cut(value, 150) if is_client else value)
-        for name, label, value in _list_building(view)
-        if (name in ON_COVER or not is_client) and name not in left_out
-    ]
+    run, lines = view.run, list[tuple[str, str]]()
+    for column in BUILDING.columns:
+        value = getattr(run.building, column.name)
+        if column.name in left_out or column.kind == "file" or (is_client and column.name not in ON_COVER):
+            continue
+        if column.name == "scenario_kind":
+            used, chosen = run.provenance.scenario, value or "as filled"
+            value = used if used == chosen else _("{used} (the workbook: {chosen})", used=_(used), chosen=_(chosen))
+        if value not in (None, ""):
+            shown = number(value / column.factor, ".4g") if isinstance(value, float) else str(value)
+            shown = (YES if value else NO) if column.kind == "flag" else shown
+            shown += f" {column.unit}" if column.quantity else ""
+            shown = ground.say_peak(run, column.name, shown) if column.name in ground.PEAKS else shown
+            shown = words.clip(_(shown) if column.kind in ("choice", "flag") else shown)
+            lines.append((_(column.label), words.cut(shown, 150) if is_client else shown))
     pieces = _(
         "{pieces} in {rows} on {floors}", pieces=words.plural(content.total.total, "piece"),
         rows=words.plural(len(view.results), "row"), floors=words.plural(len(content.floors), "floor"),
     )  # fmt: skip
     status, why = content.verified.status
-    shown: list[tuple[str, blocks.Words]] = [
+    facts: list[tuple[str, blocks.Words]] = [
         *lines, (_("Date"), content.date), (_("Pieces"), pieces),
         (_("Status"), [blocks.strong(status), f": {why}"]),
     ]  # fmt: skip
-    rows = [(blocks.head(label), value) for label, value in shown]
+    rows = [(blocks.head(label), text) for label, text in facts]
     return blocks.table([blocks.Column(), blocks.Column()], rows, "facts")
-
-
-def _list_building(view: View) -> Iterator[tuple[str, str, str]]:
-    """Yield field, label and value of what the workbook says of the building."""
-    run = view.run
-    for column in BUILDING.columns:
-        value = getattr(run.building, column.name)
-        if column.name == "scenario_kind":
-            used, chosen = run.provenance.scenario, value or "as filled"
-            value = used if used == chosen else _("{used} (the workbook: {chosen})", used=_(used), chosen=_(chosen))
-        if value not in (None, "") and column.kind != "file":
-            shown = number(value / column.factor, ".4g") if isinstance(value, float) else str(value)
-            shown = (YES if value else NO) if column.kind == "flag" else shown
-            shown += f" {column.unit}" if column.quantity else ""
-            shown = ground.say_peak(run, column.name, shown) if column.name in ground.PEAKS else shown
-            yield column.name, _(column.label), words.clip(_(shown) if column.kind in ("choice", "flag") else shown)
 
 
 def list_signing(view: View) -> list[blocks.Block]:
@@ -324,9 +307,11 @@ PARTS = (
     Part(key="assumptions", heading=fill("Assumptions and defaults"), places={"client": 80, "annex": 60, "all": 150},
          build=build_assumptions,
          is_shown=lambda view: view.edition != "annex" or len(view.content.assumptions) > MOST_ASSUMPTIONS),
-    Part(key="limits", heading=fill("Limits of the methods"), places={"client": 70, "all": 140}, build=build_limits),
+    Part(key="limits", heading=fill("Limits of the methods"), places={"client": 70, "all": 140},
+         build=lambda view: blocks.Section([blocks.Bullets(statements.list_limits(view.run), "")])),
     Part(key="references", heading=fill("References"), places={"annex": 80, "all": 170}, build=build_references),
     Part(key="quality", heading=fill("Data-quality log"), places={"annex": 70, "all": 160}, build=build_quality),
     Part(key="appendix", heading=fill("Appendix"), places={"annex": 90, "all": 180}, build=build_appendix),
-    Part(key="about", heading=fill("About this report"), places={"all": 200}, build=build_about),
+    Part(key="about", heading=fill("About this report"), places={"all": 200},  # in print it stands on the cover
+         build=lambda view: blocks.Section([list_facts(view), *list_signing(view)])),
 )  # fmt: skip

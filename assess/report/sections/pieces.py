@@ -34,7 +34,11 @@ def build_groups(view: View) -> blocks.Section:
     groups: dict[tuple[object, ...], list[ItemResult]] = {}
     for one in view.content.listed:
         groups.setdefault((*find_kind(one), one.item.anchored, words.say_bracket(one)), []).append(one)
-    chosen = choose_groups(list(groups.values()), MOST_GROUPS)
+    chosen = list(groups.values())
+    if len(chosen) > MOST_GROUPS:  # those most likely to fall, in their order
+        urgency = [(int(own[0].adopted.upper), max(one.adopted.probability for one in own)) for own in chosen]
+        worst = sorted(range(len(chosen)), key=lambda at: urgency[at], reverse=True)[:MOST_GROUPS]
+        chosen = [chosen[at] for at in sorted(worst)]
     lead = [
         ngettext("{n:,} row of the workbook; alike ones stand together.",
                  "{n:,} rows of the workbook; alike ones stand together.", len(view.results)),
@@ -49,39 +53,22 @@ def build_groups(view: View) -> blocks.Section:
         (["B × W × H ", blocks.Span("[cm]", "unit")], "w15", "num"),
         (_("No."), "w4", "num"), (_("Chance (range)"), "w24", "num"), (_("Class"), "w12"),
     )  # fmt: skip
-    rows = [
-        [blocks.part(view.floor_titles[floor], len(heads)), *(blocks.Row(_list_cells(one)) for one in own)]
-        for floor, own in groupby(chosen, key=lambda one: one[0].item.floor)
-    ]
+    rows = []
+    for floor, own in groupby(chosen, key=lambda one: one[0].item.floor):
+        rows.append([blocks.part(view.floor_titles[floor], len(heads))])
+        for group in own:
+            first, names = group[0], words.name_pieces([one.item.item for one in group], NAMED, LONGEST)
+            rooms = sorted({words.cut(one.item.room, 24) for one in group if one.item.room}, key=natural_key)
+            rows[-1].append(blocks.Row((
+                f"{names} ({len(group)})" if len(group) > 1 else names, words.name_first(rooms, 2) or words.DASH,
+                describe(first, 48), words.size(first), number(count_pieces(group), ",d"), say_chances(group),
+                mark(first),
+            )))  # fmt: skip
     return blocks.Section([
         blocks.Paragraph(blocks.join_words(lead)),
         blocks.Paragraph(blocks.join_words([*view.legend, anchored]), "small"),
         blocks.Table(heads, rows, "grouped", is_named=True),
     ])  # fmt: skip
-
-
-def choose_groups(groups: Sequence[Sequence[ItemResult]], most: int) -> Sequence[Sequence[ItemResult]]:
-    """Return groups in their order; of too many, those most likely to fall."""
-    if len(groups) <= most:
-        return groups
-    urgency = [(int(own[0].adopted.upper), max(one.adopted.probability for one in own)) for own in groups]
-    worst = sorted(range(len(groups)), key=lambda at: urgency[at], reverse=True)[:most]
-    return [groups[at] for at in sorted(worst)]
-
-
-def _list_cells(group: Sequence[ItemResult]) -> list[blocks.Words]:
-    first = group[0]
-    names = words.name_pieces([one.item.item for one in group], NAMED, LONGEST)
-    rooms = sorted({words.cut(one.item.room, 24) for one in group if one.item.room}, key=natural_key)
-    return [
-        f"{names} ({len(group)})" if len(group) > 1 else names,
-        words.name_first(rooms, 2) or words.DASH,
-        describe(first, 48),
-        words.size(first),
-        number(count_pieces(group), ",d"),
-        say_chances(group),
-        mark(first),
-    ]
 
 
 def say_chances(group: Sequence[ItemResult]) -> str:
@@ -105,19 +92,32 @@ def build_items(view: View) -> blocks.Section:
     """Return the table of all pieces, or the risky ones in three tables: by class, unconfirmed, by formula."""
     if not view.results:
         return blocks.Section([blocks.Paragraph(_("There are no pieces."))], "run-on")
-    lead = blocks.Paragraph(blocks.join_words(_explain(view)))
+    verified, n = view.content.verified, len(view.results)
+    texts = [
+        _("{n:,} rows, the first {shown:,} of which are shown: the Excel report holds all.", n=n, shown=MOST_ROWS)
+        if n > MOST_ROWS else ngettext("{n:,} row.", "{n:,} rows.", n)
+    ]  # fmt: skip
+    if verified.done:
+        texts += [
+            _("Chance: the adopted risk, simulated where it has a range, otherwise from the formula; {interval}.",
+              interval=verified.interval),
+            _("Under the record: the behaviour under the recorded motion itself, as largest rotation over the "
+              "critical angle, the worst of several records; a dash: no record, or not simulated."),
+        ]  # fmt: skip
+    else:
+        texts.append(_("Chance: the adopted risk, here from: {formula}.", formula=_(view.run.formula.title)))
+    texts.append(_("Raw: as printed, before the departures listed in the section Methods. Where the axis is not known, "
+                   "the worse of both governs."))  # fmt: skip
+    lead = blocks.Paragraph(blocks.join_words(texts))
     if not view.is_compact:
         return blocks.Section([lead, blocks.Box([_list_all(view)], "scroll", label=_("All pieces"))], "wide")
     found: list[blocks.Block] = [lead]
-    first = _(
-        "The rows that are high or very high, including borderline cases, the worst first; all rows are in the "
-        "appendix."
-    )
     parts = (
-        (first, list_risky(view.results)),
+        (_("The rows that are high or very high, including borderline cases, the worst first; all rows are in the "
+           "appendix."), list_risky(view.results)),
         (f"{words.UNCONFIRMED} " + _("Unconfirmed, counted apart:"), list_apart(view.results, "unconfirmed")),
         (f"{words.BY_FORMULA} " + _("By formula only, counted apart:"), list_risky(view.results, "formula")),
-    )
+    )  # fmt: skip
     for at, (text, rows) in enumerate(parts):
         if rows or not at:
             most = _("The first {n:,} of {all:,}:", n=MOST_RISKY, all=len(rows)) if len(rows) > MOST_RISKY else ""
@@ -126,54 +126,28 @@ def build_items(view: View) -> blocks.Section:
     return blocks.Section(found)
 
 
-def _explain(view: View) -> list[str]:
-    """Return how many rows there are, and what the columns mean."""
-    verified, n = view.content.verified, len(view.results)
-    if n > MOST_ROWS:
-        count = _(
-            "{n:,} rows, the first {shown:,} of which are shown: the Excel report holds all.", n=n, shown=MOST_ROWS
-        )
-    else:
-        count = ngettext("{n:,} row.", "{n:,} rows.", n)
-    if verified.done:
-        chance = _("Chance: the adopted risk, simulated where it has a range, otherwise from the formula; {interval}.",
-                   interval=verified.interval)  # fmt: skip
-        record = _("Under the record: the behaviour under the recorded motion itself, as largest rotation over the "
-                   "critical angle, the worst of several records; a dash: no record, or not simulated.")  # fmt: skip
-    else:
-        chance = _("Chance: the adopted risk, here from: {formula}.", formula=_(view.run.formula.title))
-        record = ""
-    raw = _("Raw: as printed, before the departures listed in the section Methods. Where the axis is not known, the "
-            "worse of both governs.")  # fmt: skip
-    return [count, chance, record, raw]
-
-
 def _list_all(view: View) -> blocks.Table:
-    columns, rows = view.columns("pieces"), view.content.listed[:MOST_ROWS]
-    heads = {"": "", "unconfirmed": _("Unconfirmed: nothing is known of the building, or the motions may be too weak"),
-             "formula": _("By formula only: not simulated")}  # fmt: skip
-    parts = [(heads[basis], [one for one in rows if one.apart == basis]) for basis in heads]
-    groups = [
-        [*([blocks.part(heading, len(columns))] if heading else []), *(_list_one(view, columns, one) for one in own)]
-        for heading, own in parts
-        if own
-    ]
+    columns, on_screen, groups = view.columns("pieces"), not view.for_print, []
+    for basis, heading in (
+        ("", ""),
+        ("unconfirmed", _("Unconfirmed: nothing is known of the building, or the motions may be too weak")),
+        ("formula", _("By formula only: not simulated")),
+    ):
+        own = [blocks.part(heading, len(columns))] if heading else []
+        for one in view.content.listed[:MOST_ROWS]:
+            if one.apart != basis:
+                continue
+            at, item = one.item.index + 1, one.item
+            is_on_plan = on_screen and item.x_m is not None and item.y_m is not None and view.plans.get(item.floor)
+            cells = [
+                each.cell(one, can_sort=on_screen) if each.key != "item" else each.text(one) if not is_on_plan
+                else blocks.Span(each.text(one), href=f"#piece-{at}", title=_("Show it on the plan"))
+                for each in columns
+            ]  # fmt: skip
+            data = {"floor": item.floor, "room": item.room, "class": words.style_name(one), "route": item.route}
+            own.append(blocks.Row(cells, id=f"row-{at}", data=data if on_screen else {}))
+        groups += [own] if len(own) > bool(heading) else []
     return blocks.Table([one.column for one in columns], groups, "items", id="pieces", is_named=True)
-
-
-def _list_one(view: View, columns: Sequence[PageColumn], one: ItemResult) -> blocks.Row:
-    at, item, on_screen = one.item.index + 1, one.item, not view.for_print
-    is_on_plan = on_screen and item.x_m is not None and item.y_m is not None and view.plans.get(item.floor)
-
-    def link(text: str) -> blocks.Words:
-        return blocks.Span(text, href=f"#piece-{at}", title=_("Show it on the plan")) if is_on_plan else text
-
-    return blocks.Row(
-        [link(each.text(one)) if each.key == "item" else each.cell(one, can_sort=on_screen) for each in columns],
-        id=f"row-{at}",
-        data={"floor": item.floor, "room": item.room, "class": words.style_name(one), "route": item.route}
-        if on_screen else {},
-    )  # fmt: skip
 
 
 # ---------------------------------------------------------------- by every method
@@ -233,7 +207,16 @@ def list_lines(results: Sequence[ItemResult], columns: Sequence[PageColumn]) -> 
     """Return a line a row, with those of the columns of a table that have a place in it, and the class at its end."""
     shown = [one for one in columns if one.places]
     head = "  ".join([*(_put(one, one.line_heading or one.heading) for one in shown), _("Class")])
-    lines = [_line(shown, one) for one in results[:MOST_LINES]]
+    lines: list[blocks.Words] = []
+    for one in results[:MOST_LINES]:
+        text = "  ".join(_put(column, (column.line or column.text)(one)) for column in shown)
+        label, marks = words.class_label(one), words.class_marks(one)
+        if one.is_anchored:
+            lines.append(f"{text}  {words.apart_label('anchored')} ({label}{marks})")
+        elif one.apart:
+            lines.append(f"{text}  {label} ({words.apart_note(one)})")
+        else:
+            lines.append([f"{text}  ", blocks.Span(f"{label}{marks}", f"badge {words.style_name(one)}")])
     return [blocks.Listing(head, lines[at : at + LINES]) for at in range(0, len(lines), LINES)]
 
 
@@ -258,16 +241,6 @@ def _places(character: str) -> int:
     if unicodedata.combining(character):
         return 0
     return 2 if unicodedata.east_asian_width(character) in "WF" else 1
-
-
-def _line(columns: Sequence[PageColumn], one: ItemResult) -> blocks.Words:
-    text = "  ".join(_put(column, (column.line or column.text)(one)) for column in columns)
-    marks = words.class_marks(one)
-    if one.is_anchored:
-        return f"{text}  {words.apart_label('anchored')} ({words.class_label(one)}{marks})"
-    if one.apart:
-        return f"{text}  {words.class_label(one)} ({words.apart_note(one)})"
-    return [f"{text}  ", blocks.Span(f"{words.class_label(one)}{marks}", f"badge {words.style_name(one)}")]
 
 
 PARTS = (

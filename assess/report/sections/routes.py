@@ -9,8 +9,7 @@ from assess.report import blocks, words
 from assess.report.page_columns import PageColumn, flags, route_columns, say_flag
 from assess.report.say import route
 from assess.report.view import Part, View, say_left
-from assess.route_results import BesideRow, Chance, RoomRow, RouteRow, RouteState, SegmentRow
-from assess.text import natural_key
+from assess.route_results import BLOCKED_FROM, Chance, RoomRow, RouteRow, RouteState, SegmentRow
 
 MOST_LINES, MOST_FIXES, MOST_NAMES, LONGEST = 12, 10, 16, 20
 """Lines of either table of the page, pieces and names of a line, and characters of the name of a piece."""
@@ -44,7 +43,13 @@ def build_page(view: View) -> blocks.Section:
         return blocks.Section([blocks.Paragraph(_("The workbook names no routes."))], "run-on")
     found = view.run.route_tables
     uncounted = route.say_uncounted(found)
-    rules = route.list_rules(found.risk)
+    limit = route.say_risk(found.risk)
+    rules = [
+        (RouteState.BLOCKED, _("chance {limit} or more", limit=route.say_risk(BLOCKED_FROM))),
+        (RouteState.NOT_KNOWN, _("something missing could change the state")),
+        (RouteState.DOUBTFUL, _("less, but its range reaches {limit}", limit=limit)),
+        (RouteState.OPEN, _("its whole range is below {limit}", limit=limit)),
+    ]
     states = [
         blocks.Span([show_state(state, route.say_state(state)), f": {rule}{';' if at < len(rules) else '.'}"], "key")
         for at, (state, rule) in enumerate(rules, start=1)
@@ -87,9 +92,9 @@ def _list_route_lines(view: View) -> list[Line]:
         name, (start, end) = words.cut(one.route, 40), map(_name_few, (one.from_places, one.to_places))
         to = f" → {end}" if end else ""
         ends: blocks.Words = [blocks.strong(name), f": {start}{to}"] if start and start != name else f"{name}{to}"
-        lines.append(Line(one, name, ends, route.say_route_state(one, routes.risk), route.say_blocked(one)))
+        lines.append(Line(one, name, ends, route.say_outlook(one, routes.risk), route.say_blocked(one)))
     is_open = [one for one in routes.routes if one.state == RouteState.OPEN]
-    for said, own in _group(is_open, lambda one: route.say_route_state(one, routes.risk)):
+    for said, own in _group(is_open, lambda one: route.say_outlook(one, routes.risk)):
         highest = max(one.blocked.high for one in own if one.blocked)
         chance = _("at most {chance}", chance=words.percent(highest)) if highest else words.percent(0.0)
         names = words.name_first([words.cut(one.route, 30) for one in own], MOST_NAMES)
@@ -135,9 +140,17 @@ def _name_few(places: Sequence[str]) -> str:
 
 def _say_fixes(view: View, one: RouteRow | RoomRow) -> blocks.Words:
     """Return the pieces to fix, rows of one piece each by the ends of their runs, and what else to do."""
-    items, advice = view.run.item_rows, route.say_advice(one)
-    if one.missing or not one.fixes:
+    if one.missing:
+        return route.say_missing(one.missing) or words.DASH
+    if not one.is_fixed:
+        advice = _("widen it, or move what stands inside; check the Clear width")
+    elif one.state == RouteState.DOUBTFUL and not one.fixes:
+        advice = _("no draw blocks it: simulate more draws to settle it")
+    else:
+        advice = route.say_missing_after(one)
+    if not one.fixes:
         return advice or words.DASH
+    items = view.run.item_rows
     fixes = sorted((items[fix.item_index] for fix in one.fixes), key=lambda row: natural_key(row.item))
     names = [row.item if row.quantity == 1 else f"{row.item} ({row.quantity})" for row in fixes]
     runs, texts = words.find_runs(names, LONGEST), []
@@ -169,9 +182,18 @@ def build_detail(view: View) -> Sequence[blocks.Section]:
         "widths few",
     )
     which = _("Which of these widths applies is to be entered as Required width in the workbook.")
+    shown: Mapping[str, Show] = {
+        "floor": lambda one: blocks.head(words.cut(view.floor_titles[one.floor], 40)),
+        "any_room_cut_off_probability": lambda one: _say_perhaps(one.any_room_cut_off),
+    }
+    by_floor = _build_table(
+        columns["floors"], (_build_row(columns["floors"], one, shown) for one in found.floors), "route-floors",
+        _("A route counts on every floor on which it has segments, as blocked there if its segments of that floor "
+          "alone cut off what it serves. Left out: pieces without a usable position or route."),
+    )  # fmt: skip
     listed: list[blocks.Block] = [
         *_list_routes(view, columns["routes"]), *_list_steps(view), *_list_rooms(view, columns["rooms"]),
-        *_list_floors(view, columns["floors"]),
+        *([blocks.Heading(_("Routes by floor")), by_floor] if found.floors else []),
         blocks.Heading(_("Assumptions of the evaluation")),
         blocks.Box([blocks.Bullets(route.list_cautions(found))], "caution"),
         blocks.Heading(_("Widths required by codes and guidance")),
@@ -221,20 +243,17 @@ def _list_routes(view: View, columns: Sequence[PageColumn]) -> list[blocks.Block
         basis = blocks.note("; ".join(filter(None, (route.say_basis(one.blocked), left_out))))
         return [route.say_bounds(one.blocked), blocks.BREAK, basis] if one.blocked.pieces else basis
 
-    def name_piece(one: RouteRow) -> blocks.Words:
-        likely = one.most_likely_piece
-        return words.DASH if likely is None or not one.is_fixed else view.name_piece(likely.item_index)
-
     shown: Mapping[str, Show] = {
         "route": lambda one: blocks.head(words.cut(one.route, 40)),
         "floors": lambda one: route.name_few(one.floors),
-        "state": lambda one: _say_state(one, route.say_route_state(one, found.risk)),
+        "state": lambda one: _say_state(one, route.say_outlook(one, found.risk)),
         "blocked_probability": route.say_blocked,
         "blocked_or_reduced_probability": route.say_taken,
         "blocked_is_joint": say_bounds,
         "blocked_if_anchors_fail_probability":
             lambda one: _say_perhaps(one.blocked_if_anchors_fail, is_known=one.evaluated),
-        "most_likely_piece": name_piece,
+        "most_likely_piece": lambda one: view.name_piece(one.most_likely_piece.item_index)
+        if one.most_likely_piece is not None and one.is_fixed else words.DASH,
     }  # fmt: skip
     chosen = route.choose_rows(found.routes, MOST_ROUTES, route.find_chance)
     rows = [_build_row(columns, one, shown) for one in chosen]
@@ -306,13 +325,10 @@ def _list_rooms(view: View, columns: Sequence[PageColumn]) -> list[blocks.Block]
         lines += [_("no other way")] if len(one.ways) == 1 else []
         return blocks.join_words([*lines, route.say_left_out(one.unevaluated_segments)], blocks.BREAK)
 
-    def name_exits(one: RoomRow) -> str:
-        names = route.name_few(one.exits)
-        return _("stairs: {names}", names=names) if one.by_stairs else names
-
     shown: Mapping[str, Show] = {
         "room": lambda one: blocks.head(words.cut(one.room, 40)),
-        "exits": name_exits,
+        "exits": lambda one: _("stairs: {names}", names=route.name_few(one.exits)) if one.by_stairs
+        else route.name_few(one.exits),
         "state": lambda one: show_state(one.state, route.say_room_state(one)),
         "loses_every_exit_probability": route.say_lost,
         "loses_if_anchors_fail_probability": lambda one: _say_perhaps(one.loses_if_anchors_fail),
@@ -323,22 +339,6 @@ def _list_rooms(view: View, columns: Sequence[PageColumn]) -> list[blocks.Block]
     rows = [_build_row(columns, one, shown) for one in chosen]
     left = say_left(len(found.rooms) - len(chosen), is_likely=True)
     return [heading, _build_table(columns, rows, "rooms", caption), *left]
-
-
-def _list_floors(view: View, columns: Sequence[PageColumn]) -> list[blocks.Block]:
-    floors = view.run.route_tables.floors
-    if not floors:
-        return []
-    caption = _(
-        "A route counts on every floor on which it has segments, as blocked there if its segments of that floor alone "
-        "cut off what it serves. Left out: pieces without a usable position or route."
-    )
-    shown: Mapping[str, Show] = {
-        "floor": lambda one: blocks.head(words.cut(view.floor_titles[one.floor], 40)),
-        "any_room_cut_off_probability": lambda one: _say_perhaps(one.any_room_cut_off),
-    }
-    rows = [_build_row(columns, one, shown) for one in floors]
-    return [blocks.Heading(_("Routes by floor")), _build_table(columns, rows, "route-floors", caption)]
 
 
 def _list_segments(view: View, columns: Sequence[PageColumn]) -> list[blocks.Block]:
@@ -355,12 +355,16 @@ def _list_segments(view: View, columns: Sequence[PageColumn]) -> list[blocks.Blo
     def list_remarks(one: SegmentRow) -> blocks.Words:
         fail = one.blocked_if_anchors_fail
         rooms = ", ".join(name for part in (one.room or "").split(";") if (name := part.strip()))
+        items = [view.results[other.item_index].item for other in one.other_rooms]
+        others = [f"{words.cut(item.item, 20)} ({words.cut(item.room, 20)})" if item.room else words.cut(item.item, 20)
+                  for item in items]  # fmt: skip
+        named = words.name_first(others, route.MOST_NAMED)
         parts: list[blocks.Words] = [
             route.say_missing(one.missing),
             route.say_occupants(one) if one.needed_width_m is not None else "",
             _("if anchors fail: blocked in {chance}", chance=route.say_chance(fail)) if fail else "",
             _("room: {rooms}", rooms=words.cut(rooms, 40)) if one.room else "",
-            route.say_other_rooms(one, view.results),
+            _("not counted, in another room: {pieces}", pieces=named) if others else "",
             flags(flag for flag in one.flags if flag != "own_rooms"),
             words.clip(one.notes, 80),
         ]
@@ -370,7 +374,7 @@ def _list_segments(view: View, columns: Sequence[PageColumn]) -> list[blocks.Blo
         "segment": lambda one: blocks.head(route.say_segment(one)),
         "floor": lambda one: words.cut(one.floor or "", 20) or words.DASH,
         "from_place": lambda one: f"{words.cut(one.from_place or '', 40)} – {words.cut(one.to_place or '', 40)}",
-        "state": lambda one: _say_state(one, route.say_segment_state(one, found.risk)),
+        "state": lambda one: _say_state(one, route.say_outlook(one, found.risk)),
         "blocked_probability": route.say_blocked,
         "blocked_independent": say_bounds,
         "blocked_or_reduced_probability": route.say_taken,
@@ -410,30 +414,30 @@ def _list_beside(view: View, columns: Sequence[PageColumn]) -> list[blocks.Block
             *(blocks.Column(one.heading, one.column.width, one.is_number) for one in columns),
             blocks.Column(_("Overturns"), "overturns", is_number=True), blocks.Column(_("Marks")),
         ]  # fmt: skip
-        rows = [_list_near(view, columns, one, near) for one, near in beside[:MOST_BESIDE]]
+        shown: Mapping[str, Show] = {
+            "item": lambda row: view.name_row(row.item_index),
+            "by_plan": lambda row: _("the plan") if row.by_plan else _("Edge distance"),
+        }
+        rows = []
+        for one, near in beside[:MOST_BESIDE]:
+            cells = [route.say_segment(one), words.cut(one.floor or "", 20) or words.DASH]
+            if near is None:
+                none = blocks.Cell(_("no piece reaches it"), columns=len(columns) + 1)
+                rows.append(blocks.Row([*cells, none, flags(one.flags)]))
+                continue
+            piece = view.results[near.item_index]
+            sign = "" if piece.is_anchored else f" {piece.adopted.risk.symbol}{words.class_marks(piece)}"
+            anchored = words.apart_label("anchored") if piece.is_anchored else ""
+            rows.append(blocks.Row([
+                *cells, *_build_row(columns, near, shown).cells, f"{words.chance(piece)}{sign}",
+                blocks.join_words((anchored, flags(near.flags))),
+            ]))  # fmt: skip
         found.append(blocks.table(heads, rows, "beside", f"{caption} {view.marks}".rstrip(), is_named=True))
         found += say_left(len(beside) - MOST_BESIDE)
     else:
         found.append(blocks.Paragraph(_("No piece reaches any segment.")))
     meanings = route.list_flags(view.run.route_tables)
     return [*found, blocks.Terms([(say_flag(flag), text) for flag, text in meanings.items()])] if meanings else found
-
-
-def _list_near(
-    view: View, columns: Sequence[PageColumn], one: SegmentRow, near: BesideRow | None
-) -> list[blocks.Cell | blocks.Words]:
-    first: list[blocks.Cell | blocks.Words] = [route.say_segment(one), words.cut(one.floor or "", 20) or words.DASH]
-    if near is None:
-        return [*first, blocks.Cell(_("no piece reaches it"), columns=len(columns) + 1), flags(one.flags)]
-    piece = view.results[near.item_index]
-    shown: Mapping[str, Show] = {
-        "item": lambda row: view.name_row(row.item_index),
-        "by_plan": lambda row: _("the plan") if row.by_plan else _("Edge distance"),
-    }
-    sign = "" if piece.is_anchored else f" {piece.adopted.risk.symbol}{words.class_marks(piece)}"
-    anchored = words.apart_label("anchored") if piece.is_anchored else ""
-    return [*first, *_build_row(columns, near, shown).cells, f"{words.chance(piece)}{sign}",
-            blocks.join_words((anchored, flags(near.flags)))]  # fmt: skip
 
 
 PARTS = (

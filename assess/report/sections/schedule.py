@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
+from assess.details import DETAILS
 from assess.fields import schedule_fields
 from assess.i18n import fill, number
 from assess.i18n import gettext as _
@@ -26,14 +27,22 @@ def build(view: View) -> blocks.Section:
                 if view.content.total.has_apart
                 else _("No free-standing piece reaches medium, and no route needs one fixed."))  # fmt: skip
         return blocks.Section([blocks.Paragraph(none)])
-    at_risk = say.say_rooms_at_risk(schedule)
-    before = _(
-        "Before and after: the draws of this run, with every piece of the list anchored and all anchors holding."
-    )
-    changes = zip((_("Pieces"), _("Routes and rooms")), say.list_changes(schedule), strict=True)
-    used, others = say.list_details(schedule)
-    notes = [(one, words.plural(pieces, "piece")) for one, pieces in used]
-    notes += [(one, _("alternative")) for one in others]
+    changes = []
+    for name, own in zip((_("Pieces"), _("Routes and rooms")), say.list_changes(schedule), strict=True):
+        heads = blocks.list_columns((name, ""), (_("Before"), "w18", "num"), (_("After"), "w18", "num"))
+        rows = [
+            (blocks.head(one.label), words.fixed(one.before, one.decimals), words.fixed(one.after, one.decimals))
+            for one in own
+        ]
+        changes += [blocks.Box([blocks.table(heads, rows, "changes")])] if own else []
+    at_risk, after = schedule.before.rooms_at_risk, schedule.after.rooms_at_risk
+    text = _("Rooms that may lose every exit before: {rooms}.", rooms=words.name_first(at_risk, say.MOST_NAMES))
+    left = _("after: {rooms}.", rooms=words.name_first(after, say.MOST_NAMES)) if after else _("after: none.")
+    used: dict[str, int] = {}
+    for work in (work for row in schedule.rows for work in row.works):
+        used[work.detail] = used.get(work.detail, 0) + work.pieces
+    notes = [(one, words.plural(used[key], "piece")) for key, one in DETAILS.items() if key in used]
+    notes += [(one, _("alternative")) for key, one in DETAILS.items() if key not in used]
     heads = blocks.list_columns((_("Detail"), "w12"), (_("What is done"), "w24"), (_("Known weakness"), ""),
                                 (_("Capacity of one fixing"), "w24"), (_("Source"), "w12"))  # fmt: skip
     details: Iterator[Sequence[blocks.Cell | blocks.Words]] = (
@@ -43,24 +52,16 @@ def build(view: View) -> blocks.Section:
     )  # fmt: skip
     return blocks.Section([
         blocks.Paragraph(" ".join(lead), "lead"),
-        blocks.Paragraph(before, "lead-in"),
-        blocks.Box([_list_changes(name, own) for name, own in changes if own], "before-after"),
-        *([blocks.Paragraph(at_risk, "small")] if at_risk else []),
+        blocks.Paragraph(_("Before and after: the draws of this run, with every piece of the list anchored and all "
+                           "anchors holding."), "lead-in"),
+        blocks.Box(changes, "before-after"),
+        *([blocks.Paragraph(f"{text[:-1]}; {left}", "small")] if at_risk else []),
         blocks.Heading(_("Work by room")),
         *_list_work(view),
         blocks.Heading(_("How to fix it")),
-        blocks.Paragraph(say.say_disagreement(), "lead-in"),
+        blocks.Paragraph(_(say.DISAGREEMENT), "lead-in"),
         blocks.table(heads, details, "named details"),
     ])  # fmt: skip
-
-
-def _list_changes(name: str, changes: list[say.Change]) -> blocks.Box:
-    heads = blocks.list_columns((name, ""), (_("Before"), "w18", "num"), (_("After"), "w18", "num"))
-    rows = [
-        (blocks.head(one.label), words.fixed(one.before, one.decimals), words.fixed(one.after, one.decimals))
-        for one in changes
-    ]
-    return blocks.Box([blocks.table(heads, rows, "changes")])
 
 
 def _list_work(view: View) -> Iterator[blocks.Block]:
@@ -72,41 +73,45 @@ def _list_work(view: View) -> Iterator[blocks.Block]:
         "angle, at the base, and the shear at its base at PFA."
     )
     code = blocks.lower_indices(_("By code: F_p of ASCE 7-22.")) if has_code else ""
-    yield blocks.Paragraph(blocks.join_words((f"{say.say_order()} {forces}", code)), "lead-in")
-    columns = list(_list_columns(has_code=has_code, has_cost=has_cost))
+    yield blocks.Paragraph(blocks.join_words((f"{_(say.ORDER)} {forces}", code)), "lead-in")
+    fields = schedule_fields(WorkRow)
+    columns = [
+        blocks.Column(_("No."), "w4", is_number=True),
+        blocks.Column(_("Pieces, class and chance, and why")),
+        blocks.Column(_("Fix with"), "w14"),
+        *(blocks.Column([f"{name} ", blocks.Span("[kN]", "unit")], "w5", is_number=True, kind="force")
+          for name in (_("T at PFA"), _("T at 84 %"), *([_("T by code")] if has_code else []), _("Shear"))),
+        blocks.Column(_("Fixings each × pieces"), "w8", is_number=True),
+        *(blocks.Column(fields[key].short_heading(), "w7", is_number=True)
+          for key in ("unit_cost", "cost") if has_cost),
+        blocks.Column(_("Falls avoided"), "w7", is_number=True),
+        blocks.Column(_("Falls left"), "w6", is_number=True),
+    ]  # fmt: skip
     groups = []
     for (floor, room), own in groupby(works, key=lambda one: (one.row.floor, one.row.room)):
         nowhere = _("no room given")
         heading = f"{view.floor_titles[floor]}: {words.cut(room, 60) or nowhere}"
         rows = [blocks.Row(list(_list_cells(view, one, has_code=has_code, has_cost=has_cost))) for one in own]
         groups.append([blocks.part(heading, len(columns)), *rows])
-    caption = blocks.rich(_("Force on each piece [kN]: <em>{caveat}</em>"), caveat=say.say_screening())
+    caption = blocks.rich(_("Force on each piece [kN]: <em>{caveat}</em>"), caveat=_(say.SCREENING))
     yield blocks.Table(columns, groups, "named schedule", [*caption, "."], is_named=True)
     yield from say_left(len(schedule.rows) - len(shown))
-    held = f"{say.HELD}: {say.say_held()}." if any(one.is_held_by_weight for one in works) else ""
+    held = f"{say.HELD}: {_(say.HOLDS)}." if any(one.is_held_by_weight for one in works) else ""
     left_over = _("Falls left: once this entry and all of smaller number are fixed.")
-    texts = (say.say_checks(), left_over, held, *say.list_marks(schedule), view.marks)
+    texts = (_(say.CHECKS), left_over, held, *say.list_marks(schedule), view.marks)
     yield blocks.Paragraph(blocks.join_words(texts), "small")
-
-
-def _list_columns(*, has_code: bool, has_cost: bool) -> Iterator[blocks.Column]:
-    fields = schedule_fields(WorkRow)
-    yield blocks.Column(_("No."), "w4", is_number=True)
-    yield blocks.Column(_("Pieces, class and chance, and why"))
-    yield blocks.Column(_("Fix with"), "w14")
-    for name in (_("T at PFA"), _("T at 84 %"), *([_("T by code")] if has_code else []), _("Shear")):
-        yield blocks.Column([f"{name} ", blocks.Span("[kN]", "unit")], "w5", is_number=True, kind="force")
-    yield blocks.Column(_("Fixings each × pieces"), "w8", is_number=True)
-    for key in ("unit_cost", "cost") if has_cost else ():
-        yield blocks.Column(fields[key].short_heading(), "w7", is_number=True)
-    yield blocks.Column(_("Falls avoided"), "w7", is_number=True)
-    yield blocks.Column(_("Falls left"), "w6", is_number=True)
 
 
 def _list_cells(view: View, work: Work, *, has_code: bool, has_cost: bool) -> Iterator[blocks.Words]:
     row, entry = work.row, work.entry.row
+    count = f" ({words.plural(row.pieces, 'piece')})" if row.pieces > len(row.items) else ""
+    reason = f"; {work.reason}" if work.reason != words.DASH else ""
     yield str(entry.place)
-    yield _describe(view, work)
+    found: blocks.Runs = [blocks.strong(work.names), f": {words.cut(work.described, 50)}{count} "]
+    found += [*mark(work.results[0]), f" {work.chance}{reason}"]
+    if photo := view.photos.first_photo(work.results):
+        found.append(blocks.Image(photo[1], _("Photo of {piece}", piece=photo[0]), "photo"))
+    yield found
     yield blocks.join_words((_(work.detail.title), blocks.note(f"({work.marks})") if work.marks else ""))
     yield say.say_force(row.tension_kn)
     yield f"{say.say_force(row.tension_high_kn)}{f' {say.HELD}' if work.is_held_by_weight else ''}"
@@ -118,18 +123,6 @@ def _list_cells(view: View, work: Work, *, has_code: bool, has_cost: bool) -> It
         yield from (say.say_cost(cost) for cost in (row.unit_cost, row.cost))
     yield words.fixed(entry.falls_avoided, 2) if work.is_first else words.DASH
     yield words.fixed(entry.falls_left, 2) if work.is_first else words.DASH
-
-
-def _describe(view: View, work: Work) -> blocks.Runs:
-    """Return the pieces with what they are, their class, chance and reason, and a photo."""
-    row = work.row
-    count = f" ({words.plural(row.pieces, 'piece')})" if row.pieces > len(row.items) else ""
-    reason = f"; {work.reason}" if work.reason != words.DASH else ""
-    found: blocks.Runs = [blocks.strong(work.names), f": {words.cut(work.described, 50)}{count} "]
-    found += [*mark(work.results[0]), f" {work.chance}{reason}"]
-    if photo := view.photos.first_photo(work.results):
-        found.append(blocks.Image(photo[1], _("Photo of {piece}", piece=photo[0]), "photo"))
-    return found
 
 
 PARTS = (

@@ -17,11 +17,14 @@ from assess.report.sections.floors import say_changes
 from assess.report.view import Part, View
 from assess.results import ItemResult
 from assess.risk import RiskClass
+from assess.text import natural_key
 
 FIXES, FLOORS, ROUTES, CAUTIONS = 4, 6, 4, 3
 """Fixes, floors, routes and cautions that the page has room for."""
 FLOORS_BESIDE = 3
 """Floors that it has room for next to sentences on unconfirmed pieces."""
+NEEDED = 28
+"""Letters that it has room for of what to fix or fill in for a route."""
 TIGHT_FLOORS = 4
 """Floors above which lists are shorter, so that they stay on one page."""
 
@@ -31,7 +34,9 @@ def build(view: View) -> blocks.Section:
     content, total = view.content, view.content.total
     furnished = [page.counts for page in content.floors if page.results]
     most = FLOORS if not total.unconfirmed else FLOORS_BESIDE
-    floors = list_worst_floors(furnished, most)
+    floors = furnished  # those that there is room for: all, or those with most risky pieces
+    if len(floors) > most:
+        floors = sorted(floors, key=lambda one: (-one.risky, -one.expected, -one.unconfirmed))[:most]
     short = list(dict.fromkeys(one.short for one in content.cautions))
     shaking = say_ground(view.run, shortly=True)
     is_tight = len(floors) > TIGHT_FLOORS or len(short) > 1 or content.annual is not None
@@ -68,13 +73,6 @@ def build(view: View) -> blocks.Section:
     return blocks.Section([
         *found, blocks.Paragraph(blocks.join_words([*view.legend, anchored]), "small legend")
     ])  # fmt: skip
-
-
-def list_worst_floors(floors: Sequence[Counts], most: int) -> Sequence[Counts]:
-    """Return the floors that the page has room for: in their order, or those with most risky pieces."""
-    if len(floors) <= most:
-        return floors
-    return sorted(floors, key=lambda one: (-one.risky, -one.expected, -one.unconfirmed))[:most]
 
 
 def _say_conditions(view: View, shaking: str, cautions: Sequence[str]) -> blocks.Paragraph:
@@ -152,12 +150,16 @@ def _list_routes(view: View, *, is_tight: bool) -> list[blocks.Block]:
     heads = blocks.list_columns((_("Route"), ""), (_("Floors"), "w10"), (_("State"), "w20"),
                                 (_("Chance blocked (interval)"), "w24", "num"),
                                 (_("To anchor or move"), "w24"))  # fmt: skip
-    rows = [
-        (words.cut(one.route, 30), words.cut(", ".join(one.floors), 16),
-         route.say_route_state(one, view.run.route_tables.risk), route.say_blocked(one),
-         (route.say_needed(view.run, one) or words.DASH) + ("; " + _("then not known") if one.missing_after else ""))
-        for one in found[:most]
-    ]  # fmt: skip
+    rows = []
+    for one in found[:most]:
+        pieces = [view.run.result(fix.item_index).item for fix in one.fixes]
+        names = [each.item if each.quantity == 1 else f"{each.item} ({words.plural(each.quantity, 'piece')})"
+                 for each in pieces]  # fmt: skip
+        needed = words.fit_pieces(sorted(names, key=natural_key), NEEDED)
+        needed = needed or words.cut(route.say_missing(one.missing), NEEDED) or words.DASH
+        rows.append((words.cut(one.route, 30), words.cut(", ".join(one.floors), 16),
+                     route.say_outlook(one, view.run.route_tables.risk), route.say_blocked(one),
+                     needed + ("; " + _("then not known") if one.missing_after else "")))  # fmt: skip
     return [lead, *([blocks.table(heads, rows, "short named")] if found else [])]
 
 

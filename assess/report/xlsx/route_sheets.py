@@ -104,7 +104,7 @@ def write_routes(pen: Pen, page: Any, content: Content) -> None:
     """Write every segment, every route and every floor with its chances."""
     routes = content.run.route_tables
     of_segment: dict[str, Read] = {
-        "state": lambda one: say.say_segment_state(one, routes.risk),
+        "state": lambda one: say.say_outlook(one, routes.risk),
         "insufficient_for_occupants": lambda one: (
             "" if one.needed_width_m is None else words.yes_or_no(one.insufficient_for_occupants)
         ),
@@ -123,7 +123,7 @@ def write_routes(pen: Pen, page: Any, content: Content) -> None:
         pen.bar(page, f"{letter}2:{letter}{row}")
     names = ("floors", "from_places", "to_places", "unevaluated_segments")
     of_route = _list_outlook(RouteRow, routes) | {
-        "state": lambda one: say.say_route_state(one, routes.risk),
+        "state": lambda one: say.say_outlook(one, routes.risk),
         **{key: partial(lambda key, one: ", ".join(getattr(one, key)), key) for key in names},
     }
     ways = [

@@ -165,7 +165,15 @@ def _list_lines(
     if said := route.say_routes(run):
         found = route.list_at_risk(run.route_tables)
         yield _("Evacuation routes: {text}", text=" ".join(said)), ""
-        yield from ((route.describe_at_risk(one, run.route_tables.risk), "") for one in found[:ROUTES])
+        for one in found[:ROUTES]:
+            floors, likely = ", ".join(one.floors), one.most_likely_piece
+            name = _("{route} (floor {floors})", route=one.route, floors=floors) if floors else one.route
+            values = {"route": name, "state": route.say_outlook(one, run.route_tables.risk),
+                      "chance": route.say_blocked(one)}  # fmt: skip
+            if likely is None or not likely.item or not one.is_fixed:
+                yield _("{route}: {state}, blocked in {chance}.", **values), ""
+            else:
+                yield _("{route}: {state}, blocked in {chance}, most likely by {item}.", **values, item=likely.item), ""
         if more := len(found[ROUTES:]):
             yield ngettext("{n:,} more route at risk is in the sheet Routes.",
                            "{n:,} more routes at risk are in the sheet Routes.", more), ""  # fmt: skip

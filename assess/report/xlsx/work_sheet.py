@@ -66,9 +66,9 @@ def write_work(pen: Pen, page: Any, content: Content) -> None:
     texts = [
         _("This list is as run: it does not follow what is edited in Items and Floors."),
         *say_work.say_effect_of_all(schedule),
-        say_work.say_order(),
-        say_work.say_checks(),
-        say_work.say_disagreement(),
+        _(say_work.ORDER),
+        _(say_work.CHECKS),
+        _(say_work.DISAGREEMENT),
         *say_work.list_marks(schedule),
     ]
     for row, text in enumerate(texts, below + 2):
@@ -98,7 +98,7 @@ def _list_columns(schedule: Schedule) -> list[Column]:
                        format=MONEY if name in ("unit_cost", "cost") else field.format)
         for name, field in schedule_fields(WorkRow).items()
     }  # fmt: skip
-    screening = say_work.say_screening()
+    screening = _(say_work.SCREENING)
     has_code = any(work.tension_code_kn is not None for row in schedule.rows for work in row.works)
     forces = [own[name] for name in FORCES if name != "tension_code_kn" or has_code]
     return [
@@ -118,7 +118,7 @@ def _list_columns(schedule: Schedule) -> list[Column]:
         of_entry("falls_avoided", 8, only_first=True),
         of_entry("falls_left", 8, only_first=True),
         Column(_("Remarks on the forces"), 26, key="remarks", read=lambda one: "; ".join(
-            filter(None, (say_work.say_held() if one.is_held_by_weight else "", one.marks)))),
+            filter(None, (_(say_work.HOLDS) if one.is_held_by_weight else "", one.marks)))),
         Column(_("Photo"), 10, lambda one: ", ".join(
             dict.fromkeys(str(each.item.field("photo")) for each in one.results if each.item.field("photo")))),
         Column(_("Notes"), 18, lambda _one: ""),
