@@ -10,6 +10,7 @@ from assess.report.page_columns import PageColumn, flags, route_columns, say_fla
 from assess.report.say import route
 from assess.report.view import Part, View, say_left
 from assess.route_results import BLOCKED_FROM, Chance, RoomRow, RouteRow, RouteState, SegmentRow
+from assess.text import natural_key
 
 MOST_LINES, MOST_FIXES, MOST_NAMES, LONGEST = 12, 10, 16, 20
 """Lines of either table of the page, pieces and names of a line, and characters of the name of a piece."""
