@@ -211,11 +211,14 @@ def _count_floors(view: View) -> blocks.Table:
         yield from (number(getattr(counts, name), ",d") for _heading, _width, name in further)
         yield counts.falls
 
+    names: list[blocks.Runs] = [
+        [blocks.Span(risk.symbol, f"badge {words.class_name(risk)}"), " ", blocks.BREAK, words.risk_word(risk)]
+        for risk in RiskClass
+    ]
     columns = blocks.list_columns(
         (_("Floor"), ""),
         ("PFA X, Y [g]", "w12", "num"),
-        *(([blocks.Span(risk.symbol, f"badge {words.class_name(risk)}"), " ", blocks.BREAK, words.risk_word(risk)],
-           "w8", "num") for risk in RiskClass),
+        *((name, "w8", "num") for name in names),
         *((heading, width, "num") for heading, width, _name in further),
         (_("Expected falls"), "w14" if total.unconfirmed else "w9", "num"),
     )  # fmt: skip

@@ -51,7 +51,7 @@ def build_methods(view: View) -> blocks.Section:
     listed: list[blocks.Block] = [blocks.Paragraph(view.content.verified.adopted)]
     for method in view.run.methods:
         equations = [blocks.Equation(_(line)) for line in method.equations]
-        found = [
+        found: list[blocks.Block] = [
             blocks.Heading(_(method.title)), blocks.Paragraph(_(method.predicts)),
             blocks.Equations(equations, is_whole=len(equations) <= WHOLE),
         ]  # fmt: skip

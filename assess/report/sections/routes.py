@@ -187,14 +187,14 @@ def build_detail(view: View) -> Sequence[blocks.Section]:
         "floor": lambda one: blocks.head(words.cut(view.floor_titles[one.floor], 40)),
         "any_room_cut_off_probability": lambda one: _say_perhaps(one.any_room_cut_off),
     }
-    by_floor = _build_table(
+    by_floor: list[blocks.Block] = [blocks.Heading(_("Routes by floor")), _build_table(
         columns["floors"], (_build_row(columns["floors"], one, shown) for one in found.floors), "route-floors",
         _("A route counts on every floor on which it has segments, as blocked there if its segments of that floor "
           "alone cut off what it serves. Left out: pieces without a usable position or route."),
-    )  # fmt: skip
+    )]  # fmt: skip
     listed: list[blocks.Block] = [
         *_list_routes(view, columns["routes"]), *_list_steps(view), *_list_rooms(view, columns["rooms"]),
-        *([blocks.Heading(_("Routes by floor")), by_floor] if found.floors else []),
+        *(by_floor if found.floors else []),
         blocks.Heading(_("Assumptions of the evaluation")),
         blocks.Box([blocks.Bullets(route.list_cautions(found))], "caution"),
         blocks.Heading(_("Widths required by codes and guidance")),
