@@ -97,7 +97,7 @@ def test_the_largest_csv(tmp_path: Path, name: str, smaller: int) -> None:
 
 
 def test_a_million_channels_are_refused_at_the_headings(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(plain_csv, "_read_column", pytest.fail)  # no heading is looked at
+    monkeypatch.setattr(plain_csv, "_take_unit", pytest.fail)  # no heading is looked at
     for count in (MOST_CHANNELS + 1, 40_000):
         head = "time [s]," + ",".join(["c [g]"] * count) + "\n"
         with pytest.raises(RecordError, match=r"the file has more than 500 channels: give a file with those that are"):

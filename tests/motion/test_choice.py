@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 
 from assess.errors import RecordError
-from assess.motion.formats import read_records, select
-from assess.motion.formats._choice import rename_duplicates
+from assess.motion.formats import read_records, rename_duplicates, select
 from assess.motion.record import Record
 from tests.motion.writers import EAST, NORTH, THREE, Signal, csmip_v1, csmip_v2, wave, zipped
 

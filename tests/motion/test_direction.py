@@ -6,7 +6,7 @@ import pytest
 
 from assess.errors import RecordError
 from assess.motion.formats import read_records
-from assess.motion.formats._direction import read_direction
+from assess.motion.formats._format import read_direction
 from assess.motion.suite import read_suite
 
 VERTICAL = (

@@ -16,8 +16,7 @@ import pytest
 
 from assess.errors import RecordError
 from assess.motion.formats import read_records
-from assess.motion.formats._direction import read_direction
-from assess.motion.formats._format import read_acceleration_unit
+from assess.motion.formats._format import read_acceleration_unit, read_direction
 from assess.motion.record import Record, treat
 
 MANIFEST = "MANIFEST.md"

@@ -2,7 +2,7 @@
 
 import io
 import zipfile
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from assess.errors import RecordError
@@ -32,7 +32,7 @@ _LOCKED = 0x1
 _METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
 _OFFICE = ("[Content_Types].xml", "META-INF/manifest.xml")
 
-ReadMember = Callable[[bytes, str], tuple[Record, ...]]
+ReadMember = Callable[[bytes, str], tuple[Record, ...] | None]
 
 
 def is_archive(head: bytes) -> bool:
@@ -43,8 +43,9 @@ def is_archive(head: bytes) -> bool:
 def read_archive(data: bytes, file: str, read: ReadMember, progress: Progress = SILENT) -> tuple[Record, ...]:
     """Read every channel of every member that `read` can read from its bytes and name, inner archives included.
 
-    The name of a member's record is ``file/inner.zip/folder/member``. Raises RecordError if nothing in it can be read,
-    it is locked, or it unpacks to more than a set of records can have.
+    `read` returns None for a file of no known format. The name of a member's record is
+    ``file/inner.zip/folder/member``. Raises RecordError if nothing in it can be read, it is locked, or it unpacks to
+    more than a set of records can have.
     """
     found = _Walk(read, progress)
     found.enter(data, file, depth=1)
@@ -93,15 +94,34 @@ class _Walk:
         except Exception as error:  # what zipfile raises of damaged archives is any of ten kinds
             raise RecordError.about("the zip archive is damaged: its directory cannot be read. Get it again") from error
         with archive:
-            for member in self._list_members(archive):
+            # Python 3.11's is_dir() fails where the name is empty.
+            members = [member for member in archive.infolist() if not member.filename.endswith("/")]
+            self.members += len(members)
+            self._count(self.members)
+            if any(member.filename in _OFFICE for member in members):
+                raise RecordError.about(
+                    "the file is a workbook or another office file, not a record: save the sheet as CSV"
+                )
+            if locked := next((member for member in members if member.flag_bits & _LOCKED), None):
+                raise _BombError.about(
+                    "{member} is locked with a password: unpack the archive, and name the file of the channel",
+                    member=clean_name(locked),
+                )
+            for member in members:
                 self.progress.check()
                 name = clean_name(member)
                 try:
                     content, place = self._unpack(archive, member), f"{file}/{name}"
                     if is_archive(content):
                         self.enter(content, place, depth + 1)
-                    else:
-                        self._keep(self.read(content, name), place)
+                        continue
+                    found = self.read(content, name)
+                    if found is None:
+                        raise RecordError.about("unsupported file format")
+                    self.records += [replace(record, file=place) for record in found]
+                    self.values += sum(record.acceleration.size for record in found)
+                    if self.values > MOST_VALUES:
+                        raise _BombError(too_many_values().message)
                 except _BombError:
                     raise
                 except RecordError as error:
@@ -110,31 +130,6 @@ class _Walk:
     def _count(self, members: int) -> None:
         if members > MOST_MEMBERS:
             raise _BombError.about("the zip archive has more than {most:,} members: unpack it", most=MOST_MEMBERS)
-
-    def _keep(self, records: Iterable[Record], place: str) -> None:
-        for record in records:
-            self.records.append(replace(record, file=place))
-            self.values += record.acceleration.size
-        if self.values > MOST_VALUES:
-            raise _BombError(too_many_values().message)
-
-    def _list_members(self, archive: zipfile.ZipFile) -> list[zipfile.ZipInfo]:
-        # Python 3.11's is_dir() fails where the name is empty.
-        members = [member for member in archive.infolist() if not member.filename.endswith("/")]
-        self.members += len(members)
-        self._count(self.members)
-        for member in members:
-            if member.filename in _OFFICE:
-                raise RecordError.about(
-                    "the file is a workbook or another office file, not a record: save the sheet as CSV"
-                )
-        for member in members:
-            if member.flag_bits & _LOCKED:
-                raise _BombError.about(
-                    "{member} is locked with a password: unpack the archive, and name the file of the channel",
-                    member=clean_name(member),
-                )
-        return members
 
     def _unpack(self, archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> bytes:
         """Unpack one member, whatever size the archive gives it, no further than the limits."""

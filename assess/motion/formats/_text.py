@@ -12,7 +12,7 @@ from itertools import islice, pairwise
 from typing import overload
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from assess.arrays import FloatArray
 from assess.errors import RecordError
@@ -125,11 +125,7 @@ def has_text(cells: Cells) -> NDArray[np.bool_]:
     return np.asarray(~_IS_BLANK[cells].all(axis=1))
 
 
-def split_lines(data: bytes) -> Lines:
-    """Return the lines of a text file, whichever system it comes from.
-
-    Raises RecordError if there are more than any record has.
-    """
+def _split_lines(data: bytes) -> Lines:
     if data.count(b"\n") + data.count(b"\r") > MOST_LINES:
         raise RecordError.about("the file has more than {most:,} lines: cut it to the shaking", most=MOST_LINES)
     text = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
@@ -160,11 +156,8 @@ def text_format(
     * `choose`: returns the sections that are to be read; raises RecordError where there are none.
     """
 
-    def recognises(head: bytes) -> bool:
-        return recognised.match(with_line_feeds(head.decode("latin-1"))) is not None
-
     def read(data: bytes, file: str) -> tuple[Record, ...]:
-        lines = split_lines(data)
+        lines = _split_lines(data)
         if starts is None:
             return (read_channel(Section(lines), file),)
         found = (place for place, line in enumerate(lines) if starts.match(line[:LONGEST_TEXT]))
@@ -176,7 +169,12 @@ def text_format(
         numbered = ((fill("channel {number}", number=number), one) for number, one in enumerate(sections, start=1))
         return keep_readable(numbered, lambda section: read_channel(section, file))
 
-    return Format(key=key, title=title, recognises=recognises, read=read)
+    return Format(
+        key=key,
+        title=title,
+        recognises=lambda head: recognised.match(with_line_feeds(head.decode("latin-1"))) is not None,
+        read=read,
+    )
 
 
 Fields = Sequence[tuple[range, re.Pattern[str]]]
@@ -218,8 +216,7 @@ def read_columns(section: Section, start: int, count: int, columns: Columns, fac
     rows = section.lines[start : start + math.ceil(count / columns.per_line)]
     filled = [has_text(cells) for cells in rows.cut(columns)]
     there = int(np.flatnonzero(np.concatenate([*filled, [False]])[:count]).max(initial=-1)) + 1
-    if there < count:
-        raise cut_short(count, there)
+    compare_counts(count, there)
     return convert(rows.cut(columns), count, section, start, columns.per_line, factor)
 
 
@@ -227,32 +224,16 @@ def read_words(section: Section, start: int, count: float, factor: float) -> tup
     """Return `count` numbers with blanks between them times `factor`, and a note on those beyond, as `read_columns`."""
     _check_count(count)
     count = round(count)
-    most = count + int(MOST_BEYOND * count)
     # No more than can be used are ever taken: a line may be as long as the file.
-    there = sum(1 for _ in islice(_find_words(section, start), most + 1))
-    if there < count:
-        raise cut_short(count, there)
-    if there > most:
-        raise too_long(count)
+    there = sum(1 for _ in islice(_find_words(section, start), count + int(MOST_BEYOND * count) + 1))
+    notes = compare_counts(count, there)
     words = iter(_find_words(section, start))
     blocks = iter(lambda: list(islice(words, AT_ONCE)), [])
-    values = convert(blocks, count, section, start, None, factor)
-    return values, note_beyond(there - count, count)
+    return convert(blocks, count, section, start, None, factor), notes
 
 
 def _find_words(section: Section, start: int) -> Iterator[str]:
     return (word[0] for line in section.lines[start:] for word in _WORD.finditer(line))
-
-
-def note_beyond(beyond: int, count: int) -> tuple[Text, ...]:
-    """Return a note where there are numbers `beyond` the `count` that the header announces."""
-    note = nfill(
-        "{n} number beyond the {count} that the header announces: left out",
-        "{n} numbers beyond the {count} that the header announces: left out",
-        beyond,
-        count=count,
-    )
-    return (note,) if beyond else ()
 
 
 def _check_count(count: float) -> None:
@@ -264,22 +245,28 @@ def _check_count(count: float) -> None:
         )
 
 
-def cut_short(announced: int, there: int) -> RecordError:
-    """Return the error for a file with fewer numbers than its header announces."""
-    return RecordError.about(
-        "the file is cut short: it has {there} of the {announced} data values that its header announces. Get "
-        "the file again",
-        there=there,
-        announced=announced,
+def compare_counts(announced: int, there: int) -> tuple[Text, ...]:
+    """Return a note where there are more numbers than the header announces; RecordError if fewer, or many more."""
+    beyond = there - announced
+    if beyond < 0:
+        raise RecordError.about(
+            "the file is cut short: it has {there} of the {announced} data values that its header announces. Get "
+            "the file again",
+            there=there,
+            announced=announced,
+        )
+    if beyond > MOST_BEYOND * announced:
+        raise RecordError.about(
+            "the file has more data values than the {announced} that its header announces. Get the file again",
+            announced=announced,
+        )
+    note = nfill(
+        "{n} number beyond the {count} that the header announces: left out",
+        "{n} numbers beyond the {count} that the header announces: left out",
+        beyond,
+        count=announced,
     )
-
-
-def too_long(announced: int) -> RecordError:
-    """Return the error for a file with more numbers than its header announces."""
-    return RecordError.about(
-        "the file has more data values than the {announced} that its header announces. Get the file again",
-        announced=announced,
-    )
+    return (note,) if beyond else ()
 
 
 def convert(
@@ -299,12 +286,18 @@ def convert(
     values, done = np.empty(count), 0
     for block in blocks:
         here = block[: count - done]
+        check_waits()  # numpy holds the interpreter's lock while it converts
         try:
-            values[done : done + len(here)] = _convert(here)
+            # numpy cuts zeros off bytes, and knows no blanks beyond ASCII
+            if not isinstance(here, list) and here.all() and here.max(initial=0) < 128:
+                texts: ArrayLike = np.ascontiguousarray(here).view(f"S{here.shape[1]}").ravel()
+            else:
+                texts = here if isinstance(here, list) else decode(here)
+            values[done : done + len(here)] = np.asarray(texts, dtype=np.float64)
         except ValueError:
-            texts = here if isinstance(here, list) else decode(here)
-            place = next((place for place, text in enumerate(texts) if read_real(text) is None), 0)
-            text, number = texts[place].strip(), done + place
+            words = here if isinstance(here, list) else decode(here)
+            place = next((place for place, text in enumerate(words) if read_real(text) is None), 0)
+            text, number = words[place].strip(), done + place
             what = fill("{text!r} is not a number", text=text[:40]) if text else fill("a number is missing")
             where = fill("number {number} of the data", number=number + 1)
             if per_line is not None:
@@ -316,15 +309,6 @@ def convert(
     with np.errstate(over="ignore"):  # what becomes infinite is refused where samples are checked
         values *= factor
     return values
-
-
-def _convert(block: Cells | list[str]) -> FloatArray:
-    check_waits()  # numpy holds the interpreter's lock while it converts
-    if not isinstance(block, list):
-        if block.all() and block.max(initial=0) < 128:  # numpy cuts zeros off bytes, and knows no blanks beyond ASCII
-            return np.ascontiguousarray(block).view(f"S{block.shape[1]}").ravel().astype(np.float64)
-        block = decode(block)
-    return np.array(block, dtype=np.float64)
 
 
 def decode(cells: Cells) -> list[str]:

@@ -12,8 +12,14 @@ from collections.abc import Sequence
 
 from assess.errors import RecordError
 from assess.i18n import fill
-from assess.motion.formats._direction import read_direction
-from assess.motion.formats._format import NUMBER, build_record, even_series, read_acceleration_unit, read_peak
+from assess.motion.formats._format import (
+    NUMBER,
+    build_record,
+    even_series,
+    read_acceleration_unit,
+    read_direction,
+    read_peak,
+)
 from assess.motion.formats._text import (
     LONGEST_TEXT,
     Columns,
@@ -82,8 +88,21 @@ def _read_channel(section: Section, file: str) -> Record:
     at, title = next(titles, (0, None))
     if title is None or len(integers) <= AZIMUTH or len(reals) <= STEP:
         raise RecordError(fill("the header is incomplete. Get the file again"))
-    factor, columns = _factor(title["unit"].strip(), int(title["code"])), read_format(section.text(at), Columns(8, 10))
-    values = read_columns(section, at + 1, int(title["count"]), columns, factor)
+    unit, code = title["unit"].strip(), int(title["code"])
+    if unit.lower() in {"counts", "count", "volts", "volt", "mvolts"}:
+        raise RecordError.about(
+            "the file holds raw data in {unit} (volume 0), not accelerations. Give volume 1 or 2 of the same "
+            "channel, or convert it to m/s2 and save it as plain CSV",
+            unit=unit,
+        )
+    factor, named = UNITS.get(code), read_acceleration_unit(unit)
+    if factor is None or (named is not None and abs(named / factor - 1) > 1e-9):
+        raise RecordError.about(
+            "the unit {unit!r} with the code {code} is not a known unit of acceleration. Get the file again",
+            unit=unit[:20],
+            code=code,
+        )
+    values = read_columns(section, at + 1, int(title["count"]), read_format(section.text(at), Columns(8, 10)), factor)
     # The second is that of the data [ms], the first that of the recorder [s]: they differ where data are resampled.
     step = reals[STEP] / 1000 if reals[STEP] > 0 else reals[RAW_STEP]
     header = read_fields(section, HEADER)
@@ -92,7 +111,7 @@ def _read_channel(section: Section, file: str) -> Record:
         azimuth, vertical = None, True
     elif azimuth is None and not vertical and 1 <= integers[AZIMUTH] <= 360:
         azimuth, vertical = integers[AZIMUTH], False
-    code = header["code"] or header["number"]
+    station = header["code"] or header["number"]
     return build_record(
         TITLE,
         file,
@@ -101,29 +120,11 @@ def _read_channel(section: Section, file: str) -> Record:
         channel=header["channel"] and (header["channel"].lstrip("0") or "0"),
         direction=(azimuth, vertical),
         location=header["location"],
-        station=f"{header['station']} ({code})" if code else "",
+        station=f"{header['station']} ({station})" if station else "",
         event=" ".join(header["event"].split()),
         start=header["start"],
         header_pfa=read_peak(header["peak"], read_acceleration_unit(header["peak_unit"])),
     )
-
-
-def _factor(unit: str, code: int) -> float:
-    if unit.lower() in {"counts", "count", "volts", "volt", "mvolts"}:
-        raise RecordError.about(
-            "the file holds raw data in {unit} (volume 0), not accelerations. Give volume 1 or 2 of the same "
-            "channel, or convert it to m/s2 and save it as plain CSV",
-            unit=unit,
-        )
-    factor = UNITS.get(code)
-    named = read_acceleration_unit(unit)
-    if factor is None or (named is not None and abs(named / factor - 1) > 1e-9):
-        raise RecordError.about(
-            "the unit {unit!r} with the code {code} is not a known unit of acceleration. Get the file again",
-            unit=unit[:20],
-            code=code,
-        )
-    return factor
 
 
 FORMAT = text_format(

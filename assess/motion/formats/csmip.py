@@ -22,12 +22,12 @@ import numpy as np
 from assess.arrays import FloatArray
 from assess.errors import RecordError
 from assess.i18n import fill
-from assess.motion.formats._direction import read_direction
 from assess.motion.formats._format import (
     NUMBER,
     build_record,
     even_series,
     read_acceleration_unit,
+    read_direction,
     read_finite,
     read_peak,
 )

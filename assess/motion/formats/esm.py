@@ -8,8 +8,15 @@ import re
 from collections import defaultdict
 
 from assess.errors import RecordError
-from assess.motion.formats._direction import read_direction
-from assess.motion.formats._format import build_record, even_series, name_quantity, read_finite, read_peak, require_unit
+from assess.motion.formats._format import (
+    build_record,
+    even_series,
+    name_quantity,
+    read_direction,
+    read_finite,
+    read_peak,
+    require_unit,
+)
 from assess.motion.formats._text import Section, read_words, text_format
 from assess.motion.record import Record
 from assess.units import ACCELERATION
@@ -25,7 +32,14 @@ _RAW = re.compile(r"(none|no\b.*|not\b.*|un.*|raw.*|)", re.IGNORECASE)
 
 
 def _read_channel(section: Section, file: str) -> Record:
-    header, first = _read_header(section)
+    header: dict[str, str] = defaultdict(str)  # "" for keys that it has not
+    for first in range(min(len(section.lines), LONGEST_HEADER)):
+        found = _KEY.match(section.text(first))
+        if not found:
+            break
+        header[found[1]] = found[2].strip()
+    else:
+        raise RecordError.about("there are no data below the header. Get the file again")
     kind = header.get("DATA_TYPE", "ACCELERATION")
     if kind.upper() != "ACCELERATION":
         raise RecordError.about(
@@ -52,17 +66,6 @@ def _read_channel(section: Section, file: str) -> Record:
         start=_DATE.sub(r"\1-\2-\3 \4:\5:\6 UTC", header["DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS"]),
         header_pfa=read_peak(header["PGA_CM/S^2"], ACCELERATION["cm/s2"]),
     )
-
-
-def _read_header(section: Section) -> tuple[dict[str, str], int]:
-    """Return the header, "" for keys that it has not, and the place of the first line of data."""
-    header: dict[str, str] = defaultdict(str)
-    for place in range(min(len(section.lines), LONGEST_HEADER)):
-        found = _KEY.match(section.text(place))
-        if not found:
-            return header, place
-        header[found[1]] = found[2].strip()
-    raise RecordError.about("there are no data below the header. Get the file again")
 
 
 FORMAT = text_format(

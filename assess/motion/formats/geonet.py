@@ -10,12 +10,12 @@ import re
 
 from assess.errors import RecordError
 from assess.i18n import fill
-from assess.motion.formats._direction import read_direction
 from assess.motion.formats._format import (
     NUMBER,
     build_record,
     even_series,
     read_acceleration_unit,
+    read_direction,
     read_finite,
     read_peak,
 )
@@ -45,7 +45,17 @@ def _read_channel(section: Section, file: str) -> Record:
     header = read_fields(section, HEADER)
     corrected = not header["raw"]
     count = _read_number(section, *(COUNT if corrected else RAW_COUNT))
-    factor, header_pfa = _read_units(section, header)
+    factor = read_acceleration_unit(header["unit"])
+    header_pfa = read_peak(header["peak"], factor)
+    if factor is None or header_pfa is None:
+        line = section.number(13)
+        raise RecordError.about("line {line}: the peak and its unit cannot be read. Get the file again", line=line)
+    if not corrected:
+        multiple, unit = read_finite(header["multiple"]), read_acceleration_unit(header["raw_unit"])
+        if not multiple or unit is None:
+            line = section.number(10)
+            raise RecordError.about("line {line}: the unit cannot be read. Get the file again", line=line)
+        factor = multiple * unit
     own = read_columns(section, DATA, int(count), COLUMNS, factor)
     return build_record(
         TITLE,
@@ -71,21 +81,6 @@ def _read_number(section: Section, line: int, column: int) -> float:
             number=column + 1,
         )
     return number
-
-
-def _read_units(section: Section, header: dict[str, str]) -> tuple[float, float]:
-    factor = read_acceleration_unit(header["unit"])
-    header_pfa = read_peak(header["peak"], factor)
-    if factor is None or header_pfa is None:
-        line = section.number(13)
-        raise RecordError.about("line {line}: the peak and its unit cannot be read. Get the file again", line=line)
-    if not header["raw"]:
-        return factor, header_pfa
-    multiple, unit = read_finite(header["multiple"]), read_acceleration_unit(header["raw_unit"])
-    if not multiple or unit is None:
-        line = section.number(10)
-        raise RecordError.about("line {line}: the unit cannot be read. Get the file again", line=line)
-    return multiple * unit, header_pfa
 
 
 FORMAT = text_format(

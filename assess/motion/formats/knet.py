@@ -11,11 +11,11 @@ against nine of its files.
 """
 
 import re
+from contextlib import suppress
 from datetime import datetime, timedelta
 
 from assess.errors import RecordError
-from assess.motion.formats._direction import read_direction
-from assess.motion.formats._format import NUMBER, build_record, even_series, read_finite, read_peak
+from assess.motion.formats._format import NUMBER, build_record, even_series, read_direction, read_finite, read_peak
 from assess.motion.formats._text import Section, read_words, text_format
 from assess.motion.record import Record
 from assess.units import ACCELERATION
@@ -29,16 +29,8 @@ DELAY = timedelta(seconds=15)
 """From the first sample to the record time."""
 
 _CHANNELS = {
-    "n-s": "NS",
-    "e-w": "EW",
-    "u-d": "UD",
-    "1": "NS1",
-    "2": "EW1",
-    "3": "UD1",
-    "4": "NS2",
-    "5": "EW2",
-    "6": "UD2",
-}
+    "n-s": "NS", "e-w": "EW", "u-d": "UD", "1": "NS1", "2": "EW1", "3": "UD1", "4": "NS2", "5": "EW2", "6": "UD2",
+}  # fmt: skip
 _SCALE = re.compile(rf"({NUMBER})\s*\(gal\)\s*/\s*({NUMBER})", re.IGNORECASE)
 _NUMBER = re.compile(NUMBER, re.IGNORECASE)
 
@@ -55,7 +47,10 @@ def _read_channel(section: Section, file: str) -> Record:
             text=text[:40],
         )
     values, notes = read_words(section, HEADER, rate * seconds, above / below * GAL)
-    direction = header.get("Dir.", "")
+    start, direction = header.get("Record Time", ""), header.get("Dir.", "")
+    with suppress(ValueError, OverflowError):
+        time = datetime.strptime(start, "%Y/%m/%d %H:%M:%S") - DELAY  # Japan's time, as printed
+        start = f"{time:%Y-%m-%d %H:%M:%S} JST"
     channel = _CHANNELS.get(direction.lower(), direction)
     return build_record(
         TITLE,
@@ -67,7 +62,7 @@ def _read_channel(section: Section, file: str) -> Record:
         location={"1": "borehole", "2": "surface"}.get(channel[2:], ""),
         station=header.get("Station Code", ""),
         event=f"{header.get('Origin Time', '')} M{header.get('Mag.', '')}",
-        start=_read_start(header.get("Record Time", "")),
+        start=start,
         header_pfa=read_peak(header.get("Max. Acc. (gal)", ""), GAL),
         has_offset=True,
     )
@@ -84,14 +79,6 @@ def _number(header: dict[str, str], key: str) -> float:
             text=header.get(key, "")[:40],
         )
     return number
-
-
-def _read_start(text: str) -> str:
-    try:
-        time = datetime.strptime(text, "%Y/%m/%d %H:%M:%S") - DELAY  # Japan's time, as printed
-    except (ValueError, OverflowError):
-        return text
-    return f"{time:%Y-%m-%d %H:%M:%S} JST"
 
 
 FORMAT = text_format(

@@ -19,8 +19,14 @@ import numpy as np
 from assess.arrays import FloatArray
 from assess.errors import RecordError
 from assess.i18n import fill, nfill
-from assess.motion.formats._direction import read_direction
-from assess.motion.formats._format import Format, build_record, check_channels, even_series, keep_readable
+from assess.motion.formats._format import (
+    Format,
+    build_record,
+    check_channels,
+    even_series,
+    keep_readable,
+    read_direction,
+)
 from assess.motion.record import Record, Series, build_series, check_count
 
 TITLE = "miniSEED"

@@ -9,13 +9,13 @@ Source: Pacific Earthquake Engineering Research Center, NGA ground motion databa
 import re
 
 from assess.errors import RecordError
-from assess.motion.formats._direction import read_direction
 from assess.motion.formats._format import (
     END,
     NUMBER,
     build_record,
     even_series,
     name_quantity,
+    read_direction,
     read_finite,
     require_unit,
 )

@@ -11,7 +11,7 @@ Cells are separated by commas, semicolons or tabs; with the last two, numbers ma
 
 import io
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,13 +19,15 @@ import numpy as np
 from assess.arrays import FloatArray
 from assess.errors import RecordError
 from assess.i18n import fill
-from assess.motion.formats._direction import UNKNOWN, Direction, read_direction
 from assess.motion.formats._format import (
     MOST_CHANNELS,
     MOST_VALUES,
+    UNKNOWN,
+    Direction,
     Format,
     build_record,
     check_channels,
+    read_direction,
     too_many_values,
 )
 from assess.motion.record import MOST_SAMPLES, Record, build_series
@@ -35,7 +37,6 @@ from assess.units import ACCELERATION, TIME, read_unit
 
 TITLE = "plain CSV"
 KEYS = ("station", "event", "start", "location", "azimuth", "corrected")
-UNITS = ", ".join(ACCELERATION)
 CHECKED_EVERY = 10_000
 """Lines after which it is looked whether to stop."""
 BLOCK = 2**20
@@ -81,12 +82,27 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
     """
     table = _read_head(data)
     values = _read_values(data, table)
-    directions = _read_directions(table)
+    directions, comments = _read_directions(table), table.comments
+    answer = comments.get("corrected", "").lower()
+    unknown = ", ".join(repr(key[:40]) for key in comments if key not in KEYS)
+    note = fill("comments that are not used: {names} (known: {known})", names=unknown, known=", ".join(KEYS))
     times, records = values.pop(0), []
     for name, factor in table.columns.items():
         with np.errstate(over="ignore"):  # what becomes infinite is refused further on
             own = values.pop(0) * factor
-        records.append(_build_record(file, table, name, directions[name], times, own))
+        try:
+            series = build_series(times, own)
+        except RecordError as error:
+            raise RecordError.about("channel {name!r}: {why}", name=name, why=error.message) from None
+        if answer not in _ANSWERS:
+            raise RecordError.about("corrected is {text!r}, expected yes or no", text=answer[:40])
+        record = build_record(
+            TITLE, file, replace(series, notes=(*((note,) if unknown else ()), *series.notes)), own=own,
+            corrected=_ANSWERS[answer], channel=name, direction=directions[name],
+            location=comments.get("location", ""), station=comments.get("station", ""),
+            event=comments.get("event", ""), start=comments.get("start", ""),
+        )  # fmt: skip
+        records.append(record)
     return tuple(records)
 
 
@@ -117,14 +133,23 @@ def _read_head(data: bytes) -> _Table:
         raise RecordError.about(
             "line {line}: {heading!r} needs its unit, seconds: time [s]", line=line, heading=headings[0][:80]
         )
-    found = [_read_column(heading, line) for heading in headings[1:]]
-    columns, names = dict(found), [name.casefold() for name, _ in found]
+    found = []
+    for heading in headings[1:]:
+        name, unit = _take_unit(heading)
+        if unit not in ACCELERATION:
+            raise RecordError.about(
+                "line {line}: {heading!r} has no known unit of acceleration (known: {units}). Write it in brackets: "
+                "{name} [cm/s2]",
+                line=line, heading=heading[:80], units=", ".join(ACCELERATION), name=name[:60],
+            )  # fmt: skip
+        found.append((name or "acceleration", ACCELERATION[unit]))
+    names = [name.casefold() for name, _ in found]
     twice = next((name for name, _ in found if names.count(name.casefold()) > 1), None)
     if twice is not None:
         raise RecordError.about(
             "line {line}: two channels are called {name!r}. Give each its own name", line=line, name=twice[:80]
         )
-    if not columns:
+    if not found:
         raise RecordError.about(
             "line {line}: there is no channel next to time. Add one, such as: north [cm/s2]", line=line
         )
@@ -133,7 +158,7 @@ def _read_head(data: bytes) -> _Table:
         key, colon, value = text.strip(' \t"').lstrip("#").partition(":")
         if colon:
             comments[key.strip().lower()] = value.strip(' \t,;"')
-    return _Table(comments, columns, separator, start, line + 1)
+    return _Table(comments, dict(found), separator, start, line + 1)
 
 
 def _split_head(data: bytes) -> tuple[list[str], int]:
@@ -166,20 +191,6 @@ def _cells(line: str, separator: str) -> list[str]:
     return cells
 
 
-def _read_column(heading: str, line: int) -> tuple[str, float]:
-    name, unit = _take_unit(heading)
-    if unit not in ACCELERATION:
-        raise RecordError.about(
-            "line {line}: {heading!r} has no known unit of acceleration (known: {units}). Write it in brackets: "
-            "{name} [cm/s2]",
-            line=line,
-            heading=heading[:80],
-            units=UNITS,
-            name=name[:60],
-        )
-    return name or "acceleration", ACCELERATION[unit]
-
-
 def _take_unit(heading: str) -> tuple[str, str]:
     """Split ``name [unit]``; the unit is "" where there are no brackets."""
     name, bracket, unit = heading.rpartition("[")
@@ -191,9 +202,17 @@ def _take_unit(heading: str) -> tuple[str, str]:
 def _read_values(data: bytes, table: _Table) -> list[FloatArray]:
     """Return the numbers below the headings, (n,) for time and for each channel; read block by block."""
     columns: list[list[FloatArray]] = [[] for _ in range(1 + len(table.columns))]
-    rows = 0
-    for block, line in _blocks(data, table):
+    rows, start, line = 0, table.start, table.first
+    while start < len(data):
+        end = min(start + BLOCK, len(data))
+        if end < len(data):
+            # A carriage return at the very end may belong to a line feed.
+            end = data.rfind(b"\n", start, end) + 1 or data.rfind(b"\r", start, end - 1) + 1
+        if not end:
+            raise _too_long(line)
+        block = data[start:end].replace(b"\r\n", b"\n").replace(b"\r", b"\n")
         numbers = _read_block(block, table, line)
+        start, line = end, line + block.count(b"\n")
         rows += len(numbers)
         if rows > MOST_SAMPLES:
             raise RecordError.about("the file has more than {most:,} rows: cut it to the shaking", most=MOST_SAMPLES)
@@ -207,21 +226,6 @@ def _read_values(data: bytes, table: _Table) -> list[FloatArray]:
     while columns:  # each is let go as it is joined
         whole.append(np.concatenate(columns.pop(0)))
     return whole
-
-
-def _blocks(data: bytes, table: _Table) -> Iterator[tuple[bytes, int]]:
-    """Yield the lines below the headings, about `BLOCK` bytes at a time, and the number of the first of them."""
-    start, line = table.start, table.first
-    while start < len(data):
-        end = min(start + BLOCK, len(data))
-        if end < len(data):
-            # A carriage return at the very end may belong to a line feed.
-            end = data.rfind(b"\n", start, end) + 1 or data.rfind(b"\r", start, end - 1) + 1
-        if not end:
-            raise _too_long(line)
-        block = data[start:end].replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-        yield block, line
-        start, line = end, line + block.count(b"\n")
 
 
 def _read_block(block: bytes, table: _Table, first: int) -> FloatArray:
@@ -242,24 +246,22 @@ def _read_block(block: bytes, table: _Table, first: int) -> FloatArray:
     for line, text in enumerate(map(decode, block.removesuffix(b"\n").split(b"\n")), start=first):
         if line % CHECKED_EVERY == 0:
             check_waits()
-        if not (is_comment(text) or _is_blank(text)):
-            numbers += _read_row(_cells(text, separator), table, line)
+        if is_comment(text) or _is_blank(text):
+            continue
+        cells = _cells(text, separator)
+        if len(cells) != width:
+            raise RecordError.about(
+                "line {line}: the number of cells is {cells}, but there are {headings} headings",
+                line=line,
+                cells=len(cells),
+                headings=width,
+            )
+        for cell in cells:
+            number = cell if separator == "," else cell.replace(",", ".")
+            if not _NUMBER.fullmatch(number):
+                raise RecordError.about("line {line}: {text!r} is not a number", line=line, text=cell[:40])
+            numbers.append(float(number))
     return np.array(numbers).reshape(-1, width)
-
-
-def _read_row(cells: list[str], table: _Table, line: int) -> list[float]:
-    numbers = cells if table.separator == "," else [cell.replace(",", ".") for cell in cells]
-    if len(cells) != 1 + len(table.columns):
-        raise RecordError.about(
-            "line {line}: the number of cells is {cells}, but there are {headings} headings",
-            line=line,
-            cells=len(cells),
-            headings=1 + len(table.columns),
-        )
-    for cell, number in zip(cells, numbers, strict=True):
-        if not _NUMBER.fullmatch(number):
-            raise RecordError.about("line {line}: {text!r} is not a number", line=line, text=cell[:40])
-    return [*map(float, numbers)]
 
 
 def _read_directions(table: _Table) -> dict[str, Direction]:
@@ -279,49 +281,18 @@ def _read_directions(table: _Table) -> dict[str, Direction]:
                 name=name.strip()[:80],
                 names=", ".join(directions),
             )
-        for own in [given[name.strip().casefold()]] if equals else list(directions):
-            directions[own] = _read_azimuth(value.strip())
+        text = value.strip()
+        number = text.lower().removesuffix("deg").removesuffix("°").strip()
+        if _NUMBER.fullmatch(number) and 0 <= float(number) <= 360:
+            found: Direction = float(number), False
+        else:
+            found = read_direction(text, bare_degrees=False)
+        if found == UNKNOWN:
+            raise RecordError.about(
+                "the azimuth is {text!r}, expected 0 to 360 degrees clockwise from north, or up", text=text[:40]
+            )
+        directions |= dict.fromkeys([given[name.strip().casefold()]] if equals else directions, found)
     return directions
-
-
-def _read_azimuth(text: str) -> Direction:
-    number = text.lower().removesuffix("deg").removesuffix("°").strip()
-    if _NUMBER.fullmatch(number) and 0 <= float(number) <= 360:
-        return float(number), False
-    found = read_direction(text, bare_degrees=False)
-    if found == UNKNOWN:
-        raise RecordError.about(
-            "the azimuth is {text!r}, expected 0 to 360 degrees clockwise from north, or up", text=text[:40]
-        )
-    return found
-
-
-def _build_record(
-    file: str, table: _Table, name: str, direction: Direction, times: FloatArray, own: FloatArray
-) -> Record:
-    try:
-        series = build_series(times, own)
-    except RecordError as error:
-        raise RecordError.about("channel {name!r}: {why}", name=name, why=error.message) from None
-    comments = table.comments
-    answer = comments.get("corrected", "").lower()
-    if answer not in _ANSWERS:
-        raise RecordError.about("corrected is {text!r}, expected yes or no", text=answer[:40])
-    unknown = ", ".join(repr(key[:40]) for key in comments if key not in KEYS)
-    note = fill("comments that are not used: {names} (known: {known})", names=unknown, known=", ".join(KEYS))
-    return build_record(
-        TITLE,
-        file,
-        replace(series, notes=(*((note,) if unknown else ()), *series.notes)),
-        own=own,
-        corrected=_ANSWERS[answer],
-        channel=name,
-        direction=direction,
-        location=comments.get("location", ""),
-        station=comments.get("station", ""),
-        event=comments.get("event", ""),
-        start=comments.get("start", ""),
-    )
 
 
 FORMAT = Format(key="csv", title=TITLE, recognises=recognises, read=read)

@@ -20,8 +20,7 @@ import numpy as np
 from assess.arrays import FloatArray
 from assess.errors import RecordError
 from assess.i18n import fill
-from assess.motion.formats._direction import read_direction
-from assess.motion.formats._format import Format, build_record, even_series, read_acceleration_unit
+from assess.motion.formats._format import Format, build_record, even_series, read_acceleration_unit, read_direction
 from assess.motion.record import Record, check_count, peak
 
 TITLE = "SAC"
@@ -77,9 +76,23 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
     header = _read_header(data)
     if header is None:
         raise RecordError.about("the header is not that of a SAC file. Get the file again")
-    _check_header(header, len(data))
+    numbers = header.integers
+    if numbers["kind"] != TIME_SERIES or numbers["even"] != 1:
+        raise RecordError.about("the file holds no evenly sampled time series. Give the record itself")
+    count, there = numbers["count"], (len(data) - HEADER - FOOTER * (numbers["version"] == max(VERSIONS))) / 4
+    if count <= 0 or count != there:
+        raise RecordError.about(
+            "the number of data values is {there:.10g}, but {announced} in the header. Get the file again",
+            announced=count,
+            there=there,
+        )
+    check_count(count)
+    if meaning := OTHER_MEANINGS.get(numbers["meaning"]):
+        raise RecordError.about(
+            "the file holds {kind}, not accelerations. Give the acceleration file of the same channel", kind=meaning
+        )
     with np.errstate(all="ignore"):  # what becomes infinite is refused further on
-        samples = np.frombuffer(data, f"{header.order}f4", header.integers["count"], HEADER).astype(np.float64)
+        samples = np.frombuffer(data, f"{header.order}f4", count, HEADER).astype(np.float64)
         factor, note = _read_unit(header, samples)
         series = even_series(samples * factor, float(f"{header.reals['delta'] or 0.0:.7g}"), (note,))
     azimuth, tilt = header.reals["azimuth"], header.reals["tilt"]
@@ -110,42 +123,25 @@ def _read_header(data: bytes) -> _Header | None:
         if numbers["version"] in VERSIONS and numbers["kind"] in KINDS and numbers["even"] in {0, 1}:
             reals = {name: float(struct.unpack_from(f"{order}f", data, 4 * place)[0]) for name, place in REALS.items()}
             known = {name: None if value == UNKNOWN else value for name, value in reals.items()}
-            return _Header(order, known, numbers, {name: _read_text(data, *place) for name, place in TEXTS.items()})
+            texts = {
+                name: data[TEXTS_FROM + start : TEXTS_FROM + start + length]
+                .decode("latin-1")
+                .partition("\0")[0]
+                .strip()
+                for name, (start, length) in TEXTS.items()
+            }
+            # KEVNM may hold it twice, once for each of its halves.
+            texts = {name: "" if {*text.split()} == {str(UNKNOWN)} else text for name, text in texts.items()}
+            return _Header(order, known, numbers, texts)
     return None
-
-
-def _read_text(data: bytes, start: int, length: int) -> str:
-    text = data[TEXTS_FROM + start : TEXTS_FROM + start + length].decode("latin-1").partition("\0")[0].strip()
-    return "" if {*text.split()} == {str(UNKNOWN)} else text  # KEVNM may hold it twice, once for each of its halves
-
-
-def _check_header(header: _Header, size: int) -> None:
-    numbers = header.integers
-    if numbers["kind"] != TIME_SERIES or numbers["even"] != 1:
-        raise RecordError.about("the file holds no evenly sampled time series. Give the record itself")
-    count, there = numbers["count"], (size - HEADER - FOOTER * (numbers["version"] == max(VERSIONS))) / 4
-    if count <= 0 or count != there:
-        raise RecordError.about(
-            "the number of data values is {there:.10g}, but {announced} in the header. Get the file again",
-            announced=count,
-            there=there,
-        )
-    check_count(count)
-    meaning = OTHER_MEANINGS.get(numbers["meaning"])
-    if meaning:
-        raise RecordError.about(
-            "the file holds {kind}, not accelerations. Give the acceleration file of the same channel", kind=meaning
-        )
 
 
 def _read_unit(header: _Header, values: FloatArray) -> tuple[float, str]:
     """Return the factor to m/s2, and a note on where it is from."""
     for key in ("kuser0", "kuser1", "kuser2"):
         text = header.texts[key]
-        factor = read_acceleration_unit(text)
-        if factor is not None:
-            note = fill("the unit is that of the header's field {field}: {unit}", field=key.upper(), unit=text)
-            return factor, note
+        if (factor := read_acceleration_unit(text)) is not None:
+            return factor, fill("the unit is that of the header's field {field}: {unit}", field=key.upper(), unit=text)
     if header.integers["meaning"] != ACCELERATION:
         raise RecordError.about("the file does not give its unit. {fix}", fix=_FIX)
     in_nm = NM_S2 * peak(values - values.mean())

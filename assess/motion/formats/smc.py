@@ -17,21 +17,17 @@ import numpy as np
 from assess.arrays import FloatArray
 from assess.errors import RecordError
 from assess.i18n import fill
-from assess.motion.formats._direction import Direction, read_direction
-from assess.motion.formats._format import NUMBER, build_record, even_series, read_peak
+from assess.motion.formats._format import NUMBER, Direction, build_record, even_series, read_direction, read_peak
 from assess.motion.formats._text import (
-    MOST_BEYOND,
     Columns,
     Section,
+    compare_counts,
     convert,
-    cut_short,
     decode,
     fields,
     has_text,
-    note_beyond,
     read_fields,
     text_format,
-    too_long,
 )
 from assess.motion.record import Record, build_series
 from assess.units import ACCELERATION
@@ -183,10 +179,8 @@ def _read_data(section: Section, announced: int, first: int) -> tuple[FloatArray
             most=LINE,
         )
     there = sum(int(has_text(cells).sum()) for cells in lines.cut(DATA, is_whole=True))
-    if not 0 <= there - announced <= MOST_BEYOND * announced:
-        raise cut_short(announced, there) if there < announced else too_long(announced)
-    values = convert(lines.cut(DATA, is_whole=True), announced, section, first, DATA.per_line)
-    return values, note_beyond(there - announced, announced)
+    notes = compare_counts(announced, there)
+    return convert(lines.cut(DATA, is_whole=True), announced, section, first, DATA.per_line), notes
 
 
 def _orientation(component: str, upright: int | None, number: int | None) -> tuple[Direction, tuple[str, ...]]:
