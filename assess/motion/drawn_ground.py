@@ -68,34 +68,26 @@ def draw_ground(ground: Ground, phases: Phases, group: int, progress: Progress) 
     first, grid = group * GROUP, phases.grid
     ratios = ground.draw_ratios(phases.seed, phases.axis, first, GROUP)
     length = draw_normal([phases.seed, _LENGTH], first, GROUP, 3.0).clip(-SHORT, LONG)
-    noise = draw_noise(_envelope(grid), phases, group, progress, stretches=np.exp(LENGTH_SCATTER * length))
-    noise *= _find_gains(grid, ratios)
-    rates = find_rates(grid)
-    filtered = irfft(noise, rates.length, axis=1, overwrite_x=True)[:, : grid.count]
-    motions: Single = np.ascontiguousarray(filtered, np.float32)
-    pga = ground.peaks[0] if ground.pga is not None else (ground.pgv or 0.0) / ratios
-    peaks = np.broadcast_to(pga, ratios.shape)
-    low = split_bands(motions, grid.time_step, 1 / (2 * np.pi * ratios))
-    meet_peaks(motions, low, grid.time_step, peaks, peaks * ratios)
-    return motions
-
-
-@lru_cache(maxsize=4)
-def _envelope(grid: Grid) -> Envelopes:
-    """Return the envelope of median length; before `LEAD` it is 0, and its time is stretched about that."""
+    # The envelope of median length; before `LEAD` it is 0, and its time is stretched about that.
     power = -EARLY * math.log(FAINT) / (1 + EARLY * (math.log(EARLY) - 1))
     time = np.maximum(np.arange(grid.count) * grid.time_step - LEAD, 0.0) / (EARLY * LENGTH)
-    return Envelopes(np.array([LOWEST]), ((time * np.exp(1 - time)) ** power)[None], LEAD)
-
-
-def _find_gains(grid: Grid, ratios: FloatArray) -> Single:
-    """Return the filter of each draw by its PGV/PGA, (k, f)."""
+    envelope = Envelopes(np.array([LOWEST]), ((time * np.exp(1 - time)) ** power)[None], LEAD)
+    noise = draw_noise(envelope, phases, group, progress, stretches=np.exp(LENGTH_SCATTER * length))
+    # The filter of each draw by its PGV/PGA, (k, f)
     place = np.clip(np.interp(np.log(ratios), np.log(GRID), np.arange(GRID.size)), 0, GRID.size - 1.001)
     low = place.astype(int)
     logs = {at: _resample(grid, at) for at in {*low.tolist(), *(low + 1).tolist()}}
     part = (place - low)[:, None].astype(np.float32)
     under, over = (np.stack([logs[at] for at in which.tolist()]) for which in (low, low + 1))
-    return np.asarray(np.exp(under + part * (over - under)), np.float32)
+    noise *= np.asarray(np.exp(under + part * (over - under)), np.float32)
+    rates = find_rates(grid)
+    filtered = irfft(noise, rates.length, axis=1, overwrite_x=True)[:, : grid.count]
+    motions: Single = np.ascontiguousarray(filtered, np.float32)
+    pga = ground.peaks[0] if ground.pga is not None else (ground.pgv or 0.0) / ratios
+    peaks = np.broadcast_to(pga, ratios.shape)
+    slow = split_bands(motions, grid.time_step, 1 / (2 * np.pi * ratios))
+    meet_peaks(motions, slow, grid.time_step, peaks, peaks * ratios)
+    return motions
 
 
 @lru_cache(maxsize=64)
@@ -113,14 +105,6 @@ def find_shape(periods: FloatArray, ratio: float) -> FloatArray:
     return np.asarray(np.minimum(rise, a * np.minimum(first / periods, first * second / periods**2)))
 
 
-@lru_cache(maxsize=1)
-def _oscillators() -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return periods (m,), frequencies (f,), and the variance of each response to unit power at each, (m, f)."""
-    periods, f = np.geomspace(0.03, 9.0, 60), np.geomspace(0.04, 60.0, 500)
-    own = 1 / periods[:, None]
-    return periods, f, own**4 / ((own**2 - f**2) ** 2 + (2 * DAMPING * own * f) ** 2) * np.gradient(f)
-
-
 @lru_cache(maxsize=64)
 def fit_noise(ratio: float, rounds: int = 25) -> tuple[FloatArray, FloatArray]:
     """Return frequencies (f,) [Hz] and ln of the amplitude (f,) of noise with the median spectrum of a ratio [s].
@@ -128,7 +112,10 @@ def fit_noise(ratio: float, rounds: int = 25) -> tuple[FloatArray, FloatArray]:
     Random vibration: a peak is the deviation of the response times a factor that grows with its cycles. No motion is
     made for it.
     """
-    periods, f, weight = _oscillators()
+    periods, f = np.geomspace(0.03, 9.0, 60), np.geomspace(0.04, 60.0, 500)
+    lone = 1 / periods[:, None]
+    # The variance of each response to unit power at each frequency, (m, f)
+    weight = lone**4 / ((lone**2 - f**2) ** 2 + (2 * DAMPING * lone * f) ** 2) * np.gradient(f)
     wanted = find_shape(periods, ratio) ** 2 / (2 * np.log(2.8 * np.maximum(STRONG / periods, 1.0)))
     own = 1 / (1 + (CORNER / f) ** ORDER)
     power = find_shape(np.clip(1 / f, periods[0], periods[-1]), ratio) ** 2 / f

@@ -80,7 +80,21 @@ def find_signs(accelerations: FloatArray, time_step: float) -> NDArray[np.int64]
     coherence = find_coherence(accelerations, time_step)
     is_clear = np.abs(coherence) > find_levels(accelerations, time_step)
     peaks = np.abs(np.asarray(accelerations)).max(axis=1)
-    return np.stack([_join(coherence[..., at], is_clear[..., at], peaks) for at in range(coherence.shape[2])], axis=1)
+    found = np.ones((len(peaks), coherence.shape[2]), dtype=np.int64)
+    ones, others = np.triu_indices(len(coherence), 1)
+    for octave, signs in enumerate(found.T):
+        alike, groups = coherence[..., octave], np.arange(len(peaks))
+        order = np.argsort(-np.abs(alike[ones, others]), kind="stable")  # the most coherent two first
+        for one, other in zip(ones[order].tolist(), others[order].tolist(), strict=True):
+            if is_clear[one, other, octave] and groups[one] != groups[other]:
+                joined = groups == groups[other]
+                if signs[one] * signs[other] * alike[one, other] < 0:
+                    signs[joined] *= -1
+                groups[joined] = groups[one]
+        for group in np.unique(groups):
+            members = np.flatnonzero(groups == group)
+            signs[members] *= signs[members[peaks[members].argmax()]]
+    return found
 
 
 def _check(accelerations: FloatArray) -> FloatArray:
@@ -96,23 +110,6 @@ def _weigh(count: int, time_step: float) -> tuple[int, FloatArray]:
 
     length = int(next_fast_len(count + math.ceil(PAD / time_step), real=True))
     return length, split(np.asarray(np.fft.rfftfreq(length, time_step), dtype=np.float64), octaves())
-
-
-def _join(coherence: FloatArray, is_clear: NDArray[np.bool_], peaks: FloatArray) -> NDArray[np.int64]:
-    """Return the signs (k,) of floors in one octave; `coherence` and `is_clear` are (k, k), `peaks` (k,)."""
-    signs, groups = np.ones(len(peaks), dtype=np.int64), np.arange(len(peaks))
-    ones, others = np.triu_indices(len(coherence), 1)
-    order = np.argsort(-np.abs(coherence[ones, others]), kind="stable")  # the most coherent two first
-    for one, other in zip(ones[order].tolist(), others[order].tolist(), strict=True):
-        if is_clear[one, other] and groups[one] != groups[other]:
-            joined = groups == groups[other]
-            if signs[one] * signs[other] * coherence[one, other] < 0:
-                signs[joined] *= -1
-            groups[joined] = groups[one]
-    for group in np.unique(groups):
-        members = np.flatnonzero(groups == group)
-        signs[members] *= signs[members[peaks[members].argmax()]]
-    return signs
 
 
 def turn_phases(frequencies: FloatArray, signs: Sequence[int] | ArrayLike) -> NDArray[np.complex128]:

@@ -32,14 +32,13 @@ from numpy.typing import NDArray
 
 from assess.arrays import FloatArray, Single
 from assess.motion.noise import Phases, Transforms, draw_noise, find_rates
-from assess.motion.recipe import Bending, Recipe, bend_to
+from assess.motion.recipe import Bending, Correction, Recipe, bend_to, build_wavelets
 from assess.motion.record import CORNER
 from assess.motion.rows import GROUP, make_groups, run_groups, run_rows
 from assess.motion.spectrum import DAMPING
 from assess.motion.sweep import Sweep
 from assess.motion.target import JUDGED_FROM, Grid, Target, matched_to
 from assess.motion.target_fit import Fit, Spectra, measure_match
-from assess.motion.wavelets import Correction, build_wavelets
 from assess.progress import SILENT, Progress
 
 ROLL_OFF = 8
@@ -222,71 +221,59 @@ def _bend(
     return bending
 
 
-@dataclass(slots=True, eq=False)
-class Corrections:
-    """Rounds of wavelets on the first motions of an ensemble.
-
-    `sweep` has the periods (m,) of the target. `errors` (m,) are the logarithms by which the mean spectrum was off when
-    it was last watched; those of periods that are not judged stay 0.
-    """
-
-    target: Target
-    grid: Grid
-    bench: Bench
-    sweep: Sweep
-    errors: FloatArray
-
-    def places(self, kind: str) -> NDArray[np.int64]:
-        """Return which periods a round watches."""
-        periods, farthest = self.target.periods, BEYOND * matched_to(self.target.periods, self.target.pseudo)
-        near = (periods > JUDGED_FROM / NEARER) & (periods < farthest)
-        if kind == REST and np.abs(self.errors).max() < ENOUGH:
-            return np.empty(0, np.int64)
-        if kind == REST:
-            return np.flatnonzero(near & (_widest(np.abs(self.errors), 2 * AROUND + 1) > LEFT))
-        return np.flatnonzero(near & ((periods < DIVIDED) == (kind == SHORT)))
-
-    def correct(self, motions: Single, places: NDArray[np.int64]) -> list[Correction]:
-        """Correct the ordinates of motions (k, n) that are most off among their neighbours, in place; none may be."""
-        sweep = self.sweep.take(places)
-        peaks, when = self.bench.watch(sweep, motions)
-        mean = np.abs(peaks).mean(axis=0, dtype=np.float64)
-        self.errors[places] = np.log(self.target.pseudo[places] / mean)
-        off = np.zeros(self.errors.size)
-        off[places] = np.abs(self.errors[places])
-        chosen = np.flatnonzero((off > WITHIN) & (off == _widest(off, APART)))
-        if not chosen.size:
-            return []
-        most, own = np.log(MOST_CORRECTED), np.searchsorted(places, chosen)
-        applied = np.where(self.errors[chosen] > 0, RAISED, LOWERED)
-        correction = Correction(
-            wavelets=build_wavelets(tuple(self.target.periods), self.grid.time_step),
-            places=chosen,
-            shares=np.expm1(np.clip(applied * self.errors[chosen], -most, most)).astype(np.float32),
-            sweep=self.sweep.take(chosen),
-        )
-        self.bench.run(lambda rows: correction.add(motions[rows], peaks[rows, own], when[rows, own]), len(motions))
-        return [correction]
-
-
-def _widest(off: FloatArray, width: int) -> FloatArray:
-    return np.asarray(sliding_window_view(np.pad(off, width // 2, mode="edge"), width).max(axis=1))
-
-
 def find_corrections(target: Target, recipe: Recipe, motions: Single, bench: Bench) -> Recipe:
     """Correct the mean spectrum and PFA of `motions` (k, n), in place; return the recipe with what was done."""
-    sweep = Sweep.of(target.periods, recipe.grid.time_step, recipe.grid.count)
-    work = Corrections(target, recipe.grid, bench, sweep, np.zeros(target.periods.size))
+    periods, sweep = target.periods, Sweep.of(target.periods, recipe.grid.time_step, recipe.grid.count)
+    near = (periods > JUDGED_FROM / NEARER) & (periods < BEYOND * matched_to(periods, target.pseudo))
+    errors = np.zeros(periods.size)
     found: list[Bending | Correction] = []
     for kind in STEPS:
         if kind == BEND:
             found.append(_bend(motions, _pfa(motions), target.pfa, bench, most=LAST_BENT))
-        elif (places := work.places(kind)).size:
-            found.extend(work.correct(motions, places))
+            continue
+        if kind == REST and np.abs(errors).max() < ENOUGH:
+            continue
+        is_left = _widest(np.abs(errors), 2 * AROUND + 1) > LEFT
+        watched = np.flatnonzero(near & (is_left if kind == REST else (periods < DIVIDED) == (kind == SHORT)))
+        if watched.size:
+            found += _correct(target, recipe.grid, motions, bench, sweep, watched, errors)
     recipe = replace(recipe, steps=recipe.steps + tuple(found))
     recipe = replace(recipe, lift=target.pfa / float(_pfa(motions).mean()))
     bench.run(lambda rows: recipe.finish(motions[rows]), len(motions))
     return recipe
+
+
+def _correct(
+    target: Target, grid: Grid, motions: Single, bench: Bench, sweep: Sweep, places: NDArray[np.int64],
+    errors: FloatArray,
+) -> list[Correction]:  # fmt: skip
+    """Correct the ordinates of motions (k, n) that are most off among their neighbours, in place; none may be.
+
+    `places` of the target's periods (m,), those of `sweep`, are watched. `errors` (m,), the logarithms by which the
+    mean spectrum was off when it was last watched, are renewed there; those of periods that are not judged stay 0.
+    """
+    peaks, when = bench.watch(sweep.take(places), motions)
+    mean = np.abs(peaks).mean(axis=0, dtype=np.float64)
+    errors[places] = np.log(target.pseudo[places] / mean)
+    off = np.zeros(errors.size)
+    off[places] = np.abs(errors[places])
+    chosen = np.flatnonzero((off > WITHIN) & (off == _widest(off, APART)))
+    if not chosen.size:
+        return []
+    most, own = np.log(MOST_CORRECTED), np.searchsorted(places, chosen)
+    applied = np.where(errors[chosen] > 0, RAISED, LOWERED)
+    correction = Correction(
+        wavelets=build_wavelets(tuple(target.periods), grid.time_step),
+        places=chosen,
+        shares=np.expm1(np.clip(applied * errors[chosen], -most, most)).astype(np.float32),
+        sweep=sweep.take(chosen),
+    )
+    bench.run(lambda rows: correction.add(motions[rows], peaks[rows, own], when[rows, own]), len(motions))
+    return [correction]
+
+
+def _widest(off: FloatArray, width: int) -> FloatArray:
+    return np.asarray(sliding_window_view(np.pad(off, width // 2, mode="edge"), width).max(axis=1))
 
 
 def _pfa(motions: Single) -> FloatArray:
@@ -365,7 +352,7 @@ def build_generator(
         noise[group] = draw_noise(target.envelopes, phases, group, progress)
 
     run_rows(draw, len(noise), threads, progress)
-    recipe = Recipe.of(target, grid)
+    recipe = Recipe(grid, np.ones(find_rates(grid).frequencies.size, np.float32), target.pfv)  # with no filter yet
     recipe, motions = find_filter(target, recipe, noise, bench)
     recipe = find_corrections(target, recipe, motions, bench)
     fit, spectra = measure_match(target, motions, grid.time_step, threads, progress)

@@ -257,7 +257,20 @@ def _read_table(path: Path, texts: dict[str, int]) -> _Table:
             raise InputError(fill("the file is not plain text. Export it from OpenQuake as CSV"))
         if data.count(b"\n") + data.count(b"\r") > MOST_ROWS:
             raise InputError.about("the file has more than {most:,} rows: keep fewer events or sites", most=MOST_ROWS)
-        start, head, first = _read_head(data)
+        head: tuple[str, ...] = ()
+        start, line = 0, 0
+        while start < min(len(data), MOST_HEAD) and not head:
+            end = data.find(b"\n", start)
+            end = len(data) if end < 0 else end
+            text, start, line = data[start:end].decode("utf-8-sig", "replace").strip(), end + 1, line + 1
+            if text and not text.startswith(("#", '"#')):
+                try:
+                    head = tuple(cell.strip() for cell in next(csv.reader([text])))
+                except csv.Error:  # an end of line of its own in the middle
+                    raise InputError.about("line {line}: the headings cannot be read", line=line) from None
+        if not head:
+            raise InputError(fill("there is no table"))
+        first = line + 1  # that of the first row
         if len(head) > MOST_COLUMNS or len(set(head)) < len(head):
             raise InputError.about("the first row has a heading twice, or more than {most} headings", most=MOST_COLUMNS)
         rows = data[start:]
@@ -270,21 +283,6 @@ def _read_table(path: Path, texts: dict[str, int]) -> _Table:
         if len(lines) < rows.count(b"\n"):  # some are blank
             lines = [line for line, row in enumerate(rows.splitlines(), first) if row.strip()]
         return _Table(dict(zip(head, numbers.T, strict=True)), lines, hashlib.sha256(data).hexdigest())
-
-
-def _read_head(data: bytes) -> tuple[int, tuple[str, ...], int]:
-    """Return where the rows begin, the headings, and the number of the line of the first row."""
-    at, line = 0, 0
-    while at < min(len(data), MOST_HEAD):
-        end = data.find(b"\n", at)
-        end = len(data) if end < 0 else end
-        text, at, line = data[at:end].decode("utf-8-sig", "replace").strip(), end + 1, line + 1
-        if text and not text.startswith(("#", '"#')):
-            try:
-                return at, tuple(cell.strip() for cell in next(csv.reader([text]))), line + 1
-            except csv.Error:  # an end of line of its own in the middle
-                raise InputError.about("line {line}: the headings cannot be read", line=line) from None
-    raise InputError(fill("there is no table"))
 
 
 def _parse_rows(data: bytes, head: Sequence[str], first: int, number_text: Callable[[str], int]) -> FloatArray:

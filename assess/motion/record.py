@@ -36,28 +36,22 @@ def high_pass_both_ways(
     * `pad`: zeros at each end.
     * `progress`: asked for every `SLICE` samples whether to stop.
     """
-    section = _butterworth(time_step, corner)
-    # The zeros in front leave a filter at rest as it is: only those at the end are passed through it.
-    forward = np.pad(_filter(section, np.pad(values, (0, pad)), (0.0, 0.0), progress), (pad, 0))
-    value = float(forward[-1])
-    b0, b1, b2, a1, a2 = section
-    # Backward it starts in the state of a section that has passed the same value for ever.
-    z0, z1 = np.linalg.solve([[1.0 + a1, -1.0], [a2, 1.0]], [b1 - a1 * b0, b2 - a2 * b0])
-    return _filter(section, forward[::-1], (float(z0) * value, float(z1) * value), progress)[::-1]
-
-
-def _butterworth(time_step: float, corner: float) -> tuple[float, ...]:
-    """Return b0, b1, b2, a1 and a2 of the digital high-pass of PASS_ORDER 2 [-], by the bilinear transform.
-
-    It takes the steps of `scipy.signal.butter` in their order: in this filter, whose poles nearly meet its zeros, a
-    rounding error in a coefficient changes a motion by up to 1e-12 of its peak.
-    """
+    # A digital high-pass of PASS_ORDER 2 by the bilinear transform, in the steps of `scipy.signal.butter` and their
+    # order: its poles nearly meet its zeros, and a rounding error in a coefficient changes a motion by up to 1e-12 of
+    # its peak.
     prototype = -np.exp(1j * np.pi * np.array([-1.0, 1.0]) / (2 * PASS_ORDER))
     poles = 4.0 * np.tan(np.pi * (2 * corner / (1 / time_step)) / 2.0) / prototype
     gain = np.real(1 / np.prod(-prototype)) * np.real(16.0 / np.prod(4.0 - poles))
     pole = ((4.0 + poles) / (4.0 - poles))[0]
-    _, a1, a2 = np.poly([pole, pole.conj()]).real
-    return float(gain), -2.0 * float(gain), float(gain), float(a1), float(a2)
+    _, a1, a2 = np.poly([pole, pole.conj()]).real.tolist()
+    b0, b1, b2 = float(gain), -2.0 * float(gain), float(gain)
+    section = b0, b1, b2, a1, a2
+    # The zeros in front leave a filter at rest as it is: only those at the end are passed through it.
+    forward = np.pad(_filter(section, np.pad(values, (0, pad)), (0.0, 0.0), progress), (pad, 0))
+    value = float(forward[-1])
+    # Backward it starts in the state of a section that has passed the same value for ever.
+    z0, z1 = np.linalg.solve([[1.0 + a1, -1.0], [a2, 1.0]], [b1 - a1 * b0, b2 - a2 * b0])
+    return _filter(section, forward[::-1], (float(z0) * value, float(z1) * value), progress)[::-1]
 
 
 def _filter(

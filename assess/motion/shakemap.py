@@ -89,15 +89,6 @@ class Grid:
         return self.header.get("event_id") or self.event.get("event_id", "")
 
     @property
-    def magnitude(self) -> float:
-        """The magnitude of the earthquake; infinite where it is not known."""
-        try:
-            magnitude = float(self.event.get("magnitude", ""))
-        except ValueError:
-            return math.inf
-        return magnitude if math.isfinite(magnitude) else math.inf
-
-    @property
     def psa(self) -> dict[str, float]:
         """The fields of spectral acceleration with their periods [s], rising: PSA03 is that of 0.3 s."""
         found = ((name, match) for name in self.fields if (match := _PSA.fullmatch(name)))
@@ -234,12 +225,29 @@ class ShakeMap:
         pgv = read("PGV", logarithmic=True) / 100
         psa = ((period, read(name, logarithmic=True) * GRAVITY / 100) for name, period in self.grid.psa.items())
         sigma, source, shared = self._find_sigma("PGA" if math.isnan(pgv) else "PGV", read, beside)
+        header, event, its_file = self.grid.header, self.grid.event, self.uncertainty_file
+        version = join(", ", [text for text in (header.get("shakemap_version"), header.get("code_version")) if text])
+        cited = fill("{file}, SHA-256 {sha256}", file=its_file, sha256=self.uncertainty_sha256) if its_file else ""
+        listed = (
+            (fill("Earthquake"), self.title),
+            (fill("Time of the earthquake"), event.get("event_timestamp", "")),
+            (fill("Event ID"), self.grid.event_id),
+            (fill("Status of the map"), header.get("map_status", "")),
+            (fill("Kind of event"), header.get("shakemap_event_type", "")),
+            (fill("Version of the map, version of ShakeMap"), version),
+            (fill("Map computed"), header.get("process_timestamp", "")),
+            (fill("File of uncertainties"), cited),
+        )
+        facts = [(label, fill("{text}", text=text)) for label, text in listed if text]
+        if (speed := read("SVEL", logarithmic=True)) > 0:
+            value = fill("{speed:.0f} m/s; its effect is in the map and is not applied again", speed=speed)
+            facts.append((fill("Vs30 of the map at the building"), value))
         return SiteGround(
             kind="shakemap", file=self.file, sha256=self.grid_sha256, pga=pga * GRAVITY / 100,
             pgv=None if math.isnan(pgv) else pgv,
             psa=tuple((period, value) for period, value in psa if not math.isnan(value)),
             dispersion=sigma, dispersion_source=source, shared=shared,
-            facts=tuple(self._list_facts(read)), cautions=tuple(self._list_cautions(read)),
+            facts=tuple(facts), cautions=tuple(self._list_cautions(read)),
         )  # fmt: skip
 
     def _find_sigma(
@@ -262,32 +270,15 @@ class ShakeMap:
                     why = fill("the map's {name} is 0 everywhere", name=name)
                 elif not math.isnan(sigma):
                     return sigma, fill("{name} of {file}", name=name, file=file), shared
-        magnitude = self.grid.magnitude
+        magnitude = math.inf  # where it is not known
+        with suppress(ValueError):
+            magnitude = float(self.grid.event.get("magnitude", ""))
+        magnitude = magnitude if math.isfinite(magnitude) else math.inf
         between, within = SCATTERS[measure].at(magnitude)
         source = fill("assumed, as {why}: the total of Boore et al. 2014 for this magnitude", why=why)
         if magnitude >= MAGNITUDES[1]:
             source = fill("assumed, as {why}: the total of Boore et al. 2014 for magnitude 5.5 or more", why=why)
         return math.hypot(between, within), source, between**2 / (between**2 + within**2)
-
-    def _list_facts(self, read: _Reading) -> Iterator[tuple[Text, Text]]:
-        header, event, beside = self.grid.header, self.grid.event, self.uncertainty_file
-        version = join(", ", [text for text in (header.get("shakemap_version"), header.get("code_version")) if text])
-        cited = fill("{file}, SHA-256 {sha256}", file=beside, sha256=self.uncertainty_sha256) if beside else ""
-        listed = (
-            (fill("Earthquake"), self.title),
-            (fill("Time of the earthquake"), event.get("event_timestamp", "")),
-            (fill("Event ID"), self.grid.event_id),
-            (fill("Status of the map"), header.get("map_status", "")),
-            (fill("Kind of event"), header.get("shakemap_event_type", "")),
-            (fill("Version of the map, version of ShakeMap"), version),
-            (fill("Map computed"), header.get("process_timestamp", "")),
-            (fill("File of uncertainties"), cited),
-        )
-        yield from ((label, fill("{text}", text=text)) for label, text in listed if text)
-        speed = read("SVEL", logarithmic=True)
-        if speed > 0:
-            value = fill("{speed:.0f} m/s; its effect is in the map and is not applied again", speed=speed)
-            yield fill("Vs30 of the map at the building"), value
 
     def _list_cautions(self, read: _Reading) -> Iterator[Text]:
         status = self.grid.header.get("map_status", "").upper()
@@ -421,11 +412,11 @@ class _Reader:
         self.parser = expat.ParserCreate()
         self.parser.buffer_text, self.parser.buffer_size = True, _PIECE
         self.parser.StartElementHandler, self.parser.EndElementHandler = self._enter, self._leave
-        self.parser.CharacterDataHandler, self.parser.EntityDeclHandler = self._take, self._refuse
+        self.parser.EntityDeclHandler = self._refuse
         self.found: dict[str, dict[str, str]] = {}
         self.names: list[tuple[str, str, str]] = []
         self.texts: list[str] = []
-        self._elements, self._is_data = 0, False
+        self._elements = 0
 
     def _enter(self, tag: str, attributes: dict[str, str]) -> None:
         name, self._elements = tag.rpartition(":")[2], self._elements + 1
@@ -442,14 +433,10 @@ class _Reader:
             raise InputError.about("the element {name} is there twice", name=name)
         elif name in ("shakemap_grid", "event", "grid_specification", "grid_data"):
             self.found[name] = clean
-        self._is_data = name == "grid_data"
+        self.parser.CharacterDataHandler = self.texts.append if name == "grid_data" else None
 
     def _leave(self, _tag: str) -> None:
-        self._is_data = False
-
-    def _take(self, text: str) -> None:
-        if self._is_data:
-            self.texts.append(text)
+        self.parser.CharacterDataHandler = None
 
     def _refuse(self, *_: object) -> None:
         raise InputError.about("the file declares XML entities, which no ShakeMap does. {hint}", hint=_HINT)
@@ -463,8 +450,25 @@ def _build(reader: _Reader) -> Grid:
     for name in ("event", "grid_specification", "grid_data"):
         if name not in reader.found:
             raise InputError.about("the element {name} is missing", name=name)
-    units = _name_fields(reader.names)
-    columns, rows = (_read_count(reader.found["grid_specification"], name) for name in ("nlon", "nlat"))
+    if len(reader.names) > MOST_FIELDS:
+        raise InputError.about("the file has more than {most} fields", most=MOST_FIELDS)
+    if sorted(index for index, *_ in reader.names) != sorted(str(at + 1) for at in range(len(reader.names))):
+        raise InputError(fill("the fields (grid_field) are not numbered from 1 on, each once"))
+    units: dict[str, str] = {}  # by the names of the fields, in the order of their columns
+    for _, name, unit in sorted(reader.names, key=lambda one: int(one[0])):
+        if name.upper() in units:
+            raise InputError.about("the field {name} is there twice", name=name.upper())
+        units[name.upper()] = unit
+    for name in ("LON", "LAT"):
+        if name not in units:
+            raise InputError.about("the field {name} is missing", name=name)
+    counts = []
+    for name in ("nlon", "nlat"):
+        text = reader.found["grid_specification"].get(name, "")
+        if not (text.isascii() and text.isdigit() and len(text) < 20 and int(text) > 1):
+            raise InputError.about("grid_specification: {name} is {text!r}, expected 2 or more", name=name, text=text)
+        counts.append(int(text))
+    columns, rows = counts
     if columns * rows > MOST_POINTS:
         raise InputError.about(
             "grid_specification: {columns:,} x {rows:,} points are more than {most:,}",
@@ -476,30 +480,6 @@ def _build(reader: _Reader) -> Grid:
         reader.found["shakemap_grid"], reader.found["event"], latitude, longitude,
         {name: values[order].reshape(rows, columns) for name, values in fields.items()}, units,
     )  # fmt: skip
-
-
-def _name_fields(listed: Sequence[tuple[str, str, str]]) -> dict[str, str]:
-    """Return the units of the fields by their names, in the order of their columns."""
-    if len(listed) > MOST_FIELDS:
-        raise InputError.about("the file has more than {most} fields", most=MOST_FIELDS)
-    if sorted(index for index, *_ in listed) != sorted(str(at + 1) for at in range(len(listed))):
-        raise InputError(fill("the fields (grid_field) are not numbered from 1 on, each once"))
-    units: dict[str, str] = {}
-    for _, name, unit in sorted(listed, key=lambda one: int(one[0])):
-        if name.upper() in units:
-            raise InputError.about("the field {name} is there twice", name=name.upper())
-        units[name.upper()] = unit
-    for name in ("LON", "LAT"):
-        if name not in units:
-            raise InputError.about("the field {name} is missing", name=name)
-    return units
-
-
-def _read_count(specification: Mapping[str, str], name: str) -> int:
-    text = specification.get(name, "")
-    if not (text.isascii() and text.isdigit() and len(text) < 20 and int(text) > 1):
-        raise InputError.about("grid_specification: {name} is {text!r}, expected 2 or more", name=name, text=text)
-    return int(text)
 
 
 def _read_numbers(texts: Sequence[str], width: int, rows: int) -> FloatArray:

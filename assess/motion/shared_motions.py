@@ -77,26 +77,20 @@ class SharedMotions:
         They may be changed. Errors as of `Generator.realise`.
         """
         start, end = first // GROUP, -(-(first + count) // GROUP)
+        known, own = self._entry.groups, self.generator.made
         with waiting(self._entry.lock, self.generator.progress):
-            motions = self._find_groups(start, end)
+            made = len(own) // GROUP
+            lacking = [at for at in range(start, end) if at >= made and at not in known]
+            if lacking or start == end:
+                motions = self.generator.realise(start * GROUP, (end - start) * GROUP)
+                for at in (one for one in lacking if one < MOST_GROUPS):
+                    known[at] = motions[(at - start) * GROUP :][:GROUP].copy()
+            else:
+                groups = [own[at * GROUP :][:GROUP] if at < made else known[at] for at in range(start, end)]
+                motions = np.concatenate(groups)
         KEPT.keep(self._key, self._entry)
         motions *= np.float32(self.factor)
         return motions[first - start * GROUP :][:count]
-
-    def _find_groups(self, start: int, end: int) -> Single:
-        """Return the motions of groups `start` to `end` - 1, and keep those that are new."""
-        known, made = self._entry.groups, len(self.generator.made) // GROUP
-        lacking = [at for at in range(start, end) if at >= made and at not in known]
-        if not lacking:
-            rows = [self._first(at) if at < made else known[at] for at in range(start, end)]
-            return np.concatenate(rows) if rows else self.generator.realise(0, 0)
-        motions = self.generator.realise(start * GROUP, (end - start) * GROUP)
-        for at in (one for one in lacking if one < MOST_GROUPS):
-            known[at] = motions[(at - start) * GROUP :][:GROUP].copy()
-        return motions
-
-    def _first(self, group: int) -> Single:
-        return self.generator.made[group * GROUP : (group + 1) * GROUP]
 
 
 def share_motions(
@@ -117,17 +111,13 @@ def share_motions(
         found.made.flags.writeable = False
         return _Entry(replace(found, threads=1, progress=SILENT))
 
-    key = _name(target, phases)
-    entry = KEPT.find_or_make(key, make, progress)
-    return SharedMotions(replace(entry.generator, threads=threads, progress=progress), factor, key, entry)
-
-
-def _name(target: Target, phases: Phases) -> bytes:
-    envelopes, found = target.envelopes, hashlib.sha256(repr(phases).encode())
+    envelopes, digest = target.envelopes, hashlib.sha256(repr(phases).encode())
     numbers = target.pfa, target.pfv, envelopes.half_time
     arrays = target.periods, target.pseudo, envelopes.centres, envelopes.values, target.acceleration
     for one in (numbers, *arrays):
         values = np.ascontiguousarray(one, np.float64)
-        found.update(repr(values.shape).encode())
-        found.update(values.tobytes())
-    return found.digest()
+        digest.update(repr(values.shape).encode())
+        digest.update(values.tobytes())
+    key = digest.digest()
+    entry = KEPT.find_or_make(key, make, progress)
+    return SharedMotions(replace(entry.generator, threads=threads, progress=progress), factor, key, entry)

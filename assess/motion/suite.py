@@ -1,7 +1,7 @@
 """A suite: a folder of the user's own floor records, which stand in for generated motions."""
 
 import hashlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import groupby, islice
 from pathlib import Path
@@ -104,7 +104,19 @@ def _read_suite(folder: Path, paths: list[Path], progress: Progress) -> Suite:
             if record.vertical is False:
                 name = f"{path.name}#{record.channel}" if len(records) > 1 else path.name
                 motions.append((name, treat(record)))
-    notes = list(_note_directions(found))
+    channels = [(f"{path.name}#{one.channel}", one.vertical) for path, records in found.items() for one in records]
+    vertical, unknown = (
+        ", ".join(name for name, is_vertical in channels if is_vertical is which) for which in (True, None)
+    )
+    notes = [fill("vertical channels are left out: {channels}", channels=vertical)] if vertical else []
+    if unknown:
+        notes.append(
+            fill(
+                "channels are left out because their direction is not known: {channels} (where they are horizontal, "
+                "give them as plain CSV, with x or y as the heading)",
+                channels=unknown,
+            )
+        )
     if not motions:
         why = fill("{folder}: the folder holds no horizontal channel. Put floor records into it", folder=folder)
         raise RecordError(join("; ", (why, *notes)))
@@ -122,16 +134,3 @@ def _read_suite(folder: Path, paths: list[Path], progress: Progress) -> Suite:
         files={path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in found},
         notes=tuple(notes),
     )
-
-
-def _note_directions(found: Mapping[Path, tuple[Record, ...]]) -> Iterator[str]:
-    channels = [(f"{path.name}#{one.channel}", one.vertical) for path, records in found.items() for one in records]
-    vertical, unknown = ([name for name, kind in channels if kind is which] for which in (True, None))
-    if vertical:
-        yield fill("vertical channels are left out: {channels}", channels=", ".join(vertical))
-    if unknown:
-        yield fill(
-            "channels are left out because their direction is not known: {channels} (where they are horizontal, give "
-            "them as plain CSV, with x or y as the heading)",
-            channels=", ".join(unknown),
-        )

@@ -65,24 +65,16 @@ def husid_envelopes(acceleration: FloatArray, time_step: float) -> Envelopes:
     length = int(next_fast_len(count + math.ceil(PAD / time_step), real=True))
     weights = split(np.asarray(np.fft.rfftfreq(length, time_step), np.float64), centres)
     bands = irfft(rfft(acceleration, length) * weights, length, axis=1)[:, :count]
-    power = np.array(
-        [
-            _smooth(band**2, max(SMOOTHED, CYCLES / centre) / time_step)
-            for band, centre in zip(bands, centres, strict=True)
-        ]
-    )
+    power = np.empty_like(bands)
+    for row, band, centre in zip(power, bands, centres, strict=True):
+        # Smoothed by a normal curve with a standard deviation of `width` samples; zeros beyond the ends
+        width = max(SMOOTHED, CYCLES / centre) / time_step
+        longer = int(next_fast_len(count + math.ceil(REACH * width), real=True))
+        curve = np.exp(-2 * (np.pi * width * np.fft.rfftfreq(longer)) ** 2)
+        row[:] = np.maximum(irfft(rfft(band**2, longer) * curve, longer)[:count], 0.0)
     passed = np.cumsum(acceleration**2)
     half = float(np.searchsorted(passed, passed[-1] / 2)) * time_step
     return Envelopes(centres, np.sqrt(power / np.maximum(power.mean(axis=1, keepdims=True), 1e-300)), half)
-
-
-def _smooth(values: FloatArray, width: float) -> FloatArray:
-    """Return values (n,) under a normal curve with a standard deviation of `width` samples; zeros beyond the ends."""
-    from scipy.fft import irfft, next_fast_len, rfft
-
-    length = int(next_fast_len(values.size + math.ceil(REACH * width), real=True))
-    curve = np.exp(-2 * (np.pi * width * np.fft.rfftfreq(length)) ** 2)
-    return np.asarray(np.maximum(irfft(rfft(values, length) * curve, length)[: values.size], 0.0))
 
 
 TIME_STEP = 0.005

@@ -123,7 +123,7 @@ class DrawnEnsemble:
 
     def open(self, threads: int, progress: Progress = SILENT) -> OpenMotions:
         """Find what brings the draws to the floor's peaks; the motions are in single precision."""
-        from assess.motion.beam_motions import Beams, open_floor
+        from assess.motion.beam import Beams, open_floor
 
         make_ground, key = self._find_ground(progress)
         beams = Beams(self.drawn.building, self.grid, self.seed, key, make_ground)

@@ -9,10 +9,9 @@ from scipy.fft import irfft
 from scipy.signal import lfilter
 
 from assess.arrays import Single
-from assess.motion import beam_motions, noise
+from assess.motion import beam, noise
 from assess.motion.assumed import Building, FloorTarget, Ground
-from assess.motion.beam import DAMPING, MODES, solve_beam
-from assess.motion.beam_motions import Beams, open_floor
+from assess.motion.beam import DAMPING, MODES, Beams, open_floor, solve_beam
 from assess.motion.drawn_ground import build_beam_grid, draw_ground, fit_noise
 from assess.motion.floor_medians import find_medians
 from assess.motion.noise import Phases
@@ -39,7 +38,7 @@ def rows(_folder: Path) -> Iterator[str]:
 def _shake(floors: int) -> None:
     """Draw the earthquakes, and make the motions of all floors, half of them with a PFA of their own."""
     noise.KEPT.forget()
-    beam_motions.KEPT.forget()
+    beam.KEPT.forget()
     for axis in AXES:
 
         def draw(group: int, axis: str = axis) -> Single:

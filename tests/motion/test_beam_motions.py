@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from assess.arrays import FloatArray, Single
-from assess.motion import beam_motions
+from assess.motion import beam
 from assess.motion.assumed import Building, FloorTarget, Ground, Meets
-from assess.motion.beam_motions import Beams, FloorMotions, open_floor
+from assess.motion.beam import Beams, FloorMotions, open_floor
 from assess.motion.drawn_ground import build_beam_grid, draw_ground
 from assess.motion.floor_medians import find_medians
 from assess.motion.noise import Phases
@@ -25,7 +25,7 @@ GRID = build_beam_grid(BUILDING.longest)
 def nothing_left() -> Iterator[None]:
     """Let go of the modes after each test."""
     yield
-    beam_motions.KEPT.forget()
+    beam.KEPT.forget()
 
 
 def make_beams(building: Building = BUILDING, seed: int = 1, axis: str = "X") -> Beams:
@@ -109,7 +109,7 @@ def test_floors_of_one_draw_move_as_one_building() -> None:
 @pytest.mark.slow
 def test_draws_depend_on_neither_number_nor_order_nor_threads() -> None:
     every = realise(target(), 0, 260)
-    beam_motions.KEPT.forget()
+    beam.KEPT.forget()
     for first, count, threads in ((255, 5, 2), (0, 1, 1), (37, 50, 3), (190, 30, 1)):
         np.testing.assert_array_equal(realise(target(), first, count, threads), every[first : first + count])
     for beams in (make_beams(Building(period=1.0, structure="frame", number=9)), make_beams(seed=2)):
@@ -130,7 +130,7 @@ ANCHORS = ((0.4, 5.0), (0.8, 9.0))
 
 def find_factors(place: float, *, is_ground_known: bool = True) -> FloatArray:
     one = FloorTarget(place=place, pfa=6.0, pfv=0.6, meets="medians", anchors=ANCHORS, is_ground_known=is_ground_known)
-    return beam_motions._find_height_factor(BEAMS, one, place, 0)
+    return beam._find_height_factor(BEAMS, one, place, 0)
 
 
 def test_the_factor_in_height_is_straight_between_known_floors_and_down_to_the_ground() -> None:
@@ -152,14 +152,14 @@ def test_the_factor_in_height_is_straight_between_known_floors_and_down_to_the_g
 def test_no_more_is_kept_than_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = realise(target())
 
-    one = beam_motions.KEPT.nbytes // (DRAWS // GROUP)
-    assert 0 < one <= beam_motions.KEPT.most
+    one = beam.KEPT.nbytes // (DRAWS // GROUP)
+    assert 0 < one <= beam.KEPT.most
     for kept in (3 * one, one - 1):
-        beam_motions.KEPT.forget()
-        monkeypatch.setattr(beam_motions.KEPT, "most", kept)
+        beam.KEPT.forget()
+        monkeypatch.setattr(beam.KEPT, "most", kept)
         np.testing.assert_array_equal(realise(target(), threads=2), whole)
-        assert beam_motions.KEPT.nbytes == kept // one * one
-    assert not beam_motions.KEPT._busy
+        assert beam.KEPT.nbytes == kept // one * one
+    assert not beam.KEPT._busy
 
 
 def test_modes_are_made_once_for_all_floors_and_threads() -> None:

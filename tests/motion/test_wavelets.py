@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from assess.arrays import FloatArray
+from assess.motion.recipe import Correction, build_wavelets
 from assess.motion.spectrum import response_spectrum
 from assess.motion.sweep import Sweep
-from assess.motion.wavelets import Correction, build_wavelets
 from tests.motion.motions import GROUND, ROOF, TWELFTH, read_motion
 
 STEP = 0.005

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from assess.methods import simulation
-from assess.motion import beam_motions, shared_motions
+from assess.motion import beam, shared_motions
 from assess.motion.beam import swing_modes
 from assess.motion.generate import build_generator
 from assess.motion.kept import Kept
@@ -34,14 +34,14 @@ def built(monkeypatch):
 @pytest.fixture
 def swung(monkeypatch):
     """Start from nothing that is kept; return the list that grows with every group of beams that swing."""
-    monkeypatch.setattr(beam_motions, "KEPT", Kept(beam_motions.KEPT.most))
+    monkeypatch.setattr(beam, "KEPT", Kept(beam.KEPT.most))
     found = []
 
     def count(*given):
         found.append(given)
         return swing_modes(*given)
 
-    monkeypatch.setattr(beam_motions, "swing_modes", count)
+    monkeypatch.setattr(beam, "swing_modes", count)
     return found
 
 
@@ -66,11 +66,11 @@ def test_floors_without_a_record_share_their_beams_and_each_is_as_alone(swung):
     alone, made = [], []
     for floor in (lower, upper):
         swung.clear()
-        beam_motions.KEPT.forget()
+        beam.KEPT.forget()
         alone.append(chances(read(floor, **building)))
         made.append(len(swung))
     swung.clear()
-    beam_motions.KEPT.forget()
+    beam.KEPT.forget()
     both = chances(read(lower, upper, **building))
     assert len(swung) == made[0] == made[1] > 0
     np.testing.assert_array_equal(both, np.concatenate(alone))
@@ -80,7 +80,7 @@ def test_floors_without_a_record_share_their_beams_and_each_is_as_alone(swung):
 @pytest.mark.slow
 def test_another_building_before_changes_nothing(swung):
     first = chances(read({"floor": "1", "pfa_x": 0.4}))
-    beam_motions.KEPT.forget()
+    beam.KEPT.forget()
     chances(read({"floor": "9", "pfa_x": 0.8}, period=1.0))
     np.testing.assert_array_equal(chances(read({"floor": "1", "pfa_x": 0.4})), first)
 

@@ -15,7 +15,7 @@ from assess.arrays import Single
 from assess.intensity import RATIO
 from assess.methods import Cases, all_methods
 from assess.motion.assumed import UNKNOWN, Building, FloorTarget, Ground, estimate_period
-from assess.motion.beam_motions import Beams, open_floor
+from assess.motion.beam import Beams, open_floor
 from assess.motion.drawn_ground import build_beam_grid, draw_ground
 from assess.motion.floor_medians import find_medians
 from assess.motion.formats import read_records
