@@ -226,17 +226,15 @@ class Alike:
     @property
     def total(self) -> NDArray[np.int64]:
         """The weight of the whole group of each, (m,)."""
-        return self._add_up(self.weight)
+        return self.add_up(np.ones_like(self.weight))
 
     def add_up(self, values: NDArray[Any]) -> NDArray[Any]:
         """Return for each row the weighted sum over its group: of values (m,), or (d, m) of each of d rows."""
-        return self._add_up(self.weight * values)
+        weighted = self.weight * values
+        sums = np.zeros((*weighted.shape[:-1], self.group.max(initial=-1) + 1), dtype=weighted.dtype)
+        np.add.at(sums.T, self.group, weighted.T)
+        return sums[..., self.group]
 
     def average(self, values: NDArray[Any]) -> FloatArray:
         """Return for each row the weighted mean over its group, (m,)."""
         return np.asarray(self.add_up(values) / self.total)
-
-    def _add_up(self, values: NDArray[Any]) -> NDArray[Any]:
-        sums = np.zeros((*values.shape[:-1], self.group.max(initial=-1) + 1), dtype=values.dtype)
-        np.add.at(sums.T, self.group, values.T)
-        return sums[..., self.group]

@@ -21,11 +21,7 @@ G = GRAVITY / ACCELERATION["cm/s2"]
 """Standard gravity [cm/s2], as the formulas of the paper take it."""
 
 
-def _normal_cdf(x: float) -> float:
-    return 0.5 * math.erfc(-x / math.sqrt(2))
-
-
-NORMAL_CDF = np.frompyfunc(_normal_cdf, 1, 1)
+NORMAL_CDF = np.frompyfunc(lambda x: 0.5 * math.erfc(-x / math.sqrt(2)), 1, 1)
 """Standard normal distribution function as a numpy function; `normal_cdf` gives floats."""
 
 
@@ -54,7 +50,10 @@ class Notation:
         """Return the text of an operation, and how tightly it binds."""
         first, *others = operands
         if operation in (np.add, np.subtract):
-            return self._sum(first, others[0], is_minus=operation is np.subtract), SUM
+            if operation is np.subtract:
+                return first.bound(SUM) + self.minus + others[0].bound(PRODUCT, unsigned=True), SUM
+            text = others[0].bound(SUM)  # a sum has neither ``+-`` nor ``--``, which some programs read differently
+            return first.bound(SUM) + (self.minus + text[1:] if text.startswith("-") else self.plus + text), SUM
         if operation is np.multiply:
             return f"{first.bound(PRODUCT)}{self.times}{others[0].bound(PRODUCT, unsigned=True)}", PRODUCT
         if operation is np.true_divide:
@@ -67,17 +66,8 @@ class Notation:
             return f"{first.bound(SUM)}{_COMPARISONS[operation]}{others[0].bound(SUM)}", COMPARISON
         return self.functions[operation].format(*(one.text for one in operands)), ATOM
 
-    def _sum(self, first: "Expression", second: "Expression", *, is_minus: bool) -> str:
-        """Write a sum without ``+-`` and ``--``, which some programs read differently."""
-        if is_minus:
-            return first.bound(SUM) + self.minus + second.bound(PRODUCT, unsigned=True)
-        text = second.bound(SUM)
-        return first.bound(SUM) + (self.minus + text[1:] if text.startswith("-") else self.plus + text)
 
-
-_COMPARISONS = {
-    np.greater: ">", np.greater_equal: ">=", np.less: "<", np.less_equal: "<=",
-}  # fmt: skip
+_COMPARISONS = {np.greater: ">", np.greater_equal: ">=", np.less: "<", np.less_equal: "<="}
 
 
 class Expression(NDArrayOperatorsMixin):
@@ -113,12 +103,9 @@ class Expression(NDArrayOperatorsMixin):
         return Expression(self.notation, self.notation.number(float(value)), ATOM, float(value))
 
 
-def _shortest(value: float) -> str:
-    return '""' if value != value else repr(value).removesuffix(".0")
-
-
 EXCEL = Notation(
-    plus="+", minus="-", times="*", power="^{}".format, number=_shortest,
+    plus="+", minus="-", times="*", power="^{}".format,
+    number=lambda value: '""' if value != value else repr(value).removesuffix(".0"),
     functions={
         np.log: "LN({})", np.exp: "EXP({})", np.sqrt: "SQRT({})", NORMAL_CDF: "NORMSDIST({})",
         np.cos: "COS({})", np.sin: "SIN({})", np.arctan: "ATAN({})",

@@ -61,10 +61,6 @@ def _damping(gamma: Any) -> Any:
     return gamma / np.sqrt(4 * np.pi**2 + gamma**2)
 
 
-def _effective_damping(C_R: Any) -> Any:
-    return _damping(_gamma(C_R))
-
-
 # Newmark and Hall: median amplification of velocity
 def _velocity_amplification(beta_e: Any) -> Any:
     return 2.31 - 0.41 * np.log(100 * beta_e)
@@ -74,7 +70,7 @@ def _velocity_amplification(beta_e: Any) -> Any:
 def median_pfv(breadth: FloatArray, height: FloatArray) -> FloatArray:
     """Median PFV that overturns the piece [m/s]; NaN where the piece does not rock."""
     V_imp = _impulse_velocity(height, critical_angle(breadth, height), GRAVITY)
-    beta_e = _effective_damping(_restitution(critical_angle(breadth, height)))
+    beta_e = _damping(_gamma(_restitution(critical_angle(breadth, height))))
     return np.where(breadth / height < STOCKY, V_imp / _velocity_amplification(beta_e), np.nan)
 
 
@@ -95,7 +91,7 @@ def evaluate(cases: Cases, settings: Settings) -> Outcome:
 def live(cells: LiveCells) -> Mapping[str, Any]:
     """Return the value; blank where PFV is unknown or the piece is too stocky, 0 without shaking."""
     B_H, PFV, alpha = cells.breadth_to_height, cells.pfv_cm_s, np.arctan(cells.breadth_to_height)
-    beta_e = _effective_damping(_restitution(alpha))
+    beta_e = _damping(_gamma(_restitution(alpha)))
     median = _impulse_velocity(cells.height_cm, alpha, G) / _velocity_amplification(beta_e)
     chance = np.where(PFV <= 0, 0, normal_cdf(np.log(PFV / median) / BETA))
     return {"value": np.where(B_H < STOCKY, np.where(np.isnan(PFV), np.nan, chance), np.nan)}

@@ -26,7 +26,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from assess.arrays import BoolArray, FloatArray
+from assess.arrays import FloatArray
 from assess.errors import InputError
 from assess.i18n import Text, fill, join
 from assess.methods.cases import Cases
@@ -168,19 +168,18 @@ class Fitted:
         """``polynomial`` or ``probit``, as in its file."""
         return "probit" if isinstance(self.formula, Probit) else "polynomial"
 
-    def holds(self, cases: Cases) -> BoolArray:
-        """Tell for each of n cases whether it lies inside the data (n,); where PFV is unknown it does not."""
-        with np.errstate(all="ignore"):
-            held = [one.holds(QUANTITIES[key].measure(cases)) for key, one in self.ranges.items()]
-        return np.asarray(reduce(np.logical_and, held))
-
     def evaluate(self, cases: Cases, settings: Settings) -> Outcome:
         """Return the chance of n cases, with the unbounded value and the cautions."""
         found = self.formula.evaluate(cases)
         raw = np.where(np.isfinite(found), found, np.nan)
         value = np.clip(raw, 0.0, 1.0)
         known = ~np.isnan(value)
-        flags = {"extrapolated": known & ~self.holds(cases), "clipped": known & (value != raw)}
+        with np.errstate(all="ignore"):
+            # Where PFV is unknown a case does not lie inside the data.
+            inside = reduce(
+                np.logical_and, [one.holds(QUANTITIES[key].measure(cases)) for key, one in self.ranges.items()]
+            )
+        flags = {"extrapolated": known & ~inside, "clipped": known & (value != raw)}
         if isinstance(self.formula, Probit):
             flags["pfv_unknown"] = np.isnan(cases.pfv)
         return Outcome(value, {"raw": raw}, flags)
@@ -192,25 +191,42 @@ class Fitted:
 def build_method(model: Fitted, source: str) -> Method:
     """Return a model as a method; `source` says where it comes from."""
     is_probit = isinstance(model.formula, Probit)
-    fitted, equations = model.fitted, _write_equations(model.formula)
-    no_better = [Reason(NO_BETTER)] if fitted.is_no_better else []
+    fitted, equations, verdict = model.fitted, _write_equations(model.formula), _judge(model.fitted)
+    data = fitted.data.partition(", ")[0]
+    errors = fill(
+        "Fitted to computed chances on {data}; where a building is left out of the fit, the error for it is "
+        "{error:.3f} (root mean square, standard error {spread:.3f}); a constant, the mean chance of the other "
+        "buildings, has {constant:.3f}.",
+        data=fitted.data, error=fitted.error, spread=fitted.spread, constant=fitted.constant,
+    )  # fmt: skip
     return Method(
         key=model.key,
-        title=fill("{name} (fitted on {data})", name=model.title, data=_shorten(fitted.data)),
+        title=fill(
+            "{name} (fitted on {data})",
+            name=model.title,
+            data=data if len(data) <= LONGEST else f"{data[: LONGEST - 1]}…",
+        ),
         short_title=model.title,
         kind="probability",
         order=LAST,
         predicts=BY_SIZE if is_probit else BY_RATIO,
-        reference=Reference(authors="", year="", title=model.title, source=source, remark=_describe(fitted)),
+        reference=Reference(authors="", year="", title=model.title, source=source, remark=join(" ", (errors, verdict))),
         needs=frozenset({"breadth", "height", "pfa", *(("pfv",) if is_probit else ())}),
-        valid={QUANTITIES[key].name: _round(one) for key, one in model.ranges.items()},
+        valid={
+            QUANTITIES[key].name: Range(float(f"{one.low:.3g}"), float(f"{one.high:.3g}"), one.unit)
+            for key, one in model.ranges.items()
+        },
         evaluate=model.evaluate,
         steps=partial(_work, equations),
         columns=(Column("raw", "Unbounded value"),),
         equations=equations,
-        assumptions=(_judge(fitted), COMPARED, *(OF_PROBIT if is_probit else OF_POLYNOMIAL), BLOCK),
+        assumptions=(verdict, COMPARED, *(OF_PROBIT if is_probit else OF_POLYNOMIAL), BLOCK),
         flags={"clipped": CLIPPED} | (FLAGS_OF_PROBIT if is_probit else FLAGS_OF_POLYNOMIAL),
-        reasons=(Reason(APPROXIMATES), *no_better, Reason(BEYOND, flag="extrapolated")),
+        reasons=(
+            Reason(APPROXIMATES),
+            *([Reason(NO_BETTER)] if fitted.is_no_better else []),
+            Reason(BEYOND, flag="extrapolated"),
+        ),
         fitted=fitted,
     )
 
@@ -255,25 +271,6 @@ NO_BETTER = (
 BEYOND = "The piece or its motion lies outside the data that the model was fitted to, or PFV is unknown."
 REASONS = (APPROXIMATES, NO_BETTER, BEYOND)
 """Texts of reasons, for the catalogues."""
-
-
-def _shorten(data: str) -> str:
-    first = data.partition(", ")[0]
-    return first if len(first) <= LONGEST else f"{first[: LONGEST - 1]}…"
-
-
-def _round(one: Range) -> Range:
-    return Range(float(f"{one.low:.3g}"), float(f"{one.high:.3g}"), one.unit)
-
-
-def _describe(fitted: FittedOn) -> Text:
-    errors = fill(
-        "Fitted to computed chances on {data}; where a building is left out of the fit, the error for it is "
-        "{error:.3f} (root mean square, standard error {spread:.3f}); a constant, the mean chance of the other "
-        "buildings, has {constant:.3f}.",
-        data=fitted.data, error=fitted.error, spread=fitted.spread, constant=fitted.constant,
-    )  # fmt: skip
-    return join(" ", (errors, _judge(fitted)))
 
 
 def _judge(fitted: FittedOn) -> Text:
@@ -337,6 +334,15 @@ def write_model(model: Fitted) -> str:
     Raises InputError if it holds what could not be read back, as a number that is not finite.
     """
     top = {"key": model.key, "title": model.title, "kind": model.kind, "fitted_on": model.fitted.data}
+    if isinstance(model.formula, Probit):
+        formula = [f"{name} = {_number(getattr(model.formula, name))}" for name in KINDS["probit"]]
+    else:
+        formula = [
+            f'base = "{model.formula.base}"',
+            "terms = [  # power of the base, of x = B/H; power of PFA [cm/s2]; coefficient",
+            *(f"  [{i}, {j}, {_number(c)}]," for i, j, c in model.formula.terms),
+            "]",
+        ]
     lines = [
         "# A model of the chance of overturning, fitted by assess. `assess run` shows it next to the methods.",
         f"format = {FORMAT}",
@@ -346,18 +352,11 @@ def write_model(model: Fitted) -> str:
         "\n[errors]",
         *(f"{name} = {_number(getattr(model.fitted, field))}" for name, field in ERRORS.items()),
         f"\n[{model.kind}]",
-        *_write_formula(model.formula),
+        *formula,
     ]
     text = "\n".join(lines) + "\n"
     parse_model(text, "the model")
     return text
-
-
-def _write_formula(formula: Polynomial | Probit) -> Sequence[str]:
-    if isinstance(formula, Probit):
-        return [f"{name} = {_number(getattr(formula, name))}" for name in KINDS["probit"]]
-    head = [f'base = "{formula.base}"', "terms = [  # power of the base, of x = B/H; power of PFA [cm/s2]; coefficient"]
-    return [*head, *(f"  [{i}, {j}, {_number(c)}]," for i, j, c in formula.terms), "]"]
 
 
 def _number(value: float) -> str:
@@ -370,12 +369,6 @@ def read_model(path: Path | str) -> Method:
     Raises InputError if it cannot be used: the message names the file, the key and how to fix it.
     """
     path = Path(path)
-    text = _read_text(path)
-    digest = hashlib.sha256(text.encode()).hexdigest()
-    return build_method(parse_model(text, str(path)), f"{path.name}, SHA-256 {digest}")
-
-
-def _read_text(path: Path) -> str:
     try:
         if not path.exists():
             raise InputError.about("{path}: there is no such file. Check the name.", path=path)
@@ -396,11 +389,13 @@ def _read_text(path: Path) -> str:
             most=MOST_BYTES >> 10,
         )
     try:
-        return data.decode("utf-8")
+        text = data.decode("utf-8")
     except UnicodeDecodeError:
         raise InputError.about(
             "{path}: the file is not a UTF-8 text. Name the .toml file that a study wrote.", path=path
         ) from None
+    digest = hashlib.sha256(text.encode()).hexdigest()
+    return build_method(parse_model(text, str(path)), f"{path.name}, SHA-256 {digest}")
 
 
 def parse_model(text: str, file: str) -> Fitted:
@@ -428,10 +423,6 @@ def parse_model(text: str, file: str) -> Fitted:
         raise InputError.about(
             "{file}: kind is {value}, expected one of: {names}.", file=file, value=given, names=", ".join(KINDS)
         )
-    return _build(file, found, kind)
-
-
-def _build(file: str, found: dict[str, Any], kind: str) -> Fitted:
     top = _Table(file, "", found, (*TOP, kind))
     limits = _Table(file, "range.", found["range"], tuple(QUANTITIES))
     errors = _Table(file, "errors.", found["errors"], tuple(ERRORS))
@@ -527,26 +518,27 @@ def _read_polynomial(table: _Table) -> Polynomial:
         raise table.wrong("base", base, fill('"x" for B/H or "1/x" for its inverse'))
     if not (isinstance(terms, list) and 0 < len(terms) <= MOST_TERMS):
         raise table.wrong("terms", terms, fill("1 to {most} of [i, j, coefficient]", most=MOST_TERMS))
-    found = [_read_term(table, f"terms[{at}]", term) for at, term in enumerate(terms)]
+    found: list[tuple[int, int, float]] = []
+    for at, term in enumerate(terms):
+        key = f"terms[{at}]"
+        if not (isinstance(term, list) and len(term) == 3):
+            raise table.wrong(key, term, fill("[i, j, coefficient]"))
+        i, j, coefficient = term
+        for power in (i, j):
+            if type(power) is not int or not 0 <= power <= MOST_POWER:
+                text = fill(
+                    "has the power {value}, expected a whole number from 0 to {most}.",
+                    value=_show(power),
+                    most=MOST_POWER,
+                )
+                raise table.fault(key, text)
+        found.append((i, j, table.check_number(key, coefficient)))
     powers = [(i, j) for i, j, _ in found]
     for at, one in enumerate(powers):
         if one in powers[:at]:
             text = fill("has the powers {i}, {j} of another term. Remove one.", i=one[0], j=one[1])
             raise table.fault(f"terms[{at}]", text)
     return Polynomial(base, tuple(found))
-
-
-def _read_term(table: _Table, key: str, term: object) -> tuple[int, int, float]:
-    if not (isinstance(term, list) and len(term) == 3):
-        raise table.wrong(key, term, fill("[i, j, coefficient]"))
-    i, j, coefficient = term
-    for power in (i, j):
-        if type(power) is not int or not 0 <= power <= MOST_POWER:
-            text = fill(
-                "has the power {value}, expected a whole number from 0 to {most}.", value=_show(power), most=MOST_POWER
-            )
-            raise table.fault(key, text)
-    return i, j, table.check_number(key, coefficient)
 
 
 def _show(value: object) -> str:

@@ -24,7 +24,6 @@ this one, of a piece like this one: see `assess.rocking.draws`.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -32,7 +31,7 @@ from numpy.typing import NDArray
 
 from assess.arrays import BoolArray, FloatArray, IntArray
 from assess.i18n import Text, fill, nfill
-from assess.methods.cases import NO_WALL, Alike, Cases, Ensemble, Joint
+from assess.methods.cases import NO_WALL, Alike, Cases, Joint
 from assess.methods.expression import number, show
 from assess.methods.method import Column, Example, Method, Outcome, Reason, Reference
 from assess.methods.simulate import (
@@ -45,7 +44,7 @@ from assess.methods.simulate import (
     rock_draws,
     run_side_by_side,
 )
-from assess.progress import SILENT, Progress, Stage
+from assess.progress import SILENT, Stage
 from assess.risk import classify_all, wilson_end, wilson_interval
 from assess.rocking.block import MIDDLE
 from assess.rocking.draws import TRIED
@@ -87,22 +86,14 @@ def evaluate(cases: Cases, settings: Settings, *, threads: int = 1, stage: Stage
     found |= {name: np.zeros(count, dtype=np.bool_) for name in FLAGS}
     found["shenton_extended"] = (way != UNKNOWN) & is_outside_shenton(cases.centre)
 
-    def work(number: int, own: NDArray[np.intp]) -> tuple[Joint, list[_Part]]:
-        return _Run(cases, own, number, settings, max(1, threads // side_by_side), stage).integrate()
+    def work(number: int, own: NDArray[np.intp]) -> tuple[Joint, list[tuple[NDArray[np.intp], dict[str, Any]]]]:
+        return _integrate(cases, own, number, settings, max(1, threads // side_by_side), stage)
 
     for joint, parts in run_side_by_side(work, owns, side_by_side):
         joints += [joint] if joint.cases.size else []
         for own, values in parts:
             for name, one in values.items():
                 found[name][..., own] = one
-    return _summarise(found, cases, settings, joints)
-
-
-_Part = tuple[NDArray[np.intp], dict[str, Any]]
-"""Some cases, and what was found of each by name."""
-
-
-def _summarise(found: dict[str, NDArray[Any]], cases: Cases, settings: Settings, joints: list[Joint]) -> Outcome:
     runs, draws, done, assumed = found["runs"], found["draws"], found["runs"] > 0, found["assumed_motion"]
     fallen, share, low, high = _count(found["fallen"], runs, draws, settings)
     exact = runs if settings.ideal else np.where(assumed, 0, runs)  # what is drawn cannot recur
@@ -135,103 +126,76 @@ def _count(fallen: IntArray, runs: IntArray, draws: IntArray, settings: Settings
     return tuple(np.where(done, one, np.nan) for one in (fallen, share, *ends))
 
 
-@dataclass(frozen=True, slots=True)
-class _Run:
-    cases: Cases
-    own: NDArray[np.intp]
-    number: int
-    settings: Settings
-    threads: int
-    stage: Stage
+def _integrate(
+    cases: Cases, own: NDArray[np.intp], number: int, settings: Settings, threads: int, stage: Stage
+) -> tuple[Joint, list[tuple[NDArray[np.intp], dict[str, Any]]]]:
+    """Integrate the cases `own` of an ensemble, check by check with runs="auto"; those that are decided leave.
 
-    @property
-    def ensemble(self) -> Ensemble:
-        return self.cases.ensembles[self.number]
-
-    @property
-    def progress(self) -> Progress:
-        return self.stage.progress
-
-    def integrate(self) -> tuple[Joint, list[_Part]]:
-        """Integrate the cases, check by check with runs="auto"; those that are decided leave."""
-        motions, is_drawn = self.ensemble.open(self.threads, self.progress), self.ensemble.is_assumed
-        checks = LOOKS if self.settings.runs == AUTO else (int(self.settings.runs),)
-        count, runs = self.own.size, np.zeros(self.own.size, dtype=np.int64)
-        fell, ideal = np.zeros((count, 0), np.bool_), np.zeros((count, 0), np.bool_)
-        rotation, tried = np.zeros((count, 0), np.float32), np.zeros((len(TRIED), count), dtype=np.int64)
-        size, going = min(BATCH, MOST_PAIRS // max(1, count) + 1), np.arange(count)
-        sliders, walled = self.cases.slides_under == self.number, self.own[self.cases.wall[self.own] != NO_WALL]
-        beside, others = Beside(self.cases, self.settings, np.flatnonzero(sliders), walled), () if is_drawn else TRIED
-        alike, speeds = Alike.of(self.cases.alike[self.own], self.cases.quantity[self.own]), list[FloatArray]()
-        for first, last in zip((0, *checks), checks, strict=False):
-            wider = ((0, 0), (0, last - first))
-            fell, ideal, rotation = np.pad(fell, wider), np.pad(ideal, wider), np.pad(rotation, wider)
-            for at, batch, time_step in make_batches(motions, first, last, size):
-                here = slice(at, at + len(batch))
-                if going.size:
-                    own = self.own[going]
-                    drawn, turned = rock_draws(
-                        self.cases, own, batch, time_step, first=at, dispersions=(self.cases.dispersion[own], *others),
-                        seed=self.settings.seed, threads=self.threads, progress=self.progress,
-                    )  # fmt: skip
-                    fell[going, here], rotation[going, here] = drawn[0], turned[0]
-                    tried[:, going] += 0 if is_drawn else drawn[1:].sum(axis=2)
-                    speeds += [_find_speeds(batch, time_step)] if is_drawn else []
-                    if self.settings.ideal or not is_drawn:
-                        ideal[going, here], _ = self._rock(own, batch, time_step)
-                if first == 0:
-                    beside.add(batch, time_step, at, self.threads, self.progress)
-                self.stage.at(here.stop / checks[-1], self.number)
-            runs[going] = last
-            counted = ideal if self.settings.ideal else fell
-            going = going[_is_open(alike.average(counted.sum(axis=1))[going], last, self.settings)]
-            if not going.size:
-                break
-        self.stage.at(1.0, self.number)
-        shown = [(one.astype(np.float32), step) for many, step in motions.realise(0, min(SHOWN, last)) for one in many]
-        joint = Joint(
-            ensemble=self.number, cases=self.own, runs=runs, fell=fell, ideal=ideal, rotation=rotation,
-            examples=shown, fit=motions.fit, spectra=motions.spectra and motions.spectra.first(last),
-            is_weak=motions.is_weak, bands=motions.bands,
-        )  # fmt: skip
-        slower, faster = _find_thirds(counted, runs, speeds, alike)
-        of_all = {
-            "runs": runs, "draws": runs * alike.total, "fallen": alike.add_up(fell.sum(axis=1)),
-            "ideal": ideal.sum(axis=1), "tried": alike.add_up(tried), "if_slower": slower, "if_faster": faster,
-            "assumed_motion": is_drawn, "unknown_building": self.ensemble.is_unknown, "weak_motions": joint.is_weak,
-        }  # fmt: skip
-        slips = dict(zip(("slip_median_cm", "slip_84_cm"), beside.find_slip(), strict=True))
-        return joint, [
-            (self.own, of_all | self._rock_under_record()),
-            (beside.sliders, slips),
-            (beside.walled, self._compare(joint, beside, alike)),
-        ]
-
-    def _compare(self, joint: Joint, beside: Beside, alike: Alike) -> dict[str, Any]:
-        """Return the chance of each walled case, and whether it is above that without the wall in the same draws."""
-        has_wall, one_sided = np.isin(self.own, beside.walled), np.zeros(self.own.size)
-        one_sided[has_wall], draws = beside.find_one_sided()
-        free = joint.ideal if self.settings.ideal else joint.fell
-        alone, chance = (alike.average(one)[has_wall] for one in (free[:, :draws].mean(axis=1), one_sided))
-        return {"one_sided": chance, "wall_higher": chance > alone}
-
-    def _rock_under_record(self) -> dict[str, FloatArray]:
-        if self.ensemble.record is None or not self.own.size:
-            return {}
-        motion, time_step = self.ensemble.record
-        fell, rotation = self._rock(self.own, motion[np.newaxis], time_step)
-        return {"record_overturned": fell[:, 0].astype(np.float64), "record_rotation": rotation[:, 0]}
-
-    def _rock(self, own: NDArray[np.intp], motions: FloatArray, time_step: float) -> tuple[BoolArray, FloatArray]:
-        return rock_cases(self.cases, own, motions, time_step, self.threads, self.progress)
-
-
-def _find_speeds(motions: FloatArray, time_step: float) -> FloatArray:
-    """Return PFV over PFA of motions (k, n) [s]."""
+    Returned: also, by name, what was found of some of the cases.
+    """
     from assess.motion.target_fit import measure_peaks
 
-    pfa, pfv = measure_peaks(motions, time_step).T
-    return np.asarray(pfv / pfa)
+    ensemble, progress = cases.ensembles[number], stage.progress
+    motions, is_drawn = ensemble.open(threads, progress), ensemble.is_assumed
+    checks = LOOKS if settings.runs == AUTO else (int(settings.runs),)
+    count, runs = own.size, np.zeros(own.size, dtype=np.int64)
+    fell, ideal = np.zeros((count, 0), np.bool_), np.zeros((count, 0), np.bool_)
+    rotation, tried = np.zeros((count, 0), np.float32), np.zeros((len(TRIED), count), dtype=np.int64)
+    size, going = min(BATCH, MOST_PAIRS // max(1, count) + 1), np.arange(count)
+    sliders, has_wall = np.flatnonzero(cases.slides_under == number), cases.wall[own] != NO_WALL
+    beside, others = Beside(cases, settings, sliders, own[has_wall]), () if is_drawn else TRIED
+    alike, speeds = Alike.of(cases.alike[own], cases.quantity[own]), list[FloatArray]()
+    for first, last in zip((0, *checks), checks, strict=False):
+        wider = ((0, 0), (0, last - first))
+        fell, ideal, rotation = np.pad(fell, wider), np.pad(ideal, wider), np.pad(rotation, wider)
+        for at, batch, time_step in make_batches(motions, first, last, size):
+            here = slice(at, at + len(batch))
+            if going.size:
+                drawn, turned = rock_draws(
+                    cases, own[going], batch, time_step, first=at, dispersions=(cases.dispersion[own[going]], *others),
+                    seed=settings.seed, threads=threads, progress=progress,
+                )  # fmt: skip
+                fell[going, here], rotation[going, here] = drawn[0], turned[0]
+                if is_drawn:
+                    pfa, pfv = measure_peaks(batch, time_step).T
+                    speeds.append(np.asarray(pfv / pfa))
+                else:
+                    tried[:, going] += drawn[1:].sum(axis=2)
+                if settings.ideal or not is_drawn:
+                    ideal[going, here], _ = rock_cases(cases, own[going], batch, time_step, threads, progress)
+            if first == 0:
+                beside.add(batch, time_step, at, threads, progress)
+            stage.at(here.stop / checks[-1], number)
+        runs[going] = last
+        counted = ideal if settings.ideal else fell
+        low, high = wilson_interval(alike.average(counted.sum(axis=1))[going], last, interval_width(settings))
+        going = going[classify_all(low) != classify_all(high)]
+        if not going.size:
+            break
+    stage.at(1.0, number)
+    shown = [(one.astype(np.float32), step) for many, step in motions.realise(0, min(SHOWN, last)) for one in many]
+    joint = Joint(
+        ensemble=number, cases=own, runs=runs, fell=fell, ideal=ideal, rotation=rotation, examples=shown,
+        fit=motions.fit, spectra=motions.spectra and motions.spectra.first(last), is_weak=motions.is_weak,
+        bands=motions.bands,
+    )  # fmt: skip
+    slower, faster = _find_thirds(counted, runs, speeds, alike)
+    found: dict[str, Any] = {
+        "runs": runs, "draws": runs * alike.total, "fallen": alike.add_up(fell.sum(axis=1)),
+        "ideal": ideal.sum(axis=1), "tried": alike.add_up(tried), "if_slower": slower, "if_faster": faster,
+        "assumed_motion": is_drawn, "unknown_building": ensemble.is_unknown, "weak_motions": joint.is_weak,
+    }  # fmt: skip
+    if ensemble.record is not None and count:
+        motion, time_step = ensemble.record
+        under, angle = rock_cases(cases, own, motion[np.newaxis], time_step, threads, progress)
+        found |= {"record_overturned": under[:, 0].astype(np.float64), "record_rotation": angle[:, 0]}
+    slips = dict(zip(("slip_median_cm", "slip_84_cm"), beside.find_slip(), strict=True))
+    # The chance with a wall, and whether it is above that without in the same draws
+    one_sided = np.zeros(count)
+    one_sided[has_wall], draws = beside.find_one_sided()
+    alone, chance = (alike.average(one)[has_wall] for one in (counted[:, :draws].mean(axis=1), one_sided))
+    walled = {"one_sided": chance, "wall_higher": chance > alone}
+    return joint, [(own, found), (beside.sliders, slips), (beside.walled, walled)]
 
 
 def _find_thirds(
@@ -249,74 +213,17 @@ def _find_thirds(
     return slower, faster
 
 
-def _is_open(fallen: FloatArray, runs: int, settings: Settings) -> BoolArray:
-    """Return which cases' intervals reach over more than one class, by how often they fell in so many draws."""
-    low, high = wilson_interval(fallen, runs, interval_width(settings))
-    return np.asarray(classify_all(low) != classify_all(high), dtype=np.bool_)
-
-
 # ---------------------------------------------------------------- worked through for one piece
 
 
 def steps(example: Example) -> list[Text]:
     """Work the numbers of the block, then the share of motions that overturn it, and its interval."""
-    fell, record = example.number("record_overturned"), list[Text]()
-    if fell == 1:
-        record = [fill("Under the recorded motion itself it overturns, so its class is at least high.")]
-    elif fell == 0:
-        record = [fill("Under the recorded motion itself it does not overturn.")]
-    return [*_work_block(example), *_work_share(example), *record]
-
-
-def _work_block(example: Example) -> list[Text]:
-    B, H = (number(one * LENGTH["cm"], ".6g") for one in (example.breadth, example.height))
-    steps, eta, limit = _uniform(B, H) if example.centre == MIDDLE else _any_body(B, H, example.centre)
-    if not math.isnan(example.restitution):
-        eta = fill("η = {eta:g}, as set for the building.", eta=example.restitution)
-    starts = fill(
-        "The piece starts to rock where the floor's acceleration exceeds {limit:.4f} m/s².", limit=limit.value
-    )
-    return [*steps, eta, starts]
-
-
-def _uniform(B: Any, H: Any) -> tuple[list[Text], Text, Any]:
-    alpha, r, g = np.arctan(B / H), 0.5 * np.sqrt(B**2 + H**2), number(GRAVITY, ".5f")
-    limit = g * B / H
-    p = np.sqrt(3 * g / (4 * number(float(r.value), ".6g")))
-    steps = [
-        show("α = atan(B/H)", alpha, ".6f", "rad"),
-        show("r = ½·√(B² + H²)", r, ".5f", "m"),
-        show("p = √(3g/4r)", p, ".4f", "rad/s"),
-        show("g·B/H", limit, ".4f", "m/s²"),
-    ]
-    return steps, show("η = 1 - 1.5·sin² α", 1 - 1.5 * np.sin(number(float(alpha.value), ".6f")) ** 2, ".4f"), limit
-
-
-def _any_body(B: Any, H: Any, centre: float) -> tuple[list[Text], Text, Any]:
-    half, height = B / 2, number(centre, ".4g") * H
-    b, z, g = number(float(half.value), ".6g"), number(float(height.value), ".6g"), number(GRAVITY, ".5f")
-    limit, alpha, radius = g * b / z, np.arctan(b / z), np.sqrt(b**2 + z**2)
-    R = number(float(radius.value), ".6g")
-    inertia = (B**2 + H**2) / 12 + R**2
-    I = number(float(inertia.value), ".6g")  # noqa: E741 - the symbol of mechanics
-    steps = [
-        show("b = B/2", half, ".5f", "m"),
-        show("z_c", height, ".5f", "m"),
-        show("α = atan(b/z_c)", alpha, ".6f", "rad"),
-        show("R = √(b² + z_c²)", radius, ".5f", "m"),
-        show("I₀/m = (B² + H²)/12 + R²", inertia, ".5f"),
-        show("p = √(m·g·R/I₀)", np.sqrt(g * R / I), ".4f", "rad/s"),
-        show("g·b/z_c", limit, ".4f", "m/s²"),
-    ]
-    return steps, show("η = 1 - 2·m·R²·sin² α/I₀", 1 - 2 * b**2 / I, ".4f"), limit
-
-
-def _work_share(example: Example) -> list[Text]:
     k, n, draws = (example.number(name) for name in ("overturned", "runs", "draws"))
     z = interval_width(example.settings)
     share, runs, width = number(example.value, ".5f"), number(n, ".0f"), number(z, ".4f")
     numbers = {"low": example.number("low"), "high": example.number("high"), "z": z}
-    return [
+    found = [
+        *_work_block(example),
         nfill(
             "It overturned in {k:,} of {n:,} draw of an earthquake like this one.",
             "It overturned in {k:,} of {n:,} draws of an earthquake like this one.",
@@ -335,23 +242,62 @@ def _work_share(example: Example) -> list[Text]:
         show("R_low", wilson_end(share, runs, width, is_high=False), ".4f"),
         show("R_high", wilson_end(share, runs, width, is_high=True), ".4f"),
         fill("The 95 % interval reaches from {low:.4f} to {high:.4f} (Wilson, z = {z:.2f}).", **numbers),
-        *_work_ideal(example, int(n)),
     ]
-
-
-def _work_ideal(example: Example, runs: int) -> list[Text]:
-    fallen = example.number("ideal_overturned")
-    if math.isnan(fallen):
-        return []  # what is drawn cannot recur
-    return [
-        nfill(
-            "If exactly this motion recurred and the piece were exactly as given, it would overturn under {k:,} of "
-            "{n:,} motion.",
-            "If exactly this motion recurred and the piece were exactly as given, it would overturn under {k:,} of "
-            "{n:,} motions.",
-            runs, k=int(fallen),
+    fallen, fell = example.number("ideal_overturned"), example.number("record_overturned")
+    if not math.isnan(fallen):  # what is drawn cannot recur
+        found.append(
+            nfill(
+                "If exactly this motion recurred and the piece were exactly as given, it would overturn under {k:,} of "
+                "{n:,} motion.",
+                "If exactly this motion recurred and the piece were exactly as given, it would overturn under {k:,} of "
+                "{n:,} motions.",
+                int(n),
+                k=int(fallen),
+            )
         )
-    ]  # fmt: skip
+    if fell == 1:
+        found.append(fill("Under the recorded motion itself it overturns, so its class is at least high."))
+    elif fell == 0:
+        found.append(fill("Under the recorded motion itself it does not overturn."))
+    return found
+
+
+def _work_block(example: Example) -> list[Text]:
+    B, H = (number(one * LENGTH["cm"], ".6g") for one in (example.breadth, example.height))
+    g = number(GRAVITY, ".5f")
+    if example.centre == MIDDLE:
+        alpha, r, limit = np.arctan(B / H), 0.5 * np.sqrt(B**2 + H**2), g * B / H
+        p = np.sqrt(3 * g / (4 * number(float(r.value), ".6g")))
+        found = [
+            show("α = atan(B/H)", alpha, ".6f", "rad"),
+            show("r = ½·√(B² + H²)", r, ".5f", "m"),
+            show("p = √(3g/4r)", p, ".4f", "rad/s"),
+            show("g·B/H", limit, ".4f", "m/s²"),
+        ]
+        eta = show("η = 1 - 1.5·sin² α", 1 - 1.5 * np.sin(number(float(alpha.value), ".6f")) ** 2, ".4f")
+    else:
+        half, height = B / 2, number(example.centre, ".4g") * H
+        b, z = number(float(half.value), ".6g"), number(float(height.value), ".6g")
+        limit, alpha, radius = g * b / z, np.arctan(b / z), np.sqrt(b**2 + z**2)
+        R = number(float(radius.value), ".6g")
+        inertia = (B**2 + H**2) / 12 + R**2
+        I = number(float(inertia.value), ".6g")  # noqa: E741 - the symbol of mechanics
+        found = [
+            show("b = B/2", half, ".5f", "m"),
+            show("z_c", height, ".5f", "m"),
+            show("α = atan(b/z_c)", alpha, ".6f", "rad"),
+            show("R = √(b² + z_c²)", radius, ".5f", "m"),
+            show("I₀/m = (B² + H²)/12 + R²", inertia, ".5f"),
+            show("p = √(m·g·R/I₀)", np.sqrt(g * R / I), ".4f", "rad/s"),
+            show("g·b/z_c", limit, ".4f", "m/s²"),
+        ]
+        eta = show("η = 1 - 2·m·R²·sin² α/I₀", 1 - 2 * b**2 / I, ".4f")
+    if not math.isnan(example.restitution):
+        eta = fill("η = {eta:g}, as set for the building.", eta=example.restitution)
+    starts = fill(
+        "The piece starts to rock where the floor's acceleration exceeds {limit:.4f} m/s².", limit=limit.value
+    )
+    return [*found, eta, starts]
 
 
 METHOD = Method(

@@ -122,49 +122,42 @@ def live(cells: LiveCells) -> Mapping[str, Any]:
 
 def steps(example: Example) -> list[Text]:
     """Work equations (5) to (7), or the upper bound where PFV is unknown."""
-    x, PFA = number(example.breadth / example.height, ".5f"), number(example.pfa, ".6g")
-    lambda_A = _eq6_lambda_a(x, number(G, ".3f"))
-    shown = number(float(lambda_A.value), ".5f")
-    found = [show_ratio(example), show_pfa(example), show("λ_A = ln[(B/H)·g·(1 + B/H)]", lambda_A, ".5f")]
-    work = _work_bound if math.isnan(example.pfv) else _work_switch
-    return [*found, *work(example, x, PFA, shown)]
-
-
-def _work_bound(example: Example, x: Any, PFA: Any, lambda_A: Any) -> list[Text]:
     settings = example.settings
-    k = PFA / np.exp(lambda_A)
-    z = np.log(number(float(k.value), ".5f"))
-    phi_A, phi_V = (normal_cdf(z / zeta) for zeta in (settings.zeta_acceleration, settings.zeta_velocity))
-    largest = max(phi_A.value, phi_V.value)
-    return [
-        fill("PFV is unknown: the largest risk that any PFV could give is taken."),
-        show("k = PFA/exp(λ_A)", k, ".5f"),
-        show("Φ(ln k/ζ_A)", phi_A, ".4f"),
-        show("Φ(ln k/ζ_V)", phi_V, ".4f"),
-        fill("The larger of the two counts, times the slide coefficient α."),
-        show("R", settings.slide_coefficient * number(float(largest), ".4f"), ".4f"),
-    ]
-
-
-def _work_switch(example: Example, x: Any, PFA: Any, lambda_A: Any) -> list[Text]:
-    settings, by_velocity = example.settings, example.detail["branch"] == "pfv"
+    alpha, zeta_A, zeta_V = settings.slide_coefficient, settings.zeta_acceleration, settings.zeta_velocity
+    x, PFA = number(example.breadth / example.height, ".5f"), number(example.pfa, ".6g")
+    found = _eq6_lambda_a(x, number(G, ".3f"))
+    steps = [show_ratio(example), show_pfa(example), show("λ_A = ln[(B/H)·g·(1 + B/H)]", found, ".5f")]
+    lambda_A = number(float(found.value), ".5f")
+    if math.isnan(example.pfv):
+        k = PFA / np.exp(lambda_A)
+        z = np.log(number(float(k.value), ".5f"))
+        phi_A, phi_V = (normal_cdf(z / zeta) for zeta in (zeta_A, zeta_V))
+        largest = max(phi_A.value, phi_V.value)
+        return [
+            *steps,
+            fill("PFV is unknown: the largest risk that any PFV could give is taken."),
+            show("k = PFA/exp(λ_A)", k, ".5f"),
+            show("Φ(ln k/ζ_A)", phi_A, ".4f"),
+            show("Φ(ln k/ζ_V)", phi_V, ".4f"),
+            fill("The larger of the two counts, times the slide coefficient α."),
+            show("R", alpha * number(float(largest), ".4f"), ".4f"),
+        ]
     B, H, PFV = (number(one, ".6g") for one in (example.breadth, example.height, example.pfv))
     lambda_V = _eq6_lambda_v(B, H, x)
-    if by_velocity:
+    if example.detail["branch"] == "pfv":
         note = fill("F_f is above F_b: the second line of equation (5) applies, that of the velocity.")
-        symbols, zeta = "z = (ln PFV - λ_V)/ζ_V", settings.zeta_velocity
-        z = (np.log(PFV) - number(float(lambda_V.value), ".5f")) / zeta
+        symbols, z = "z = (ln PFV - λ_V)/ζ_V", (np.log(PFV) - number(float(lambda_V.value), ".5f")) / zeta_V
     else:
         note = fill("F_f is not above F_b: the first line of equation (5) applies, that of the acceleration.")
-        symbols, zeta = "z = (ln PFA - λ_A)/ζ_A", settings.zeta_acceleration
-        z = (np.log(PFA) - lambda_A) / zeta
+        symbols, z = "z = (ln PFA - λ_A)/ζ_A", (np.log(PFA) - lambda_A) / zeta_A
     return [
+        *steps,
         show("λ_V = ln[10·B/√H·(1 + B/H)^2.5]", lambda_V, ".5f"),
         show("F_f = PFA/(2π·PFV)", _eq7_floor_frequency(PFA, PFV), ".4f", "Hz"),
         show("F_b = 15.6/√H·(1 + B/H)^-1.5", _eq7_boundary_frequency(H, x), ".4f", "Hz"),
         note,
         show(symbols, z, ".4f"),
-        show("R = α·Φ(z)", settings.slide_coefficient * normal_cdf(number(float(z.value), ".4f")), ".4f"),
+        show("R = α·Φ(z)", alpha * normal_cdf(number(float(z.value), ".4f")), ".4f"),
     ]
 
 

@@ -143,39 +143,28 @@ def live(cells: LiveCells) -> Mapping[str, Any]:
 def steps(example: Example) -> list[Text]:
     """Work equation (9) term by term, then the departures from it."""
     x, y = number(example.breadth / example.height, ".5f"), number(example.pfa, ".6g")
+    is_thin, is_held = "thin" in example.flags, "held" in example.flags
     a, *terms = _terms(x, y)
     rounded = [number(float(term.value), ".4f") for term in terms]
-    listed = [show(symbol, term, ".4f") for symbol, term in zip(SYMBOLS, terms, strict=True)]
-    printed = show("OR_9", sum(rounded, number(a, ".8f")), ".4f")
-    return [
+    turning_x = turning_breadth_to_height(y)
+    used_x = number(float(turning_x.value), ".5f") if is_thin else x
+    turning_y = turning_pfa(used_x)
+    used = _eq9(used_x, number(float(turning_y.value), ".6g") if is_held else y)
+    found = [
         show_ratio(example),
         show_pfa(example),
         _list_coefficients("a"),
-        *listed,
-        printed,
-        *_work_departures(example),
-    ]
-
-
-def _work_departures(example: Example) -> list[Text]:
-    x, y = number(example.breadth / example.height, ".5f"), number(example.pfa, ".6g")
-    is_thin, is_held = "thin" in example.flags, "held" in example.flags
-    turning_x = turning_breadth_to_height(y)
-    found = [
+        *(show(symbol, term, ".4f") for symbol, term in zip(SYMBOLS, terms, strict=True)),
+        show("OR_9", sum(rounded, number(a, ".8f")), ".4f"),
         show("B/H* = -2d/(b + f·min(PFA, 640))", turning_x, ".5f"),
         fill("B/H lies below B/H*, where equation (9) would give a thinner piece a lower risk: B/H* is used instead.")
         if is_thin
         else fill("B/H is not below B/H*: it is used as it is."),
-    ]
-    x = number(float(turning_x.value), ".5f") if is_thin else x
-    turning_y = turning_pfa(x)
-    found += [
         show("PFA* = (c + f/(B/H))/(-2e)", turning_y, ".6g", "cm/s²"),
         fill("PFA lies above PFA*, beyond which equation (9) would fall again: PFA* is used instead.")
         if is_held
         else fill("PFA is not above PFA*: it is used as it is."),
     ]
-    used = _eq9(x, number(float(turning_y.value), ".6g") if is_held else y)
     found += [show("OR", used, ".4f")] if is_thin or is_held else []
     if "clipped" in example.flags:
         above = fill("A probability lies between 0 and 1: the result is above 1 and is set to 1.")

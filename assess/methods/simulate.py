@@ -161,7 +161,9 @@ class Beside:
     drawn: Cases = field(init=False)
     """The cases with what is uncertain of them in this run."""
     _slips: list[FloatArray] = field(default_factory=list)
+    """Of each slider under each motion, (p, k) [m]."""
     _fell: list[BoolArray] = field(default_factory=list)
+    """Whether each walled piece falls in each draw, (2, q, k): turning in either direction, if it can."""
 
     def __post_init__(self) -> None:
         certain, none = Uncertainty(motion=0.0, piece=False), np.zeros_like(self.cases.dispersion)
@@ -177,11 +179,29 @@ class Beside:
             return
         numbers = self.drawn.earthquakes.draw(self.settings.seed, first, len(motions))
         scale = np.exp(self.drawn.dispersion[both[0]] * numbers)  # all are on one floor
-        every = motions.astype(np.float64)
+        every, cases = motions.astype(np.float64), self.cases
         if self.sliders.size:
-            self._slips.append(self._slide(every, time_step, scale, threads, progress))
-        if self.walled.size:
-            self._fell.append(self._rock(every, time_step, scale, first, threads, progress))
+            own = self.sliders
+            frictions, which = np.unique(cases.friction[own], return_inverse=True)
+            slips = peak_slip(frictions, every, time_step, scale=scale, threads=threads, progress=progress)
+            B, H, mu, centre = (one[own, None] for one in (cases.breadth, cases.height, cases.friction, cases.centre))
+            starts = branch(B, H, mu, np.abs(every).max(axis=1) * scale, centre=centre)
+            self._slips.append(np.where(np.isin(starts, SLIDING), slips[which], 0.0))
+        if not self.walled.size:
+            return
+        from assess.rocking.planar import Away, Body, rock_bodies
+
+        fell = np.zeros((2, self.walled.size, len(motions)), dtype=np.bool_)
+        ways: tuple[Away, Away] = (1, -1)
+        for at, away in enumerate(ways):
+            here = np.isin(cases.wall[self.walled], (away, SIDE_UNKNOWN))
+            if here.any():
+                drawn = draw_body(self.drawn, self.walled[here], self.settings.seed, first, len(motions))
+                body = Body.rectangular(drawn.breadth, drawn.height, centre=drawn.centre, restitution=drawn.restitution)
+                fell[at, here] = rock_bodies(
+                    body, every, time_step, away=away, scale=scale, threads=threads, progress=progress
+                ).overturned
+        self._fell.append(fell)
 
     def find_slip(self) -> FloatArray:
         """Return the median slip of each slider and that of `HIGH` of the draws, (2, p) [cm]."""
@@ -192,35 +212,3 @@ class Beside:
         """Return the chance of each walled case (q,) [-], the larger of its directions, and in how many draws."""
         fell = np.concatenate(self._fell, axis=2) if self._fell else np.zeros((2, 0, 1))
         return fell.mean(axis=2).max(axis=0), fell.shape[2]
-
-    def _slide(
-        self, motions: FloatArray, time_step: float, scale: FloatArray, threads: int, progress: Progress
-    ) -> FloatArray:
-        """Return the slip of each slider under each motion, (p, k) [m]."""
-        cases, own = self.cases, self.sliders
-        frictions, which = np.unique(cases.friction[own], return_inverse=True)
-        slips = peak_slip(frictions, motions, time_step, scale=scale, threads=threads, progress=progress)
-        B, H, mu, centre = (one[own, None] for one in (cases.breadth, cases.height, cases.friction, cases.centre))
-        peaks = np.abs(motions).max(axis=1) * scale
-        starts = branch(B, H, mu, peaks, centre=centre)
-        return np.where(np.isin(starts, SLIDING), slips[which], 0.0)
-
-    def _rock(
-        self, motions: FloatArray, time_step: float, scale: FloatArray, first: int, threads: int,
-        progress: Progress,
-    ) -> BoolArray:  # fmt: skip
-        """Return whether each walled piece falls in each draw, (2, q, k): turning in either direction, if it can."""
-        from assess.rocking.planar import Away, Body, rock_bodies
-
-        fell = np.zeros((2, self.walled.size, len(motions)), dtype=np.bool_)
-        ways: tuple[Away, Away] = (1, -1)
-        for at, away in enumerate(ways):
-            here = np.isin(self.cases.wall[self.walled], (away, SIDE_UNKNOWN))
-            if here.any():
-                drawn = draw_body(self.drawn, self.walled[here], self.settings.seed, first, len(motions))
-                body = Body.rectangular(drawn.breadth, drawn.height, centre=drawn.centre, restitution=drawn.restitution)
-                fell[at, here] = rock_bodies(
-                    body, motions, time_step, away=away, scale=scale, threads=threads,
-                    progress=progress,
-                ).overturned  # fmt: skip
-        return fell

@@ -169,8 +169,12 @@ def draw_bodies(
     it is 0.
     """
     every, which = np.unique(np.asarray(names), return_inverse=True)
-    drawn = [_uniform([seed, _PIECE, int(one)], first, count, 4) for one in every]
-    u = np.stack(drawn)[which.ravel()]  # (m, count, 4)
+    blocks, start = range(first // _AT_ONCE, -(-(first + count) // _AT_ONCE)), first % _AT_ONCE
+    drawn = [
+        [np.random.default_rng([seed, _PIECE, int(one), block]).random((_AT_ONCE, 4)) for block in blocks]
+        for one in every
+    ]
+    u = np.stack([np.concatenate(own)[start : start + count] for own in drawn])[which.ravel()]  # (m, count, 4)
     by_scan = np.zeros((len(names), 1), dtype=np.bool_) if scanned is None else scanned[:, None]
     mean, deviation = (np.where(by_scan, one, other) for one, other in zip(SCANNED_BASE, BASE, strict=True))
     b = breadth[:, None] * (mean + deviation * to_normal(u[..., 0], -CUT, CUT))
@@ -180,13 +184,3 @@ def draw_bodies(
     low, high = np.maximum(-CUT, (0 - given) / RESTITUTION), np.minimum(CUT, (1 - given) / RESTITUTION)
     eta = given + RESTITUTION * to_normal(u[..., 3], np.minimum(low, high), high)
     return DrawnBodies(b, h, z, np.clip(eta, _TINY, 1 - _TINY))
-
-
-def _uniform(stream: list[int], first: int, count: int, width: int) -> FloatArray:
-    """Return draws of a stream, (count, width), uniform from 0 to 1: the same whatever else is drawn."""
-    start = first // _AT_ONCE
-    blocks = [
-        np.random.default_rng([*stream, block]).random((_AT_ONCE, width))
-        for block in range(start, -(-(first + count) // _AT_ONCE))
-    ]
-    return np.concatenate(blocks)[first - start * _AT_ONCE :][:count]

@@ -4,7 +4,6 @@ Importing this imports numba: do so where blocks are to be rocked.
 """
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -139,8 +138,11 @@ def rock_blocks(
     is outside 0 to 1, or the motions or their time step are not finite numbers of that shape.
     """
     bodies, motions = Bodies.of(breadth, height, restitution, centre, scale), check_motions(motions, time_step)
-    bodies, which = _drop_alike(bodies)
-    if bodies.breadth.shape[1] not in (1, len(motions)):
+    which = np.arange(len(bodies))
+    if bodies.breadth.shape[1] == 1:  # each of several equal bodies once
+        sizes, which = np.unique(np.hstack(bodies.arrays), axis=0, return_inverse=True)
+        bodies = Bodies(*(column[:, None] for column in sizes.T))
+    elif bodies.breadth.shape[1] != len(motions):
         raise ValueError(f"blocks have {bodies.breadth.shape[1]} sizes each, expected 1 or {len(motions)}")
     outcome = np.zeros((len(bodies), len(motions), 3))
     divisions = bodies.count_parts(time_step)
@@ -149,7 +151,7 @@ def rock_blocks(
         found = _rock_alike(bodies.take(own), divide(motions, int(parts)), time_step / parts, threads, progress)
         found[..., kernel.FALL] *= np.where(found[..., kernel.FALL] < 0, 1, time_step / parts)
         outcome[own] = found
-    outcome = outcome[which]
+    outcome = outcome[which.ravel()]
     fell = outcome[..., kernel.FALL] >= 0
     return Rocking(
         overturned=fell,
@@ -157,14 +159,6 @@ def rock_blocks(
         fall_time=np.where(fell, outcome[..., kernel.FALL], math.nan),
         impacts=outcome[..., kernel.STRUCK].astype(np.int64),
     )
-
-
-def _drop_alike(bodies: Bodies) -> tuple[Bodies, NDArray[np.intp]]:
-    """Return each of several equal bodies once, and which each was; those that change with the motion as they are."""
-    if bodies.breadth.shape[1] > 1:
-        return bodies, np.arange(len(bodies))
-    sizes, which = np.unique(np.hstack(bodies.arrays), axis=0, return_inverse=True)
-    return Bodies(*(column[:, None] for column in sizes.T)), which.ravel()
 
 
 def check_motions(motions: NDArray[Any], time_step: float) -> NDArray[Any]:
@@ -193,7 +187,15 @@ def _rock_alike(bodies: Bodies, motions: FloatArray, time_step: float, threads: 
     blocks = bodies.to_kernel(time_step)
     outcome = np.zeros((len(blocks), len(motions), 3))
     outcome[..., kernel.FALL] = -1.0
-    no_trace, tiles = np.zeros((0, 3)), list(_tiles(len(blocks), *motions.shape))
+    # Tiles of many blocks under few motions, as their size does not change a result
+    pairs = max(kernel.LANES, TILE // motions.shape[1])
+    high = min(len(blocks), pairs)
+    wide = max(1, pairs // high)
+    tiles = [
+        (slice(start, min(start + high, len(blocks))), range(first, min(first + wide, len(motions))))
+        for first, start in product(range(0, len(motions), wide), range(0, len(blocks), high))
+    ]
+    no_trace = np.zeros((0, 3))
 
     def run(number: int) -> None:
         own, rows = tiles[number]
@@ -201,12 +203,3 @@ def _rock_alike(bodies: Bodies, motions: FloatArray, time_step: float, threads: 
 
     run_rows(run, len(tiles), threads, progress)
     return outcome
-
-
-def _tiles(blocks: int, motions: int, samples: int) -> Iterator[tuple[slice, range]]:
-    """Cut blocks x motions into tiles: many blocks under few motions, as the size does not change a result."""
-    pairs = max(kernel.LANES, TILE // samples)
-    high = min(blocks, pairs)
-    wide = max(1, pairs // high)
-    for first, start in product(range(0, motions, wide), range(0, blocks, high)):
-        yield slice(start, min(start + high, blocks)), range(first, min(first + wide, motions))

@@ -71,10 +71,8 @@ def follow_block(
     trace = np.zeros((min(max(taken - 1, 0), MOST_TRACED), 3))
     kernel.rock(blocks, motions, 0, 1, outcome, trace)
     rotation, fall, struck = (float(value) for value in outcome[0, 0])
-    start, last = _find_start(motions[0, :-2], blocks[0, 0, 3]), motions.shape[1] - 3.0
-    times, theta, impact_times = _fill_rests(start, trace, last)
-    if start == start and taken - 1 <= MOST_TRACED:
-        times, theta, impact_times = _end(times, theta, impact_times, last, fall, int(struck))
+    path = _build_path(motions[0], blocks[0, 0, 3], trace, taken - 1 <= MOST_TRACED, fall, int(struck))
+    times, theta, impact_times = path
     return Response(
         critical_angle=float(blocks[0, 0, 0]),
         frequency_parameter=float(block.frequency_parameter(breadth, height, centre)),
@@ -89,43 +87,34 @@ def follow_block(
     )
 
 
-def _find_start(motion: FloatArray, threshold: float) -> float:
-    """Return when a motion first exceeds a threshold [samples]; NaN if it never does."""
-    at = int((np.abs(motion) > threshold).argmax())
-    if abs(motion[at]) <= threshold:
-        return math.nan
-    if at == 0:
-        return 0.0
-    before = motion[at - 1]
-    return float(at - 1 + (math.copysign(threshold, motion[at]) - before) / (motion[at] - before))
+def _build_path(
+    motion: FloatArray, threshold: float, trace: FloatArray, is_whole: bool, fall: float, struck: int
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return times, theta and times of impacts [samples] of a trace, with zeros from rest to rest.
 
-
-def _fill_rests(start: float, trace: FloatArray, last: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return times, theta and times of impacts [samples] of a trace, with zeros from rest to rest."""
-    if start != start:
+    What the last step brought, the fall, or the impact after which the block rests, is not in the trace, and is added
+    where that `is_whole`. From the end of the motion on, one sample after its last, the last step shows that the block
+    can no longer fall, and the path ends before it.
+    """
+    own, last = motion[:-2], motion.size - 3.0
+    at = int((np.abs(own) > threshold).argmax())
+    if abs(own[at]) <= threshold:  # it never starts
         return np.array([0.0, last]), np.zeros(2), np.zeros(0)
+    before = own[at - 1]
+    start = 0.0 if at == 0 else float(at - 1 + (math.copysign(threshold, own[at]) - before) / (own[at] - before))
     times, theta = np.append(start, trace[:, 0]), np.append(0.0, trace[:, 1])
     ends = np.floor(times) + 1  # of the steps from each point; where the next is later, the block has been at rest
-    struck = np.diff(trace[:, 2], prepend=0.0) > 0
-    impact_times = np.minimum(times[1:], ends[:-1])[struck]
+    impact_times = np.minimum(times[1:], ends[:-1])[np.diff(trace[:, 2], prepend=0.0) > 0]
     rests = np.flatnonzero(times[1:] > ends[:-1])
     times, theta = np.insert(times, rests + 1, ends[rests]), np.insert(theta, rests + 1, 0.0)
-    before = np.zeros(1 if start > 0 else 0)
-    return np.append(before, times), np.append(before, theta), impact_times
-
-
-def _end(
-    times: FloatArray, theta: FloatArray, impact_times: FloatArray, last: float, fall: float, struck: int
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Add what the last step brought, which is not in the trace: the fall, or the impact after which the block rests.
-
-    From the end of the motion on, one sample after its last, the last step shows that the block can no longer fall, and
-    the path ends before it.
-    """
+    rest = np.zeros(1 if start > 0 else 0)
+    times, theta = np.append(rest, times), np.append(rest, theta)
+    if not is_whole:
+        return times, theta, impact_times
     if fall >= 0:
         return np.append(times, fall), np.append(theta, math.copysign(math.pi / 2, theta[-1])), impact_times
     end = math.floor(times[-1]) + 1.0
     strikes = struck > impact_times.size
-    rest = ([end] if strikes or end <= last else []) + ([last] if end < last else [])
+    added = ([end] if strikes or end <= last else []) + ([last] if end < last else [])
     impact_times = np.append(impact_times, end) if strikes else impact_times
-    return np.append(times, rest), np.append(theta, np.zeros(len(rest))), impact_times
+    return np.append(times, added), np.append(theta, np.zeros(len(added))), impact_times
