@@ -44,7 +44,7 @@ from assess.methods.simulate import (
     rock_draws,
     run_side_by_side,
 )
-from assess.progress import SILENT, Stage
+from assess.progress import SILENT, Progress, Stage
 from assess.risk import classify_all, wilson_end, wilson_interval
 from assess.rocking.block import MIDDLE
 from assess.rocking.draws import TRIED
@@ -141,9 +141,8 @@ def _integrate(
     count, runs = own.size, np.zeros(own.size, dtype=np.int64)
     fell, ideal = np.zeros((count, 0), np.bool_), np.zeros((count, 0), np.bool_)
     rotation, tried = np.zeros((count, 0), np.float32), np.zeros((len(TRIED), count), dtype=np.int64)
-    size, going = min(BATCH, MOST_PAIRS // max(1, count) + 1), np.arange(count)
-    sliders, has_wall = np.flatnonzero(cases.slides_under == number), cases.wall[own] != NO_WALL
-    beside, others = Beside(cases, settings, sliders, own[has_wall]), () if is_drawn else TRIED
+    size, going, has_wall = min(BATCH, MOST_PAIRS // max(1, count) + 1), np.arange(count), cases.wall[own] != NO_WALL
+    beside = Beside(cases, settings, np.flatnonzero(cases.slides_under == number), own[has_wall])
     alike, speeds = Alike.of(cases.alike[own], cases.quantity[own]), list[FloatArray]()
     for first, last in zip((0, *checks), checks, strict=False):
         wider = ((0, 0), (0, last - first))
@@ -152,8 +151,8 @@ def _integrate(
             here = slice(at, at + len(batch))
             if going.size:
                 drawn, turned = rock_draws(
-                    cases, own[going], batch, time_step, first=at, dispersions=(cases.dispersion[own[going]], *others),
-                    seed=settings.seed, threads=threads, progress=progress,
+                    cases, own[going], batch, time_step, first=at, seed=settings.seed, threads=threads,
+                    dispersions=(cases.dispersion[own[going]], *(() if is_drawn else TRIED)), progress=progress,
                 )  # fmt: skip
                 fell[going, here], rotation[going, here] = drawn[0], turned[0]
                 if is_drawn:
@@ -186,9 +185,7 @@ def _integrate(
         "assumed_motion": is_drawn, "unknown_building": ensemble.is_unknown, "weak_motions": joint.is_weak,
     }  # fmt: skip
     if ensemble.record is not None and count:
-        motion, time_step = ensemble.record
-        under, angle = rock_cases(cases, own, motion[np.newaxis], time_step, threads, progress)
-        found |= {"record_overturned": under[:, 0].astype(np.float64), "record_rotation": angle[:, 0]}
+        found |= _rock_under_record(cases, own, ensemble.record, threads, progress)
     slips = dict(zip(("slip_median_cm", "slip_84_cm"), beside.find_slip(), strict=True))
     # The chance with a wall, and whether it is above that without in the same draws
     one_sided = np.zeros(count)
@@ -196,6 +193,14 @@ def _integrate(
     alone, chance = (alike.average(one)[has_wall] for one in (counted[:, :draws].mean(axis=1), one_sided))
     walled = {"one_sided": chance, "wall_higher": chance > alone}
     return joint, [(own, found), (beside.sliders, slips), (beside.walled, walled)]
+
+
+def _rock_under_record(
+    cases: Cases, own: NDArray[np.intp], record: tuple[FloatArray, float], threads: int, progress: Progress
+) -> dict[str, FloatArray]:
+    motion, time_step = record
+    fell, rotation = rock_cases(cases, own, motion[np.newaxis], time_step, threads, progress)
+    return {"record_overturned": fell[:, 0].astype(np.float64), "record_rotation": rotation[:, 0]}
 
 
 def _find_thirds(

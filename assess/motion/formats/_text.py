@@ -9,7 +9,6 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise
-from typing import overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -38,22 +37,6 @@ _WORD = re.compile(r"\S+")
 
 
 @dataclass(frozen=True, slots=True)
-class Section:
-    """Some lines of a file that belong together; `first` is the place [-] of the first in the file, from 0 on."""
-
-    lines: "Lines"
-    first: int = 0
-
-    def text(self, place: int) -> str:
-        """Return the text of the line at `place`, "" beyond the end."""
-        return self.lines[place][:LONGEST_TEXT].strip() if place < len(self.lines) else ""
-
-    def number(self, place: int) -> int:
-        """Return the number by which people know the line at `place`, from 1 on."""
-        return self.first + place + 1
-
-
-@dataclass(frozen=True, slots=True)
 class Columns:
     """How numbers stand on lines: `per_line` of them, each `width` characters wide."""
 
@@ -61,16 +44,19 @@ class Columns:
     width: int
 
 
-class Lines(Sequence[str]):
-    """The lines of a text, each decoded (Latin-1) when it is asked for: as objects they take ten times their bytes.
+class Lines:
+    """Lines of a file that belong together, each decoded (Latin-1) when it is asked for.
 
-    * `data`: the text, whose lines end with a line feed.
+    As objects they would take ten times their bytes.
+
+    * `data`: the text of the file, whose lines end with a line feed.
     * `ends` (n,): the place of the end of each line [bytes].
     * `first`: the place of the first line [bytes].
+    * `before`: lines of the file before them [-].
     """
 
-    def __init__(self, data: bytes, ends: NDArray[np.int32], first: int = 0) -> None:
-        self._data, self._ends, self._first = data, ends, first
+    def __init__(self, data: bytes, ends: NDArray[np.int32], first: int = 0, before: int = 0) -> None:
+        self._data, self._ends, self._first, self._before = data, ends, first, before
 
     def __len__(self) -> int:
         return len(self._ends)
@@ -82,19 +68,24 @@ class Lines(Sequence[str]):
                 yield self._data[start:end].decode("latin-1")
                 start = end + 1
 
-    @overload
-    def __getitem__(self, place: int) -> str: ...
-    @overload
-    def __getitem__(self, place: slice) -> "Lines": ...
-    def __getitem__(self, place: int | slice) -> "str | Lines":
-        if isinstance(place, slice):
-            start, stop, _ = place.indices(len(self))
-            return Lines(self._data, self._ends[start:stop], self._start(start))
-        at = range(len(self))[place]
-        return self._data[self._start(at) : int(self._ends[at])].decode("latin-1")
+    def __getitem__(self, place: int) -> str:
+        return self._data[self._start(place) : int(self._ends[place])].decode("latin-1")
+
+    def part(self, start: int, stop: int | None = None) -> "Lines":
+        """Return those from one place to before another, or to the end."""
+        start = min(start, len(self))
+        return Lines(self._data, self._ends[start:stop], self._start(start), self._before + start)
 
     def _start(self, at: int) -> int:
         return int(self._ends[at - 1]) + 1 if at else self._first
+
+    def text(self, place: int) -> str:
+        """Return the text of the line at `place`, "" beyond the end."""
+        return self[place][:LONGEST_TEXT].strip() if place < len(self) else ""
+
+    def number(self, place: int) -> int:
+        """Return the number by which people know the line at `place`, from 1 on."""
+        return self._before + place + 1
 
     @property
     def lengths(self) -> NDArray[np.int32]:
@@ -107,7 +98,7 @@ class Lines(Sequence[str]):
         whole = BLOCK // within.size + 1
         text = np.frombuffer(self._data, np.uint8)
         for at in range(0, len(self), whole):
-            part = self[at : at + whole]
+            part = self.part(at, at + whole)
             lengths = part.lengths[:, None]
             places = (part._ends[:, None] - lengths) + within
             characters = np.where(within < lengths, text[np.minimum(places, text.size - 1)], np.uint8(ord(" ")))
@@ -140,34 +131,34 @@ def text_format(
     title: str,
     *,
     recognised: re.Pattern[str],
-    read_channel: Callable[[Section, str], Record],
+    read_channel: Callable[[Lines, str], Record],
     starts: re.Pattern[str] | None = None,
     missing: str = "",
-    choose: Callable[[list[Section]], list[Section]] = list,
+    choose: Callable[[list[Lines]], list[Lines]] = list,
 ) -> Format:
     """Return the format of a text file.
 
     * `key`, `title`: as of `Format`.
     * `recognised`: matches the beginning of a file, whose lines end with a line feed here.
-    * `read_channel`: from a channel's section of the file and the name of the file to its record.
+    * `read_channel`: from a channel's lines and the name of the file to its record.
     * `starts`: matches the first line of each channel; what stands before the first is left out. None where a file has
       one channel.
     * `missing`: what is wrong with a file that has no such line.
-    * `choose`: returns the sections that are to be read; raises RecordError where there are none.
+    * `choose`: returns the channels that are to be read; raises RecordError where there are none.
     """
 
     def read(data: bytes, file: str) -> tuple[Record, ...]:
         lines = _split_lines(data)
         if starts is None:
-            return (read_channel(Section(lines), file),)
+            return (read_channel(lines, file),)
         found = (place for place, line in enumerate(lines) if starts.match(line[:LONGEST_TEXT]))
         places = list(islice(found, MOST_CHANNELS + 1))
         if not places:
             raise RecordError.about("{what}. Get the file again", what=missing)
         check_channels(len(places))
-        sections = choose([Section(lines[place:end], place) for place, end in pairwise([*places, len(lines)])])
-        numbered = ((fill("channel {number}", number=number), one) for number, one in enumerate(sections, start=1))
-        return keep_readable(numbered, lambda section: read_channel(section, file))
+        channels = choose([lines.part(place, end) for place, end in pairwise([*places, len(lines)])])
+        numbered = ((fill("channel {number}", number=number), one) for number, one in enumerate(channels, start=1))
+        return keep_readable(numbered, lambda channel: read_channel(channel, file))
 
     return Format(
         key=key,
@@ -189,11 +180,11 @@ def fields(*rows: tuple[int | range, str]) -> Fields:
     ]
 
 
-def read_fields(section: Section, table: Fields, first: int = 0) -> dict[str, str]:
+def read_fields(lines: Lines, table: Fields, first: int = 0) -> dict[str, str]:
     """Return the fields of a header whose lines are counted from `first` on; "" for a field that is not there."""
     header: dict[str, str] = {}
-    for lines, pattern in table:
-        hits = (pattern.search(section.text(first + line)) for line in lines)
+    for places, pattern in table:
+        hits = (pattern.search(lines.text(first + place)) for place in places)
         hit = next((hit for hit in hits if hit), None)
         header |= {name: ((hit[name] or "") if hit else "").strip() for name in pattern.groupindex}
     return header
@@ -207,33 +198,33 @@ def read_format(text: str, default: Columns) -> Columns:
     return Columns(int(found[1]), int(found[2]))
 
 
-def read_columns(section: Section, start: int, count: int, columns: Columns, factor: float = 1.0) -> FloatArray:
-    """Return `count` numbers in `columns`, from the section's line at `start` on, times `factor`.
+def read_columns(lines: Lines, start: int, count: int, columns: Columns, factor: float = 1.0) -> FloatArray:
+    """Return `count` numbers in `columns`, from the line at `start` on, times `factor`.
 
     Raises RecordError if there are fewer, or one cannot be read; the message names the line.
     """
     _check_count(count)
-    rows = section.lines[start : start + math.ceil(count / columns.per_line)]
+    rows = lines.part(start, start + math.ceil(count / columns.per_line))
     filled = [has_text(cells) for cells in rows.cut(columns)]
     there = int(np.flatnonzero(np.concatenate([*filled, [False]])[:count]).max(initial=-1)) + 1
     compare_counts(count, there)
-    return convert(rows.cut(columns), count, section, start, columns.per_line, factor)
+    return convert(rows.cut(columns), count, rows, columns.per_line, factor)
 
 
-def read_words(section: Section, start: int, count: float, factor: float) -> tuple[FloatArray, tuple[str, ...]]:
+def read_words(lines: Lines, start: int, count: float, factor: float) -> tuple[FloatArray, tuple[str, ...]]:
     """Return `count` numbers with blanks between them times `factor`, and a note on those beyond, as `read_columns`."""
     _check_count(count)
-    count = round(count)
+    count, rows = round(count), lines.part(start)
     # No more than can be used are ever taken: a line may be as long as the file.
-    there = sum(1 for _ in islice(_find_words(section, start), count + int(MOST_BEYOND * count) + 1))
+    there = sum(1 for _ in islice(_find_words(rows), count + int(MOST_BEYOND * count) + 1))
     notes = compare_counts(count, there)
-    words = iter(_find_words(section, start))
+    words = iter(_find_words(rows))
     blocks = iter(lambda: list(islice(words, AT_ONCE)), [])
-    return convert(blocks, count, section, start, None, factor), notes
+    return convert(blocks, count, rows, None, factor), notes
 
 
-def _find_words(section: Section, start: int) -> Iterator[str]:
-    return (word[0] for line in section.lines[start:] for word in _WORD.finditer(line))
+def _find_words(lines: Lines) -> Iterator[str]:
+    return (word[0] for line in lines for word in _WORD.finditer(line))
 
 
 def _check_count(count: float) -> None:
@@ -270,18 +261,12 @@ def compare_counts(announced: int, there: int) -> tuple[Text, ...]:
 
 
 def convert(
-    blocks: Iterable[Cells | list[str]],
-    count: int,
-    section: Section,
-    start: int,
-    per_line: int | None,
-    factor: float = 1.0,
+    blocks: Iterable[Cells | list[str]], count: int, lines: Lines, per_line: int | None, factor: float = 1.0
 ) -> FloatArray:
-    """Return the first `count` cells or words of the section's lines from `start` on as numbers times `factor`.
+    """Return the first `count` cells or words of some lines as numbers times `factor`.
 
-    `per_line` is None where lines do not count.
-
-    Raises RecordError if one is no number; the message names its line or its place.
+    `per_line` is None where lines do not count. Raises RecordError if one is no number; the message names its line or
+    its place.
     """
     values, done = np.empty(count), 0
     for block in blocks:
@@ -301,7 +286,7 @@ def convert(
             what = fill("{text!r} is not a number", text=text[:40]) if text else fill("a number is missing")
             where = fill("number {number} of the data", number=number + 1)
             if per_line is not None:
-                where = fill("line {line}", line=section.number(start + number // per_line))
+                where = fill("line {line}", line=lines.number(number // per_line))
             raise RecordError.about("{where}: {what}. Get the file again", where=where, what=what) from None
         done += len(here)
         if done == count:

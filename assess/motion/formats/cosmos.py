@@ -23,7 +23,7 @@ from assess.motion.formats._format import (
 from assess.motion.formats._text import (
     LONGEST_TEXT,
     Columns,
-    Section,
+    Lines,
     fields,
     read_columns,
     read_fields,
@@ -63,10 +63,10 @@ _BLOCK = re.compile(r"\s*(?P<count>\d{1,6})\s+(?P<what>integer|real)[- ]header v
 _DATA = re.compile(r"\s*(?P<count>\d{1,9})\s+\D.*\bunits\s*=\s*(?P<unit>[^,(]*)\((?P<code>\d{1,4})\)", re.IGNORECASE)
 
 
-def _choose(sections: list[Section]) -> list[Section]:
-    found = [_START.match(section.lines[0]) for section in sections]
+def _choose(channels: list[Lines]) -> list[Lines]:
+    found = [_START.match(channel[0]) for channel in channels]
     kinds = [hit["kind"].strip() if hit else "" for hit in found]
-    wanted = [section for section, kind in zip(sections, kinds, strict=True) if _WANTED.search(kind)]
+    wanted = [channel for channel, kind in zip(channels, kinds, strict=True) if _WANTED.search(kind)]
     if not wanted:
         raise RecordError.about(
             "the file holds {kind}, not accelerations. Give the acceleration file of the same channel",
@@ -75,15 +75,15 @@ def _choose(sections: list[Section]) -> list[Section]:
     return wanted
 
 
-def _read_channel(section: Section, file: str) -> Record:
+def _read_channel(lines: Lines, file: str) -> Record:
     numbers: dict[str, Sequence[float]] = {"integer": (), "real": ()}
-    for place, line in enumerate(section.lines[: 10 * TEXT]):
+    for place, line in enumerate(lines.part(0, 10 * TEXT)):
         if found := _BLOCK.match(line):
             what = found["what"].lower()
-            numbers[what] = list(read_columns(section, place + 1, int(found["count"]), read_format(line, BLOCKS[what])))
+            numbers[what] = list(read_columns(lines, place + 1, int(found["count"]), read_format(line, BLOCKS[what])))
     integers, reals = numbers["integer"], numbers["real"]
     # Comments may hold any text, but start with "|" and not with a number.
-    after = enumerate(section.lines[TEXT:], start=TEXT)
+    after = enumerate(lines.part(TEXT), start=TEXT)
     titles = ((place, found) for place, line in after if (found := _DATA.match(line[:LONGEST_TEXT].strip())))
     at, title = next(titles, (0, None))
     if title is None or len(integers) <= AZIMUTH or len(reals) <= STEP:
@@ -102,10 +102,10 @@ def _read_channel(section: Section, file: str) -> Record:
             unit=unit[:20],
             code=code,
         )
-    values = read_columns(section, at + 1, int(title["count"]), read_format(section.text(at), Columns(8, 10)), factor)
+    values = read_columns(lines, at + 1, int(title["count"]), read_format(lines.text(at), Columns(8, 10)), factor)
     # The second is that of the data [ms], the first that of the recorder [s]: they differ where data are resampled.
     step = reals[STEP] / 1000 if reals[STEP] > 0 else reals[RAW_STEP]
-    header = read_fields(section, HEADER)
+    header = read_fields(lines, HEADER)
     azimuth, vertical = read_direction(header["direction"])
     if vertical is None and 400 <= integers[AZIMUTH] <= 402:
         azimuth, vertical = None, True

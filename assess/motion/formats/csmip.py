@@ -31,7 +31,7 @@ from assess.motion.formats._format import (
     read_finite,
     read_peak,
 )
-from assess.motion.formats._text import Columns, Section, fields, read_columns, read_fields, read_format, text_format
+from assess.motion.formats._text import Columns, Lines, fields, read_columns, read_fields, read_format, text_format
 from assess.motion.record import Record, Series, build_series
 from assess.units import ACCELERATION, GRAVITY
 
@@ -79,46 +79,46 @@ _START_V1 = re.compile(r"\s*uncorrected accelerogram data\b", re.IGNORECASE)
 _SPECTRA = re.compile(r"\s*response and fourier", re.IGNORECASE)
 
 
-def _read_v1(section: Section, file: str) -> Record:
-    title = read_fields(section, TITLE_V1)
+def _read_v1(lines: Lines, file: str) -> Record:
+    title = read_fields(lines, TITLE_V1)
     if title["count"]:
         rate, factor = read_finite(title["rate"]), read_acceleration_unit(title["unit"])
         if not rate or factor is None:
-            line = section.number(DATA_V1)
+            line = lines.number(DATA_V1)
             raise RecordError.about(
                 "line {line}: the sampling rate or the unit cannot be read. Get the file again", line=line
             )
-        columns = read_format(section.text(DATA_V1), EVEN)
-        own = read_columns(section, DATA_V1 + 1, int(title["count"]), columns, factor)
+        columns = read_format(lines.text(DATA_V1), EVEN)
+        own = read_columns(lines, DATA_V1 + 1, int(title["count"]), columns, factor)
         series = even_series(own, 1 / rate)
     else:
-        header = "\n".join(section.lines[:TEXT_V1])
+        header = "\n".join(lines.part(0, TEXT_V1))
         points, unit = _COUNT.search(header), _UNIT.search(header)
         if not points or not unit:
             raise RecordError(fill("the header does not give the number of points, or their unit. Get the file again"))
-        pairs = read_columns(section, DATA_V1, 2 * int(points[1]), PAIRS)
+        pairs = read_columns(lines, DATA_V1, 2 * int(points[1]), PAIRS)
         with np.errstate(over="ignore"):  # what becomes infinite is refused where samples are checked
             own = pairs[1::2] * (read_acceleration_unit(unit[1]) or np.nan)
         series = build_series(pairs[0::2], own)
-    header_pfa = read_peak(read_fields(section, PEAK_V1)["peak"], GRAVITY)
-    return _build(V1, file, read_fields(section, TEXT), series, own, header_pfa)
+    header_pfa = read_peak(read_fields(lines, PEAK_V1)["peak"], GRAVITY)
+    return _build(V1, file, read_fields(lines, TEXT), series, own, header_pfa)
 
 
-def _read_v2(section: Section, file: str) -> Record:
-    lines = enumerate(section.lines[TEXT_V2:], start=TEXT_V2)
-    place = next((place for place, line in lines if _DATA_V2.match(line)), None)
+def _read_v2(lines: Lines, file: str) -> Record:
+    rows = enumerate(lines.part(TEXT_V2), start=TEXT_V2)
+    place = next((place for place, line in rows if _DATA_V2.match(line)), None)
     if place is None:
         raise RecordError.about('no line says "points of accel data equally spaced at". Get the file again')
-    title = read_fields(section, TITLE_V2, place)
+    title = read_fields(lines, TITLE_V2, place)
     factor, step = read_acceleration_unit(title["unit"]), read_finite(title["step"])
     if step is None or factor is None:
         raise RecordError.about(
-            "line {line}: the time step or the unit cannot be read. Get the file again", line=section.number(place)
+            "line {line}: the time step or the unit cannot be read. Get the file again", line=lines.number(place)
         )
-    columns = read_format(section.text(place), CORRECTED)
-    own = read_columns(section, place + 1, int(title["count"]), columns, factor)
-    header_pfa = read_peak(read_fields(section, PEAK_V2)["peak"], ACCELERATION["cm/s2"])
-    return _build(V2, file, read_fields(section, TEXT, first=1), even_series(own, step), own, header_pfa)
+    columns = read_format(lines.text(place), CORRECTED)
+    own = read_columns(lines, place + 1, int(title["count"]), columns, factor)
+    header_pfa = read_peak(read_fields(lines, PEAK_V2)["peak"], ACCELERATION["cm/s2"])
+    return _build(V2, file, read_fields(lines, TEXT, first=1), even_series(own, step), own, header_pfa)
 
 
 def _build(
@@ -146,12 +146,12 @@ def _build(
     )
 
 
-def _refuse_spectra(sections: list[Section]) -> list[Section]:
-    if _SPECTRA.match(sections[0].lines[0]):
+def _refuse_spectra(channels: list[Lines]) -> list[Lines]:
+    if _SPECTRA.match(channels[0][0]):
         raise RecordError.about(
             "the file holds response spectra (volume 3), not accelerations. Give volume 2 or 1 of the same channels"
         )
-    return [section for section in sections if not _SPECTRA.match(section.lines[0])]
+    return [channel for channel in channels if not _SPECTRA.match(channel[0])]
 
 
 VOLUME_1 = text_format(

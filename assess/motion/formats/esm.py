@@ -17,7 +17,7 @@ from assess.motion.formats._format import (
     read_peak,
     require_unit,
 )
-from assess.motion.formats._text import Section, read_words, text_format
+from assess.motion.formats._text import Lines, read_words, text_format
 from assess.motion.record import Record
 from assess.units import ACCELERATION
 
@@ -31,10 +31,10 @@ _DATE = re.compile(r"(\d{4})(\d\d)(\d\d)_(\d\d)(\d\d)([\d.]+)")
 _RAW = re.compile(r"(none|no\b.*|not\b.*|un.*|raw.*|)", re.IGNORECASE)
 
 
-def _read_channel(section: Section, file: str) -> Record:
+def _read_channel(lines: Lines, file: str) -> Record:
     header: dict[str, str] = defaultdict(str)  # "" for keys that it has not
-    for first in range(min(len(section.lines), LONGEST_HEADER)):
-        found = _KEY.match(section.text(first))
+    for first in range(min(len(lines), LONGEST_HEADER)):
+        found = _KEY.match(lines.text(first))
         if not found:
             break
         header[found[1]] = found[2].strip()
@@ -50,7 +50,7 @@ def _read_channel(section: Section, file: str) -> Record:
     count, step = read_finite(header["NDATA"]), read_finite(header["SAMPLING_INTERVAL_S"])
     if count is None or step is None:
         raise RecordError.about("the header does not give NDATA and SAMPLING_INTERVAL_S. Get the file again")
-    values, notes = read_words(section, first, count, factor)
+    values, notes = read_words(lines, first, count, factor)
     name, code = header["STATION_NAME"], header["STATION_CODE"]
     return build_record(
         TITLE,

@@ -19,7 +19,7 @@ from assess.motion.formats._format import (
     read_finite,
     read_peak,
 )
-from assess.motion.formats._text import Columns, Section, fields, read_columns, read_fields, text_format
+from assess.motion.formats._text import Columns, Lines, fields, read_columns, read_fields, text_format
 from assess.motion.record import Record
 
 TITLE = "GeoNet"
@@ -41,26 +41,26 @@ HEADER = fields(
 )
 
 
-def _read_channel(section: Section, file: str) -> Record:
-    header = read_fields(section, HEADER)
+def _read_channel(lines: Lines, file: str) -> Record:
+    header = read_fields(lines, HEADER)
     corrected = not header["raw"]
-    count = _read_number(section, *(COUNT if corrected else RAW_COUNT))
+    count = _read_number(lines, *(COUNT if corrected else RAW_COUNT))
     factor = read_acceleration_unit(header["unit"])
     header_pfa = read_peak(header["peak"], factor)
     if factor is None or header_pfa is None:
-        line = section.number(13)
+        line = lines.number(13)
         raise RecordError.about("line {line}: the peak and its unit cannot be read. Get the file again", line=line)
     if not corrected:
         multiple, unit = read_finite(header["multiple"]), read_acceleration_unit(header["raw_unit"])
         if not multiple or unit is None:
-            line = section.number(10)
+            line = lines.number(10)
             raise RecordError.about("line {line}: the unit cannot be read. Get the file again", line=line)
         factor = multiple * unit
-    own = read_columns(section, DATA, int(count), COLUMNS, factor)
+    own = read_columns(lines, DATA, int(count), COLUMNS, factor)
     return build_record(
         TITLE,
         file,
-        even_series(own, _read_number(section, *STEP)),
+        even_series(own, _read_number(lines, *STEP)),
         corrected=corrected,
         channel=header["component"],
         direction=read_direction(header["component"]),
@@ -71,13 +71,13 @@ def _read_channel(section: Section, file: str) -> Record:
     )
 
 
-def _read_number(section: Section, line: int, column: int) -> float:
-    words = section.text(TEXT + line).split()
+def _read_number(lines: Lines, line: int, column: int) -> float:
+    words = lines.text(TEXT + line).split()
     number = read_finite(words[column]) if column < len(words) else None
     if number is None:
         raise RecordError.about(
             "line {line}: number {number} is missing. Get the file again",
-            line=section.number(TEXT + line),
+            line=lines.number(TEXT + line),
             number=column + 1,
         )
     return number

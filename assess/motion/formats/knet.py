@@ -16,7 +16,7 @@ from datetime import datetime, timedelta
 
 from assess.errors import RecordError
 from assess.motion.formats._format import NUMBER, build_record, even_series, read_direction, read_finite, read_peak
-from assess.motion.formats._text import Section, read_words, text_format
+from assess.motion.formats._text import Lines, read_words, text_format
 from assess.motion.record import Record
 from assess.units import ACCELERATION
 
@@ -35,8 +35,8 @@ _SCALE = re.compile(rf"({NUMBER})\s*\(gal\)\s*/\s*({NUMBER})", re.IGNORECASE)
 _NUMBER = re.compile(NUMBER, re.IGNORECASE)
 
 
-def _read_channel(section: Section, file: str) -> Record:
-    header = {line[:NAME].strip(): line[NAME : 10 * NAME].strip() for line in section.lines[:HEADER]}
+def _read_channel(lines: Lines, file: str) -> Record:
+    header = {line[:NAME].strip(): line[NAME : 10 * NAME].strip() for line in lines.part(0, HEADER)}
     rate, seconds = _number(header, "Sampling Freq(Hz)"), _number(header, "Duration Time(s)")
     text = header.get("Scale Factor", "")
     found = _SCALE.match(text)
@@ -46,7 +46,7 @@ def _read_channel(section: Section, file: str) -> Record:
             "the scale factor is {text!r}, expected a ratio such as 3920(gal)/6182761. Get the file again",
             text=text[:40],
         )
-    values, notes = read_words(section, HEADER, rate * seconds, above / below * GAL)
+    values, notes = read_words(lines, HEADER, rate * seconds, above / below * GAL)
     start, direction = header.get("Record Time", ""), header.get("Dir.", "")
     with suppress(ValueError, OverflowError):
         time = datetime.strptime(start, "%Y/%m/%d %H:%M:%S") - DELAY  # Japan's time, as printed

@@ -19,7 +19,7 @@ from assess.motion.formats._format import (
     read_finite,
     require_unit,
 )
-from assess.motion.formats._text import Section, fields, read_fields, read_words, text_format
+from assess.motion.formats._text import Lines, fields, read_fields, read_words, text_format
 from assess.motion.record import Record
 
 TITLE = "PEER AT2"
@@ -36,8 +36,8 @@ HEADER = fields(
 _YEAR = re.compile(r"[\d/. -]+|\w+ \d+ ?,? ?\d{4}")
 
 
-def _read_channel(section: Section, file: str) -> Record:
-    header = read_fields(section, HEADER)
+def _read_channel(lines: Lines, file: str) -> Record:
+    header = read_fields(lines, HEADER)
     kind = header["kind"].lower()
     if not kind:
         raise RecordError.about("the header does not name what the file holds. Get the file again")
@@ -51,7 +51,7 @@ def _read_channel(section: Section, file: str) -> Record:
         raise RecordError.about(
             "line {line} does not give the number of points and their time step. Get the file again", line=DATA
         )
-    values, notes = read_words(section, DATA, int(count), factor)
+    values, notes = read_words(lines, DATA, int(count), factor)
     # "event, date, station, component"; older titles have the date within the event.
     event, *others = [part.strip() for part in header["title"].split(",")]
     if others and _YEAR.fullmatch(others[0]):

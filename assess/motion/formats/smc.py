@@ -9,7 +9,6 @@ Source: U.S. Geological Survey, National Strong-Motion Project, the SMC format; 
 
 import math
 import re
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,7 +19,7 @@ from assess.i18n import fill
 from assess.motion.formats._format import NUMBER, Direction, build_record, even_series, read_direction, read_peak
 from assess.motion.formats._text import (
     Columns,
-    Section,
+    Lines,
     compare_counts,
     convert,
     decode,
@@ -59,16 +58,16 @@ _REFUSED = {
 _LOCATION = re.compile(r"<loclbl=>(.*?)<end>")
 
 
-def _read_channel(section: Section, file: str) -> Record:
-    found = _KIND.match(section.lines[0])
+def _read_channel(lines: Lines, file: str) -> Record:
+    found = _KIND.match(lines[0])
     if not found:
         raise RecordError(fill("the first line names no type of SMC file. Get the file again"))
-    kind, header = found[1], read_fields(section, HEADER)
-    if len(section.lines) <= COMMENTS:
+    kind, header = found[1], read_fields(lines, HEADER)
+    if len(lines) <= COMMENTS:
         raise RecordError.about(
             "the file is cut short: its header takes {header} lines, the file has {lines}. Get the file again",
             header=COMMENTS,
-            lines=len(section.lines),
+            lines=len(lines),
         )
     if kind in _REFUSED:
         raise RecordError.about(
@@ -77,10 +76,10 @@ def _read_channel(section: Section, file: str) -> Record:
             kind=_REFUSED[kind],
             title=header["title"][:40],
         )
-    integers = _read_integers(section)
-    comments = _read_comments(section.lines, integers[COMMENT_LINES])
-    rate = _read_sampling_rate(section)
-    numbers, notes = _read_data(section, integers[DATA_COUNT] or 0, COMMENTS + len(comments))
+    integers = _read_integers(lines)
+    comments = _read_comments(lines, integers[COMMENT_LINES])
+    rate = _read_sampling_rate(lines)
+    numbers, notes = _read_data(lines, integers[DATA_COUNT] or 0, COMMENTS + len(comments))
     if rate is not None:
         own = numbers * CM_S2
         series = even_series(own, 1 / rate, notes)
@@ -121,23 +120,23 @@ def _read_channel(section: Section, file: str) -> Record:
     return replace(record, notes=(*record.notes, fill("the header flags a problem with the data: read its comments")))
 
 
-def _read_integers(section: Section) -> list[int | None]:
+def _read_integers(lines: Lines) -> list[int | None]:
     numbers = []
-    block = next(section.lines[INTEGERS:REALS].cut(INTEGER, is_whole=True))
+    block = next(lines.part(INTEGERS, REALS).cut(INTEGER, is_whole=True))
     for place, text in enumerate(decode(block)):
         try:
             numbers.append(int(text))
         except ValueError:
             raise RecordError.about(
                 "line {line}: {text!r} is not a whole number. Get the file again",
-                line=section.number(INTEGERS + place // INTEGER.per_line),
+                line=lines.number(INTEGERS + place // INTEGER.per_line),
                 text=text.strip(),
             ) from None
     return [None if number == numbers[0] else number for number in numbers]
 
 
-def _read_comments(lines: Sequence[str], count: int | None) -> Sequence[str]:
-    found = next((place for place, line in enumerate(lines[COMMENTS:]) if not line.startswith("|")), None)
+def _read_comments(lines: Lines, count: int | None) -> list[str]:
+    found = next((place for place, line in enumerate(lines.part(COMMENTS)) if not line.startswith("|")), None)
     if found is None:
         raise RecordError.about("there are no data below the header. Get the file again")
     if found != (count or 0):
@@ -146,41 +145,41 @@ def _read_comments(lines: Sequence[str], count: int | None) -> Sequence[str]:
             announced=count or 0,
             there=found,
         )
-    return [line[: 2 * LINE] for line in lines[COMMENTS : COMMENTS + found]]
+    return [line[: 2 * LINE] for line in lines.part(COMMENTS, COMMENTS + found)]
 
 
-def _read_sampling_rate(section: Section) -> float | None:
+def _read_sampling_rate(lines: Lines) -> float | None:
     """Samples per second; None where the data are pairs of time and acceleration."""
-    cells = section.lines[REALS : REALS + 1].cut(REAL, is_whole=True)
-    unknown, rate = map(float, convert(cells, SAMPLING_RATE + 1, section, REALS, REAL.per_line))
+    own = lines.part(REALS, REALS + 1)
+    unknown, rate = map(float, convert(own.cut(REAL, is_whole=True), SAMPLING_RATE + 1, own, REAL.per_line))
     if rate == unknown:
         return None
     if not (math.isfinite(rate) and rate > 0):
         raise RecordError.about(
             "line {line}: the sampling rate is {rate:g} Hz, expected above 0. Get the file again",
-            line=section.number(REALS),
+            line=lines.number(REALS),
             rate=rate,
         )
     return rate
 
 
-def _read_data(section: Section, announced: int, first: int) -> tuple[FloatArray, tuple[str, ...]]:
+def _read_data(lines: Lines, announced: int, first: int) -> tuple[FloatArray, tuple[str, ...]]:
     """Return as many numbers as the header announces, from a line on, and a note on those beyond."""
     if announced <= 0:
         raise RecordError.about(
             "the number of data values is {announced} in the header. Get the file again", announced=announced
         )
-    lines = section.lines[first:]
-    wide = next((place for place in np.flatnonzero(lines.lengths > LINE).tolist() if lines[place][LINE:].strip()), None)
+    rows = lines.part(first)
+    wide = next((place for place in np.flatnonzero(rows.lengths > LINE).tolist() if rows[place][LINE:].strip()), None)
     if wide is not None:
         raise RecordError.about(
             "line {line} is longer than {most} characters. Get the file again",
-            line=section.number(first + wide),
+            line=rows.number(wide),
             most=LINE,
         )
-    there = sum(int(has_text(cells).sum()) for cells in lines.cut(DATA, is_whole=True))
+    there = sum(int(has_text(cells).sum()) for cells in rows.cut(DATA, is_whole=True))
     notes = compare_counts(announced, there)
-    return convert(lines.cut(DATA, is_whole=True), announced, section, first, DATA.per_line), notes
+    return convert(rows.cut(DATA, is_whole=True), announced, rows, DATA.per_line), notes
 
 
 def _orientation(component: str, upright: int | None, number: int | None) -> tuple[Direction, tuple[str, ...]]:
