@@ -12,7 +12,7 @@ from tests.motion.writers import mseed as write
 
 
 def test_channels() -> None:
-    records = miniseed.read(write(*THREE), "made")
+    records = miniseed.FORMAT.read(write(*THREE), "made")
     assert [record.channel for record in records] == ["HNE", "HNN", "HNZ"]
     assert [(record.azimuth_deg, record.vertical) for record in records] == [(90.0, False), (0.0, False), (None, True)]
     record = records[0]
@@ -23,19 +23,19 @@ def test_channels() -> None:
 
 
 def test_two_stations_of_one_code() -> None:
-    records = miniseed.read(write(EAST) + write(EAST, station="HILL"), "made")
+    records = miniseed.FORMAT.read(write(EAST) + write(EAST, station="HILL"), "made")
     assert {record.channel for record in records} == {"NP.TOWN..HNE", "NP.HILL..HNE"}
 
 
 def test_a_gap_is_bridged_and_noted() -> None:
-    (record,) = miniseed.read(write(EAST, gap_after=200), "made")
+    (record,) = miniseed.FORMAT.read(write(EAST, gap_after=200), "made")
     assert any("a gap of 1.01 s at 1.99 s is bridged by a straight line" in note for note in record.notes)
     # 199 samples of 0.01 s, resampled to 0.005 s.
     assert record.acceleration[:398:2] == pytest.approx(EAST.acceleration[:199], abs=1e-6)
 
 
 def test_a_channel_that_is_not_read_does_not_lose_the_others() -> None:
-    (record,) = miniseed.read(write(EAST) + write(EAST, code="BHE"), "made")
+    (record,) = miniseed.FORMAT.read(write(EAST) + write(EAST, code="BHE"), "made")
     assert any(note.startswith("NP.TOWN..BHE of the file is left out: the channel's code") for note in record.notes)
 
 
@@ -55,7 +55,7 @@ COUNTS = Signal(np.rint(1e5 * EAST.acceleration))
 )  # fmt: skip
 def test_damage(data: bytes, message: str) -> None:
     with pytest.raises(RecordError, match=message):
-        miniseed.read(data, "made")
+        miniseed.FORMAT.read(data, "made")
 
 
 @pytest.mark.parametrize(("encoding", "order"), [("FLOAT64", ">"), ("FLOAT32", "<"), ("FLOAT64", "<")])
@@ -66,7 +66,7 @@ def test_obspy_writes_what_is_read(encoding: str, order: str) -> None:
     trace.stats.starttime += 0.000123  # a blockette of its own
     target = io.BytesIO()
     trace.write(target, format="MSEED", encoding=encoding, byteorder=order, reclen=256)
-    (record,) = miniseed.read(target.getvalue(), "made")
+    (record,) = miniseed.FORMAT.read(target.getvalue(), "made")
     (own,) = obspy.read(io.BytesIO(target.getvalue()))
     np.testing.assert_array_equal(record.acceleration, own.data)
     assert (record.time_step, record.start) == (own.stats.delta, "2018-11-30 17:28:10.000 UTC")
@@ -79,13 +79,13 @@ def test_packed_counts_are_refused(encoding: str) -> None:
     target = io.BytesIO()
     trace.write(target, format="MSEED", encoding=encoding)
     with pytest.raises(RecordError, match="the channel holds raw counts"):
-        miniseed.read(target.getvalue(), "made")
+        miniseed.FORMAT.read(target.getvalue(), "made")
 
 
 def test_rates_below_one_and_exact_rates() -> None:
     data = write(EAST)
     rate = data.index(b"\x00\x64\x00\x01", 30)  # 100 samples a second, times 1
-    (record,) = miniseed.read(data[:rate] + b"\x00\x32\x00\x02" + data[rate + 4 :], "made")
+    (record,) = miniseed.FORMAT.read(data[:rate] + b"\x00\x32\x00\x02" + data[rate + 4 :], "made")
     assert record.time_step == 0.01
     assert miniseed._nominal_rate(-10, 1) == 0.1
     assert miniseed._nominal_rate(100, -4) == 25
@@ -97,21 +97,21 @@ def test_text_is_refused() -> None:
     text = bytearray(write(EAST)[:512])
     text[text.index(b"\x03\xe8\x00\x00\x04") + 4] = 0
     with pytest.raises(RecordError, match=r"the channel holds no numbers\. Give a channel of an accelerometer"):
-        miniseed.read(bytes(text), "made")
+        miniseed.FORMAT.read(bytes(text), "made")
 
 
 def test_a_record_that_is_cut_off_is_left_out() -> None:
-    (record,) = miniseed.read(write(EAST)[:-300], "made")
+    (record,) = miniseed.FORMAT.read(write(EAST)[:-300], "made")
     assert record.acceleration.size == 300
     assert record.notes[0] == "212 bytes that are no whole records of miniSEED were left out"
 
 
 def test_what_is_no_record_is_skipped() -> None:
-    (record,) = miniseed.read(write(EAST)[:1024] + bytes(256) + write(EAST)[1024:], "made")
+    (record,) = miniseed.FORMAT.read(write(EAST)[:1024] + bytes(256) + write(EAST)[1024:], "made")
     assert record.acceleration == pytest.approx(EAST.acceleration, abs=1e-6)
     assert record.notes[0].startswith("256 bytes that are no whole records")
 
 
 def test_names_that_are_no_text() -> None:
-    (record,) = miniseed.read(write(EAST).replace(b"TOWN", b"\xff\xfe\xff\xfe"), "made")
+    (record,) = miniseed.FORMAT.read(write(EAST).replace(b"TOWN", b"\xff\xfe\xff\xfe"), "made")
     assert record.station == "NP.ÿþÿþ"

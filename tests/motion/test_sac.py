@@ -16,7 +16,7 @@ from tests.motion.writers import sac as write
 
 
 def read_one(data: bytes) -> Record:
-    (record,) = sac.read(data, "made")
+    (record,) = sac.FORMAT.read(data, "made")
     return record
 
 

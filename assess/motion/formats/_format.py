@@ -47,19 +47,21 @@ class Format:
     * `key`: short name.
     * `title`: as shown to people.
     * `recognises`: whether the first bytes of a file are of this format. The name of a file decides nothing.
-    * `read`: from the whole file and its name to its channels; raises RecordError, and nothing else, whatever the
-      bytes. The message need not name the file.
+    * `parse`: from the whole file to its channels, which need not name it; raises RecordError, and nothing else,
+      whatever the bytes.
     """
 
     key: str
     title: str
     recognises: Callable[[bytes], bool]
-    read: Callable[[bytes, str], tuple[Record, ...]]
+    parse: Callable[[bytes], tuple[Record, ...]]
+
+    def read(self, data: bytes, file: str) -> tuple[Record, ...]:
+        """Return the channels of a file from its bytes and its name; raises RecordError as `parse`."""
+        return tuple(replace(record, file=file, format=self.title) for record in self.parse(data))
 
 
 def build_record(
-    title: str,
-    file: str,
     series: Series,
     *,
     corrected: bool,
@@ -77,7 +79,6 @@ def build_record(
 ) -> Record:
     """Return the record of one channel; see `Record` for the parameters that are not named here.
 
-    * `title`, `file`: title of the format, name of the file.
     * `series`: evenly spaced samples [m/s2].
     * `own` (n,): the file's own samples [m/s2], where they are not evenly spaced.
     * `direction`: azimuth [deg] and whether it is vertical; None where it is not known.
@@ -96,8 +97,8 @@ def build_record(
             )
         )
     return Record(
-        file=file,
-        format=title,
+        file="",
+        format="",
         channel=channel or "1",
         location=location,
         azimuth_deg=direction[0],

@@ -131,7 +131,7 @@ def text_format(
     title: str,
     *,
     recognised: re.Pattern[str],
-    read_channel: Callable[[Lines, str], Record],
+    read_channel: Callable[[Lines], Record],
     starts: re.Pattern[str] | None = None,
     missing: str = "",
     choose: Callable[[list[Lines]], list[Lines]] = list,
@@ -140,17 +140,17 @@ def text_format(
 
     * `key`, `title`: as of `Format`.
     * `recognised`: matches the beginning of a file, whose lines end with a line feed here.
-    * `read_channel`: from a channel's lines and the name of the file to its record.
+    * `read_channel`: from a channel's lines to its record.
     * `starts`: matches the first line of each channel; what stands before the first is left out. None where a file has
       one channel.
     * `missing`: what is wrong with a file that has no such line.
     * `choose`: returns the channels that are to be read; raises RecordError where there are none.
     """
 
-    def read(data: bytes, file: str) -> tuple[Record, ...]:
+    def parse(data: bytes) -> tuple[Record, ...]:
         lines = _split_lines(data)
         if starts is None:
-            return (read_channel(lines, file),)
+            return (read_channel(lines),)
         found = (place for place, line in enumerate(lines) if starts.match(line[:LONGEST_TEXT]))
         places = list(islice(found, MOST_CHANNELS + 1))
         if not places:
@@ -158,13 +158,13 @@ def text_format(
         check_channels(len(places))
         channels = choose([lines.part(place, end) for place, end in pairwise([*places, len(lines)])])
         numbered = ((fill("channel {number}", number=number), one) for number, one in enumerate(channels, start=1))
-        return keep_readable(numbered, lambda channel: read_channel(channel, file))
+        return keep_readable(numbered, read_channel)
 
     return Format(
         key=key,
         title=title,
         recognises=lambda head: recognised.match(with_line_feeds(head.decode("latin-1"))) is not None,
-        read=read,
+        parse=parse,
     )
 
 

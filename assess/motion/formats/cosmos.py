@@ -33,8 +33,6 @@ from assess.motion.formats._text import (
 from assess.motion.record import Record
 from assess.units import ACCELERATION, GRAVITY
 
-TITLE = "COSMOS"
-
 TEXT = 13
 """Lines of text."""
 UNITS = {2: GRAVITY, 4: 0.01, 7: 0.0254, 10: ACCELERATION["gal"], 11: GRAVITY / 1000}
@@ -75,7 +73,7 @@ def _choose(channels: list[Lines]) -> list[Lines]:
     return wanted
 
 
-def _read_channel(lines: Lines, file: str) -> Record:
+def _read_channel(lines: Lines) -> Record:
     numbers: dict[str, Sequence[float]] = {"integer": (), "real": ()}
     for place, line in enumerate(lines.part(0, 10 * TEXT)):
         if found := _BLOCK.match(line):
@@ -113,8 +111,6 @@ def _read_channel(lines: Lines, file: str) -> Record:
         azimuth, vertical = integers[AZIMUTH], False
     station = header["code"] or header["number"]
     return build_record(
-        TITLE,
-        file,
         even_series(values, step),
         corrected=integers[STAGE] == CORRECTED,
         channel=header["channel"] and (header["channel"].lstrip("0") or "0"),
@@ -129,7 +125,7 @@ def _read_channel(lines: Lines, file: str) -> Record:
 
 FORMAT = text_format(
     "cosmos",
-    TITLE,
+    "COSMOS",
     recognised=_START,
     starts=_START,
     missing=fill("no line names a version of the COSMOS format"),

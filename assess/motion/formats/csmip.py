@@ -35,8 +35,6 @@ from assess.motion.formats._text import Columns, Lines, fields, read_columns, re
 from assess.motion.record import Record, Series, build_series
 from assess.units import ACCELERATION, GRAVITY
 
-V1, V2 = "CSMIP V1", "CSMIP V2"
-
 TEXT_V1, TEXT_V2 = 13, 25
 """Lines of text."""
 DATA_V1 = 27
@@ -79,7 +77,7 @@ _START_V1 = re.compile(r"\s*uncorrected accelerogram data\b", re.IGNORECASE)
 _SPECTRA = re.compile(r"\s*response and fourier", re.IGNORECASE)
 
 
-def _read_v1(lines: Lines, file: str) -> Record:
+def _read_v1(lines: Lines) -> Record:
     title = read_fields(lines, TITLE_V1)
     if title["count"]:
         rate, factor = read_finite(title["rate"]), read_acceleration_unit(title["unit"])
@@ -101,10 +99,10 @@ def _read_v1(lines: Lines, file: str) -> Record:
             own = pairs[1::2] * (read_acceleration_unit(unit[1]) or np.nan)
         series = build_series(pairs[0::2], own)
     header_pfa = read_peak(read_fields(lines, PEAK_V1)["peak"], GRAVITY)
-    return _build(V1, file, read_fields(lines, TEXT), series, own, header_pfa)
+    return _build(read_fields(lines, TEXT), series, own, header_pfa, corrected=False)
 
 
-def _read_v2(lines: Lines, file: str) -> Record:
+def _read_v2(lines: Lines) -> Record:
     rows = enumerate(lines.part(TEXT_V2), start=TEXT_V2)
     place = next((place for place, line in rows if _DATA_V2.match(line)), None)
     if place is None:
@@ -118,11 +116,11 @@ def _read_v2(lines: Lines, file: str) -> Record:
     columns = read_format(lines.text(place), CORRECTED)
     own = read_columns(lines, place + 1, int(title["count"]), columns, factor)
     header_pfa = read_peak(read_fields(lines, PEAK_V2)["peak"], ACCELERATION["cm/s2"])
-    return _build(V2, file, read_fields(lines, TEXT, first=1), even_series(own, step), own, header_pfa)
+    return _build(read_fields(lines, TEXT, first=1), even_series(own, step), own, header_pfa, corrected=True)
 
 
 def _build(
-    title: str, file: str, text: Mapping[str, str], series: Series, own: FloatArray, header_pfa: float | None
+    text: Mapping[str, str], series: Series, own: FloatArray, header_pfa: float | None, *, corrected: bool
 ) -> Record:
     """Return a record of which `text` are the lines of text.
 
@@ -131,11 +129,9 @@ def _build(
     """
     number = text["drawn_as"] or text["number"]
     return build_record(
-        title,
-        file,
         series,
         own=own,
-        corrected=title == V2,
+        corrected=corrected,
         channel=number and (number.lstrip("0") or "0"),
         direction=read_direction(text["direction"]),
         location=text["location"],
@@ -156,7 +152,7 @@ def _refuse_spectra(channels: list[Lines]) -> list[Lines]:
 
 VOLUME_1 = text_format(
     "csmip_v1",
-    V1,
+    "CSMIP V1",
     recognised=_START_V1,
     starts=_START_V1,
     missing=fill('no line says "Uncorrected accelerogram data"'),
@@ -164,7 +160,7 @@ VOLUME_1 = text_format(
 )
 VOLUME_2 = text_format(
     "csmip_v2",
-    V2,
+    "CSMIP V2",
     recognised=re.compile(
         rf"\s*corrected accelerogram\b[^\n]*\n\s*uncorrected accelerogram data\b|{_SPECTRA.pattern}", re.IGNORECASE
     ),

@@ -21,8 +21,6 @@ from assess.motion.formats._text import Lines, read_words, text_format
 from assess.motion.record import Record
 from assess.units import ACCELERATION
 
-TITLE = "ESM"
-
 LONGEST_HEADER = 200
 """Lines; version 1.2 has 64."""
 
@@ -31,7 +29,7 @@ _DATE = re.compile(r"(\d{4})(\d\d)(\d\d)_(\d\d)(\d\d)([\d.]+)")
 _RAW = re.compile(r"(none|no\b.*|not\b.*|un.*|raw.*|)", re.IGNORECASE)
 
 
-def _read_channel(lines: Lines, file: str) -> Record:
+def _read_channel(lines: Lines) -> Record:
     header: dict[str, str] = defaultdict(str)  # "" for keys that it has not
     for first in range(min(len(lines), LONGEST_HEADER)):
         found = _KEY.match(lines.text(first))
@@ -53,8 +51,6 @@ def _read_channel(lines: Lines, file: str) -> Record:
     values, notes = read_words(lines, first, count, factor)
     name, code = header["STATION_NAME"], header["STATION_CODE"]
     return build_record(
-        TITLE,
-        file,
         even_series(values, step, notes),
         # Only filtered data need no further filter; a baseline alone may have been removed from raw data, too.
         corrected=not (_RAW.fullmatch(header["PROCESSING"]) or _RAW.fullmatch(header["FILTER_TYPE"])),
@@ -70,7 +66,7 @@ def _read_channel(lines: Lines, file: str) -> Record:
 
 FORMAT = text_format(
     "esm",
-    TITLE,
+    "ESM",
     recognised=re.compile(r"EVENT_NAME:(?=.*\nSTATION_CODE:)(?=.*\nUNITS:)", re.DOTALL),
     read_channel=_read_channel,
 )

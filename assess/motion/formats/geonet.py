@@ -22,8 +22,6 @@ from assess.motion.formats._format import (
 from assess.motion.formats._text import Columns, Lines, fields, read_columns, read_fields, text_format
 from assess.motion.record import Record
 
-TITLE = "GeoNet"
-
 TEXT, DATA = 16, 26
 """Lines at which the numbers of the header, and the data, begin."""
 RAW_COUNT, COUNT, STEP = (3, 0), (3, 3), (6, 5)
@@ -41,7 +39,7 @@ HEADER = fields(
 )
 
 
-def _read_channel(lines: Lines, file: str) -> Record:
+def _read_channel(lines: Lines) -> Record:
     header = read_fields(lines, HEADER)
     corrected = not header["raw"]
     count = _read_number(lines, *(COUNT if corrected else RAW_COUNT))
@@ -58,8 +56,6 @@ def _read_channel(lines: Lines, file: str) -> Record:
         factor = multiple * unit
     own = read_columns(lines, DATA, int(count), COLUMNS, factor)
     return build_record(
-        TITLE,
-        file,
         even_series(own, _read_number(lines, *STEP)),
         corrected=corrected,
         channel=header["component"],
@@ -85,7 +81,7 @@ def _read_number(lines: Lines, line: int, column: int) -> float:
 
 FORMAT = text_format(
     "geonet",
-    TITLE,
+    "GeoNet",
     recognised=re.compile(r"(?:un)?corrected accelerogram [^\n]*\n+site [^\n]*\n", re.IGNORECASE),
     starts=re.compile(r"(un)?corrected accelerogram ", re.IGNORECASE),
     missing=fill('no line says "accelerogram"'),

@@ -20,7 +20,6 @@ from assess.motion.formats._text import Lines, read_words, text_format
 from assess.motion.record import Record
 from assess.units import ACCELERATION
 
-TITLE = "K-NET/KiK-net"
 GAL = ACCELERATION["gal"]
 
 HEADER, NAME = 17, 18
@@ -35,7 +34,7 @@ _SCALE = re.compile(rf"({NUMBER})\s*\(gal\)\s*/\s*({NUMBER})", re.IGNORECASE)
 _NUMBER = re.compile(NUMBER, re.IGNORECASE)
 
 
-def _read_channel(lines: Lines, file: str) -> Record:
+def _read_channel(lines: Lines) -> Record:
     header = {line[:NAME].strip(): line[NAME : 10 * NAME].strip() for line in lines.part(0, HEADER)}
     rate, seconds = _number(header, "Sampling Freq(Hz)"), _number(header, "Duration Time(s)")
     text = header.get("Scale Factor", "")
@@ -53,8 +52,6 @@ def _read_channel(lines: Lines, file: str) -> Record:
         start = f"{time:%Y-%m-%d %H:%M:%S} JST"
     channel = _CHANNELS.get(direction.lower(), direction)
     return build_record(
-        TITLE,
-        file,
         even_series(values, 1 / rate, notes),
         corrected=False,
         channel=channel,
@@ -83,7 +80,7 @@ def _number(header: dict[str, str], key: str) -> float:
 
 FORMAT = text_format(
     "knet",
-    TITLE,
+    "K-NET/KiK-net",
     recognised=re.compile(r"Origin Time[^\n]*\nLat\.[^\n]*\nLong\."),
     read_channel=_read_channel,
 )

@@ -29,8 +29,6 @@ from assess.motion.formats._format import (
 )
 from assess.motion.record import Record, Series, build_series, check_count
 
-TITLE = "miniSEED"
-
 REALS = {4: "f4", 5: "f8"}
 """Encodings of real numbers."""
 TEXT = 0
@@ -63,12 +61,7 @@ class _Part:
     samples: FloatArray
 
 
-def recognises(head: bytes) -> bool:
-    """Return whether `head` begins with the number and quality of a record of SEED, and a day of a year."""
-    return _byte_order(head, 0) is not None
-
-
-def read(data: bytes, file: str) -> tuple[Record, ...]:
+def parse(data: bytes) -> tuple[Record, ...]:
     """Read every channel of a miniSEED file; RecordError if no channel holds accelerations, or the file is damaged."""
     channels: dict[tuple[str, ...], list[_Part]] = {}
     at, count, skipped = 0, 0, 0
@@ -100,12 +93,12 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
     notes = (note,) if skipped else ()
     return keep_readable(
         ((".".join(own), parts) for own, parts in channels.items()),
-        lambda parts: _read_channel(file, parts, notes, codes.count(parts[0].names[-1]) > 1),
+        lambda parts: _read_channel(parts, notes, codes.count(parts[0].names[-1]) > 1),
     )
 
 
 def _byte_order(data: bytes, at: int) -> str | None:
-    """Return "<" or ">" of the record at a place [bytes], None where none starts there."""
+    """Return "<" or ">" of the record that starts at a place [bytes], with its number, quality and day; else None."""
     if len(data) < at + _HEADER_TO or not _START.match(data, at):
         return None
     for order in "><":
@@ -168,7 +161,7 @@ def _nominal_rate(factor: int, multiplier: int) -> float:
     return rate * multiplier if multiplier > 0 else -rate / multiplier
 
 
-def _read_channel(file: str, parts: Sequence[_Part], notes: Sequence[str], whole_name: bool) -> Record:
+def _read_channel(parts: Sequence[_Part], notes: Sequence[str], whole_name: bool) -> Record:
     network, station, location, code = parts[0].names
     encodings = {part.encoding for part in parts}
     if encodings - {TEXT, *REALS}:
@@ -189,8 +182,6 @@ def _read_channel(file: str, parts: Sequence[_Part], notes: Sequence[str], whole
         )
     series, own = _join(parts)
     return build_record(
-        TITLE,
-        file,
         replace(series, notes=(*notes, *series.notes)),
         own=own,
         corrected=False,
@@ -225,4 +216,4 @@ def _join(parts: Sequence[_Part]) -> tuple[Series, FloatArray]:
     return build_series(np.concatenate(times), own), own
 
 
-FORMAT = Format(key="miniseed", title=TITLE, recognises=recognises, read=read)
+FORMAT = Format("miniseed", "miniSEED", recognises=lambda head: _byte_order(head, 0) is not None, parse=parse)

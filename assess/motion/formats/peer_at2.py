@@ -22,8 +22,6 @@ from assess.motion.formats._format import (
 from assess.motion.formats._text import Lines, fields, read_fields, read_words, text_format
 from assess.motion.record import Record
 
-TITLE = "PEER AT2"
-
 DATA = 4
 """Line at which the data begin."""
 _KIND = r"\b(?P<kind>acceleration|velocity|displacement) time (?:series|history) in units of (?P<unit>[\w/*^]+)"
@@ -36,7 +34,7 @@ HEADER = fields(
 _YEAR = re.compile(r"[\d/. -]+|\w+ \d+ ?,? ?\d{4}")
 
 
-def _read_channel(lines: Lines, file: str) -> Record:
+def _read_channel(lines: Lines) -> Record:
     header = read_fields(lines, HEADER)
     kind = header["kind"].lower()
     if not kind:
@@ -58,8 +56,6 @@ def _read_channel(lines: Lines, file: str) -> Record:
         event = f"{event}, {others.pop(0)}"
     component = others.pop().split("(")[0].strip() if others else ""
     return build_record(
-        TITLE,
-        file,
         even_series(values, step, notes),
         corrected=True,
         channel=component,
@@ -71,7 +67,7 @@ def _read_channel(lines: Lines, file: str) -> Record:
 
 FORMAT = text_format(
     "peer_at2",
-    TITLE,
+    "PEER AT2",
     recognised=re.compile(rf"(?:[^\n]*\n){{0,{DATA - 1}}}[^\n]*{_KIND}", re.IGNORECASE),
     read_channel=_read_channel,
 )

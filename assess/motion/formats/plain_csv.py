@@ -35,7 +35,6 @@ from assess.progress import check_waits
 from assess.text import split_text
 from assess.units import ACCELERATION, TIME, read_unit
 
-TITLE = "plain CSV"
 KEYS = ("station", "event", "start", "location", "azimuth", "corrected")
 CHECKED_EVERY = 10_000
 """Lines after which it is looked whether to stop."""
@@ -75,7 +74,7 @@ def recognises(head: bytes) -> bool:
     return first.startswith("time") and first[4:].lstrip()[:1] in {"", "["}
 
 
-def read(data: bytes, file: str) -> tuple[Record, ...]:
+def parse(data: bytes) -> tuple[Record, ...]:
     """Read every channel of a plain CSV file.
 
     Raises RecordError if a heading has no known unit, or a cell is no number; the message names the line.
@@ -97,7 +96,7 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
         if answer not in _ANSWERS:
             raise RecordError.about("corrected is {text!r}, expected yes or no", text=answer[:40])
         record = build_record(
-            TITLE, file, replace(series, notes=(*((note,) if unknown else ()), *series.notes)), own=own,
+            replace(series, notes=(*((note,) if unknown else ()), *series.notes)), own=own,
             corrected=_ANSWERS[answer], channel=name, direction=directions[name],
             location=comments.get("location", ""), station=comments.get("station", ""),
             event=comments.get("event", ""), start=comments.get("start", ""),
@@ -295,4 +294,4 @@ def _read_directions(table: _Table) -> dict[str, Direction]:
     return directions
 
 
-FORMAT = Format(key="csv", title=TITLE, recognises=recognises, read=read)
+FORMAT = Format("csv", "plain CSV", recognises=recognises, parse=parse)

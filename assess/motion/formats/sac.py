@@ -23,8 +23,6 @@ from assess.i18n import fill
 from assess.motion.formats._format import Format, build_record, even_series, read_acceleration_unit, read_direction
 from assess.motion.record import Record, check_count, peak
 
-TITLE = "SAC"
-
 HEADER, FOOTER = 632, 176
 """Bytes: 70 real numbers, 40 whole numbers, 192 characters; and what follows the data in version 7."""
 REALS = {"delta": 0, "begin": 5, "azimuth": 57, "tilt": 58}
@@ -63,12 +61,7 @@ class _Header:
     texts: dict[str, str]
 
 
-def recognises(head: bytes) -> bool:
-    """Return whether `head` is the header of a SAC file, of either order of bytes."""
-    return _read_header(head) is not None
-
-
-def read(data: bytes, file: str) -> tuple[Record, ...]:
+def parse(data: bytes) -> tuple[Record, ...]:
     """Read the one channel of a SAC file.
 
     Raises RecordError if the unit is not known, or the file is damaged.
@@ -102,8 +95,6 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
     elif tilt == 90.0 and azimuth is not None and 0 <= azimuth <= 360:
         direction = azimuth, False
     record = build_record(
-        TITLE,
-        file,
         series,
         corrected=False,
         channel=header.texts["channel"],
@@ -171,4 +162,4 @@ def _read_start(header: _Header) -> str:
     return f"{start.isoformat(sep=' ', timespec='milliseconds')} UTC"
 
 
-FORMAT = Format(key="sac", title=TITLE, recognises=recognises, read=read)
+FORMAT = Format("sac", "SAC", recognises=lambda head: _read_header(head) is not None, parse=parse)

@@ -31,7 +31,6 @@ from assess.motion.formats._text import (
 from assess.motion.record import Record, build_series
 from assess.units import ACCELERATION
 
-TITLE = "USGS SMC"
 CM_S2 = ACCELERATION["cm/s2"]
 
 # Lines, counted from 0, at which the blocks start, and the columns of the numbers in each.
@@ -58,7 +57,7 @@ _REFUSED = {
 _LOCATION = re.compile(r"<loclbl=>(.*?)<end>")
 
 
-def _read_channel(lines: Lines, file: str) -> Record:
+def _read_channel(lines: Lines) -> Record:
     found = _KIND.match(lines[0])
     if not found:
         raise RecordError(fill("the first line names no type of SMC file. Get the file again"))
@@ -100,8 +99,6 @@ def _read_channel(lines: Lines, file: str) -> Record:
         date = f"{header['year']}-{int(header['month']):02d}-{int(header['day']):02d}"
         start = f"{date} {header['hour']}:{header['minute']} UTC"
     record = build_record(
-        TITLE,
-        file,
         series,
         own=own,
         corrected=kind == "2",
@@ -198,4 +195,4 @@ def _orientation(component: str, upright: int | None, number: int | None) -> tup
     return ((float(known[0]), False) if known else (None, vertical)), ()
 
 
-FORMAT = text_format("smc", TITLE, recognised=_KIND, read_channel=_read_channel)
+FORMAT = text_format("smc", "USGS SMC", recognised=_KIND, read_channel=_read_channel)
