@@ -6,7 +6,7 @@ formula in a `Notation`: of a spreadsheet, or of a worked example with its numbe
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -87,20 +87,20 @@ class Expression(NDArrayOperatorsMixin):
         return f"({self.text})" if is_loose else self.text
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **kwargs: Any) -> "Expression":
-        operands = [self._lift(one) for one in inputs]
-        with np.errstate(all="ignore"):
-            value = ufunc(*(one.value for one in operands))
-        return Expression(self.notation, *self.notation.write(ufunc, operands), value)
+        return self._apply(ufunc, inputs)
 
     def __array_function__(self, function: Any, types: Any, args: Any, kwargs: Any) -> "Expression":
-        operands = [self._lift(one) for one in args]
-        value = function(*(one.value for one in operands))
-        return Expression(self.notation, *self.notation.write(function, operands), value)
+        return self._apply(function, args)
 
-    def _lift(self, value: Any) -> "Expression":
-        if isinstance(value, Expression):
-            return value
-        return Expression(self.notation, self.notation.number(float(value)), ATOM, float(value))
+    def _apply(self, operation: Any, values: Sequence[Any]) -> "Expression":
+        write = self.notation.number
+        operands = [
+            one if isinstance(one, Expression) else Expression(self.notation, write(float(one)), ATOM, float(one))
+            for one in values
+        ]
+        with np.errstate(all="ignore"):
+            value = operation(*(one.value for one in operands))
+        return Expression(self.notation, *self.notation.write(operation, operands), value)
 
 
 EXCEL = Notation(

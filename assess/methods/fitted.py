@@ -191,7 +191,19 @@ class Fitted:
 def build_method(model: Fitted, source: str) -> Method:
     """Return a model as a method; `source` says where it comes from."""
     is_probit = isinstance(model.formula, Probit)
-    fitted, equations, verdict = model.fitted, _write_equations(model.formula), _judge(model.fitted)
+    fitted, formula, verdict = model.fitted, model.formula, _judge(model.fitted)
+    if isinstance(formula, Probit):
+        equations: tuple[str, ...] = (
+            "R = Φ(b_0 + b_1 ln[PFA/(g·B/H)] + b_2 ln[p·PFV/(g·B/H)])",
+            "p = √(3g/(4r)), r = ½·√(B² + H²)",
+            _write_numbers(("b_0", "b_1", "b_2"), (formula.b0, formula.b1, formula.b2)),
+        )
+    else:
+        letters, numbers = string.ascii_lowercase, [c for _, _, c in formula.terms]
+        equations = (
+            fill("R = {total}, PFA in cm/s²", total=write_sum(formula.base, formula.powers, "(B/H)", "PFA")),
+            *(_write_numbers(letters[at : at + 3], numbers[at : at + 3]) for at in range(0, len(numbers), 3)),
+        )
     data = fitted.data.partition(", ")[0]
     errors = fill(
         "Fitted to computed chances on {data}; where a building is left out of the fit, the error for it is "
@@ -290,23 +302,10 @@ def _judge(fitted: FittedOn) -> Text:
     )
 
 
-def _write_equations(formula: Polynomial | Probit) -> tuple[str, ...]:
-    if isinstance(formula, Probit):
-        lines = ("R = Φ(b_0 + b_1 ln[PFA/(g·B/H)] + b_2 ln[p·PFV/(g·B/H)])", "p = √(3g/(4r)), r = ½·√(B² + H²)")
-        return (*lines, _write_numbers(("b_0", "b_1", "b_2"), (formula.b0, formula.b1, formula.b2)))
-    total = write_sum(formula.base, formula.powers, "(B/H)", "PFA")
-    letters, numbers = string.ascii_lowercase[: len(formula.terms)], [c for _, _, c in formula.terms]
-    starts = range(0, len(numbers), 3)
-    return (
-        fill("R = {total}, PFA in cm/s²", total=total),
-        *(_write_numbers(letters[at : at + 3], numbers[at : at + 3]) for at in starts),
-    )
-
-
 def _write_numbers(names: Sequence[str], values: Sequence[float]) -> Text:
     """Return ``a = 1.5; b = 2``, which a report writes with its own decimal sign."""
     return join(
-        "; ", [fill("{name} = {value:.9g}", name=one, value=value) for one, value in zip(names, values, strict=True)]
+        "; ", [fill("{name} = {value:.9g}", name=name, value=c) for name, c in zip(names, values, strict=False)]
     )
 
 
@@ -400,6 +399,8 @@ def read_model(path: Path | str) -> Method:
 
 def parse_model(text: str, file: str) -> Fitted:
     """Return the model of a file's text; raises InputError that names `file`, the key and how to fix it."""
+    from assess.methods import all_methods
+
     try:
         found = tomllib.loads(text.removeprefix("\ufeff"))
     except (ValueError, RecursionError) as error:  # also: a number of thousands of digits
@@ -428,8 +429,14 @@ def parse_model(text: str, file: str) -> Fitted:
     errors = _Table(file, "errors.", found["errors"], tuple(ERRORS))
     formula = _Table(file, f"{kind}.", found[kind], KINDS[kind])
     numbers = {field: errors.number(name, 0.0) for name, field in ERRORS.items()}
+    key = top.values["key"]
+    if not isinstance(key, str) or not KEY.fullmatch(key):
+        rule = fill("{start} and then small letters, digits and _, not ending in _raw or _flags", start=PREFIX)
+        raise top.wrong("key", key, rule)
+    if any(method.key == key for method in all_methods()):
+        raise top.fault("key", fill("is {value}, the key of a published method. Choose another.", value=_show(key)))
     return Fitted(
-        key=_read_key(top),
+        key=key,
         title=top.text("title", LONGEST_TITLE),
         formula=_read_polynomial(formula)
         if kind == "polynomial"
@@ -462,10 +469,9 @@ class _Table:
         """Return the error for a value that is not what is `expected`."""
         return self.fault(key, fill("is {value}, expected {expected}.", value=_show(value), expected=expected))
 
-    def number(self, key: str, low: float = -LARGEST) -> float:
-        return self.check_number(key, self.values[key], low)
-
-    def check_number(self, key: str, value: object, low: float = -LARGEST) -> float:
+    def number(self, key: str, low: float = -LARGEST, value: object = None) -> float:
+        """Return the number of a key, or `value` within it."""
+        value = self.values[key] if value is None else value
         is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
         if not (is_number and low <= value <= LARGEST):  # type: ignore[operator]
             expected = fill("a number of at most {most:g}", most=LARGEST)
@@ -478,7 +484,7 @@ class _Table:
         value = self.values[key]
         if not (isinstance(value, list) and len(value) == 2):
             raise self.wrong(key, value, fill("[lowest, highest]"))
-        low, high = (self.check_number(key, end, 0.0) for end in value)
+        low, high = (self.number(key, 0.0, end) for end in value)
         if low > high:
             raise self.wrong(key, value, fill("the lowest first"))
         if high == 0:
@@ -497,19 +503,6 @@ class _Table:
             text = fill("begins with {character!r}, expected a letter or a digit.", character=value[0])
             raise self.fault(key, text)
         return value
-
-
-def _read_key(top: _Table) -> str:
-    from assess.methods import all_methods
-
-    key = top.values["key"]
-    if not isinstance(key, str) or not KEY.fullmatch(key):
-        rule = fill("{start} and then small letters, digits and _, not ending in _raw or _flags", start=PREFIX)
-        raise top.wrong("key", key, rule)
-    if any(method.key == key for method in all_methods()):
-        text = fill("is {value}, the key of a published method. Choose another.", value=_show(key))
-        raise top.fault("key", text)
-    return key
 
 
 def _read_polynomial(table: _Table) -> Polynomial:
@@ -532,7 +525,7 @@ def _read_polynomial(table: _Table) -> Polynomial:
                     most=MOST_POWER,
                 )
                 raise table.fault(key, text)
-        found.append((i, j, table.check_number(key, coefficient)))
+        found.append((i, j, table.number(key, value=coefficient)))
     powers = [(i, j) for i, j, _ in found]
     for at, one in enumerate(powers):
         if one in powers[:at]:

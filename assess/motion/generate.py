@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 
 from assess.arrays import FloatArray, Single
 from assess.motion.noise import Phases, Transforms, draw_noise, find_rates
-from assess.motion.recipe import Bending, Correction, Recipe, bend_to, build_wavelets
+from assess.motion.recipe import Bending, Correction, Recipe, bend_to, build_wavelets, lift_rows
 from assess.motion.record import CORNER
 from assess.motion.rows import GROUP, make_groups, run_groups, run_rows
 from assess.motion.spectrum import DAMPING
@@ -239,7 +239,7 @@ def find_corrections(target: Target, recipe: Recipe, motions: Single, bench: Ben
             found += _correct(target, recipe.grid, motions, bench, sweep, watched, errors)
     recipe = replace(recipe, steps=recipe.steps + tuple(found))
     recipe = replace(recipe, lift=target.pfa / float(_pfa(motions).mean()))
-    bench.run(lambda rows: recipe.finish(motions[rows]), len(motions))
+    bench.run(lambda rows: lift_rows(motions[rows], recipe.lift), len(motions))
     return recipe
 
 
@@ -319,7 +319,11 @@ class Generator:
                 return self.made[group * GROUP : (group + 1) * GROUP]
             noise = draw_noise(self.target.envelopes, self.phases, group, self.progress)
             motions = np.empty((GROUP, self.phases.grid.count), np.float32)
-            self.recipe.make(noise, motions, self.progress)
+            self.recipe.shape(noise, motions)
+            for step in self.recipe.steps:
+                self.progress.check()
+                step.apply(motions)
+            lift_rows(motions, self.recipe.lift)
             return motions
 
         return make_groups(make, first, count, self.phases.grid.count, self.threads, self.progress)

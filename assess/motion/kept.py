@@ -38,13 +38,6 @@ class Kept(Generic[Made]):
         with self._lock:
             return sum(one.nbytes for one in self._held.values())
 
-    def find(self, key: Hashable) -> Made | None:
-        """Return what is kept by a key; None where nothing is."""
-        with self._lock:
-            if key in self._held:
-                self._held.move_to_end(key)
-            return self._held.get(key)
-
     def keep(self, key: Hashable, made: Made) -> None:
         """Keep something, which may have grown since it was kept last."""
         with self._lock:
@@ -59,7 +52,10 @@ class Kept(Generic[Made]):
             own = self._busy.setdefault(key, threading.Lock())
         try:
             with waiting(own, progress):
-                found = self.find(key)
+                with self._lock:
+                    found = self._held.get(key)
+                    if found is not None:
+                        self._held.move_to_end(key)
                 if found is None:
                     found = make()
                     self.keep(key, found)

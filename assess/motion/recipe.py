@@ -22,7 +22,6 @@ from assess.compiled import compiled
 from assess.motion.noise import Transforms, find_rates
 from assess.motion.sweep import Sweep
 from assess.motion.target import Grid
-from assess.progress import Progress
 
 TAPER = 1.0
 """Time over which velocity grows from zero and fades to it [s]."""
@@ -244,14 +243,6 @@ class Recipe:
     steps: tuple[Bending | Correction, ...] = ()
     lift: float = 1.0
 
-    def make(self, noise: Transforms, motions: Single, progress: Progress) -> None:
-        """Fill `motions` (k, n) [m/s2]."""
-        self.shape(noise, motions)
-        for step in self.steps:
-            progress.check()
-            step.apply(motions)
-        self.finish(motions)
-
     def shape(self, noise: Transforms, motions: Single) -> FloatArray:
         """Fill `motions` (k, n) with filtered noise whose velocity is bent and tapered.
 
@@ -264,7 +255,3 @@ class Recipe:
         peaks = np.empty((len(noise), 2))
         shape_rows(acceleration, taper, slope, self.grid.time_step, self.pfv, self.by_pfv, motions, peaks)
         return peaks
-
-    def finish(self, motions: Single) -> None:
-        """Lift motions (k, n) in place, and leave no final velocity."""
-        lift_rows(motions, self.lift)

@@ -192,14 +192,14 @@ def _rock_alike(bodies: Bodies, motions: FloatArray, time_step: float, threads: 
     high = min(len(blocks), pairs)
     wide = max(1, pairs // high)
     tiles = [
-        (slice(start, min(start + high, len(blocks))), range(first, min(first + wide, len(motions))))
+        (slice(start, start + high), first, min(first + wide, len(motions)))
         for first, start in product(range(0, len(motions), wide), range(0, len(blocks), high))
     ]
     no_trace = np.zeros((0, 3))
 
     def run(number: int) -> None:
-        own, rows = tiles[number]
-        kernel.rock(blocks[own], motions, rows.start, rows.stop, outcome[own], no_trace)
+        own, first, last = tiles[number]
+        kernel.rock(blocks[own], motions, first, last, outcome[own], no_trace)
 
     run_rows(run, len(tiles), threads, progress)
     return outcome

@@ -124,7 +124,18 @@ def _is_blank(line: str) -> bool:
 
 
 def _read_head(data: bytes) -> _Table:
-    lines, start = _split_head(data)
+    head, start, number = data[:MOST_HEAD], 0, 1
+    for end in _LINE_END.finditer(head if len(data) > MOST_HEAD else head + b"\n"):
+        own = decode(head[start : end.start()])
+        start = end.end()
+        if not (is_comment(own) or _is_blank(own)):
+            break
+        number += 1
+    else:
+        if len(data) > MOST_HEAD:
+            raise _too_long(number)
+        raise RecordError(fill("there is no row of headings. Add one, such as: time [s], north [cm/s2]"))
+    lines = split_text(decode(head[: end.start()]))
     separator = next((mark for mark in "\t;" if mark in lines[-1]), ",")
     headings, line = _cells(lines[-1], separator), len(lines)
     check_channels(len(headings) - 1)
@@ -158,19 +169,6 @@ def _read_head(data: bytes) -> _Table:
         if colon:
             comments[key.strip().lower()] = value.strip(' \t,;"')
     return _Table(comments, dict(found), separator, start, line + 1)
-
-
-def _split_head(data: bytes) -> tuple[list[str], int]:
-    """Return the lines down to the headings, and where the next line starts [bytes]."""
-    head, start, line = data[:MOST_HEAD], 0, 1
-    for end in _LINE_END.finditer(head if len(data) > MOST_HEAD else head + b"\n"):
-        own = decode(head[start : end.start()])
-        if not (is_comment(own) or _is_blank(own)):
-            return split_text(decode(head[: end.start()])), end.end()
-        start, line = end.end(), line + 1
-    if len(data) > MOST_HEAD:
-        raise _too_long(line)
-    raise RecordError(fill("there is no row of headings. Add one, such as: time [s], north [cm/s2]"))
 
 
 def _too_long(line: int) -> RecordError:

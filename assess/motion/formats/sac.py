@@ -12,6 +12,7 @@ Source: Lawrence Livermore National Laboratory and IRIS, SAC user's manual, data
 """
 
 import struct
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
@@ -94,6 +95,16 @@ def parse(data: bytes) -> tuple[Record, ...]:
         direction = None, True
     elif tilt == 90.0 and azimuth is not None and 0 <= azimuth <= 360:
         direction = azimuth, False
+    start, begin = "", header.reals["begin"] or 0.0  # B is counted from the reference time
+    with suppress(ValueError, OverflowError):  # a date that cannot be
+        reference = datetime(numbers["year"], 1, 1) + timedelta(
+            days=numbers["day"] - 1,
+            hours=numbers["hour"],
+            minutes=numbers["minute"],
+            seconds=numbers["second"] + begin,
+            milliseconds=numbers["millisecond"],
+        )
+        start = f"{reference.isoformat(sep=' ', timespec='milliseconds')} UTC"
     record = build_record(
         series,
         corrected=False,
@@ -102,7 +113,7 @@ def parse(data: bytes) -> tuple[Record, ...]:
         location=header.texts["place"],
         station=".".join(filter(None, (header.texts["network"], header.texts["station"]))),
         event=header.texts["event"],
-        start=_read_start(header),
+        start=start,
         has_offset=True,
     )
     return (record,)
@@ -144,22 +155,6 @@ def _read_unit(header: _Header, values: FloatArray) -> tuple[float, str]:
             fix=_FIX,
         )
     return NM_S2, fill("the unit is nm/s2, what the type of the samples (IDEP) means")
-
-
-def _read_start(header: _Header) -> str:
-    """Return when the record starts, B after the reference time; "" where its header has no date that can be."""
-    numbers, begin = header.integers, header.reals["begin"] or 0.0
-    try:
-        start = datetime(numbers["year"], 1, 1) + timedelta(
-            days=numbers["day"] - 1,
-            hours=numbers["hour"],
-            minutes=numbers["minute"],
-            seconds=numbers["second"] + begin,
-            milliseconds=numbers["millisecond"],
-        )
-    except (ValueError, OverflowError):
-        return ""
-    return f"{start.isoformat(sep=' ', timespec='milliseconds')} UTC"
 
 
 FORMAT = Format("sac", "SAC", recognises=lambda head: _read_header(head) is not None, parse=parse)
