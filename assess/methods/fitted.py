@@ -304,9 +304,8 @@ def _judge(fitted: FittedOn) -> Text:
 
 def _write_numbers(names: Sequence[str], values: Sequence[float]) -> Text:
     """Return ``a = 1.5; b = 2``, which a report writes with its own decimal sign."""
-    return join(
-        "; ", [fill("{name} = {value:.9g}", name=name, value=c) for name, c in zip(names, values, strict=False)]
-    )
+    pairs = zip(names, values, strict=False)
+    return join("; ", [fill("{name} = {value:.9g}", name=name, value=value) for name, value in pairs])
 
 
 # ---------------------------------------------------------------- its file
