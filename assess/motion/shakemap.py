@@ -197,6 +197,15 @@ class ShakeMap:
     uncertainty: Grid | None = None
     path: Path | None = None
 
+    @property
+    def title(self) -> Text:
+        """The earthquake in words."""
+        event = self.grid.event
+        name = event.get("event_description") or self.grid.event_id or self.file
+        if magnitude := event.get("magnitude", ""):
+            return fill("{name}, magnitude {magnitude}", name=name, magnitude=magnitude)
+        return fill("{name}", name=name)
+
     def at(self, latitude: float, longitude: float) -> SiteGround:
         """Return the shaking at a place [deg].
 
@@ -217,14 +226,10 @@ class ShakeMap:
         psa = ((period, read(name, logarithmic=True) * GRAVITY / 100) for name, period in self.grid.psa.items())
         sigma, source, shared = self._find_sigma("PGA" if math.isnan(pgv) else "PGV", read, beside)
         header, event, its_file = self.grid.header, self.grid.event, self.uncertainty_file
-        name, magnitude = event.get("event_description") or self.grid.event_id or self.file, event.get("magnitude", "")
-        title = fill("{name}", name=name)
-        if magnitude:
-            title = fill("{name}, magnitude {magnitude}", name=name, magnitude=magnitude)
         version = join(", ", [text for text in (header.get("shakemap_version"), header.get("code_version")) if text])
         cited = fill("{file}, SHA-256 {sha256}", file=its_file, sha256=self.uncertainty_sha256) if its_file else ""
         listed = (
-            (fill("Earthquake"), title),
+            (fill("Earthquake"), self.title),
             (fill("Time of the earthquake"), event.get("event_timestamp", "")),
             (fill("Event ID"), self.grid.event_id),
             (fill("Status of the map"), header.get("map_status", "")),
