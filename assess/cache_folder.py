@@ -7,7 +7,7 @@ that others can write to, or replace.
 import os
 import stat
 import sys
-from collections.abc import Iterator
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
@@ -49,28 +49,20 @@ def examine_folder(folder: Path) -> str:
     """Return why compiled code is not kept in a folder, "" where it can be; a missing one is made."""
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        return _find_writable(folder)
+        if not hasattr(os, "getuid"):
+            return ""  # access rights of Windows: a profile is the user's own
+        own = (folder.absolute(), folder.resolve())
+        for place in dict.fromkeys([parent for one in own for parent in (one, *one.parents)]):
+            found = place.stat()
+            is_shared = bool(found.st_mode & stat.S_ISVTX) and place not in own
+            if fault := _describe(place, found, is_shared=is_shared):
+                return fault
+        if not folder.stat().st_mode & (stat.S_IXGRP | stat.S_IXOTH):
+            return ""  # nobody else comes in
+        inside = (Path(top, name) for top, folders, files in os.walk(folder) for name in (*folders, *files))
+        return next((fault for place in inside if (fault := _describe(place, place.lstat()))), "")
     except (OSError, RuntimeError) as error:  # RuntimeError: links that lead round in a circle
         return f"{folder} cannot be used: {getattr(error, 'strerror', None) or error}"
-
-
-def _find_writable(folder: Path) -> str:
-    if not hasattr(os, "getuid"):
-        return ""  # access rights of Windows: a profile is the user's own
-    way = dict.fromkeys([folder.absolute(), *folder.absolute().parents, folder.resolve(), *folder.resolve().parents])
-    for place in way:
-        found = place.stat()
-        is_shared = bool(found.st_mode & stat.S_ISVTX) and place not in (folder.absolute(), folder.resolve())
-        if fault := _describe(place, found, is_shared=is_shared):
-            return fault
-    if not folder.stat().st_mode & (stat.S_IXGRP | stat.S_IXOTH):
-        return ""  # nobody else comes in
-    return next((fault for place in _walk(folder) if (fault := _describe(place, place.lstat()))), "")
-
-
-def _walk(folder: Path) -> Iterator[Path]:
-    for top, folders, files in os.walk(folder):
-        yield from (Path(top, name) for name in (*folders, *files))
 
 
 def _describe(place: Path, found: os.stat_result, *, is_shared: bool = False) -> str:
@@ -80,18 +72,15 @@ def _describe(place: Path, found: os.stat_result, *, is_shared: bool = False) ->
     if stat.S_ISLNK(found.st_mode):
         return f"{place} is a link"
     open_to = found.st_mode & _OTHERS
-    if not open_to or is_shared or (open_to == stat.S_IWGRP and _is_own_group(found.st_gid)):
+    if not open_to or is_shared:
         return ""
+    if open_to == stat.S_IWGRP:  # many systems make a group for each user, with the user alone as its member
+        import grp
+        import pwd
+
+        with suppress(KeyError):
+            user, group = pwd.getpwuid(os.getuid()), grp.getgrgid(found.st_gid)
+            is_own = found.st_gid == user.pw_gid and group.gr_name == user.pw_name
+            if is_own and not {*group.gr_mem} - {user.pw_name}:
+                return ""
     return f"others can write to {place}"
-
-
-def _is_own_group(group: int) -> bool:
-    """Tell whether a group has the user alone as its member, as many systems make one for each user."""
-    import grp
-    import pwd
-
-    try:
-        user, own = pwd.getpwuid(os.getuid()), grp.getgrgid(group)
-    except KeyError:
-        return False
-    return group == user.pw_gid and own.gr_name == user.pw_name and not {*own.gr_mem} - {user.pw_name}

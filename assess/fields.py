@@ -75,12 +75,6 @@ _KINDS: Mapping[str, Kind] = {"number": "number", "count": "count", "truth": "fl
 """Of the columns of a method; all others are texts."""
 
 
-def _in_excel(spec: str) -> str:
-    whole, _point, decimals = spec.rstrip("f").partition(".")
-    zeros = "0" * int(decimals or 0)
-    return (f"{'#,##0' if whole else '0'}{'.' if zeros else ''}{zeros}") if spec else ""
-
-
 def method_fields(method: MethodInfo) -> Iterator[Field]:
     """Yield the fields of a case by one method: its value, what stands beside it, its flags."""
     key, path = method.key, ("methods", method.key)
@@ -91,9 +85,12 @@ def method_fields(method: MethodInfo) -> Iterator[Field]:
         shows=DATA | listed,
     )  # fmt: skip
     for column in method.columns if method.role != "simulation" else ():  # that has fields of its own
+        whole, _point, decimals = column.format.rstrip("f").partition(".")
+        shown = f"{'#,##0' if whole else '0'}{'.' if int(decimals or 0) else ''}{'0' * int(decimals or 0)}"
         yield Field(
             key=f"{key}_{column.name}", source=f"methods.{key}.detail.{column.name}", path=(*path, column.name),
-            label=column.label, unit=column.unit, format=_in_excel(column.format), kind=_KINDS.get(column.kind, "text"),
+            label=column.label, unit=column.unit, format=shown if column.format else "",
+            kind=_KINDS.get(column.kind, "text"),
             is_optional=True, shows=DATA,
         )  # fmt: skip
     yield Field(key=f"{key}_flags", source=f"methods.{key}.flags", path=(*path, "flags"), kind="list", shows=DATA)
@@ -268,8 +265,10 @@ ANCHOR_FIELDS = (
 """The weight of a piece, and what its bracket has to carry; all of it is screening, not design."""
 
 
-def _axis_fields(methods: Sequence[MethodInfo]) -> tuple[Field, ...]:
-    return (
+def item_fields(methods: Sequence[MethodInfo]) -> tuple[Field, ...]:
+    """Return the fields of a row of furniture by the methods of the run, in the order of items.csv."""
+    of_case = (*(field for method in methods for field in method_fields(method)), *SIMULATION_FIELDS)
+    of_axis = (
         Field(key="axis", source="motion.axis"),
         Field(key="source", source="motion.label"),
         Field(key="pfa_g", source="motion.pfa_g", kind="number"),
@@ -280,18 +279,13 @@ def _axis_fields(methods: Sequence[MethodInfo]) -> tuple[Field, ...]:
         ),
         *SIMULATION_FIELDS,
     )
-
-
-def item_fields(methods: Sequence[MethodInfo]) -> tuple[Field, ...]:
-    """Return the fields of a row of furniture by the methods of the run, in the order of items.csv."""
-    of_case = (*(field for method in methods for field in method_fields(method)), *SIMULATION_FIELDS)
     return (
         *PIECE_FIELDS,
         *(replace(one, source=f"governing.{one.source}") for one in of_case),
         *ADOPTED_FIELDS,
         *FORMULA_CLASSES,
         *ANNUAL_FIELDS,
-        Field(key="axes", source="cases", kind="records", records=_axis_fields(methods), shows=DATA,
+        Field(key="axes", source="cases", kind="records", records=of_axis, shows=DATA,
             line="{axis}: {source} {pfa_g} g", help="Every motion that the item was evaluated under."),
         _of_item("anchored", fill("Anchored"), choices=ANCHORED, width=10),
         *(

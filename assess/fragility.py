@@ -85,7 +85,20 @@ def fit_fragility(levels: ArrayLike, fallen: ArrayLike, trials: ArrayLike) -> Fr
     Raises ValueError if the arrays differ in shape, a number is not finite, a level is not above 0, a count is below 0
     or above its trials, or there are no trials at all.
     """
-    im, fell, count = _check(levels, fallen, trials)
+    im, fell, count = (np.asarray(values, dtype=np.float64) for values in (levels, fallen, trials))
+    if not im.ndim == 1 or not im.shape == fell.shape == count.shape:
+        raise ValueError(
+            f"levels, fallen and trials have shapes {im.shape}, {fell.shape}, {count.shape}: one is needed"
+        )
+    if not (np.isfinite(im) & np.isfinite(fell) & np.isfinite(count)).all():
+        raise ValueError("levels, fallen and trials must be finite")
+    if (im <= 0).any() or (fell < 0).any() or (fell > count).any():
+        raise ValueError("levels must be above 0, and fallen 0 to trials")
+    if not (count > 0).any():
+        raise ValueError("there are no trials")
+    tried = count > 0
+    im, place = np.unique(im[tried], return_inverse=True)
+    fell, count = (np.bincount(place, weights=values[tried]).astype(np.float64) for values in (fell, count))
     kind = _classify(im, fell, count)
     if kind != "fitted":
         return Fragility(levels=im, fallen=fell, trials=count, kind=kind)
@@ -107,24 +120,6 @@ def lognormal_chance(im: ArrayLike, median: float, dispersion: float) -> FloatAr
         ratio = np.log(np.asarray(im, dtype=np.float64) / median)
         x = np.where(ratio == 0, 0.0, ratio / dispersion)
     return np.asarray(ndtr(x) if dispersion > 0 else np.where(ratio >= 0, 1.0, 0.0), dtype=np.float64)
-
-
-def _check(levels: ArrayLike, fallen: ArrayLike, trials: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
-    im, fell, count = (np.asarray(values, dtype=np.float64) for values in (levels, fallen, trials))
-    if not im.ndim == 1 or not im.shape == fell.shape == count.shape:
-        raise ValueError(
-            f"levels, fallen and trials have shapes {im.shape}, {fell.shape}, {count.shape}: one is needed"
-        )
-    if not (np.isfinite(im) & np.isfinite(fell) & np.isfinite(count)).all():
-        raise ValueError("levels, fallen and trials must be finite")
-    if (im <= 0).any() or (fell < 0).any() or (fell > count).any():
-        raise ValueError("levels must be above 0, and fallen 0 to trials")
-    if not (count > 0).any():
-        raise ValueError("there are no trials")
-    tried = count > 0
-    found, place = np.unique(im[tried], return_inverse=True)
-    fell, count = (np.bincount(place, weights=values[tried]).astype(np.float64) for values in (fell, count))
-    return found.astype(np.float64), fell, count
 
 
 def _classify(im: FloatArray, fell: FloatArray, count: FloatArray) -> Kind:

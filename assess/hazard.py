@@ -114,7 +114,14 @@ def parse_hazard(
     * `latitude`, `longitude`: Of the building [deg].
     """
     try:
-        lines = split_text(_decode(data))
+        if len(data) > LARGEST_FILE:
+            raise InputError(fill("the file is larger than {most:.0f} MB", most=LARGEST_FILE / 1e6))
+        if sum(data.count(mark) for mark in (b",", b";", b"\t", b"\n", b"\r")) > MOST_CELLS:
+            text = fill("the file has more than {most:,} cells: cut it to the sites near the building", most=MOST_CELLS)
+            raise InputError(text)
+        if b"\0" in data or data.startswith((b"PK", b"\xff\xfe", b"\xfe\xff")):
+            raise InputError(fill("the file is not plain text. Save it as CSV UTF-8"))
+        lines = split_text(decode(data))
         rows = list(_split(lines))
         if not rows:
             raise InputError(fill("there is no table. Its first row has to be: {columns}", columns=",".join(COLUMNS)))
@@ -133,20 +140,6 @@ def find_distance(latitude: float, longitude: float, latitudes: FloatArray, long
     half = np.sin((others - phi) / 2) ** 2
     half += math.cos(phi) * np.cos(others) * np.sin(np.radians(longitudes - longitude) / 2) ** 2
     return np.asarray(2 * EARTH * np.arcsin(np.sqrt(np.minimum(half, 1))))
-
-
-# ---------------------------------------------------------------- text
-
-
-def _decode(data: bytes) -> str:
-    if len(data) > LARGEST_FILE:
-        raise InputError(fill("the file is larger than {most:.0f} MB", most=LARGEST_FILE / 1e6))
-    if sum(data.count(mark) for mark in (b",", b";", b"\t", b"\n", b"\r")) > MOST_CELLS:
-        text = fill("the file has more than {most:,} cells: cut it to the sites near the building", most=MOST_CELLS)
-        raise InputError(text)
-    if b"\0" in data or data.startswith((b"PK", b"\xff\xfe", b"\xfe\xff")):
-        raise InputError(fill("the file is not plain text. Save it as CSV UTF-8"))
-    return decode(data)
 
 
 def _split(lines: Sequence[str]) -> Iterator[Line]:
@@ -171,9 +164,6 @@ def _read_number(text: str, line: int, column: str) -> float:
     return value
 
 
-# ---------------------------------------------------------------- two columns
-
-
 def _read_table(name: str, heading: Sequence[str], rows: Sequence[Line], *, is_ended: bool) -> HazardCurve:
     if sorted(heading) != sorted(COLUMNS):
         raise InputError(fill(
@@ -190,45 +180,34 @@ def _read_table(name: str, heading: Sequence[str], rows: Sequence[Line], *, is_e
     if len(points) < 2:
         raise InputError(fill("the number of rows is {rows}: a curve needs two or more", rows=len(points)))
     for line, (pga, rate) in zip(numbers, points, strict=True):
-        _check_point(line, pga, rate)
+        if not 0 < pga <= MOST_PGA:
+            raise InputError(fill(
+                "line {line}: pga_g is {pga:g}, expected above 0 and at most {most:g}, in g",
+                line=line, pga=pga, most=MOST_PGA,
+            ))  # fmt: skip
+        if not rate > 0:
+            raise InputError(fill("line {line}: annual_rate is {rate:g}, expected above 0", line=line, rate=rate))
     for line, (before, after) in zip(numbers[1:], pairwise(points), strict=True):
-        _check_order(line, *before, *after)
+        if not after[0] > before[0]:
+            raise InputError(fill(
+                "line {line}: pga_g {pga:g} does not rise from {before:g} in the row before",
+                line=line, pga=after[0], before=before[0],
+            ))  # fmt: skip
+        if after[1] > before[1]:
+            raise InputError(fill(
+                "line {line}: annual_rate rises from {before:g} to {rate:g}, but it has to fall as PGA rises: give "
+                "rates, not return periods",
+                line=line, before=before[1], rate=after[1],
+            ))  # fmt: skip
     if points[0][1] == points[-1][1]:
         raise InputError(fill("the annual rate is the same in every row: it has to fall as PGA rises"))
-    pga, rate = np.array(points).T
     notes = () if is_ended else (_NO_END,)
-    return HazardCurve(file=name, pga=pga * GRAVITY, rate=rate, notes=notes)
+    peaks, rates = np.array(points).T
+    return HazardCurve(file=name, pga=peaks * GRAVITY, rate=rates, notes=notes)
 
 
 _NO_END = fill("the last line of the hazard file has no end: see that its last rate is whole, and no row is missing")
 """A number that is cut off is a smaller number; programs end their last line, people may not."""
-
-
-def _check_point(line: int, pga: float, rate: float) -> None:
-    if not 0 < pga <= MOST_PGA:
-        raise InputError(fill(
-            "line {line}: pga_g is {pga:g}, expected above 0 and at most {most:g}, in g",
-            line=line, pga=pga, most=MOST_PGA,
-        ))  # fmt: skip
-    if not rate > 0:
-        raise InputError(fill("line {line}: annual_rate is {rate:g}, expected above 0", line=line, rate=rate))
-
-
-def _check_order(line: int, pga_before: float, rate_before: float, pga: float, rate: float) -> None:
-    if not pga > pga_before:
-        raise InputError(fill(
-            "line {line}: pga_g {pga:g} does not rise from {before:g} in the row before",
-            line=line, pga=pga, before=pga_before,
-        ))  # fmt: skip
-    if rate > rate_before:
-        raise InputError(fill(
-            "line {line}: annual_rate rises from {before:g} to {rate:g}, but it has to fall as PGA rises: give "
-            "rates, not return periods",
-            line=line, before=rate_before, rate=rate,
-        ))  # fmt: skip
-
-
-# ---------------------------------------------------------------- OpenQuake
 
 
 def _read_sites(
@@ -240,10 +219,27 @@ def _read_sites(
     longitude: float | None,
 ) -> HazardCurve:
     years, notes = _read_comment(comments)
-    levels, places = _read_levels(heading, rows[0][0])
+    found = [(place, _LEVEL.fullmatch(cell)) for place, cell in enumerate(heading)]
+    places = [place for place, match in found if match]
+    levels = np.array([_read_number(match[1], rows[0][0], heading[place]) for place, match in found if match])
+    if levels.size < 2 or not (levels > 0).all() or not (np.diff(levels) > 0).all() or levels[-1] > MOST_PGA:
+        raise InputError(
+            fill("line {line}: expected two or more columns poe-LEVEL with rising levels in g", line=rows[0][0])
+        )
     (line, cells), site, distance = _choose_site(heading, rows[1:], latitude, longitude)
     chances = np.array([_read_number(cells[place], line, heading[place]) for place in places])
-    _check_chances(line, levels, chances)
+    for level, chance in zip(levels, chances, strict=True):
+        if not 0 <= chance <= 1:
+            raise InputError(fill(
+                "line {line}: the chance of exceeding {level:g} g is {chance:g}, expected 0 to 1",
+                line=line, level=float(level), chance=float(chance),
+            ))  # fmt: skip
+    rises = np.flatnonzero(np.diff(chances) > 0)
+    if rises.size:
+        raise InputError(fill(
+            "line {line}: the chance of exceeding {level:g} g is larger than that of the level before",
+            line=line, level=float(levels[rises[0] + 1]),
+        ))  # fmt: skip
     known = (chances > 0) & (chances < 1)
     left_out = int((~known).sum())
     if known.sum() < 2:
@@ -281,57 +277,30 @@ def _read_comment(comments: str) -> tuple[float, tuple[Text, ...]]:
     return years, () if of == "mean" else (fill("the curve is {kind!r}, not the mean", kind=of[:40]),)
 
 
-def _read_levels(heading: Sequence[str], line: int) -> tuple[FloatArray, list[int]]:
-    found = [(place, _LEVEL.fullmatch(cell)) for place, cell in enumerate(heading)]
-    places = [place for place, match in found if match]
-    levels = np.array([_read_number(match[1], line, heading[place]) for place, match in found if match])
-    if levels.size < 2 or not (levels > 0).all() or not (np.diff(levels) > 0).all() or levels[-1] > MOST_PGA:
-        raise InputError(fill("line {line}: expected two or more columns poe-LEVEL with rising levels in g", line=line))
-    return levels, places
-
-
 def _choose_site(
     heading: Sequence[str], rows: Sequence[Line], latitude: float | None, longitude: float | None
 ) -> tuple[Line, tuple[float, float], float | None]:
     if not rows:
         raise InputError(fill("there are no sites below the headings"))
-    sites = np.array([_read_site(heading, line, cells) for line, cells in rows])
+    sites = []
+    for line, cells in rows:
+        if len(cells) != len(heading):
+            raise InputError(fill(
+                "line {line}: the number of cells is {cells}, but there are {headings} headings",
+                line=line, cells=len(cells), headings=len(heading),
+            ))  # fmt: skip
+        lat, lon = (_read_number(cells[heading.index(column)], line, column) for column in ("lat", "lon"))
+        if abs(lat) > 90 or abs(lon) > 360:
+            raise InputError(
+                fill("line {line}: lon {lon:g} and lat {lat:g} are not a place on earth", line=line, lon=lon, lat=lat)
+            )
+        sites.append((lat, lon))
     if latitude is None or longitude is None:
         if len(rows) > 1:
             raise InputError(
                 fill("the file has {count} sites: the building's latitude and longitude are needed", count=len(rows))
             )
-        return rows[0], (float(sites[0, 0]), float(sites[0, 1])), None
-    distances = find_distance(latitude, longitude, sites[:, 0], sites[:, 1])
+        return rows[0], sites[0], None
+    distances = find_distance(latitude, longitude, *np.array(sites).T)
     nearest = int(distances.argmin())
-    return rows[nearest], (float(sites[nearest, 0]), float(sites[nearest, 1])), float(distances[nearest])
-
-
-def _read_site(heading: Sequence[str], line: int, cells: Sequence[str]) -> tuple[float, float]:
-    if len(cells) != len(heading):
-        raise InputError(fill(
-            "line {line}: the number of cells is {cells}, but there are {headings} headings",
-            line=line, cells=len(cells), headings=len(heading),
-        ))  # fmt: skip
-    lat, lon = (_read_number(cells[heading.index(column)], line, column) for column in ("lat", "lon"))
-    if abs(lat) > 90 or abs(lon) > 360:
-        raise InputError(
-            fill("line {line}: lon {lon:g} and lat {lat:g} are not a place on earth", line=line, lon=lon, lat=lat)
-        )
-    return lat, lon
-
-
-def _check_chances(line: int, levels: FloatArray, chances: FloatArray) -> None:
-    for level, chance in zip(levels, chances, strict=True):
-        if not 0 <= chance <= 1:
-            raise InputError(fill(
-                "line {line}: the chance of exceeding {level:g} g is {chance:g}, expected 0 to 1",
-                line=line, level=float(level), chance=float(chance),
-            ))  # fmt: skip
-    rises = np.flatnonzero(np.diff(chances) > 0)
-    if rises.size:
-        level = float(levels[rises[0] + 1])
-        raise InputError(fill(
-            "line {line}: the chance of exceeding {level:g} g is larger than that of the level before",
-            line=line, level=level,
-        ))  # fmt: skip
+    return rows[nearest], sites[nearest], float(distances[nearest])

@@ -196,28 +196,23 @@ def _read(path: Path) -> tuple[dict[str, tuple[str, ...]], Callable[[int], int]]
     for message in catalogue:
         ids, texts = _forms(message.id), _forms(message.string)
         if ids[0] and all(texts):
-            _check(path, ids, texts)
+            counted = {"n"} if len(ids) > 1 else set()
+            for text in texts:
+                try:  # what is said of one may hold other names than what is said of many
+                    off = min((placeholders(text) ^ placeholders(one) - counted for one in ids), key=len)
+                except ValueError as error:
+                    raise InputError(fill(
+                        "{path}: {text!r}: the braces of its text do not match: {why}",
+                        path=path, text=ids[0], why=str(error),
+                    )) from None  # fmt: skip
+                if off - {"n"}:
+                    raise InputError(fill(
+                        "{path}: {text!r}: its translation has to hold the same names in braces; check {names}",
+                        path=path, text=ids[0], names=", ".join(sorted(off)),
+                    ))  # fmt: skip
             messages[ids[0]] = texts
     return messages, _standard.c2py(catalogue.plural_expr)
 
 
 def _forms(text: object) -> tuple[str, ...]:
     return tuple(str(one) for one in text) if isinstance(text, (tuple, list)) else (str(text or ""),)
-
-
-def _check(path: Path, ids: tuple[str, ...], texts: tuple[str, ...]) -> None:
-    counted = {"n"} if len(ids) > 1 else set()
-    for text in texts:
-        try:  # what is said of one may hold other names than what is said of many
-            off = min((placeholders(text) ^ placeholders(one) - counted for one in ids), key=len)
-        except ValueError as error:
-            why = str(error)
-            message = fill(
-                "{path}: {text!r}: the braces of its text do not match: {why}", path=path, text=ids[0], why=why
-            )
-            raise InputError(message) from None
-        if off - {"n"}:
-            raise InputError(fill(
-                "{path}: {text!r}: its translation has to hold the same names in braces; check {names}",
-                path=path, text=ids[0], names=", ".join(sorted(off)),
-            ))  # fmt: skip

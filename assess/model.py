@@ -478,17 +478,17 @@ class Inventory:
         """Return the items as a table, one row an item, units in the names as in items.csv."""
         import pandas as pd
 
-        return pd.DataFrame([self._record(item) for item in self.items]).set_index("item", drop=False)
-
-    def _record(self, item: Item) -> dict[str, Any]:
-        found: dict[str, Any] = {}
-        for name in _FRAMED:
-            value = getattr(item, name)
-            if name in ("breadth", "width", "height"):
-                found[f"{name}_cm"] = None if value is None else to_edge(value, LENGTH["cm"])
-            else:
-                found[f"{name}_m" if name in ("x", "y", "edge_distance") else name] = value
-        return found | {"friction": self.friction_of(item), "assumed": list(self.assumed_of(item))}
+        rows = []
+        for item in self.items:
+            found: dict[str, Any] = {}
+            for name in _FRAMED:
+                value = getattr(item, name)
+                if name in ("breadth", "width", "height"):
+                    found[f"{name}_cm"] = None if value is None else to_edge(value, LENGTH["cm"])
+                else:
+                    found[f"{name}_m" if name in ("x", "y", "edge_distance") else name] = value
+            rows.append(found | {"friction": self.friction_of(item), "assumed": list(self.assumed_of(item))})
+        return pd.DataFrame(rows).set_index("item", drop=False)
 
     def __repr__(self) -> str:
         return f"<Inventory {self.file_name}: {count(len(self.items), 'item')} on {count(len(self.floors), 'floor')}>"

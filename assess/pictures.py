@@ -92,39 +92,32 @@ def prepare_picture(data: bytes) -> tuple[bytes, str]:
 
 
 def _without_private(data: bytes, picture: "Image", kind: str) -> bytes:
+    """Return a picture without its texts and what a camera wrote, upright; as few of its bytes change as can be."""
     from PIL import ImageOps
 
     is_turned = _is_turned(picture)
-    kept = None if is_turned else _drop_chunks(data) if kind == "PNG" else _drop_segments(data)
-    if kept is not None:
-        return kept
+    if not is_turned and kind == "PNG":
+        kept, at = [data[: len(PNG)]], len(PNG)
+        while at < len(data):
+            end = at + 12 + int.from_bytes(data[at : at + 4])
+            kept += [] if data[at + 4 : at + 8] in _PRIVATE_CHUNKS else [data[at:end]]
+            at = end
+        return b"".join(kept)
+    if not is_turned:
+        kept, at = [data[:2]], 2
+        while at + 4 <= len(data) and data[at] == _FILL:
+            marker = data[at + 1]
+            if marker == _SCAN:
+                return b"".join((*kept, data[at:]))
+            size = 0 if marker in _ALONE else int.from_bytes(data[at + 2 : at + 4])
+            end = at + 1 if marker == _FILL else at + 2 + size
+            kept += [] if marker in _PRIVATE_SEGMENTS else [data[at:end]]
+            at = end
+    # turned, or its segments do not follow each other
     upright, target = ImageOps.exif_transpose(picture) if is_turned else picture, io.BytesIO()
     upright.info = {name: value for name, value in picture.info.items() if name in _SHOWN_BY}
     upright.save(target, kind, quality=90, exif=b"")
     return target.getvalue()
-
-
-def _drop_chunks(data: bytes) -> bytes:
-    """Return a sound PNG without its texts and what a camera wrote."""
-    kept, at = [data[: len(PNG)]], len(PNG)
-    while at < len(data):
-        end = at + 12 + int.from_bytes(data[at : at + 4])
-        kept += [] if data[at + 4 : at + 8] in _PRIVATE_CHUNKS else [data[at:end]]
-        at = end
-    return b"".join(kept)
-
-
-def _drop_segments(data: bytes) -> bytes | None:
-    """Return a JPEG without its comments and what a camera wrote; None where its segments do not follow each other."""
-    kept, at = [data[:2]], 2
-    while at + 4 <= len(data) and data[at] == _FILL:
-        marker = data[at + 1]
-        if marker == _SCAN:
-            return b"".join((*kept, data[at:]))
-        end = at + 1 if marker == _FILL else at + 2 + (0 if marker in _ALONE else int.from_bytes(data[at + 2 : at + 4]))
-        kept += [] if marker in _PRIVATE_SEGMENTS else [data[at:end]]
-        at = end
-    return None
 
 
 def _is_turned(picture: "Image") -> bool:

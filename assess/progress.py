@@ -5,9 +5,9 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar, copy_context
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from threading import Event
-from typing import Generic, Self, TypeVar
+from typing import Self, TypeVar
 
 from assess.errors import CancelledError
 
@@ -70,11 +70,6 @@ class Progress:
             self.check()
             yield row
 
-    @property
-    def is_cancelled(self) -> bool:
-        """Whether the work is to stop."""
-        return self._cancel.is_set()
-
     @contextmanager
     def stage(self, name: str, detail: str = "", parts: int = 1) -> Iterator["Stage"]:
         """Report a stage from its beginning to its end; `parts` of it may be worked on side by side."""
@@ -88,7 +83,7 @@ class Progress:
         """Pass a report on to the listener, unless the work is to stop."""
         if self._listener is not None:
             with self._lock:
-                if not self.is_cancelled:
+                if not self._cancel.is_set():
                     self._listener(report)
 
     def wait_for(self, work: Callable[[], _Found]) -> _Found:
@@ -102,36 +97,26 @@ class Progress:
         if not self._can_stop:
             return work()
         self.check()
-        aside: _Aside[_Found] = _Aside(work)
+        found: list[_Found] = []
+        errors: list[BaseException] = []
+        done = Event()
+
+        def run() -> None:
+            try:
+                found.append(work())
+            except BaseException as error:  # raised in the thread that waits
+                errors.append(error)
+            finally:
+                done.set()
+
         context = copy_context()
         context.run(_WAITS.set, self)
-        threading.Thread(target=context.run, args=(aside.run,), name="assess-aside").start()
-        while not aside.done.wait(ASKED_EVERY):
+        threading.Thread(target=context.run, args=(run,), name="assess-aside").start()
+        while not done.wait(ASKED_EVERY):
             self.check()
-        return aside.result()
-
-
-@dataclass(slots=True)
-class _Aside(Generic[_Found]):
-    work: Callable[[], _Found]
-    done: Event = field(default_factory=Event)
-    _found: list[_Found] = field(default_factory=list)
-    _error: BaseException | None = None
-
-    def run(self) -> None:
-        """Do the work."""
-        try:
-            self._found.append(self.work())
-        except BaseException as error:  # raised in the thread that waits
-            self._error = error
-        finally:
-            self.done.set()
-
-    def result(self) -> _Found:
-        """Return what the work returned, or raise what it raised."""
-        if self._error is not None:
-            raise self._error
-        return self._found.pop()
+        if errors:
+            raise errors[0]
+        return found.pop()
 
 
 class Stage:

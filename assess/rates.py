@@ -16,7 +16,7 @@ doi:10.1061/(ASCE)0733-9445(2002)128:4(526) (λ of one power law and a lognormal
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -93,13 +93,20 @@ def integrate_lognormal(curve: HazardCurve, *, median: float, dispersion: float)
         raise ValueError(f"median is {median} and dispersion {dispersion}, expected above 0 and 0 or above")
 
     def integrate(pga: FloatArray, rate: FloatArray) -> float:
+        from scipy.special import log_ndtr
+
         if dispersion == 0:
             if median > pga[-1]:
                 return 0.0
             return float(np.exp(np.interp(math.log(median), np.log(pga), np.log(rate))))
-        return float(rate[0] * lognormal_chance(pga[0], median, dispersion)) + _add_parts(
-            pga, rate, np.log(pga / median) / dispersion, dispersion
-        )
+        x = np.log(pga / median) / dispersion
+        k = -np.diff(np.log(rate)) / np.diff(np.log(pga))
+        low, high = x[:-1] + k * dispersion, x[1:] + k * dispersion
+        low, high = np.where(low > 0, -high, low), np.where(low > 0, -low, high)  # of both tails the accurate one
+        with np.errstate(divide="ignore"):  # in logarithms: steep segments would overflow
+            between = log_ndtr(high) + np.log(-np.expm1(log_ndtr(low) - log_ndtr(high)))
+        parts = np.exp(np.log(rate[:-1]) + k * dispersion * (x[:-1] + k * dispersion / 2) + between)
+        return float(rate[0] * lognormal_chance(pga[0], median, dispersion)) + float(parts.sum())
 
     return _build(curve, integrate, float(lognormal_chance(curve.pga[-1], median, dispersion)))
 
@@ -138,32 +145,26 @@ def integrate_table(curve: HazardCurve, levels: ArrayLike, shares: ArrayLike) ->
 
 def list_remarks(curve: HazardCurve, found: AnnualRate) -> tuple[Text, ...]:
     """Return what a reader of an annual rate has to know of its hazard curve."""
-    return (*curve.remarks, *_remark_on_ends(curve, found))
-
-
-def _remark_on_ends(curve: HazardCurve, found: AnnualRate) -> Iterator[Text]:
+    remarks = list(curve.remarks)
     first, last = (float(pga) / GRAVITY for pga in curve.pga[[0, -1]])
     if found.below > MOST_OUTSIDE:
-        yield fill(
+        remarks.append(fill(
             "the hazard curve begins at {pga:.3g} g; what lies below is not counted and would be about {percent:.0f} % "
             "of the annual rate: give the curve from a lower PGA on",
-            pga=first,
-            percent=100 * found.below,
-        )
+            pga=first, percent=100 * found.below,
+        ))  # fmt: skip
     if found.could_be_more:
-        yield fill(
+        remarks.append(fill(
             "the hazard curve ends at {pga:.3g} g; the annual rate is {rate:.2g} and could be up to {most:.2g}: give "
             "the curve up to a higher PGA",
-            pga=last,
-            rate=found.rate,
-            most=found.most,
-        )
+            pga=last, rate=found.rate, most=found.most,
+        ))  # fmt: skip
     elif found.beyond > MOST_OUTSIDE:
-        yield fill(
+        remarks.append(fill(
             "{percent:.0f} % of the annual rate lie beyond the end of the hazard curve at {pga:.3g} g",
-            percent=100 * found.beyond,
-            pga=last,
-        )
+            percent=100 * found.beyond, pga=last,
+        ))  # fmt: skip
+    return tuple(remarks)
 
 
 def _build(curve: HazardCurve, integrate: Callable[[FloatArray, FloatArray], float], at_last: float) -> AnnualRate:
@@ -178,15 +179,3 @@ def _build(curve: HazardCurve, integrate: Callable[[FloatArray, FloatArray], flo
         beyond=last * at_last / found if found > 0 else 0.0,
         below=max(0.0, 1 - found / more) if more > 0 else 0.0,
     )
-
-
-def _add_parts(pga: FloatArray, rate: FloatArray, x: FloatArray, dispersion: float) -> float:
-    """Return the sum of ∫ ν dΦ(x) over the segments, in logarithms: steep segments would overflow."""
-    from scipy.special import log_ndtr
-
-    k = -np.diff(np.log(rate)) / np.diff(np.log(pga))
-    low, high = x[:-1] + k * dispersion, x[1:] + k * dispersion
-    low, high = np.where(low > 0, -high, low), np.where(low > 0, -low, high)  # of both tails the accurate one
-    with np.errstate(divide="ignore"):
-        between = log_ndtr(high) + np.log(-np.expm1(log_ndtr(low) - log_ndtr(high)))
-    return float(np.exp(np.log(rate[:-1]) + k * dispersion * (x[:-1] + k * dispersion / 2) + between).sum())

@@ -4,7 +4,7 @@ They are known without loading what writes them.
 """
 
 import importlib.util
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -22,7 +22,6 @@ class Format:
     """A format of reports.
 
     * `key`, `file`: what it is called, and the name of its file.
-    * `write`: writes the file; it imports what it needs when it is called.
     * `is_default`: whether it is written where no format is named.
     * `edition`: of a PDF, which is begun before all others and written last, as it carries results.json.
     * `needs`: packages beyond those of every report, by the modules that they bring, and `extra` which brings them.
@@ -30,7 +29,6 @@ class Format:
 
     key: str
     file: str
-    write: Callable[["Job", Path], None]
     is_default: bool = True
     edition: Literal["client", "annex"] | None = None
     needs: Mapping[str, str] = field(default_factory=dict)
@@ -48,66 +46,45 @@ class Format:
                         packages=", ".join(missing), how=say_install(self.extra))  # fmt: skip
             raise InputError(text)
 
+    def write(self, job: "Job", path: Path) -> None:
+        """Write the file; what writes it is imported only now."""
+        if self.edition is not None:
+            from assess.report.pages.pdf import finish_pdf
 
-def _write_pdf(job: "Job", path: Path) -> None:
-    from assess.report.pages.pdf import finish_pdf
+            finish_pdf(job.layouts[path.name], job.results, path, job.options, job.progress, data=job.data)
+        elif self.key == "xlsx":
+            from assess.report.xlsx import write_xlsx
 
-    finish_pdf(job.layouts[path.name], job.results, path, job.options, job.progress, data=job.data)
+            write_xlsx(job.content, path, job.progress)
+        elif self.key == "html":
+            from assess.report.pages.html import write_html
 
+            write_html(job.content, path, job.options, job.progress)
+        elif self.key == "json":
+            job.write_data()
+        elif self.key == "docx":
+            from assess.report.word import write_word
 
-def _write_xlsx(job: "Job", path: Path) -> None:
-    from assess.report.xlsx import write_xlsx
+            write_word(job.content, path, job.options, job.progress)
+        else:
+            from assess.report import data
 
-    write_xlsx(job.content, path, job.progress)
-
-
-def _write_html(job: "Job", path: Path) -> None:
-    from assess.report.pages.html import write_html
-
-    write_html(job.content, path, job.options, job.progress)
-
-
-def _write_json(job: "Job", _path: Path) -> None:
-    job.write_data()
-
-
-def _write_csv(job: "Job", path: Path) -> None:
-    from assess.report.data import write_csv
-
-    write_csv(job.results, path, job.progress)
-
-
-def _write_word(job: "Job", path: Path) -> None:
-    from assess.report.word import write_word
-
-    write_word(job.content, path, job.options, job.progress)
-
-
-def _write_npz(job: "Job", path: Path) -> None:
-    from assess.report.data import write_npz
-
-    write_npz(job.results, path, job.progress)
-
-
-def _write_parquet(job: "Job", path: Path) -> None:
-    from assess.report.data import write_parquet
-
-    write_parquet(job.results, path, job.progress)
+            table_writers = {"csv": data.write_csv, "npz": data.write_npz, "parquet": data.write_parquet}
+            table_writers[self.key](job.results, path, job.progress)
 
 
 _WORD, _PARQUET = {"docx": "python-docx", "pypdfium2": "pypdfium2"}, {"duckdb": "duckdb"}
 _ALL = (
-    Format(key="pdf", file="report.pdf", write=_write_pdf, edition="client"),
-    Format(key="annex", file="annex.pdf", write=_write_pdf, edition="annex", is_default=False),
-    Format(key="xlsx", file="report.xlsx", write=_write_xlsx),
-    Format(key="html", file="report.html", write=_write_html),
-    Format(key="json", file="results.json", write=_write_json),
-    Format(key="csv", file="items.csv", write=_write_csv),
-    Format(key="docx", file="report.docx", write=_write_word, is_default=False, needs=_WORD, extra="word"),
-    Format(key="npz", file="outcomes.npz", write=_write_npz, is_default=False),
-    Format(key="parquet", file="items.parquet", write=_write_parquet, is_default=False, needs=_PARQUET,
-           extra="parquet"),
-)  # fmt: skip
+    Format(key="pdf", file="report.pdf", edition="client"),
+    Format(key="annex", file="annex.pdf", edition="annex", is_default=False),
+    Format(key="xlsx", file="report.xlsx"),
+    Format(key="html", file="report.html"),
+    Format(key="json", file="results.json"),
+    Format(key="csv", file="items.csv"),
+    Format(key="docx", file="report.docx", is_default=False, needs=_WORD, extra="word"),
+    Format(key="npz", file="outcomes.npz", is_default=False),
+    Format(key="parquet", file="items.parquet", is_default=False, needs=_PARQUET, extra="parquet"),
+)
 FORMATS: Mapping[str, Format] = {one.key: one for one in _ALL}
 FILES: Mapping[str, str] = {one.key: one.file for one in FORMATS.values()}
 DEFAULT = tuple(one.key for one in FORMATS.values() if one.is_default)

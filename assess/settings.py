@@ -65,10 +65,6 @@ def _read_whole(value: Any, low: int, high: float) -> int | None:
     return number if low <= number <= high else None
 
 
-def _read_runs(value: Any) -> int | str | None:
-    return _read_choice(value, (AUTO,)) or _read_whole(value, 1, MOST_RUNS)
-
-
 def _read_number(value: Any, is_allowed: Callable[[float], bool]) -> float | None:
     if isinstance(value, (bool, str)) or not hasattr(value, "__float__"):
         return None
@@ -104,7 +100,8 @@ _RULES: Mapping[str, _Rule] = {
     "scenario": _choice(SCENARIOS),
     "class_by": _choice(CLASS_BY),
     "verify": _choice(VERIFY),
-    "runs": (_read_runs, fill("1 to {most:,}, or {auto}", most=MOST_RUNS, auto=AUTO)),
+    "runs": (lambda value: _read_choice(value, (AUTO,)) or _read_whole(value, 1, MOST_RUNS),
+             fill("1 to {most:,}, or {auto}", most=MOST_RUNS, auto=AUTO)),
     "seed": (partial(_read_whole, low=0, high=math.inf), fill("a whole number, 0 or above")),
     "scale": _number(lambda number: 0 < number <= MOST_SCALE, fill("above 0 and at most {most:g}", most=MOST_SCALE)),
     "ideal": _FLAG,
@@ -119,7 +116,7 @@ _RULES: Mapping[str, _Rule] = {
     "anchor_strength": _POSITIVE,
     "anchor_importance": _POSITIVE,
     "route_risk": _number(lambda number: 0 < number < 1, fill("above 0 and below 1 (write 3 % as 0.03)")),
-}
+}  # fmt: skip
 """What reads the value of each setting, None for one that cannot be used, and what was expected."""
 _BY_WORKBOOK = ("scenario", "class_by")
 """Settings of which None stands for what the workbook says."""
