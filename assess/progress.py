@@ -70,6 +70,11 @@ class Progress:
             self.check()
             yield row
 
+    @property
+    def is_cancelled(self) -> bool:
+        """Whether the work is to stop."""
+        return self._cancel.is_set()
+
     @contextmanager
     def stage(self, name: str, detail: str = "", parts: int = 1) -> Iterator["Stage"]:
         """Report a stage from its beginning to its end; `parts` of it may be worked on side by side."""
@@ -83,7 +88,7 @@ class Progress:
         """Pass a report on to the listener, unless the work is to stop."""
         if self._listener is not None:
             with self._lock:
-                if not self._cancel.is_set():
+                if not self.is_cancelled:
                     self._listener(report)
 
     def wait_for(self, work: Callable[[], _Found]) -> _Found:
