@@ -69,23 +69,26 @@ class Format:
         else:
             from assess.report import data
 
-            table_writers = {"csv": data.write_csv, "npz": data.write_npz, "parquet": data.write_parquet}
-            table_writers[self.key](job.results, path, job.progress)
+            if self.key == "parquet":
+                job.progress.wait_for(lambda: data.write_parquet(job.results, path))
+            else:
+                (data.write_csv if self.key == "csv" else data.write_npz)(job.results, path, job.progress)
 
 
-_WORD, _PARQUET = {"docx": "python-docx", "pypdfium2": "pypdfium2"}, {"duckdb": "duckdb"}
-_ALL = (
-    Format(key="pdf", file="report.pdf", edition="client"),
-    Format(key="annex", file="annex.pdf", edition="annex", is_default=False),
-    Format(key="xlsx", file="report.xlsx"),
-    Format(key="html", file="report.html"),
-    Format(key="json", file="results.json"),
-    Format(key="csv", file="items.csv"),
-    Format(key="docx", file="report.docx", is_default=False, needs=_WORD, extra="word"),
-    Format(key="npz", file="outcomes.npz", is_default=False),
-    Format(key="parquet", file="items.parquet", is_default=False, needs=_PARQUET, extra="parquet"),
-)
-FORMATS: Mapping[str, Format] = {one.key: one for one in _ALL}
+FORMATS: Mapping[str, Format] = {
+    one.key: one for one in (
+        Format(key="pdf", file="report.pdf", edition="client"),
+        Format(key="annex", file="annex.pdf", edition="annex", is_default=False),
+        Format(key="xlsx", file="report.xlsx"),
+        Format(key="html", file="report.html"),
+        Format(key="json", file="results.json"),
+        Format(key="csv", file="items.csv"),
+        Format(key="docx", file="report.docx", is_default=False, extra="word",
+               needs={"docx": "python-docx", "pypdfium2": "pypdfium2"}),
+        Format(key="npz", file="outcomes.npz", is_default=False),
+        Format(key="parquet", file="items.parquet", is_default=False, extra="parquet", needs={"duckdb": "duckdb"}),
+    )
+}  # fmt: skip
 FILES: Mapping[str, str] = {one.key: one.file for one in FORMATS.values()}
 DEFAULT = tuple(one.key for one in FORMATS.values() if one.is_default)
 ALL = "all"

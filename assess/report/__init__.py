@@ -19,6 +19,7 @@ from assess.i18n import fill
 from assess.progress import SILENT, Progress
 from assess.report.job import Job
 from assess.report.ownership import DATA, find_reports
+from assess.report.pages.pdf_seal import seal
 from assess.report.report_options import ReportOptions
 from assess.report_formats import ALL, DEFAULT, FILES, FORMATS
 from assess.results import Results
@@ -142,21 +143,15 @@ def _write_all(job: Job, folder: Path, formats: Sequence[str]) -> PdfUnavailable
                     "{file} could not be written: {why}. {folder} is left as it was.", file=file, why=why, folder=folder
                 )
                 raise OutputError(text) from None
-        _seal([job.stage / file for file in job.layouts if file in job.listed], job)
+        pdfs = [job.stage / file for file in job.layouts if file in job.listed]
+        others = [path for path in pdfs if not seal(path, job.data)]
+        if others:  # they have no place for identifiers: results.json lists them by a hash
+            job.listed.update((path.name, find_digest(path)) for path in others)
+            job.write_data()
+            for path in pdfs:
+                if path not in others:
+                    seal(path, job.data)
+        for path in (job.data, *pdfs):
+            flush_file(path)
         reports.check()
     return missing
-
-
-def _seal(paths: Sequence[Path], job: Job) -> None:
-    """Write the identifiers into the PDFs; list those that have no place for them, as results.json can, by a hash."""
-    from assess.report.pages.pdf_seal import seal
-
-    data = job.data
-    sealed = [path for path in paths if seal(path, data)]
-    if len(sealed) < len(paths):
-        job.listed.update((path.name, find_digest(path)) for path in paths if path not in sealed)
-        job.write_data()
-        for path in sealed:
-            seal(path, data)
-    for path in (data, *paths):
-        flush_file(path)

@@ -75,6 +75,21 @@ def _write_list(file: TextIO, name: str, parts: Iterable[Iterable[str]], indent:
 def describe_run(results: Results, files: Mapping[str, str | None] | None = None) -> dict[str, Any]:
     """Return what stands before the items: the program, its settings and files, the building, the floors."""
     origin = results.provenance
+    fitted = {
+        one.key: {"title": str(one.title), "reference": str(one.reference)}
+        for one in results.methods
+        if one.fitted is not None
+    }
+    building: dict[str, Any] = {}
+    for column in BUILDING.columns:
+        value = getattr(results.building, column.name)
+        if column.quantity and column.quantity != "angle":
+            value = None if value is None else to_edge(value, column.factor)
+        building[building_key(column)] = value.name if isinstance(value, Path) else value
+    demands: dict[str, list[dict[str, Any]]] = {one.floor: [] for one in results.floor_rows}
+    motions = sorted(results.motions, key=lambda one: one.axis)
+    for motion, record in zip(motions, Table.of(MOTION_FIELDS, motions).records(), strict=True):
+        demands[motion.floor].append(record)
     return {
         "schema": VERSION,
         "assess": {
@@ -94,50 +109,21 @@ def describe_run(results: Results, files: Mapping[str, str | None] | None = None
                 "records": dict(origin.files),
                 "motions": dict(origin.suite.files) if origin.suite else {},
             },
-            **_fitted_models(results),
+            **({"fitted_models": fitted} if fitted else {}),
             **({} if files is None else {"files": dict(files)}),
         },
-        "building": building_record(results),
-        "floors": _floor_records(results),
+        "building": building,
+        "floors": [
+            {"floor": one.floor, "name": one.name, "elevation_m": one.elevation_m, "demands": demands[one.floor]}
+            for one in results.floor_rows
+        ],
     }
-
-
-def _fitted_models(results: Results) -> dict[str, Any]:
-    """Return what fitted models stand among the methods; nothing where there are none."""
-    found = {one.key: one for one in results.methods if one.fitted is not None}
-    texts = {key: {"title": str(one.title), "reference": str(one.reference)} for key, one in found.items()}
-    return {"fitted_models": texts} if texts else {}
-
-
-def building_record(results: Results) -> dict[str, Any]:
-    """Return the lines of the sheet Building, quantities in the units of the empty workbook."""
-    record: dict[str, Any] = {}
-    for column in BUILDING.columns:
-        value = getattr(results.building, column.name)
-        if column.quantity and column.quantity != "angle":
-            value = None if value is None else to_edge(value, column.factor)
-            record[building_key(column)] = value
-        else:
-            record[column.name] = value.name if isinstance(value, Path) else value
-    return record
 
 
 def building_key(column: Column) -> str:
     """Return what results.json calls a line of the sheet Building: its field, with the unit but for angles."""
     has_unit = column.quantity and column.quantity != "angle"
     return f"{column.name}_{column.unit.replace('/', '_')}" if has_unit else column.name
-
-
-def _floor_records(results: Results) -> list[dict[str, Any]]:
-    """Return every floor with the motions that serve it, along X and then along Y."""
-    demands: dict[str, list[dict[str, Any]]] = {one.floor: [] for one in results.floor_rows}
-    motions = sorted(results.motions, key=lambda one: one.axis)
-    for motion, record in zip(motions, Table.of(MOTION_FIELDS, motions).records(), strict=True):
-        demands[motion.floor].append(record)
-    return [
-        {"floor": one.floor, "name": one.name, "elevation_m": one.elevation_m, "demands": demands[one.floor]}
-        for one in results.floor_rows
-    ]
 
 
 # ---------------------------------------------------------------- items.csv
@@ -171,13 +157,14 @@ def disarm(value: object) -> object:
     """
     if isinstance(value, list):
         value = "; ".join(map(str, value))
-    return _FIRST.sub(_put_apostrophe, value) if isinstance(value, str) else value
-
-
-def _put_apostrophe(found: re.Match[str]) -> str:
-    before, sign = found[1], found[2]
-    is_first = found.start() == 0 or not _SEPARATORS.isdisjoint(before)
-    return f"{before}'{sign}" if is_first else found[0]
+    if not isinstance(value, str):
+        return value
+    return _FIRST.sub(
+        lambda found: (
+            f"{found[1]}'{found[2]}" if found.start() == 0 or not _SEPARATORS.isdisjoint(found[1]) else found[0]
+        ),
+        value,
+    )
 
 
 # ---------------------------------------------------------------- items.parquet
@@ -187,25 +174,20 @@ _SQL_TYPES: Mapping[Kind, str] = {"number": "DOUBLE", "share": "DOUBLE", "count"
 table; all others are VARCHAR."""
 
 
-def write_parquet(results: Results, path: Path, progress: Progress = SILENT) -> None:
+def write_parquet(results: Results, path: Path) -> None:
     """Write items.parquet by DuckDB: rows and columns of items.csv, typed; what is not known is NULL.
 
-    The same results give the same bytes. Raises OSError if the file cannot be written; CancelledError if cancelled.
+    The same results give the same bytes. Raises OSError if the file cannot be written.
     """
-    progress.wait_for(lambda: _write_parquet(results, path))
-
-
-def _write_parquet(results: Results, path: Path) -> None:
     import duckdb
-
-    def to_text(value: Any) -> str | None:
-        value = "; ".join(map(str, value)) if isinstance(value, list) else value
-        return value if isinstance(value, str) else None
 
     table = results.table("items")
     types, frame = {one.key: _SQL_TYPES.get(one.kind, "VARCHAR") for one in table.fields}, table.to_frame()
     for key in (key for key, sql in types.items() if sql == "VARCHAR"):
-        frame[key] = frame[key].astype("object").map(to_text)
+        frame[key] = frame[key].astype("object").map(
+            lambda value: "; ".join(map(str, value)) if isinstance(value, list)
+            else value if isinstance(value, str) else None
+        )  # fmt: skip
     names = {key: '"' + key.replace('"', '""') + '"' for key in types}
     columns = ", ".join(f"{names[key]}::{sql} AS {names[key]}" for key, sql in types.items())
     target = str(path).replace("'", "''")

@@ -8,7 +8,7 @@ program writes are looked at: folders of reports travel, and a list may be anybo
 
 import json
 import os
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -54,40 +54,31 @@ def find_reports(
                  path=folder / blocked[0])
         )  # fmt: skip
     if mine:
-        raise _explain(folder, mine, any(name in own for own in listed.values() for name in mine), data)
+        shown = ", ".join(mine[:MOST_NAMED]) + (", ..." if len(mine) > MOST_NAMED else "")
+        if any(name in own for own in listed.values() for name in mine):
+            message = fill(
+                "out: {folder} holds files that were changed after they were written, or that its {data} lists without "
+                "their hash: {names}. Move or rename them to keep them, or choose another folder. Nothing was touched.",
+                folder=folder, data=data, names=shown,
+            )  # fmt: skip
+        else:
+            message = fill(
+                "out: {folder} holds files that would be replaced, but no {data} beside them lists them as reports of "
+                "an earlier run: {names}. Move or rename them, or choose another folder. Nothing was touched.",
+                folder=folder, data=data, names=shown,
+            )  # fmt: skip
+        raise InputError(message)
     return frozenset(name for name in found if (folder / name).is_file() and name not in others)
 
 
 def _is_report(path: Path, listed: Mapping[Path, Mapping[str, str | None]]) -> bool:
     """Whether a file is one that a list names by its hash, a PDF that is sealed with it, or the list itself."""
     digest = find_digest(path)
-    if digest is None:
-        return False
-    for data, files in listed.items():
-        if path == data and files:
-            return True
-        if path.name in files:
-            known = files[path.name]
-            if known == digest or (known is None and path.suffix == ".pdf" and is_sealed(path, data)):
-                return True
-    return False
-
-
-def _explain(folder: Path, names: Sequence[str], is_listed: bool, data: str) -> InputError:
-    shown = ", ".join(names[:MOST_NAMED]) + (", ..." if len(names) > MOST_NAMED else "")
-    if is_listed:
-        message = fill(
-            "out: {folder} holds files that were changed after they were written, or that its {data} lists without "
-            "their hash: {names}. Move or rename them to keep them, or choose another folder. Nothing was touched.",
-            folder=folder, data=data, names=shown,
-        )  # fmt: skip
-    else:
-        message = fill(
-            "out: {folder} holds files that would be replaced, but no {data} beside them lists them as reports of an "
-            "earlier run: {names}. Move or rename them, or choose another folder. Nothing was touched.",
-            folder=folder, data=data, names=shown,
-        )  # fmt: skip
-    return InputError(message)
+    return digest is not None and any(
+        path == data or files.get(path.name) == digest
+        or (files.get(path.name, "") is None and path.suffix == ".pdf" and is_sealed(path, data))
+        for data, files in listed.items() if files
+    )  # fmt: skip
 
 
 def read_list(path: Path) -> Mapping[str, str | None]:
@@ -115,7 +106,7 @@ def read_list(path: Path) -> Mapping[str, str | None]:
 
 
 def _read_head(text: str) -> dict[str, Any]:
-    """Return the first two entries of an object in JSON; less if they cannot be read."""
+    """Return the first two entries of an object in JSON; fewer if they cannot be read."""
     decoder, found = json.JSONDecoder(), dict[str, Any]()
     rest = text.lstrip()
     while rest[:1] in ("{", ",") and len(found) < 2:

@@ -10,36 +10,31 @@ import re
 from pathlib import Path
 
 _ID = re.compile(rb"/ID ?\[\(([0-9a-f]{32})\) ?\(([0-9a-f]{32})\)\]")
-_LENGTH = 32
 
 
 def seal(path: Path, data: Path) -> bool:
     """Write the identifiers into a PDF that carries `data`; False if it has none of the expected form. OSError."""
-    content = path.read_bytes()
-    places = list(_ID.finditer(content))
-    if len(places) != 1:
-        return False
-    content = _put(content, places[0], 1, _short(data.read_bytes()))
-    path.write_bytes(_put(content, places[0], 2, _find_own(content, places[0])))
-    return True
+    sealed = _put_identifiers(path.read_bytes(), data)
+    if sealed is not None:
+        path.write_bytes(sealed)
+    return sealed is not None
 
 
 def is_sealed(path: Path, data: Path) -> bool:
     """Whether a PDF is as it was written, next to a results.json as it was written. OSError if unreadable."""
     content = path.read_bytes()
+    return data.is_file() and _put_identifiers(content, data) == content
+
+
+def _put_identifiers(content: bytes, data: Path) -> bytes | None:
     places = list(_ID.finditer(content))
-    if len(places) != 1 or not data.is_file():
-        return False
-    return places[0][1] == _short(data.read_bytes()) and places[0][2] == _find_own(content, places[0])
+    if len(places) != 1:
+        return None
+    (start, end), (own_start, own_end) = places[0].span(1), places[0].span(2)
+    content = content[:start] + _hash(data.read_bytes()) + content[end:]
+    before, after = content[:own_start], content[own_end:]
+    return before + _hash(before + b"0" * 32 + after) + after
 
 
-def _find_own(content: bytes, place: re.Match[bytes]) -> bytes:
-    return _short(_put(content, place, 2, b"0" * _LENGTH))
-
-
-def _put(content: bytes, place: re.Match[bytes], group: int, text: bytes) -> bytes:
-    return content[: place.start(group)] + text + content[place.end(group) :]
-
-
-def _short(content: bytes) -> bytes:
-    return hashlib.sha256(content).hexdigest()[:_LENGTH].encode()
+def _hash(content: bytes) -> bytes:
+    return hashlib.sha256(content).hexdigest()[:32].encode()
