@@ -1,9 +1,11 @@
 """A report as a document: its cover, which on a screen is short as the answer follows at once, and its sections."""
 
+from dataclasses import replace
+
 from assess.i18n import gettext as _
 from assess.i18n import ngettext
 from assess.report import words
-from assess.report.blocks import Block, Contents, Document, Image, Paragraph, Runs, Span, Title, Words, strong
+from assess.report.blocks import Block, Contents, Document, Image, Paragraph, Runs, Section, Span, Title, Words, strong
 from assess.report.embedded import embed_logo
 from assess.report.say.ground import say_ground_source
 from assess.report.say.simulation import list_conditions
@@ -19,14 +21,18 @@ def build_document(view: View) -> Document:
 
     Raises CancelledError if the work was cancelled.
     """
-    content, building = view.content, view.run.building
+    content, building, sections = view.content, view.run.building, list[Section]()
+    for part in view.progress.checked(view.parts):
+        built = part.build(view)
+        first, *others = [built] if isinstance(built, Section) else built
+        sections += [replace(first, id=part.key, heading=_(part.heading)), *others]
     named = words.cut(content.title, 80)
     title = (_("Furniture in earthquakes: {building}, annex", building=named) if view.edition == "annex"
              else _("Furniture in earthquakes: {building}", building=named))  # fmt: skip
     return Document(
         title=title,
         cover=_build_cover(view),
-        sections=[one for part in view.progress.checked(view.parts) for one in part.build_sections(view)],
+        sections=sections,
         author=", ".join(filter(None, (building.prepared_by, building.organisation))),
         description=_("Overturning of furniture in an earthquake: assessment"),
         keywords=_("earthquake, furniture, overturning, rocking, floor acceleration"),
@@ -86,20 +92,13 @@ def _title(view: View, title: str, short: str) -> Title:
 
 def build_contents(view: View) -> Contents:
     """Return the contents; of floors without room for their names, how many pages they have."""
-    lines = [
-        (Span(_(part.heading), href=f"#{part.key}"), _list_floors(view) if part.key == "floors" else ())
-        for part in view.parts
-    ]
+    floors, most = view.content.shown_floors, MOST_PRINTED if view.for_print else MOST
+    named = floors[:most] if not view.for_print or len(floors) <= most else ()
+    pages: list[Words] = [Span(page.title, href=f"#floor-{at}") for at, page in enumerate(named, start=1)]
+    if left := len(floors) - len(named):
+        pages.append(ngettext("{n:,} more floor has a page of its own.", "{n:,} more floors have pages of their own.",
+                              left))  # fmt: skip
+    lines = [(Span(_(part.heading), href=f"#{part.key}"), pages if part.key == "floors" else ()) for part in view.parts]
     annex = view.list_parts("annex") if view.edition == "client" else ()
     parts = "; ".join(_(part.heading) for part in annex)
     return Contents(_("Contents"), lines, _("Annex, on request: {parts}.", parts=parts) if annex else "")
-
-
-def _list_floors(view: View) -> list[Words]:
-    floors, most = view.content.shown_floors, MOST_PRINTED if view.for_print else MOST
-    named = floors[:most] if not view.for_print or len(floors) <= most else ()
-    lines: list[Words] = [Span(page.title, href=f"#floor-{at}") for at, page in enumerate(named, start=1)]
-    if left := len(floors) - len(named):
-        lines.append(ngettext("{n:,} more floor has a page of its own.", "{n:,} more floors have pages of their own.",
-                              left))  # fmt: skip
-    return lines

@@ -120,15 +120,14 @@ def say_value(field: Field, value: Any) -> str:
 
 def badge(one: ItemResult) -> Words:
     """Return the class of a piece as a badge, with its notes in words."""
-    notes = words.risk_notes(one)
     if one.is_anchored:
-        free = ", ".join([words.apart_words(one) or words.risk_word(one.adopted.risk), *notes])
+        free = ", ".join(words.list_risk_words(one))
         return [
             Span(f"{words.ANCHORED} " + _("depends on its anchor"), "badge anchored"),
             note(" (" + _("free-standing: {words}", words=free) + ")"),
         ]
     sign = Span(words.class_label(one), f"badge {words.style_name(one)}")
-    apart = [note(f" {words.apart_note(one)}")] if one.apart else []
+    apart, notes = [note(f" {words.apart_note(one)}")] if one.apart else [], words.risk_notes(one)
     return [sign, *apart, *([note(f", {', '.join(notes)}")] if notes else [])]
 
 
@@ -158,7 +157,33 @@ def list_columns(results: Results, where: Where) -> tuple[PageColumn, ...]:
     methods = {one.key: one for one in results.methods}
     left_out = frozenset() if results.has_simulated else SIMULATED
     found = [field for field in item_fields(results.methods) if where in field.shows and field.key not in left_out]
-    columns = [_of_piece(field, where, methods.get(field.key)) for field in found]
+    composed: Mapping[str, Mapping[str, Any]] = {
+        "breadth_cm": {"key": "size", "text": words.size, "sort": lambda one: one.item.height_cm, "places": 17},
+        "adopted_probability": {"text": words.chance, "places": 25, "is_wide": True},
+        "verification_record_overturned": {"text": words.under_record},
+        "verification_ideal_probability": {"text": words.ideal_chance, "places": 25, "is_wide": True},
+        "adopted_class": {
+            "text": words.risk_words,
+            "show": badge,
+            "sort": lambda one: int(one.adopted.risk) - (10 if one.is_anchored else 0),
+        },
+        "adopted_flags": {
+            "text": lambda one: ", ".join([*map(say_flag, one.adopted.flags), *words.list_beside(one)]),
+            "show": _show_flags,
+        },
+        "description": {  # stands for the type where there is none
+            "text": lambda one: (
+                words.cut(one.item.description or one.item.type, 120) if where == "pieces" else describe(one, 60)
+            ),
+            "line": lambda one: describe(one, COMPACT["description"]),
+        },
+    }
+    columns = []
+    for field in found:
+        column = of_field(field, places=0 if field.key in NOT_COMPACT else COMPACT.get(field.key, field.width))
+        method = methods.get(field.key)
+        own = composed.get(field.key, {})
+        columns.append(replace(column, **own) if method is None else _of_method(column, where, method))
     if not results.has_simulated:
         columns = [replace(one, places=7) if one.key == "adopted_probability" else one for one in columns]
     if where == "methods":
@@ -174,7 +199,11 @@ def short_columns(results: Results, *keys: str) -> tuple[PageColumn, ...]:
     known["piece"] = PageColumn(
         "piece", _("Piece"), lambda one: f"{words.cut(one.item.item, 14)}: {describe(one, longest)}"
     )
-    known["place"] = PageColumn("place", _("Floor, room"), _say_place)
+    known["place"] = PageColumn(
+        "place",
+        _("Floor, room"),
+        lambda one: ", ".join(filter(None, (words.cut(one.item.floor, 8), words.cut(one.item.room, 18)))),
+    )
     known["formula"] = PageColumn("formula", _("By formula"), _say_formula)
     known["chance"] = replace(known["adopted_probability"], key="chance", heading=_("Chance (interval)"))
     known["room_short"] = replace(known["room"], text=lambda one: words.cut(one.item.room, 14))
@@ -195,48 +224,11 @@ def say_flag(flag: str) -> str:
     return _(flag.replace("_", " "))
 
 
-def _say_place(one: ItemResult) -> str:
-    return ", ".join(filter(None, (words.cut(one.item.floor, 8), words.cut(one.item.room, 18))))
-
-
 def _say_formula(one: ItemResult) -> str:
     """Return the class by formula and its chance; behind an arrow a larger one under another motion of the row."""
     found, worst = one.governing.methods[one.formula_key].value, one.formula.value
     more = f" → {words.percent(worst)}" if has_worse_motion(one, one.formula_key) else ""
     return f"{words.risk_label(one.formula_class)}, {words.percent(found)}{more}"
-
-
-def _of_piece(field: Field, where: Where, method: "MethodInfo | None") -> PageColumn:
-    column = of_field(field, places=0 if field.key in NOT_COMPACT else COMPACT.get(field.key, field.width))
-    if method is not None:
-        return _of_method(column, where, method)
-    if field.key == "description":
-        return _describe(column, where)
-    composed: Mapping[str, Mapping[str, Any]] = {
-        "breadth_cm": {"key": "size", "text": words.size, "sort": lambda one: one.item.height_cm, "places": 17},
-        "adopted_probability": {"text": words.chance, "places": 25, "is_wide": True},
-        "verification_record_overturned": {"text": words.under_record},
-        "verification_ideal_probability": {"text": words.ideal_chance, "places": 25, "is_wide": True},
-        "adopted_class": {
-            "text": words.risk_words,
-            "show": badge,
-            "sort": lambda one: int(one.adopted.risk) - (10 if one.is_anchored else 0),
-        },
-        "adopted_flags": {
-            "text": lambda one: ", ".join([*map(say_flag, one.adopted.flags), *words.list_beside(one)]),
-            "show": _show_flags,
-        },
-    }
-    return replace(column, **composed.get(field.key, {}))
-
-
-def _describe(column: PageColumn, where: Where) -> PageColumn:
-    """Return the column of the descriptions, which stands for the type where there is none."""
-
-    def say(one: ItemResult) -> str:
-        return words.cut(one.item.description or one.item.type, 120) if where == "pieces" else describe(one, 60)
-
-    return replace(column, text=say, line=lambda one: describe(one, column.places))
 
 
 def _of_method(column: PageColumn, where: Where, method: "MethodInfo") -> PageColumn:

@@ -11,7 +11,6 @@ from assess.report.say import ground
 from assess.report.say.route import say_risk
 from assess.results import MOTION_FLAGS, PIECE_FLAG_TEXTS, Results
 from assess.route_results import FLAGS as ROUTE_FLAGS
-from assess.route_results import RouteTables
 from assess.units import GRAVITY
 from assess.workbook.catalogue import is_assumed
 from assess.workbook.schema import ITEMS
@@ -77,12 +76,23 @@ def list_assumptions(results: Results) -> Lines:
     if n := sum(item.friction is None for item in items):
         lines.append((ngettext("Friction unknown in {n:,} row", "Friction unknown in {n:,} rows", n),
                       _("no sliding, as the paper assumes")))  # fmt: skip
-    return [*lines, *_list_for_routes(results), *_list_constants(results)]
+    constants = {
+        one.title: ", ".join(f"{each.symbol} = {number(getattr(results.settings, each.setting), 'g')}"
+                             for each in one.parameters)
+        for one in results.methods if one.parameters
+    }  # fmt: skip
+    return [
+        *lines,
+        *(_list_for_routes(results) if results.has_routes else ()),
+        *((_(title), text) for title, text in constants.items()),
+        (_("Gravity"), f"{number(GRAVITY)} m/s²"),
+        (_("A class limit belongs to"), _("the higher class (the paper leaves this open)")),
+        (_("Units"), _("Lengths are in cm and m, accelerations in g, velocities in cm/s, whatever the workbook's units "
+                       "are.")),
+    ]  # fmt: skip
 
 
 def _list_for_routes(results: Results) -> Lines:
-    if not results.has_routes:
-        return []
     routes = results.route_tables
     of_segments = Counter(flag for one in routes.segments for flag in one.flags)
     of_pieces = Counter(
@@ -95,17 +105,12 @@ def _list_for_routes(results: Results) -> Lines:
             lines.append((ngettext("Routes: {n:,} segment", "Routes: {n:,} segments", n), _(text)))
         if flag not in OBSERVED and (n := of_pieces[flag]):
             lines.append((ngettext("Routes: {n:,} row of pieces", "Routes: {n:,} rows of pieces", n), _(text)))
-    return lines + _list_couplings(routes, results.settings.seed)
-
-
-def _list_couplings(routes: RouteTables, seed: int) -> Lines:
-    """Return the assumptions about pieces that fall together; nothing where none reaches a route."""
-    blocked = [*(one.blocked for one in routes.segments), *(one.blocked for one in routes.routes)]
-    chances = [chance for chance in blocked if chance is not None]
+    chances = [one.blocked for one in (*routes.segments, *routes.routes) if one.blocked is not None]
     if not any(chance.pieces for chance in chances):
-        return []
-    draws = ngettext("{n:,} draw with seed {seed}", "{n:,} draws with seed {seed}", routes.draws, seed=seed)
-    lines = [(_("Routes: where there are too many combinations of falling pieces to go through"), draws)]
+        return lines
+    draws = ngettext("{n:,} draw with seed {seed}", "{n:,} draws with seed {seed}", routes.draws,
+                     seed=results.settings.seed)  # fmt: skip
+    lines += [(_("Routes: where there are too many combinations of falling pieces to go through"), draws)]
     if any(chance.unverified for chance in chances):
         lines.append((_("Routes: pieces that enter by the formula's chance alone"),
                       _("fall independently of all others; the largest of the joint, the independent and the fully "
@@ -114,21 +119,6 @@ def _list_couplings(routes: RouteTables, seed: int) -> Lines:
         largest = _("the largest of the joint, the independent and the fully correlated chance counts")
         lines.append((_("Routes: pieces that were decided after different numbers of draws"), largest))
     return lines
-
-
-def _list_constants(results: Results) -> Lines:
-    values = {
-        one.title: ", ".join(f"{each.symbol} = {number(getattr(results.settings, each.setting), 'g')}"
-                             for each in one.parameters)
-        for one in results.methods if one.parameters
-    }  # fmt: skip
-    return [
-        *((_(title), text) for title, text in values.items()),
-        (_("Gravity"), f"{number(GRAVITY)} m/s²"),
-        (_("A class limit belongs to"), _("the higher class (the paper leaves this open)")),
-        (_("Units"), _("Lengths are in cm and m, accelerations in g, velocities in cm/s, whatever the workbook's units "
-                       "are.")),
-    ]  # fmt: skip
 
 
 # ---------------------------------------------------------------- limits

@@ -1,5 +1,6 @@
 """Templates: the frame of a page, the cover and the drawings of plans, the standard ones or a firm's own."""
 
+import re
 import traceback
 from collections.abc import Mapping
 from functools import cache
@@ -11,6 +12,10 @@ from assess.i18n import markup, nmarkup
 from assess.progress import SILENT, Progress
 from assess.report import words
 from assess.report.report_options import ReportOptions
+
+LONGEST_WORD = 18
+"""Letters of a word that a table never breaks."""
+_WORD = re.compile(r"(\s+|(?<=[\w)])-(?=\w))")
 
 
 def open_template(name: str, options: ReportOptions) -> Any:
@@ -87,10 +92,20 @@ def _environment(own: Path | None, folders: tuple[Path, ...]) -> Any:
 
 
 def break_words(text: str) -> Any:
-    """Return a text as HTML whose words may be broken only where they are too long for a column."""
+    """Return a text as HTML whose words may be broken only where they are too long for a column.
+
+    A word of up to `LONGEST_WORD` letters, as "electrocardiograph" has, is never broken; a longer one into parts of
+    about equal length.
+    """
     from markupsafe import Markup, escape
 
-    return Markup("<wbr>").join(escape(part) for part in words.list_breaks(text))
+    parts = [""]
+    for word in _WORD.split(text):
+        count = -(-len(word) // LONGEST_WORD) if word.strip() else 1
+        size = -(-len(word) // count) if word else 1
+        pieces = [word[at : at + size] for at in range(0, len(word), size)] if count > 1 else [word]
+        parts = [*parts[:-1], parts[-1] + pieces[0], *pieces[1:]]
+    return Markup("<wbr>").join(escape(part) for part in parts)
 
 
 def _import_errors() -> tuple[type[Exception], type[Exception]]:

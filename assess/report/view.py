@@ -85,7 +85,9 @@ class View:
     @property
     def legend(self) -> list[str]:
         """That legend, and the one of the signs of what is counted apart."""
-        return [self.marks, f"{words.apart_legend()}." if self.content.total.has_apart else ""]
+        signs = _("{unconfirmed} unconfirmed, {by_formula} by formula only: counted apart",
+                  unconfirmed=words.UNCONFIRMED, by_formula=words.BY_FORMULA)  # fmt: skip
+        return [self.marks, f"{signs}." if self.content.total.has_apart else ""]
 
     @cached_property
     def photos(self) -> Photos:
@@ -168,12 +170,6 @@ class Part:
     places: Mapping[Edition, int]
     build: Callable[[View], Section | Sequence[Section]]
     is_shown: Callable[[View], bool] = lambda _view: True
-
-    def build_sections(self, view: View) -> list[Section]:
-        """Return its sections with anchor and heading, in the language in use."""
-        built = self.build(view)
-        first, *others = [built] if isinstance(built, Section) else built
-        return [replace(first, id=self.key, heading=_(self.heading)), *others]
 
 
 @cache

@@ -27,9 +27,6 @@ BASES: Mapping[str, Text] = {
     CANNOT_ROCK: fill("cannot rock"),
 }
 """What a chance rests on, by `assess.results.BASES`."""
-LONGEST_WORD = 18
-"""Letters of a word that a table never breaks."""
-_WORD = re.compile(r"(\s+|(?<=[\w)])-(?=\w))")
 NO_BREAK = "\N{NO-BREAK SPACE}"
 LEAST_RUN = 3
 """Names in a row from which a run is written as the first and the last."""
@@ -62,21 +59,6 @@ def cut(text: str, longest: int) -> str:
     return f"{text[: max(longest - 1 - len(mark), 1)].rstrip()}…{mark}"
 
 
-def list_breaks(text: str) -> list[str]:
-    """Return the parts of a text between which a line may break though no space is there.
-
-    A word of up to `LONGEST_WORD` letters, as "electrocardiograph" has, is never broken; a longer one into parts of
-    about equal length.
-    """
-    parts = [""]
-    for word in _WORD.split(text):
-        count = -(-len(word) // LONGEST_WORD) if word.strip() else 1
-        size = -(-len(word) // count) if word else 1
-        pieces = [word[at : at + size] for at in range(0, len(word), size)] if count > 1 else [word]
-        parts = [*parts[:-1], parts[-1] + pieces[0], *pieces[1:]]
-    return parts
-
-
 def name_first(names: Sequence[str], most: int, mark: str = ", ") -> str:
     """Return the first names with a mark between them, and how many more there are."""
     named, more = mark.join(names[:most]), len(names) - most
@@ -90,7 +72,8 @@ def find_runs(names: Sequence[str], longest: int) -> list[list[int]]:
     """
     runs: list[list[int]] = []
     for at, name in enumerate(names):
-        if runs and name == _find_next(names[runs[-1][-1]]):
+        before = _NUMBERED.fullmatch(names[runs[-1][-1]]) if runs else None
+        if before and name == f"{before[1]}{str(int(before[2]) + 1).zfill(len(before[2]))}":  # A10 after A09
             runs[-1].append(at)
         else:
             runs.append([at])
@@ -122,12 +105,6 @@ def fit_pieces(names: Sequence[str], room: int) -> str:
     """Return as many names of pieces as `room` characters hold, one at least, and how many more there are."""
     texts = (name_pieces(names, most, room) for most in range(min(len(names), room // 3 + 1), 1, -1))  # "A, " each
     return next((text for text in texts if len(text) <= room), name_pieces(names, 1, room))
-
-
-def _find_next(name: str) -> str:
-    """Return the name whose number at the end is one more, with its zeros: A10 after A09; "" where there is none."""
-    found = _NUMBERED.fullmatch(name)
-    return f"{found[1]}{str(int(found[2]) + 1).zfill(len(found[2]))}" if found else ""
 
 
 def in_percent(probability: float) -> str:
@@ -196,18 +173,13 @@ def in_g(value: float | None) -> str:
 
 
 def in_cm(value: float | None) -> str:
-    """Return a length [cm], with one decimal at most."""
-    return DASH if value is None else _short(value, 1)
+    """Return a length [cm], with one decimal at most, without zeros at its end, and never as -0."""
+    return DASH if value is None else number(round(value, 1) + 0.0, ".12g")
 
 
 def in_m(value: float | None) -> str:
-    """Return a length [m], with two decimals at most."""
-    return DASH if value is None else _short(value, 2)
-
-
-def _short(value: float, decimals: int) -> str:
-    """Return a number with so many decimals at most, without zeros at its end, and never as -0."""
-    return number(round(value, decimals) + 0.0, ".12g")
+    """Return a length [m], with two decimals at most, as `in_cm`."""
+    return DASH if value is None else number(round(value, 2) + 0.0, ".12g")
 
 
 def size(one: ItemResult) -> str:
@@ -360,21 +332,21 @@ def has_doubtful_bracket(one: ItemResult) -> bool:
     return one.is_anchored and False in (one.item.anchor.holds_high, one.item.anchor.holds_code)
 
 
+def list_risk_words(one: ItemResult) -> list[str]:
+    """Return the class in words, of a piece that stands apart on what it rests, and the notes on it."""
+    apart = say_apart(one.adopted.risk, one.apart, has_simulated=one.adopted.has_simulated)
+    return [apart or risk_word(one.adopted.risk), *risk_notes(one)]
+
+
 def risk_words(one: ItemResult) -> str:
-    """Return the class in words, with its notes; of a piece that stands apart, on what it rests."""
-    words = [apart_words(one) or risk_word(one.adopted.risk), *risk_notes(one)]
-    return join_notes(words, is_anchored=one.is_anchored)
+    """Return the class with its notes as one text."""
+    return join_notes(list_risk_words(one), is_anchored=one.is_anchored)
 
 
 def join_notes(notes: Sequence[str], *, is_anchored: bool) -> str:
     """Return a class in words and its notes as one text; of an anchored piece it is that of a free-standing one."""
     words = ", ".join(notes)
     return _("depends on its anchor (free-standing: {risk})", risk=words) if is_anchored else words
-
-
-def apart_words(one: ItemResult) -> str:
-    """Return the class in words of a piece that stands apart from the simulated ones, "" for all others."""
-    return say_apart(one.adopted.risk, one.apart, has_simulated=one.adopted.has_simulated)
 
 
 def say_apart(risk: RiskClass, apart: str, *, has_simulated: bool) -> str:
@@ -432,12 +404,6 @@ def marks() -> str:
     return _("{could_be} could be a higher class; {lowered} lowered by simulation", could_be=COULD_BE, lowered=LOWERED)
 
 
-def apart_legend() -> str:
-    """Return the legend of the signs of what stands apart, without a full stop."""
-    return _("{unconfirmed} unconfirmed, {by_formula} by formula only: counted apart",
-             unconfirmed=UNCONFIRMED, by_formula=BY_FORMULA)  # fmt: skip
-
-
 def class_marks(one: ItemResult) -> str:
     """Return the marks that stand beside the symbol of a class."""
     could_be = COULD_BE if find_highest(one) != one.adopted.risk else ""
@@ -447,8 +413,7 @@ def class_marks(one: ItemResult) -> str:
 def class_label(one: ItemResult) -> str:
     """Return the class as symbol and words, ``■ very high``; of what stands apart ``◌ unconfirmed``, ``ƒ high``."""
     if one.apart == "unconfirmed":
-        word = _("unconfirmed")
-        return f"{UNCONFIRMED} {word}"
+        return apart_label("unconfirmed")
     return f"{BY_FORMULA} {risk_word(one.adopted.risk)}" if one.apart else risk_label(one.adopted.risk)
 
 
@@ -463,9 +428,8 @@ def apart_label(name: str) -> str:
 
 def class_symbol(one: ItemResult) -> str:
     """Return the sign of a piece: that of its class, or of why it stands outside the classes."""
-    if one.is_anchored:
-        return ANCHORED
-    return {"unconfirmed": UNCONFIRMED, "formula": BY_FORMULA}.get(one.apart, one.adopted.risk.symbol)
+    signs = {"unconfirmed": UNCONFIRMED, "formula": BY_FORMULA}
+    return ANCHORED if one.is_anchored else signs.get(one.apart, one.adopted.risk.symbol)
 
 
 def style_name(one: ItemResult) -> str:
