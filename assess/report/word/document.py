@@ -19,17 +19,16 @@ WIDTH, HEIGHT, SIDE, TOP = 210.0, 297.0, 22.0, 20.0
 """The page and its margins [mm]."""
 
 _STYLES = {
-    "Title": (24, HEAD, True, 6), "Subtitle": (12, QUIET, False, 6),
-    "Heading 1": (16, HEAD, True, 6), "Heading 2": (12.5, HEAD, True, 4), "Heading 3": (11, HEAD, True, 3),
-    "Normal": (10, INK, False, 6), "Caption": (9, QUIET, False, 3), "List Bullet": (10, INK, False, 2),
-    "List Number": (10, INK, False, 2),
+    "Title": ("", 24, HEAD, True, 6), "Subtitle": ("", 12, QUIET, False, 6),
+    "Heading 1": ("", 16, HEAD, True, 6), "Heading 2": ("", 12.5, HEAD, True, 4),
+    "Heading 3": ("", 11, HEAD, True, 3), "Normal": ("", 10, INK, False, 6), "Caption": ("", 9, QUIET, False, 3),
+    "List Bullet": ("", 10, INK, False, 2), "List Number": ("", 10, INK, False, 2),
+    "Lead": ("Normal", 11, INK, None, 8), "Caution": ("Normal", 10, INK, None, 8),
+    "Small": ("Normal", 9, QUIET, None, 4), "Cell": ("Normal", 9, INK, None, 0),
+    "Cell Head": ("Cell", 9, HEAD, True, 0), "Listing": ("Normal", 7.5, INK, None, 0),
 }  # fmt: skip
-"""Styles of Word that are used: size [pt], colour, whether bold, space after [pt]."""
-_OWN = {
-    "Lead": ("Normal", 11, INK, 8), "Caution": ("Normal", 10, INK, 8), "Small": ("Normal", 9, QUIET, 4),
-    "Cell": ("Normal", 9, INK, 0), "Cell Head": ("Cell", 9, HEAD, 0), "Listing": ("Normal", 7.5, INK, 0),
-}  # fmt: skip
-"""Styles of our own, with the one that each is based on."""
+"""Styles: the one that each is based on ("" of those that Word has), size [pt], colour, whether bold, space after [pt].
+"""
 
 
 class Word:
@@ -78,17 +77,25 @@ class Word:
 
 def _set_styles(file: Any, language: str) -> None:
     from docx.enum.style import WD_STYLE_TYPE
+    from docx.shared import Pt, RGBColor
 
-    for name, (size, colour, is_bold, after) in _STYLES.items():
-        style = file.styles[name]
-        _set_face(style, size, colour, after)
+    for name, (based, size, colour, is_bold, after) in _STYLES.items():
+        style = file.styles.add_style(name, WD_STYLE_TYPE.PARAGRAPH) if based else file.styles[name]
+        if based:
+            style.base_style = file.styles[based]
+        else:
+            style.font.italic = False
+        style.font.name, style.font.size, style.font.color.rgb = FACE, Pt(size), RGBColor.from_string(colour)
         style.font.bold = is_bold
-        style.font.italic = False
-    for name, (based, size, colour, after) in _OWN.items():
-        style = file.styles.add_style(name, WD_STYLE_TYPE.PARAGRAPH)
-        style.base_style = file.styles[based]
-        _set_face(style, size, colour, after)
-    file.styles["Cell Head"].font.bold = True
+        fonts = style.element.get_or_add_rPr().get_or_add_rFonts()
+        for key in list(fonts.attrib):
+            if key.endswith("Theme"):
+                del fonts.attrib[key]
+        for kind in ("ascii", "hAnsi", "cs", "eastAsia"):
+            fonts.set(_q(f"w:{kind}"), FACE)
+        style.paragraph_format.space_before = Pt(10 if "Heading" in name else 0)
+        style.paragraph_format.space_after = Pt(after)
+        style.paragraph_format.line_spacing = 1.1 if name in ("Normal", "Lead", "Caution") else 1.0
     file.styles["Listing"].font.name = FIXED
     for name in ("Heading 1", "Heading 2", "Heading 3", "Caption"):
         file.styles[name].paragraph_format.keep_with_next = True
@@ -100,21 +107,6 @@ def _set_styles(file: Any, language: str) -> None:
         for one in defaults.findall(_q("w:lang")):
             defaults.remove(one)
         defaults.append(make("w:lang", {"w:val": language}))
-
-
-def _set_face(style: Any, size: float, colour: str, after: float) -> None:
-    from docx.shared import Pt, RGBColor
-
-    style.font.name, style.font.size, style.font.color.rgb = FACE, Pt(size), RGBColor.from_string(colour)
-    fonts = style.element.get_or_add_rPr().get_or_add_rFonts()
-    for name in list(fonts.attrib):
-        if name.endswith("Theme"):
-            del fonts.attrib[name]
-    for kind in ("ascii", "hAnsi", "cs", "eastAsia"):
-        fonts.set(_q(f"w:{kind}"), FACE)
-    style.paragraph_format.space_before = Pt(10 if "Heading" in style.name else 0)
-    style.paragraph_format.space_after = Pt(after)
-    style.paragraph_format.line_spacing = 1.1 if style.name in ("Normal", "Lead", "Caution") else 1.0
 
 
 def write_margins(word: Word, short: str, status: str, conditions: str) -> None:

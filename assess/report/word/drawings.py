@@ -35,11 +35,6 @@ class Drawing:
     height: float
     alternative: str
 
-    @property
-    def is_wide(self) -> bool:
-        """Whether it is a figure, not a sign within a line."""
-        return self.width >= WIDE_FROM
-
 
 @dataclass(frozen=True, slots=True)
 class Picture:
@@ -58,8 +53,10 @@ def measure(image: Image) -> Drawing:
         svg = svg[svg.index("<svg") :]
     root = ElementTree.fromstring(_declare(svg))  # noqa: S314 - drawn by this program
     box = [float(one) for one in (root.get("viewBox") or "0 0 100 100").split()]
+    stated = [_SIZE.match(root.get(name) or "") for name in ("width", "height")]
     width, height = (
-        _length(root.get(name)) or side * MILLIMETRES[""] for name, side in (("width", box[2]), ("height", box[3]))
+        (float(one[1]) * MILLIMETRES.get(one[2].lower(), 0.0) if one else 0.0) or side * MILLIMETRES[""]
+        for one, side in zip(stated, box[2:], strict=True)
     )
     if width >= WIDE_FROM:
         scale = min(WIDEST / width, TALLEST / height)
@@ -78,12 +75,6 @@ def _declare(svg: str) -> str:
     return svg
 
 
-def _length(text: str | None) -> float | None:
-    """Return a length in mm, None where it states none."""
-    found = _SIZE.match(text or "")
-    return float(found[1]) * MILLIMETRES[found[2].lower()] if found and found[2].lower() in MILLIMETRES else None
-
-
 def draw_all(drawings: Sequence[Drawing], style: str, progress: Progress) -> list[Picture]:
     """Return the drawings as pictures, drawn with a style.
 
@@ -93,34 +84,27 @@ def draw_all(drawings: Sequence[Drawing], style: str, progress: Progress) -> lis
         return []
     from assess.report.pages.pdf import start_layout
 
+    empty, rules, sheets = " ".join(f"@{corner} {{ content: none }}" for corner in _CORNERS), [], []
+    for at, one in enumerate(drawings):  # each on a sheet of its own size
+        width, height = f"{one.width:.3f}mm", f"{one.height:.3f}mm"
+        rules.append(f"@page d{at} {{ size: {width} {height}; margin: 0; {empty} }}")
+        size = f"width:{width};height:{height}"
+        look = f"{size};max-width:none;max-height:none;display:block;margin:0"
+        has_style = any(mark in one.svg for mark in ("@font-face", "<style"))
+        if has_style or "style=" in one.svg[: one.svg.index(">")]:
+            coded = base64.b64encode(_declare(one.svg).encode()).decode()
+            shown = f'<img alt="" style="{look}" src="data:image/svg+xml;base64,{coded}">'
+        else:
+            shown = one.svg.replace("<svg", f'<svg style="{escape(look)}"', 1)
+        sheets.append(f'<div style="page:d{at};break-after:page;{size};overflow:hidden">{shown}</div>')
+    styles = f"<style>{style}</style><style>{' '.join(rules)} body {{ margin: 0 }}</style>"
+    head = f"<head><meta charset='utf-8'>{styles}</head>"
+    page = f"<!DOCTYPE html><html lang='en'>{head}<body>{''.join(sheets)}</body></html>"
     with private_folder("assess-page-") as folder:
         path = folder / "drawings.pdf"
-        with start_layout(_write_sheet(drawings, f"<style>{style}</style>")) as layout:
+        with start_layout(page) as layout:
             layout.finish(path, progress=progress)
         return progress.wait_for(lambda: _read_pictures(path, drawings))
-
-
-def _write_sheet(drawings: Sequence[Drawing], style: str) -> str:
-    """Return a page of HTML with each drawing on a sheet of its own size."""
-    empty = " ".join(f"@{corner} {{ content: none }}" for corner in _CORNERS)
-    sizes = [f"{one.width:.3f}mm {one.height:.3f}mm" for one in drawings]
-    rules = [f"@page d{at} {{ size: {size}; margin: 0; {empty} }}" for at, size in enumerate(sizes)]
-    shown = [_show(at, one) for at, one in enumerate(drawings)]
-    head = f"<meta charset='utf-8'>{style}<style>{' '.join(rules)} body {{ margin: 0 }}</style>"
-    return f"<!DOCTYPE html><html lang='en'><head>{head}</head><body>{''.join(shown)}</body></html>"
-
-
-def _show(at: int, drawing: Drawing) -> str:
-    size = f"width:{drawing.width:.3f}mm;height:{drawing.height:.3f}mm"
-    kept = "max-width:none;max-height:none;display:block;margin:0"
-    coded = base64.b64encode(_declare(drawing.svg).encode()).decode()
-    is_own = "@font-face" not in drawing.svg and "<style" not in drawing.svg
-    inside = (
-        drawing.svg.replace("<svg", f'<svg style="{escape(f"{size};{kept}")}"', 1)
-        if is_own and "style=" not in drawing.svg[: drawing.svg.index(">")]
-        else f'<img alt="" style="{size};{kept}" src="data:image/svg+xml;base64,{coded}">'
-    )
-    return f'<div style="page:d{at};break-after:page;{size};overflow:hidden">{inside}</div>'
 
 
 def _read_pictures(path: Path, drawings: Sequence[Drawing]) -> list[Picture]:

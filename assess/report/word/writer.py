@@ -11,17 +11,14 @@ from typing import Any
 from assess.report import blocks
 from assess.report.word.document import HEAD, SIDE, WIDTH, Word, make, make_run, shade, write_margins
 from assess.report.word.drawings import Drawing, draw_all, measure
-from assess.report.words import NO_BREAK, class_name
+from assess.report.words import ANCHORED_FILL, INK, NO_BREAK, class_name
 from assess.risk import RiskClass
 from assess.text import plain_text
 
 STYLES = {"lead": "Lead", "caution": "Caution", "small": "Small", "legend": "Small", "note": "Small",
           "kind": "Subtitle", "scenario": "Subtitle"}  # fmt: skip
 """Styles of paragraphs by their kind; the others are plain."""
-FILLS = {
-    **{class_name(risk): (risk.fill, risk.ink) for risk in RiskClass},
-    "anchored": ("#e3e3e3", "#1c1c1c"),
-}
+FILLS = {"anchored": (ANCHORED_FILL, INK), **{class_name(risk): (risk.fill, risk.ink) for risk in RiskClass}}
 """Ground and ink of badges and tiles, by their kind."""
 LOGO, PHOTO = 40.0, 24.0
 """Widths of a logo and of a photo of a piece [mm]."""
@@ -59,17 +56,13 @@ class WordWriter:
     def write(self, document: blocks.Document, style: str) -> None:
         """Write a document; `style` is the style sheet that drawings are drawn with."""
         self.write_blocks(document.cover)
-        for section in document.sections:
-            self.section(section)
+        for section in document.sections:  # each on a new page unless it runs on
+            if section.heading:
+                self._head(section.heading, 1, section.id, is_new="run-on" not in section.kind.split())
+            self.write_blocks(section.blocks)
         pictures = draw_all([drawing for _run, drawing in self.drawn], style, self.word.progress)
         for (run, _drawing), picture in zip(self.drawn, pictures, strict=True):
             _add_picture(run, picture.png, picture.width, picture.alternative)
-
-    def section(self, one: blocks.Section) -> None:
-        """Write a section, on a new page unless it runs on."""
-        if one.heading:
-            self._head(one.heading, 1, one.id, is_new="run-on" not in one.kind.split())
-        self.write_blocks(one.blocks)
 
     def write_blocks(self, found: Iterable[blocks.Block]) -> None:
         """Write blocks; an article behind another begins a page unless it is brief."""
@@ -140,11 +133,12 @@ class WordWriter:
 
     def _contents(self, one: blocks.Contents) -> None:
         """Write a field that Word fills with pages, which shows the headings until then."""
+        begin, separate, end = (make("w:r") for _part in range(3))
+        for run, kind in ((begin, "begin"), (separate, "separate"), (end, "end")):
+            run.append(make("w:fldChar", {"w:fldCharType": kind}))
         self._paragraph("Subtitle", one.heading)
         paragraph = self.word.add("Normal")
-        code = make_run("w:instrText", ' TOC \\o "1-1" \\h \\z ')
-        for part in (_field_part("begin"), code, _field_part("separate")):
-            paragraph._p.append(part)
+        paragraph._p.extend((begin, make_run("w:instrText", ' TOC \\o "1-1" \\h \\z '), separate))
         for at, (line, _inner) in enumerate(one.lines):
             paragraph = self.word.add("Normal") if at else paragraph
             link = next(span for span in blocks.list_words(line) if isinstance(span, blocks.Span))
@@ -152,7 +146,7 @@ class WordWriter:
             made.append(make_run("w:t", blocks.plain_words(line)))
             paragraph._p.append(made)
             paragraph.paragraph_format.space_after = 0
-        paragraph._p.append(_field_part("end"))
+        paragraph._p.append(end)
         if one.after:
             self._paragraph("Small", one.after)
 
@@ -166,12 +160,26 @@ class WordWriter:
         match one:
             case str():
                 text = _SPACES.sub(NO_BREAK if look.ground else " ", plain_text(one))
-                if text:
-                    _dress(paragraph.add_run(text), look)
+                if not text:
+                    return
+                run = paragraph.add_run(text)
+                run.bold, run.italic = look.is_bold or None, look.is_italic or None
+                run.font.subscript, run.font.superscript = look.rise == "sub" or None, look.rise == "sup" or None
+                if look.ground:
+                    _colour(run, look.ink)
+                    shade(run._r.get_or_add_rPr(), look.ground)
             case blocks.Span() if one == blocks.BREAK:
                 paragraph.add_run().add_break()
+            case blocks.Span(words, "strong"):
+                self._fill(paragraph, words, replace(look, is_bold=True))
+            case blocks.Span(words, "em"):
+                self._fill(paragraph, words, replace(look, is_italic=True))
+            case blocks.Span(words, "sub" | "sup" as rise):
+                self._fill(paragraph, words, replace(look, rise=rise))
             case blocks.Span(words, kind):
-                self._fill(paragraph, words, _look(kind, look))
+                names = kind.split()
+                own = next((FILLS[name] for name in names if name in FILLS), None) if "badge" in names else None
+                self._fill(paragraph, words, replace(look, ground=own[0], ink=own[1]) if own else look)
             case blocks.Equation(text):
                 self._fill(paragraph, blocks.lower_indices(text), look)
             case blocks.Image(source, alternative, kind):
@@ -188,16 +196,15 @@ class WordWriter:
 
     def _table(self, one: blocks.Table) -> None:
         """Write a table, its caption above it: heads repeat on every page, rows stay whole."""
-        from docx.shared import Mm
+        from docx.enum.text import WD_ALIGN_PARAGRAPH
+        from docx.shared import Mm, Pt
+        from docx.table import _Cell
 
         if one.caption:
             self._paragraph("Caption", one.caption)
-        heads = (
-            [blocks.Row([column.heading for column in one.columns], "head")]
-            if any(c.heading for c in one.columns)
-            else []
-        )
-        rows = [*heads, *(row for group in one.groups for row in group)]
+        rows = [row for group in one.groups for row in group]
+        if any(column.heading for column in one.columns):
+            rows.insert(0, blocks.Row([column.heading for column in one.columns], "head"))
         made = self.word.file.add_table(len(rows), len(one.columns))
         made.autofit = False
         widths, scale = _find_widths(one.columns, rows)
@@ -207,43 +214,34 @@ class WordWriter:
             for tc, width in zip(tr.tc_lst, widths, strict=True):
                 tc.width = Mm(width)
         slots = [list(tr.tc_lst) for tr in made._tbl.tr_lst]
-        for at, (tr, row) in enumerate(zip(made._tbl.tr_lst, rows, strict=True)):
+        for own, tr, row in zip(slots, made._tbl.tr_lst, rows, strict=True):
             self.word.progress.check()
             properties = tr.get_or_add_trPr()
             properties.append(make("w:cantSplit"))
             if row.kind == "head":
                 properties.append(make("w:tblHeader"))
-            self._row(made, row, one.columns, slots[at], scale)
+            is_head = row.kind in ("head", "part")
+            for at, cell in row.place_cells():
+                slot = _Cell(own[at], made)
+                if cell.columns > 1:
+                    slot = slot.merge(_Cell(own[at + cell.columns - 1], made))
+                paragraph = slot.paragraphs[0]
+                self.word.set_style(paragraph, "Cell Head" if is_head else "Cell")
+                if one.columns[at].is_number and cell.columns == 1 and not cell.is_head:
+                    paragraph.alignment = WD_ALIGN_PARAGRAPH.RIGHT
+                paragraph.paragraph_format.keep_with_next = is_head
+                self._fill(paragraph, cell.words, Look(is_bold=is_head or cell.is_head))
+                for run in paragraph.runs if scale < 1 else ():  # else the words would not fit the page
+                    run.font.size = Pt(round(max(SMALLEST, SIZE * scale), 1))
+                if is_head:
+                    shade(slot._tc.get_or_add_tcPr(), _GROUND)
         _set_borders(made)
         self.word.add("Small")
-
-    def _row(
-        self, made: Any, row: blocks.Row, columns: Sequence[blocks.Column], slots: list[Any], scale: float
-    ) -> None:
-        from docx.enum.text import WD_ALIGN_PARAGRAPH
-        from docx.shared import Pt
-        from docx.table import _Cell
-
-        is_head = row.kind in ("head", "part")
-        for at, cell in row.place_cells():
-            slot = _Cell(slots[at], made)
-            if cell.columns > 1:
-                slot = slot.merge(_Cell(slots[at + cell.columns - 1], made))
-            paragraph = slot.paragraphs[0]
-            self.word.set_style(paragraph, "Cell Head" if is_head else "Cell")
-            if columns[at].is_number and cell.columns == 1 and not cell.is_head:
-                paragraph.alignment = WD_ALIGN_PARAGRAPH.RIGHT
-            paragraph.paragraph_format.keep_with_next = is_head
-            self._fill(paragraph, cell.words, Look(is_bold=is_head or cell.is_head))
-            for run in paragraph.runs if scale < 1 else ():  # else the words would not fit the page
-                run.font.size = Pt(round(max(SMALLEST, SIZE * scale), 1))
-            if is_head:
-                shade(slot._tc.get_or_add_tcPr(), _GROUND)
 
     def _tiles(self, one: blocks.Tiles) -> None:
         """Write counts as one row of cells, each with the colour of its class."""
         from docx.enum.text import WD_ALIGN_PARAGRAPH
-        from docx.shared import Pt, RGBColor
+        from docx.shared import Pt
         from docx.table import _Cell
 
         made = self.word.file.add_table(1, len(one.tiles))
@@ -256,39 +254,17 @@ class WordWriter:
                 run = paragraph.add_run(plain_text(text))
                 run.bold, run.font.size = (True, Pt(18)) if at == 1 else (None, None)
                 if colours:
-                    run.font.color.rgb = RGBColor.from_string(colours[1].lstrip("#").upper())
+                    _colour(run, colours[1])
             if colours:
                 shade(tc.get_or_add_tcPr(), colours[0])
         _set_borders(made)
         self.word.add("Small")
 
 
-def _field_part(kind: str) -> Any:
-    run = make("w:r")
-    run.append(make("w:fldChar", {"w:fldCharType": kind}))
-    return run
+def _colour(run: Any, ink: str) -> None:
+    from docx.shared import RGBColor
 
-
-def _look(kind: str, look: Look) -> Look:
-    if kind in ("strong", "em"):
-        return replace(look, is_bold=look.is_bold or kind == "strong", is_italic=look.is_italic or kind == "em")
-    if kind in ("sub", "sup"):
-        return replace(look, rise=kind)
-    names = kind.split()
-    colours = next((FILLS[name] for name in names if name in FILLS), None) if "badge" in names else None
-    return replace(look, ground=colours[0], ink=colours[1]) if colours else look
-
-
-def _dress(run: Any, look: Look) -> None:
-    run.bold = look.is_bold or None
-    run.italic = look.is_italic or None
-    run.font.subscript = look.rise == "sub" or None
-    run.font.superscript = look.rise == "sup" or None
-    if look.ground:
-        from docx.shared import RGBColor
-
-        run.font.color.rgb = RGBColor.from_string(look.ink.lstrip("#").upper())
-        shade(run._r.get_or_add_rPr(), look.ground)
+    run.font.color.rgb = RGBColor.from_string(ink.lstrip("#").upper())
 
 
 def _add_picture(run: Any, data: bytes, width: float, alternative: str) -> None:
@@ -313,30 +289,25 @@ def _find_widths(columns: Sequence[blocks.Column], rows: Sequence[blocks.Row]) -
             if cell.columns == 1:
                 texts[at].append(blocks.plain_words(cell.words))
     own = [float(found[1]) if (found := _OWN_WIDTH.match(column.width)) else None for column in columns]
-    shares = [min(MOST, max(LEAST, *map(_reckon, one), LEAST)) for one in texts]
+    shares = [
+        min(MOST, max(LEAST, *(max(_longest(text), math.pow(len(text), 0.75)) for text in one), LEAST)) for one in texts
+    ]
     left = max(100.0 - sum(one or 0.0 for one in own), 10.0)
     rest = sum(share for share, one in zip(shares, own, strict=True) if one is None)
     wanted = [one if one is not None else left * share / rest for share, one in zip(shares, own, strict=True)]
-    longest = [max((len(word) for text in one for word in _SPACES.split(text)), default=0) for one in texts]
-    needed = [min(one, MOST) * CHARACTER + MARGINS for one in longest]
-    return _fit([SPACE * one / sum(wanted) for one in wanted], needed), min(1.0, SPACE / sum(needed))
-
-
-def _fit(wanted: list[float], needed: list[float]) -> list[float]:
-    """Return widths that sum up to the page's: as wanted, but none below what it needs while the others have room."""
-    widths = [max(pair) for pair in zip(wanted, needed, strict=True)]
+    needed = [min(max(map(_longest, one), default=0.0), MOST) * CHARACTER + MARGINS for one in texts]
+    scale = min(1.0, SPACE / sum(needed))
+    widths = [max(SPACE * one / sum(wanted), need) for one, need in zip(wanted, needed, strict=True)]
     slack = sum(width - need for width, need in zip(widths, needed, strict=True))
     excess = sum(widths) - SPACE
     if excess > slack:
-        return [SPACE * need / sum(needed) for need in needed]
+        return [SPACE * need / sum(needed) for need in needed], scale
     share = excess / slack if slack else 0.0
-    return [width - share * (width - need) for width, need in zip(widths, needed, strict=True)]
+    return [width - share * (width - need) for width, need in zip(widths, needed, strict=True)], scale
 
 
-def _reckon(text: str) -> float:
-    """Return how many characters wide a cell would be: its longest word, or some of its text."""
-    longest = max(map(len, _SPACES.split(text)))
-    return max(float(longest), math.pow(len(text), 0.75))
+def _longest(text: str) -> float:
+    return float(max(map(len, _SPACES.split(text))))
 
 
 def _set_borders(table: Any) -> None:
