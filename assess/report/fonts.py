@@ -1,12 +1,11 @@
 """The report's own fonts: their style rules, the characters that they hold, and what else of the machine helps out."""
 
-import base64
 from collections.abc import Collection, Mapping
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 from assess import resources
+from assess.report.embedded import data_uri
 
 FIGURE_FAMILY = "IBM Plex Sans"
 """The report's own face as its files call it."""
@@ -20,41 +19,35 @@ EAST_ASIAN = (
 """Families with Chinese, Japanese and Korean characters that systems bring along or offer, the best match first."""
 
 
-def _find_print_fonts() -> dict[tuple[str, str], Path]:
-    """Return the fonts of a PDF by family and style: a machine without fonts makes the same PDF.
+@cache
+def _print_fonts() -> dict[tuple[str, str], tuple[str, str]]:
+    """Return the fonts of a PDF by family and style: the address under which its style rules name each, and its file.
 
-    Signs such as ⚓, which are emoji as well, are looked for in a family of the name emoji first: it is this font, too.
+    A machine without fonts makes the same PDF. Signs such as ⚓, which are emoji as well, are looked for in a family of
+    the name emoji first: it is this font, too.
     """
     own = resources.fonts()
     signs = own.get(("Report Signs", "regular"))
-    return own | ({("emoji", "regular"): signs} if signs else {})
+    own |= {("emoji", "regular"): signs} if signs else {}
+    return {key: (f"font:{'-'.join(key)}".replace(" ", "-"), str(path)) for key, path in own.items()}
 
 
-def _name_address(key: tuple[str, str]) -> str:
-    return f"font:{'-'.join(key)}".replace(" ", "-")
-
-
-@cache
 def print_fonts() -> dict[str, str]:
     """Return the files of the fonts of a PDF by the address under which its style rules name them."""
-    return {_name_address(key): str(path) for key, path in _find_print_fonts().items()}
+    return dict(_print_fonts().values())
 
 
 @cache
 def font_faces() -> str:
     """Return the fonts of a PDF as @font-face rules that name `print_fonts`: as part of the CSS, files take seconds."""
-    return _write_faces({key: _name_address(key) for key in _find_print_fonts()})
+    return _write_faces({key: address for key, (address, _path) in _print_fonts().items()})
 
 
 @cache
 def web_font_faces() -> str:
     """Return the compressed fonts of an HTML report as @font-face rules, each with its whole file."""
-    return _write_faces(
-        {
-            key: f"data:font/{path.suffix[1:]};base64,{base64.b64encode(path.read_bytes()).decode()}"
-            for key, path in resources.web_fonts().items()
-        }
-    )
+    fonts = resources.web_fonts()
+    return _write_faces({key: data_uri(path.read_bytes(), f"font/{path.suffix[1:]}") for key, path in fonts.items()})
 
 
 def _write_faces(addresses: Mapping[tuple[str, str], str]) -> str:

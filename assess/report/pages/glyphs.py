@@ -1,7 +1,7 @@
 """Which characters of the workbook the report's own fonts do not hold, and how the PDF shows them."""
 
 import unicodedata
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,6 +16,9 @@ MOST_LISTED = 10
 """Fields that are named, one line each."""
 MOST_NAMED = 5
 """Characters of a field that are named; the others are counted."""
+_BLANKS = ("Cc", "Cf", "Zs", "Zl", "Zp")
+_VARIANTS = frozenset(map(chr, (*range(0xFE00, 0xFE10), *range(0xE0100, 0xE01F0))))
+"""Categories and characters that nobody would miss: spaces, marks of direction, choices of variant."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,61 +33,10 @@ class Missing:
 
 
 def list_missing(results: Results) -> list[Missing]:
-    """Return the fields of a workbook of which a report cannot show every character in its own fonts."""
-    found = []
-    for sheet, name, label, rows in _list_fields(results):
-        lacking = [(row, lack) for row in rows if (lack := find_missing(_text(results, row, name)))]
-        if lacking:
-            characters = "".join(dict.fromkeys("".join(lack for _, lack in lacking)))
-            cell = _cell(results, sheet, lacking[0][0], name)
-            found.append(Missing(sheet.name, cell, label, len(lacking), characters))
-    return found
+    """Return the fields of a workbook of which a report cannot show every character in its own fonts.
 
-
-def describe(missing: Sequence[Missing], nowhere: Collection[str]) -> list[Problem]:
-    """Return problems about missing characters, of which `nowhere` are in no font of this machine either."""
-    listed = [problem for one in missing if (problem := _describe(one, nowhere))]
-    left = len(listed) - MOST_LISTED
-    if left <= 0:
-        return listed
-    message = nfill("the same is true of {n} more field.", "the same is true of {n} more fields.", left)
-    return [*listed[:MOST_LISTED], Problem("warning" if nowhere else "note", "", "", message)]
-
-
-def _describe(one: Missing, nowhere: Collection[str]) -> Problem | None:
-    lost = [sign for sign in one.characters if sign in nowhere]
-    lent = [sign for sign in one.characters if not _is_invisible(sign)]
-    if lost:
-        message = nfill(
-            "{label}: no font here holds {characters}; the PDF has � instead.",
-            "{label} of {n} rows: no font here holds {characters}; the PDF has � instead.",
-            one.count,
-            label=fill(one.label),
-            characters=_name(lost),
-        )
-        fix = fill("Install a font that does, such as Noto (Debian: apt install fonts-noto-core fonts-noto-cjk).")
-        return Problem("warning", one.sheet, one.cell, message, fix)
-    if lent:
-        message = nfill(
-            "{label}: a font of this machine lends the PDF {characters}; figures may have boxes instead.",
-            "{label} of {n} rows: a font of this machine lends the PDF {characters}; figures may have boxes instead.",
-            one.count,
-            label=fill(one.label),
-            characters=_name(lent),
-        )
-        return Problem("note", one.sheet, one.cell, message)
-    return None
-
-
-def _name(signs: Sequence[str]) -> str:
-    """Return characters with their numbers in Unicode, as they may show as boxes here, too."""
-    named = ", ".join(f"{sign} (U+{ord(sign):04X})" for sign in signs[:MOST_NAMED])
-    left = len(signs) - MOST_NAMED
-    return fill("{names} and {more:,} more", names=named, more=left) if left > 0 else named
-
-
-def _list_fields(results: Results) -> Iterator[tuple[Sheet, str, str, Sequence[Any]]]:
-    """Yield every field that holds text of the user's own and that reports show, with the rows that have it."""
+    They are those that hold text of the user's own, and that reports show.
+    """
     rows: dict[Sheet, Sequence[Any]] = {
         BUILDING: [results.building],
         FLOORS: results.floor_rows,
@@ -92,10 +44,58 @@ def _list_fields(results: Results) -> Iterator[tuple[Sheet, str, str, Sequence[A
         PLACES_SHEET: results.places,
         ROUTES: results.route_tables.segments,
     }
-    for sheet, own in rows.items():
-        for column in sheet.columns:
-            if column.kind in ("text", "records") and column.source != FLOORS.name:  # those are checked in Floors
-                yield sheet, column.name, column.label, own
+    found = []
+    for sheet, column in [(one, column) for one in rows for column in one.columns]:
+        if column.kind not in ("text", "records") or column.source == FLOORS.name:  # those are checked in Floors
+            continue
+        name, lacking = column.name, [(row, find_missing(_text(results, row, column.name))) for row in rows[sheet]]
+        lacking = [(row, lack) for row, lack in lacking if lack]
+        if lacking:
+            row = lacking[0][0]
+            if hasattr(row, "cell"):
+                cell = str(row.cell(name))
+            else:  # of a sheet that lacks the field, the first column
+                number = row.workbook_row if isinstance(row, SegmentRow) else row.row
+                cell = f"{results.provenance.letters.get(sheet.name, {}).get(name, 'A')}{number}"
+            characters = "".join(dict.fromkeys("".join(lack for _, lack in lacking)))
+            found.append(Missing(sheet.name, cell, column.label, len(lacking), characters))
+    return found
+
+
+def describe(missing: Sequence[Missing], nowhere: Collection[str]) -> list[Problem]:
+    """Return problems about missing characters, of which `nowhere` are in no font of this machine either."""
+    listed = []
+    for one in missing:
+        lost = [sign for sign in one.characters if sign in nowhere]
+        lent = [sign for sign in one.characters if unicodedata.category(sign) not in _BLANKS and sign not in _VARIANTS]
+        signs = lost or lent
+        named = ", ".join(f"{sign} (U+{ord(sign):04X})" for sign in signs[:MOST_NAMED])  # they may show as boxes here
+        more = len(signs) - MOST_NAMED
+        values = {
+            "label": fill(one.label),
+            "characters": fill("{names} and {more:,} more", names=named, more=more) if more > 0 else named,
+        }
+        if lost:
+            message = nfill(
+                "{label}: no font here holds {characters}; the PDF has � instead.",
+                "{label} of {n} rows: no font here holds {characters}; the PDF has � instead.",
+                one.count, **values,
+            )  # fmt: skip
+            fix = fill("Install a font that does, such as Noto (Debian: apt install fonts-noto-core fonts-noto-cjk).")
+            listed.append(Problem("warning", one.sheet, one.cell, message, fix))
+        elif lent:
+            message = nfill(
+                "{label}: a font of this machine lends the PDF {characters}; figures may have boxes instead.",
+                "{label} of {n} rows: a font of this machine lends the PDF {characters}; figures may have boxes "
+                "instead.",
+                one.count, **values,
+            )  # fmt: skip
+            listed.append(Problem("note", one.sheet, one.cell, message))
+    left = len(listed) - MOST_LISTED
+    if left <= 0:
+        return listed
+    message = nfill("the same is true of {n} more field.", "the same is true of {n} more fields.", left)
+    return [*listed[:MOST_LISTED], Problem("warning" if nowhere else "note", "", "", message)]
 
 
 _OF_SEGMENTS = {"start": "from_place", "end": "to_place"}
@@ -110,17 +110,3 @@ def _text(results: Results, row: Any, name: str) -> str:
     if isinstance(row, SegmentRow):
         name = _OF_SEGMENTS.get(name, name)
     return str((row.field(name) if isinstance(row, ItemRow) else getattr(row, name)) or "")
-
-
-def _cell(results: Results, sheet: Sheet, row: Any, name: str) -> str:
-    """Return the cell of a field; the first column where the sheet lacks it."""
-    if hasattr(row, "cell"):
-        return str(row.cell(name))
-    number = row.workbook_row if isinstance(row, SegmentRow) else row.row
-    return f"{results.provenance.letters.get(sheet.name, {}).get(name, 'A')}{number}"
-
-
-def _is_invisible(sign: str) -> bool:
-    """Tell whether nobody would miss a character: a space, a mark of direction, a choice of variant."""
-    kind, number = unicodedata.category(sign), ord(sign)
-    return kind in ("Cc", "Cf", "Zs", "Zl", "Zp") or 0xFE00 <= number <= 0xFE0F or 0xE0100 <= number <= 0xE01EF

@@ -21,7 +21,11 @@ UNWRITTEN = 4
 
 
 def main() -> None:
-    """Lay out the page that is sent; of none, print the version of WeasyPrint."""
+    """Lay out the page that is sent; of none, print the version of WeasyPrint.
+
+    The file holds where to write to as ``path``, WeasyPrint's ``variant``, the ``time`` of the document in ISO 8601,
+    and ``attachments``: name, kind, relationship, description and data (base64) of each.
+    """
     page = json.loads(sys.stdin.buffer.readline() or b"null")
     try:
         import weasyprint
@@ -37,26 +41,20 @@ def main() -> None:
     if not rest:
         return  # nobody waits for it any more
     try:
-        write(document, json.loads(Path(rest).read_text(encoding="utf-8")))
+        job = json.loads(Path(rest).read_text(encoding="utf-8"))
+        moment = datetime.datetime.fromisoformat(job["time"])
+        document.metadata.created = document.metadata.modified = f"{moment:%Y-%m-%dT%H:%M:%SZ}"
+        attachments = [
+            weasyprint.Attachment(  # a data: URI has the media type of the job, not one that is guessed
+                url=f"data:{one['kind']};base64,{one['data']}", url_fetcher=_closed_fetcher({}), name=one["name"],
+                description=one["description"], relationship=one["relationship"], created=moment, modified=moment,
+            )
+            for one in job["attachments"]
+        ]  # fmt: skip
+        document.write_pdf(job["path"], pdf_variant=job["variant"], pdf_tags=True, attachments=attachments)
     except OSError as error:
         sys.stderr.write(f"\n{json.dumps([error.errno, error.strerror or str(error)])}")
         sys.exit(UNWRITTEN)
-
-
-def write(document: Any, job: Mapping[str, Any]) -> None:
-    """Write a page that is laid out.
-
-    `job` holds where to as ``path``, WeasyPrint's ``variant``, the ``time`` of the document in ISO 8601, and
-    ``attachments``: name, kind, relationship, description and data (base64) of each.
-    """
-    moment = datetime.datetime.fromisoformat(job["time"])
-    document.metadata.created = document.metadata.modified = f"{moment:%Y-%m-%dT%H:%M:%SZ}"
-    document.write_pdf(
-        job["path"],
-        pdf_variant=job["variant"],
-        pdf_tags=True,
-        attachments=[_attachment(one, moment) for one in job["attachments"]],
-    )
 
 
 def open_page(html: str, fonts: Mapping[str, str]) -> Any:
@@ -77,18 +75,3 @@ def _closed_fetcher(fonts: Mapping[str, str]) -> Any:
             return super().fetch(url, headers)
 
     return Fetcher(allowed_protocols={"data"}, allow_redirects=False, fail_on_errors=True)
-
-
-def _attachment(file: dict[str, str], moment: datetime.datetime) -> Any:
-    """Return an attachment; as a data: URI, so that it has the media type of the job, not one that is guessed."""
-    from weasyprint import Attachment
-
-    return Attachment(
-        url=f"data:{file['kind']};base64,{file['data']}",
-        url_fetcher=_closed_fetcher({}),
-        name=file["name"],
-        description=file["description"],
-        relationship=file["relationship"],
-        created=moment,
-        modified=moment,
-    )
