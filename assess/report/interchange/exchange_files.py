@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from assess.errors import InputError
-from assess.i18n import Text, fill
+from assess.i18n import Text
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.piece_fragility import UNITS, PieceFragilities, PieceFragility
 from assess.text import plain_line
@@ -51,15 +51,10 @@ def choose_curves(
     judged = [(one, judge(one)) for one in curves]
     left = tuple(LeftOut(one.name, why) for one, why in judged if why is not None)
     if len(left) == len(judged):
-        raise InputError(
-            fill(
-                "formats: none of the {count} curves can be written for {program}. The first is {name}: {why}",
-                count=len(left),
-                program=program,
-                name=plain_line(left[0].name),
-                why=left[0].why,
-            )
-        )
+        raise InputError.about(
+            "formats: none of the {count} curves can be written for {program}. The first is {name}: {why}",
+            count=len(left), program=program, name=plain_line(left[0].name), why=left[0].why,
+        )  # fmt: skip
     return [one for one, why in judged if why is None], left
 
 
@@ -70,8 +65,8 @@ def name_safely(names: Iterable[str], joint: str) -> list[str]:
     """
     taken: set[str] = set()
     numbers: Counter[str] = Counter()
-
-    def choose(name: str) -> str:
+    found = []
+    for name in names:
         plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
         stem = re.sub("[^A-Za-z0-9]+", joint, plain)[:LONGEST_NAME].strip(joint) or "curve"
         chosen = stem
@@ -79,9 +74,8 @@ def name_safely(names: Iterable[str], joint: str) -> list[str]:
             numbers[stem.lower()] += 1
             chosen = f"{stem}{joint}{numbers[stem.lower()] + 1}"
         taken.add(chosen.lower())
-        return chosen
-
-    return [choose(name) for name in names]
+        found.append(chosen)
+    return found
 
 
 def find_stem(assessment: Assessment) -> str:

@@ -8,13 +8,12 @@ Departures
 ----------
 OpenQuake has no intensity measure of a floor, so that a curve is written once for each floor with its levels multiplied
 by ground PGA / PFA of the floor in the scenario assessed (of two axes, and of parallel records, the least: at a given
-PGA the chance is then at least that of each). The floor amplifies alike at every level, and without scatter.
+PGA the chance is then at least that of each), with the taxonomy ``type|floor``, no two alike. The floor amplifies alike
+at every level, and without scatter.
 """
 
 import math
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -25,7 +24,6 @@ from assess.pipeline.known_ground import find_ground
 from assess.pipeline.piece_fragility import PieceFragilities, PieceFragility
 from assess.report.interchange.exchange_files import (
     Exchange,
-    LeftOut,
     choose_curves,
     describe_curve,
     describe_origin,
@@ -53,16 +51,6 @@ PER_FLOOR = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class _Function:
-    """A curve on one floor: `ratio` is ground PGA / PFA of the floor [-]."""
-
-    name: str
-    floor: str
-    one: PieceFragility
-    ratio: float
-
-
 def write_nrml(assessment: Assessment, found: PieceFragilities) -> Exchange:
     """Write the curves as a fragility model, NAME-nrml.xml; where no lognormal stands in, the table is written.
 
@@ -72,10 +60,25 @@ def write_nrml(assessment: Assessment, found: PieceFragilities) -> Exchange:
     """
     pga = find_ground_pga(assessment, found.im)
     kept, left = choose_curves("OpenQuake", found.curves, _judge)
-    functions = [_Function(name, floor, one, _find_ratio(one, floor, pga)) for name, floor, one in _name(kept)]
-    stem = find_stem(assessment)
-    data = _write(assessment, found, pga, functions, left)
-    return Exchange(files={f"{stem}-nrml.xml": data}, left_out=left)
+    stem, floors = find_stem(assessment), list(dict.fromkeys(floor for one in kept for floor in one.floors))
+    root = ET.Element("nrml", {"xmlns": NAMESPACE})
+    (name,) = name_safely([f"assess {stem}"], "_")
+    model = ET.SubElement(root, "fragilityModel", {"id": name, "assetCategory": "contents", "lossCategory": "contents"})
+    lines = [describe_origin(assessment, found), f"{PER_FLOOR} Ground PGA {pga / GRAVITY:.4g} g."]
+    description = ET.SubElement(model, "description")
+    ET.SubElement(model, "limitStates").text = LIMIT_STATE
+    level = dict(zip(floors, name_safely(floors, "_"), strict=True))
+    for name, one in zip(name_safely((one.name for one in kept), "_"), kept, strict=True):
+        for floor in one.floors:
+            taxonomy = f"{name}|{level[floor]}"
+            ratio = pga / max(motion.demand.pfa for motion in one.motions if motion.floor == floor)
+            what = f"{taxonomy}: {plain_line(one.name)} on floor {plain_line(floor)}"
+            lines.append(" ".join([f"{what}, PFA / ground PGA {1 / ratio:.4g}.", *describe_curve(one, found.im)]))
+            _add_function(model, taxonomy, one, ratio)
+    description.text = "\n".join([*lines, *(f"Left out: {plain_line(one.name)}: {one.why}." for one in left)])
+    ET.indent(root)
+    data: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
+    return Exchange(files={f"{stem}-nrml.xml": data + b"\n"}, left_out=left)
 
 
 def find_ground_pga(assessment: Assessment, im: str) -> float:
@@ -84,25 +87,17 @@ def find_ground_pga(assessment: Assessment, im: str) -> float:
     Raises InputError if it is not known, or the measure is not "pfa": then no curve can be written, whatever it is.
     """
     if im != "pfa":
-        raise InputError(
-            fill(
-                "formats: OpenQuake computes accelerations of the ground, which a PFV cannot be derived from: nrml is "
-                "written for curves against PFA only. Take PFA as the measure, or another format."
-            )
+        raise InputError.about(
+            "formats: OpenQuake computes accelerations of the ground, which a PFV cannot be derived from: nrml is "
+            "written for curves against PFA only. Take PFA as the measure, or another format."
         )
     pga = find_ground(assessment.inventory).find_pga({one.source for one in assessment.case_demand})
     if pga is None:
-        raise InputError(
-            fill(
-                "formats: nrml relates each floor to the ground, whose peak acceleration in this scenario is not "
-                "known. Fill in Ground PGA in the sheet Building, that of the same earthquake as the floors' motions."
-            )
+        raise InputError.about(
+            "formats: nrml relates each floor to the ground, whose peak acceleration in this scenario is not "
+            "known. Fill in Ground PGA in the sheet Building, that of the same earthquake as the floors' motions."
         )
     return assessment.settings.scale * pga
-
-
-def _find_ratio(one: PieceFragility, floor: str, pga: float) -> float:
-    return pga / max(motion.demand.pfa for motion in one.motions if motion.floor == floor)
 
 
 def _judge(one: PieceFragility) -> Text | None:
@@ -122,66 +117,26 @@ def _judge(one: PieceFragility) -> Text | None:
     return None
 
 
-def _name(kept: Sequence[PieceFragility]) -> Iterator[tuple[str, str, PieceFragility]]:
-    """Yield the taxonomy ``type|floor`` of each curve and floor, with that floor; no two taxonomies are alike."""
-    floors = list(dict.fromkeys(floor for one in kept for floor in one.floors))
-    level = dict(zip(floors, name_safely(floors, "_"), strict=True))
-    for name, one in zip(name_safely((one.name for one in kept), "_"), kept, strict=True):
-        for floor in one.floors:
-            yield f"{name}|{level[floor]}", floor, one
+def _add_function(model: ET.Element, name: str, one: PieceFragility, ratio: float) -> None:
+    """Add the curve of a floor, whose ground PGA / PFA is `ratio` [-].
 
-
-# ---------------------------------------------------------------- the file
-
-
-def _write(
-    assessment: Assessment,
-    found: PieceFragilities,
-    pga: float,
-    functions: Sequence[_Function],
-    left: Sequence[LeftOut],
-) -> bytes:
-    root = ET.Element("nrml", {"xmlns": NAMESPACE})
-    (name,) = name_safely([f"assess {find_stem(assessment)}"], "_")
-    model = ET.SubElement(root, "fragilityModel", {"id": name, "assetCategory": "contents", "lossCategory": "contents"})
-    lines = [describe_origin(assessment, found), f"{PER_FLOOR} Ground PGA {pga / GRAVITY:.4g} g."]
-    lines += [_say_function(one, found.im) for one in functions]
-    lines += [f"Left out: {plain_line(one.name)}: {one.why}." for one in left]
-    ET.SubElement(model, "description").text = "\n".join(lines)
-    ET.SubElement(model, "limitStates").text = LIMIT_STATE
-    for one in functions:
-        (_add_lognormal if one.one.curve.is_lognormal else _add_table)(model, one)
-    ET.indent(root)
-    data: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
-    return data + b"\n"
-
-
-def _say_function(one: _Function, im: str) -> str:
-    what = f"{one.name}: {plain_line(one.one.name)} on floor {plain_line(one.floor)}"
-    amplified = f"PFA / ground PGA {1 / one.ratio:.4g}."
-    return " ".join([f"{what}, {amplified}", *describe_curve(one.one, im)])
-
-
-def _add_lognormal(model: ET.Element, function: _Function) -> None:
-    """Add a continuous function; NRML gives the mean and the standard deviation of the level, not of its logarithm."""
-    curve = function.one.curve
-    median, beta = curve.median * function.ratio / GRAVITY, curve.dispersion
-    mean = median * math.exp(beta**2 / 2)
-    lowest, highest = (_write_number(median * math.exp(sign * REACH * beta)) for sign in (-1, 1))
-    own = ET.SubElement(model, "fragilityFunction", {"id": function.name, "format": "continuous", "shape": "logncdf"})
-    ET.SubElement(own, "imls", {"imt": "PGA", "noDamageLimit": lowest, "minIML": lowest, "maxIML": highest})
-    spread = mean * math.sqrt(math.expm1(beta**2))
-    ET.SubElement(own, "params", {"ls": LIMIT_STATE, "mean": _write_number(mean), "stddev": _write_number(spread)})
-
-
-def _add_table(model: ET.Element, function: _Function) -> None:
-    """Add a discrete function, whose chances do not fall where those of the draws do."""
-    curve = function.one.curve
-    levels = (curve.levels * function.ratio / GRAVITY).tolist()
-    own = ET.SubElement(model, "fragilityFunction", {"id": function.name, "format": "discrete"})
+    A lognormal is continuous: NRML gives the mean and the standard deviation of the level, not of its logarithm. A
+    table is discrete: its chances do not fall where those of the draws do.
+    """
+    curve = one.curve
+    if curve.is_lognormal:
+        median, beta = curve.median * ratio / GRAVITY, curve.dispersion
+        mean = median * math.exp(beta**2 / 2)
+        lowest, highest = (_write_number(median * math.exp(sign * REACH * beta)) for sign in (-1, 1))
+        own = ET.SubElement(model, "fragilityFunction", {"id": name, "format": "continuous", "shape": "logncdf"})
+        ET.SubElement(own, "imls", {"imt": "PGA", "noDamageLimit": lowest, "minIML": lowest, "maxIML": highest})
+        spread = mean * math.sqrt(math.expm1(beta**2))
+        ET.SubElement(own, "params", {"ls": LIMIT_STATE, "mean": _write_number(mean), "stddev": _write_number(spread)})
+        return
+    levels, shares = (curve.levels * ratio / GRAVITY).tolist(), np.maximum.accumulate(curve.shares).tolist()
+    own = ET.SubElement(model, "fragilityFunction", {"id": name, "format": "discrete"})
     imls = ET.SubElement(own, "imls", {"imt": "PGA", "noDamageLimit": _write_number(BELOW * levels[0])})
     imls.text = " ".join(map(_write_number, levels))
-    shares = np.maximum.accumulate(curve.shares).tolist()
     ET.SubElement(own, "poes", {"ls": LIMIT_STATE}).text = " ".join(map(_write_number, shares))
 
 

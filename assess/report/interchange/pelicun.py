@@ -16,7 +16,7 @@ unless ``NonDirectionalMultipliers`` says otherwise, so that its median would no
 import csv
 import io
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 from assess.fragility import MOST_MISFIT
@@ -25,7 +25,6 @@ from assess.pipeline.assessment import Assessment
 from assess.pipeline.piece_fragility import PieceFragilities, PieceFragility
 from assess.report.interchange.exchange_files import (
     Exchange,
-    LeftOut,
     choose_curves,
     describe_curve,
     describe_origin,
@@ -64,10 +63,33 @@ def write_pelicun(assessment: Assessment, found: PieceFragilities) -> Exchange:
     stem = find_stem(assessment)
     names = name_safely((f"{stem} {one.name} {found.im}" for one in kept), ".")
     ids = [f"assess.{name}" for name in names]
-    about = _describe(assessment, found, dict(zip(ids, kept, strict=True)), left)
+    demand, unit, size = DEMANDS[found.im]
+    table = io.StringIO()
+    writer = csv.writer(table, lineterminator="\n")
+    writer.writerow(HEADS)
+    for key, curve in zip(ids, (one.curve for one in kept), strict=True):
+        theta, beta = round_number(curve.median / size), round_number(curve.dispersion)
+        writer.writerow([key, 0, demand, unit, 0, 1, "lognormal", theta, beta, ""])
+    about: dict[str, Any] = {
+        "_GeneralInformation": {
+            "ShortName": f"assess: {plain_line(stem)}",
+            "Description": describe_origin(assessment, found),
+            "Version": __version__,
+            "Use": USE,
+            "LeftOut": [{"Name": plain_line(one.name), "Reason": str(one.why)} for one in left],
+        }
+    }
+    for key, one in zip(ids, kept, strict=True):
+        about[key] = {
+            "Description": f"{plain_line(one.name)}: {say_sizes(one)}",
+            "Comments": " ".join(describe_curve(one, found.im)),
+            "SuggestedComponentBlockSize": "1 EA",
+            "RoundUpToIntegerQuantity": "True",
+            "LimitStates": {"LS1": {"DS1": {"Description": "Overturns."}}},
+        }
     return Exchange(
         files={
-            f"{stem}-pelicun.csv": _write_table(ids, kept, found.im).encode(),
+            f"{stem}-pelicun.csv": table.getvalue().encode(),
             f"{stem}-pelicun.json": f"{json.dumps(about, ensure_ascii=False, allow_nan=False, indent=1)}\n".encode(),
         },
         left_out=left,
@@ -84,36 +106,3 @@ def _judge(one: PieceFragility) -> Text | None:
         "chance; the table itself is in the formats csv and json",
         most=MOST_MISFIT,
     )
-
-
-def _write_table(ids: Sequence[str], kept: Sequence[PieceFragility], im: str) -> str:
-    demand, unit, size = DEMANDS[im]
-    file = io.StringIO()
-    writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(HEADS)
-    for one, curve in zip(ids, (each.curve for each in kept), strict=True):
-        theta, beta = round_number(curve.median / size), round_number(curve.dispersion)
-        writer.writerow([one, 0, demand, unit, 0, 1, "lognormal", theta, beta, ""])
-    return file.getvalue()
-
-
-def _describe(
-    assessment: Assessment, found: PieceFragilities, kept: Mapping[str, PieceFragility], left: Sequence[LeftOut]
-) -> dict[str, Any]:
-    general = {
-        "ShortName": f"assess: {plain_line(find_stem(assessment))}",
-        "Description": describe_origin(assessment, found),
-        "Version": __version__,
-        "Use": USE,
-        "LeftOut": [{"Name": plain_line(one.name), "Reason": str(one.why)} for one in left],
-    }
-    return {"_GeneralInformation": general} | {
-        name: {
-            "Description": f"{plain_line(one.name)}: {say_sizes(one)}",
-            "Comments": " ".join(describe_curve(one, found.im)),
-            "SuggestedComponentBlockSize": "1 EA",
-            "RoundUpToIntegerQuantity": "True",
-            "LimitStates": {"LS1": {"DS1": {"Description": "Overturns."}}},
-        }
-        for name, one in kept.items()
-    }
