@@ -5,7 +5,6 @@ import re
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import partial
 from io import BytesIO
 from typing import Any
 
@@ -14,12 +13,24 @@ import numpy as np
 from assess.i18n import spoken
 from assess.progress import ASKED_EVERY, SILENT, Progress
 from assess.report import words
+from assess.report.blocks import Figure, Image, Words
+from assess.report.embedded import data_uri
 from assess.report.fonts import figure_families, find_undrawn, replace_signs
 from assess.risk import RiskClass
 
 MOST_POINTS = 1500
 _UNDATED = {"svg": ("Date", "Creator"), "pdf": ("CreationDate", "Creator", "Producer"), "png": ("Software",)}
 """What is left out of each kind of file, so that the same figure has the same bytes."""
+_STYLE = {
+    "svg.hashsalt": "assess", "svg.fonttype": "path", "hatch.linewidth": 0.5,
+    "font.size": 8, "axes.titlesize": 8.5, "axes.labelsize": 8, "axes.edgecolor": "#767c82", "axes.linewidth": 0.6,
+    "axes.spines.top": False, "axes.spines.right": False, "xtick.color": "#767c82", "ytick.color": "#767c82",
+    "xtick.labelcolor": "#1c1c1c", "ytick.labelcolor": "#1c1c1c", "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6, "xtick.labelsize": 7.5, "ytick.labelsize": 7.5, "legend.fontsize": 7.5,
+    "grid.color": "#dfe3e6", "grid.linewidth": 0.5,
+}  # fmt: skip
+"""Of every figure, in the report's face: thin grey axes without a box, a light grid."""
+_PATH, _DIGITS = re.compile(rb'(?<= d=")[^"]+'), re.compile(rb"(\.\d\d)\d+")
 _DRAWING = threading.Lock()
 """One figure at a time: while one is drawn, defaults of matplotlib are set, and then set back."""
 
@@ -33,9 +44,9 @@ def draw(
     It can be cancelled with whatever is put into it, and before each panel is laid out and drawn. It is not made in a
     thread that is left behind, as the defaults of matplotlib have to be set back by then.
     """
-    Figure, Text, rc_context = progress.wait_for(_import_matplotlib)
-    with one_at_a_time(progress), rc_context(_style()):
-        figure = Figure(figsize=(width, height), layout="constrained")
+    MatplotlibFigure, Text, rc_context = progress.wait_for(_import_matplotlib)
+    with one_at_a_time(progress), rc_context({**_STYLE, "font.family": list(figure_families())}):
+        figure = MatplotlibFigure(figsize=(width, height), layout="constrained")
         figure.stale_callback = lambda *_: progress.check()  # called with whatever is put into it
         paint(figure)
         for one in figure.findobj(Text):
@@ -45,20 +56,10 @@ def draw(
         file = BytesIO()
         figure.savefig(file, format=kind, dpi=150, metadata=dict.fromkeys(_UNDATED[kind]))
     progress.check()
-    return _shorten(file.getvalue()) if kind == "svg" else file.getvalue()
-
-
-def _style() -> dict[str, Any]:
-    """Return the style of every figure: the report's face, thin grey axes without a box, a light grid."""
-    return {
-        "svg.hashsalt": "assess", "svg.fonttype": "path", "hatch.linewidth": 0.5,
-        "font.family": list(figure_families()), "font.size": 8, "axes.titlesize": 8.5, "axes.labelsize": 8,
-        "axes.edgecolor": "#767c82", "axes.linewidth": 0.6,
-        "axes.spines.top": False, "axes.spines.right": False, "xtick.color": "#767c82", "ytick.color": "#767c82",
-        "xtick.labelcolor": "#1c1c1c", "ytick.labelcolor": "#1c1c1c", "xtick.major.width": 0.6,
-        "ytick.major.width": 0.6, "xtick.labelsize": 7.5, "ytick.labelsize": 7.5, "legend.fontsize": 7.5,
-        "grid.color": "#dfe3e6", "grid.linewidth": 0.5,
-    }  # fmt: skip
+    drawn = file.getvalue()
+    if kind == "svg":  # paths to hundredths of a point, beyond which nobody sees: curves take half the bytes
+        drawn = _PATH.sub(lambda path: _DIGITS.sub(rb"\1", path[0]), drawn)
+    return drawn
 
 
 def _import_matplotlib() -> tuple[Any, Any, Any]:
@@ -88,24 +89,19 @@ def _write_numbers(figure: Any) -> None:
     """Have numbers along axes written as the language in use does; ticks with words are as they were set."""
     from matplotlib.ticker import LogFormatter, ScalarFormatter
 
-    if spoken().number("1.5") == "1.5":
+    say = spoken().number
+    if say("1.5") == "1.5":
         return
-
-    def write(ticks: Callable[[Any], list[str]], say: Callable[[str], str], values: Any) -> list[str]:
-        return [say(text) for text in ticks(values)]
 
     formatters = [axis.get_major_formatter() for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)]
     numeric: dict[int, Any] = {id(one): one for one in formatters if isinstance(one, (ScalarFormatter, LogFormatter))}
     for formatter in numeric.values():  # axes that share a scale share its formatter
-        formatter.format_ticks = partial(write, formatter.format_ticks, spoken().number)
+        formatter.format_ticks = lambda values, ticks=formatter.format_ticks: [say(text) for text in ticks(values)]
 
 
-_PATH, _DIGITS = re.compile(rb'(?<= d=")[^"]+'), re.compile(rb"(\.\d\d)\d+")
-
-
-def _shorten(svg: bytes) -> bytes:
-    """Cut the coordinates of paths to hundredths of a point, which nobody sees: curves take half the bytes."""
-    return _PATH.sub(lambda path: _DIGITS.sub(rb"\1", path[0]), svg)
+def build_figure(drawing: bytes, alternative: str, caption: Words = "") -> Figure:
+    """Return a drawing in SVG as a figure of a document."""
+    return Figure(Image(data_uri(drawing, "image/svg+xml"), alternative), caption)
 
 
 HATCHES = {RiskClass.LOW: "", RiskClass.MEDIUM: r"\\", RiskClass.HIGH: "//", RiskClass.VERY_HIGH: ""}

@@ -1,7 +1,7 @@
 """Names on a plan, in metres: none over another, each where it covers least; what finds no room gets a number."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,71 +32,6 @@ class Label:
     lead: tuple[Point, Point] | None
 
 
-def place_each(
-    named: Sequence[tuple[str, Bounds]],
-    taken: Sequence[Bounds],
-    frame: Bounds,
-    unit: float,
-    names: Sequence[Bounds] = (),
-) -> list[Label | None]:
-    """Place each name beside its box, or farther off with a line to it; None where there is no room for it.
-
-    * `named` (4,): names with the boxes of their pieces [m], the most important first.
-    * `taken` (4,): what is to stay free: pieces and names of places [m].
-    * `frame` (4,): the drawing [m].
-    * `unit`: one pixel [m].
-    * `names` (4,): names that are there already, which no other may overlap [m].
-    """
-    held = [*names]
-    placed: list[Label | None] = []
-    for text, piece in named:
-        width = sum(3.9 if sign in _NARROW else 8.2 if sign in _WIDE else 5.8 for sign in text)  # [px], about
-        size = (1.1 * width * unit, LINE * unit)  # bold
-        tried = [box for box in _around(piece, size, unit) if is_inside(box, frame)]
-        tried = [box for box, area in zip(tried, _covered(tried, held), strict=True) if not area]
-        if not tried:
-            placed.append(None)
-            continue
-        hidden = [math.floor(10 * area / (size[0] * size[1])) for area in _covered(tried, taken)]
-        away = [round(_away(box, piece) / unit) for box in tried]
-        best = min(zip(hidden, away, tried, strict=True), key=lambda one: one[:2])[2]  # a tenth more hides no more
-        held.append(best)
-        placed.append(Label(text, best, _lead(best, piece) if _away(best, piece) > _FAR * unit else None))
-    return placed
-
-
-def _around(piece: Bounds, size: Point, unit: float) -> Iterator[Bounds]:
-    """Yield boxes of that size round a piece: right, left, above, below and at the corners, ever farther off.
-
-    Round a point (of a piece without extent) the first is on it.
-    """
-    (left, low, right, high), (wide, tall) = piece, size
-    x, y = (left + right - wide) / 2, (low + high - tall) / 2
-    if left == right:
-        yield x, y, x + wide, y + tall
-    for off in (2 * unit, 14 * unit, 28 * unit, 44 * unit):
-        for x0 in (right + off, left - off - wide, x):
-            for y0 in (y, high + off, low - off - tall):
-                if (x0, y0) != (x, y):
-                    yield x0, y0, x0 + wide, y0 + tall
-
-
-def _covered(boxes: Sequence[Bounds], others: Sequence[Bounds]) -> list[float]:
-    """Return the area [m2] of each box that others share, counted once for each of them."""
-    one, other = np.reshape(boxes, (-1, 1, 4)), np.reshape(others, (1, -1, 4))
-    sides = np.minimum(one[..., 2:], other[..., 2:]) - np.maximum(one[..., :2], other[..., :2])
-    areas: list[float] = np.maximum(sides, 0).prod(axis=2).sum(axis=1).tolist()
-    return areas
-
-
-def _away(box: Bounds, piece: Bounds) -> float:
-    """Return the distance [m] between both boxes."""
-    return math.hypot(
-        max(box[0] - piece[2], piece[0] - box[2], 0.0),
-        max(box[1] - piece[3], piece[1] - box[3], 0.0),
-    )
-
-
 def _lead(box: Bounds, piece: Bounds) -> tuple[Point, Point]:
     """Return the points of the label and of the piece that lie nearest to each other, the middle where they overlap."""
     ends = []
@@ -104,6 +39,14 @@ def _lead(box: Bounds, piece: Bounds) -> tuple[Point, Point]:
         middle = (max(low, other_low) + min(high, other_high)) / 2
         ends.append((high, other_low) if high < other_low else (low, other_high) if low > other_high else (middle,) * 2)
     return (ends[0][0], ends[1][0]), (ends[0][1], ends[1][1])
+
+
+def find_covered(boxes: Sequence[Bounds], others: Sequence[Bounds]) -> list[float]:
+    """Return the area [m2] of each box that others share, counted once for each of them."""
+    one, other = np.reshape(boxes, (-1, 1, 4)), np.reshape(others, (1, -1, 4))
+    sides = np.minimum(one[..., 2:], other[..., 2:]) - np.maximum(one[..., :2], other[..., :2])
+    areas: list[float] = np.maximum(sides, 0).prod(axis=2).sum(axis=1).tolist()
+    return areas
 
 
 def is_inside(box: Bounds, frame: Bounds) -> bool:
@@ -116,6 +59,12 @@ def overlap(one: Bounds, other: Bounds) -> float:
     wide = min(one[2], other[2]) - max(one[0], other[0])
     tall = min(one[3], other[3]) - max(one[1], other[1])
     return wide * tall if wide > 0 and tall > 0 else 0.0
+
+
+def box_around(centre: Point, width: float, height: float) -> Bounds:
+    """Return the box with its centre at a point."""
+    x, y = centre
+    return x - width / 2, y - height / 2, x + width / 2, y + height / 2
 
 
 def bounds(corners: Sequence[Point]) -> Bounds:
@@ -171,12 +120,12 @@ class Names:
 
     def place(self, named: Sequence[tuple[str, Bounds]], taken: Sequence[Bounds]) -> list[Label | None]:
         """Return the label of each name, a number in its place, or None."""
-        found = place_each(named, taken, self.frame, self.unit, (*self.boxes, *self.pieces))
+        found = self._place_each(named, taken, (*self.boxes, *self.pieces))
         self.boxes += [one.box for one in found if one is not None]
         for at, (text, box) in enumerate(named):
             if found[at] is None:
                 number = sum(key.number is not None for key in self.keys) + 1
-                (label,) = place_each([(str(number), box)], taken, self.frame, self.unit, (*self.boxes, *self.pieces))
+                (label,) = self._place_each([(str(number), box)], taken, (*self.boxes, *self.pieces))
                 point = ((box[0] + box[2]) / 2, (box[1] + box[3]) / 2)
                 self.keys.append(Key(None if label is None else number, text, point))
                 self.boxes += [] if label is None else [label.box]
@@ -188,35 +137,71 @@ class Names:
         rank = {"": 3, "door": 2} if len(places) > FEW else {}
         ordered = sorted(places, key=lambda pair: rank.get(pair[0].kind, pair[0].kind not in LARGE))
         ranks = [rank.get(one.kind, 0) for one, _at in ordered]
-        named = [(words.cut(one.place, NAMED), self._sign(one, at)) for one, at in ordered]
-        free = [*taken, *(box for _name, box in named)]
+        sizes = [(12 if one.kind in LARGE else 6) * self.unit for one, _at in ordered]
+        signs = [box_around(at, size, size) for (_one, at), size in zip(ordered, sizes, strict=True)]
+        named = [(words.cut(one.place, NAMED), sign) for (one, _at), sign in zip(ordered, signs, strict=True)]
+        free = [*taken, *signs]
         labels = self.place(named[: ranks.count(0)], free)
-        labels += self._place_free(named[ranks.count(0) : len(ranks) - ranks.count(3)], free)
-        labels += [None] * ranks.count(3)
-        return [self._spot(one, at, label) for (one, at), label in zip(ordered, labels, strict=True)]
-
-    def _place_free(self, named: Sequence[tuple[str, Bounds]], taken: Sequence[Bounds]) -> list[Label | None]:
-        """Return the label of each name that covers nothing and lies beside its place; the others are left out."""
-        found: list[Label | None] = []
-        for one in named:
-            (label,) = place_each([one], taken, self.frame, self.unit, (*self.boxes, *self.pieces))
-            is_free = label is not None and label.lead is None and not any(overlap(label.box, box) for box in taken)
-            found.append(label if is_free else None)
+        for one in named[ranks.count(0) : len(ranks) - ranks.count(3)]:  # left out unless it covers nothing
+            (label,) = self._place_each([one], free, (*self.boxes, *self.pieces))
+            is_free = label is not None and label.lead is None and not any(overlap(label.box, box) for box in free)
+            labels.append(label if is_free else None)
             self.boxes += [label.box] if label is not None and is_free else []
-        return found
+        labels += [None] * ranks.count(3)
+        spots = []
+        for (one, at), sign, label in zip(ordered, signs, labels, strict=True):
+            if label is None:
+                spots.append(Spot("", one.kind, at, at, False, sign))
+                continue
+            is_before = label.box[2] <= at[0]
+            start = (label.box[2 if is_before else 0], label.box[1] + 0.2 * LINE * self.unit)
+            spots.append(Spot(label.text, one.kind, at, start, is_before, label.box, label.lead))
+        return spots
 
-    def place_rooms(self, rooms: Sequence[tuple[str, Point]], taken: Sequence[Bounds]) -> list[Label]:
-        """Return the names of rooms in their middle."""
-        named = [(words.cut(name, NAMED), (*centre, *centre)) for name, centre in rooms]
-        return [one for one in self.place(named, taken) if one is not None]
+    def place_ways(self, signed: Sequence[tuple[str, Bounds]]) -> list[Label]:
+        """Return the names of segments beside their signs, where a name covers nothing else."""
+        taken = [*self.pieces, *self.boxes, *(box for _name, box in signed)]
+        small = LINE * LINE * self.unit * self.unit / 20
+        return [
+            one
+            for one in self._place_each(signed[:MOST], taken, ())
+            if one and one.lead is None and find_covered([one.box], taken)[0] < small
+            and not any(overlap(one.box, other) for other in (*self.boxes, *self.pieces))
+        ]  # fmt: skip
 
-    def _sign(self, place: Place, at: Point) -> Bounds:
-        off = (6 if place.kind in LARGE else 3) * self.unit
-        return at[0] - off, at[1] - off, at[0] + off, at[1] + off
+    def _place_each(
+        self, named: Sequence[tuple[str, Bounds]], taken: Sequence[Bounds], names: Sequence[Bounds]
+    ) -> list[Label | None]:
+        """Place each name beside its box, or farther off with a line to it; None where there is no room for it.
 
-    def _spot(self, place: Place, at: Point, label: Label | None) -> Spot:
-        if label is None:
-            return Spot("", place.kind, at, at, False, self._sign(place, at))
-        is_before = label.box[2] <= at[0]
-        start = (label.box[2 if is_before else 0], label.box[1] + 0.2 * LINE * self.unit)
-        return Spot(label.text, place.kind, at, start, is_before, label.box, label.lead)
+        `named` are names with the boxes of their pieces, the most important first; `taken` is what is to stay free,
+        and `names` what no name may overlap [m].
+        """
+        held, unit = [*names], self.unit
+        placed: list[Label | None] = []
+        for text, piece in named:
+            width = sum(3.9 if sign in _NARROW else 8.2 if sign in _WIDE else 5.8 for sign in text)  # [px], about
+            wide, tall = 1.1 * width * unit, LINE * unit  # bold
+            left, low, right, high = piece
+            x, y = (left + right - wide) / 2, (low + high - tall) / 2
+            starts = [(x, y)] if left == right else []  # on a point, else right, left, above, below and at the corners
+            starts += [
+                (x0, y0)
+                for off in (2 * unit, 14 * unit, 28 * unit, 44 * unit)
+                for x0 in (right + off, left - off - wide, x)
+                for y0 in (y, high + off, low - off - tall)
+                if (x0, y0) != (x, y)
+            ]
+            tried = [(x0, y0, x0 + wide, y0 + tall) for x0, y0 in starts]
+            tried = [box for box in tried if is_inside(box, self.frame)]
+            tried = [box for box, area in zip(tried, find_covered(tried, held), strict=True) if not area]
+            if not tried:
+                placed.append(None)
+                continue
+            hidden = [math.floor(10 * area / (wide * tall)) for area in find_covered(tried, taken)]
+            leads = [_lead(box, piece) for box in tried]
+            ranked = zip(hidden, (round(math.dist(*lead) / unit) for lead in leads), tried, leads, strict=True)
+            *_rank, best, lead = min(ranked, key=lambda one: one[:2])  # a tenth more hides no more
+            held.append(best)
+            placed.append(Label(text, best, lead if math.dist(*lead) > _FAR * unit else None))
+        return placed

@@ -12,7 +12,6 @@ import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 from assess.cache_folder import cache_folder, examine_folder
@@ -31,10 +30,8 @@ ENLARGED = 1.06
 MOST_KEPT = 1000
 """Equations that are kept, 3 kB each: those of the methods, and of some worked examples."""
 _UNNAMED = re.compile(r"[^A-Za-z0-9]+")
-_LETTERS = {1: "M", 2: "L", 3: "Q", 4: "C", 79: "Z"}
-"""What SVG calls the codes of `matplotlib.path.Path`."""
-_POINTS = {1: 1, 2: 1, 3: 2, 4: 3, 79: 1}
-"""How many points each of them takes."""
+_CODES = {1: ("M", 1), 2: ("L", 1), 3: ("Q", 2), 4: ("C", 3), 79: ("Z", 1)}
+"""What SVG calls the codes of `matplotlib.path.Path`, and how many points each takes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,11 +60,6 @@ class MathFigure:
         width, height, depth = (value * ENLARGED / UNITS for value in (*self.box[2:], self.depth))
         return f"width: {width:.2f}em; aspect-ratio: {width:.2f} / {height:.2f}; vertical-align: {-depth:.2f}em"
 
-    def write_alone(self) -> str:
-        """Return it as an SVG file, with its letters."""
-        head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{self.view}" fill="{INK}">'
-        return f"{head}{write_letters(self.letters)}{self.placed}</svg>"
-
 
 def write_letters(letters: Mapping[str, str]) -> str:
     """Return the outlines of letters as SVG definitions, which equations use."""
@@ -81,7 +73,10 @@ def draw_math(tex: str) -> MathFigure:
 
     Raises ValueError if it is no TeX that mathtext reads.
     """
-    place = _find_place(tex)
+    folder = cache_folder() / "equations"
+    drawn_by = f"{FACE} {MARGIN} {importlib.metadata.version('matplotlib')} {tex}"
+    name = hashlib.sha256(drawn_by.encode()).hexdigest()[:32]
+    place = None if examine_folder(folder) else folder / f"{name}.json"  # of a folder that others could change
     with contextlib.suppress(OSError, ValueError, TypeError, LookupError):  # none is kept, or a damaged one
         kept: Any = json.loads(place.read_text(encoding="utf-8")) if place else None
         return MathFigure(**{**kept, "box": tuple(map(float, kept["box"]))})
@@ -94,14 +89,6 @@ def draw_math(tex: str) -> MathFigure:
     return drawn
 
 
-def _find_place(tex: str) -> Path | None:
-    """Return the file that an equation is kept in; None where nothing can be kept, or others could change it."""
-    folder = cache_folder() / "equations"
-    drawn_by = f"{FACE} {MARGIN} {importlib.metadata.version('matplotlib')} {tex}"
-    name = hashlib.sha256(drawn_by.encode()).hexdigest()
-    return None if examine_folder(folder) else folder / f"{name[:32]}.json"
-
-
 def _draw(tex: str) -> MathFigure:
     from matplotlib import rc_context, rcParamsDefault
     from matplotlib.font_manager import FontProperties
@@ -112,29 +99,27 @@ def _draw(tex: str) -> MathFigure:
         width, height, depth, *_ = text_to_path.mathtext_parser.parse(text, text_to_path.DPI, face)
         glyphs, shapes, rules = text_to_path.get_glyphs_mathtext(face, text)
     names = {shape: _UNNAMED.sub("-", f"math-{shape}") for shape in shapes}
-    placed = [_place(names[shape], x, y, size) for shape, x, y, size in glyphs]
-    ruled = [f'<path d="{_write_path(*rule)}"/>' for rule in rules]
+    placed = []
+    for shape, x, y, size in glyphs:  # coordinates of matplotlib run upwards
+        where = f'x="{x:.0f}" y="{-y:.0f}"'
+        if abs(size - 1) >= 0.001:
+            where = f'transform="translate({x:.0f} {-y:.0f})scale({size:.2g})"'
+        placed.append(f'<use href="#{names[shape]}" {where}/>')
+    placed += [f'<path d="{_write_path(*rule)}"/>' for rule in rules]
     return MathFigure(
         letters={names[shape]: _write_path(*outline) for shape, outline in shapes.items()},
-        placed="".join([*placed, *ruled]),
+        placed="".join(placed),
         box=(-MARGIN, -(height - depth) - MARGIN, width + 2 * MARGIN, height + 2 * MARGIN),
         depth=depth + MARGIN,
     )
 
 
-def _place(name: str, x: float, y: float, size: float) -> str:
-    """Return a letter at its place; coordinates of matplotlib run upwards."""
-    if abs(size - 1) < 0.001:
-        return f'<use href="#{name}" x="{x:.0f}" y="{-y:.0f}"/>'
-    return f'<use href="#{name}" transform="translate({x:.0f} {-y:.0f})scale({size:.2g})"/>'
-
-
 def _write_path(points: Any, codes: Any) -> str:
     """Return a path as SVG has it, y downwards, in whole units: a hundredth of a letter's size."""
-    parts, at = [], 0
+    parts, at = "", 0
     while at < len(codes):
-        code, count = int(codes[at]), _POINTS[int(codes[at])]
+        letter, count = _CODES[int(codes[at])]
         numbers = [f"{round(value)}" for x, y in points[at : at + count] for value in (x, -y)]
-        parts.append(_LETTERS[code] + ("" if code == 79 else " ".join(numbers)))
+        parts += letter + ("" if letter == "Z" else " ".join(numbers))
         at += count
-    return "".join(parts)
+    return parts

@@ -7,31 +7,20 @@ letters would be smaller than some programs can draw.
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 from assess.i18n import gettext as _
-from assess.model import Place
+from assess.plans.linework import clip
 from assess.report import words
 from assess.report.content import FloorPage
-from assess.report.figures.labels import MOST, Bounds, Corners, Key, Label, Names, Point, Spot, bounds, overlap
-from assess.report.figures.underlay import (
-    Ring,
-    Room,
-    Underlay,
-    build_underlay,
-    cut_falls,
-    cut_lines,
-    find_edge,
-    list_rooms,
-    widen,
-)
-from assess.report.figures.ways import Stretch, Style, name_ways, place_signs, sign_box
+from assess.report.figures.labels import MOST, NAMED, Bounds, Corners, Key, Label, Names, Point, Spot, bounds
+from assess.report.figures.underlay import Ring, Room, Underlay, build_underlay, cut_falls, find_edge, list_rooms, widen
+from assess.report.figures.ways import Stretch, Style, place_signs, sign_box
 from assess.results import ItemResult, ItemRow, Results
 from assess.risk import RiskClass
 from assess.routes.geometry import fallen, rectangle
 
-ANCHORED, INK = "#d0d0d0", "#1c1c1c"
-"""Fill of an anchored piece, which stands outside the classes, and the colour of its symbol."""
+ANCHORED = "#d0d0d0"
+"""Fill of an anchored piece, which stands outside the classes."""
 WIDE, HIGH = 660.0, 780.0
 """Most of a drawing [px]: the width of a page in upright format, and what of its height leaves room for the text."""
 BESIDE, BELOW = 26.0, 44.0
@@ -131,7 +120,7 @@ class Plan:
         """The lines of the user's drawing as one path."""
         if self.underlay is None:
             return ""
-        found = cut_lines(self.underlay.lines, (*self.low, *self.high))
+        found = [part for line in self.underlay.lines for part in clip(line, (*self.low, *self.high))]
         return "".join("M" + "L".join(f"{self.x(x):.1f} {self.y(y):.1f}" for x, y in line.tolist()) for line in found)
 
     @property
@@ -145,10 +134,13 @@ class Plan:
         return [kind for kind in KINDS if any(spot.kind == kind for spot in self.places)]
 
     @property
-    def ticks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    def ticks(self) -> tuple[tuple[float, ...], ...]:
         """Values along X and Y, at the same round distance."""
         step = _step(max(self.high[0] - self.low[0], self.high[1] - self.low[1]) / _TICKS)
-        return _multiples(step, self.low[0], self.high[0]), _multiples(step, self.low[1], self.high[1])
+        return tuple(
+            tuple(round(step * at, 1) for at in range(math.ceil(low / step), math.floor(high / step) + 1))
+            for low, high in zip(self.low, self.high, strict=True)
+        )
 
     @property
     def bar(self) -> float:
@@ -173,7 +165,7 @@ class Plan:
 def build_plan(page: FloorPage, results: Results, ways: Sequence[Stretch] = ()) -> Plan | None:
     """Return the plan of a floor with its segments, or None where neither a piece nor a segment has a position."""
     pieces = tuple(
-        _piece(one, (one.item.x_m, one.item.y_m))
+        _build_piece(one, (one.item.x_m, one.item.y_m))
         for one in page.results
         if one.item.x_m is not None and one.item.y_m is not None
     )
@@ -185,71 +177,70 @@ def build_plan(page: FloorPage, results: Results, ways: Sequence[Stretch] = ()) 
     if edge is not None:
         pieces = tuple(replace(one, fallen=cut_falls(one.fallen, edge[0])) for one in pieces)
     places = [(place, (place.x, place.y)) for place in own if place.x is not None and place.y is not None]
-    frame = _frame(pieces, ways, [at for _place, at in places], rooms, underlay)
+    drawn: list[Sequence[Point]] = [ring for one in pieces for ring in (one.corners, *one.fallen)]
+    drawn += [*(one.corners for one in ways), *(room.outline for room in rooms), [at for _place, at in places]]
+    box = bounds([point for points in drawn for point in points])
+    if underlay is not None:
+        box = widen(box, underlay.corners)
+    frame = box[0] - BORDER, box[1] - BORDER, box[2] + BORDER, box[3] + BORDER
     unit = max((frame[2] - frame[0]) / (WIDE - BESIDE), (frame[3] - frame[1]) / (HIGH - BELOW), 1 / LARGEST)
-    signed = tuple(place_signs(ways, [bounds(one.corners) for one in pieces], unit))
-    named = _name(pieces, places, rooms, signed, Names(frame, unit, [bounds(one.corners) for one in pieces]))
+    shapes = [bounds(one.corners) for one in pieces]
+    signed = tuple(place_signs(ways, shapes, unit))
+    signs = [(one.name, sign_box(one.sign, unit)) for one in signed if one.sign is not None]
+    names, taken = Names(frame, unit, shapes), [*shapes, *(box for _name, box in signs)]
+    falls = [bounds(ring) for one in pieces for ring in one.fallen]
+    spots = names.place_spots(places, [*shapes, *falls, *taken[len(shapes) :]])
+    inside = [(words.cut(one.name, NAMED), (*one.centre, *one.centre)) for one in rooms if one.name]
+    room_names = [one for one in names.place(inside, taken) if one is not None]
+    labels = [one for one in names.place(_list_risky(pieces), taken) if one is not None]
     return Plan(
         key=f"plan-{[floor.floor for floor in results.floor_rows].index(page.floor.floor) + 1}",
         title=page.title,
         pieces=pieces,
+        places=tuple(spots),
+        labels=tuple(labels),
         ways=signed,
+        names=tuple(names.place_ways(signs)),
         rooms=rooms,
+        room_names=tuple(room_names),
+        keys=tuple(names.keys),
         underlay=underlay,
         cut_at=edge[1] if edge else "",
         low=frame[:2],
         high=frame[2:],
         unit=unit,
         north=results.building.azimuth_deg,  # X lies as far clockwise from north as north anticlockwise from X
-        **named,
     )
 
 
-def _name(
-    pieces: Sequence[Piece],
-    places: Sequence[tuple[Place, Point]],
-    rooms: Sequence[Room],
-    ways: Sequence[Stretch],
-    names: Names,
-) -> dict[str, Any]:
-    """Return the names on a plan by the fields of `Plan`: places, rooms, pieces and segments, in that order."""
-    unit, shapes = names.unit, [bounds(one.corners) for one in pieces]
-    signs = [sign_box(one.sign, unit) for one in ways if one.sign is not None]
-    falls = [bounds(ring) for one in pieces for ring in one.fallen]
-    spots = names.place_spots(places, [*shapes, *falls, *signs])
-    middle = names.place_rooms([(one.name, one.centre) for one in rooms if one.name], [*shapes, *signs])
-    labels = [one for one in names.place(_risky(pieces), [*shapes, *signs]) if one is not None]
-    segments = name_ways(ways, [*shapes, *names.boxes], names.frame, unit)
-    held = (*names.boxes, *shapes)
-    return {
-        "places": tuple(spots),
-        "room_names": tuple(middle),
-        "labels": tuple(labels),
-        "names": tuple(one for one in segments if not any(overlap(one.box, other) for other in held)),
-        "keys": tuple(names.keys),
-    }
-
-
-def _piece(one: ItemResult, at: Point) -> Piece:
+def _build_piece(one: ItemResult, at: Point) -> Piece:
     item, risk, is_outside = one.item, one.adopted.risk, one.is_anchored or bool(one.apart)
     breadth = item.breadth_cm / 100
     across, angle = (item.width_cm or item.breadth_cm) / 100, turn(item)
-    falls = not one.is_anchored and max(risk, one.adopted.upper) >= RiskClass.MEDIUM
+    ways: tuple[Corners, ...] = ()
+    if not one.is_anchored and max(risk, one.adopted.upper) >= RiskClass.MEDIUM:
+        ways = fallen(at, angle, breadth, across, item.height_cm / 100)
+        if item.falls_toward_deg is not None:  # away from a wall alone
+            is_ahead = math.cos(math.radians(item.falls_toward_deg - angle)) > 0
+            ways = ways[:1] if is_ahead else ways[1:]
+    named, kind = words.cut(item.item, 40), item.description or item.type
+    described = f"{named}, {words.cut(kind, 80)}" if kind else named
     return Piece(
         number=item.index + 1,
         name=words.cut(item.item, SHORT),
         upper=None if is_outside else max(risk, one.adopted.upper),
-        title=_title(one),
+        title=_("{item}: {risk}; chance {chance}",
+                item=described, risk=words.risk_words(one), chance=words.chance(one)),
         class_name=words.style_name(one),
         fill=ANCHORED if one.is_anchored else words.APART_FILL if one.apart else risk.fill,
-        ink=INK if is_outside else risk.ink,
+        ink=words.INK if is_outside else risk.ink,
         symbol=words.class_symbol(one),
         marks="" if is_outside else words.class_marks(one),
         side=min(breadth, across),
         at=at,
         corners=rectangle(at, angle, (-breadth / 2, breadth / 2), across),
-        fallen=_ways_to_fall(item, at) if falls else (),
-    )
+        fallen=ways,
+    )  # fmt: skip
 
 
 def turn(item: ItemRow) -> float:
@@ -259,38 +250,7 @@ def turn(item: ItemRow) -> float:
     return 90.0 if item.axis_given == "Y" else 0.0
 
 
-def _ways_to_fall(item: ItemRow, at: Point) -> tuple[Corners, ...]:
-    """Return what a piece covers beyond its footprint, each way that it may fall: away from a wall alone."""
-    across, angle = (item.width_cm or item.breadth_cm) / 100, turn(item)
-    ahead, behind = fallen(at, angle, item.breadth_cm / 100, across, item.height_cm / 100)
-    if item.falls_toward_deg is None:
-        return ahead, behind
-    return (ahead,) if math.cos(math.radians(item.falls_toward_deg - angle)) > 0 else (behind,)
-
-
-def _title(one: ItemResult) -> str:
-    named, kind = words.cut(one.item.item, 40), one.item.description or one.item.type
-    described = f"{named}, {words.cut(kind, 80)}" if kind else named
-    return _("{item}: {risk}; chance {chance}", item=described, risk=words.risk_words(one), chance=words.chance(one))
-
-
-def _frame(
-    pieces: Sequence[Piece],
-    ways: Sequence[Stretch],
-    places: Sequence[Point],
-    rooms: Sequence[Room],
-    underlay: Underlay | None,
-) -> Bounds:
-    drawn: list[Sequence[Point]] = [ring for one in pieces for ring in (one.corners, *one.fallen)]
-    drawn += [*(one.corners for one in ways), *(room.outline for room in rooms), places]
-    xs, ys = zip(*(point for points in drawn for point in points), strict=True)
-    box = min(xs), min(ys), max(xs), max(ys)
-    if underlay is not None:
-        box = widen(box, underlay.corners)
-    return box[0] - BORDER, box[1] - BORDER, box[2] + BORDER, box[3] + BORDER
-
-
-def _risky(pieces: Sequence[Piece]) -> list[tuple[str, Bounds]]:
+def _list_risky(pieces: Sequence[Piece]) -> list[tuple[str, Bounds]]:
     """Return name and box of the pieces that are or may be of high or very high class; without one, medium class."""
     risky = [(one.upper, one) for one in pieces if one.upper is not None and one.upper >= RiskClass.MEDIUM]
     least = RiskClass.HIGH if any(upper >= RiskClass.HIGH for upper, _one in risky) else RiskClass.MEDIUM
@@ -300,7 +260,3 @@ def _risky(pieces: Sequence[Piece]) -> list[tuple[str, Bounds]]:
 
 def _step(least: float) -> float:
     return next((step for step in _STEPS if step >= least), _STEPS[-1])
-
-
-def _multiples(step: float, low: float, high: float) -> tuple[float, ...]:
-    return tuple(round(step * at, 1) for at in range(math.ceil(low / step), math.floor(high / step) + 1))

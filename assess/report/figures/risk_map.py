@@ -12,10 +12,9 @@ from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
 from assess.progress import SILENT, Progress
 from assess.report import words
-from assess.report.blocks import Figure, Image
-from assess.report.embedded import data_uri
-from assess.report.figures.draw import HATCHES, draw, label
-from assess.report.figures.labels import Bounds, Point, is_inside, overlap
+from assess.report.blocks import Figure
+from assess.report.figures.draw import HATCHES, build_figure, draw, label
+from assess.report.figures.labels import Bounds, Point, box_around, is_inside, overlap
 from assess.results import ItemResult, Results, count_pieces
 from assess.risk import LIMITS, RiskClass
 from assess.units import ROUNDING
@@ -37,7 +36,7 @@ APART = {"unconfirmed": "p", "formula": "v"}
 LETTER, LINE, GAP = 3.7, 7.0, 5.0
 """About the width of a letter and the height of a line of 6 points, and a text's distance from a symbol."""
 
-INK, HALO, HATCHING = "#1c1c1c", "#ffffff", "#a08c78"
+INK, HALO, HATCHING = words.INK, "#ffffff", "#a08c78"
 _BACKING = {"boxstyle": "round,pad=0.1", "facecolor": HALO, "alpha": 0.75, "linewidth": 0}
 """Behind a text, so that it can be read on a hatch."""
 
@@ -80,47 +79,38 @@ def paint_checked(axes: Any, method: "MethodInfo", height_cm: float) -> None:
     axes.plot(*corners, color=INK, linewidth=1.2, linestyle=":", **where)[0].set_gid("checked")
 
 
-def paint_pieces(axes: Any, places: Mapping[Point, Sequence[ItemResult]]) -> None:
-    """Paint a symbol for each place and class, the worst on top, and below them one for those that stand apart."""
-    shown = dict.fromkeys((place, one.adopted.risk, one.apart) for place, ones in places.items() for one in ones)
-    for (x, y), risk, apart in sorted(shown, key=lambda found: (not found[2], found[1])):
-        marker, fill = (APART[apart], HALO) if apart else (MARKERS[risk], risk.fill)
-        axes.plot([x], [y], marker, color=HALO, markersize=7, zorder=5)
-        axes.plot([x], [y], marker, markersize=5, markerfacecolor=fill, markeredgecolor=INK,
-                  markeredgewidth=0.8, zorder=5)[0].set_gid("piece")  # fmt: skip
-
-
 def _in_points(axes: Any, places: Any) -> FloatArray:
     """Return where places (n, 2) of a panel are, about, from its lower left corner [points], (n, 2)."""
     first, last = np.array([axes.get_xlim(), axes.get_ylim()]).T
     return np.asarray((np.reshape(np.array(list(places), dtype=np.float64), (-1, 2)) - first) / (last - first) * PANEL)
 
 
-def paint_chances(axes: Any, lines: Sequence[Line], places: Mapping[Point, object]) -> list[Bounds]:
-    """Write its chance on each line, where it is clearest of the symbols; return the boxes that are taken."""
-    others = _in_points(axes, places)
-    taken = [box_around(x, y, GAP, GAP) for x, y in others]
+def _write_texts(axes: Any, lines: Sequence[Line], places: Mapping[Point, Sequence[ItemResult]]) -> None:
+    """Write its chance on each line, where it is clearest of the symbols, and name the worst piece of each place.
+
+    The worst place comes first, as long as there is room.
+    """
+    symbols = others = _in_points(axes, places)
+    taken = [box_around((x, y), GAP, GAP) for x, y in symbols]
     for level, vertices in lines:
         along = _in_points(axes, vertices)
-        at = find_clearest(along, others, 3 * GAP) if len(along) else None
-        if at is not None:
-            text = f"{number(100 * level, 'g')} %"
-            axes.text(*vertices[at], text, fontsize=7, ha="center", va="center", color=INK, zorder=4,
-                      bbox=_BACKING).set_gid("chance")  # fmt: skip
-            others = np.vstack([others, along[at]])
-            x, y = along[at].tolist()
-            taken.append(box_around(x, y, LETTER * len(text), LINE))
-    return taken
-
-
-def paint_names(axes: Any, places: Mapping[Point, Sequence[ItemResult]], taken: list[Bounds]) -> None:
-    """Name the worst piece of each place, the worst place first, as long as there is room."""
+        inside = np.all((along >= 3 * GAP) & (along <= np.array(PANEL) - 3 * GAP), axis=1)
+        if not inside.any():
+            continue
+        away = np.hypot(*(along[:, np.newaxis] - others[np.newaxis]).transpose(2, 0, 1))
+        nearest = np.where(inside, away.min(axis=1, initial=np.inf), -1.0)
+        at, text = int(nearest.argmax()), f"{number(100 * level, 'g')} %"
+        axes.text(*vertices[at], text, fontsize=7, ha="center", va="center", color=INK, zorder=4,
+                  bbox=_BACKING).set_gid("chance")  # fmt: skip
+        others = np.vstack([others, along[at]])
+        x, y = along[at].tolist()
+        taken.append(box_around((x, y), LETTER * len(text), LINE))
     named = 0
-    for place, at, ones in zip(places, _in_points(axes, places), places.values(), strict=True):
+    for place, (x, y), ones in zip(places, symbols, places.values(), strict=True):
         name = label(ones[0].item.item, 14) + (f" +{len(ones) - 1}" if len(ones) > 1 else "")
-        box = find_room(tuple(at), name, taken) if named < MOST_NAMES else None
+        box = _find_room((x, y), name, taken) if named < MOST_NAMES else None
         if box is not None:
-            offset = ((box[0] + box[2]) / 2 - at[0], (box[1] + box[3]) / 2 - at[1])
+            offset = ((box[0] + box[2]) / 2 - x, (box[1] + box[3]) / 2 - y)
             axes.annotate(name, place, xytext=offset, textcoords="offset points", fontsize=7, ha="center", va="center",
                           color=INK, zorder=6, bbox=_BACKING).set_gid("name")  # fmt: skip
             taken.append(box)
@@ -139,12 +129,7 @@ def paint_legend(figure: Any, *, has_checked: bool = True) -> None:
     figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=7, frameon=False)
 
 
-def box_around(x: float, y: float, width: float, height: float) -> Bounds:
-    """Return the box with its centre at (x, y)."""
-    return x - width / 2, y - height / 2, x + width / 2, y + height / 2
-
-
-def find_room(at: Point, text: str, taken: Sequence[Bounds]) -> Bounds | None:
+def _find_room(at: Point, text: str, taken: Sequence[Bounds]) -> Bounds | None:
     """Return a box for a text beside the symbol `at`, within the panel and on no box that is taken; None if none is.
 
     Tried are right, left, above and below.
@@ -152,20 +137,10 @@ def find_room(at: Point, text: str, taken: Sequence[Bounds]) -> Bounds | None:
     (x, y), width = at, LETTER * len(text)
     aside, above = GAP + width / 2, GAP + LINE / 2
     for centre in ((x + aside, y), (x - aside, y), (x, y + above), (x, y - above)):
-        box = box_around(*centre, width, LINE)
+        box = box_around(centre, width, LINE)
         if is_inside(box, (0.0, 0.0, *PANEL)) and not any(overlap(box, one) for one in taken):
             return box
     return None
-
-
-def find_clearest(line: FloatArray, others: FloatArray, margin: float) -> int | None:
-    """Return the place on a line (n, 2) that is farthest from `others` (k, 2), inside by `margin`; None without one."""
-    inside = np.all((line >= margin) & (line <= np.array(PANEL) - margin), axis=1)
-    if not inside.any():
-        return None
-    away = np.hypot(*(line[:, np.newaxis] - others[np.newaxis]).transpose(2, 0, 1)) if len(others) else np.ones((1, 1))
-    nearest = np.where(inside, away.min(axis=1), -1.0)
-    return int(nearest.argmax())
 
 
 # ---------------------------------------------------------------- the figure of a report
@@ -184,7 +159,7 @@ def draw_contours(results: Results, progress: Progress = SILENT) -> Figure:
     ]
     methods = [method for method, _risk in panels]
     paint = partial(_paint, pieces, height, series["contours/breadth_cm"], series["contours/pfa_g"], panels)
-    drawn = data_uri(draw(7, 3.6, paint, progress=progress), "image/svg+xml")
+    drawn = draw(7, 3.6, paint, progress=progress)
     alternative = ngettext(
         "Maps of the chance of overturning over breadth and PFA for a height of {height:.0f} cm ({methods}), with "
         "{n:,} piece on them; its chance is in the table of all pieces",
@@ -194,15 +169,16 @@ def draw_contours(results: Results, progress: Progress = SILENT) -> Figure:
         height=height,
         methods=_name(methods),
     )
-    caption = (*_describe_figure(height, pieces, methods), *_describe_ratio(pieces[0], ratio, methods))
-    return Figure(Image(drawn, alternative), " ".join(caption))
+    return build_figure(drawn, alternative, " ".join(_describe(height, pieces, ratio, methods)))
 
 
 def _name(methods: Sequence["MethodInfo"]) -> str:
     return ", ".join(_(method.title) for method in methods)
 
 
-def _describe_figure(height: float, pieces: Sequence[ItemResult], methods: Sequence["MethodInfo"]) -> Iterator[str]:
+def _describe(
+    height: float, pieces: Sequence[ItemResult], ratio: float, methods: Sequence["MethodInfo"]
+) -> Iterator[str]:
     yield _(
         "Chance of overturning of pieces {height:.0f} cm high by these methods: {methods}.",
         height=height,
@@ -228,10 +204,6 @@ def _describe_figure(height: float, pieces: Sequence[ItemResult], methods: Seque
         "Names are those of the worst piece at each place, with the number of further rows there; names for which "
         "there is no room are left out."
     )
-
-
-def _describe_ratio(worst: ItemResult, ratio: float, methods: Sequence["MethodInfo"]) -> Iterator[str]:
-    """Say which PFV goes with a PFA under the methods that use it."""
     by_velocity = [method for method in methods if any(flag.startswith("pfv_") for flag in method.flags)]
     if not by_velocity:
         return
@@ -243,7 +215,7 @@ def _describe_ratio(worst: ItemResult, ratio: float, methods: Sequence["MethodIn
             methods=switching,
         )
         return
-    motion = worst.governing.motion
+    motion = pieces[0].governing.motion
     yield _(
         "PFV grows with PFA, {ratio:.0f} cm/s for each g: the ratio of floor {floor} {axis}, whose motion governs the "
         "worst of these pieces. Methods that depend on it: {methods}.",
@@ -272,12 +244,17 @@ def _paint(
     for axes, (method, risk) in zip(drawn, panels, strict=True):
         lines = paint_risk(axes, breadth, pfa, risk)
         paint_checked(axes, method, height)
-        paint_pieces(axes, places)
+        shown = dict.fromkeys((place, one.adopted.risk, one.apart) for place, ones in places.items() for one in ones)
+        for (x, y), own, apart in sorted(shown, key=lambda found: (not found[2], found[1])):  # the worst on top
+            marker, fill = (APART[apart], HALO) if apart else (MARKERS[own], own.fill)
+            axes.plot([x], [y], marker, color=HALO, markersize=7, zorder=5)
+            axes.plot([x], [y], marker, markersize=5, markerfacecolor=fill, markeredgecolor=INK,
+                      markeredgewidth=0.8, zorder=5)[0].set_gid("piece")  # fmt: skip
         axes.set_xlim(*breadth[[0, -1]])
         axes.set_ylim(*pfa[[0, -1]])
         axes.set_title(_(method.title), fontsize=8, loc="left")
         axes.set_xlabel(_("breadth [cm]"), fontsize=8)
         axes.tick_params(labelsize=7)
-        paint_names(axes, places, paint_chances(axes, lines, places))
+        _write_texts(axes, lines, places)
     drawn[0].set_ylabel(_("PFA [g]"), fontsize=8)
     paint_legend(figure)

@@ -1,14 +1,14 @@
 """What lies under the pieces of a plan: the user's drawing of the floor, outlines of rooms, and the building's edge."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from assess.model import FloorPlan, Place
-from assess.plans.linework import FloatArray, clip, unpack
+from assess.plans.linework import FloatArray, unpack
 from assess.report import words
 from assess.report.embedded import data_uri
 from assess.report.figures.labels import Bounds, Corners, Point
@@ -73,11 +73,6 @@ def build_underlay(results: Results, floor: str) -> Underlay | None:
 def _turned(plan: FloorPlan, x: float, y: float) -> Point:
     cos, sin = math.cos(math.radians(plan.turn_deg)), math.sin(math.radians(plan.turn_deg))
     return plan.left + x * cos - y * sin, plan.bottom + x * sin + y * cos
-
-
-def cut_lines(lines: Iterable[FloatArray], box: Bounds) -> list[FloatArray]:
-    """Return the parts of lines inside a box [m]."""
-    return [part for line in lines for part in clip(line, box)]
 
 
 def widen(box: Bounds, frame: Sequence[Point]) -> Bounds:

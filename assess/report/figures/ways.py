@@ -6,14 +6,8 @@ from dataclasses import dataclass, replace
 
 from assess.i18n import gettext as _
 from assess.report import words
-from assess.report.figures.labels import LINE, MOST, Bounds, Corners, Label, Point, overlap, place_each
-from assess.report.say.route import (
-    is_held,
-    say_blocked,
-    say_missing,
-    say_outlook,
-    say_segment,
-)
+from assess.report.figures.labels import Bounds, Corners, Point, box_around, find_covered
+from assess.report.say.route import is_held, say_blocked, say_missing, say_outlook, say_segment
 from assess.route_results import RouteState, RouteTables, SegmentRow
 from assess.routes.geometry import rectangle
 from assess.workbook.draft_names import is_draft
@@ -72,25 +66,19 @@ class Stretch:
         return "⚓" if self.is_held else ""
 
 
-def list_styles() -> dict[str, Style]:
-    """Return how each state is drawn, the best first; none is told by colour alone."""
+def build_stretches(routes: RouteTables) -> Mapping[str, Sequence[Stretch]]:
+    """Return by floor the segments whose places both have a position on it, those with most to warn of last."""
     white, dark, opened, blocked = "#ffffff", "#1c1c1c", RouteState.OPEN, RouteState.BLOCKED
     doubtful, unknown, standing = RouteState.DOUBTFUL, RouteState.NOT_KNOWN, _("blocked as it stands")
-    styles = (
+    styles = (  # the best first; none is told by colour alone
         Style("open", _("open"), opened.symbol, opened.fill, white, dark, "", 0.8),
         Style("doubtful", _("doubtful"), doubtful.symbol, doubtful.fill, white, dark, "8 3", 1.2),
         Style("unknown", _("not known"), unknown.symbol, unknown.fill, white, dark, "8 3 2 3", 1.6),
         Style("blocked", _("blocked"), blocked.symbol, blocked.fill, white, dark, "2 2.5", 2.0),
         Style("standing", standing, blocked.symbol, blocked.fill, dark, white, "", 2.6),
     )
-    return {one.name: one for one in styles}
-
-
-def build_stretches(routes: RouteTables) -> Mapping[str, Sequence[Stretch]]:
-    """Return by floor the segments whose places both have a position on it, those with most to warn of last."""
+    order = [one.name for one in styles]
     found: dict[str, list[Stretch]] = {}
-    styles = list_styles()
-    order = list(styles)
     for number, one in enumerate(routes.segments, start=1):
         if not one.length_m or one.floor is None:
             continue
@@ -102,7 +90,7 @@ def build_stretches(routes: RouteTables) -> Mapping[str, Sequence[Stretch]]:
             number=number,
             name=words.cut(one.segment, NAMED),
             title=_title(one, routes.risk),
-            style=styles["standing" if one.is_blocked_standing else state],
+            style=styles[order.index("standing" if one.is_blocked_standing else state)],
             start=start,
             end=end,
             corners=rectangle(start, angle, along, one.clear_width_used_m),
@@ -133,8 +121,9 @@ def place_signs(ways: Sequence[Stretch], taken: Sequence[Bounds], unit: float) -
     for one in reversed(ways):
         (x, y), (x_end, y_end) = one.start, one.end
         tried = [sign_box((x + share * (x_end - x), y + share * (y_end - y)), unit) for share in _ALONG]
-        best = min(tried, key=lambda box: (_covered(box, held), _covered(box, taken)))
-        if one.is_open and _covered(best, (*held, *taken)) > 0:
+        ranked = zip(find_covered(tried, held), find_covered(tried, taken), tried, strict=True)
+        *covered, best = min(ranked, key=lambda found: found[:2])
+        if one.is_open and sum(covered) > 0:
             yield one
             continue
         held.append(best)
@@ -143,18 +132,5 @@ def place_signs(ways: Sequence[Stretch], taken: Sequence[Bounds], unit: float) -
 
 def sign_box(at: Point, unit: float) -> Bounds:
     """Return the room that a sign takes [m]."""
-    off = _GROWN * SIGN * unit
-    return at[0] - off, at[1] - off, at[0] + off, at[1] + off
-
-
-def name_ways(ways: Sequence[Stretch], taken: Sequence[Bounds], frame: Bounds, unit: float) -> list[Label]:
-    """Name the segments beside their signs, those with most to warn of first, where a name covers nothing else."""
-    signed = [(one.name, sign_box(one.sign, unit)) for one in ways if one.sign is not None]
-    blocked = [*taken, *(box for _name, box in signed)]
-    found = place_each(signed[:MOST], blocked, frame, unit)
-    small = LINE * LINE * unit * unit / 20
-    return [one for one in found if one and one.lead is None and _covered(one.box, blocked) < small]
-
-
-def _covered(box: Bounds, others: Sequence[Bounds]) -> float:
-    return sum(overlap(box, other) for other in others)
+    size = 2 * _GROWN * SIGN * unit
+    return box_around(at, size, size)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from assess.i18n import fill, ngettext, number
 from assess.i18n import gettext as _
 from assess.report import blocks, statements, words
-from assess.report.embedded import data_uri
+from assess.report.figures.draw import build_figure
 from assess.report.figures.motion_figures import draw_motion, get_acceleration
 from assess.report.page_columns import say_flag
 from assess.report.provenance import say_reference
@@ -233,10 +233,10 @@ def _list_recorded(view: View) -> Iterator[blocks.Box]:
         values = get_acceleration(view.run, one) if one in strongest else None
         figures = []
         if values is not None:
-            drawn = data_uri(draw_motion(values, one.time_step_s or 0.0, view.progress), "image/svg+xml")
+            drawn = draw_motion(values, one.time_step_s or 0.0, view.progress)
             alternative = _("Acceleration against time of {name}, peak {pfa} g", name=name, pfa=words.in_g(one.pfa_g))
             caption = _("Recorded acceleration along {axis}, treated: {name}.", axis=one.axis, name=name)
-            figures = [blocks.Figure(blocks.Image(drawn, alternative), caption)]
+            figures = [build_figure(drawn, alternative, caption)]
         yield blocks.Box([blocks.Paragraph(blocks.join_words(lines), "small"), *figures], "keep")
 
 
