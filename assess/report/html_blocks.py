@@ -8,9 +8,8 @@ from markupsafe import escape
 from assess.i18n import gettext as _
 from assess.report import blocks
 from assess.report.equations import split_line
-from assess.report.figures.math_figures import draw_math, write_letters
-from assess.report.templates import break_words
-from assess.report.words import LONGEST_WORD
+from assess.report.figures.math_figures import INK, draw_math, write_letters
+from assess.report.templates import LONGEST_WORD, break_words
 
 _TAGS = frozenset(("strong", "em", "sub", "sup"))
 
@@ -72,7 +71,12 @@ class HtmlWriter:
                 data = "".join(f' data-{name}="{escape(text)}"' for name, text in running.items())
                 return f"<h1{data}>{self.words(words)}</h1>"
             case blocks.Contents(heading, lines, after):
-                rows = "".join(self._line(words, inner) for words, inner in lines)
+                rows = ""
+                for line, inner in lines:  # what leads nowhere is a note after those below the line
+                    links = "".join(f"<li>{self.words(one)}</li>\n" for one in inner if not isinstance(one, str))
+                    notes = "".join(f'<p class="small">{self.words(one)}</p>' for one in inner if isinstance(one, str))
+                    below = f"\n<ol>\n{links}</ol>" if links else ""
+                    rows += f"<li>{self.words(line)}{below}{notes}</li>\n"
                 note = f'<p class="small">{self.words(after)}</p>\n' if after else ""
                 return (
                     f'<nav class="contents" id="contents" aria-label="{escape(heading)}">\n'
@@ -83,13 +87,6 @@ class HtmlWriter:
                 if label and not self.for_print:  # what scrolls is reached by the keyboard, and says what it is
                     attributes += f' role="region" tabindex="0" aria-label="{escape(label)}"'
                 return f"<{tag}{attributes}>\n{self.write_blocks(inside)}</{tag}>"
-
-    def _line(self, words: blocks.Words, inner: Sequence[blocks.Words]) -> str:
-        """Return a line of the contents with those below it; one that leads nowhere is a note after them."""
-        links = "".join(f"<li>{self.words(one)}</li>\n" for one in inner if not isinstance(one, str))
-        notes = "".join(f'<p class="small">{self.words(one)}</p>' for one in inner if isinstance(one, str))
-        below = f"\n<ol>\n{links}</ol>" if links else ""
-        return f"<li>{self.words(words)}{below}{notes}</li>\n"
 
     # ------------------------------------------------------------ tables
 
@@ -170,7 +167,8 @@ class HtmlWriter:
         """Return an equation as a picture, of which the plain text is the alternative (WCAG 2.2, 1.1.1)."""
         drawn = draw_math(tex)
         if self.for_print:
-            data = quote(drawn.write_alone(), safe=" /:=,;()-")
+            head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{drawn.view}" fill="{INK}">'
+            data = quote(f"{head}{write_letters(drawn.letters)}{drawn.placed}</svg>", safe=" /:=,;()-")
             return (
                 f'<img class="math" src="data:image/svg+xml,{escape(data)}" alt="{escape(text)}" '
                 f'style="{escape(drawn.style)}">'
