@@ -105,7 +105,8 @@ def _list_for_routes(results: Results) -> Lines:
             lines.append((ngettext("Routes: {n:,} segment", "Routes: {n:,} segments", n), _(text)))
         if flag not in OBSERVED and (n := of_pieces[flag]):
             lines.append((ngettext("Routes: {n:,} row of pieces", "Routes: {n:,} rows of pieces", n), _(text)))
-    chances = [one.blocked for one in (*routes.segments, *routes.routes) if one.blocked is not None]
+    blocked = [*(one.blocked for one in routes.segments), *(one.blocked for one in routes.routes)]
+    chances = [chance for chance in blocked if chance is not None]
     if not any(chance.pieces for chance in chances):
         return lines
     draws = ngettext("{n:,} draw with seed {seed}", "{n:,} draws with seed {seed}", routes.draws,

@@ -142,8 +142,8 @@ class Names:
         named = [(words.cut(one.place, NAMED), sign) for (one, _at), sign in zip(ordered, signs, strict=True)]
         free = [*taken, *signs]
         labels = self.place(named[: ranks.count(0)], free)
-        for one in named[ranks.count(0) : len(ranks) - ranks.count(3)]:  # left out unless it covers nothing
-            (label,) = self._place_each([one], free, (*self.boxes, *self.pieces))
+        for name in named[ranks.count(0) : len(ranks) - ranks.count(3)]:  # left out unless it covers nothing
+            (label,) = self._place_each([name], free, (*self.boxes, *self.pieces))
             is_free = label is not None and label.lead is None and not any(overlap(label.box, box) for box in free)
             labels.append(label if is_free else None)
             self.boxes += [label.box] if label is not None and is_free else []
