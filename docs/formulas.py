@@ -28,8 +28,8 @@ from assess.motion.target_fit import measure_peaks  # noqa: E402
 from assess.risk import classify_all  # noqa: E402
 from assess.rocking.draws import MOTION  # noqa: E402
 from assess.settings import Settings  # noqa: E402
+from assess.studies.agreement import FEMA, KANEKO, METHODS, OR, Cases, rock_draws  # noqa: E402
 from assess.studies.buildings import Building, all_buildings  # noqa: E402
-from assess.studies.studied_methods import FEMA, KANEKO, METHODS, OR, Cases, rock_draws  # noqa: E402
 from assess.units import GRAVITY  # noqa: E402
 from tests.validation import test_far_field_records as far  # noqa: E402 - a script, and tests are no part of the package
 

@@ -15,8 +15,7 @@ from functools import cache
 from assess.progress import SILENT, Progress
 from assess.risk import LIMITS, RiskClass
 from assess.studies.released_blocks import describe_released
-from assess.studies.study import Finding, Options, Study, render_page
-from assess.studies.study_files import PARTS, check_folder, write_files
+from assess.studies.study import PARTS, Finding, Options, Study, check_folder, render_page, write_files
 from assess.version import __version__
 
 __all__ = [

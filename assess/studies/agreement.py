@@ -8,10 +8,35 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.arrays import BoolArray, FloatArray
+from assess.methods import Cases, Method, all_methods
 from assess.risk import classify_all, wilson_interval
-from assess.studies.buildings import LEVELS, RECORDED, Building, Trials, all_buildings, find_levels, rock_building
-from assess.studies.studied_methods import evaluate_formulas
+from assess.settings import Settings
+from assess.studies.buildings import RECORDED, Building, Trials, all_buildings, find_levels, rock_building
 from assess.studies.study import Options
+
+OR, KANEKO, FEMA, STATIC, JAPAN = "proposed_or", "kaneko_hayashi", "fema_p58", "static", "japan_rule"
+PRINTED = "equation_9"
+"""Key of the proposed formula as printed, clipped to 0 and 1; the method in use holds it at its peaks."""
+METHODS: Mapping[str, Method] = {one.key: one for one in all_methods() if one.tier == "screening"}
+FORMULAS: Mapping[str, str] = {
+    PRINTED: "OR, eq. (9) as printed", OR: "OR as used", KANEKO: "Kaneko-Hayashi", FEMA: "FEMA P-58"
+}  # fmt: skip
+"""Titles, as pages show them, of the formulas that give a chance, by key."""
+SHORT_TITLES: Mapping[str, str] = {OR: "OR", KANEKO: FORMULAS[KANEKO], FEMA: FORMULAS[FEMA]}
+"""The same on pages that do not show OR as printed."""
+CRITERIA: Mapping[str, str] = {key: one.title for key, one in METHODS.items() if one.kind == "criterion"}
+"""Titles of the methods that are met or not, by key."""
+INTEGRATION = "direct integration"
+
+
+def evaluate_formulas(cases: Cases, settings: Settings) -> dict[str, FloatArray]:
+    """Return the value of each formula and each criterion for n cases, by key, (n,); NaN where it has none."""
+    outcomes = {key: one.evaluate(cases, settings) for key, one in METHODS.items()}
+    printed = np.clip(outcomes[OR].detail["raw"].astype(np.float64), 0.0, 1.0)
+    return {PRINTED: printed} | {key: outcome.value for key, outcome in outcomes.items()}
+
+
+# ---------------------------------------------------------------- formula against integration
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,17 +128,8 @@ Chosen = Callable[[Compared], BoolArray]
 """Chooses cases of a channel: (a, b)."""
 
 
-def every_case(one: Compared) -> BoolArray:
-    """Choose all cases at the common values of PFA."""
-    return _choose_rows(one, slice(0, len(LEVELS)))
-
-
-def as_recorded(one: Compared) -> BoolArray:
-    """Choose the cases under the unscaled record."""
-    return _choose_rows(one, RECORDED)
-
-
-def _choose_rows(one: Compared, rows: int | slice) -> BoolArray:
+def every_case(one: Compared, rows: int | slice = slice(0, RECORDED)) -> BoolArray:
+    """Choose all cases at the common values of PFA, or at those of some rows."""
     chosen = np.zeros(one.trials.fallen.shape, dtype=np.bool_)
     chosen[rows] = True
     return chosen
@@ -127,10 +143,9 @@ def evaluate_trials(building: Building, trials: Trials, options: Options) -> Com
 
 def rock_all(options: Options) -> list[Compared]:
     """Rock the blocks in all buildings, or load the results of an earlier run."""
-    buildings = all_buildings()
     found: list[Compared] = []
-    total = sum(len(one.channels) for one in buildings)
-    for building in buildings:
+    total = sum(len(one.channels) for one in all_buildings())
+    for building in all_buildings():
         part = options.narrow(len(found) / total, (len(found) + len(building.channels)) / total)
         trials = rock_building(building, find_levels(building), part)
         found += [evaluate_trials(building, one, options) for one in trials]

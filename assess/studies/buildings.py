@@ -8,7 +8,7 @@ kept as soon as it is known, so that an interrupted run continues from there.
 import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 
 from assess.arrays import FloatArray
 from assess.errors import InputError
+from assess.methods import Cases
+from assess.methods.simulate import rock_draws
 from assess.motion.formats import read_records
 from assess.motion.record import Motion, treat
 from assess.motion.target import Grid, build_grid, recorded_target
 from assess.resources import record
-from assess.studies.studied_methods import Cases, rock_draws
-from assess.studies.study import Options
-from assess.studies.study_files import PARTS, Arrays, load_or_compute
+from assess.studies.study import PARTS, Arrays, Options, load_or_compute
 from assess.units import GRAVITY
 
 RATIOS = tuple(round(0.10 + 0.025 * at, 3) for at in range(17))
@@ -178,24 +178,21 @@ def build_blocks(ratios: Sequence[float] = RATIOS, heights: Sequence[float] = HE
 def rock_building(building: Building, levels: Mapping[Channel, Sequence[float]], options: Options) -> list[Trials]:
     """Rock the blocks under the motions of each channel of a building, at the values of PFA of `levels` [g]."""
     grid = build_grid([channel.read() for channel, _ in options.narrow(0.0, 0.0).each(building.channels)])
-    return [
-        _rock(channel, grid, np.array(levels[channel]) * GRAVITY, part)
-        for channel, part in options.each(building.channels)
-    ]
-
-
-def _rock(channel: Channel, grid: Grid, pfa: FloatArray, options: Options) -> Trials:
-    (breadth, height), motion = build_blocks(), channel.read()
-    digest = hashlib.sha256(channel.file.read_bytes()).hexdigest()
-    sizes = breadth.tolist(), height.tolist()
-    inputs = (digest, channel.axis, grid, options.runs, options.seed, pfa.tolist(), sizes)
-    kept = load_or_compute(options.out / PARTS, inputs, lambda: _integrate(channel, grid, pfa, options))
-    return Trials(
-        channel=channel, pfa=pfa, pfv=pfa / motion.pfa * motion.pfv, breadth=breadth, height=height,
-        fallen=kept["fallen"].astype(np.int64), fallen_uncertain=kept["fallen_uncertain"].astype(np.int64),
-        fell_in_record=kept["fell_in_record"].astype(np.bool_), runs=options.runs,
-        mean_pfa=float(kept["means"][0]), mean_pfv=float(kept["means"][1]),
-    )  # fmt: skip
+    (breadth, height), found = build_blocks(), []
+    for channel, part in options.each(building.channels):
+        motion, pfa = channel.read(), np.array(levels[channel]) * GRAVITY
+        digest = hashlib.sha256(channel.file.read_bytes()).hexdigest()
+        sizes = breadth.tolist(), height.tolist()
+        inputs = (digest, channel.axis, grid, options.runs, options.seed, pfa.tolist(), sizes)
+        kept = load_or_compute(options.out / PARTS, inputs, partial(_integrate, channel, grid, pfa, part))
+        trials = Trials(
+            channel=channel, pfa=pfa, pfv=pfa / motion.pfa * motion.pfv, breadth=breadth, height=height,
+            fallen=kept["fallen"].astype(np.int64), fallen_uncertain=kept["fallen_uncertain"].astype(np.int64),
+            fell_in_record=kept["fell_in_record"].astype(np.bool_), runs=options.runs,
+            mean_pfa=float(kept["means"][0]), mean_pfv=float(kept["means"][1]),
+        )  # fmt: skip
+        found.append(trials)
+    return found
 
 
 def _integrate(channel: Channel, grid: Grid, pfa: FloatArray, options: Options) -> Arrays:
@@ -203,14 +200,19 @@ def _integrate(channel: Channel, grid: Grid, pfa: FloatArray, options: Options) 
     from assess.rocking.ensemble import rock_blocks
 
     (breadth, height), motion = build_blocks(), channel.read()
-    target, threads = recorded_target(motion, grid), options.jobs
+    target, threads, every = recorded_target(motion, grid), options.jobs, np.arange(breadth.size)
     made = build_generator(target, grid, seed=options.seed, axis=channel.axis, threads=threads).realise(0, options.runs)
+    cases = Cases.of(breadth=breadth, height=height, name=every)
     fallen, uncertain, fell = [], [], []
     for scale, _ in options.each((pfa / motion.pfa).tolist()):
         rocking = rock_blocks(breadth, height, scale * made, grid.time_step, threads=threads)
         record = rock_blocks(breadth, height, scale * motion.acceleration[None], motion.time_step, threads=threads)
+        drawn, _ = rock_draws(
+            cases, every, scale * made, grid.time_step,
+            first=0, dispersions=(cases.uncertainty.motion,), seed=options.seed, threads=threads,
+        )  # fmt: skip
         fallen.append(rocking.overturned.sum(axis=1))
-        uncertain.append(_count_uncertain(breadth, height, scale * made, grid.time_step, options))
+        uncertain.append(drawn[0].sum(axis=1))
         fell.append(record.overturned[:, 0])
     velocity = np.cumsum((made[:, 1:] + made[:, :-1]) / 2, axis=1) * grid.time_step
     means = np.array([np.abs(made).max(axis=1).mean() / motion.pfa, np.abs(velocity).max(axis=1).mean() / motion.pfv])
@@ -218,16 +220,3 @@ def _integrate(channel: Channel, grid: Grid, pfa: FloatArray, options: Options) 
         "fallen": np.array(fallen), "fallen_uncertain": np.array(uncertain), "fell_in_record": np.array(fell),
         "means": means,
     }  # fmt: skip
-
-
-def _count_uncertain(
-    breadth: FloatArray, height: FloatArray, motions: FloatArray, time_step: float, options: Options
-) -> NDArray[np.int64]:
-    """Return under how many motions each block overturns where their amplitude and the pieces are drawn, (b,)."""
-    every = np.arange(breadth.size)
-    cases = Cases.of(breadth=breadth, height=height, name=every)
-    overturned, _ = rock_draws(
-        cases, every, motions, time_step,
-        first=0, dispersions=(cases.uncertainty.motion,), seed=options.seed, threads=options.jobs,
-    )  # fmt: skip
-    return np.asarray(overturned[0].sum(axis=1), dtype=np.int64)

@@ -43,8 +43,7 @@ from assess.motion.target import build_grid, put_on_grid, recorded_target
 from assess.report.figures.draw import draw
 from assess.risk import LIMITS, RiskClass, classify_all
 from assess.studies.buildings import Channel, all_buildings, build_blocks, find_record
-from assess.studies.study import Finding, Options, Row, Study, Table, write_finding
-from assess.studies.study_files import PARTS, Arrays, load_or_compute
+from assess.studies.study import PARTS, Arrays, Finding, Options, Row, Study, Table, load_or_compute, write_finding
 from assess.units import GRAVITY, LENGTH
 
 RATIOS, HEIGHTS = (0.12, 0.18, 0.26, 0.38), (0.9, 1.5, 2.1)
@@ -86,26 +85,22 @@ class FloorMotion:
         return f"{self.channel.building}, {self.channel.axis}"
 
     def read(self) -> Motion:
-        """Return its motion."""
-        motion = self.channel.read()
-        return motion if self.beam is None else _shake(motion, self.beam)
+        """Return its motion; that of a beam goes on for some cycles after the end of the ground motion."""
+        if self.beam is None:
+            return self.channel.read()
+        from scipy.integrate import cumulative_trapezoid
+
+        grid = build_grid([ground := self.channel.read()])
+        rest = np.zeros(round(CYCLES * self.beam.period / grid.time_step))
+        shaking = np.concatenate([put_on_grid(ground, grid), rest])
+        acceleration = shake_beam(shaking, grid.time_step, self.beam.period, self.beam.place)
+        velocity = cumulative_trapezoid(acceleration, dx=grid.time_step, initial=0)
+        displacement = cumulative_trapezoid(velocity, dx=grid.time_step, initial=0)
+        return Motion(acceleration, velocity, displacement, grid.time_step)
 
     def __str__(self) -> str:
         beam = "" if self.beam is None else f", shear beam, T1 {self.beam.period:g} s, z/h {self.beam.place:g}"
         return f"{self.channel}{beam}"
-
-
-def _shake(ground: Motion, beam: Beam) -> Motion:
-    """Return the motion of a floor of a beam, from the start of the ground motion until some cycles after its end."""
-    from scipy.integrate import cumulative_trapezoid
-
-    grid = build_grid([ground])
-    rest = np.zeros(round(CYCLES * beam.period / grid.time_step))
-    shaking = np.concatenate([put_on_grid(ground, grid), rest])
-    acceleration = shake_beam(shaking, grid.time_step, beam.period, beam.place)
-    velocity = cumulative_trapezoid(acceleration, dx=grid.time_step, initial=0)
-    displacement = cumulative_trapezoid(velocity, dx=grid.time_step, initial=0)
-    return Motion(acceleration, velocity, displacement, grid.time_step)
 
 
 def list_recorded() -> list[FloorMotion]:
@@ -130,7 +125,6 @@ class Tried:
     * `factors` (a,): factors by which it is scaled [-].
     * `fallen` (a, b): number of generated motions, of `runs`, under which each block overturned.
     * `fell` (a, b): whether it overturned under the floor motion itself.
-    * `runs`: number of generated motions.
     """
 
     floor: FloorMotion
@@ -147,27 +141,15 @@ def draw_seed(floor: FloorMotion, seed: int) -> int:
 
 def try_floors(floors: list[FloorMotion], options: Options) -> list[Tried]:
     """Rock the blocks under each floor motion and under the motions generated for it, or load earlier results."""
-    return [_try_floor(floor, part) for floor, part in options.each(floors)]
-
-
-def _try_floor(floor: FloorMotion, options: Options) -> Tried:
-    digest = hashlib.sha256(floor.channel.file.read_bytes()).hexdigest()
-    inputs = (
-        "calibration",
-        digest,
-        str(floor),
-        floor.channel.axis,
-        options.runs,
-        options.seed,
-        LEVELS,
-        RATIOS,
-        HEIGHTS,
-    )
-    kept = load_or_compute(options.out / PARTS, inputs, lambda: _integrate(floor, options))
-    return Tried(
-        floor=floor, factors=kept["factors"].astype(np.float64), fallen=kept["fallen"].astype(np.int64),
-        fell=kept["fell"].astype(np.bool_), runs=options.runs,
-    )  # fmt: skip
+    found = []
+    for floor, part in options.each(floors):
+        digest = hashlib.sha256(floor.channel.file.read_bytes()).hexdigest()
+        names = "calibration", digest, str(floor), floor.channel.axis
+        inputs = (*names, options.runs, options.seed, LEVELS, RATIOS, HEIGHTS)
+        kept = load_or_compute(options.out / PARTS, inputs, partial(_integrate, floor, part))
+        factors, fallen = kept["factors"].astype(np.float64), kept["fallen"].astype(np.int64)
+        found.append(Tried(floor, factors, fallen, kept["fell"].astype(np.bool_), options.runs))
+    return found
 
 
 def _integrate(floor: FloorMotion, options: Options) -> Arrays:
@@ -278,7 +260,7 @@ class Outcomes:
         )
 
     def take(self, chosen: BoolArray) -> "Outcomes":
-        """Return some of the cases."""
+        """Return the chosen cases (n,)."""
         return Outcomes(self.chance[chosen], self.fell[chosen], self.floor[chosen], self.source[chosen])
 
 
@@ -404,7 +386,17 @@ def run(options: Options) -> Finding:
     for name, own in found.items():
         scores += [(name, risk.word, *astuple(score)) for risk, score in own.classes.items()]
         scores.append((name, ALL, *astuple(own.whole)))
-    cases = [row for name, own in found.items() for one in own.tried for row in _case_rows(name, one)]
+    sizes = [(float(b / LENGTH["cm"]), float(h / LENGTH["cm"])) for b, h in zip(*BLOCKS, strict=True)]
+    cases: list[Row] = []
+    for name, tried in ((name, one) for name, own in found.items() for one in own.tried):
+        channel, beam = tried.floor.channel, tried.floor.beam
+        place = ("", "") if beam is None else (beam.period, beam.place)
+        head = name, channel.building, channel.axis, channel.level, channel.name, *place
+        cases += [
+            (*head, level, float(factor), *size, int(fallen), tried.runs, bool(fell))
+            for level, factor, row, own in zip(LEVELS, tried.factors, tried.fallen, tried.fell, strict=True)
+            for size, fallen, fell in zip(sizes, row, own, strict=True)
+        ]
     return write_finding(
         "calibration",
         collect(found, options),
@@ -435,20 +427,6 @@ def collect(found: Mapping[str, Calibrated], options: Options) -> dict[str, obje
         "free_field": len(FREE_FIELD),
         "unlike": {name: [risk for risk, one in own.classes.items() if one.is_clear] for name, own in found.items()},
     }  # fmt: skip
-
-
-def _case_rows(name: str, tried: Tried) -> list[Row]:
-    channel, beam = tried.floor.channel, tried.floor.beam
-    place = ("", "") if beam is None else (beam.period, beam.place)
-    sizes = [(float(b / LENGTH["cm"]), float(h / LENGTH["cm"])) for b, h in zip(*BLOCKS, strict=True)]
-    return [
-        (
-            name, channel.building, channel.axis, channel.level, channel.name, *place, level, float(factor), *size,
-            int(fallen), tried.runs, bool(fell),
-        )
-        for level, factor, row, own in zip(LEVELS, tried.factors, tried.fallen, tried.fell, strict=True)
-        for size, fallen, fell in zip(sizes, row, own, strict=True)
-    ]  # fmt: skip
 
 
 def _paint(found: Mapping[str, Calibrated], figure: Any) -> None:

@@ -3,7 +3,7 @@
 The paper's Figs. 6 to 8 (section 3.2.3): for each building, the channel of the highest risk, its record scaled.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -11,12 +11,23 @@ from typing import Any
 import numpy as np
 
 from assess.arrays import FloatArray
+from assess.methods import Cases
 from assess.report.figures.draw import draw
 from assess.report.figures.risk_map import paint_checked, paint_legend, paint_risk
 from assess.settings import Settings
-from assess.studies.agreement import Compared, by_building, rock_all
+from assess.studies.agreement import (
+    FORMULAS,
+    INTEGRATION,
+    KANEKO,
+    METHODS,
+    OR,
+    PRINTED,
+    Compared,
+    by_building,
+    evaluate_formulas,
+    rock_all,
+)  # fmt: skip
 from assess.studies.buildings import LEVELS, RECORDED
-from assess.studies.studied_methods import FORMULAS, INTEGRATION, KANEKO, METHODS, OR, PRINTED, Cases, evaluate_formulas
 from assess.studies.study import Finding, Options, Row, Study, Table, write_finding
 from assess.units import GRAVITY, LENGTH
 
@@ -59,25 +70,27 @@ class Contours:
 
 def choose_contours(compared: Sequence[Compared]) -> list[Contours]:
     """Return for each building those of the channel of the highest risk as recorded; of equals, of the largest PFA."""
-
-    def rank(one: Compared) -> tuple[float, float]:
-        return float(one.trials.risk[RECORDED].mean()), float(one.trials.pfa[RECORDED])
-
-    return [build_contours(max(own, key=rank)) for own in by_building(compared).values()]
-
-
-def build_contours(one: Compared) -> Contours:
-    """Return the contours of one channel."""
-    trials, n = one.trials, len(LEVELS)
-    own = np.flatnonzero(trials.height == HEIGHT)
-    values = {**one.formulas, DIRECT: trials.risk}
-    return Contours(one, trials.breadth[own], trials.pfa[:n], {key: values[key][:n, own] for key in PANELS})
+    found, n = [], len(LEVELS)
+    for channels in by_building(compared).values():
+        one = max(channels, key=lambda one: (float(one.trials.risk[RECORDED].mean()), float(one.trials.pfa[RECORDED])))
+        own, values = np.flatnonzero(one.trials.height == HEIGHT), {**one.formulas, DIRECT: one.trials.risk}
+        risk = {key: values[key][:n, own] for key in PANELS}
+        found.append(Contours(one, one.trials.breadth[own], one.trials.pfa[:n], risk))
+    return found
 
 
 def run(options: Options) -> Finding:
     """Draw the contours, and count where they are irregular."""
     every, last = choose_contours(rock_all(options.narrow(0.0, 0.9))), options.narrow(0.9, 1.0)
-    columns = ("building", "channel", "pfa_g", "breadth_cm", "height_cm", *PANELS)
+    columns, rows = ("building", "channel", "pfa_g", "breadth_cm", "height_cm", *PANELS), list[Row]()
+    for one in every:
+        channel = one.compared.trials.channel
+        for at, pfa in enumerate(one.pfa):
+            for block, breadth in enumerate(one.breadth):
+                risks = [float(one.risk[key][at, block]) for key in PANELS]
+                sizes = 100 * float(breadth), 100 * HEIGHT
+                rows.append((channel.building, channel.name, float(pfa / GRAVITY), *sizes, *risks))
+    places = [one.compared.building.place.lower().replace(" ", "-") for one in every]
     values = {
         "every": every, "height": HEIGHT, "panels": PANELS, "levels": LEVELS, "count": count_irregular,
         "steps": [(len(one.pfa) - 1) * len(one.breadth) for one in every],
@@ -86,8 +99,11 @@ def run(options: Options) -> Finding:
     return write_finding(
         "contours",
         values,
-        tables={"contours": Table(columns=columns, rows=[row for one in every for row in _rows(one)])},
-        figures={f"contours-{_slug(one)}.svg": draw(7, 2.3, partial(_paint, one)) for one, _ in last.each(every)},
+        tables={"contours": Table(columns=columns, rows=rows)},
+        figures={
+            f"contours-{place}.svg": draw(7, 2.3, partial(_paint, one))
+            for place, (one, _) in zip(places, last.each(every), strict=True)
+        },
     )
 
 
@@ -96,18 +112,6 @@ def count_irregular(every: Sequence[Contours], panel: str) -> dict[str, float]:
     falls = np.concatenate([one.find_falls(panel) for one in every])
     rises = np.concatenate([one.find_rises(panel) for one in every])
     return {"falls": falls.size, "by": falls.max(initial=0), "rises": rises.size, "over": rises.max(initial=0)}
-
-
-def _slug(one: Contours) -> str:
-    return one.compared.building.place.lower().replace(" ", "-")
-
-
-def _rows(one: Contours) -> Iterator[Row]:
-    channel = one.compared.trials.channel
-    for at, pfa in enumerate(one.pfa):
-        for block, breadth in enumerate(one.breadth):
-            values = [float(one.risk[key][at, block]) for key in PANELS]
-            yield (channel.building, channel.name, float(pfa / GRAVITY), 100 * float(breadth), 100 * HEIGHT, *values)
 
 
 def _paint(one: Contours, figure: Any) -> None:

@@ -19,33 +19,28 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.arrays import BoolArray, FloatArray
 from assess.errors import InputError
-from assess.report.figures.draw import draw
-from assess.report.figures.risk_map import paint_legend, paint_risk
-from assess.risk import LIMITS
-from assess.studies.agreement import Compared, pool, rock_all
-from assess.studies.buildings import LEVELS, RATIOS
-from assess.studies.studied_methods import (
-    COEFFICIENTS,
-    FORMULAS,
-    INTEGRATION,
+from assess.methods import Cases, FittedOn, Range
+from assess.methods.fitted import (
     QUANTITIES,
     Base,
-    BoolArray,
-    Cases,
     Fitted,
-    FittedOn,
-    FloatArray,
     Polynomial,
     Powers,
     Probit,
-    Range,
     expand,
     find_groups,
     write_model,
     write_sum,
 )  # fmt: skip
-from assess.studies.study import Finding, Options, Row, Study, Table, write_finding
+from assess.methods.proposed_or import COEFFICIENTS
+from assess.report.figures.draw import draw
+from assess.report.figures.risk_map import paint_legend, paint_risk
+from assess.risk import LIMITS
+from assess.studies.agreement import FORMULAS, INTEGRATION, Compared, pool, rock_all
+from assess.studies.buildings import LEVELS, RATIOS
+from assess.studies.study import Finding, Options, Study, Table, write_finding
 from assess.units import ACCELERATION, GRAVITY, ROUNDING
 
 ORDERS = (1, 2, 3)
@@ -106,18 +101,16 @@ class Candidate:
         return f"z = {write_sum(self.base, self.powers, 'x', 'y')}"
 
 
-def _list_candidates() -> tuple[Candidate, ...]:
-    every = product(("x", "1/x"), ORDERS, ORDERS, (False, True))
-    found = [Candidate(base, m, n, crossed, _find_powers(m, n, crossed)) for base, m, n, crossed in every]  # type: ignore[arg-type]
-    first = {(one.base, one.powers): one for one in reversed(found)}
-    return tuple(one for one in found if first[one.base, one.powers] is one)
-
-
-def _find_powers(m: int, n: int, crossed: bool) -> tuple[Powers, ...]:
-    """Return the powers up to orders m and n, as equation (8) orders them; crossed ones up to a degree of max(m, n)."""
-    alone = [(0, 0), *((i, 0) for i in range(1, m + 1)), *((0, j) for j in range(1, n + 1))]
-    mixed = [(i, j) for i in range(1, m + 1) for j in range(1, n + 1) if crossed and i + j <= max(m, n)]
-    return tuple(sorted([*alone, *mixed], key=lambda one: (sum(one), 0 in one and -1, -one[0])))
+def _list_candidates() -> Iterable[Candidate]:
+    """Return every base with powers as equation (8) orders them; crossed ones up to a degree of max(m, n)."""
+    bases: tuple[Base, ...] = ("x", "1/x")
+    found: dict[tuple[Base, tuple[Powers, ...]], Candidate] = {}
+    for base, m, n, crossed in product(bases, ORDERS, ORDERS, (False, True)):
+        alone = [(0, 0), *((i, 0) for i in range(1, m + 1)), *((0, j) for j in range(1, n + 1))]
+        mixed = [(i, j) for i in range(1, m + 1) for j in range(1, n + 1) if crossed and i + j <= max(m, n)]
+        powers = tuple(sorted([*alone, *mixed], key=lambda one: (sum(one), 0 in one and -1, -one[0])))
+        found.setdefault((base, powers), Candidate(base, m, n, crossed, powers))
+    return found.values()
 
 
 CONSTANT = Candidate("x", 0, 0, False, ((0, 0),))
@@ -132,10 +125,7 @@ EQUATION_8 = next(one for one in CANDIDATES if one.name == "1/x to order 2, y to
 
 @dataclass(frozen=True, slots=True)
 class LeftOut:
-    """Errors for the groups left out in turn, each predicted by a fit to all others.
-
-    * `squares`: mean square error of each group [-].
-    """
+    """Errors for the groups left out in turn, each predicted by a fit to all others: their mean squares [-]."""
 
     squares: tuple[float, ...]
 
@@ -286,6 +276,8 @@ def _find_places(values: Sequence[float]) -> list[int]:
     return [place for _, place in sorted((at, place) for place, at in enumerate(order, 1))]
 
 
+# ---------------------------------------------------------------- the probit
+
 IntArray = NDArray[np.int64]
 Check = Callable[[], None]
 LARGEST = 1e3
@@ -356,6 +348,8 @@ def fit_probit(counts: Counts, *, with_pfv: bool = True, check: Check = lambda: 
     Raises InputError if the counts do not determine it: all fell, or none; a limit separates both without an overlap;
     or A and V vary too little.
     """
+    from scipy.optimize import minimize
+
     columns, total = design(counts), int(counts.runs.sum())
     if not 0 < int(counts.fallen.sum()) < total:
         raise InputError("all fell, or none: add weaker or stronger motions, so that some fall and others do not")
@@ -363,14 +357,6 @@ def fit_probit(counts: Counts, *, with_pfv: bool = True, check: Check = lambda: 
     scaled = np.column_stack([columns[:, 0], (columns[:, 1:] - centre) / np.where(scale > 0, scale, 1.0)])
     if np.linalg.matrix_rank(scaled) < 3:
         raise InputError("A and V do not vary independently: add pieces of other sizes, or other motions")
-    found = _minimise(scaled, counts, total, with_pfv, check)
-    slopes = found[1:] / scale
-    return Probit(float(found[0] - slopes @ centre), *map(float, slopes))
-
-
-def _minimise(scaled: FloatArray, counts: Counts, total: int, with_pfv: bool, check: Check) -> FloatArray:
-    """Return the coefficients (3,) of columns with a mean of 0 and a scatter of 1."""
-    from scipy.optimize import minimize
 
     def mean_loss(b: FloatArray) -> tuple[float, FloatArray]:
         check()
@@ -387,7 +373,8 @@ def _minimise(scaled: FloatArray, counts: Counts, total: int, with_pfv: bool, ch
     is_separated = (np.ptp(eta) > 0 and lowest >= highest) or found.fun < 1e-9
     if is_separated or not np.isfinite(found.x).all() or np.abs(found.x).max() >= LARGEST:
         raise InputError("a limit separates all that fell from all that did not: add cases in between, or more runs")
-    return np.asarray(found.x)
+    slopes = found.x[1:] / scale
+    return Probit(float(found.x[0] - slopes @ centre), *map(float, slopes))
 
 
 def _choose(counts: Counts, mask: BoolArray) -> Counts:
@@ -436,7 +423,7 @@ class Fits:
 
     @cached_property
     def constant(self) -> Ranked:
-        """The trivial model."""
+        """The trivial model, fitted."""
         return self.find(CONSTANT)
 
     @property
@@ -453,10 +440,22 @@ class Fits:
 
 
 def fit_all(compared: Sequence[Compared], options: Options) -> Fits:
-    """Fit everything to the trials of all channels."""
+    """Fit everything to the trials of all channels at the common values of PFA."""
     surfaces, probits = options.narrow(0.0, 0.5), options.narrow(0.5, 1.0)
     check = partial(probits.report_share, 0.0)
-    counts, group = gather(compared)
+    sizes = [len(LEVELS) * one.trials.breadth.size for one in compared]
+    cases = [one.trials.cases for one in compared]
+
+    def join(name: str) -> FloatArray:
+        return np.concatenate([getattr(one, name)[:size] for one, size in zip(cases, sizes, strict=True)])
+
+    breadth, height, pfa, pfv = map(join, ("breadth", "height", "pfa", "pfv"))
+    counts = Counts(
+        breadth, height, pfa, pfv,
+        fallen=np.concatenate([one.trials.fallen.ravel()[:size] for one, size in zip(compared, sizes, strict=True)]),
+        runs=np.repeat([one.trials.runs for one in compared], sizes),
+    )  # fmt: skip
+    group = np.repeat([one.building.name for one in compared], sizes)
     points = Points(counts.breadth / counts.height, counts.pfa / ACCELERATION["cm/s2"], counts.risk, group)
     return Fits(
         points=points,
@@ -487,23 +486,6 @@ def find_errors(values: FloatArray, points: Points) -> LeftOut:
     return leave_out(points.z, points.group, lambda _: lambda chosen: values[chosen])
 
 
-def gather(compared: Sequence[Compared]) -> tuple[Counts, NDArray[np.str_]]:
-    """Return the cases of all channels at the common values of PFA, and the building of each."""
-    sizes = [len(LEVELS) * one.trials.breadth.size for one in compared]
-    cases = [one.trials.cases for one in compared]
-
-    def join(name: str) -> FloatArray:
-        return np.concatenate([getattr(one, name)[:size] for one, size in zip(cases, sizes, strict=True)])
-
-    breadth, height, pfa, pfv = map(join, ("breadth", "height", "pfa", "pfv"))
-    counts = Counts(
-        breadth, height, pfa, pfv,
-        fallen=np.concatenate([one.trials.fallen.ravel()[:size] for one, size in zip(compared, sizes, strict=True)]),
-        runs=np.repeat([one.trials.runs for one in compared], sizes),
-    )  # fmt: skip
-    return counts, np.repeat([one.building.name for one in compared], sizes)
-
-
 COLUMNS = (
     "place", "name", "equation", "coefficients", "r2", "adjusted_r2", "aic", "left_out_rmse", "left_out_spread",
     "level_with_the_best", "place_by_adjusted_r2", "place_by_aic", "condition", "ill_conditioned", "values",
@@ -518,23 +500,23 @@ LETTERS = {"a": (0, 0), "b": (1, 0), "c": (0, 1), "d": (2, 0), "e": (0, 2), "f":
 def run(options: Options) -> Finding:
     """Fit and rank the models, and write the two that can be used as files."""
     fits = fit_all(rock_all(options.narrow(0.0, 0.9)), options.narrow(0.9, 1.0))
+    rows = [
+        (
+            one.place, surface.candidate.name, surface.candidate.equation, len(surface.coefficients), surface.r2,
+            surface.adjusted_r2, surface.aic, surface.left_out.error, surface.left_out.spread, one.is_level,
+            one.place_adjusted_r2, one.place_aic, surface.condition, surface.is_ill_conditioned,
+            " ".join(map(repr, surface.coefficients)),
+        )
+        for one in fits.ranked
+        for surface in [one.surface]
+    ]  # fmt: skip
     return write_finding(
         "fit",
         collect(fits),
-        tables={"fit": Table(columns=COLUMNS, rows=[_row(one) for one in fits.ranked])},
+        tables={"fit": Table(columns=COLUMNS, rows=rows)},
         figures={"fit.svg": draw(7, 2.7, partial(_paint, fits))},
         files={f"{one.key}.toml": write_model(one) for one in build_models(fits, options)},
     )
-
-
-def _row(one: Ranked) -> Row:
-    surface = one.surface
-    return (
-        one.place, surface.candidate.name, surface.candidate.equation, len(surface.coefficients), surface.r2,
-        surface.adjusted_r2, surface.aic, surface.left_out.error, surface.left_out.spread, one.is_level,
-        one.place_adjusted_r2, one.place_aic, surface.condition, surface.is_ill_conditioned,
-        " ".join(map(repr, surface.coefficients)),
-    )  # fmt: skip
 
 
 def build_models(fits: Fits, options: Options) -> Iterator[Fitted]:
@@ -582,6 +564,12 @@ def collect(fits: Fits) -> dict[str, object]:
     """Return what the page shows."""
     best, values = fits.best.surface, dict(zip(EQUATION_8.powers, fits.equation_8.surface.coefficients, strict=True))
     named = {CONSTANT: "", EQUATION_8: " (eq. 8)", best.candidate: " (smallest error)"}
+    again = {CONSTANT: "", EQUATION_8: " (equation (8) fitted again)", best.candidate: " (smallest error)"}
+    coefficients: list[dict[str, object]] = []
+    for name, letter in (("b0", "b₀"), ("b1", "b₁"), ("b2", "b₂")):
+        value, *spread = (float(getattr(one, name)) for one in (fits.probit.probit, *fits.probit.without))
+        at_bound = name != "b0" and value == 0
+        coefficients.append({"letter": letter, "value": value, "at_bound": at_bound, "spread": spread})
     return {
         "fits": fits, "surfaces": len(fits.ranked) - 1, "best": best.left_out,
         "eighth": fits.equation_8.surface.left_out, "constant": fits.constant.surface.left_out,
@@ -595,26 +583,17 @@ def collect(fits: Fits) -> dict[str, object]:
         ],
         "printed": {name: getattr(COEFFICIENTS, name) for name in LETTERS},
         "fitted": [values[powers] for powers in LETTERS.values()],
-        "coefficients": _describe_coefficients(fits.probit), "models": list(_list_models(fits)),
+        "coefficients": coefficients,
+        "models": [
+            *((f"{title} (not fitted)", 0, left_out) for title, left_out in fits.published.items()),
+            *(
+                (f"{one.name}{name}", len(one.powers), fits.find(one).surface.left_out)
+                for one, name in again.items()
+            ),
+            ("probit without PFV (b₀, b₁)", 2, fits.probit_without_pfv.left_out),
+            ("probit (b₀, b₁, b₂)", 3, fits.probit.left_out),
+        ],
     }  # fmt: skip
-
-
-def _describe_coefficients(fitted: Alternative) -> list[dict[str, object]]:
-    found: list[dict[str, object]] = []
-    for name, letter in (("b0", "b₀"), ("b1", "b₁"), ("b2", "b₂")):
-        value, *spread = (float(getattr(one, name)) for one in (fitted.probit, *fitted.without))
-        found.append({"letter": letter, "value": value, "at_bound": name != "b0" and value == 0, "spread": spread})
-    return found
-
-
-def _list_models(fits: Fits) -> Iterator[tuple[str, int, LeftOut]]:
-    for title, left_out in fits.published.items():
-        yield f"{title} (not fitted)", 0, left_out
-    named = {CONSTANT: "", EQUATION_8: " (equation (8) fitted again)", fits.best.surface.candidate: " (smallest error)"}
-    for candidate, name in named.items():
-        yield f"{candidate.name}{name}", len(candidate.powers), fits.find(candidate).surface.left_out
-    yield "probit without PFV (b₀, b₁)", 2, fits.probit_without_pfv.left_out
-    yield "probit (b₀, b₁, b₂)", 3, fits.probit.left_out
 
 
 STUDY = Study(

@@ -1,18 +1,30 @@
 """What a study is: one part of the paper, or of its comparison, repeated on data that anyone may have.
 
 Pages come from templates, `templates/studies/<name>.md.j2`, whose blocks are the texts of a `Finding`. A paragraph or
-an item of a list may stand on several lines of a template; a row of a table stands on one.
+an item of a list may stand on several lines of a template; a row of a table stands on one. The files of a study are
+written each whole or not at all; the results of long work are kept for the next run.
 """
 
 import csv
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+import hashlib
+import io
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cache
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.delivery.deliver import save
+from assess.errors import OutputError
 from assess.resources import templates
 from assess.settings import Settings
+from assess.version import __version__
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -125,18 +137,9 @@ def write_finding(
     files: Mapping[str, str] | None = None,
 ) -> Finding:
     """Return the results of a study: its tables, figures and files, and the blocks of its template for `values`."""
-    page, overview, summary, failures = (
-        render_block(study, block, **values) for block in ("page", "overview", "summary", "failures")
-    )
-    return Finding(
-        page=page,
-        overview=overview,
-        summary=[line for line in summary if line],
-        failures=[line for line in failures if line],
-        tables=tables,
-        figures=figures,
-        files=files or {},
-    )
+    blocks = {name: render_block(study, name, **values) for name in ("page", "overview", "summary", "failures")}
+    blocks |= {name: [line for line in blocks[name] if line] for name in ("summary", "failures")}
+    return Finding(**blocks, tables=tables, figures=figures, files=files or {})
 
 
 def render_block(name: str, block: str, /, **values: object) -> list[str]:
@@ -173,7 +176,8 @@ def _environment() -> "Environment":
         lstrip_blocks=True,
         undefined=StrictUndefined,
     )
-    made.filters |= {"form": format, "forms": _forms, "percent": percent, "points": _points, "span": _span}
+    made.filters |= {"form": format, "percent": percent, "points": _points, "span": _span}
+    made.filters["forms"] = lambda values, form, separator="/": separator.join(format(one, form) for one in values)
     made.globals |= {"zip": zip}
     return made
 
@@ -181,10 +185,6 @@ def _environment() -> "Environment":
 def percent(share: float) -> str:
     """Return a share [-] as pages write it; "-" for NaN."""
     return "-" if share != share else f"{100 * share:.0f} %"
-
-
-def _forms(values: Iterable[float], form: str, separator: str = "/") -> str:
-    return separator.join(format(value, form) for value in values)
 
 
 def _points(share: float, sign: str = "") -> str:
@@ -195,3 +195,79 @@ def _points(share: float, sign: str = "") -> str:
 def _span(values: Sequence[float], decimals: int) -> str:
     low, high = f"{min(values):.{decimals}f}", f"{max(values):.{decimals}f}"
     return low if low == high else f"{low} to {high}"
+
+
+# ---------------------------------------------------------------- files
+
+Arrays = Mapping[str, NDArray[np.generic]]
+PARTS = "parts"
+"""Folder of kept results, within that of a study's files."""
+SOURCES = (
+    "motion", "rocking", "compiled.py", "units.py", "methods/simulate.py", "studies/buildings.py",
+    "studies/calibration.py",
+)  # fmt: skip
+"""The code that kept results depend on: if it changes, they are computed again."""
+MARK = "made_of"
+"""Array within a kept file that identifies what its numbers were computed from."""
+
+
+def check_folder(folder: Path) -> None:
+    """Raise OutputError unless a folder can be written to; it need not exist, and nothing is left behind."""
+    try:
+        there = next(one for one in (folder, *folder.absolute().parents) if one.exists())
+        with tempfile.TemporaryDirectory(prefix=".assess-writing-", dir=there):
+            pass
+    except OSError as error:
+        raise _fault(folder, error) from None
+
+
+def write_files(folder: Path, files: Mapping[str, bytes]) -> None:
+    """Write files into a folder, which is made if missing; a name may include a folder within.
+
+    Each file appears whole, and if one cannot be written, none is: see `assess.delivery`.
+
+    Raises OutputError if a file cannot be written.
+    """
+    taken = next((name for name in files if (folder / name).is_dir()), None)
+    if taken is not None:
+        raise OutputError(f"{folder / taken} could not be written: it is a folder. Move it away.")
+    try:
+        save({folder / name: data for name, data in files.items()})
+    except OSError as error:
+        raise _fault(folder, error) from None
+
+
+def load_or_compute(folder: Path, inputs: object, compute: Callable[[], Arrays]) -> Arrays:
+    """Return the result kept in `folder` for these inputs, or compute it and keep it there.
+
+    The name of its file is a hash of `inputs`, the code in `SOURCES` and the versions of the numerical libraries. Only
+    plain arrays are loaded, never pickles: a folder may come from someone else.
+
+    `inputs` are everything else that the numbers depend on, identified by their `repr`. Raises OutputError if the
+    result cannot be kept.
+    """
+    name = hashlib.sha256(repr((inputs, _state())).encode()).hexdigest()[:24]
+    file = folder / f"{name}.npz"
+    with suppress(Exception):  # missing, damaged, or made of something else: it is computed again
+        with file.open("rb") as stored, np.load(stored) as kept:
+            arrays = {key: kept[key] for key in kept.files}
+        if str(arrays.pop(MARK)) == name:
+            return arrays
+    found, stream = compute(), io.BytesIO()
+    np.savez(stream, **found, **{MARK: np.array(name)})  # type: ignore[arg-type]
+    write_files(folder, {file.name: stream.getvalue()})
+    return found
+
+
+def _fault(folder: Path, error: OSError) -> OutputError:
+    return OutputError(f"{folder} could not be written: {error.strerror or error}. Make room, or name another folder.")
+
+
+@cache
+def _state() -> tuple[str, ...]:
+    root, code = Path(__file__).parents[1], hashlib.sha256()
+    for source in SOURCES:
+        own = root / source
+        for file in sorted(own.rglob("*.py")) if own.is_dir() else [own]:
+            code.update(file.read_bytes())
+    return __version__, np.__version__, version("scipy"), version("numba"), code.hexdigest()

@@ -17,6 +17,7 @@ import numpy as np
 from assess.arrays import FloatArray
 from assess.errors import InputError, RecordError
 from assess.intensity import RATIO
+from assess.methods import Cases
 from assess.motion.assumed import CODE_FACTOR, CODE_POWER, LONGER, UNKNOWN, estimate_period
 from assess.motion.floor_medians import find_medians
 from assess.motion.formats import Channel, read_channels
@@ -24,7 +25,7 @@ from assess.report.figures.draw import draw
 from assess.report.words import cut
 from assess.risk import LIMITS, RiskClass, classify
 from assess.rocking.block import STOCKY
-from assess.studies.studied_methods import (
+from assess.studies.agreement import (
     CRITERIA,
     FORMULAS,
     KANEKO,
@@ -32,9 +33,8 @@ from assess.studies.studied_methods import (
     OR,
     SHORT_TITLES,
     STATIC,
-    Cases,
     evaluate_formulas,
-)
+)  # fmt: skip
 from assess.studies.study import Finding, Options, Row, Study, Table, read_facts, write_finding
 from assess.units import GRAVITY, LENGTH, VELOCITY
 
@@ -43,16 +43,25 @@ TABLED = {key: one for key, one in METHODS.items() if key in FORMULAS or key in 
 METHOD_COLUMNS = tuple(name for key in TABLED for name in (key, f"{key}_class"))
 """Columns of a .csv: the value of each method, and its class or, for a criterion, its outcome in words."""
 DIRECTIONS = ("transverse", "longitudinal")
+DRAWN = {key: SHORT_TITLES[key] for key in (KANEKO, OR)}
+LONGEST = 1.8
+"""How much longer than estimated by height T1 may be [-]: that of 575 Market Street is, 6 s for 3.3 s."""
+PAPERS_WORST = ("003", "004", "005")
+"""The buildings that the paper finds in class very high (section 3.1) and examines further."""
+WORST = 5
+"""Buildings in the table of the worst."""
+COLUMNS = (
+    "id", "station", "storeys", "height_m", "earthquake", "direction", "floor", "z_over_h",
+    "base_pga_g", "period_s", "pfa_g", "pfv_cm_s", *METHOD_COLUMNS,
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Station:
     """One line of the paper's Table 1.
 
-    * `number`, `name`, `earthquake`: as printed.
-    * `storeys`: above the ground.
-    * `height`: of the building [m].
-    * `pga`: at the base, by direction [m/s2]; empty where it is not printed.
+    `storeys` are those above the ground, `height` [m] is that of the building, `pga` [m/s2] that at the base, by
+    direction; empty where it is not printed.
     """
 
     number: str
@@ -125,16 +134,17 @@ class Climbed:
                 found[number] = float(np.fmax(found.get(number, math.nan), value))
         return found
 
+    def rank(self, key: str) -> list[str]:
+        """Return the buildings, the worst roof first."""
+        found = self.find_worst(key)
+        return sorted(found, key=lambda number: (-np.nan_to_num(found[number], nan=-1.0), number))
 
-def climb_all(stations: Sequence[Station], periods: Sequence[float], options: Options) -> Climbed:
-    """Evaluate the piece of the options on every floor of buildings with the given T1 [s]."""
-    levels = [level for one, period in zip(stations, periods, strict=True) for level in climb(one, period)]
-    cases = Cases.of(
-        breadth=options.breadth,
-        height=options.height,
-        pfa=[level.pfa for level in levels],
-        pfv=[level.pfv for level in levels],
-    )
+
+def climb_all(stations: Sequence[Station], options: Options, longer: float = 1.0) -> Climbed:
+    """Evaluate the piece of the options on every floor of buildings with T1 `longer` times as estimated [-]."""
+    levels = [level for one in stations for level in climb(one, longer * one.period)]
+    pfa, pfv = [level.pfa for level in levels], [level.pfv for level in levels]
+    cases = Cases.of(breadth=options.breadth, height=options.height, pfa=pfa, pfv=pfv)
     return Climbed(levels, evaluate_formulas(cases, options.settings))
 
 
@@ -149,14 +159,14 @@ def method_cells(values: Mapping[str, FloatArray], at: int) -> list[object]:
     return cells
 
 
-# ---------------------------------------------------------------- the figure
-
-
-def paint_climbed(climbed: Climbed, names: Mapping[str, str], figure: Any) -> None:
-    """Paint the risk by each formula (its key and name) over the buildings: every floor, and the roofs."""
-    panels = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
-    for axes, (key, name) in zip(panels, names.items(), strict=True):
-        axes.plot(*_dashes(climbed, key), linewidth=1, color="#8fb3cc", label="every floor, both directions")
+def _paint(climbed: Climbed, figure: Any) -> None:
+    """Paint the risk by each formula of `DRAWN` over the buildings: every floor, and the roofs."""
+    panels = figure.subplots(len(DRAWN), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, (key, name) in zip(panels, DRAWN.items(), strict=True):
+        every = zip(climbed.levels, climbed.values[key].tolist(), strict=True)
+        dashes = sorted({(int(one.station.number), round(value, 3)) for one, value in every if value == value})
+        points = np.array([((at - 0.3, risk), (at + 0.3, risk), (at, np.nan)) for at, risk in dashes]).reshape(-1, 2)
+        axes.plot(*points.T, linewidth=1, color="#8fb3cc", label="every floor, both directions")
         roofs = {int(number): value for number, value in climbed.find_worst(key).items()}
         axes.plot(list(roofs), list(roofs.values()), "D", ms=3, color="#8c1d3f", label="roof, worse direction")
         for limit in LIMITS:
@@ -176,12 +186,7 @@ def paint_climbed(climbed: Climbed, names: Mapping[str, str], figure: Any) -> No
     panels[0].legend(fontsize=6, framealpha=1, edgecolor="none", loc="upper right")
 
 
-def _dashes(climbed: Climbed, key: str) -> tuple[FloatArray, FloatArray]:
-    every = zip(climbed.levels, climbed.values[key].tolist(), strict=True)
-    dashes = sorted({(int(one.station.number), round(value, 3)) for one, value in every if value == value})
-    points = np.array([((at - 0.3, risk), (at + 0.3, risk), (at, np.nan)) for at, risk in dashes]).reshape(-1, 2)
-    return points[:, 0], points[:, 1]
-
+# ---------------------------------------------------------------- a folder of records
 
 LISTED = 8
 """Channels, and files left out, on the page; the .csv has all."""
@@ -191,8 +196,6 @@ RECORD_COLUMNS = (
     "record", "location", "azimuth_deg", "station", "event", "corrected", "notes", "pfa_g", "pfv_cm_s",
     *METHOD_COLUMNS, "overturned", "rotation_over_critical_angle", "impacts",
 )  # fmt: skip
-Cells = Mapping[str, object]
-"""A row of the .csv by column."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -217,30 +220,27 @@ def read_folder(path: Path, out: Path) -> Folder:
         raise InputError(f"{path} could not be read: {error.strerror or error}. Name another folder") from None
     channels: list[Channel] = []
     left_out: list[tuple[str, str]] = []
+    why = {True: "vertical channel: choose a horizontal one", None: "its direction is not known: is it horizontal?"}
     for file in files:
-        found, reasons = _read_file(file)
-        channels += found
-        left_out += reasons
+        if file.is_dir():
+            left_out.append((_spell(file.name), "a folder: subfolders are not searched"))
+        elif not file.is_file():  # pipes are not opened
+            left_out.append((_spell(file.name), "not a regular file"))
+        else:
+            try:
+                found = read_channels(str(file))
+            except RecordError as error:
+                left_out.append((_spell(file.name), _spell(str(error).removeprefix(f"{file.name}: "))))
+                continue
+            for one in found:
+                if one.record.vertical is False:
+                    channels.append(one._replace(name=_spell(one.name)))
+                else:
+                    left_out.append((_spell(one.name), why[one.record.vertical]))
     if not channels:
         seen = _list_first([f"{name}: {cut(reason, LONGEST_REASON)}" for name, reason in left_out]) or "it is empty"
         raise InputError(f"{path}: it has no readable horizontal channel ({seen}). Put floor records into it")
     return Folder(path, channels, left_out)
-
-
-def _read_file(file: Path) -> tuple[list[Channel], list[tuple[str, str]]]:
-    """Return the horizontal channels of a file, and what is left out of it, with the reason; pipes are not opened."""
-    name = _spell(file.name)
-    if file.is_dir():
-        return [], [(name, "a folder: subfolders are not searched")]
-    if not file.is_file():
-        return [], [(name, "not a regular file")]
-    try:
-        found = read_channels(str(file))
-    except RecordError as error:
-        return [], [(name, _spell(str(error).removeprefix(f"{file.name}: ")))]
-    why = {True: "vertical channel: choose a horizontal one", None: "its direction is not known: is it horizontal?"}
-    reasons = [(_spell(one.name), why[one.record.vertical]) for one in found if one.record.vertical is not False]
-    return [one._replace(name=_spell(one.name)) for one in found if one.record.vertical is False], reasons
 
 
 def _spell(text: str) -> str:
@@ -254,17 +254,24 @@ def _list_first(texts: Sequence[str]) -> str:
 
 
 def evaluate_folder(folder: Folder, options: Options) -> Finding:
-    """Evaluate the piece under every channel of a folder, and rock it."""
-    cases = Cases.of(
-        breadth=options.breadth,
-        height=options.height,
-        pfa=[one.motion.pfa for one in folder.channels],
-        pfv=[one.motion.pfv for one in folder.channels],
-    )
-    values = evaluate_formulas(cases, options.settings)
+    """Evaluate the piece under every channel of a folder, and rock it by the record unless it is too stocky."""
+    from assess.rocking.ensemble import rock_blocks
+
+    breadth, height = options.breadth, options.height
+    pfa, pfv = [one.motion.pfa for one in folder.channels], [one.motion.pfv for one in folder.channels]
+    values = evaluate_formulas(Cases.of(breadth=breadth, height=height, pfa=pfa, pfv=pfv), options.settings)
     rows = []
     for at, (one, _) in enumerate(options.each(folder.channels)):
-        rows.append((*_describe_channel(one), *method_cells(values, at), *_rock(one, options)))
+        record, motion = one.record, one.motion
+        verdict: Row = ("", "", "")
+        if breadth / height < STOCKY:
+            found = rock_blocks(breadth, height, motion.acceleration[None], motion.time_step)
+            verdict = bool(found.overturned[0, 0]), float(found.rotation[0, 0]), int(found.impacts[0, 0])
+        rows.append((
+            one.name, record.location, "" if record.azimuth_deg is None else record.azimuth_deg, record.station,
+            record.event, record.corrected, "; ".join(str(note) for note in record.notes), motion.pfa / GRAVITY,
+            motion.pfv / VELOCITY["cm/s"], *method_cells(values, at), *verdict,
+        ))  # fmt: skip
     tables = {"table1-records": Table(columns=RECORD_COLUMNS, rows=rows)}
     if folder.left_out:
         tables["table1-records-left-out"] = Table(columns=("file", "reason"), rows=folder.left_out)
@@ -280,27 +287,10 @@ def evaluate_folder(folder: Folder, options: Options) -> Finding:
         "high": {
             key: _count_high(value for one in cells if isinstance(value := one[key], float)) for key in SHORT_TITLES
         }, "quote": quote,
-        "is_stocky": options.breadth / options.height >= STOCKY, "stocky": STOCKY,
+        "is_stocky": breadth / height >= STOCKY, "stocky": STOCKY,
         "left_out": _list_first([f"{quote(name)} ({cut(reason, LONGEST_REASON)})" for name, reason in folder.left_out]),
     }  # fmt: skip
     return write_finding("table1-records", shown, tables=tables, figures={})
-
-
-def _describe_channel(one: Channel) -> Row:
-    record, motion = one.record, one.motion
-    azimuth = "" if record.azimuth_deg is None else record.azimuth_deg
-    origin = record.station, record.event, record.corrected, "; ".join(str(note) for note in record.notes)
-    return one.name, record.location, azimuth, *origin, motion.pfa / GRAVITY, motion.pfv / VELOCITY["cm/s"]
-
-
-def _rock(one: Channel, options: Options) -> Row:
-    """Return the response to the record itself by direct integration; "" where the piece is too stocky to rock."""
-    if options.breadth / options.height >= STOCKY:
-        return "", "", ""
-    from assess.rocking.ensemble import rock_blocks
-
-    found = rock_blocks(options.breadth, options.height, one.motion.acceleration[None], one.motion.time_step)
-    return bool(found.overturned[0, 0]), float(found.rotation[0, 0]), int(found.impacts[0, 0])
 
 
 def quote(name: str) -> str:
@@ -311,34 +301,7 @@ def quote(name: str) -> str:
     return f"{fence}{edge}{line}{edge}{fence}"
 
 
-DRAWN = {key: SHORT_TITLES[key] for key in (KANEKO, OR)}
-LONGEST = 1.8
-"""How much longer than estimated by height T1 may be [-]: that of 575 Market Street is, 6 s for 3.3 s."""
-PAPERS_WORST = ("003", "004", "005")
-"""The buildings that the paper finds in class very high (section 3.1) and examines further."""
-WORST = 5
-"""Buildings in the table of the worst."""
-COLUMNS = (
-    "id", "station", "storeys", "height_m", "earthquake", "direction", "floor", "z_over_h",
-    "base_pga_g", "period_s", "pfa_g", "pfv_cm_s", *METHOD_COLUMNS,
-)  # fmt: skip
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Climbs:
-    """The piece up every building: with T1 as estimated from the height, and with `LONGEST` times that."""
-
-    stations: Sequence[Station]
-    usual: Climbed
-    longer: Climbed
-
-
-def climb_buildings(options: Options) -> Climbs:
-    """Evaluate the piece on every floor of the buildings whose base PGA is printed."""
-    known = [one for one in read_stations() if one.pga]
-    periods = [one.period for one in known]
-    longer = [LONGEST * one for one in periods]
-    return Climbs(known, climb_all(known, periods, options), climb_all(known, longer, options))
+# ---------------------------------------------------------------- the study
 
 
 def count_classes(chances: Mapping[str, float]) -> dict[RiskClass, int]:
@@ -349,32 +312,31 @@ def count_classes(chances: Mapping[str, float]) -> dict[RiskClass, int]:
 
 def run(options: Options) -> Finding:
     """Evaluate the piece up the buildings, and under the records of a folder if one is given."""
-    folder = None if options.records is None else read_folder(options.records, options.out)
-    climbs = climb_buildings(options)
-    usual, own = climbs.usual, None if folder is None else evaluate_folder(folder, options)
-    rows = [_row(usual, at) for at in range(len(usual.levels))]
-    return write_finding(
-        "table1",
-        _collect(climbs, options) | {"own": "" if own is None else "\n".join(own.page)},
-        tables={"table1": Table(columns=COLUMNS, rows=rows), **(own.tables if own else {})},
-        figures={"table1.svg": draw(7, 4.2, partial(paint_climbed, usual, DRAWN))},
-    )
-
-
-def _collect(climbs: Climbs, options: Options) -> dict[str, object]:
-    usual, longer = climbs.usual, climbs.longer
-    chances = {key: usual.find_worst(key) for key in SHORT_TITLES}
+    folder, every = None if options.records is None else read_folder(options.records, options.out), read_stations()
+    known = [one for one in every if one.pga]
+    usual, longer = climb_all(known, options), climb_all(known, options, LONGEST)
+    own = None if folder is None else evaluate_folder(folder, options)
+    rows = [
+        (
+            one.station.number, one.station.name, one.station.storeys, one.station.height, one.station.earthquake,
+            one.direction, one.number, one.place, one.station.pga[one.direction] / GRAVITY, one.station.period,
+            one.pfa / GRAVITY, one.pfv / VELOCITY["cm/s"], *method_cells(usual.values, at),
+        )
+        for at, one in enumerate(usual.levels)
+    ]  # fmt: skip
+    chances, order = {key: usual.find_worst(key) for key in SHORT_TITLES}, usual.rank(OR)
     cannot_rock = [number for number, value in usual.find_worst(STATIC).items() if value == 0]
-    order = _rank(usual, OR)
-    return {
+    ranks = {key: usual.rank(key) for key in SHORT_TITLES if not np.isnan(usual.values[key]).any()}
+    values = {
         "options": options, "ratio": options.breadth / options.height,
-        "checked": METHODS[OR].valid["breadth_to_height"], "stations": climbs.stations,
-        "left_out": [one.number for one in read_stations() if not one.pga],
+        "checked": METHODS[OR].valid["breadth_to_height"], "stations": known,
+        "left_out": [one.number for one in every if not one.pga],
         "period": (LONGER * CODE_FACTOR, CODE_POWER), "velocity_ratio": 100 * RATIO * GRAVITY,
         "titles": SHORT_TITLES, "OR": OR, "KANEKO": KANEKO, "papers_worst": PAPERS_WORST,
         "risks": list(reversed(RiskClass)), "classes": {key: count_classes(one) for key, one in chances.items()},
         "worst": [_describe_roof(usual, one) for at, one in enumerate(order) if at < WORST or one in PAPERS_WORST],
-        "roofs": len(order), "places": _find_places(usual),
+        "roofs": len(order),
+        "places": {key: [ranked.index(one) + 1 for one in PAPERS_WORST] for key, ranked in ranks.items()},
         "others": sorted(one for one in order[: len(PAPERS_WORST)] if one not in PAPERS_WORST),
         "longer": LONGEST,
         "high": {key: [_count_high(one.find_worst(key).values()) for one in (usual, longer)] for key in SHORT_TITLES},
@@ -382,50 +344,30 @@ def _collect(climbs: Climbs, options: Options) -> dict[str, object]:
         "very_high": {
             key: sorted(name for name, value in one.items() if classify(value) == RiskClass.VERY_HIGH)
             for key, one in chances.items()
-        }, "longest": 2 * WORST,
+        }, "longest": 2 * WORST, "own": "" if own is None else "\n".join(own.page),
     }  # fmt: skip
-
-
-def _rank(climbed: Climbed, key: str) -> list[str]:
-    found = climbed.find_worst(key)
-    return sorted(found, key=lambda number: (-np.nan_to_num(found[number], nan=-1.0), number))
-
-
-def _find_places(climbed: Climbed) -> dict[str, list[int]]:
-    known = [key for key in SHORT_TITLES if not np.isnan(climbed.values[key]).any()]
-    return {key: [_rank(climbed, key).index(one) + 1 for one in PAPERS_WORST] for key in known}
+    return write_finding(
+        "table1",
+        values,
+        tables={"table1": Table(columns=COLUMNS, rows=rows), **(own.tables if own else {})},
+        figures={"table1.svg": draw(7, 4.2, partial(_paint, usual))},
+    )
 
 
 def _describe_roof(climbed: Climbed, number: str) -> dict[str, object]:
-    roofs = [one for one in climbed.levels if one.station.number == number and one.is_roof]
-    roof = max(roofs, key=lambda one: one.pfa)
+    """Return the roof, and the chances in the paper's Table 2 at the highest storey, if the building is listed."""
+    roof = max((one for one in climbed.levels if one.station.number == number and one.is_roof), key=lambda one: one.pfa)
+    printed = [row for row in read_facts("table2_methods") if row["building"] == number]
+    top = max((int(row["storey"]) for row in printed), default=0)
     return {
         "station": roof.station, "pfa_g": roof.pfa / GRAVITY, "pfv_cm_s": roof.pfv / VELOCITY["cm/s"],
         "chances": [(value := climbed.find_worst(key)[number], classify(value)) for key in SHORT_TITLES],
-        "printed": [_find_printed(number, key) for key in (OR, KANEKO)],
+        "printed": [[float(row[key]) for row in printed if int(row["storey"]) == top] for key in (OR, KANEKO)],
     }  # fmt: skip
-
-
-def _find_printed(number: str, key: str) -> list[float]:
-    """Return the chances in the paper's Table 2 at the highest storey of a building; none if it is not listed there."""
-    rows = [row for row in read_facts("table2_methods") if row["building"] == number]
-    top = max((int(row["storey"]) for row in rows), default=0)
-    return [float(row[key]) for row in rows if int(row["storey"]) == top]
 
 
 def _count_high(chances: Iterable[float]) -> int:
     return sum((classify(value) or RiskClass.LOW) >= RiskClass.HIGH for value in chances)
-
-
-def _row(climbed: Climbed, at: int) -> Row:
-    level = climbed.levels[at]
-    station = level.station
-    return (
-        station.number, station.name, station.storeys, station.height, station.earthquake, level.direction,
-        level.number, level.place, station.pga[level.direction] / GRAVITY, station.period,
-        level.pfa / GRAVITY, level.pfv / VELOCITY["cm/s"],
-        *method_cells(climbed.values, at),
-    )  # fmt: skip
 
 
 STUDY = Study(

@@ -16,21 +16,28 @@ from assess.report.figures.draw import draw
 from assess.risk import LIMITS, classify_all
 from assess.rocking.draws import BASE, Uncertainty
 from assess.studies.agreement import (
+    CRITERIA,
+    FEMA,
+    FORMULAS,
+    INTEGRATION,
+    JAPAN,
+    KANEKO,
+    METHODS,
     NAMES,
+    OR,
+    STATIC,
     Agreement,
     Chosen,
     Compared,
     agree,
-    as_recorded,
     by_building,
     correlate_ranks,
     every_case,
     find_agreement,
     pool,
     rock_all,
-)
+)  # fmt: skip
 from assess.studies.buildings import FIRST_TOGETHER, HEIGHTS, LEVELS, RATIOS, RECORDED, TOGETHER
-from assess.studies.studied_methods import CRITERIA, FEMA, FORMULAS, INTEGRATION, JAPAN, KANEKO, METHODS, OR, STATIC
 from assess.studies.study import Finding, Options, Row, Study, Table, read_facts, write_finding
 from assess.units import GRAVITY, LENGTH, ROUNDING
 
@@ -39,11 +46,6 @@ MOST_SCALED = 3.0
 ALL = "all cases"
 NOTHING = "nothing falls"
 """The trivial prediction: a formula with a larger error is of no use."""
-
-
-def is_little_scaled(one: Compared) -> BoolArray:
-    """Choose the cases whose record is scaled by at most `MOST_SCALED`."""
-    return every_case(one) & (one.factors[:, np.newaxis] <= MOST_SCALED)
 
 
 def is_in_range(one: Compared) -> BoolArray:
@@ -60,10 +62,10 @@ def is_at_rest(one: Compared) -> BoolArray:
     return every_case(one) & np.asarray(one.trials.pfa[:, np.newaxis] < start * (1 - ROUNDING), dtype=np.bool_)
 
 
-SUBSETS = {
+SUBSETS: Mapping[str, Chosen] = {
     ALL: every_case,
-    "as recorded": as_recorded,
-    f"scaled up to {MOST_SCALED:g} times": is_little_scaled,
+    "as recorded": lambda one: every_case(one, RECORDED),
+    f"scaled up to {MOST_SCALED:g} times": lambda one: every_case(one) & (one.factors[:, np.newaxis] <= MOST_SCALED),
     "in OR's checked range": is_in_range,
 }
 
@@ -125,33 +127,35 @@ class Comparison:
 
 
 def compare(compared: Sequence[Compared]) -> Comparison:
-    """Compare formulas and criteria with the response of the blocks."""
+    """Compare formulas and criteria with the response of the blocks; subsets without a case are left out."""
+    agreements: dict[tuple[str, str, str], Agreement] = {}
+    uncertain: dict[tuple[str, str], Agreement] = {}
+    criteria = {}
+    for name, own in by_building(compared).items():
+        for subset, chosen in SUBSETS.items():
+            if any(chosen(one).any() for one in own):
+                found = _agree_all(own, chosen, uncertain=False)
+                agreements |= {(name, subset, key): one for key, one in found.items()}
+        found = _agree_all(own, every_case, uncertain=True)
+        uncertain |= {(name, key): one for key, one in found.items()}
+        for key in CRITERIA:
+            met, fallen = pool(own, key)
+            falls = fallen >= own[0].trials.runs / 2
+            criteria[name, key] = Criterion(_share(met[falls] == 0), _share(met[~falls] == 1))
+    fallen = pool(compared, OR, is_at_rest)[1]
     return Comparison(
-        agreements=find_agreements(compared),
-        uncertain=find_uncertain(compared),
+        agreements=agreements,
+        uncertain=uncertain,
         ratios=[one.ratio for one in compared],
         biases={key: [agree([one], key).bias for one in compared] for key in FORMULAS},
-        criteria=find_criteria(compared),
-        at_rest=find_at_rest(compared),
-        pairs=find_pairs(compared),
+        criteria=criteria,
+        at_rest=AtRest(
+            share=fallen.size / sum(int(every_case(one).sum()) for one in compared),
+            above={key: _share(pool(compared, key, is_at_rest)[0] >= LIMITS[0]) for key in FORMULAS},
+            above_by_integration=_share(fallen >= LIMITS[0] * compared[0].trials.runs),
+        ),
+        pairs=_find_pairs(compared),
     )
-
-
-def find_agreements(compared: Sequence[Compared]) -> dict[tuple[str, str, str], Agreement]:
-    """Return how each formula agrees with integration, by building, subset and key; empty subsets are left out."""
-    return {
-        (name, subset, key): one
-        for name, own in by_building(compared).items()
-        for subset, chosen in SUBSETS.items()
-        if any(chosen(one).any() for one in own)
-        for key, one in _agree_all(own, chosen, uncertain=False).items()
-    }
-
-
-def find_uncertain(compared: Sequence[Compared]) -> dict[tuple[str, str], Agreement]:
-    """Return how each formula agrees with integration where motion and piece are uncertain, by building and key."""
-    every = by_building(compared).items()
-    return {(name, key): one for name, own in every for key, one in _agree_all(own, every_case, uncertain=True).items()}
 
 
 def _agree_all(own: Sequence[Compared], chosen: Chosen, *, uncertain: bool) -> dict[str, Agreement]:
@@ -161,33 +165,11 @@ def _agree_all(own: Sequence[Compared], chosen: Chosen, *, uncertain: bool) -> d
     return found | {NOTHING: find_agreement(np.zeros(fallen.size), fallen, own[0].trials.runs)}
 
 
-def find_criteria(compared: Sequence[Compared]) -> dict[tuple[str, str], Criterion]:
-    """Return how well the criteria separate what falls, by building and key."""
-    found = {}
-    for name, own in by_building(compared).items():
-        for key in CRITERIA:
-            met, fallen = pool(own, key)
-            falls = fallen >= own[0].trials.runs / 2
-            found[name, key] = Criterion(_share(met[falls] == 0), _share(met[~falls] == 1))
-    return found
-
-
 def _share(found: BoolArray) -> float:
     return float(found.mean()) if found.size else float("nan")
 
 
-def find_at_rest(compared: Sequence[Compared]) -> AtRest:
-    """Return how formulas and integration classify blocks that the record as scaled cannot make rock."""
-    fallen = pool(compared, OR, is_at_rest)[1]
-    every = sum(int(every_case(one).sum()) for one in compared)
-    return AtRest(
-        share=fallen.size / every,
-        above={key: _share(pool(compared, key, is_at_rest)[0] >= LIMITS[0]) for key in FORMULAS},
-        above_by_integration=_share(fallen >= LIMITS[0] * compared[0].trials.runs),
-    )
-
-
-def find_pairs(compared: Sequence[Compared]) -> list[Pair]:
+def _find_pairs(compared: Sequence[Compared]) -> list[Pair]:
     """Return every two channels of a floor at each PFA of `TOGETHER`."""
     found = []
     for one, other in combinations(compared, 2):
@@ -222,17 +204,8 @@ def run(options: Options) -> Finding:
     """Compare the formulas with integration."""
     compared = rock_all(options)
     found = compare(compared)
-    return write_finding(
-        "table2",
-        collect(compared, found, options),
-        tables=_build_tables(compared, found),
-        figures={"table2.svg": draw(7, 2.6, partial(_paint, found))},
-    )
-
-
-def _build_tables(compared: Sequence[Compared], found: Comparison) -> dict[str, Table]:
     pairs = found.pairs
-    return {
+    tables = {
         "table2-channels": Table(columns=CHANNELS, rows=list(_channel_rows(compared))),
         "table2-agreement": Table(
             columns=("building", "cases_chosen", "method", *NAMES),
@@ -251,6 +224,12 @@ def _build_tables(compared: Sequence[Compared], found: Comparison) -> dict[str, 
             rows=[(one.building, one.level, *one.names, one.is_along, one.pfa, *one.apart.values()) for one in pairs],
         ),
     }
+    return write_finding(
+        "table2",
+        collect(compared, found, options),
+        tables=tables,
+        figures={"table2.svg": draw(7, 2.6, partial(_paint, found))},
+    )
 
 
 def _channel_rows(compared: Sequence[Compared]) -> Iterator[Row]:
@@ -290,6 +269,15 @@ def collect(compared: Sequence[Compared], found: Comparison, options: Options) -
     names = list(by_building(compared))
     whole = {key: [found.agreements[name, ALL, key] for name in names] for key in (*FORMULAS, NOTHING)}
     nearest = min(FORMULAS, key=lambda key: sum(abs(one.bias) for one in whole[key]))
+    trials = compared[0].trials
+    off = np.abs(trials.breadth / options.breadth - 1) + np.abs(trials.height / options.height - 1)
+    block = int(off.argmin())  # that nearest to the piece of the options
+    pairs: list[dict[str, object]] = []
+    for building, is_along in dict.fromkeys((one.building, one.is_along) for one in found.pairs):
+        own = [one.apart for one in found.pairs if (one.building, one.is_along) == (building, is_along)]
+        means = [float(np.mean([one[key] for one in own])) for key in (*FORMULAS, INTEGRATION)]
+        closer = sum(one[INTEGRATION] < one[KANEKO] for one in own)
+        pairs.append({"building": building, "is_along": is_along, "count": len(own), "means": means, "closer": closer})
     return {
         "OR": OR, "KANEKO": KANEKO, "FEMA": FEMA, "NOTHING": NOTHING, "ALL": ALL, "INTEGRATION": INTEGRATION,
         "formulas": FORMULAS, "criteria": CRITERIA, "ratios": RATIOS, "heights": HEIGHTS, "levels": LEVELS,
@@ -299,12 +287,13 @@ def collect(compared: Sequence[Compared], found: Comparison, options: Options) -
         "correlation": correlate_ranks(found.biases[OR], found.ratios),
         "static": [found.criteria[name, STATIC] for name in names],
         "japan": [found.criteria[name, JAPAN] for name in names],
-        "buildings": [describe_building(own) for own in by_building(compared).values()],
-        "pairs": describe_pairs(found), **choose_block(compared, options), **collect_published(),
+        "buildings": [_describe_building(own) for own in by_building(compared).values()], "pairs": pairs,
+        "block": block, "size": [float(one[block] / LENGTH["cm"]) for one in (trials.breadth, trials.height)],
+        "shown": SHOWN, "at": LEVELS.index(SHOWN), **collect_published(),
     }  # fmt: skip
 
 
-def describe_building(own: Sequence[Compared]) -> dict[str, object]:
+def _describe_building(own: Sequence[Compared]) -> dict[str, object]:
     """Return the channels of a building: recorded PFA [g], PFV/PFA [s], factors, motions and what falls [-]."""
     trials = [one.trials for one in own]
     return {
@@ -317,39 +306,14 @@ def describe_building(own: Sequence[Compared]) -> dict[str, object]:
     }  # fmt: skip
 
 
-def choose_block(compared: Sequence[Compared], options: Options) -> dict[str, object]:
-    """Return the block that is nearest to the piece of the options, its size [cm], and where it is among the trials."""
-    trials = compared[0].trials
-    off = np.abs(trials.breadth / options.breadth - 1) + np.abs(trials.height / options.height - 1)
-    block = int(off.argmin())
-    size = [float(one[block] / LENGTH["cm"]) for one in (trials.breadth, trials.height)]
-    return {"block": block, "size": size, "shown": SHOWN, "at": LEVELS.index(SHOWN)}
-
-
-def describe_pairs(found: Comparison) -> list[dict[str, object]]:
-    """Return how the channels of a floor agree, by building and direction."""
-    rows: list[dict[str, object]] = []
-    for building, is_along in dict.fromkeys((one.building, one.is_along) for one in found.pairs):
-        own = [one.apart for one in found.pairs if (one.building, one.is_along) == (building, is_along)]
-        means = [float(np.mean([one[key] for one in own])) for key in (*FORMULAS, INTEGRATION)]
-        closer = sum(one[INTEGRATION] < one[KANEKO] for one in own)
-        rows.append({"building": building, "is_along": is_along, "count": len(own), "means": means, "closer": closer})
-    return rows
-
-
-# ---------------------------------------------------------------- the paper's own table
-
-
 def collect_published() -> dict[str, object]:
     """Return the paper's Table 2, channel by channel, and how its formulas agree with its integration."""
     rows = read_facts("table2_methods")
     chances = {name: np.array([float(row[name]) for row in rows]) for name in (KANEKO, DIRECT, OR)}
-    direct, steps = (
-        chances[DIRECT],
-        {key: classify_all(one) - classify_all(chances[DIRECT]) for key, one in chances.items()},
-    )
+    direct = chances[DIRECT]
+    steps = {key: classify_all(one) - classify_all(direct) for key, one in chances.items()}
     return {
-        "published": read_facts("table2_methods"), "columns": list(chances),
+        "published": rows, "columns": list(chances),
         "above": int(np.sum(direct > chances[OR])), "level": int(np.sum(direct == chances[OR])),
         "judged": {
             key: {

@@ -6,7 +6,7 @@ more are compared with the tests.
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from assess.arrays import FloatArray
+from assess.methods import Cases
 from assess.report.figures.draw import draw
 from assess.risk import RiskClass, classify
-from assess.studies.agreement import correlate_ranks
-from assess.studies.studied_methods import KANEKO, METHODS, OR, STATIC, Cases
+from assess.studies.agreement import KANEKO, METHODS, OR, STATIC, correlate_ranks
 from assess.studies.study import Finding, Options, Row, Study, Table, read_facts, write_finding
 from assess.units import GRAVITY
 
@@ -152,11 +152,15 @@ def run(options: Options) -> Finding:
     """Compare the methods with the tests, and OR as evaluated here with OR as printed."""
     blocks = read_blocks()
     judged = judge_methods(blocks, options)
+    counts = {case: Counter(classify(one.printed[case]) for one in blocks) for case in CASES}
     values = {
         "blocks": blocks, "judged": judged, "used": judged[USED], "bound": judged[BOUND], "start": judged[START],
         "tests": TESTS, "expected": EXPECTED, "heights": HEIGHTS, "boundaries": find_boundaries(blocks, options),
         "printed": check_printed(blocks, options), "early": [one.name for one in blocks if one.pga["min"] < one.ratio],
-        "classes": {case: count_printed_classes(blocks, case) for case in CASES},
+        "classes": {
+            case: ", ".join(f"{found[risk]} {risk.word}" for risk in reversed(RiskClass) if found[risk])
+            for case, found in counts.items()
+        },
     }  # fmt: skip
     columns = (
         "sample", "breadth_to_height", "method", *(f"pga_{case}_g" for case in CASES), "median_pfa_g",
@@ -165,36 +169,26 @@ def run(options: Options) -> Finding:
     methods = ("method", "mean_ln_median_over_mean", "scatter_ln", "rank_correlation")
     printed = ("sample", "breadth_to_height", "case", "pga_g", "or_printed", "or_equation_9", "or_as_used")
     summary = [(name, one.bias, one.scatter, one.rank_correlation) for name, one in judged.items()]
+    of_blocks: list[Row] = []
+    of_cases: list[Row] = []
+    for at, block in enumerate(blocks):
+        for name, one in judged.items():
+            median, chances = float(one.medians[at]), one.chances[at].tolist()
+            peaks = (*block.pga.values(), median, median / block.pga["mean"])
+            of_blocks.append((block.name, block.ratio, name, *peaks, *chances))
+        for number, case in enumerate(CASES):
+            chances = [float(judged[key].chances[at, number]) for key in (PRINTED, USED)]
+            of_cases.append((block.name, block.ratio, case, block.pga[case], block.printed[case], *chances))
     return write_finding(
         "table3",
         values,
         tables={
-            "table3": Table(columns=columns, rows=list(_block_rows(blocks, judged))),
+            "table3": Table(columns=columns, rows=of_blocks),
             "table3-methods": Table(columns=methods, rows=summary),
-            "table3-printed": Table(columns=printed, rows=list(_printed_rows(blocks, judged))),
+            "table3-printed": Table(columns=printed, rows=of_cases),
         },
         figures={"table3.svg": draw(7, 2.7, partial(_paint, blocks, judged))},
     )
-
-
-def count_printed_classes(blocks: Sequence[Block], case: str) -> str:
-    """Return how many of the printed values of a case are in which class, in words."""
-    found = Counter(classify(one.printed[case]) for one in blocks)
-    return ", ".join(f"{found[risk]} {risk.word}" for risk in reversed(RiskClass) if found[risk])
-
-
-def _block_rows(blocks: Sequence[Block], judged: Mapping[str, Judgement]) -> Iterator[Row]:
-    for at, block in enumerate(blocks):
-        for name, one in judged.items():
-            median, mean = float(one.medians[at]), block.pga["mean"]
-            yield block.name, block.ratio, name, *block.pga.values(), median, median / mean, *one.chances[at].tolist()
-
-
-def _printed_rows(blocks: Sequence[Block], judged: Mapping[str, Judgement]) -> Iterator[Row]:
-    for at, block in enumerate(blocks):
-        for case, name in enumerate(CASES):
-            values = [float(judged[key].chances[at, case]) for key in (PRINTED, USED)]
-            yield block.name, block.ratio, name, block.pga[name], block.printed[name], *values
 
 
 def _paint(blocks: Sequence[Block], judged: Mapping[str, Judgement], figure: Any) -> None:
@@ -204,7 +198,10 @@ def _paint(blocks: Sequence[Block], judged: Mapping[str, Judgement], figure: Any
     for axes, (name, (mark, colour)) in zip(panels, DRAWN.items(), strict=True):
         axes.plot([0, 1], [0, 1], color="#444444", linewidth=0.6, linestyle="--")
         axes.errorbar(means, judged[name].medians, xerr=bars, fmt=mark, color=colour, **style)
-        _name_blocks(axes, blocks, judged[name].medians)
+        for ratio, median in {one.ratio: at for one, at in zip(blocks, judged[name].medians, strict=True)}.items():
+            own = [one for one in blocks if one.ratio == ratio]
+            end, label = (max(one.pga["max"] for one in own), median), ", ".join(one.name for one in own)
+            axes.annotate(label, end, xytext=(4, 0), textcoords="offset points", fontsize=6, va="center")
         axes.set_title(name, loc="left", fontsize=8)
         axes.set_xlim(0, 1.15)
         axes.set_ylim(0, 0.7)
@@ -212,14 +209,6 @@ def _paint(blocks: Sequence[Block], judged: Mapping[str, Judgement], figure: Any
     panels[0].text(0.62, 0.64, "1:1", fontsize=6, ha="right")
     panels[0].set_ylabel("median: PFA of chance one half [g]", fontsize=7)
     figure.supxlabel("measured overturning PGA: mean, least and largest of ten tests [g]", fontsize=7)
-
-
-def _name_blocks(axes: Any, blocks: Sequence[Block], medians: FloatArray) -> None:
-    for ratio, median in {one.ratio: median for one, median in zip(blocks, medians, strict=True)}.items():
-        own = [one for one in blocks if one.ratio == ratio]
-        end = max(one.pga["max"] for one in own), median
-        name = ", ".join(one.name for one in own)
-        axes.annotate(name, end, xytext=(4, 0), textcoords="offset points", fontsize=6, va="center")
 
 
 STUDY = Study(name="table3", order=50, title="Formulas against shaking-table tests", of="Table 3, section 5", run=run)

@@ -11,7 +11,7 @@ import pytest
 from assess.errors import OutputError
 from assess.resources import record
 from assess.studies import PAGE, PARTS, Finding, Options, Study, all_studies, check_folder, run_study, write_files
-from assess.studies.study_files import load_or_compute
+from assess.studies.study import load_or_compute
 from tests.cli.calling import run
 from tests.waiting import PATIENCE
 
@@ -186,7 +186,7 @@ SLOW = """
 import sys, time
 import assess.studies as studies
 import numpy as np
-from assess.studies.study_files import PARTS, load_or_compute
+from assess.studies.study import PARTS, load_or_compute
 from assess.cli.app import app
 
 def work(options):

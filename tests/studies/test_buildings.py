@@ -20,8 +20,7 @@ from assess.motion.target import build_grid, recorded_target
 from assess.rocking.draws import draw_bodies, draw_earthquakes
 from assess.rocking.ensemble import rock_blocks
 from assess.studies.buildings import Trials, all_buildings, build_blocks, find_levels, rock_building
-from assess.studies.study import Options
-from assess.studies.study_files import PARTS, load_or_compute
+from assess.studies.study import PARTS, Options, load_or_compute
 from assess.units import GRAVITY
 
 LEVELS = (0.3, 0.6)
@@ -232,7 +231,7 @@ def test_another_seed_number_of_motions_record_or_code_is_not_loaded(
     (other,) = rock(replace(buildings[2], channels=(replace(channel, file=edited),)), options(folder))
     assert len(look(folder)) == 4
     assert other.pfv[0] != kept[1].pfv[0]
-    monkeypatch.setattr("assess.studies.study_files._state", lambda: ("another version",))
+    monkeypatch.setattr("assess.studies.study._state", lambda: ("another version",))
     rock(buildings[2], options(folder))
     assert len(look(folder)) == 5
 

@@ -30,8 +30,7 @@ from assess.studies.calibration import (
     list_recorded,
     try_floors,
 )
-from assess.studies.study import Options, render_block
-from assess.studies.study_files import PARTS
+from assess.studies.study import PARTS, Options, render_block
 from assess.units import GRAVITY
 
 RUNS = 100

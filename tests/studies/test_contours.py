@@ -7,9 +7,9 @@ import pytest
 
 from assess.methods import Cases, all_methods
 from assess.settings import Settings
+from assess.studies.agreement import PRINTED
 from assess.studies.buildings import LEVELS, RECORDED
 from assess.studies.contours import DIRECT, HEIGHT, PANELS, choose_contours
-from assess.studies.studied_methods import PRINTED
 from assess.studies.study import Options
 from assess.units import GRAVITY
 from tests.studies.made_up import make_compared

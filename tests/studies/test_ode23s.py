@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from assess.studies.ode23s import E32, D, Ode23s
+from assess.studies.solver.ode23s import E32, D, Ode23s
 
 
 def swing(t, y):

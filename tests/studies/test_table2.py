@@ -7,9 +7,8 @@ import pytest
 
 from assess.methods import Cases, proposed_or
 from assess.settings import Settings
-from assess.studies.agreement import by_building, find_agreement, pool
+from assess.studies.agreement import FORMULAS, INTEGRATION, PRINTED, by_building, find_agreement, pool
 from assess.studies.buildings import FIRST_TOGETHER, LEVELS, RECORDED, TOGETHER
-from assess.studies.studied_methods import FORMULAS, INTEGRATION, PRINTED
 from assess.studies.study import Options, read_facts, render_block
 from assess.studies.table2 import ALL, NOTHING, SUBSETS, collect, compare
 from assess.units import GRAVITY

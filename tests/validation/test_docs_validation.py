@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from assess.studies import Options, all_studies, build_page, describe, run_all
+from assess.studies.agreement import FORMULAS
 from assess.studies.buildings import all_buildings
-from assess.studies.studied_methods import FORMULAS
 from assess.studies.study import render_block
 from assess.studies.table2 import collect_published
 from assess.version import __version__

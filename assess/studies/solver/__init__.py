@@ -10,7 +10,7 @@ Engineering Mechanics 127(5):473-483.
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import product
@@ -87,11 +87,6 @@ class Case:
                 return max(time, lobe + first)
         return math.inf
 
-    def can_fall(self, velocity: float, time: float) -> bool:
-        """Return whether a block that has just struck its base can still overturn."""
-        depth = ALPHA**2 / 2 if self.is_linear else 1 - math.cos(ALPHA)
-        return time < self.end or velocity**2 / 2 >= P**2 * depth
-
 
 @dataclass(frozen=True, slots=True)
 class Solver:
@@ -105,7 +100,7 @@ class Solver:
     @property
     def options(self) -> dict[str, Any]:
         """Keyword arguments of `solve_ivp`."""
-        from assess.studies.ode23s import Ode23s
+        from assess.studies.solver.ode23s import Ode23s
 
         method = Ode23s if self.method == "ODE23s" else self.method
         return {"method": method, "rtol": self.rtol, "atol": self.atol, "first_step": FIRST}
@@ -135,11 +130,29 @@ def follow(case: Case, amplitude: float, solver: Solver, until: float = 0.0) -> 
     """
     if not solver.method:
         return _follow_by_kernel(case, amplitude, until)
+    from scipy.integrate import solve_ivp
+
     response, edge, velocity = Response(), -1.0, 0.0
-    time = case.start(amplitude, 0.0)
-    while time < math.inf and (time < until or case.can_fall(velocity, time)):
-        time, phi, velocity = _fly(case, amplitude, solver, response, (time, velocity, edge), until > 0)
-        if phi > ALPHA:
+    time, depth = case.start(amplitude, 0.0), ALPHA**2 / 2 if case.is_linear else 1 - math.cos(ALPHA)
+
+    def rates(time: float, state: FloatArray) -> tuple[float, float]:
+        response.evaluations += 1
+        phi, speed = state.tolist()
+        return speed, case.accelerate(phi, edge * case.shake(amplitude, time))
+
+    while time < math.inf and (time < max(until, case.end) or velocity**2 / 2 >= P**2 * depth):  # it can still fall
+        span = (time, time + LONGEST)  # from a start or an impact to the next impact, or to the fall
+        found = solve_ivp(
+            rates, span, [0.0, velocity], events=[_strike, _fall], dense_output=until > 0, **solver.options
+        )
+        if found.status != 1:
+            raise ArithmeticError(f"{solver.name} at {amplitude:g} alpha g: {found.message}")
+        since, time, velocity = time, float(found.t[-1]), float(found.y[1, -1])
+        if until > 0:
+            points = np.append(np.arange(since, time, POINT), time)
+            response.times = np.append(response.times, points)
+            response.theta = np.append(response.theta, edge * found.sol(points)[0])
+        if found.y[0, -1] > ALPHA:
             response.overturned = True
             break
         response.impacts += 1
@@ -151,31 +164,6 @@ def follow(case: Case, amplitude: float, solver: Solver, until: float = 0.0) -> 
             time, velocity = case.start(amplitude, time), 0.0
             edge = -math.copysign(1.0, case.shake(amplitude, time))
     return response
-
-
-def _fly(
-    case: Case, amplitude: float, solver: Solver, response: Response, at: tuple[float, float, float], keep: bool
-) -> tuple[float, float, float]:
-    """Follow the block from a start or an impact to its next impact or its fall; return time, phi and its velocity."""
-    from scipy.integrate import solve_ivp
-
-    since, velocity, edge = at
-
-    def rates(time: float, state: FloatArray) -> tuple[float, float]:
-        response.evaluations += 1
-        phi, speed = state.tolist()
-        return speed, case.accelerate(phi, edge * case.shake(amplitude, time))
-
-    span = (since, since + LONGEST)
-    found = solve_ivp(rates, span, [0.0, velocity], events=[_strike, _fall], dense_output=keep, **solver.options)
-    if found.status != 1:
-        raise ArithmeticError(f"{solver.name} at {amplitude:g} alpha g: {found.message}")
-    last = float(found.t[-1])
-    if keep:
-        points = np.append(np.arange(since, last, POINT), last)
-        response.times = np.append(response.times, points)
-        response.theta = np.append(response.theta, edge * found.sol(points)[0])
-    return last, float(found.y[0, -1]), float(found.y[1, -1])
 
 
 def _strike(_time: float, state: FloatArray) -> float:
@@ -315,14 +303,29 @@ def run(options: Options) -> Finding:
         solver: [find_limit(limit, solver, partial(one.report_share, 0.0)) for limit, one in part.each(limits)]
         for solver, part in options.narrow(0.0, 0.85).each(SOLVERS)
     }
-    bands = find_bands(options.narrow(0.85, 0.95))
+    bands: list[Row] = []  # under one-sine pulses from weak to strong
+    every = list(product(("linear", "nonlinear"), BANDS, SOLVERS))
+    for (equation, amplitude, solver), _ in options.narrow(0.85, 0.95).each(every):
+        one = follow(Case("one_sine", equation, 5.0), amplitude, solver)
+        bands.append((equation, amplitude, solver.name, one.overturned, one.impacts if one.overturned else None))
     drawn = [limit for limit in limits if limit.case.pulse == "one_sine"]
     paths = follow_near(drawn, options.narrow(0.95, 1.0))
+    rows = [
+        (
+            limit.case.pulse, limit.case.equation, limit.case.ratio, limit.listed,
+            solver.name, *((solver.rtol, solver.atol) if solver.method else (None, None)),
+            one.limit, one.limit - limit.listed, one.limit - exact.limit, one.changes,
+            one.below.overturned, one.above.overturned, one.below.impacts, one.above.impacts,
+            *((one.below.evaluations, one.above.evaluations) if solver.method else (None, None)),
+        )
+        for solver, own in found.items()
+        for limit, one, exact in zip(limits, own, found[EXACT], strict=True)
+    ]  # fmt: skip
     return write_finding(
         "solver",
         collect(limits, found, bands),
         tables={
-            "solver-limits": Table(columns=LIMIT_COLUMNS, rows=list(_limit_rows(limits, found))),
+            "solver-limits": Table(columns=LIMIT_COLUMNS, rows=rows),
             "solver-bands": Table(columns=BAND_COLUMNS, rows=bands),
             "solver-histories": tabulate_histories(drawn, paths),
         },
@@ -381,27 +384,6 @@ def collect(limits: Sequence[Limit], found: Results, bands: Sequence[Row]) -> di
     }  # fmt: skip
 
 
-def find_bands(options: Options) -> list[Row]:
-    """Return equation, amplitude [alpha g], solver, verdict and impacts under one-sine pulses from weak to strong."""
-    rows: list[Row] = []
-    for (equation, amplitude, solver), _ in options.each(list(product(("linear", "nonlinear"), BANDS, SOLVERS))):
-        one = follow(Case("one_sine", equation, 5.0), amplitude, solver)
-        rows.append((equation, amplitude, solver.name, one.overturned, one.impacts if one.overturned else None))
-    return rows
-
-
-def _limit_rows(limits: Sequence[Limit], found: Results) -> Iterator[Row]:
-    for solver, own in found.items():
-        for limit, one, exact in zip(limits, own, found[EXACT], strict=True):
-            yield (
-                limit.case.pulse, limit.case.equation, limit.case.ratio, limit.listed,
-                solver.name, *((solver.rtol, solver.atol) if solver.method else (None, None)),
-                one.limit, one.limit - limit.listed, one.limit - exact.limit, one.changes,
-                one.below.overturned, one.above.overturned, one.below.impacts, one.above.impacts,
-                *((one.below.evaluations, one.above.evaluations) if solver.method else (None, None)),
-            )  # fmt: skip
-
-
 # ---------------------------------------------------------------- histories near the limits, as in Fig. 2
 
 END, STEP = 5.4, 0.03
@@ -453,32 +435,26 @@ def _paint(drawn: Sequence[Limit], paths: Paths, figure: Any) -> None:
     panels = figure.subplots(4, 2, sharex=True, sharey="row")
     titles = "linear equation of slender blocks", "eq. 3 of the paper"
     for title, column, limits in zip(titles, panels.T, columns.values(), strict=True):
-        times = np.arange(0, END, STEP / 10)
+        fine, times = np.arange(0, END, STEP / 10), np.arange(0, END, STEP)
         for limit in limits:
-            values = [limit.case.shake(limit.listed, time) / ALPHA for time in times.tolist()]
-            column[0].plot(times, values, lw=0.8, color="#444444")
+            values = [limit.case.shake(limit.listed, time) / ALPHA for time in fine.tolist()]
+            column[0].plot(fine, values, lw=0.8, color="#444444")
         column[0].axhline(limits[0].case.threshold / ALPHA, lw=0.5, ls=":", color="#444444")
         column[0].set_title(title, fontsize=8, loc="left")
         for axes, limit in zip(column[1:], limits, strict=True):
-            _paint_responses(axes, limit, paths)
+            for solver, (side, dash) in product(SHOWN, ((-NEAR, "-"), (NEAR, "--"))):
+                style = {"color": COLOURS[solver], "lw": WIDTHS[solver], "ls": dash}
+                label = solver.name if side < 0 else None
+                axes.plot(times, paths[limit, side, solver], label=label, **style)
+            low, high = (f"{limit.listed + side:.3f}" for side in (-NEAR, NEAR))
+            axes.set_title(f"{low} αg (solid), {high} (dashed)", fontsize=7, loc="right")
+            axes.set_ylim(-2.2, 2.2)
+            axes.axhline(0, lw=0.4, color="#444444")
         column[-1].set_xlabel("time from the beginning of the sine [s]")
     for row, name in enumerate(("acceleration / αg", *(("θ / α",) * 3))):
         panels[row, 0].set_ylabel(name)
     lines, names = panels[1, 0].get_legend_handles_labels()
     figure.legend(lines, names, loc="outside lower center", ncols=3, fontsize=7, frameon=False)
-
-
-def _paint_responses(axes: Any, limit: Limit, paths: Paths) -> None:
-    times = np.arange(0, END, STEP)
-    for solver in SHOWN:
-        for side, dash in ((-NEAR, "-"), (NEAR, "--")):
-            name = solver.name if side < 0 else None
-            style = {"color": COLOURS[solver], "lw": WIDTHS[solver], "ls": dash}
-            axes.plot(times, paths[limit, side, solver], label=name, **style)
-    low, high = (f"{limit.listed + side:.3f}" for side in (-NEAR, NEAR))
-    axes.set_title(f"{low} αg (solid), {high} (dashed)", fontsize=7, loc="right")
-    axes.set_ylim(-2.2, 2.2)
-    axes.axhline(0, lw=0.4, color="#444444")
 
 
 STUDY = Study(
