@@ -172,19 +172,31 @@ def build_couplings(
     rows = {item: _row_unit(falls, item, columns[item]) for item in known}
     lone = list(rows.values())
     mixed = [*([_joint_unit(falls, simulated)] if simulated else []), *(rows[item] for item in alone)]
-
-    def combine(units: list[_Unit]) -> Draws:
-        return _combine(units, keys, fallen, seed, progress)
-
-    independent = whole.independent if whole and _is_drawn(lone) else combine(lone)
-    joint = whole.joint if whole and _is_drawn(mixed) else combine(mixed) if simulated else independent
+    joint = independent = (
+        whole.independent if whole and _is_drawn(lone) else _combine(lone, keys, fallen, seed, progress)
+    )
+    if whole and _is_drawn(mixed):
+        joint = whole.joint
+    elif simulated:
+        joint = _combine(mixed, keys, fallen, seed, progress)
+    if whole:
+        correlated, ends = whole.correlated, whole.ends
+    else:
+        certain = {key: key in fallen for key in keys if key[0] in falls.unconfirmed}
+        # one level decides for all: what falls at a chance falls at every higher one
+        chance = {key: float(certain.get(key, falls.probability[key[0]])) for key in keys}
+        levels = sorted({0.0, 1.0, *chance.values()})
+        under = {level: (1 << at) - 1 for at, level in enumerate(levels)}
+        correlated = Draws({key: under[level] for key, level in chance.items()}, np.diff(levels))
+        surely = {key: NONE | EVERY if falls_always else 0 for key, falls_always in certain.items()}
+        ends = Draws({**dict.fromkeys(keys, EVERY), **surely}, np.array([0.5, 0.5]))
     sizes = {item: int(falls.fell[item].size) for item in simulated}
     return Couplings(
         keys=keys,
         joint=joint,
         independent=independent,
-        correlated=whole.correlated if whole else _correlate(falls, keys, fallen),
-        ends=whole.ends if whole else _find_ends(falls, keys, fallen),
+        correlated=correlated,
+        ends=ends,
         is_joint=(is_joint := not alone and len(set(sizes.values())) <= 1),
         runs=min(sizes.values(), default=0),
         is_drawn=not is_joint and (_is_drawn(mixed) or _is_drawn(lone)),
@@ -257,8 +269,11 @@ def _combine(
     progress.check()
     patterns = [unit.patterns() for unit in units]
     progress.check()
-    if _is_drawn(units):
-        at = np.array([_draw(unit.key, own, seed) for unit, (_, own) in zip(units, patterns, strict=True)])
+    if _is_drawn(units):  # patterns of a unit, each as often as its weight says, in an order of the unit's own
+        at = np.array([
+            np.minimum(np.searchsorted(np.cumsum(own), _levels(seed, *unit.key)), len(own) - 1)
+            for unit, (_, own) in zip(units, patterns, strict=True)
+        ])  # fmt: skip
         weight = np.full(DRAWS, 1.0 / DRAWS)
     else:
         at = np.indices([unit.count for unit in units]).reshape(len(units), -1)
@@ -270,30 +285,9 @@ def _combine(
     return Draws.of(keys, fell, weight)
 
 
-def _draw(key: tuple[int, int], weight: FloatArray, seed: int) -> NDArray[np.intp]:
-    """Draw patterns of a unit, each as often as its weight says, in an order of the unit's own."""
-    return np.minimum(np.searchsorted(np.cumsum(weight), _levels(seed, *key)), len(weight) - 1)
-
-
 @lru_cache(maxsize=8192)
 def _levels(seed: int, name: int, is_joint: int) -> FloatArray:
     return (np.random.default_rng([seed, name, is_joint]).permutation(DRAWS) + 0.5) / DRAWS
-
-
-def _correlate(falls: Falls, keys: tuple[Key, ...], fallen: Collection[Key]) -> Draws:
-    """Return the draws where one level decides for all: what falls at a chance falls at every higher one."""
-    chance = {
-        key: float(key in fallen) if key[0] in falls.unconfirmed else float(falls.probability[key[0]]) for key in keys
-    }
-    levels = sorted({0.0, 1.0, *chance.values()})
-    under = {level: (1 << at) - 1 for at, level in enumerate(levels)}
-    return Draws({key: under[level] for key, level in chance.items()}, np.diff(levels))
-
-
-def _find_ends(falls: Falls, keys: tuple[Key, ...], fallen: Collection[Key]) -> Draws:
-    """Return the draws where nothing falls, and where everything does, but for unconfirmed pieces."""
-    certain = {key: NONE | EVERY if key in fallen else 0 for key in keys if key[0] in falls.unconfirmed}
-    return Draws({**dict.fromkeys(keys, EVERY), **certain}, np.array([0.5, 0.5]))
 
 
 def find_chances(couplings: Couplings, happens: Happens, z: float) -> list[Chance]:
@@ -302,12 +296,23 @@ def find_chances(couplings: Couplings, happens: Happens, z: float) -> list[Chanc
     What cannot happen with every piece fallen, or happens with none, is certain, and has no interval.
     """
     ways = (couplings.joint, couplings.independent, couplings.correlated)
-    happened = [happens(one) for one in ways]
-    return [
-        _chance(couplings, [way.share(one) for way, one in zip(ways, own, strict=True)], z,
-                is_certain=bool(end & NONE) or not end)
-        for end, *own in zip(happens(couplings.ends), *happened, strict=True)
-    ]  # fmt: skip
+    counts = [*([couplings.runs] if couplings.runs else []), *([DRAWS] if couplings.is_drawn else [])]
+    found = []
+    for end, *happened in zip(happens(couplings.ends), *map(happens, ways), strict=True):
+        joint, independent, correlated = (way.share(one) for way, one in zip(ways, happened, strict=True))
+        values = (joint,) if couplings.is_joint else (joint, independent, correlated)
+        low, high = min(values), max(values)
+        if counts and end & EVERY and not end & NONE:
+            low, high = (
+                float(wilson_interval(one * min(counts), min(counts), z)[at]) for at, one in enumerate((low, high))
+            )
+        chance = Chance(
+            probability=max(values), low=min(low, max(values)), high=max(high, *values), joint=joint,
+            independent=independent, correlated=correlated, runs=couplings.runs, is_joint=couplings.is_joint,
+            pieces=couplings.pieces, unverified=couplings.unverified, unconfirmed=couplings.unconfirmed,
+        )  # fmt: skip
+        found.append(chance)
+    return found
 
 
 def find_upper(couplings: Couplings, chance: float, left: Collection[int], z: float) -> float:
@@ -316,18 +321,3 @@ def find_upper(couplings: Couplings, chance: float, left: Collection[int], z: fl
     counts += [DRAWS] if couplings.is_drawn else []
     runs = min(counts, default=0)
     return max(chance, float(wilson_interval(chance * runs, runs, z)[1])) if runs else chance
-
-
-def _chance(couplings: Couplings, shares: Sequence[float], z: float, *, is_certain: bool) -> Chance:
-    joint, independent, correlated = shares
-    values = (joint,) if couplings.is_joint else (joint, independent, correlated)
-    low, high = min(values), max(values)
-    counts = [*([couplings.runs] if couplings.runs else []), *([DRAWS] if couplings.is_drawn else [])]
-    if counts and not is_certain:
-        runs = min(counts)
-        low, high = (float(wilson_interval(one * runs, runs, z)[at]) for at, one in enumerate((low, high)))
-    return Chance(
-        probability=max(values), low=min(low, max(values)), high=max(high, *values), joint=joint,
-        independent=independent, correlated=correlated, runs=couplings.runs, is_joint=couplings.is_joint,
-        pieces=couplings.pieces, unverified=couplings.unverified, unconfirmed=couplings.unconfirmed,
-    )  # fmt: skip

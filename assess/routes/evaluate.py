@@ -9,12 +9,11 @@ import numpy as np
 
 from assess.arrays import BoolArray
 from assess.i18n import count
-from assess.methods.simulate import interval_width
 from assess.model import Inventory
 from assess.progress import SILENT, Progress
 from assess.route_results import BesideRow, RouteRow, RouteState, RouteTables, SegmentRow
 from assess.routes.chances import DRAWS, Falls, to_array
-from assess.routes.network import build_course, find_ends
+from assess.routes.network import find_ends
 from assess.routes.obstructions import Obstructions
 from assess.routes.rooms import (
     evaluate_floor,
@@ -25,7 +24,6 @@ from assess.routes.rooms import (
     list_rooms_to_furnish,
     list_unfurnished,
     list_unjoined,
-    name_unevaluated,
 )
 from assess.routes.scene import Scene
 from assess.routes.widths import NARROWER, kinds_of, needed_width
@@ -48,8 +46,7 @@ def evaluate_routes(
     """
     if not obstructions:
         return RouteTables(risk=settings.route_risk)
-    z = interval_width(settings)
-    scene = Scene(inventory, tuple(obstructions), falls, settings.route_risk, settings.seed, z, progress)
+    scene = Scene.of(inventory, obstructions, falls, settings, progress)
     names = list(dict.fromkeys(one.segment.route for one in obstructions))
     parts = list_rooms(scene)
     floors = [one.floor for one in inventory.floors]
@@ -152,9 +149,9 @@ def _beside(scene: Scene, at: int) -> list[BesideRow]:
 
 def _route(scene: Scene, name: str, rows: Sequence[SegmentRow]) -> RouteRow:
     segments = scene.segments_of(name)
-    course = build_course(segments, kinds_of(scene.inventory.places))
+    course = scene.course(segments)
     served, led = find_ends(segments, kinds_of(scene.inventory.places))
-    unevaluated = name_unevaluated(scene, segments)
+    unevaluated = tuple(one.segment for at, one in segments.items() if not scene.is_evaluated(at))
     is_evaluated = len(unevaluated) < len(segments)
     outlook = scene.outlook(segments, course.is_blocked, is_evaluated=is_evaluated)
     fixes, is_fixed = list_fixes(scene, segments, course.is_blocked)
@@ -189,15 +186,13 @@ def find_joint_draws(
     A route has none where one of the pieces that reach it was not simulated, is not confirmed, or was simulated in
     another number of draws.
     """
-    z = interval_width(settings)
-    scene = Scene(inventory, tuple(obstructions), falls, settings.route_risk, settings.seed, z, progress)
-    found = {}
+    scene, found = Scene.of(inventory, obstructions, falls, settings, progress), {}
     for name in dict.fromkeys(one.segment.route for one in obstructions):
         segments = scene.segments_of(name)
         couplings = scene.couplings(segments)
         if not couplings.is_joint or couplings.unconfirmed or couplings.runs not in (0, runs):
             continue
-        draws, course = couplings.joint, build_course(segments, kinds_of(inventory.places))
+        draws, course = couplings.joint, scene.course(segments)
         blocked = course.is_blocked(scene.blocked(draws, segments), draws.every)
         # where no piece reaches it, it is open in every draw, or in none
         found[name] = to_array(blocked, runs).astype(np.bool_) if couplings.runs else np.full(runs, bool(blocked))

@@ -3,7 +3,7 @@
 Pieces whose chance is not confirmed are taken as fallen in it, which is on the safe side.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from itertools import pairwise
 
 from assess.progress import SILENT, Progress
@@ -35,73 +35,48 @@ def find_fixes(
     `couplings`: how the pieces that reach the route fall together. `lanes`: the segments of the route by their number.
     `z`: half width of intervals [-].
     """
-    trial = _Trial(couplings, lanes, is_blocked, z, progress)
-    if trial.chance(Fixed(trial.involved(Fixed()))) >= risk:
+
+    def sample(draws: Draws) -> _Sample:
+        return _Sample(draws, couplings.keys, lanes, is_blocked, progress)
+
+    every = {id(draws): sample(draws) for draws in (*couplings.decisive, couplings.independent)}
+    decisive, independent = [every[id(draws)] for draws in couplings.decisive], every[id(couplings.independent)]
+    ends, items = sample(couplings.ends), frozenset(item for item, _ in couplings.keys)
+
+    def chance(fixed: Collection[int]) -> float:
+        """Return the chance that the route is blocked [-]."""
+        return max(one.chance(Fixed(fixed)) for one in decisive)
+
+    def upper(fixed: Collection[int]) -> float:
+        """Return the upper end of its interval [-]; what is certain has none."""
+        end = ends.happened(Fixed(fixed))
+        if end & NONE or not end & EVERY:
+            return chance(fixed)
+        return find_upper(couplings, chance(fixed), items - Fixed(fixed), z)
+
+    def involved(fixed: Collection[int]) -> list[int]:
+        own = Fixed(fixed)
+        return sorted({item for one in every.values() for item in one.falling(one.happened(own), own)})
+
+    if chance(involved(())) >= risk:
         return [], False
     fixed: list[int] = []
-    while trial.upper(Fixed(fixed)) >= risk and trial.involved(Fixed(fixed)):
-        fixed.append(trial.best(Fixed(fixed)))
-    goal = trial.upper(Fixed(fixed))  # at the risk or above where there are too few draws to show less
+    while upper(fixed) >= risk and (best := involved(fixed)):
+        for one in (max(decisive, key=lambda one: one.chance(Fixed(fixed))), independent):
+            left = one.chances_left(best, Fixed(fixed))
+            least = min(left.values())
+            best = [item for item in best if left[item] == least]
+            if len(best) == 1:
+                break
+        fixed.append(best[0])
+    goal = upper(fixed)  # at the risk or above where there are too few draws to show less
     for item in tuple(fixed):
         rest = [other for other in fixed if other != item]
-        upper = trial.upper(Fixed(rest))
-        if upper < risk or upper <= goal:
+        if (now := upper(rest)) < risk or now <= goal:
             fixed = rest
-    left = [trial.chance(Fixed(fixed[:count])) for count in range(len(fixed) + 1)]
-    return [
-        (item, max(0.0, before - now), now) for item, (before, now) in zip(fixed, pairwise(left), strict=True)
-    ], True
-
-
-class _Trial:
-    """A route with some of its pieces fixed: its chances by each way of falling together that counts.
-
-    `decisive` are those whose largest chance is reported; `independent` shows every gain, `ends` what is certain.
-    """
-
-    def __init__(
-        self,
-        couplings: Couplings,
-        lanes: Mapping[int, Obstructions],
-        is_blocked: IsBlocked,
-        z: float,
-        progress: Progress,
-    ) -> None:
-        samples = {
-            id(draws): _Sample(draws, couplings.keys, lanes, is_blocked, progress)
-            for draws in (*couplings.decisive, couplings.independent)
-        }
-        self.couplings, self.z = couplings, z
-        self.items = frozenset(item for item, _ in couplings.keys)
-        self.ends = _Sample(couplings.ends, couplings.keys, lanes, is_blocked, progress)
-        self.every = list(samples.values())
-        self.decisive = [samples[key] for key in dict.fromkeys(id(draws) for draws in couplings.decisive)]
-        self.independent = samples[id(couplings.independent)]
-
-    def chance(self, fixed: Fixed) -> float:
-        """Return the chance that the route is blocked [-]."""
-        return max(one.chance(fixed) for one in self.decisive)
-
-    def upper(self, fixed: Fixed) -> float:
-        """Return the upper end of its interval [-]; what is certain has none."""
-        chance, end = self.chance(fixed), self.ends.happened(fixed)
-        if end & NONE or not end & EVERY:
-            return chance
-        return find_upper(self.couplings, chance, self.items - fixed, self.z)
-
-    def involved(self, fixed: Fixed) -> list[int]:
-        return sorted({item for one in self.every for item in one.falling(one.happened(fixed), fixed)})
-
-    def best(self, fixed: Fixed) -> int:
-        """Return the piece whose fixing lowers the largest chance most; among equals, the independent one."""
-        least = self.involved(fixed)
-        for sample in (max(self.decisive, key=lambda one: one.chance(fixed)), self.independent):
-            left = sample.chances_left(least, fixed)
-            lowest = min(left.values())
-            least = [item for item in least if left[item] == lowest]
-            if len(least) == 1:
-                break
-        return least[0]
+    chances = [chance(fixed[:count]) for count in range(len(fixed) + 1)]
+    steps = zip(fixed, pairwise(chances), strict=True)
+    return [(item, max(0.0, before - after), after) for item, (before, after) in steps], True
 
 
 class _Sample:

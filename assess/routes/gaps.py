@@ -73,18 +73,17 @@ class Gaps:
 
     def residual(self, fell: BoolArray) -> float:
         """Return the clear width left [m] where the pieces `fell` (n,)."""
-        there = np.append(fell, True)[self.column]
-        return min(self._narrowest(np.flatnonzero(there & side)) for side in self._sides())
-
-    def _narrowest(self, own: NDArray[np.intp]) -> float:
-        """Return the least widest gap [m] of all ways from wall to wall over some obstacles, obstacle by obstacle."""
-        ways = np.full((2 + own.size, 2 + own.size), self.clear)
-        ways[0, 2:] = ways[2:, 0] = self.left[own]
-        ways[1, 2:] = ways[2:, 1] = self.right[own]
-        ways[2:, 2:] = self.between[np.ix_(own, own)]
-        for _ in own:
-            ways = np.minimum(ways[:-1, :-1], np.maximum(ways[-1, :-1, np.newaxis], ways[-1, np.newaxis, :-1]))
-        return float(ways[0, 1])
+        there, found = np.append(fell, True)[self.column], []
+        for side in self._sides():
+            own = np.flatnonzero(there & side)
+            ways = np.full((2 + own.size, 2 + own.size), self.clear)
+            ways[0, 2:] = ways[2:, 0] = self.left[own]
+            ways[1, 2:] = ways[2:, 1] = self.right[own]
+            ways[2:, 2:] = self.between[np.ix_(own, own)]
+            for _ in own:  # the least widest gap of all ways from wall to wall, obstacle by obstacle
+                ways = np.minimum(ways[:-1, :-1], np.maximum(ways[-1, :-1, np.newaxis], ways[-1, np.newaxis, :-1]))
+            found.append(float(ways[0, 1]))
+        return min(found)
 
     def narrower(self, fallen: Mapping[Key, int], every: int, width: float) -> int:
         """Return the set of the draws in which less than a width [m] is left: some chain has narrower gaps alone.
@@ -123,8 +122,8 @@ class _Chains:
 
     alone: list[int]
     first: list[int]
-    inner: list[tuple[int, int]]
-    closing: list[tuple[int, int]]
+    inner: list[list[int]]
+    closing: list[list[int]]
 
     @classmethod
     def of(cls, gaps: Gaps, side: BoolArray, width: float) -> "_Chains":
@@ -134,7 +133,8 @@ class _Chains:
         near, before = gaps.between < width, first | rest
         inner = np.triu(near & np.outer(before, before) & ~np.outer(first, first), 1)
         closing = near & np.outer(before, last)
-        return cls(np.flatnonzero(alone).tolist(), np.flatnonzero(first).tolist(), _pairs(inner), _pairs(closing))
+        pairs = np.argwhere(inner).tolist(), np.argwhere(closing).tolist()
+        return cls(np.flatnonzero(alone).tolist(), np.flatnonzero(first).tolist(), *pairs)
 
     def lead(self, there: Sequence[int]) -> int:
         """Return the set of the draws in which some chain leads from wall to wall, of obstacles `there` in sets."""
@@ -154,10 +154,6 @@ class _Chains:
         return closed | union(there[at] for at in self.alone)
 
 
-def _pairs(linked: BoolArray) -> list[tuple[int, int]]:
-    return [(int(one), int(other)) for one, other in zip(*np.nonzero(linked), strict=True)]
-
-
 def build_gaps(obstacles: Sequence[Obstacle], clear: float) -> Gaps:
     """Return the gaps between obstacles, of which `clear` [m] is the width of the segment."""
     keys = tuple(sorted({one.key for one in obstacles if one.falls}))
@@ -166,35 +162,19 @@ def build_gaps(obstacles: Sequence[Obstacle], clear: float) -> Gaps:
     sign = {"left": 1, "right": -1}
     left, right = (np.array([getattr(one, side) for one in obstacles], dtype=np.float64) for side in SIDES)
     sided = np.array([sign[one.side] * pieces[one.key] if one.side else 0 for one in obstacles], dtype=np.intp)
-    return Gaps(
-        keys=keys,
-        column=np.array([place[one.key] if one.falls else -1 for one in obstacles], dtype=np.intp),
-        left=left,
-        right=right,
-        between=_between(obstacles, sided, left, right, clear),
-        sided=sided,
-        clear=clear,
-    )
-
-
-def _between(
-    obstacles: Sequence[Obstacle], sided: NDArray[np.intp], left: FloatArray, right: FloatArray, clear: float
-) -> FloatArray:
-    """Return the gaps between m obstacles (m, m) [m]; those whose place along the segment is not known may be abreast.
-
-    Two on one side, and one piece on both sides, are never in one chain: inf.
-    """
+    column = np.array([place[one.key] if one.falls else -1 for one in obstacles], dtype=np.intp)
+    # gaps between two: those whose place along the segment is not known may be abreast; two on one side, and one piece
+    # on both sides, are never in one chain: inf
     placed, lefts, rights = (np.flatnonzero(one) for one in (sided == 0, sided > 0, sided < 0))
-    found = np.full((sided.size, sided.size), math.inf)
+    between = np.full((sided.size, sided.size), math.inf)
     if placed.size > 1:
         from shapely import distance
 
         shapes = np.array([one.shape for one in obstacles if one.shape is not None])
         rows, columns = np.tril_indices(placed.size, -1)
-        found[placed[rows], placed[columns]] = distance(shapes[rows], shapes[columns])
+        between[placed[rows], placed[columns]] = distance(shapes[rows], shapes[columns])
     for own, to_own, to_other in ((lefts, left, right), (rights, right, left)):
-        found[np.ix_(own, placed)] = np.maximum(0.0, to_own[placed] - (clear - to_other[own])[:, np.newaxis])
+        between[np.ix_(own, placed)] = np.maximum(0.0, to_own[placed] - (clear - to_other[own])[:, np.newaxis])
     facing = np.maximum(0.0, right[lefts, np.newaxis] + left[rights] - clear)
-    found[np.ix_(lefts, rights)] = np.where(sided[lefts, np.newaxis] == -sided[rights], math.inf, facing)
-    symmetric: FloatArray = np.minimum(found, found.T)
-    return symmetric
+    between[np.ix_(lefts, rights)] = np.where(sided[lefts, np.newaxis] == -sided[rights], math.inf, facing)
+    return Gaps(keys, column, left, right, np.minimum(between, between.T), sided, clear)

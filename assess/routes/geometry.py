@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.model import Inventory, Item, Segment
+from assess.model import Inventory, Item
 from assess.progress import SILENT, Progress
 
 if TYPE_CHECKING:
@@ -70,29 +70,30 @@ def build_shapes(
 
     `away` holds, of the pieces against a wall, the direction in which each falls [deg]; None: that is not known.
     """
-    found = {}
-    for at, item in enumerate(items):
-        progress.check()
-        if item.floor in floors and item.x is not None and item.y is not None:
-            wall = ("wall_side_unknown" if away[at] is None else "falls_from_wall",) if at in away else ()
-            found[at] = _shape(item, (item.x, item.y), away.get(at), wall)
-    return found
-
-
-def _shape(item: Item, at: Point, away: float | None, wall: tuple[str, ...]) -> Shape:
+    if not floors:
+        return {}
     from shapely import Polygon, union_all
 
-    across, turns = item.width or item.breadth, [turn(item)]
-    if item.axis is None and item.angle_deg is None:  # Breadth may lie along either axis
-        turns.append(turn(item) + 90.0)
-    standing = union_all([Polygon(rectangle(at, a, (-item.breadth / 2, item.breadth / 2), across)) for a in turns])
-    ways = [one for a in turns for one in fallen(at, a, item.breadth, across, item.height)]
-    if away is not None:
-        ways = [ways[0] if abs(angle_apart(away, turn(item))) < 90 else ways[1]]
-    falls = [Polygon(one) for one in ways]
-    doubts = {"direction_unknown": len(turns) > 1, "width_assumed": item.width is None}
-    flags = (*(flag for flag, holds in doubts.items() if holds), *wall)
-    return Shape(standing, tuple(falls), union_all([standing, *falls]), flags)
+    found = {}
+    for index, item in enumerate(items):
+        progress.check()
+        if item.floor not in floors or item.x is None or item.y is None:
+            continue
+        at, across, turns = (item.x, item.y), item.width or item.breadth, [turn(item)]
+        if item.axis is None and item.angle_deg is None:  # Breadth may lie along either axis
+            turns.append(turn(item) + 90.0)
+        standing = union_all([Polygon(rectangle(at, a, (-item.breadth / 2, item.breadth / 2), across)) for a in turns])
+        ways = [one for a in turns for one in fallen(at, a, item.breadth, across, item.height)]
+        if (toward := away.get(index)) is not None:
+            ways = [ways[0] if abs(angle_apart(toward, turn(item))) < 90 else ways[1]]
+        falls = tuple(Polygon(one) for one in ways)
+        flags = {
+            "direction_unknown": len(turns) > 1, "width_assumed": item.width is None,
+            "wall_side_unknown": index in away and toward is None, "falls_from_wall": toward is not None,
+        }  # fmt: skip
+        known = tuple(flag for flag, holds in flags.items() if holds)
+        found[index] = Shape(standing, falls, union_all([standing, *falls]), known)
+    return found
 
 
 def angle_apart(one: float, other: float) -> float:
@@ -102,11 +103,10 @@ def angle_apart(one: float, other: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Band:
-    """A segment on the plan: straight, as wide as it is clear.
+    """A segment on the plan: straight, as wide as it is clear [m].
 
-    * `start`, `end` (2,): where its centre line begins and ends [m].
-    * `extends_start`, `extends_end`: how far it goes on beyond them, round a bend [m].
-    * `width`: [m]
+    Its centre line leads from `start` to `end`; `extends_start` and `extends_end` are how far it goes on beyond them,
+    round a bend.
     """
 
     start: Point
@@ -152,24 +152,20 @@ def build_bands(inventory: Inventory, clear: Sequence[float]) -> dict[int, Band]
     Where exactly two segments meet at a place, each is extended by half the other's width, so that the bend belongs to
     both. `clear` are the clear widths of all segments [m].
     """
-    places = {place.place: place for place in inventory.places if place.x is not None and place.y is not None}
-
-    def is_placed(segment: Segment) -> bool:
-        ends = (places.get(segment.start), places.get(segment.end))
-        return all(end is not None and end.floor == segment.floor for end in ends)
-
-    placed = {at: one for at, one in enumerate(inventory.routes) if is_placed(one)}
+    known = {one.place: one for one in inventory.places if one.x is not None and one.y is not None}
+    points = {name: (float(one.x or 0.0), float(one.y or 0.0)) for name, one in known.items()}
+    placed = {
+        at: one
+        for at, one in enumerate(inventory.routes)
+        if all(place in known and known[place].floor == one.floor for place in (one.start, one.end))
+    }
     meet = Counter(place for one in placed.values() for place in (one.start, one.end))
 
     def extension(at: int, place: str) -> float:
         others = (other for other, one in placed.items() if other != at and place in (one.start, one.end))
         return max((clear[other] / 2 for other in others), default=0.0) if meet[place] == 2 else 0.0
 
-    def point(name: str) -> Point:
-        place = places[name]
-        return float(place.x or 0.0), float(place.y or 0.0)
-
     return {
-        at: Band(point(one.start), point(one.end), extension(at, one.start), extension(at, one.end), clear[at])
+        at: Band(points[one.start], points[one.end], extension(at, one.start), extension(at, one.end), clear[at])
         for at, one in placed.items()
     }

@@ -40,12 +40,17 @@ class Part:
         """Its segments."""
         return tuple(sorted(at for _, _, at in self.edges))
 
+    @property
+    def places(self) -> set[str]:
+        """Places that its segments join."""
+        return {place for edge in self.edges for place in edge[:2]}
+
     def cut_off(self, blocked: Blocked, sources: Sequence[str], every: int) -> list[int]:
         """Return for each of some places the set of the draws in which it reaches none of the targets.
 
         `every` is the set of all draws.
         """
-        reached = {place: 0 for edge in self.edges for place in edge[:2]} | dict.fromkeys(self.targets, every)
+        reached = dict.fromkeys(self.places, 0) | dict.fromkeys(self.targets, every)
         passable = [(one, other, every & ~blocked[segment]) for one, other, segment in self.edges]
         changed = True
         while changed:
@@ -105,7 +110,7 @@ def build_course(segments: Mapping[int, Segment], kinds: Mapping[str, str]) -> C
     """
     parts, loose = [], [at for at, one in segments.items() if not (one.start and one.end)]
     for led, served in _list_led(segments, kinds):
-        is_chain = len(led.targets) == 1 and len(led.edges) == len(_list_places(led)) - 1  # one way for all segments
+        is_chain = len(led.targets) == 1 and len(led.edges) == len(led.places) - 1  # one way for all segments
         if served and not is_chain:
             parts.append((led, tuple(sorted(served))))
         else:  # without any that it serves, it is all ways out
@@ -128,9 +133,11 @@ def _list_led(segments: Mapping[int, Segment], kinds: Mapping[str, str]) -> Iter
     """
     graph = build_graph(segments)
     for part in find_parts(graph, kinds):
-        own = graph.subgraph(_list_places(part))
-        targets = part.targets - _find_tops([segments[at] for at in part.segments], part.targets)
-        led = part
+        own, flights, stairs = graph.subgraph(part.places), [segments[at] for at in part.segments], part.targets
+        tops = {one.start for one in flights if not one.floor and one.end in stairs and one.start != one.end}
+        while more := {one.start for one in flights if one.end in tops and one.start in stairs} - tops:
+            tops |= more
+        targets, led = part.targets - tops, part
         if part.by_stairs and targets and targets != part.targets:
             led = Part(_outward(own, targets), targets, by_stairs=True)
         elif not part.targets:
@@ -143,17 +150,6 @@ def _list_led(segments: Mapping[int, Segment], kinds: Mapping[str, str]) -> Iter
         yield led, served or others
 
 
-def _find_tops(segments: Sequence[Segment], stairs: Collection[str]) -> set[str]:
-    found = {one.start for one in segments if not one.floor and one.end in stairs and one.start != one.end}
-    while more := {one.start for one in segments if one.end in found and one.start in stairs} - found:
-        found |= more
-    return found
-
-
-def _list_places(part: Part) -> set[str]:
-    return {place for edge in part.edges for place in edge[:2]}
-
-
 def find_rooms(
     places: Sequence[Place], parts: Sequence[Part], heights: Mapping[str, float] | None = None
 ) -> Iterator[tuple[Place, Part]]:
@@ -162,19 +158,14 @@ def find_rooms(
     `heights` are the elevations of places, where known [m]: a way out does not climb above both the room and the exits,
     unless there is no other.
     """
-    of_place = {place: part for part in parts for edge in part.edges for place in edge[:2]}
+    of_place, known = {place: part for part in parts for place in part.places}, heights or {}
     for place in places:
         part = of_place.get(place.place)
         if place.kind == "room" and part is not None and part.targets:
-            low = _below(part, place.place, heights or {})
+            roof = max((known[end] for end in (place.place, *part.targets) if end in known), default=math.inf)
+            edges = (edge for edge in part.edges if all(known.get(end, roof) <= roof for end in edge[:2]))
+            low = replace(part, edges=tuple(edges))
             yield place, _ways_part(low, place.place) or _ways_part(part, place.place) or low
-
-
-def _below(part: Part, room: str, heights: Mapping[str, float]) -> Part:
-    ends = [heights[place] for place in (room, *part.targets) if place in heights]
-    roof = max(ends, default=math.inf)
-    edges = (edge for edge in part.edges if all(heights.get(place, roof) <= roof for place in edge[:2]))
-    return replace(part, edges=tuple(edges))
 
 
 def _ways_part(part: Part, room: str) -> Part | None:
@@ -207,15 +198,12 @@ def find_ways(part: Part, room: str, chance: Mapping[int, float]) -> Iterator[tu
         costs = nx.single_source_dijkstra_path_length(graph, room, weight="cost")
         end = min((cost, place) for place, cost in costs.items() if place in part.targets)[1]
         path = nx.dijkstra_path(graph, room, end, weight="cost")
-        keys = tuple(_cheapest(graph, one, other) for one, other in pairwise(path))
+        keys = tuple(
+            min((edge["cost"], int(at)) for at, edge in graph[one][other].items())[1] for one, other in pairwise(path)
+        )
         if keys in found:
             return
         found.add(keys)
         for (one, other), at in zip(pairwise(path), keys, strict=True):
             graph.edges[one, other, at]["cost"] += AGAIN
         yield keys, end
-
-
-def _cheapest(graph: "nx.MultiGraph[str]", one: str, other: str) -> int:
-    costs = {int(at): edge["cost"] for at, edge in graph[one][other].items()}
-    return min(costs, key=lambda at: (costs[at], at))

@@ -10,7 +10,7 @@ any other. Walls are known only where Routes names the Room: placed pieces of ot
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from itertools import product
 
 import numpy as np
 
@@ -26,9 +26,6 @@ from assess.routes.walls import find_walls
 from assess.routes.widths import NARROWER
 from assess.workbook.names import key
 from assess.workbook.schema import DEFAULT_WIDTH
-
-if TYPE_CHECKING:
-    from shapely.geometry.base import BaseGeometry
 
 CLEARLY_NEARER = 0.1
 """By how much [m] a given Edge distance must be nearer than the plan says for it to count instead."""
@@ -108,6 +105,9 @@ def find_obstructions(inventory: Inventory, progress: Progress = SILENT) -> tupl
     shapes = build_shapes(inventory.items, {inventory.routes[at].floor for at in bands}, progress, away=away)
     progress.check()
     named, near = _find_named(inventory), _find_near(inventory, shapes, bands)
+    floors: dict[str, set[str]] = {}
+    for place in inventory.places:
+        floors.setdefault(place.place, set()).add(place.floor)
     found = []
     for at, segment in enumerate(inventory.routes):
         progress.check()
@@ -123,13 +123,23 @@ def find_obstructions(inventory: Inventory, progress: Progress = SILENT) -> tupl
                 covered[index] = one
         required = segment.required_width or DEFAULT_WIDTH
         gaps = build_gaps([one for index in sorted(covered) for one in covered[index].obstacles], clear[at])
+        joins_one_floor = floors.get(segment.start, set()) == floors.get(segment.end, set())
+        flags = {
+            "stair_width_missing": segment.clear_width is None and is_stair(segment),
+            "clear_assumed": segment.clear_width is None and not is_stair(segment),
+            "required_assumed": segment.required_width is None,
+            "own_rooms": band is not None and bool(segment.rooms),
+            "walls_unknown": band is not None and not segment.rooms,
+            "no_plan": band is None and joins_one_floor,
+            "between_floors": band is None and not joins_one_floor,
+        }
         found.append(
             Obstructions(
                 segment=segment,
                 clear=clear[at],
                 required=required,
                 band=band,
-                flags=tuple(_flag(inventory, segment, has_band=band is not None)),
+                flags=tuple(flag for flag, holds in flags.items() if holds),
                 pieces=tuple(
                     _beside(index, inventory.items[index], covered[index], clear[at], required)
                     for index in sorted(covered)
@@ -152,18 +162,6 @@ def is_walled_off(item: Item, segment: Segment) -> bool:
 def is_stair(segment: Segment) -> bool:
     """Tell whether a segment joins two places and lies on no floor."""
     return not segment.floor and bool(segment.start and segment.end)
-
-
-def _flag(inventory: Inventory, segment: Segment, *, has_band: bool) -> Iterator[str]:
-    if segment.clear_width is None:
-        yield "stair_width_missing" if is_stair(segment) else "clear_assumed"
-    if segment.required_width is None:
-        yield "required_assumed"
-    if has_band:
-        yield "own_rooms" if segment.rooms else "walls_unknown"
-    else:
-        floors = [{one.floor for one in inventory.places if one.place == name} for name in (segment.start, segment.end)]
-        yield "no_plan" if floors[0] == floors[1] else "between_floors"
 
 
 def _beside(index: int, item: Item, covered: Coverage, clear: float, required: float) -> BesideRow:
@@ -218,27 +216,19 @@ def _cover_by_plan(index: int, shape: Shape, band: Band) -> Coverage | None:
     from shapely import union_all
 
     outline, stands = band.outline(), band.to_own(shape.standing)
-    standing = _clip(stands, outline)
-    ways = [one for fall in shape.falls if (one := _clip(band.to_own(fall), outline)) is not None]
-    obstacles = [] if standing is None else [_placed(index, standing, band, falls=False)]
-    if ways:
-        covered = union_all([*ways, *([] if standing is None else [standing])])
-        obstacles.append(_placed(index, covered, band, falls=True))
+    standing = [one for one in [stands.intersection(outline)] if one.area > TOUCH]
+    fallen = (band.to_own(fall).intersection(outline) for fall in shape.falls)
+    ways = [one for one in fallen if one.area > TOUCH]
+    obstacles = []
+    for falls, covered in ((False, standing), (True, [union_all([*ways, *standing])] if ways else [])):
+        for one in covered:
+            _, low, _, high = one.bounds
+            left, right = max(0.0, band.width / 2 - high), max(0.0, low + band.width / 2)
+            obstacles.append(Obstacle(item=index, falls=falls, left=left, right=right, shape=one))
     if not obstacles:
         return None
-    depth = 0.0 if standing is None else band.width - max(obstacles[0].left, obstacles[0].right)
+    depth = band.width - max(obstacles[0].left, obstacles[0].right) if standing else 0.0
     return Coverage(stands.distance(outline) - depth, obstacles, shape.flags)
-
-
-def _clip(shape: "BaseGeometry", outline: "BaseGeometry") -> "BaseGeometry | None":
-    inside = shape.intersection(outline)
-    return inside if inside.area > TOUCH else None
-
-
-def _placed(index: int, shape: "BaseGeometry", band: Band, *, falls: bool) -> Obstacle:
-    _, low, _, high = shape.bounds
-    left, right = max(0.0, band.width / 2 - high), max(0.0, low + band.width / 2)
-    return Obstacle(item=index, falls=falls, left=left, right=right, shape=shape)
 
 
 def _cover_by_distance(index: int, item: Item, clear: float, band: Band | None, shape: Shape | None) -> Coverage | None:
@@ -254,18 +244,14 @@ def _cover_by_distance(index: int, item: Item, clear: float, band: Band | None, 
     if distance is None:
         distance = 0.0
         flags.insert(0, "edge_assumed")
-    obstacles = list(_from_sides(index, item, distance, clear))
+    obstacles = []  # from either side: where it stands inside already, the first and a second piece fallen
+    ways = ((False, -distance), (True, item.height - distance))
+    for number, (falls, reach), side in product(range(min(item.quantity, 2)), ways, SIDES):
+        depth = min(reach, clear)
+        if depth > 0:
+            left, right = (0.0, clear - depth) if side == "left" else (clear - depth, 0.0)
+            obstacles.append(Obstacle(item=index, number=number, falls=falls, left=left, right=right, side=side))
     return Coverage(distance, obstacles, tuple(flags)) if obstacles else None
-
-
-def _from_sides(index: int, item: Item, distance: float, clear: float) -> Iterator[Obstacle]:
-    """Yield what reaches in from either side: where it stands inside already, the first and a second piece fallen."""
-    for number in range(min(item.quantity, 2)):
-        for falls, reach in ((False, -distance), (True, item.height - distance)):
-            depth = min(max(reach, 0.0), clear)
-            for side in SIDES if depth > 0 else ():
-                left, right = (0.0, clear - depth) if side == "left" else (clear - depth, 0.0)
-                yield Obstacle(item=index, number=number, falls=falls, left=left, right=right, side=side)
 
 
 def find_route_problems(inventory: Inventory, obstructions: Sequence[Obstructions]) -> Iterator[Problem]:
@@ -273,9 +259,25 @@ def find_route_problems(inventory: Inventory, obstructions: Sequence[Obstruction
     seen: set[tuple[str, int]] = set()
     for segment in obstructions:
         for one in segment.pieces:
-            fresh = [flag for flag in _CONTRADICTIONS if flag in one.flags and (flag, one.item_index) not in seen]
+            values = {"item": one.item, "route": segment.segment.route, "segment": segment.segment.segment}
+            fresh = [flag for flag in one.flags if (flag, one.item_index) not in seen]
             seen |= {(flag, one.item_index) for flag in fresh}
-            yield from (_contradict(inventory, segment.segment, one, flag) for flag in fresh)
+            if "nearer_than_plan" in fresh:
+                message = fill(
+                    "Edge distance {distance:g} m of '{item}' is smaller than its position on the plan gives; the Edge "
+                    "distance is used.",
+                    distance=one.distance_m, **values,
+                )  # fmt: skip
+                cell = inventory.locate("Items", one.row, "edge_distance")
+                yield Problem("warning", "Items", cell, message, fill("Correct one of the two."))
+            if "standing_inside" in fresh:
+                message = fill(
+                    "'{item}' stands {depth:.2f} m inside route '{route}', segment '{segment}', with nothing fallen.",
+                    depth=-one.distance_m, **values,
+                )  # fmt: skip
+                cell = inventory.locate("Items", one.row, "x" if one.by_plan else "edge_distance")
+                fix = fill("Move it, or correct its position or the Clear width.")
+                yield Problem("warning", "Items", cell, message, fix)
     reaching = {(segment.segment.route, one.item_index) for segment in obstructions for one in segment.pieces}
     lost = [item for at, item in enumerate(inventory.items) if item.route and (item.route, at) not in reaching]
     if lost:
@@ -287,20 +289,3 @@ def find_route_problems(inventory: Inventory, obstructions: Sequence[Obstruction
             names=names,
         )
         yield Problem("note", "Items", inventory.locate("Items", lost[0].row, "route"), message)
-
-
-_CONTRADICTIONS = ("nearer_than_plan", "standing_inside")
-
-
-def _contradict(inventory: Inventory, segment: Segment, one: BesideRow, flag: str) -> Problem:
-    is_inside = flag == "standing_inside"
-    values = {"item": one.item, "route": segment.route, "segment": segment.segment}
-    message = fill("Edge distance {distance:g} m of '{item}' is smaller than its position on the plan gives; the Edge "
-                   "distance is used.", distance=one.distance_m, **values)  # fmt: skip
-    fix = fill("Correct one of the two.")
-    if is_inside:
-        message = fill("'{item}' stands {depth:.2f} m inside route '{route}', segment '{segment}', with nothing "
-                       "fallen.", depth=-one.distance_m, **values)  # fmt: skip
-        fix = fill("Move it, or correct its position or the Clear width.")
-    cell = inventory.locate("Items", one.row, "x" if is_inside and one.by_plan else "edge_distance")
-    return Problem("warning", "Items", cell, message, fix)

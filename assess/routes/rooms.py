@@ -10,10 +10,9 @@ from functools import partial
 
 from assess.errors import Problem
 from assess.i18n import fill, nfill
-from assess.model import Inventory, Item, Place
+from assess.model import Inventory, Place
 from assess.route_results import (
     BLOCKED_FROM,
-    Chance,
     FloorRoutesRow,
     MissingRow,
     RoomRow,
@@ -24,9 +23,8 @@ from assess.route_results import (
 )
 from assess.routes.chances import Draws, union
 from assess.routes.fixes import IsBlocked, find_fixes
-from assess.routes.missing import combine
-from assess.routes.network import Blocked, Part, build_course, build_graph, find_parts, find_rooms, find_ways
-from assess.routes.scene import Scene, Verdict
+from assess.routes.network import Blocked, Part, build_graph, find_parts, find_rooms, find_ways
+from assess.routes.scene import Scene, Verdict, combine
 from assess.routes.widths import kinds_of
 from assess.text import natural_key
 from assess.workbook.names import key
@@ -37,20 +35,15 @@ UNKNOWN = 0.5
 """Chance of a segment that is not evaluated or not known, for the choice of the safest way only [-]."""
 
 
-def name_unevaluated(scene: Scene, segments: Iterable[int]) -> tuple[str, ...]:
-    """Return the names of those of some segments that are not evaluated."""
-    return tuple(scene.obstructions[at].segment.segment for at in segments if not scene.is_evaluated(at))
-
-
 def list_fixes(scene: Scene, segments: Collection[int], is_blocked: IsBlocked) -> tuple[tuple[RouteFixRow, ...], bool]:
     """Return what to fix so that some segments are open together, and whether anything opens them."""
     lanes = {at: scene.obstructions[at] for at in segments}
     couplings, risk = scene.couplings(segments, unconfirmed_fall=True), min(scene.risk, BLOCKED_FROM)
     steps, is_fixed = find_fixes(couplings, lanes, is_blocked, risk, scene.z, scene.progress)
-    pieces = [scene.piece(item) for item, _, _ in steps]
+    items = scene.inventory.items
     found = (
-        RouteFixRow(item=one.item, row=one.row, item_index=one.item_index, gain=gain, left=left)
-        for one, (_, gain, left) in zip(pieces, steps, strict=True)
+        RouteFixRow(item=items[at].item, row=items[at].row, item_index=at, gain=gain, left=left)
+        for at, gain, left in steps
     )
     return tuple(found), is_fixed
 
@@ -82,75 +75,65 @@ def list_rooms(scene: Scene) -> list[tuple[Place, Part]]:
 def list_unjoined(scene: Scene, found: Iterable[tuple[Place, Part]]) -> tuple[str, ...]:
     """Return the rooms that are not among those `found`: no segment joins them to a way out."""
     joined = {place.place for place, _part in found}
-    rooms = (place.place for place in scene.inventory.places if place.kind == "room")
-    return tuple(sorted((room for room in rooms if room not in joined), key=natural_key))
+    rooms = (one.place for one in scene.inventory.places if one.kind == "room" and one.place not in joined)
+    return tuple(sorted(rooms, key=natural_key))
 
 
 def evaluate_room(scene: Scene, place: Place, part: Part, rows: Sequence[SegmentRow]) -> RoomRow:
     """Return one room; `rows` are all segments."""
-    is_cut_off, happens = partial(_is_cut_off, part, place.place), partial(_lose, scene, part, place.place)
-    found = scene.judge(part.segments, happens)
-    settled = scene.settle(part.segments, happens, found)
-    verdict = settled.verdict
-    ways = _ways(scene, place, part, rows)
+    exits = tuple(sorted({end for edge in part.edges for end in edge[:2]} & part.targets, key=natural_key))
+
+    def is_cut_off(blocked: Blocked, every: int) -> int:
+        return part.cut_off(blocked, [place.place], every)[0]
+
+    def lose(scene: Scene, draws: Draws) -> tuple[int, int, int]:
+        """Return the sets of the draws in which it loses every exit, as `Scene.at_best_and_worst` does."""
+        lost, known, at_most = scene.at_best_and_worst(draws, part.segments, is_cut_off)
+        return (lost, draws.every, draws.every) if part.by_stairs else (lost, known, at_most)
+
+    def list_missing(scene: Scene, verdict: Verdict) -> tuple[MissingRow, ...]:
+        """Return what is to be filled in: of the safest way that needs any, as one known way may be enough."""
+        if verdict.state != RouteState.NOT_KNOWN:
+            return ()
+        of_ways = (scene.list_missing(verdict, way.segment_indices) for way in ways)
+        found = next(filter(None, of_ways), ()) or scene.list_missing(verdict, part.segments)
+        return (*found, MissingRow(what="beyond_stairs", names=exits)) if part.by_stairs else found
+
+    found = scene.judge(part.segments, partial(lose, scene))
+    settled = scene.settle(part.segments, partial(lose, scene), found)
+    verdict, ways = settled.verdict, _ways(scene, place, part, rows)
+    is_known = verdict.state != RouteState.NOT_KNOWN
+    # the decisive segment is that of the safest way out; where that does not tell, of the first that is not known
+    of_ways = ({at: (rows[at].state, rows[at].blocked) for at in way.segment_indices} for way in ways)
+    telling = next(
+        (one for one in of_ways if is_known or RouteState.NOT_KNOWN in {state for state, _ in one.values()}), None
+    )
     seeks_fixes = verdict.state in (RouteState.DOUBTFUL, RouteState.BLOCKED)
     fixes, is_fixed = list_fixes(scene, part.segments, is_cut_off) if seeks_fixes else ((), True)
     missing_after: tuple[MissingRow, ...] = ()
     if fixes and (part.by_stairs or any(scene.missing(at) for at in part.segments)):
         held = scene.with_held(fix.item_index for fix in fixes)
-        after = held.settle(part.segments, partial(_lose, held, part, place.place))
-        missing_after = _list_missing(held, after.verdict, part, ways)
+        missing_after = list_missing(held, held.settle(part.segments, partial(lose, held)).verdict)
+    unevaluated = tuple(at for at in part.segments if not scene.is_evaluated(at))
     return RoomRow(
         room=place.place,
         floor=place.floor,
-        exits=_list_exits(part),
+        exits=exits,
         by_stairs=part.by_stairs,
         loses_every_exit=found.chances[0],
         loses_if_unconfirmed_fall=settled.if_unconfirmed_fall,
         loses_if_anchors_fail=found.if_anchors_fail,
         state=verdict.state,
-        missing=_list_missing(scene, verdict, part, ways),
+        missing=list_missing(scene, verdict),
         most_likely_piece=found.most_likely_piece,
-        decisive_segment=_find_decisive(scene, ways, rows, is_known=verdict.state != RouteState.NOT_KNOWN),
+        decisive_segment=None if telling is None else scene.find_decisive(telling, is_known=is_known),
         fixes=fixes,
         is_fixed=is_fixed,
         missing_after=missing_after,
-        unevaluated_segments=name_unevaluated(scene, part.segments),
-        unevaluated_indices=tuple(at for at in part.segments if not scene.is_evaluated(at)),
+        unevaluated_segments=tuple(scene.obstructions[at].segment.segment for at in unevaluated),
+        unevaluated_indices=unevaluated,
         ways=tuple(ways),
     )
-
-
-def _is_cut_off(part: Part, room: str, blocked: Blocked, every: int) -> int:
-    return part.cut_off(blocked, [room], every)[0]
-
-
-def _lose(scene: Scene, part: Part, room: str, draws: Draws) -> tuple[int, int, int]:
-    """Return the sets of the draws in which a room loses every exit, as `Scene.at_best_and_worst` does."""
-    lost, known, at_most = scene.at_best_and_worst(draws, part.segments, partial(_is_cut_off, part, room))
-    return (lost, draws.every, draws.every) if part.by_stairs else (lost, known, at_most)
-
-
-def _list_exits(part: Part) -> tuple[str, ...]:
-    return tuple(sorted({end for edge in part.edges for end in edge[:2]} & part.targets, key=natural_key))
-
-
-def _find_decisive(scene: Scene, ways: Sequence[WayRow], rows: Sequence[SegmentRow], *, is_known: bool) -> int | None:
-    """Return the decisive segment of the safest way out; where that does not tell, of the first that is not known."""
-    for way in ways:
-        own = {at: (rows[at].state, rows[at].blocked) for at in way.segment_indices}
-        if is_known or any(state == RouteState.NOT_KNOWN for state, _ in own.values()):
-            return scene.find_decisive(own, is_known=is_known)
-    return None
-
-
-def _list_missing(scene: Scene, verdict: Verdict, part: Part, ways: Sequence[WayRow]) -> tuple[MissingRow, ...]:
-    """Return what is to be filled in for a room: of the safest way that needs any, as one known way may be enough."""
-    if verdict.state != RouteState.NOT_KNOWN:
-        return ()
-    of_ways = (scene.list_missing(verdict, way.segment_indices) for way in ways)
-    found = next(filter(None, of_ways), ()) or scene.list_missing(verdict, part.segments)
-    return (*found, MissingRow(what="beyond_stairs", names=_list_exits(part))) if part.by_stairs else found
 
 
 def _ways(scene: Scene, place: Place, part: Part, rows: Sequence[SegmentRow]) -> list[WayRow]:
@@ -158,17 +141,13 @@ def _ways(scene: Scene, place: Place, part: Part, rows: Sequence[SegmentRow]) ->
     chance = {at: UNKNOWN if (one := known.get(at)) is None else one.probability for at in part.segments}
     ways = []
     for segments, end in find_ways(part, place.place, chance):
-        blocked = partial(scene.at_best_and_worst, segments=segments, is_blocked=_is_any_blocked)
-        found = scene.settle(segments, blocked)
-        ways.append(
-            WayRow(
-                segment_indices=segments,
-                end=end,
-                state=found.verdict.state,
-                blocked=found.standing[0],
-                blocked_if_unconfirmed_fall=found.if_unconfirmed_fall,
-            )
-        )
+        is_blocked = lambda blocked, _every: union(blocked.values())  # noqa: E731
+        found = scene.settle(segments, partial(scene.at_best_and_worst, segments=segments, is_blocked=is_blocked))
+        way = WayRow(
+            segment_indices=segments, end=end, state=found.verdict.state, blocked=found.standing[0],
+            blocked_if_unconfirmed_fall=found.if_unconfirmed_fall,
+        )  # fmt: skip
+        ways.append(way)
     ways.sort(key=lambda way: (way.state.severity, (way.blocked_if_unconfirmed_fall or way.blocked).probability))
     for number, way in enumerate(ways[1:], start=1):
         shared = (at for at in way.segment_indices if at in ways[0].segment_indices)
@@ -176,15 +155,10 @@ def _ways(scene: Scene, place: Place, part: Part, rows: Sequence[SegmentRow]) ->
     return ways
 
 
-def _is_any_blocked(blocked: Blocked, _every: int) -> int:
-    return union(blocked.values())
-
-
 def evaluate_floor(
     scene: Scene, floor: str, parts: Sequence[tuple[Place, Part]], every: Sequence[SegmentRow], rooms: Sequence[RoomRow]
 ) -> FloorRoutesRow:
     """Return what is to be expected on one floor; `every` are all segments, `rooms` those of `parts`."""
-    kinds = kinds_of(scene.inventory.places)
     segments = [at for at, one in enumerate(scene.obstructions) if one.segment.floor == floor]
     routes = sorted({scene.obstructions[at].segment.route for at in segments}, key=natural_key)
     here = [(place, part) for place, part in parts if place.floor == floor]
@@ -193,10 +167,20 @@ def evaluate_floor(
     blocked = []
     for route in routes:  # by their segments on this floor
         lanes = {at: scene.obstructions[at].segment for at in segments if scene.obstructions[at].segment.route == route}
-        is_blocked = build_course(lanes, kinds).is_blocked
+        is_blocked = scene.course(lanes).is_blocked
         found = scene.settle(lanes, partial(scene.at_best_and_worst, segments=lanes, is_blocked=is_blocked))
         if found.verdict.state != RouteState.NOT_KNOWN:
             blocked.append(found.standing[0].probability)
+    any_cut_off = None
+    if here:
+        ways = sorted({at for _, part in here for at in part.segments})
+
+        def is_any_lost(blocked: Blocked, every: int) -> int:
+            return union(part.cut_off(blocked, [place.place], every)[0] for place, part in here)
+
+        standing, fallen = scene.bounds(ways, lambda draws: scene.at_best_and_worst(draws, ways, is_any_lost))
+        worst = combine(fallen[1], fallen[2], scene.any_left_out_falls(ways))
+        any_cut_off = standing[0] if scene.is_known(standing[0], worst) else None
     return FloorRoutesRow(
         floor=floor,
         segments=len(segments),
@@ -208,7 +192,7 @@ def evaluate_floor(
         rooms=len(own),
         cut_off_rooms_expected=sum(room.loses_every_exit.probability for room in own if room.is_known),
         unknown_rooms=sum(not room.is_known for room in own),
-        any_room_cut_off=_find_any_cut_off(scene, here) if here else None,
+        any_room_cut_off=any_cut_off,
         uncounted_pieces=count_unplaced(scene, floor, segments),
     )
 
@@ -218,17 +202,6 @@ def count_unplaced(scene: Scene, floor: str, segments: Sequence[int]) -> int:
     has_plan = any(scene.obstructions[at].band for at in segments)
     items = [item for item in scene.inventory.items if item.floor == floor and not item.route] if segments else []
     return sum(item.quantity for item in items if item.x is None or item.y is None or not has_plan)
-
-
-def _find_any_cut_off(scene: Scene, rooms: Sequence[tuple[Place, Part]]) -> Chance | None:
-    segments = sorted({at for _, part in rooms for at in part.segments})
-
-    def is_any_lost(blocked: Blocked, every: int) -> int:
-        return union(part.cut_off(blocked, [place.place], every)[0] for place, part in rooms)
-
-    standing, fallen = scene.bounds(segments, lambda draws: scene.at_best_and_worst(draws, segments, is_any_lost))
-    worst = combine(fallen[1], fallen[2], scene.any_left_out_falls(segments))
-    return standing[0] if scene.is_known(standing[0], worst) else None
 
 
 def list_rooms_to_furnish(inventory: Inventory) -> tuple[Place, ...]:
@@ -253,7 +226,15 @@ def list_unfurnished(inventory: Inventory) -> tuple[Place, ...]:
         names = {key(one.place)} if key(one.place) in named[one.place] else {key(one.place), *named[one.place]}
         if not any((one.floor, name) in taken for name in names):
             left.append(one)
-    inside = _find_inside(left, inventory.items)
+    outlined = [at for at, one in enumerate(left) if one.outline]
+    placed = [(one.floor, (one.x, one.y)) for one in inventory.items if one.x is not None and one.y is not None]
+    inside = set()
+    if outlined and placed:
+        from shapely import Point, Polygon, STRtree
+
+        tree = STRtree([Point(at) for _floor, at in placed])
+        pairs = tree.query([Polygon(left[at].outline) for at in outlined], predicate="covers").T.tolist()
+        inside = {outlined[at] for at, piece in pairs if left[outlined[at]].floor == placed[piece][0]}
     loose = Counter(item.floor for item in inventory.items if not item.room and (item.x is None or item.y is None))
     found = []
     for one in (one for at, one in enumerate(left) if at not in inside):
@@ -279,15 +260,3 @@ def find_unfurnished(inventory: Inventory) -> Iterator[Problem]:
         )
         cell = inventory.locate("Places", found[0].row, "place")
         yield Problem("warning", "Places", cell, message, fill("List the furniture of every room on the way."))
-
-
-def _find_inside(rooms: Sequence[Place], items: Sequence[Item]) -> set[int]:
-    outlined = [at for at, one in enumerate(rooms) if one.outline]
-    placed = [(one.floor, (one.x, one.y)) for one in items if one.x is not None and one.y is not None]
-    if not outlined or not placed:
-        return set()
-    from shapely import Point, Polygon, STRtree
-
-    tree = STRtree([Point(at) for _floor, at in placed])
-    pairs = tree.query([Polygon(rooms[at].outline) for at in outlined], predicate="covers").T.tolist()
-    return {outlined[at] for at, piece in pairs if rooms[outlined[at]].floor == placed[piece][0]}

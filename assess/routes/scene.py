@@ -1,18 +1,29 @@
-"""What every evaluation of routes starts from: the segments, how pieces fall, and which of them are blocked by that."""
+"""What every evaluation of routes starts from: the segments, how pieces fall, and which of them are blocked by that.
+
+The workbook may leave open which furniture could reach a segment, and how wide it is. What is assumed on the safe side,
+such as a Clear width as small as the required one, does not count as missing. Pieces are left out where it is not known
+whether they reach a segment: free-standing ones that may fall, on the floor of the segment, and not in another room
+than those that it runs through. Whether they matter depends on how likely any of them falls, all of them together:
+`combine` bounds the chance of a blockage by that.
+"""
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, TypedDict, TypeVar, cast
 
 import numpy as np
 
+from assess.methods.simulate import interval_width
 from assess.model import Inventory, Segment
 from assess.progress import SILENT, Progress
+from assess.risk import wilson_interval
 from assess.route_results import DOUBTS, Chance, MissingRow, PieceRef, RouteState, find_state, join_missing
 from assess.routes.chances import Couplings, Draws, Falls, Happens, Key, build_couplings, find_chances, union
-from assess.routes.missing import combine, find_any_falls, find_missing, is_unknown, list_left_out
-from assess.routes.network import Blocked
-from assess.routes.obstructions import Obstructions
+from assess.routes.network import Blocked, Course, build_course
+from assess.routes.obstructions import Obstructions, is_walled_off
+from assess.routes.widths import kinds_of
+from assess.settings import Settings
 
 _Found = TypeVar("_Found")
 
@@ -68,6 +79,21 @@ class Judgement:
     most_likely_piece: PieceRef | None
 
 
+def combine(known: Chance, worst: Chance, any_falls: tuple[float, float]) -> Chance:
+    """Return the chance of a blockage at worst, as far as left-out pieces can raise it.
+
+    `known` is without them, `worst` with every segment blocked that they may reach, `any_falls` how likely any of them
+    falls and its upper end [-]: a blockage needs one of them, or happens without. That is the sum at most, less the
+    product where falls are independent or positively correlated, as they are in one earthquake.
+    """
+    chance, high = any_falls
+    return replace(
+        worst,
+        probability=min(worst.probability, known.probability + (1 - known.probability) * chance),
+        high=min(worst.high, known.high + (1 - known.high) * high),
+    )
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:
     """The segments of a building with the pieces that reach them, and how those fall.
@@ -84,6 +110,15 @@ class Scene:
     progress: Progress = SILENT
     _kept: dict[Any, Any] = field(default_factory=dict)
     """What was worked out before, by what it is of."""
+
+    @classmethod
+    def of(
+        cls, inventory: Inventory, obstructions: Sequence[Obstructions], falls: Falls, settings: Settings,
+        progress: Progress = SILENT,
+    ) -> "Scene":  # fmt: skip
+        """Build the scene of a run."""
+        z = interval_width(settings)
+        return cls(inventory, tuple(obstructions), falls, settings.route_risk, settings.seed, z, progress)
 
     def _keep(self, of: Any, make: Callable[[], _Found]) -> _Found:
         if of not in self._kept:
@@ -105,23 +140,105 @@ class Scene:
         """Return the segments of a route by their number."""
         return {at: one.segment for at, one in enumerate(self.obstructions) if one.segment.route == route}
 
+    def course(self, segments: Mapping[int, Segment]) -> Course:
+        """Return how some segments make up a route."""
+        return build_course(segments, kinds_of(self.inventory.places))
+
     def missing(self, segment: int) -> tuple[MissingRow, ...]:
         """Return what is missing of a segment; of pieces that are left out, whether or not they matter."""
-        one = self.obstructions[segment]
-        return self._keep(("missing", segment), lambda: find_missing(one, self.inventory, self.left_out(segment)))
+        return self._keep(("missing", segment), lambda: self._find_missing(segment))
+
+    def _find_missing(self, at: int) -> tuple[MissingRow, ...]:
+        one, items = self.obstructions[at], self.inventory.items
+        segment = one.segment
+        own = [(f"{segment.route}: {segment.segment}", segment.row)]
+        if one.is_blocked_standing or (one.is_stair and not self.is_unknown(at)):
+            return ()
+        if one.is_stair:
+            pieces = [(near.item, near.row) for near in one.pieces]
+            width = self._row("clear_width", own, "Routes", "clear_width")
+            return width, *([self._row("stair_pieces", pieces, "Items", "route")] if pieces else [])
+        left_out, found = [items[index] for index in self.left_out(at)], []
+        if one.band is None and (left_out or self.is_unknown(at)):  # why it is not known where it lies
+            ends = [name for name in (segment.start, segment.end) if name]
+            places = [place for name in ends for place in self.inventory.places if place.place == name]
+            if len(ends) < 2 or not places:
+                found.append(self._row("ends", own, "Routes", "start"))
+            elif len({place.floor for place in places}) > 1:
+                found.append(self._row("stair_floor", own, "Routes", "floor"))
+            else:
+                without = [place for place in places if place.x is None or place.y is None] or places
+                found.append(self._row("places", [(place.place, place.row) for place in without], "Places", "x"))
+        unplaced = [(item.item, item.row) for item in left_out if item.x is None or item.y is None]
+        if unplaced:
+            found.append(self._row("positions", unplaced, "Items", "x"))
+        if not items:
+            cell = self.inventory.locate("Items", 2, "item")
+            found.append(MissingRow(what="furniture", cells=(f"Items!{cell}",)))
+        return tuple(found)
+
+    def _row(self, what: str, named: Sequence[tuple[str, int]], sheet: str, field: str) -> MissingRow:
+        """Return what is to be filled in, of things by their names and rows of a sheet."""
+        cells = tuple(f"{sheet}!{self.inventory.locate(sheet, row, field)}" for _, row in named)
+        return MissingRow(what=what, names=tuple(name for name, _ in named), cells=cells)
 
     def left_out(self, segment: int) -> tuple[int, ...]:
         """Return the pieces (indices) that may fall and of which it is not known whether they reach a segment."""
-        one = self.obstructions[segment]
-        return self._keep(("left out", segment), lambda: tuple(list_left_out(one, self.inventory, self.falls)))
+        one, falls = self.obstructions[segment], self.falls
+
+        def find() -> tuple[int, ...]:
+            if one.is_blocked_standing or not one.segment.floor:
+                return ()
+            return tuple(
+                at for at, item in enumerate(self.inventory.items)
+                if item.floor == one.segment.floor and not item.route
+                and (item.x is None or item.y is None or one.band is None) and not is_walled_off(item, one.segment)
+                and not (falls.anchored[at] or falls.stands[at]) and (falls.high[at] > 0 or falls.in_record[at] == 1)
+            )  # fmt: skip
+
+        return self._keep(("left out", segment), find)
 
     def any_left_out_falls(self, segments: Iterable[int]) -> tuple[float, float]:
-        """Return how likely any piece falls that is left out of some segments, and the upper end [-]."""
-        return find_any_falls(self.falls, {item for at in segments for item in self.left_out(at)}, self.z)
+        """Return how likely any piece falls that is left out of some segments, and the upper end [-].
+
+        As of pieces that reach a segment: from the joint outcomes where all were simulated in the same number of draws;
+        else the larger one of that, with all others independent, and of all of them independent. 1 where any fell under
+        the recorded motion itself.
+        """
+        falls, items = self.falls, {item for at in segments for item in self.left_out(at)}
+        if any(falls.in_record[at] == 1 for at in items):
+            return 1.0, 1.0
+
+        def none_falls(own: list[int]) -> tuple[float, float]:
+            """Return the chance that none of some pieces falls, all independently, and its lower end [-]."""
+            none, low = (np.prod((1 - one[own]) ** falls.quantity[own]) for one in (falls.probability, falls.high))
+            return float(none), float(low)
+
+        simulated: dict[int, list[int]] = {}
+        for at in items:
+            if at in falls.fell:
+                simulated.setdefault(falls.fell[at].size, []).append(at)
+        none, none_high = none_falls([at for at in items if at not in falls.fell])
+        for runs, own in simulated.items():
+            count = np.column_stack([falls.fell[at] for at in own]).any(axis=1).sum()
+            high = float(wilson_interval(count, runs, self.z)[1])
+            none, none_high = none * (1 - count / runs), none_high * (1 - high)
+        if len(simulated) == 1 and items <= falls.fell.keys():
+            return float(1 - none), 1 - none_high
+        alone, alone_high = none_falls(list(items))
+        return float(1 - min(none, alone)), 1 - min(none_high, alone_high)
 
     def is_unknown(self, segment: int) -> bool:
-        """Tell whether nothing is known of a segment, whatever falls."""
-        return is_unknown(self.obstructions[segment], self.inventory)
+        """Tell whether nothing is known of a segment, whatever falls: its width, its floor or its furniture."""
+        one, items = self.obstructions[segment], self.inventory.items
+        if one.is_blocked_standing:
+            return False
+        if one.is_stair:
+            return one.segment.clear_width is None
+        if not items or one.band is not None:
+            return not items
+        is_listed = one.is_evaluated or any(item.floor == one.segment.floor for item in items)
+        return not one.segment.floor or not is_listed
 
     def is_evaluated(self, segment: int) -> bool:
         """Tell whether it is known which pieces can reach a segment, or those left out hardly fall, all together."""
@@ -147,23 +264,19 @@ class Scene:
         keys = self.keys(segments, anchors_fail=anchors_fail)
         fall = unconfirmed_fall and any(item in self.falls.unconfirmed for item, _ in keys)
 
+        build = partial(build_couplings, self.falls, seed=self.seed, progress=self.progress, unconfirmed_fall=fall)
+
+        def of_all() -> Couplings:
+            """Return the couplings of all pieces: those of fewer share its draws."""
+            takes_anchored = any(self.falls.anchored[item] for item, _ in keys)  # the same pieces, the same couplings
+            every = self.keys(range(len(self.obstructions)), anchors_fail=takes_anchored)
+            return self._keep((takes_anchored, fall), lambda: build(every))
+
         def make() -> Couplings:
             self.progress.check()
-            takes_anchored = any(self.falls.anchored[item] for item, _ in keys)  # the same pieces, the same couplings
-            return build_couplings(
-                self.falls, keys, self.seed, lambda: self._all(takes_anchored, fall), self.progress,
-                unconfirmed_fall=fall,
-            )  # fmt: skip
+            return build(keys, of_all=of_all)
 
         return self._keep((keys, fall), make)
-
-    def _all(self, anchors_fail: bool, fall: bool) -> Couplings:
-        """Return the couplings of all pieces: those of fewer share its draws."""
-        keys = self.keys(range(len(self.obstructions)), anchors_fail=anchors_fail)
-        return self._keep(
-            (anchors_fail, fall),
-            lambda: build_couplings(self.falls, keys, self.seed, progress=self.progress, unconfirmed_fall=fall),
-        )
 
     def narrower(self, draws: Draws, segment: int, width: float) -> int:
         """Return the set of the draws in which the width left of a segment is under a width [m].
@@ -179,10 +292,6 @@ class Scene:
     def blocked(self, draws: Draws, segments: Iterable[int]) -> Blocked:
         """Return for each of some segments the set of the draws in which it is blocked."""
         return {at: self.narrower(draws, at, self.obstructions[at].required) for at in segments}
-
-    def narrowed(self, draws: Draws, segments: Iterable[int]) -> int:
-        """Return the set of the draws in which any of some segments is narrowed at all."""
-        return union(self.narrower(draws, at, self.obstructions[at].standing) for at in segments)
 
     def together(self, segments: Collection[int], happens: Happens, *, anchors_fail: bool = False) -> dict[int, float]:
         """Return for each piece the chance that it falls while the first of what happens does, where there is any.
@@ -232,9 +341,10 @@ class Scene:
         are blocked, and the set of all draws.
         """
 
-        def happens(draws: Draws) -> tuple[int, int, int, int]:
-            found = self.at_best_and_worst(draws, segments, is_blocked)
-            return *found, found[0] | self.narrowed(draws, segments)
+        def happens(draws: Draws) -> tuple[int, ...]:
+            best, *others = self.at_best_and_worst(draws, segments, is_blocked)
+            narrowed = union(self.narrower(draws, at, self.obstructions[at].standing) for at in segments)
+            return best, *others, best | narrowed
 
         found = self.judge(segments, happens)
         settled = self.settle(segments, happens, found)

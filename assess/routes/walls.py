@@ -73,12 +73,8 @@ def find_walls(inventory: Inventory) -> dict[int, Wall]:
     }
 
 
-@dataclass(frozen=True, slots=True)
-class _Edge:
-    """The walls that count: sides, and the polygon inside which a piece must stand."""
-
-    around: Outline
-    sides: Sequence[tuple[Point, Point]]
+_Edge = tuple[Outline, Sequence[tuple[Point, Point]]]
+"""The polygon inside which a piece must stand, and the sides that are walls."""
 
 
 def _find_wall(item: Item, outlined: Sequence[Place], edge: _Edge | None) -> Wall:
@@ -90,20 +86,16 @@ def _find_wall(item: Item, outlined: Sequence[Place], edge: _Edge | None) -> Wal
         return Wall(None, CONTRARY)
     if edge is None:
         return Wall(None, NO_OUTLINE)
-    around = _find_room(item, (x, y), outlined) or edge
-    if not is_inside((x, y), around.around):
+    # the walls of its own room: that of its name, or where it names none with an outline, the one round it
+    named = [one.outline for one in outlined if item.room and key(one.place) == key(item.room)]
+    rooms = named or [one.outline for one in outlined if is_inside((x, y), one.outline)]
+    around, sides = (rooms[0], list(_sides(rooms[0]))) if len(rooms) == 1 else edge
+    if not is_inside((x, y), around):
         return Wall(None, OUTSIDE)
-    behind = {side for one in around.sides if (side := _find_side(item, (x, y), one))}
+    behind = {side for one in sides if (side := _find_side(item, (x, y), one))}
     if len(behind) != 1:
         return Wall(None, BOTH if behind else NO_WALL_NEAR)
     return Wall((turn(item) + (180.0 if behind == {1} else 0.0)) % 360.0)
-
-
-def _find_room(item: Item, at: Point, outlined: Sequence[Place]) -> _Edge | None:
-    """Return the walls of the piece's own room: that of its name, or where it names none with an outline, round it."""
-    named = [one.outline for one in outlined if item.room and key(one.place) == key(item.room)]
-    found = named or [one.outline for one in outlined if is_inside(at, one.outline)]
-    return _Edge(found[0], list(_sides(found[0]))) if len(found) == 1 else None
 
 
 def _find_side(item: Item, at: Point, side: tuple[Point, Point]) -> int:
@@ -141,17 +133,16 @@ def _find_edge(outlines: Sequence[Outline]) -> _Edge:
 
     points = [point for outline in outlines for point in outline]
     hull = tuple((x, y) for x, y in get_coordinates(MultiPoint(points).convex_hull).tolist()[:-1])
-    sides = [
+
+    def distance(point: Point, one: Point, two: Point) -> float:
+        """Return how far a point is from the line through two others [m]."""
+        x, y = two[0] - one[0], two[1] - one[1]
+        return abs(x * (point[1] - one[1]) - y * (point[0] - one[0])) / math.hypot(x, y)
+
+    return hull, [
         side for outline in outlines for side in _sides(outline)
-        if any(all(_distance(point, *line) <= ON_EDGE for point in side) for line in _sides(hull))
+        if any(all(distance(point, *line) <= ON_EDGE for point in side) for line in _sides(hull))
     ]  # fmt: skip
-    return _Edge(hull, sides)
-
-
-def _distance(point: Point, one: Point, two: Point) -> float:
-    """Return how far a point is from the line through two others [m]."""
-    x, y = two[0] - one[0], two[1] - one[1]
-    return abs(x * (point[1] - one[1]) - y * (point[0] - one[0])) / math.hypot(x, y)
 
 
 def remark_on_walls(inventory: Inventory) -> Iterator[Problem]:
