@@ -5,19 +5,25 @@ motion that may be drawn can start. A class that simulation lowers is marked. Wh
 floor's, simulation may raise a class, but not lower it: then the formula's class stands, unconfirmed. Where nothing is
 known of the building, the class is that of the faster third of the draws where that is higher, and unconfirmed. A piece
 that overturns under the record itself is at least high.
+
+A piece whose axis is blank is integrated along both. Where it is nearly square on plan it is about as slender along one
+as along the other, so that the larger of its two chances is too low: it falls in a draw if it falls along either axis.
+Both axes of draw k are of one earthquake and one body, with phases of their own.
 """
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from assess.arrays import BoolArray, FloatArray
-from assess.methods import ALIKE, Cases, Method, Outcome, adopted_formula, simulation
-from assess.model import Inventory
+from assess.methods import ALIKE, Alike, Cases, Method, Outcome, adopted_formula, simulation
+from assess.methods.simulate import interval_width
+from assess.model import AXES, Inventory, Item
+from assess.pipeline.floor_demand import Demand
 from assess.results import BASES
-from assess.risk import RiskClass, classify_all
+from assess.risk import RiskClass, classify_all, wilson_interval
 from assess.rocking.block import STOCKY
 from assess.rocking.draws import MARGIN, Uncertainty
 from assess.route_results import DOUBTS
@@ -28,19 +34,20 @@ from assess.units import GRAVITY
 IntArray = NDArray[np.int64]
 
 FORMULA, SIMULATED, UNCONFIRMED, CANNOT_ROCK = range(len(BASES))
+SQUARE = 1.3
+"""Width over breadth [-] below which a piece counts as square on plan."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Adoption:
     """The adopted risk of n cases, an array (n,) each.
 
-    * `probability` [-].
     * `low`, `high`: the sampling interval of a simulated risk [-]; NaN where the formula's is adopted.
     * `risk`, `upper`: class by the probability, and by the upper end of the interval.
     * `basis`: place in `assess.results.BASES`.
     * `doubtful`: where simulation may not lower a class.
     * `ideal_higher`: where the class of the piece as given, under exactly this motion, is above the adopted one.
-    * `either_axis`: where it is the chance of a fall along either axis; see `assess.pipeline.either_axis`.
+    * `either_axis`: where it is the chance of a fall along either axis.
     * `rocks_from`: share of g b/z that PFA has to reach for the piece to rock in any draw [-].
     """
 
@@ -172,6 +179,51 @@ def list_verdicts(
         for row, case in enumerate(joint.cases.tolist())
         if adoption.basis[case] in bases
     }
+
+
+def is_square(item: Item) -> bool:
+    """Whether an item is nearly square on plan, and the workbook leaves open along which axis it topples."""
+    return item.axis is None and item.width is not None and item.width < SQUARE * item.breadth
+
+
+def unite_axes(
+    adoption: Adoption,
+    outcomes: Mapping[str, Outcome],
+    cases: Cases,
+    inventory: Inventory,
+    case_item: NDArray[np.intp],
+    case_demand: Sequence[Demand],
+    settings: Settings,
+) -> tuple[Adoption, Mapping[int, BoolArray]]:
+    """Return the adoption with the chance of a fall along either axis, and of each such item in which draws it falls.
+
+    Of parallel motions of an axis that with the larger chance counts. Only where both axes are simulated and adopted.
+    """
+    names = ("probability", "low", "high", "risk", "upper", "either_axis")
+    adoption = replace(adoption, **{name: getattr(adoption, name).copy() for name in names})
+    verdicts = list_verdicts(outcomes[simulation().key], adoption, settings)
+    firsts = np.searchsorted(case_item, np.arange(len(inventory.items) + 1)).tolist()
+    united: dict[int, BoolArray] = {}
+    pairs: dict[int, list[int]] = {}
+    for index in (at for at, item in enumerate(inventory.items) if is_square(item)):
+        every = range(firsts[index], firsts[index + 1])
+        owns = [[case for case in every if case_demand[case].axis == axis] for axis in AXES]
+        pair = [max(own, key=lambda case: adoption.probability[case]) for own in owns if own]
+        if len(pair) == len(AXES) and all(case in verdicts for case in pair):
+            count = min(verdicts[case].size for case in pair)
+            united[index] = np.any([verdicts[case][:count] for case in pair], axis=0)
+            pairs[index] = pair
+    kinds: dict[tuple[int, ...], int] = {}
+    numbers = [kinds.setdefault(tuple(cases.alike[pair].tolist()), len(kinds)) for pair in pairs.values()]
+    alike = Alike.of(numbers, [cases.quantity[pair[0]] for pair in pairs.values()])
+    shares = alike.average(np.array([united[index].mean() for index in pairs])).tolist()
+    for (index, pair), share in zip(pairs.items(), shares, strict=True):
+        low, high = wilson_interval(share * united[index].size, united[index].size, interval_width(settings))
+        adoption.probability[pair], adoption.low[pair], adoption.high[pair] = share, low, high
+        adoption.risk[pair] = np.maximum(adoption.risk[pair], classify_all(share))
+        adoption.upper[pair] = np.maximum(adoption.upper[pair], classify_all(high))
+        adoption.either_axis[pair] = True
+    return adoption, united
 
 
 def build_falls(

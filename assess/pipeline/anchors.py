@@ -26,23 +26,30 @@ Krakower M (2000). Tests of the California Office of the State Architect. Mailin
 Association International: double-faced library shelving of 21 in by 7.5 ft, books alone 350 lb/ft, 427 kg/m3.
 """
 
-from collections.abc import Sequence
-from functools import cache
+import re
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.arrays import BoolArray, FloatArray
 from assess.bracket import find_code_demand, find_needed_friction, find_tension, find_tension_without_weight
-from assess.i18n import Text, fill
+from assess.errors import Problem, SettingsError
+from assess.i18n import Text, fill, join
 from assess.model import Inventory, Item
 from assess.motion.scenario import PGA_OF_SDS
+from assess.pipeline.assessment import Assessment
 from assess.pipeline.known_ground import find_ground
 from assess.results import AnchorRow
 from assess.rocking.draws import PEAK
+from assess.schedule_results import ScheduleRow
 from assess.settings import Settings
 from assess.units import FORCE, GRAVITY, LENGTH, to_edge
 from assess.workbook.catalogue import find_contents
+from assess.workbook.names import key
 
 if TYPE_CHECKING:
     from assess.methods import Cases
@@ -54,7 +61,7 @@ WIDTH = 1.0
 class Density(NamedTuple):
     """Weight with contents over the volume of the outline [kg/m3], what it stands for, and where it comes from."""
 
-    value: float
+    density: float
     meaning: Text
     source: Text
 
@@ -93,25 +100,20 @@ def find_weight(item: Item, language: str = "en") -> Weight:
         source, words = ("type", _FROM_TYPE) if "weight" in item.assumed else ("given", _GIVEN)
         return Weight(item.weight * GRAVITY, source, words)
     contents = find_contents(item.type, language)
-    density, volume = DENSITIES[contents or UNKNOWN].value, item.breadth * (item.width or WIDTH) * item.height
-    words = _describe_estimate(contents)
-    return Weight(density * volume * GRAVITY, "estimate", words, is_per_metre=item.width is None)
+    density, volume = DENSITIES[contents or UNKNOWN].density, item.breadth * (item.width or WIDTH) * item.height
+    return Weight(density * volume * GRAVITY, "estimate", _ESTIMATES[contents], is_per_metre=item.width is None)
 
 
 _FROM_TYPE, _GIVEN = fill("as its Type in the Catalogue has it"), fill("as the workbook gives it")
 
 
-@cache  # the same few sentences for every row
-def _describe_estimate(contents: str) -> Text:
-    density = DENSITIES[contents or UNKNOWN]
-    filled: dict[str, Any] = {"density": density.value, "meaning": density.meaning, "source": density.source}
-    if not contents:
-        return fill("estimated: {density:g} kg/m³, assumed to be full of {meaning} ({source})", **filled)
-    return fill("estimated: {density:g} kg/m³, {meaning} ({source})", **filled)
-
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
+_ESTIMATES = {
+    contents: fill("estimated: {density:g} kg/m³, {meaning} ({source})", **one._asdict())
+    for contents, one in DENSITIES.items()
+}
+_ESTIMATES[""] = fill(
+    "estimated: {density:g} kg/m³, assumed to be full of {meaning} ({source})", **DENSITIES[UNKNOWN]._asdict()
+)
 
 BRACKET = 0.9
 """Height of a bracket over that of the piece, assumed where none is given [-]."""
@@ -223,3 +225,65 @@ def _find_code(inventory: Inventory, settings: Settings) -> tuple[FloatArray, fl
             importance=settings.anchor_importance, ductility=settings.ductility_reduction, period=building.period,
         )  # fmt: skip
     return np.array([by_floor[one.floor] for one in inventory.items], dtype=np.float64), UPWARD * sds
+
+
+# ---------------------------------------------------------------- what if some pieces were anchored
+
+
+def spell_names(inventory: Inventory, names: Sequence[str]) -> tuple[str, ...]:
+    """Return the names of items as the workbook spells them, each once.
+
+    Raises SettingsError if there is no item of a name, or a name is meant as ``first:N`` and is not.
+    """
+    known = {key(one.item): one.item for one in inventory.items} if names else {}
+    for name in (one for one in names if key(one) not in known):
+        if re.match(r"\s*first\s*(:|$)", name, re.IGNORECASE):
+            raise SettingsError.about(
+                "anchor is {name!r}, expected first:N with a whole number N of at least 1, alone, or names of items.",
+                name=name,
+            )
+        fault = fill("anchor: there is no item {name!r} in Items.", name=name)
+        near = get_close_matches(name, [one.item for one in inventory.items], 1, 0.6)
+        raise SettingsError(join(" ", (fault, *(fill("Did you mean {name}?", name=repr(one)) for one in near))))
+    return tuple(dict.fromkeys(known[key(name)] for name in names))
+
+
+def anchor_named(inventory: Inventory, names: Sequence[str]) -> Inventory:
+    """Return an inventory in which the items of these names are anchored, with brackets that hold.
+
+    Its problems get a note on each that the workbook has as anchored already. Raises SettingsError as `spell_names`.
+    """
+    if not names:
+        return inventory
+    wanted = set(spell_names(inventory, names))
+    indices = {at for at, one in enumerate(inventory.items) if one.item in wanted}
+    already = [inventory.items[at].item for at in sorted(indices) if inventory.items[at].anchored == "yes"]
+    said = (fill("Item {name!r} is anchored already: its anchor is taken to hold.", name=name) for name in already)
+    notes = [Problem("note", "Items", "", message) for message in said]
+    return replace(_anchor(inventory, indices), problems=(*inventory.problems, *notes))
+
+
+def anchor_first(assessment: Assessment, rows: Sequence[ScheduleRow]) -> Assessment:
+    """Return an assessment in which the pieces of the first entries of its schedule are anchored and hold.
+
+    Nothing is simulated again: whether a piece is anchored changes no motion and no rocking. Raises SettingsError if
+    the schedule has fewer entries.
+    """
+    wanted = assessment.settings.anchor
+    if isinstance(wanted, int) and wanted > len(rows):
+        raise SettingsError.about(
+            "anchor: first:{wanted:,} is more than the {n:,} entries of the schedule", wanted=wanted, n=len(rows)
+        )
+    held = {index for row in rows[: wanted if isinstance(wanted, int) else 0] for index in row.item_indices}
+    inventory = _anchor(assessment.inventory, held)
+    cases, governing = assessment.cases, assessment.governing
+    found = find_held(inventory, cases.pfa[governing], find_spread(cases)[governing])
+    return replace(assessment, inventory=inventory, held=found)
+
+
+def _anchor(inventory: Inventory, indices: Collection[int]) -> Inventory:
+    items = (
+        replace(one, anchored="yes", bracket_capacity=None) if at in indices else one
+        for at, one in enumerate(inventory.items)
+    )
+    return replace(inventory, items=tuple(items))

@@ -59,7 +59,7 @@ def serve_floors(
 ) -> tuple[dict[tuple[str, Axis], tuple[Demand, ...]], list[Problem]]:
     """Return the demands of the floors that have any, and why the others have none; as `build_demands` takes them."""
     ground = find_ground(inventory)
-    own = {floor.floor: own_demands(floor, scenario, progress) for floor in inventory.floors}
+    own = {floor.floor: _own_demands(floor, scenario, progress) for floor in inventory.floors}
     bases = {axis: _find_basis(ground, own.values(), axis) for axis in AXES}
     building = _Building(inventory, ground, own, bases, scenario, ductility_reduction)
     problems: list[Problem] = []
@@ -97,35 +97,30 @@ def scale_demands(demands: Demands, factor: float) -> Demands:
 # ---------------------------------------------------------------- what a floor has of its own
 
 
-def own_demands(floor: Floor, scenario: str, progress: Progress = SILENT) -> _ByAxis:
+def _own_demands(floor: Floor, scenario: str, progress: Progress) -> _ByAxis:
     """Return the motions that the workbook gives for a floor itself and `scenario` uses; empty where there are none.
 
     A PFV that is not given is NaN.
     """
-    found = {axis: _on_axis(floor, axis, scenario, progress) for axis in AXES}
-    if not any(found.values()):
-        return {}
-    return {"X": found["X"] or _borrow(found["Y"], "X"), "Y": found["Y"] or _borrow(found["X"], "Y")}
-
-
-def _on_axis(floor: Floor, axis: Axis, scenario: str, progress: Progress) -> tuple[Demand, ...]:
-    if scenario in ("as filled", "recorded") and floor.records.get(axis):
-        treated = ((one, treat(one.record, progress=progress)) for one in floor.records[axis])
-        return tuple(
-            Demand(
-                floor=floor, axis=axis, source="record", pfa=motion.pfa, pfv=motion.pfv, name=one.name,
-                record=one.record, motion=motion,
-            )
-            for one, motion in treated
-        )  # fmt: skip
-    if scenario in ("as filled", "given") and axis in floor.pfa:
-        pfv = floor.pfv.get(axis, math.nan)
-        return (Demand(floor=floor, axis=axis, source="given", pfa=floor.pfa[axis], pfv=pfv),)
-    return ()
-
-
-def _borrow(demands: tuple[Demand, ...], axis: Axis) -> tuple[Demand, ...]:
-    return tuple(replace(demand, axis=axis, flags=(*demand.flags, "one_axis_only")) for demand in demands)
+    found: dict[Axis, tuple[Demand, ...]] = {}
+    for axis in AXES:
+        if scenario in ("as filled", "recorded") and floor.records.get(axis):
+            treated = ((one, treat(one.record, progress=progress)) for one in floor.records[axis])
+            found[axis] = tuple(
+                Demand(
+                    floor=floor, axis=axis, source="record", pfa=motion.pfa, pfv=motion.pfv, name=one.name,
+                    record=one.record, motion=motion,
+                )
+                for one, motion in treated
+            )  # fmt: skip
+        elif scenario in ("as filled", "given") and axis in floor.pfa:
+            pfv = floor.pfv.get(axis, math.nan)
+            found[axis] = (Demand(floor=floor, axis=axis, source="given", pfa=floor.pfa[axis], pfv=pfv),)
+    if len(found) == 1:
+        ((known, demands),) = found.items()
+        axis = "Y" if known == "X" else "X"
+        found[axis] = tuple(replace(one, axis=axis, flags=(*one.flags, "one_axis_only")) for one in demands)
+    return {axis: found[axis] for axis in AXES} if found else {}
 
 
 # ---------------------------------------------------------------- floors of which nothing is known
@@ -136,35 +131,30 @@ def _interpolate(floor: Floor, known: Iterable[_ByAxis]) -> _ByAxis:
 
     Where one of them has no record, the beam serves what lies between them.
     """
-    found = {axis: _between(floor, axis, [demands[axis] for demands in known]) for axis in AXES}
-    return {axis: (demand,) for axis, demand in found.items() if demand is not None}
-
-
-def _between(floor: Floor, axis: Axis, known: Iterable[tuple[Demand, ...]]) -> Demand | None:
-    z = floor.elevation
-    placed = [(level, demands) for demands in known if (level := demands[0].floor.elevation) is not None]
-    below = [one for one in placed if z is not None and one[0] <= z]
-    above = [one for one in placed if z is not None and one[0] >= z]
-    if z is None or not below or not above:
-        return None
-    (z_0, lower), (z_1, upper) = (
-        max(below, key=lambda one: (one[0], _worst(one[1])[0])),
-        min(above, key=lambda one: (one[0], -_worst(one[1])[0])),
-    )
-    if z_1 > z_0 and not all(one.source == "record" for one in (*lower, *upper)):
-        return None
-    share = (z - z_0) / (z_1 - z_0) if z_1 > z_0 else 0.0
-    pfa, pfv = (
-        one + (other - one) * share if share else one for one, other in zip(_worst(lower), _worst(upper), strict=True)
-    )
-    names = (lower[0].floor.floor, upper[0].floor.floor)
-    carried = {flag for one in (*lower, *upper) for flag in one.flags}
-    flags = tuple(flag for flag in MOTION_FLAGS if flag == "interpolated" or flag in carried)
-    return Demand(floor=floor, axis=axis, source="interpolated", pfa=pfa, pfv=pfv, between=names, flags=flags)
-
-
-def _worst(demands: tuple[Demand, ...]) -> tuple[float, float]:
-    return max(demand.pfa for demand in demands), max(demand.pfv for demand in demands)
+    z, found = floor.elevation, dict[Axis, tuple[Demand, ...]]()
+    if z is None:
+        return found
+    for axis in AXES:
+        floors = [
+            (level, max(one.pfa for one in parallel), max(one.pfv for one in parallel), parallel)
+            for parallel in (demands[axis] for demands in known)
+            if (level := parallel[0].floor.elevation) is not None
+        ]
+        below = max((one for one in floors if one[0] <= z), key=lambda one: one[:2], default=None)
+        above = min((one for one in floors if one[0] >= z), key=lambda one: (one[0], -one[1]), default=None)
+        if below is None or above is None:
+            continue
+        (z_0, *peaks, lower), (z_1, *others, upper) = below, above
+        if z_1 > z_0 and not all(one.source == "record" for one in (*lower, *upper)):
+            continue
+        share = (z - z_0) / (z_1 - z_0) if z_1 > z_0 else 0.0
+        pfa, pfv = (one + (other - one) * share if share else one for one, other in zip(peaks, others, strict=True))
+        names = (lower[0].floor.floor, upper[0].floor.floor)
+        carried = {flag for one in (*lower, *upper) for flag in one.flags}
+        flags = tuple(flag for flag in MOTION_FLAGS if flag == "interpolated" or flag in carried)
+        one = Demand(floor=floor, axis=axis, source="interpolated", pfa=pfa, pfv=pfv, between=names, flags=flags)
+        found[axis] = (one,)
+    return found
 
 
 # ---------------------------------------------------------------- floors on a beam
@@ -178,16 +168,13 @@ _UNIT = assumed.Ground(pga=1.0)
 class Basis:
     """What shakes the floors of a building along one axis.
 
-    * `axis`: which.
-    * `building`: as far as it is known.
     * `motion`: of the ground; None where it is not known.
     * `record`: the record of the ground.
     * `known`: z/h of the floors above the ground of which peaks are known [-], and those.
     * `is_recorded`: whether any floor has a record.
-    * `at_grade`: the floor at grade whose motion that of the ground is; "" where it is what Building tells.
+    * `at_grade`: the floor at grade whose motion that of the ground is; "" where Building gives it.
     """
 
-    axis: Axis
     building: assumed.Building
     motion: assumed.Ground | None = None
     record: Demand | None = None
@@ -207,16 +194,6 @@ class Basis:
         if self.record is not None:
             return assumed.Ground(pga=self.record.pfa, pgv=self.record.pfv)
         return self.motion or _UNIT
-
-    def can_serve(self, place: float | None, *, is_between: bool) -> bool:
-        """Return whether a floor at z/h `place` follows from the ground, or from floors of which peaks are known.
-
-        `is_between`: only if such floors or the ground lie at or below, and such floors at or above it.
-        """
-        places = [one for one, _ in self.known]
-        if not is_between:
-            return self.is_known or (place is not None and bool(places))
-        return place is not None and bool(places) and (self.is_known or min(places) <= place) and place <= max(places)
 
     def find_beam(self, place: float | None) -> tuple[float, float]:
         """Return the median PFA [m/s2] and PFV [m/s] that the beam has at z/h `place`."""
@@ -311,8 +288,15 @@ class _Building:
 
     def _serve_by_beam(self, floor: Floor, axis: Axis) -> Demand | None:
         place, basis = self.ground.find_ratio(floor), self.bases[axis]
-        is_between = self.scenario != "as filled"
-        if self.scenario in PROFILES or not basis.can_serve(place, is_between=is_between):
+        places = [one for one, _ in basis.known]
+        if self.scenario in PROFILES:
+            return None
+        if self.scenario == "as filled":
+            can_serve = basis.is_known or (place is not None and bool(places))
+        else:  # only between the ground or floors of which peaks are known, and such floors
+            is_above = basis.is_known or (place is not None and bool(places) and min(places) <= place)
+            can_serve = is_above and place is not None and place <= max(places, default=-math.inf)
+        if not can_serve:
             return None
         (pfa, pfv), (pga, _) = basis.find_peaks(place), basis.ground.peaks
         named = _name_ground(self.ground) if basis.record is None else ()
@@ -356,7 +340,7 @@ def _find_basis(ground: Ground, own: Collection[_ByAxis], axis: Axis) -> Basis:
         motion = assumed.Ground(pga=at_grade.pfa, pgv=at_grade.pfv if at_grade.pfv > 0 else None)
     is_recorded = any(one.source == "record" for served in own for parallel in served.values() for one in parallel)
     basis = Basis(
-        axis=axis, building=ground.building, motion=motion, record=record, is_recorded=is_recorded,
+        building=ground.building, motion=motion, record=record, is_recorded=is_recorded,
         at_grade="" if at_grade is None else at_grade.floor.floor,
     )  # fmt: skip
     above = [(place, one) for place, one in known if place > 0]

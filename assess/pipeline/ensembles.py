@@ -15,6 +15,7 @@ import math
 import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -70,7 +71,7 @@ class GeneratedEnsemble:
     @property
     def record(self) -> tuple[FloatArray, float] | None:
         """The recorded motion as treated [m/s2], and its time step [s]."""
-        return _record(self.demand)
+        return self.demand.recorded
 
     @property
     def factor(self) -> float:
@@ -124,25 +125,21 @@ class DrawnEnsemble:
     def open(self, threads: int, progress: Progress = SILENT) -> OpenMotions:
         """Find what brings the draws to the floor's peaks; the motions are in single precision."""
         from assess.motion.beam import Beams, open_floor
-
-        make_ground, key = self._find_ground(progress)
-        beams = Beams(self.drawn.building, self.grid, self.seed, key, make_ground)
-        found, step = open_floor(beams, self.drawn.target, threads, progress), self.grid.time_step
-        return OpenMotions(
-            lambda first, count: [(found.realise(first, count, threads, progress), step)], bands=(found.high, found.low)
-        )
-
-    def _find_ground(self, progress: Progress) -> tuple[Callable[[int], "NDArray[np.float32]"], object]:
-        """Return what makes the ground motions of a group, and all that they depend on."""
         from assess.motion.drawn_ground import draw_ground
         from assess.motion.noise import Phases
 
         record, ground, axis = self.drawn.record, self.drawn.ground, self.demand.axis
+        build = partial(Beams, self.drawn.building, self.grid, self.seed)
         if record is None:
             phases = Phases(self.grid, self.seed, axis)
-            return lambda group: draw_ground(ground, phases, group, progress), (ground, axis)
-        made = GeneratedEnsemble(record, self.grid, self.seed, self.signs).open(1, progress)
-        return lambda group: made.realise(group * GROUP, GROUP)[0][0], (record, axis)
+            beams = build((ground, axis), lambda group: draw_ground(ground, phases, group, progress))
+        else:
+            made = GeneratedEnsemble(record, self.grid, self.seed, self.signs).open(1, progress)
+            beams = build((record, axis), lambda group: made.realise(group * GROUP, GROUP)[0][0])
+        found, step = open_floor(beams, self.drawn.target, threads, progress), self.grid.time_step
+        return OpenMotions(
+            lambda first, count: [(found.realise(first, count, threads, progress), step)], bands=(found.high, found.low)
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -177,7 +174,7 @@ class SuiteEnsemble:
     @property
     def record(self) -> tuple[FloatArray, float] | None:
         """The recorded motion as treated [m/s2], and its time step [s]."""
-        return _record(self.demand)
+        return self.demand.recorded
 
     def open(self, threads: int, progress: Progress = SILENT) -> OpenMotions:
         """Take them as they are."""
@@ -193,10 +190,6 @@ class SuiteEnsemble:
 
 
 FloorEnsemble = GeneratedEnsemble | DrawnEnsemble | SuiteEnsemble
-
-
-def _record(demand: Demand) -> tuple[FloatArray, float] | None:
-    return None if demand.motion is None else (demand.motion.acceleration, demand.motion.time_step)
 
 
 def build_ensembles(

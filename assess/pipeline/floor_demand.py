@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from assess.arrays import FloatArray
 from assess.i18n import fill, join
 from assess.intensity import Shaking
 from assess.model import Axis, Floor
@@ -23,8 +24,7 @@ class Drawn:
     * `building`: of which each draw has a beam.
     * `ground`: the ground motion in a unit of its own, of which `target.factor` is the multiple.
     * `record`: the record of the ground that takes its place.
-    * `target`: of the floor.
-    * `at_grade`: the floor at grade whose motion that of the ground is; "" where it is what Building tells.
+    * `at_grade`: the floor at grade whose motion that of the ground is; "" where Building gives it.
     """
 
     building: Building
@@ -52,9 +52,6 @@ class Drawn:
 class Demand:
     """The motion of one floor along one axis from one source.
 
-    * `floor`: the floor.
-    * `axis`: the axis that it serves.
-    * `source`: where it comes from.
     * `pfa`, `pfv`: peak floor acceleration [m/s2] and velocity [m/s]: medians, where its draws are not brought to each.
     * `name`: the record as the workbook names it, else "".
     * `record`, `motion`: the recorded motion, as in the file and as treated.
@@ -112,10 +109,10 @@ class Demand:
     @property
     def label(self) -> str:
         """Its source in short: the record's name, "given", the profile's code with its intensity, or two floors."""
-        if self.is_level:
-            return fill("as floor {floor}", floor=self.between[0])
         if self.between:
             below, above = self.between
+            if below == above:
+                return fill("as floor {floor}", floor=below)
             return fill("interpolated between {below} and {above}", below=below, above=above)
         if self.profile:
             is_from = self.shaking or self.site
@@ -138,9 +135,9 @@ class Demand:
         return fill("Ground PGA") if self.amplification else fill("known floors")
 
     @property
-    def is_level(self) -> bool:
-        """Whether it is the motion of another floor at the same height."""
-        return len(set(self.between)) == 1
+    def recorded(self) -> tuple[FloatArray, float] | None:
+        """The recorded motion as treated [m/s2], and its time step [s]."""
+        return None if self.motion is None else (self.motion.acceleration, self.motion.time_step)
 
     @property
     def is_borrowed(self) -> bool:

@@ -2,16 +2,13 @@
 
 import math
 from collections.abc import Collection
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from assess.intensity import SHAKINGS, Shaking
 from assess.model import Floor, Inventory
 from assess.motion import assumed
 from assess.motion.assumed import assume_elevation, find_lowest_number
 from assess.motion.site_ground import SiteGround
-
-_NOTHING = assumed.Building()
-"""A building of which nothing is known."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,7 +18,6 @@ class Ground:
     * `motion`: medians of PGA and PGV, as far as they are known; None where nothing gives them: Ground PGA or PGV, SDS,
       a ShakeMap, scenarios, Shaking.
     * `building`: T1, by its height where it is not given, and its structure.
-    * `is_period_given`: whether T1 is given.
     * `is_from_sds`: whether PGA is 0.4 SDS.
     * `roof`: height of the roof [m], at least 0; None where neither Height nor Storeys nor any Elevation is given.
     * `is_highest_floor`: whether `roof` is the highest floor of the workbook, which makes z/h larger than the roof
@@ -34,7 +30,7 @@ class Ground:
     """
 
     motion: assumed.Ground | None = None
-    building: assumed.Building = _NOTHING
+    building: assumed.Building = field(default_factory=assumed.Building)
     is_period_given: bool = False
     is_from_sds: bool = False
     roof: float | None = None
@@ -89,16 +85,33 @@ def find_ground(inventory: Inventory) -> Ground:
     building = inventory.building
     highest = max((floor.elevation for floor in inventory.floors if floor.elevation is not None), default=None)
     lowest = find_lowest_number((floor.floor, floor.elevation) for floor in inventory.floors)
-    by_sds = building.ground_pga is None and building.sds is not None
     pga = building.known_pga
     site = inventory.site_ground if pga is None else None
     shaking = SHAKINGS.get(building.shaking) if pga is None and site is None else None
-    roof, is_highest = _find_roof(building.height, building.storeys, highest)
+    motion, pgv = None, building.ground_pgv  # a Ground PGV that is typed rules that of a map or an intensity
+    if site:
+        motion = assumed.Ground(pga=site.pga, pgv=site.pgv if pgv is None else pgv)
+    elif shaking:
+        motion = assumed.Ground(pga=None if shaking.is_derived else shaking.pga, pgv=pgv or shaking.pgv)
+    elif pga is not None or pgv is not None:
+        motion = assumed.Ground(pga=pga, pgv=pgv)
+    by_storeys, is_highest = assumed.STOREY * building.storeys if building.storeys else 0.0, False
+    if building.height is not None:
+        roof: float | None = building.height
+    elif by_storeys > max(highest or 0.0, 0.0):
+        roof = by_storeys
+    else:
+        roof, is_highest = None if highest is None else max(highest, 0.0), True
+    known = assumed.Building(structure=building.structure or assumed.UNKNOWN)
+    if building.period is not None:
+        known = replace(known, period=building.period)
+    elif (by_height := assumed.estimate_period(roof)) is not None:
+        known = replace(known, period=by_height, scatter=assumed.SCATTER)
     return Ground(
-        motion=_find_motion(pga, building.ground_pgv, site, shaking),
-        building=_describe(building.period, roof, building.structure),
+        motion=motion,
+        building=known,
         is_period_given=building.period is not None,
-        is_from_sds=by_sds,
+        is_from_sds=building.ground_pga is None and building.sds is not None,
         roof=roof,
         is_highest_floor=is_highest,
         shaking=shaking,
@@ -106,35 +119,6 @@ def find_ground(inventory: Inventory) -> Ground:
         storeys=None if lowest is None else building.storeys,
         lowest=lowest or 0,
     )
-
-
-def _find_motion(
-    pga: float | None, pgv: float | None, site: SiteGround | None, shaking: Shaking | None
-) -> assumed.Ground | None:
-    """Return the medians; a Ground PGV that is typed rules that of a map or an intensity."""
-    if site:
-        return assumed.Ground(pga=site.pga, pgv=site.pgv if pgv is None else pgv)
-    if shaking:
-        return assumed.Ground(pga=None if shaking.is_derived else shaking.pga, pgv=pgv or shaking.pgv)
-    return None if pga is None and pgv is None else assumed.Ground(pga=pga, pgv=pgv)
-
-
-def _find_roof(height: float | None, storeys: int | None, highest: float | None) -> tuple[float | None, bool]:
-    """Return the height of the roof [m], and whether it is but the highest floor."""
-    if height is not None:
-        return height, False
-    by_storeys = assumed.STOREY * storeys if storeys else 0.0
-    if by_storeys > max(highest or 0.0, 0.0):
-        return by_storeys, False
-    return (None if highest is None else max(highest, 0.0)), True
-
-
-def _describe(period: float | None, roof: float | None, structure: str) -> assumed.Building:
-    known = assumed.Building(structure=structure or assumed.UNKNOWN)
-    if period is not None:
-        return replace(known, period=period)
-    by_height = assumed.estimate_period(roof)
-    return known if by_height is None else replace(known, period=by_height, scatter=assumed.SCATTER)
 
 
 def find_dispersion(ground: Ground, given: float | None) -> float:

@@ -14,10 +14,9 @@ from assess.arrays import BoolArray, FloatArray
 from assess.methods import Alike, Cases, Joint, Motions, Outcome, adopted_formula, simulation
 from assess.methods.simulate import make_batches, rock_cases, rock_draws, run_side_by_side
 from assess.motion.target_fit import measure_peaks
-from assess.pipeline.adopt import adopt, build_falls, find_governing, find_ruling
+from assess.pipeline.adopt import adopt, build_falls, find_governing, find_ruling, unite_axes
 from assess.pipeline.anchors import find_held
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.either_axis import unite_axes
 from assess.pipeline.verify import check_pairs, describe_work
 from assess.progress import SILENT, Progress, Stage
 from assess.routes.chances import Falls
@@ -141,10 +140,23 @@ class Sweep:
         cases, settings = self.cases, self.settings
         inventory, case_item = self.assessment.inventory, self.assessment.case_item
         scaled = replace(cases, pfa=pfa, pfv=cases.pfv * pfa / cases.pfa)
-        formula = adopted_formula(settings.class_by)
+        formula, count = adopted_formula(settings.class_by), cases.breadth.size
+        value: FloatArray = np.full(count, np.nan)
+        joints = []
+        for number, level in enumerate(rocked):
+            own, fell = level.own, level.fell[at]
+            value[own] = Alike.of(cases.alike[own], cases.quantity[own]).average(fell.sum(axis=1)) / fell.shape[1]
+            joint = Joint(
+                ensemble=number, cases=own, runs=np.full(own.size, fell.shape[1]), fell=fell, ideal=fell,
+                rotation=np.zeros((0, 0), dtype=np.float32), examples=(), fit=None,
+            )  # fmt: skip
+            joints.append(joint)
+        names = ("low", "high", "ideal_low", "ideal_high", "record_overturned", "if_faster")
+        detail = {"ideal": value, **dict.fromkeys(names, np.full(count, np.nan))}
+        flags = dict.fromkeys(("unknown_building", "weak_motions", "fell_in_record"), np.zeros(count, dtype=np.bool_))
         outcomes = {
             formula.key: formula.evaluate(scaled, settings),
-            simulation().key: _outcome(cases, [(one.own, one.fell[at]) for one in rocked]),
+            simulation().key: Outcome(value, detail, flags, tuple(joints)),  # without the recorded motion
         }
         adoption, united = unite_axes(
             adopt(outcomes, scaled, settings), outcomes, cases, inventory, case_item, self.assessment.case_demand,
@@ -154,21 +166,3 @@ class Sweep:
         held = find_held(inventory, pfa[governing], cases.dispersion[governing])
         falls = build_falls(inventory, adoption, outcomes, governing, settings, united, held)
         return replace(falls, stands=np.zeros_like(held))  # the same pieces at every level
-
-
-def _outcome(cases: Cases, rocked: Sequence[tuple[NDArray[np.intp], BoolArray]]) -> Outcome:
-    """Return what was rocked, (m,) and (m, draws), as the outcome of a simulation, without the recorded motion."""
-    count = cases.breadth.size
-    value: FloatArray = np.full(count, np.nan)
-    joints = []
-    for number, (own, one) in enumerate(rocked):
-        value[own] = Alike.of(cases.alike[own], cases.quantity[own]).average(one.sum(axis=1)) / one.shape[1]
-        runs, rotation = np.full(own.size, one.shape[1]), np.zeros((0, 0), dtype=np.float32)
-        joint = Joint(
-            ensemble=number, cases=own, runs=runs, fell=one, ideal=one, rotation=rotation, examples=(), fit=None
-        )
-        joints.append(joint)
-    unknown, no = np.full(count, np.nan), np.zeros(count, dtype=np.bool_)
-    names = ("low", "high", "ideal_low", "ideal_high", "record_overturned", "if_faster")
-    flags = dict.fromkeys(("unknown_building", "weak_motions", "fell_in_record"), no)
-    return Outcome(value, {"ideal": value, **dict.fromkeys(names, unknown)}, flags, tuple(joints))

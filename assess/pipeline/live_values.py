@@ -30,9 +30,6 @@ from assess.workbook.read import read_inventory
 from assess.workbook.schema import CATALOGUE, CLASS, CLASS_OR, LIVE, NO, SHEETS, YES
 from assess.workbook.template import Content, Rows, Units
 
-_SCALES = {"pfa": GRAVITY, "pfv": VELOCITY["cm/s"]}
-"""Units in which the sheet compares the peaks of two axes."""
-
 
 def live_values(inventory: Inventory, scenario: str | None = None) -> list[list[float | str]]:
     """Return what the columns `assess.workbook.schema.LIVE` show in the language in use, for each item.
@@ -44,17 +41,14 @@ def live_values(inventory: Inventory, scenario: str | None = None) -> list[list[
     kind = scenario or inventory.building.scenario_kind or SCENARIOS[0]
     demands = build_demands(inventory, kind, ductility_reduction=settings.ductility_reduction)
     is_live, formula = set(map(id, _list_live(inventory, demands))), adopted_formula(inventory.building.class_by)
-
-    def find_options(item: Item) -> list[Demand]:
-        """Return the motions of a piece; none where the sheet cannot know one of them."""
+    name, unit = formula.ruled_by, {"pfa": GRAVITY, "pfv": VELOCITY["cm/s"]}[formula.ruled_by]  # as the sheet compares
+    options: list[list[Demand]] = []  # the motions of each piece; none where the sheet cannot know one of them
+    for item in inventory.items:
         every = [one for axis in ((item.axis,) if item.axis else AXES) for one in demands[item.floor, axis]]
-        return every if all(id(one) in is_live for one in every) else []
-
-    def find_peak_shown(one: Demand) -> float:
-        return round(float(getattr(one, formula.ruled_by)) / _SCALES[formula.ruled_by], ALIKE)
-
-    options = list(map(find_options, inventory.items))
-    governing = [max(own, key=find_peak_shown, default=None) for own in options]
+        options.append(every if all(id(one) in is_live for one in every) else [])
+    governing = [
+        max(own, key=lambda one: round(float(getattr(one, name)) / unit, ALIKE), default=None) for own in options
+    ]
     cases = _build_cases(inventory.items, governing)
     outcomes = {method.key: method.evaluate(cases, settings) for method in LIVE_METHODS}
     values = zip(*(outcome.value.tolist() for outcome in outcomes.values()), strict=True)
@@ -62,12 +56,18 @@ def live_values(inventory: Inventory, scenario: str | None = None) -> list[list[
     can_rock = find_can_rock(replace(cases, pfa=strongest), settings).tolist()
     classes = []
     for method in (formula, paper_formula()):
-        found = outcomes[method.key]
-        outside = found.flags["extrapolated"].tolist()
-        classes.append(list(map(_say_class, inventory.items, governing, found.value.tolist(), outside, can_rock)))
-    rocks = [gettext(YES if one else NO) for one in can_rock]
-    rows = zip(cases.breadth_to_height.tolist(), governing, values, zip(*classes, strict=True), rocks, strict=True)
-    return [_write_row(*row) for row in rows]
+        chances, flags = outcomes[method.key].value.tolist(), outcomes[method.key].flags
+        outside = flags["extrapolated"].tolist()
+        classes.append(list(map(_say_class, inventory.items, governing, chances, outside, can_rock)))
+    rows, ratios = [], cases.breadth_to_height.tolist()
+    found = zip(ratios, governing, values, zip(*classes, strict=True), can_rock, strict=True)
+    for ratio, motion, own, shown, rocks in found:
+        if motion is None:
+            rows.append(_write_unknown(ratio, shown[0], gettext(RUN_ASSESS)))
+        else:
+            chances = ("" if np.isnan(value) else value for value in own)
+            rows.append([ratio, motion.pfa / GRAVITY, *chances, *shown, gettext(YES if rocks else NO)])
+    return rows
 
 
 def _list_live(inventory: Inventory, demands: Demands) -> list[Demand]:
@@ -107,14 +107,6 @@ def _say_class(
         return gettext(RUN_ASSESS)
     risk = classify(adopted) if can_rock else RiskClass.LOW
     return say_class(RiskClass.LOW if risk is None else risk) + OUTSIDE * (is_outside and can_rock)
-
-
-def _write_row(
-    ratio: float, governing: Demand | None, values: Sequence[float], classes: Sequence[str], rocks: str
-) -> list[float | str]:
-    if governing is None:
-        return _write_unknown(ratio, classes[0], gettext(RUN_ASSESS))
-    return [ratio, governing.pfa / GRAVITY, *("" if np.isnan(value) else value for value in values), *classes, rocks]
 
 
 def _write_unknown(ratio: float, label: str, hint: str) -> list[float | str]:

@@ -24,8 +24,8 @@ from assess.errors import InputError
 from assess.fragility import Fragility, fit_fragility
 from assess.i18n import Text, fill
 from assess.model import AXES, Axis, Inventory, Item
+from assess.pipeline.adopt import is_square
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.either_axis import is_square
 from assess.pipeline.floor_demand import Demand
 from assess.pipeline.levels import RockedLevels, Sweep
 from assess.pipeline.verify import choose_motions

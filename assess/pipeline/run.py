@@ -23,12 +23,12 @@ from assess.pipeline.adopt import (
     choose_items,
     find_governing,
     find_ruling,
+    unite_axes,
 )
-from assess.pipeline.anchors import find_held, find_spread
+from assess.pipeline.anchors import anchor_first, anchor_named, find_held, find_spread, spell_names
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.city_draws import check_draws, find_earthquakes, number_pieces
 from assess.pipeline.demand import build_demands, scale_demands
-from assess.pipeline.either_axis import unite_axes
 from assess.pipeline.floor_demand import Demand, Demands
 from assess.pipeline.remarks import list_too_low, remark
 from assess.pipeline.schedule import build_schedule, list_entries
@@ -46,7 +46,6 @@ from assess.pipeline.tables import (
     work_example,
 )
 from assess.pipeline.verify import choose_motions, find_peak, find_uncertainty, remark_suite, verify
-from assess.pipeline.what_if import anchor_first, anchor_named, spell_names
 from assess.progress import SILENT, Listener, Progress
 from assess.results import Results, Series
 from assess.route_results import RouteTables

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 from assess.errors import AssessError, InputError
 from assess.i18n import gettext, load_catalogue, speaking
 from assess.model import Inventory
+from assess.pipeline.anchors import anchor_named, spell_names
 from assess.pipeline.run import evaluate_route_tables, list_first_fixes
-from assess.pipeline.what_if import anchor_named, spell_names
 from assess.progress import SILENT
 from assess.settings import SCENARIOS, Settings, show_given
 from assess.web.evaluation import BY_FORMULAS, Evaluation, evaluate_once, evaluate_other

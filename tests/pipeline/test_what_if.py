@@ -6,7 +6,7 @@ import pytest
 
 import assess
 from assess.errors import SettingsError
-from assess.pipeline.what_if import anchor_named, spell_names
+from assess.pipeline.anchors import anchor_named, spell_names
 from assess.settings import Settings
 from tests.pipeline.rows import read_sheets
 from tests.report import routed
