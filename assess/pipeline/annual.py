@@ -12,7 +12,7 @@ What is not simulated has no annual chance. Under motions that may be too weak, 
 """
 
 import math
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -25,9 +25,7 @@ from assess.arrays import BoolArray, FloatArray
 from assess.fragility import fit_fragility
 from assess.hazard import HazardCurve
 from assess.i18n import Text, fill, nfill
-from assess.methods.simulate import interval_width
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.floor_demand import Demand
 from assess.pipeline.known_ground import Ground, find_ground
 from assess.pipeline.levels import RockedLevels, Sweep
 from assess.pipeline.verify import MOST_PAIRS
@@ -35,11 +33,10 @@ from assess.progress import Progress
 from assess.rates import evaluate_rate, integrate_table, list_remarks
 from assess.risk import NORMAL_95
 from assess.rocking.draws import CUT, MOTION
-from assess.routes.chances import Couplings, Draws, find_chances, to_array
-from assess.routes.network import build_course
+from assess.routes.chances import find_chances, to_array
+from assess.routes.network import IsBlocked
 from assess.routes.rooms import list_rooms
 from assess.routes.scene import Scene
-from assess.routes.widths import kinds_of
 from assess.settings import AUTO, RUNS
 from assess.units import GRAVITY, ROUNDING
 
@@ -59,7 +56,6 @@ def space(first: float, last: float) -> FloatArray:
 class Integral:
     """A hazard curve, and levels at which shares are known.
 
-    * `curve`: of the site.
     * `levels` (n,): rising levels, as ground PGA [m/s2].
     * `dispersion`: standard deviation of ln scale at a ground PGA [-], above 0.
     * `runs`: draws that a share comes from.
@@ -141,66 +137,39 @@ NEVER = AnnualRow(
 
 # ---------------------------------------------------------------- routes and rooms
 
-Happens = Callable[[Scene, Draws], int]
-"""Returns of a scene and some draws the set of those in which something happens."""
 
+def _evaluate_ways(scenes: Sequence[Scene], integral: Integral, doubtful: frozenset[int]) -> AnnualWays:
+    """Evaluate the routes of which any segment is evaluated, and the rooms of the network, at each level.
 
-@dataclass(frozen=True, slots=True)
-class _Ways:
-    """The segments at each level; what rests on `doubtful` pieces (indices), which fall too seldom, is a bound."""
+    What rests on `doubtful` pieces (indices), which fall too seldom, is a bound.
+    """
+    first = scenes[0]
 
-    scenes: Sequence[Scene]
-    integral: Integral
-    doubtful: frozenset[int]
-
-    def evaluate(self) -> AnnualWays:
-        """Evaluate the routes of which any segment is evaluated, and the rooms of the network."""
-        names = dict.fromkeys(one.segment.route for one in self.scenes[0].obstructions if one.is_evaluated)
-        found = {name: self._evaluate_route(name) for name in names}
-        return AnnualWays(
-            routes={name: row for name, (row, _) in found.items()},
-            routes_if_anchors_fail={name: row for name, (_, row) in found.items() if row is not None},
-            rooms={
-                place.place: self._find(
-                    part.segments,
-                    lambda scene, draws, part=part, name=place.place: part.cut_off(  # type: ignore[misc]
-                        scene.blocked(draws, part.segments), [name], draws.every
-                    )[0],
-                )
-                for place, part in list_rooms(self.scenes[0])
-            },
-        )
-
-    def _evaluate_route(self, name: str) -> tuple[AnnualRow, AnnualRow | None]:
-        """Return the rows of a route if all anchors hold, and if they fail; None where it has no anchored pieces."""
-        first = self.scenes[0]
-        segments = first.segments_of(name)
-        course = build_course(segments, kinds_of(first.inventory.places))
-
-        def happens(scene: Scene, draws: Draws) -> int:
-            return course.is_blocked(scene.blocked(draws, segments), draws.every)
-
-        anchored = any(first.falls.anchored[item] for item, _ in first.keys(segments, anchors_fail=True))
-        fails = self._find(segments, happens, anchors_fail=True) if anchored else None
-        return self._find(segments, happens), fails
-
-    def _find(self, segments: Collection[int], happens: Happens, *, anchors_fail: bool = False) -> AnnualRow:
-        every = [(scene, scene.couplings(segments, anchors_fail=anchors_fail)) for scene in self.scenes]
-        last, own = every[-1]
-        if not happens(last, own.ends):
+    def find(segments: Collection[int], is_blocked: IsBlocked, *, anchors_fail: bool = False) -> AnnualRow:
+        every = [
+            (scene.when_blocked(segments, is_blocked), scene.couplings(segments, anchors_fail=anchors_fail))
+            for scene in scenes
+        ]
+        happens, own = every[-1]
+        if not happens(own.ends)[0]:
             return NEVER
-
-        def find_share(scene: Scene, own: Couplings) -> float:
-            return find_chances(own, lambda draws: [happens(scene, draws)], scene.z)[0].probability
-
-        shares, spread = np.array([find_share(scene, own) for scene, own in every]), None
-        runs = {own.joint.weight.size for _, own in every} if all(own.is_joint for _, own in every) else set()
-        if len(runs) == 1:
+        shares = np.array([find_chances(own, happens, first.z)[0].probability for happens, own in every])
+        spread, runs = None, {own.joint.weight.size for _, own in every}
+        if len(runs) == 1 and all(own.is_joint for _, own in every):
             (count,) = runs
-            happened = [to_array(happens(scene, own.joint), count) for scene, own in every]
-            spread = self.integral.find_spread(np.array(happened))
+            spread = integral.find_spread(np.array([to_array(happens(own.joint)[0], count) for happens, own in every]))
         reaching = {item for item, _ in every[0][1].keys}
-        return self.integral.of_shares(shares, spread, at_least=bool(reaching & self.doubtful))
+        return integral.of_shares(shares, spread, at_least=bool(reaching & doubtful))
+
+    routes, fail = dict[str, AnnualRow](), dict[str, AnnualRow]()
+    for name in dict.fromkeys(one.segment.route for one in first.obstructions if one.is_evaluated):
+        segments = first.segments_of(name)
+        is_blocked = first.course(segments).is_blocked
+        if any(first.falls.anchored[item] for item, _ in first.keys(segments, anchors_fail=True)):
+            fail[name] = find(segments, is_blocked, anchors_fail=True)
+        routes[name] = find(segments, is_blocked)
+    rooms = {one.place: find(part.segments, part.when_cut_off(one.place)) for one, part in list_rooms(first)}
+    return AnnualWays(routes, fail, rooms)
 
 
 # ---------------------------------------------------------------- the building
@@ -212,7 +181,12 @@ MOST_RUNS, LEAST_RUNS = 1000, 50
 
 
 def evaluate_annual(assessment: Assessment, *, jobs: int | None, progress: Progress) -> Annual | None:
-    """Evaluate annual chances; None where the workbook names no hazard file. CancelledError if it is stopped."""
+    """Evaluate annual chances; None where the workbook names no hazard file. CancelledError if it is stopped.
+
+    Every piece is rocked at every level of ground PGA. Levels reach from where about nothing rocks to beyond the end of
+    the curve. Where some fall at the lowest one, lower ones are added, down to that of scattered motions of the first
+    point of the curve.
+    """
     curve, ground = assessment.inventory.hazard, find_ground(assessment.inventory)
     if curve is None:
         return None
@@ -228,16 +202,30 @@ def evaluate_annual(assessment: Assessment, *, jobs: int | None, progress: Progr
     missing = _find_missing(assessment, ground)
     if missing or ground.pga is None:
         return Annual(replace(tables, missing=missing), {}, AnnualWays({}, {}, {}))
-    settings, cases, own = assessment.settings, assessment.cases, assessment.settings.scale * ground.pga
-    pairs, runs = MOST_LEVELS * int((cases.ensemble >= 0).sum()), RUNS if settings.runs == AUTO else int(settings.runs)
+    settings, pga = assessment.settings, assessment.settings.scale * ground.pga  # to which the floors' motions belong
+    own = assessment.cases.ensemble >= 0
+    pairs, runs = MOST_LEVELS * int(own.sum()), RUNS if settings.runs == AUTO else int(settings.runs)
     settings = replace(settings, runs=min(runs, MOST_RUNS, max(LEAST_RUNS, MOST_PAIRS // pairs)))
-    found = [_find_dispersion(one) for one in assessment.case_demand]
+    # of the floors' motions at a ground PGA: on floors with a record never none; drawn motions scatter by themselves
+    spread = [one.own_dispersion or (MOTION if one.motion is not None else 0.0) for one in assessment.case_demand]
+    cases = replace(assessment.cases, dispersion=np.array(spread, dtype=np.float64))
     sweep = Sweep(
-        assessment=assessment, cases=replace(cases, dispersion=np.array(found, dtype=np.float64)),
-        peaks=np.full(len(found), own), settings=settings, dispersion=np.zeros(len(found)), jobs=jobs,
-        progress=progress,
+        assessment=assessment, cases=cases, peaks=np.full(len(spread), pga), settings=settings,
+        dispersion=np.zeros(len(spread)), jobs=jobs, progress=progress,
     )  # fmt: skip
-    return _Annual(sweep, curve, own, tables).evaluate()
+    largest = math.exp(CUT * float(cases.dispersion.max(initial=0.0)))  # no factor at a ground PGA exceeds it
+    floor, last = float(curve.pga[0]) / largest, float(curve.pga[-1]) * largest
+    start = cases.still[own] * GRAVITY * cases.threshold[own] / cases.pfa[own]
+    levels = space(float(np.clip(pga * start.min(), floor, last / STEP)), last)
+    rocked = sweep.rock(levels)
+    while levels[0] > floor * (1 + ROUNDING) and any(one.fell[0].any() for one in rocked):
+        lower = space(max(levels[0] / STEP**LOWER, floor), levels[0])[:-1]
+        levels = np.concatenate([lower, levels])
+        rocked = [
+            replace(one, fell=np.concatenate([below.fell, one.fell]))
+            for below, one in zip(sweep.rock(lower), rocked, strict=True)
+        ]
+    return progress.wait_for(lambda: _integrate(sweep, curve, pga, tables, levels, rocked))
 
 
 def _find_missing(assessment: Assessment, ground: Ground) -> Text | str:
@@ -258,159 +246,95 @@ def _find_missing(assessment: Assessment, ground: Ground) -> Text | str:
     return ""
 
 
-def _find_dispersion(demand: Demand) -> float:
-    """Return the standard deviation of ln of a floor's amplitude at a ground PGA [-].
-
-    On floors with a record it is never none; drawn motions scatter by themselves.
-    """
-    return demand.own_dispersion if demand.own_dispersion or demand.motion is None else MOTION
-
-
-@dataclass(frozen=True)
-class _Annual:
-    """The annual chances of one building.
-
-    * `sweep`: its cases, with the dispersion of the floors' motions at a ground PGA.
-    * `curve`: the hazard.
-    * `ground`: the ground PGA to which its floors' motions belong [m/s2].
-    * `tables`: what the curve tells.
-    """
-
-    sweep: Sweep
-    curve: HazardCurve
-    ground: float
-    tables: AnnualTables
-
-    @property
-    def assessment(self) -> Assessment:
-        """The building."""
-        return self.sweep.assessment
-
-    def evaluate(self) -> Annual:
-        """Rock every piece at every level of ground PGA, and integrate.
-
-        Levels reach from where about nothing rocks to beyond the end of the curve. Where some fall at the lowest one,
-        lower ones are added, down to that of scattered motions of the first point of the curve.
-        """
-        cases = self.sweep.cases
-        largest = math.exp(CUT * float(cases.dispersion.max(initial=0.0)))  # no factor at a ground PGA exceeds it
-        floor, last = float(self.curve.pga[0]) / largest, float(self.curve.pga[-1]) * largest
-        own = cases.ensemble >= 0
-        start = cases.still[own] * GRAVITY * cases.threshold[own] / cases.pfa[own]
-        levels = space(float(np.clip(self.ground * start.min(), floor, last / STEP)), last)
-        rocked = self.sweep.rock(levels)
-        while levels[0] > floor * (1 + ROUNDING) and any(one.fell[0].any() for one in rocked):
-            lower = space(max(levels[0] / STEP**LOWER, floor), levels[0])[:-1]
-            levels = np.concatenate([lower, levels])
-            rocked = [
-                replace(one, fell=np.concatenate([below.fell, one.fell]))
-                for below, one in zip(self.sweep.rock(lower), rocked, strict=True)
-            ]
-        return self.sweep.progress.wait_for(lambda: self._integrate(levels, rocked))
-
-    def _integrate(self, levels: FloatArray, rocked: Sequence[RockedLevels]) -> Annual:
-        assessment, sweep, case_item = self.assessment, self.sweep, self.assessment.case_item
-        cases, settings, inventory = sweep.cases, sweep.settings, assessment.inventory
-        falls = [
-            sweep.find_falls(assessment.cases.pfa * (level / self.ground), rocked, at)
-            for at, level in enumerate(levels.tolist())
-        ]
-        integrals = {
-            one: Integral(self.curve, levels, one, int(settings.runs)) for one in set(cases.dispersion.tolist())
-        }
-        integral = integrals[max(integrals)]  # of the whole building: the largest dispersion
-        ensembles = zip(cases.ensembles, rocked, strict=True)
-        own = [one.own for made, one in ensembles if made.is_unknown or one.is_weak]
-        doubtful = frozenset(case_item[np.concatenate(own)].tolist() if own else ())
-        fell = {item: np.array([one.fell[item] for one in falls]) for item in sorted(falls[0].fell)}
-        shares = self._average(fell)
-        items = {
-            item: integrals[float(cases.dispersion[case_item == item].max())].of_draws(
-                shares[item], at_least=item in doubtful
-            )
-            for item in fell
-        }
+def _integrate(
+    sweep: Sweep, curve: HazardCurve, pga: float, tables: AnnualTables, levels: FloatArray,
+    rocked: Sequence[RockedLevels],
+) -> Annual:  # fmt: skip
+    """Return the annual chances of pieces, routes and rooms, `pga` being the ground PGA of the motions as they are."""
+    assessment, cases, settings = sweep.assessment, sweep.cases, sweep.settings
+    case_item, inventory = assessment.case_item, assessment.inventory
+    falls = [
+        sweep.find_falls(assessment.cases.pfa * (level / pga), rocked, at) for at, level in enumerate(levels.tolist())
+    ]
+    integrals = {one: Integral(curve, levels, one, int(settings.runs)) for one in set(cases.dispersion.tolist())}
+    integral = integrals[max(integrals)]  # of the whole building: the largest dispersion
+    ensembles = zip(cases.ensembles, rocked, strict=True)
+    own = [one.own for made, one in ensembles if made.is_unknown or one.is_weak]
+    doubtful = frozenset(case_item[np.concatenate(own)].tolist() if own else ())
+    fell = {item: np.array([one.fell[item] for one in falls]) for item in sorted(falls[0].fell)}
+    # of a piece that has others exactly like it, the share of all of them that falls counts
+    alike: dict[int, list[int]] = {}
+    for item, kind in zip(case_item.tolist(), cases.alike.tolist(), strict=True):
+        alike.setdefault(item, []).append(kind)
+    groups: dict[tuple[int, ...], list[int]] = {}
+    for item in fell:
+        groups.setdefault(tuple(alike[item]), []).append(item)
+    items = {}
+    for group in groups.values():
+        quantity = [inventory.items[item].quantity for item in group]
+        share = np.asarray(sum(n * fell[item] for n, item in zip(quantity, group, strict=True)) / sum(quantity))
+        for item in group:
+            own_integral = integrals[float(cases.dispersion[case_item == item].max())]
+            items[item] = own_integral.of_draws(share, at_least=item in doubtful)
+    items = {item: items[item] for item in fell}
+    ways = AnnualWays({}, {}, {})
+    if assessment.obstructions:
         several = {at for at, item in enumerate(inventory.items) if item.quantity > 1}
-        ways = AnnualWays({}, {}, {})
-        if assessment.obstructions:
-            z, lanes = interval_width(settings), tuple(assessment.obstructions)
-            scenes = [
-                Scene(inventory, lanes, one, settings.route_risk, settings.seed, z, sweep.progress) for one in falls
-            ]
-            ways = _Ways(scenes, integral, doubtful | several).evaluate()
-        return Annual(self._describe(levels, integral, items, fell, doubtful), items, ways)
-
-    def _average(self, fell: Mapping[int, BoolArray]) -> dict[int, FloatArray]:
-        """Return for each piece the share of it and those exactly like it that fall, by level and draw."""
-        owns: dict[int, list[int]] = {}
-        for item, kind in zip(self.assessment.case_item.tolist(), self.sweep.cases.alike.tolist(), strict=True):
-            owns.setdefault(item, []).append(kind)
-        groups: dict[tuple[int, ...], list[int]] = {}
-        for item in fell:
-            groups.setdefault(tuple(owns[item]), []).append(item)
-        quantity = [one.quantity for one in self.assessment.inventory.items]
-        found: dict[int, FloatArray] = {}
-        for group in groups.values():
-            falls = sum(quantity[item] * fell[item] for item in group)
-            found |= dict.fromkeys(group, np.asarray(falls / sum(quantity[item] for item in group)))
-        return found
-
-    def _describe(
-        self,
-        levels: FloatArray,
-        integral: Integral,
-        items: Mapping[int, AnnualRow],
-        fell: Mapping[int, BoolArray],
-        doubtful: Collection[int],
-    ) -> AnnualTables:
-        """Return what stands for the building; of `doubtful` pieces the motions may be too weak."""
-        every, held = self.assessment.inventory.items, self.assessment.held
-        quantity = {item: every[item].quantity for item in items if not held[item]}
-        free = np.flatnonzero(~held).tolist()
-        too_stocky = set(self.assessment.case_item[self.sweep.cases.is_stocky].tolist())
-        everything = sum(quantity.values())
-        stocky = sum(every[at].quantity for at in too_stocky.intersection(free))
-        unknown = sum(every[at].quantity for at in free) - everything - stocky
-        weak = sum(count for item, count in quantity.items() if item in doubtful)
-        safety = [item for item in quantity if every[item].importance == "life safety"]
-        wanted = {at for at in free if every[at].importance == "life safety"} - too_stocky
-        # a lower bound where pieces of a row fall together, where some were not simulated, and where one of them is
-        at_least = any(quantity[item] > 1 or items[item].at_least for item in safety) or bool(wanted - {*safety})
-        any_fell = [fell[item] for item in safety]
-        found = replace(
-            self.tables,
-            ground_pga_g=self.ground / GRAVITY,
-            motion_dispersion=integral.dispersion,
-            runs=integral.runs,
-            factors=tuple((levels / self.ground).tolist()),
-            pieces=everything,
-            not_evaluated=unknown,
-            cannot_rock=stocky,
-            at_least=weak,
-            is_lower_bound=bool(weak or unknown),
-            life_safety_pieces=sum(quantity[item] for item in safety),
-            life_safety=integral.of_draws(np.any(any_fell, axis=0), at_least=at_least) if safety else None,
-        )
-        return _add_falls(found, integral, quantity, items, fell) if quantity else found
+        scenes = [Scene.of(inventory, assessment.obstructions, one, settings, sweep.progress) for one in falls]
+        ways = _evaluate_ways(scenes, integral, doubtful | several)
+    found = replace(
+        tables,
+        ground_pga_g=pga / GRAVITY,
+        motion_dispersion=integral.dispersion,
+        runs=integral.runs,
+        factors=tuple((levels / pga).tolist()),
+    )
+    return Annual(_sum_up(found, sweep, integral, items, fell, doubtful), items, ways)
 
 
-def _add_falls(
+def _sum_up(
     found: AnnualTables,
+    sweep: Sweep,
     integral: Integral,
-    quantity: Mapping[int, int],
     items: Mapping[int, AnnualRow],
     fell: Mapping[int, BoolArray],
+    doubtful: Collection[int],
 ) -> AnnualTables:
-    """Return the tables with how many of the pieces in `quantity` fall a year, and what the ends of the curve do.
+    """Return the tables with the sums of the building; of `doubtful` pieces the motions may be too weak.
 
-    The number is that of the pieces' own rates, its interval and its ends those of their falls, by the table.
+    The number of pieces that fall is that of their own rates, its interval and its ends those of their falls, by the
+    table.
     """
-    falls = np.zeros((integral.levels.size, integral.runs))
-    for item, count in quantity.items():
-        falls += count * fell[item]
-    shares = np.clip(integral.average @ falls.mean(axis=1) / found.pieces, 0, 1)
+    every, held = sweep.assessment.inventory.items, sweep.assessment.held
+    quantity = {item: every[item].quantity for item in items if not held[item]}
+    free = np.flatnonzero(~held).tolist()
+    too_stocky = set(sweep.assessment.case_item[sweep.cases.is_stocky].tolist())
+    pieces = sum(quantity.values())
+    stocky = sum(every[at].quantity for at in too_stocky.intersection(free))
+    unknown = sum(every[at].quantity for at in free) - pieces - stocky
+    weak = sum(count for item, count in quantity.items() if item in doubtful)
+    safety = [item for item in quantity if every[item].importance == "life safety"]
+    wanted = {at for at in free if every[at].importance == "life safety"} - too_stocky
+    # a lower bound where pieces of a row fall together, where some were not simulated, and where one of them is
+    at_least = any(quantity[item] > 1 or items[item].at_least for item in safety) or bool(wanted - {*safety})
+    any_fell = [fell[item] for item in safety]
+    found = replace(
+        found,
+        pieces=pieces,
+        not_evaluated=unknown,
+        cannot_rock=stocky,
+        at_least=weak,
+        is_lower_bound=bool(weak or unknown),
+        life_safety_pieces=sum(quantity[item] for item in safety),
+        life_safety=integral.of_draws(np.any(any_fell, axis=0), at_least=at_least) if safety else None,
+    )
+    if not quantity:
+        return found
+    none = np.zeros((integral.levels.size, integral.runs))
+    falls = sum((count * fell[item] for item, count in quantity.items()), none)
+    shares = np.clip(integral.average @ falls.mean(axis=1) / pieces, 0, 1)
     total = integrate_table(integral.curve, integral.points, shares)
-    total = replace(total, rate=found.pieces * total.rate, most=found.pieces * total.most)
+    total = replace(total, rate=pieces * total.rate, most=pieces * total.most)
     spread = integral.find_spread(falls)
     expected = sum(count * items[item].rate for item, count in quantity.items())
     beyond = sum(count for item, count in quantity.items() if items[item].ends_matter)

@@ -25,8 +25,7 @@ from numpy.typing import NDArray
 
 from assess.errors import InputError
 from assess.methods import Ensemble
-from assess.methods.simulate import interval_width
-from assess.model import AXES, Segment
+from assess.model import AXES
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.ensembles import DrawnEnsemble, GeneratedEnsemble
 from assess.pipeline.levels import RockedLevels, Sweep
@@ -35,11 +34,9 @@ from assess.progress import SILENT, Progress
 from assess.rocking.draws import Uncertainty
 from assess.route_results import Chance, PieceRef
 from assess.routes.fixes import find_fixes
-from assess.routes.network import Course, build_course
 from assess.routes.obstructions import Obstructions, find_obstructions
 from assess.routes.rooms import count_unplaced
 from assess.routes.scene import Judgement, Scene
-from assess.routes.widths import kinds_of
 from assess.settings import AUTO
 from assess.units import ROUNDING
 
@@ -131,7 +128,20 @@ def find_fragility(
         )
 
     def find() -> Fragility:
-        study = _open(assessment, most_inserted, jobs, progress)
+        inventory, settings, demands = assessment.inventory, assessment.settings, assessment.case_demand
+        obstructions = find_obstructions(inventory, progress)
+        beside = np.array(sorted({one.item_index for segment in obstructions for one in segment.pieces}), dtype=np.intp)
+        chosen = np.isin(assessment.case_item, beside) & ~assessment.cases.is_stocky
+        own = np.array([one.own_dispersion for one in demands], dtype=np.float64)  # without that of PGA
+        drawn = replace(assessment.cases.earthquakes, given=())  # nor are there scenarios of it
+        cases = replace(assessment.cases, dispersion=own, earthquakes=drawn)
+        cases = choose_motions(cases, chosen, demands, assessment.demands, inventory, settings, None)
+        sweep = Sweep(
+            assessment=assessment, cases=cases, peaks=np.array([one.pfa for one in demands], dtype=np.float64),
+            settings=settings, dispersion=None if settings.ideal else cases.dispersion, jobs=jobs,
+            opened={} if most_inserted else None, progress=progress,
+        )  # fmt: skip
+        study = _Study(sweep, obstructions, beside, tuple(dict.fromkeys(one.segment.route for one in obstructions)))
         study.add(values)
         while new := study.halve(most_inserted + len(values) - len(study.levels)):
             study.add(new)
@@ -164,30 +174,8 @@ def find_passing(values: Sequence[float], chances: Sequence[float], level: float
 # ---------------------------------------------------------------- the values
 
 
-@dataclass(frozen=True, slots=True)
-class _Level:
-    """The building at one value of PFA: its segments with how pieces fall, and the chances of each route there."""
-
-    scene: Scene
-    routes: Mapping[str, Judgement]
-
-
-def _open(assessment: Assessment, most_inserted: int, jobs: int | None, progress: Progress) -> "_Study":
-    """Return the pieces beside routes with the motions under which they are rocked; too stocky ones are not."""
-    inventory, settings, demands = assessment.inventory, assessment.settings, assessment.case_demand
-    obstructions = find_obstructions(inventory, progress)
-    beside = np.array(sorted({one.item_index for segment in obstructions for one in segment.pieces}), dtype=np.intp)
-    chosen = np.isin(assessment.case_item, beside) & ~assessment.cases.is_stocky
-    own = np.array([one.own_dispersion for one in demands], dtype=np.float64)  # without that of PGA
-    drawn = replace(assessment.cases.earthquakes, given=())  # nor are there scenarios of it
-    cases = replace(assessment.cases, dispersion=own, earthquakes=drawn)
-    cases = choose_motions(cases, chosen, demands, assessment.demands, inventory, settings, None)
-    sweep = Sweep(
-        assessment=assessment, cases=cases, peaks=np.array([one.pfa for one in demands], dtype=np.float64),
-        settings=settings, dispersion=None if settings.ideal else cases.dispersion, jobs=jobs,
-        opened={} if most_inserted else None, progress=progress,
-    )  # fmt: skip
-    return _Study(sweep, obstructions, beside, tuple(dict.fromkeys(one.segment.route for one in obstructions)))
+_Level = tuple[Scene, Mapping[str, Judgement]]
+"""The building at one value of PFA: its segments with how pieces fall, and the chances of each route there."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -213,27 +201,19 @@ class _Study:
         self.rocked[:] = sweep.rock(np.array(values, dtype=np.float64))
         for at, value in enumerate(values):
             falls = sweep.find_falls(np.full(sweep.cases.pfa.size, value), self.rocked, at)
-            scene = Scene(
-                sweep.assessment.inventory, self.obstructions, falls, settings.route_risk, settings.seed,
-                interval_width(settings), sweep.progress,
-            )  # fmt: skip
-            self.levels[value] = _Level(scene, {name: self._judge(scene, name) for name in self.names})
-
-    def _judge(self, scene: Scene, name: str) -> Judgement:
-        segments = scene.segments_of(name)
-        course = self.find_course(segments)
-        return scene.judge(segments, lambda draws: [course.is_blocked(scene.blocked(draws, segments), draws.every)])
-
-    def find_course(self, segments: Mapping[int, Segment]) -> Course:
-        """Return how some segments make up a route."""
-        return build_course(segments, kinds_of(self.sweep.assessment.inventory.places))
+            scene = Scene.of(sweep.assessment.inventory, self.obstructions, falls, settings, sweep.progress)
+            judged = {}
+            for name in self.names:
+                segments = scene.segments_of(name)
+                judged[name] = scene.judge(segments, scene.when_blocked(segments, scene.course(segments).is_blocked))
+            self.levels[value] = scene, judged
 
     def halve(self, most: int) -> list[float]:
         """Return values halfway between two at which the chance of any route jumps, the largest jumps first."""
         values, largest = self.values, dict[int, float]()
         levels = [self.levels[value] for value in values]
         for name in self.names:  # if anchors hold, and if they fail where there are any
-            judged = [one.routes[name] for one in levels]
+            judged = [routes[name] for _, routes in levels]
             fail = [one.if_anchors_fail for one in judged if one.if_anchors_fail]
             for ways in ([one.chances[0] for one in judged], fail if len(fail) == len(judged) else []):
                 chances = [one.probability for one in ways]
@@ -246,7 +226,7 @@ class _Study:
     def describe(self, given: Sequence[float]) -> Fragility:
         """Return what was found; `given` are the values that were asked for."""
         assessment, settings, cases = self.sweep.assessment, self.sweep.settings, self.sweep.cases
-        inventory, scene = assessment.inventory, self.levels[self.values[0]].scene
+        inventory, (scene, _) = assessment.inventory, self.levels[self.values[0]]
         ensembles = list(zip(cases.ensembles, self.rocked, strict=True))
         doubtful = [assessment.case_item[one.own] for made, one in ensembles if made.is_unknown or one.is_weak]
         items = frozenset(np.concatenate(doubtful).tolist() if doubtful else ())
@@ -277,8 +257,14 @@ class _Study:
 
     def _describe_route(self, name: str, doubtful: frozenset[int]) -> RouteFragility:
         assessment, levels = self.sweep.assessment, [self.levels[value] for value in self.values]
-        first, last, judged = levels[0].scene, levels[-1].scene, [one.routes[name] for one in levels]
-        segments = first.segments_of(name)
+        (first, _), (last, _), judged = levels[0], levels[-1], [routes[name] for _, routes in levels]
+        segments, risk = first.segments_of(name), self.sweep.settings.route_risk
+        causes: tuple[PieceRef, ...] = ()
+        reached = (scene for scene, routes in levels if routes[name].chances[0].probability >= risk)
+        if (scene := next(reached, None)) is not None:  # at the first value that is not below the limit
+            lanes, is_blocked = {at: self.obstructions[at] for at in segments}, first.course(segments).is_blocked
+            steps, _ = find_fixes(scene.couplings(segments), lanes, is_blocked, risk, progress=self.sweep.progress)
+            causes = tuple(scene.piece(item) for item, _, _ in steps)
         floors = tuple(dict.fromkeys(one.floor for one in segments.values() if one.floor))
         peaks = [demand.pfa for floor in floors for axis in AXES for demand in assessment.demands[floor, axis]]
         unknown = [at for at in segments if last.is_unknown(at) or not last.is_evaluated(at)]
@@ -292,18 +278,5 @@ class _Study:
             unevaluated=tuple(segments[at].segment for at in unknown),
             doubtful=sum(assessment.inventory.items[item].quantity for item in reaching & doubtful),
             scenario_pfa=(min(peaks), max(peaks)) if peaks else None,
-            causes=self._find_causes(levels, name, segments),
+            causes=causes,
         )
-
-    def _find_causes(
-        self, levels: Sequence[_Level], name: str, segments: Mapping[int, Segment]
-    ) -> tuple[PieceRef, ...]:
-        """Return the pieces to blame at the first value at which a route is not below the limit."""
-        risk = self.sweep.settings.route_risk
-        scene = next((one.scene for one in levels if one.routes[name].chances[0].probability >= risk), None)
-        if scene is None:
-            return ()
-        lanes = {at: self.obstructions[at] for at in segments}
-        is_blocked = self.find_course(segments).is_blocked
-        steps, _ = find_fixes(scene.couplings(segments), lanes, is_blocked, risk, progress=self.sweep.progress)
-        return tuple(scene.piece(item) for item, _, _ in steps)

@@ -3,16 +3,14 @@
 Pieces whose chance is not confirmed are taken as fallen in it, which is on the safe side.
 """
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import pairwise
 
 from assess.progress import SILENT, Progress
 from assess.routes.chances import EVERY, NONE, Couplings, Draws, Key, find_upper
-from assess.routes.network import Blocked
+from assess.routes.network import IsBlocked
 from assess.routes.obstructions import Obstructions
 
-IsBlocked = Callable[[Blocked, int], int]
-"""Returns the set of the draws in which the route is blocked, from those in which segments are, and all draws."""
 Fixed = frozenset[int]
 """Pieces that are fixed, by their index in the inventory."""
 

@@ -1,7 +1,7 @@
 """The network of places that segments join: what a blockage cuts off, and the ways that are left."""
 
 import math
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, pairwise
 
@@ -22,6 +22,8 @@ BEYOND = "\0"
 
 Blocked = Mapping[int, int]
 """For each segment the set of the draws in which it is blocked, as in `assess.routes.chances`."""
+IsBlocked = Callable[[Blocked, int], int]
+"""Returns the set of the draws in which segments count as blocked together, from `Blocked` and the set of all draws."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +64,10 @@ class Part:
                     reached[one] |= more
                     reached[other] |= more
         return [every & ~reached[place] for place in sources]
+
+    def when_cut_off(self, place: str) -> IsBlocked:
+        """Return when a place reaches none of the targets."""
+        return lambda blocked, every: self.cut_off(blocked, [place], every)[0]
 
 
 def build_graph(segments: Mapping[int, Segment]) -> "nx.MultiGraph[str]":

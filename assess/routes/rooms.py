@@ -22,8 +22,8 @@ from assess.route_results import (
     WayRow,
 )
 from assess.routes.chances import Draws, union
-from assess.routes.fixes import IsBlocked, find_fixes
-from assess.routes.network import Blocked, Part, build_graph, find_parts, find_rooms, find_ways
+from assess.routes.fixes import find_fixes
+from assess.routes.network import Blocked, IsBlocked, Part, build_graph, find_parts, find_rooms, find_ways
 from assess.routes.scene import Scene, Verdict, combine
 from assess.routes.widths import kinds_of
 from assess.text import natural_key
@@ -81,10 +81,8 @@ def list_unjoined(scene: Scene, found: Iterable[tuple[Place, Part]]) -> tuple[st
 
 def evaluate_room(scene: Scene, place: Place, part: Part, rows: Sequence[SegmentRow]) -> RoomRow:
     """Return one room; `rows` are all segments."""
-    exits = tuple(sorted({end for edge in part.edges for end in edge[:2]} & part.targets, key=natural_key))
-
-    def is_cut_off(blocked: Blocked, every: int) -> int:
-        return part.cut_off(blocked, [place.place], every)[0]
+    exits = tuple(sorted(part.places & part.targets, key=natural_key))
+    is_cut_off = part.when_cut_off(place.place)
 
     def lose(scene: Scene, draws: Draws) -> tuple[int, int, int]:
         """Return the sets of the draws in which it loses every exit, as `Scene.at_best_and_worst` does."""

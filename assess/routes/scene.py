@@ -20,7 +20,7 @@ from assess.progress import SILENT, Progress
 from assess.risk import wilson_interval
 from assess.route_results import DOUBTS, Chance, MissingRow, PieceRef, RouteState, find_state, join_missing
 from assess.routes.chances import Couplings, Draws, Falls, Happens, Key, build_couplings, find_chances, union
-from assess.routes.network import Blocked, Course, build_course
+from assess.routes.network import Blocked, Course, IsBlocked, build_course
 from assess.routes.obstructions import Obstructions, is_walled_off
 from assess.routes.widths import kinds_of
 from assess.settings import Settings
@@ -293,6 +293,10 @@ class Scene:
         """Return for each of some segments the set of the draws in which it is blocked."""
         return {at: self.narrower(draws, at, self.obstructions[at].required) for at in segments}
 
+    def when_blocked(self, segments: Collection[int], is_blocked: IsBlocked) -> Happens:
+        """Return what returns the set of the draws in which some segments are blocked together."""
+        return lambda draws: [is_blocked(self.blocked(draws, segments), draws.every)]
+
     def together(self, segments: Collection[int], happens: Happens, *, anchors_fail: bool = False) -> dict[int, float]:
         """Return for each piece the chance that it falls while the first of what happens does, where there is any.
 
@@ -332,14 +336,8 @@ class Scene:
             if_anchors_fail = find_chances(failed, happens, self.z)[0]
         return Judgement(chances, at_most, if_anchors_fail, None if likeliest is None else self.piece(likeliest))
 
-    def outlook(
-        self, segments: Collection[int], is_blocked: Callable[[Blocked, int], int], *, is_evaluated: bool
-    ) -> Outlook:
-        """Return the outlook of some segments together; without chances where they are not evaluated.
-
-        `is_blocked` returns the set of the draws in which they count as blocked together, from those in which segments
-        are blocked, and the set of all draws.
-        """
+    def outlook(self, segments: Collection[int], is_blocked: IsBlocked, *, is_evaluated: bool) -> Outlook:
+        """Return the outlook of some segments together; without chances where they are not evaluated."""
 
         def happens(draws: Draws) -> tuple[int, ...]:
             best, *others = self.at_best_and_worst(draws, segments, is_blocked)
@@ -359,13 +357,10 @@ class Scene:
             most_likely_piece=found.most_likely_piece,
         )
 
-    def at_best_and_worst(
-        self, draws: Draws, segments: Collection[int], is_blocked: Callable[[Blocked, int], int]
-    ) -> tuple[int, int, int]:
+    def at_best_and_worst(self, draws: Draws, segments: Collection[int], is_blocked: IsBlocked) -> tuple[int, int, int]:
         """Return the sets of the draws in which segments are blocked together, by what is missing.
 
         It leaves all open; those are blocked of which nothing is known; those as well that left-out pieces may reach.
-        `is_blocked` is as in `outlook`.
         """
         own = self.blocked(draws, segments)
         unknown = [at for at in segments if self.is_unknown(at)]
