@@ -21,6 +21,8 @@ sys.path.insert(0, str(ROOT))
 
 from assess.arrays import FloatArray  # noqa: E402
 from assess.intensity import RATIO  # noqa: E402
+from assess.methods import Cases  # noqa: E402
+from assess.methods.simulate import rock_draws  # noqa: E402
 from assess.motion.floor_medians import find_medians  # noqa: E402
 from assess.motion.generate import build_generator  # noqa: E402
 from assess.motion.target import TIME_STEP, build_grid, recorded_target  # noqa: E402
@@ -28,7 +30,7 @@ from assess.motion.target_fit import measure_peaks  # noqa: E402
 from assess.risk import classify_all  # noqa: E402
 from assess.rocking.draws import MOTION  # noqa: E402
 from assess.settings import Settings  # noqa: E402
-from assess.studies.agreement import FEMA, KANEKO, METHODS, OR, Cases, rock_draws  # noqa: E402
+from assess.studies.agreement import FEMA, KANEKO, METHODS, OR  # noqa: E402
 from assess.studies.buildings import Building, all_buildings  # noqa: E402
 from assess.units import GRAVITY  # noqa: E402
 from tests.validation import test_far_field_records as far  # noqa: E402 - a script, and tests are no part of the package
