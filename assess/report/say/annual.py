@@ -2,13 +2,11 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
-from assess.annual_results import YEARS, AnnualRow, AnnualTables
+from assess.annual_results import AnnualRow, AnnualTables
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
-from assess.report import words
 from assess.report.say.piece import describe
 from assess.results import ItemResult, Results
 from assess.text import natural_key
@@ -164,23 +162,6 @@ def say_share(value: float, row: AnnualRow) -> str:
         return f"> {number(100 * MOST, '.1f')} %"
     decimals = 1 if value >= 0.01 else 2 if value >= 0.001 else 3
     return f"{mark}{number(100 * value, f'.{decimals}f')} %"
-
-
-def say_years(row: AnnualRow) -> str:
-    """Return the mean time between two events [years]; a dash where none was found."""
-    if row.rate <= 0:
-        return words.DASH
-    years = 1 / row.rate
-    return number(years, ".1f") if years < 10 else number(float(f"{years:.2g}"), ",.0f")
-
-
-def say_interval(row: AnnualRow) -> str:
-    """Return the 95 % sampling interval of the chance in 50 years; a dash where it is not known."""
-    if row.low is None or row.high is None:
-        return words.DASH
-    low, high = (-math.expm1(-YEARS * rate) for rate in (row.low, row.high))
-    plain = replace(row, at_least=False)
-    return _("{low} to {high}", low=say_share(low, plain), high=say_share(high, plain))
 
 
 def _say_number(value: float) -> str:

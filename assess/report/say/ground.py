@@ -38,12 +38,11 @@ DRAWN = fill(
     "(Miranda and Taghavi 2005), on ground motions with the spectrum of Newmark and Hall (1982)"
 )
 """What is assumed of floors without a record."""
-MOST_ELASTIC = 1.0
-"""PFA [g] above which a floor of a drawn building is said to hold if the building stays elastic."""
+
 MOST_PLACES = 20
 """Floors and axes of a source that are named."""
 
-_OWN = {
+_FLAGS = {
     "one_axis_only": MOTION_FLAGS["one_axis_only"],
     "assumed_shaking": fill("assumed shaking"),
     "shakemap": fill("ShakeMap"),
@@ -53,8 +52,7 @@ _OWN = {
     "unknown_building": fill("building unknown"),
     "beyond_table": fill("beyond the table"),
 }
-_CARRIED = _OWN | {"one_axis_only": fill("one axis only")}
-"""Flags next to a source: of the floor itself, and of a neighbouring floor."""
+"""Flags next to a source."""
 
 
 def describe_source(motion: MotionRow) -> str:
@@ -66,11 +64,11 @@ def describe_source(motion: MotionRow) -> str:
         source = _describe_between(motion)
     elif motion.source == "beam":
         source = _("drawn buildings on the ground motion")
-        if motion.pfa_g > MOST_ELASTIC:
+        if motion.pfa_g > 1.0:
             source = _("{source}, if the building stays elastic", source=source)
     elif motion.source == "given":
         source = _("given PFA") if motion.pfv_follows else _("given PFA and PFV")
-    texts = _CARRIED if motion.between else _OWN
+    texts = _FLAGS | ({"one_axis_only": fill("one axis only")} if motion.between else {})  # of a neighbouring floor
     flags = [_(texts[flag]) for flag in motion.flags if flag in texts]
     return source + (f" ({'; '.join(flags)})" if flags else "")
 
@@ -356,27 +354,42 @@ def say_ground_source(results: Results) -> str:
 def say_ground(results: Results, *, shortly: bool = False) -> str:
     """Return the same, and where it rests on none of these the peaks that are filled in or recorded; "" for none."""
     found, shaking = results.provenance.site_ground, results.provenance.shaking
-    if not shortly or (found is None and shaking is None):
-        return say_ground_source(results) or " ".join(_say_given(results))
-    if found is not None:
+    if found is not None and shortly:
         return " ".join(_say_site(found, results))
-    if shaking is None:
+    if shaking is not None and shortly:
+        values = {
+            "intensity": _(shaking.choice), "pga": words.in_g(shaking.pga_g), "pgv": words.fixed(shaking.pgv_cm_s, 1),
+            "sources": ", ".join(shaking.sources),
+        }  # fmt: skip
+        if uses_scatter(results):
+            text = _("Assumed shaking: {intensity}, by its median PGV of {pgv} cm/s and PGA of {pga} g, scatter of ln "
+                     "PGV {scatter} ({sources}).", scatter=number(shaking.scatter, "g"), **values)  # fmt: skip
+        else:
+            text = _("Assumed shaking: {intensity}, by its median PGV of {pgv} cm/s and PGA of {pga} g ({sources}); "
+                     "scatter is not in the results.", **values)  # fmt: skip
+        return " ".join((text, *_say_factor(results)))
+    if source := say_ground_source(results):
+        return source
+    building, pgv = results.building, None
+    at_grade = {one.floor for one in results.floor_rows if one.elevation_m is not None and one.elevation_m <= 0}
+    if own := [one for one in results.motions if one.floor in at_grade and one.source == "record"]:
+        pga_g, pgv = max(one.pfa_g for one in own), max(one.pfv_cm_s or 0.0 for one in own)
+        text = _("Ground motion: recorded, with a PGA of {pga} g and a PGV of {pgv} cm/s.", pga=words.in_g(pga_g),
+                 pgv=words.fixed(pgv, 1))  # fmt: skip
+    elif building.known_pga is None:
         return ""
-    values = {
-        "intensity": _(shaking.choice), "pga": words.in_g(shaking.pga_g), "pgv": words.fixed(shaking.pgv_cm_s, 1),
-        "sources": ", ".join(shaking.sources),
-    }  # fmt: skip
-    if uses_scatter(results):
-        text = _(
-            "Assumed shaking: {intensity}, by its median PGV of {pgv} cm/s and PGA of {pga} g, scatter of ln PGV "
-            "{scatter} ({sources}).", scatter=number(shaking.scatter, "g"), **values,
-        )  # fmt: skip
     else:
-        text = _(
-            "Assumed shaking: {intensity}, by its median PGV of {pgv} cm/s and PGA of {pga} g ({sources}); scatter is "
-            "not in the results.", **values,
-        )  # fmt: skip
-    return " ".join((text, *_say_factor(results)))
+        pga_g = building.known_pga / GRAVITY
+        if building.ground_pgv is not None:
+            pgv = 100 * building.ground_pgv
+            text = _("Ground motion: PGA {pga} g and PGV {pgv} cm/s as filled in.", pga=words.in_g(pga_g),
+                     pgv=words.fixed(pgv, 1))  # fmt: skip
+        elif any(one.source != "record" for one in results.motions):
+            text = _("Ground motion: PGA {pga} g as filled in, taken as from an earthquake of magnitude 6.5 to 7.5.",
+                     pga=words.in_g(pga_g))  # fmt: skip
+        else:
+            text = _("Ground motion: PGA {pga} g as filled in.", pga=words.in_g(pga_g))
+    return " ".join((text, *_say_strength(pga_g, pgv, results), *(() if own else _say_factor(results))))
 
 
 def name_source(found: "SiteGround") -> str:
@@ -412,32 +425,6 @@ def _say_site(found: "SiteGround", results: Results) -> Iterator[str]:
     yield from _say_factor(results)
 
 
-def _say_given(results: Results) -> Iterator[str]:
-    """Yield the peaks of the ground by a record of it, or as the workbook gives them."""
-    at_grade = {one.floor for one in results.floor_rows if one.elevation_m is not None and one.elevation_m <= 0}
-    own = [one for one in results.motions if one.floor in at_grade and one.source == "record"]
-    building, assumed = results.building, any(one.source != "record" for one in results.motions)
-    pgv: float | None
-    if own:
-        pga_g, pgv = max(one.pfa_g for one in own), max(one.pfv_cm_s or 0.0 for one in own)
-    elif building.known_pga is None:
-        return
-    else:
-        pga_g, pgv = building.known_pga / GRAVITY, None if building.ground_pgv is None else 100 * building.ground_pgv
-    values = {"pga": words.in_g(pga_g), "pgv": words.fixed(pgv, 1)}
-    if own:
-        yield _("Ground motion: recorded, with a PGA of {pga} g and a PGV of {pgv} cm/s.", **values)
-    elif pgv is not None:
-        yield _("Ground motion: PGA {pga} g and PGV {pgv} cm/s as filled in.", **values)
-    elif assumed:
-        yield _("Ground motion: PGA {pga} g as filled in, taken as from an earthquake of magnitude 6.5 to 7.5.",
-                **values)  # fmt: skip
-    else:
-        yield _("Ground motion: PGA {pga} g as filled in.", **values)
-    yield from _say_strength(pga_g, pgv, results)
-    yield from () if own else _say_factor(results)
-
-
 def _say_strength(pga_g: float, pgv_cm_s: float | None, results: Results) -> Iterator[str]:
     """Yield how strong such a ground motion is as an intensity, and how rare where there is a hazard curve."""
     intensity = name_mmi(pga_g * GRAVITY, None if pgv_cm_s is None else pgv_cm_s / 100)
@@ -450,9 +437,6 @@ def _say_strength(pga_g: float, pgv_cm_s: float | None, results: Results) -> Ite
     if curve and curve.curve_pga_g and curve.curve_pga_g[0] <= pga_g <= curve.curve_pga_g[-1]:
         rate = math.exp(np.interp(math.log(pga_g), np.log(curve.curve_pga_g), np.log(curve.curve_rate)))
         yield _("Its PGA is exceeded about once in {years:,.0f} years, by the hazard curve.", years=1 / rate)
-
-
-# ---------------------------------------------------------------- assumed shaking
 
 
 def uses_scatter(results: Results) -> bool:
@@ -496,10 +480,6 @@ UNLIKE = 0.10
 """Difference between the median PFA of the user's own motions and the PFA of a floor above which it is reported [-]."""
 MOST_WARNINGS = 5
 """Warnings that are given in full."""
-MOST_TIMES = 8
-"""Floors and axes that a sentence names."""
-MOST_FLOORS, LONGEST_FLOOR = 6, 10
-"""Floors that a short caution names, and the characters of each."""
 
 
 class Caution(NamedTuple):
@@ -555,7 +535,7 @@ def _of_floors(floors: Iterable[str], say: Callable[[str], str], shortly: Callab
     each = list(dict.fromkeys(floors))
     if not each:
         return []
-    some = words.name_first([words.cut(floor, LONGEST_FLOOR) for floor in each], MOST_FLOORS)
+    some = words.name_first([words.cut(floor, 10) for floor in each], 6)
     named, short = (
         ngettext("Floor {floors}", "Floors {floors}", len(each), floors=text) for text in (", ".join(each), some)
     )
@@ -582,7 +562,6 @@ def list_narrowing(results: Results) -> list[str]:
 
 
 def _list_generated(results: Results) -> list[Caution]:
-    """Name the floors whose pieces were simulated under assumed motions, and those with weaker ones."""
     made = [(one.floor, one.ensemble) for one in results.motions if one.ensemble is not None]
     ways = list_narrowing(results)
     narrow = " " + _("What would narrow it: {ways}.", ways=", ".join(ways)) if ways else ""
@@ -611,7 +590,6 @@ def _list_generated(results: Results) -> list[Caution]:
 
 
 def _list_own(results: Results, suite: SuiteInfo) -> Iterator[Caution]:
-    """Say that pieces were simulated under the user's own motions, and where these differ from the floor's."""
     text = _("Simulation uses {motions}.", motions=describe_suite(results))
     yield Caution(text, _("Simulation uses the user's own motions."))
     median, places = suite.median_pfa_g, []
@@ -626,16 +604,10 @@ def _list_own(results: Results, suite: SuiteInfo) -> Iterator[Caution]:
         text = _(
             "The median PFA of these motions, {pfa} g, differs from that of {places}. Where it is below, chances come "
             "out too low; they lower no class.",
-            pfa=words.in_g(median), places=words.name_first(places, MOST_TIMES, "; "),
+            pfa=words.in_g(median), places=words.name_first(places, 8, "; "),
         )  # fmt: skip
         short = _("The user's own motions are not as strong as the floors': where weaker, chances come out too low.")
         yield Caution(text, short)
-
-
-# ---------------------------------------------------------------- a floor in two lines
-
-SOURCES = 3
-"""Sources that a line names."""
 
 
 def say_motions(floor: FloorRow, motions: Sequence[MotionRow]) -> str:
@@ -651,7 +623,7 @@ def say_motions(floor: FloorRow, motions: Sequence[MotionRow]) -> str:
         if known:
             speeds.append(_("PFV {axis} {pfv} cm/s", axis=axis, pfv=words.fixed(max(known), 1)))
     sources = list(dict.fromkeys(map(describe_source, motions)))
-    text = ": ".join(filter(None, ("; ".join([*peaks, *speeds]), words.name_first(sources, SOURCES, "; "))))
+    text = ": ".join(filter(None, ("; ".join([*peaks, *speeds]), words.name_first(sources, 3, "; "))))
     if floor.elevation_m is None:
         return f"{text}."
     return _("{elevation} m above ground. {motion}.", elevation=words.in_m(floor.elevation_m), motion=text)

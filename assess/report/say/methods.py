@@ -2,7 +2,6 @@
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import chain, zip_longest
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
@@ -15,12 +14,6 @@ from assess.text import natural_key
 
 if TYPE_CHECKING:
     from assess.methods import MethodInfo, Reason
-
-
-MOST_REASONS = 4
-"""Reasons that are given at most, the most important first."""
-NAMED = 12
-"""Pieces of a group that a report names."""
 
 
 class Verdict(NamedTuple):
@@ -40,59 +33,43 @@ class Disagreement(NamedTuple):
     reasons: "tuple[tuple[MethodInfo, Reason], ...]"
 
 
-@dataclass(frozen=True, slots=True)
-class Group:
-    """Disagreements of the same two methods, classes and reasons."""
+class Group(NamedTuple):
+    """Disagreements of the same two methods, classes and reasons; `named` are the pieces that a report has room for.
+
+    `highest` and `lowest` are a method, its class and its range of values; the sentences `reasons` hold for all rows.
+    """
 
     rows: Sequence[Disagreement]
-
-    @property
-    def highest(self) -> str:
-        """The higher method, its class and its range of values."""
-        return _describe([row.highest for row in self.rows])
-
-    @property
-    def lowest(self) -> str:
-        """The lower method, its class and its range of values."""
-        return _describe([row.lowest for row in self.rows])
-
-    @property
-    def reasons(self) -> Sequence[str]:
-        """Sentences that hold for all rows, with their numbers, as ranges where they differ."""
-        rows, texts = [row.result for row in self.rows], []
-        for method, reason in self.rows[0].reasons:
-            formats, values = {column.name: column.format for column in method.columns}, dict[str, str]()
-            for name in placeholders(reason.text) - {"value"}:
-                found: list[Any] = []
-                if name in formats:  # what a simulation gives stands in a row of its own
-                    for row in rows:
-                        detail = row.governing.methods[method.key].detail
-                        found.append(detail[name] if name in detail else getattr(row.governing.simulation, name))
-                    spec = formats[name]
-                else:
-                    spec, read = _FACTS[name]
-                    found += map(read, rows)
-                known = [float(one) for one in found if one is not None]
-                ends = [number(end(known), spec) for end in (min, max)] if known else [words.DASH]
-                values[name] = ends[0] if ends[0] == ends[-1] else _("{low} to {high}", low=ends[0], high=ends[1])
-            value = words.percents([row.governing.methods[method.key].value or 0.0 for row in rows])
-            texts.append(_(reason.text, **values, value=value))
-        return texts
-
-    @property
-    def named(self) -> Sequence[str]:
-        """Names of the pieces that a report has room for."""
-        return [words.cut(row.result.item.item, 40) for row in self.rows[:NAMED]]
-
-    @property
-    def left(self) -> int:
-        """Rows that are not named."""
-        return max(0, len(self.rows) - NAMED)
+    named: Sequence[str]
+    highest: str
+    lowest: str
+    reasons: Sequence[str]
 
 
-def _describe(verdicts: Sequence[Verdict]) -> str:
-    method, risk, _value = verdicts[0]
-    return f"{_(method.title)}: {words.risk_label(risk)}, {words.percents([one.value for one in verdicts])}"
+def _sum_up(rows: Sequence[Disagreement]) -> Group:
+    results, reasons = [row.result for row in rows], []
+    for method, reason in rows[0].reasons:
+        formats, values = {column.name: column.format for column in method.columns}, dict[str, str]()
+        for name in placeholders(reason.text) - {"value"}:
+            found: list[Any] = []
+            if name in formats:  # what a simulation gives stands in a row of its own
+                for one in results:
+                    detail = one.governing.methods[method.key].detail
+                    found.append(detail[name] if name in detail else getattr(one.governing.simulation, name))
+                spec = formats[name]
+            else:
+                spec, read = _FACTS[name]
+                found += map(read, results)
+            known = [float(one) for one in found if one is not None]
+            ends = [number(end(known), spec) for end in (min, max)] if known else [words.DASH]
+            values[name] = ends[0] if ends[0] == ends[-1] else _("{low} to {high}", low=ends[0], high=ends[1])
+        value = words.percents([one.governing.methods[method.key].value or 0.0 for one in results])
+        reasons.append(_(reason.text, **values, value=value))
+    highest, lowest = (
+        f"{_(own[0].method.title)}: {words.risk_label(own[0].risk)}, {words.percents([one.value for one in own])}"
+        for own in ([row.highest for row in rows], [row.lowest for row in rows])
+    )
+    return Group(rows, [words.cut(one.item.item, 40) for one in results[:12]], highest, lowest, reasons)
 
 
 def find_disagreements(results: Results, rows: Sequence[ItemResult]) -> tuple[str, list[Group]]:
@@ -150,7 +127,7 @@ def find_disagreements(results: Results, rows: Sequence[ItemResult]) -> tuple[st
         is_model = any(one.method.fitted is not None for one in (highest, lowest))
         return is_model, int(lowest.risk) - int(highest.risk), -int(highest.risk), -len(rows)
 
-    return " ".join(texts), [Group(same) for same in sorted(groups.values(), key=rank)]
+    return " ".join(texts), list(map(_sum_up, sorted(groups.values(), key=rank)))
 
 
 def _find_commonest(found: Sequence[Disagreement]) -> dict[str, Any]:
@@ -160,13 +137,9 @@ def _find_commonest(found: Sequence[Disagreement]) -> dict[str, Any]:
 
 
 def _list_verdicts(row: ItemResult, methods: "Iterable[MethodInfo]") -> list[Verdict]:
-    verdicts = []
-    for method in methods:
-        value = row.governing.methods[method.key].value
-        risk = None if value is None else classify(value)
-        if value is not None and risk is not None:
-            verdicts.append(Verdict(method, risk, value))
-    return verdicts
+    values = ((method, row.governing.methods[method.key].value) for method in methods)
+    return [Verdict(method, risk, value) for method, value in values
+            if value is not None and (risk := classify(value)) is not None]  # fmt: skip
 
 
 def _compare(row: ItemResult, verdicts: Sequence[Verdict], rocks: str) -> Disagreement | None:
@@ -190,10 +163,7 @@ def _compare(row: ItemResult, verdicts: Sequence[Verdict], rocks: str) -> Disagr
     once: dict[str, tuple[MethodInfo, Reason]] = {}
     for one in filter(None, chain.from_iterable(zip_longest(first, second))):
         once.setdefault(one[1].text, one)
-    return Disagreement(row, highest, lowest, tuple(once.values())[:MOST_REASONS])
-
-
-# ---------------------------------------------------------------- reasons
+    return Disagreement(row, highest, lowest, tuple(once.values())[:4])  # the most important ones
 
 
 _FACTS: Mapping[str, tuple[str, Callable[[ItemResult], float | None]]] = {

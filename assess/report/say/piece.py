@@ -10,11 +10,6 @@ from assess.risk import RiskClass
 from assess.text import natural_key
 from assess.workbook.schema import BUILDING
 
-NAMED = 3
-"""Pieces that a sentence names; the rest are counted."""
-LEAST = 12
-"""Characters of a description that are kept next to "partly anchored"."""
-
 
 def describe(one: ItemResult, longest: int = 80) -> str:
     """Return the piece in the workbook's words, and that it is partly anchored or its bracket fails."""
@@ -23,10 +18,7 @@ def describe(one: ItemResult, longest: int = 80) -> str:
     if one.item.anchored != "partly" and not is_failing:
         return words.cut(text, longest)
     note = _("bracket fails") if is_failing else _("partly anchored")
-    return f"{words.cut(text, max(LEAST, longest - len(note) - 2))}, {note}"
-
-
-# ---------------------------------------------------------------- their order
+    return f"{words.cut(text, max(12, longest - len(note) - 2))}, {note}"
 
 
 def by_chance(one: ItemResult) -> tuple[object, ...]:
@@ -50,9 +42,6 @@ def order_rows(rows: Sequence[ItemResult], floors: Sequence[str]) -> list[ItemRe
     return [one for own in sorted(groups.values(), key=lambda own: rank[own[0].item.floor]) for one in own]
 
 
-# ---------------------------------------------------------------- those counted apart
-
-
 def list_apart(results: Iterable[ItemResult], basis: str) -> list[ItemResult]:
     """Return the free-standing pieces that stand apart with a basis, or "" of the run's basis, the worst first."""
     found = [one for one in results if not one.is_anchored and one.apart == basis]
@@ -73,7 +62,7 @@ def say_apart(results: Sequence[ItemResult]) -> list[str]:
             "too weak ({names}).",
             "{n:,} pieces are unconfirmed and counted apart, as nothing is known of their building or their motions "
             "may be too weak ({names}).",
-            count_pieces(unconfirmed), names=words.name_pieces([one.item.item for one in unconfirmed], NAMED),
+            count_pieces(unconfirmed), names=words.name_pieces([one.item.item for one in unconfirmed], 3),
         )  # fmt: skip
         texts.append(f"{_add_risky(text, unconfirmed)} {' '.join(list_ways_to_settle(unconfirmed))}")
     if left := list_apart(results, "formula"):

@@ -33,12 +33,8 @@ MOST_NAMED = 3
 
 UNPLACED = ("positions", "places", "ends", "stair_floor")
 """What is missing, as keys of `assess.route_results.MISSING`, where pieces are left out."""
-QUIET = ("own_rooms", "walls_unknown", "required_assumed")
-"""Flags that do not keep a segment in a short list: they matter only where a piece reaches it."""
+
 _Row = TypeVar("_Row")
-
-
-# ---------------------------------------------------------------- states
 
 
 def say_state(state: RouteState) -> str:
@@ -246,9 +242,6 @@ def say_occupants(one: SegmentRow) -> str:
     if one.insufficient_after_falls is None or one.insufficient_after_falls.high == 0:
         return _("{width} m", width=needed)
     return _("{width} m: less in {chance}", width=needed, chance=say_chance(one.insufficient_after_falls))
-
-
-# ---------------------------------------------------------------- what is not known
 
 
 def say_missing(missing: Sequence[MissingRow]) -> str:
@@ -487,9 +480,6 @@ def say_routes(results: Results) -> list[str]:
     return [*texts, *([say_uncounted(routes)] if routes.uncounted_pieces else [])]
 
 
-# ---------------------------------------------------------------- rows
-
-
 def choose_rows(rows: Sequence[_Row], most: int, chance: Callable[[_Row], float]) -> list[_Row]:
     """Return rows in their own order where they are few enough, else the likeliest."""
     return list(rows) if len(rows) <= most else sorted(rows, key=lambda row: -chance(row))[:most]
@@ -508,7 +498,7 @@ def is_untouched(one: SegmentRow) -> bool:
     """Tell whether a segment was evaluated, no piece reaches it, and it needs no remark."""
     if one.pieces or one.other_rooms or one.insufficient_for_occupants or one.is_blocked_standing or not one.evaluated:
         return False
-    return not [flag for flag in one.flags if flag not in QUIET]
+    return {*one.flags} <= {"own_rooms", "walls_unknown", "required_assumed"}  # of no matter where no piece reaches it
 
 
 def list_flags(routes: RouteTables) -> dict[str, str]:

@@ -12,10 +12,6 @@ from assess.results import EarthquakeDraws, ItemResult, Results, count_pieces
 from assess.risk import RiskClass, classify
 from assess.settings import AUTO
 
-NAMED = 12
-"""Pieces that a sentence names; the rest are counted."""
-SCENARIO = fill("Chance of overturning in this scenario, not per year.")
-WITH_ANNUAL = fill("Chance of overturning in this scenario, unless it is called a chance a year.")
 INTERVAL = fill("the sampling interval covers the number of draws only")
 ASSUMED = fill("the range is what is not known of the ground and of the building")
 WILSON = (
@@ -37,8 +33,9 @@ def say_range(results: Results) -> str:
 
 def say_scenario(results: Results) -> str:
     """Return what the chances of a report are, for the foot of every page."""
-    has_annual = results.annual is not None and results.annual.is_evaluated
-    return _(WITH_ANNUAL if has_annual else SCENARIO)
+    if results.annual is not None and results.annual.is_evaluated:
+        return _("Chance of overturning in this scenario, unless it is called a chance a year.")
+    return _("Chance of overturning in this scenario, not per year.")
 
 
 class Verified:
@@ -184,13 +181,7 @@ def count_rows(results: Sequence[ItemResult]) -> str:
 
 def name_some(results: Sequence[ItemResult]) -> str:
     """Return the names of the first rows, and how many more there are."""
-    return words.name_pieces([one.item.item for one in results], NAMED, 40)
-
-
-# ---------------------------------------------------------------- what was simulated
-
-LARGE_MISFIT = 0.10
-"""Mean deviation of a spectrum from its target above which a sentence says so [-]."""
+    return words.name_pieces([one.item.item for one in results], 12, 40)
 
 
 def describe_trials(verified: Verified) -> list[str]:
@@ -296,7 +287,7 @@ def list_misfits(results: Results) -> list[str]:
             floor=words.cut(motion.floor, 20), axis=motion.axis, mean=words.deviation(fit.mean_deviation),
             most=words.deviation(abs(fit.worst_deviation)), period=fit.worst_period,
         )
-        for motion, fit in made if fit is not None and fit.mean_deviation > LARGE_MISFIT
+        for motion, fit in made if fit is not None and fit.mean_deviation > 0.10
     ]  # fmt: skip
 
 
@@ -330,12 +321,6 @@ def list_assumed_draws(results: Results, verified: Verified) -> list[tuple[str, 
     return [one for one in lines if one[1]]
 
 
-# ---------------------------------------------------------------- what was assumed uncertain
-
-NAMED_WANTED = 4
-"""Pieces that are named on every page."""
-
-
 def list_conditions(results: Results) -> list[str]:
     """Return what every page of a report says: source of the ground motion, nothing varied, motions times a factor."""
     settings, texts = results.settings, []
@@ -355,7 +340,7 @@ def list_conditions(results: Results) -> list[str]:
                 settings.anchor,
             ))  # fmt: skip
     elif settings.anchor:
-        named = words.name_pieces(settings.anchor, NAMED_WANTED, 40)
+        named = words.name_pieces(settings.anchor, 4, 40)
         texts.append(_("Taken as anchored and holding: {items}", items=named))
     return texts
 
@@ -465,7 +450,6 @@ def say_sensitivity(results: Results, rows: Sequence[ItemResult]) -> str:
 
 
 def _say_changes(changes: Iterable[tuple[ItemResult, float, float]]) -> str:
-    """Return how many pieces would be of a higher and of a lower class, of rows with their chance now and then."""
     up = down = 0
     for one, now, then in changes:
         least = RiskClass.HIGH if one.fell_in_record else RiskClass.LOW

@@ -41,9 +41,6 @@ def join_names(parts: Sequence[str]) -> str:
     return _("{names} and {last}", names=", ".join(parts[:-1]), last=parts[-1])
 
 
-# ---------------------------------------------------------------- steps for each route
-
-
 class RouteStep(NamedTuple):
     """One step of what to fix for a route: step `place` of `steps`, the first of which is 1.
 
@@ -74,8 +71,7 @@ def list_steps(routes: RouteTables) -> list[RouteStep]:
 def say_effect(steps: Sequence[RouteStep]) -> str:
     """Return the effect of steps of one route in their order: ``route West: 15.5 % → 3.0 % (step 3 of 3)``.
 
-    Where pieces that fall together must all be fixed before there is any effect, and of steps with others between, it
-    is that of all steps.
+    It is that of all steps where single ones have none, or other steps stand between them.
     """
     first, last = steps[0], steps[-1]
 
@@ -92,9 +88,6 @@ def say_effect(steps: Sequence[RouteStep]) -> str:
         return _("route {route}: {before} → {after} (steps {place:,} to {last:,} of {steps:,})", after=after,
                  place=first.place, last=last.place, **values)  # fmt: skip
     return _("route {route}: {before} → {after} (with all {steps:,} steps)", after=say_left(first.at_last), **values)
-
-
-# ---------------------------------------------------------------- entries, and the work of each
 
 
 @dataclass(frozen=True, slots=True)
@@ -307,9 +300,6 @@ def list_marks(schedule: Schedule) -> list[str]:
     if any(one.is_least for one in works):
         texts[f"{LEAST_FIXINGS}{LEAST}"] = _("at least {n}, as no capacity is printed", n=LEAST_FIXINGS)
     return [f"{mark}: {text}." for mark, text in texts.items() if text]
-
-
-# ---------------------------------------------------------------- before and after
 
 
 class Change(NamedTuple):

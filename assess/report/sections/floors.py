@@ -19,10 +19,8 @@ from assess.results import ItemResult
 from assess.risk import RiskClass
 from assess.text import natural_key
 
-BRIEF = 12
-"""Rows up to which a floor without a plan shares a page with the next."""
-BESIDE_PLAN, WITHOUT_PLAN = 8, 20
-"""Rows of the risky pieces that are listed."""
+BESIDE_PLAN = 8
+"""Rows of the risky pieces that are listed next to a plan."""
 MOST = 6
 """Motions of a floor that the table lists."""
 
@@ -63,8 +61,8 @@ def _build_floor(view: View, page: FloorPage, at: int) -> blocks.Box:
             say_changes(counts),
         ]  # fmt: skip
         found.append(blocks.Figure(bars[0], blocks.join_words(caption)))
-    found += _list_pieces(view, page, risky, BESIDE_PLAN if plan else WITHOUT_PLAN, "" if plan else view.marks)
-    is_brief = not plan and len(page.results) <= BRIEF
+    found += _list_pieces(view, page, risky, BESIDE_PLAN if plan else 20, "" if plan else view.marks)
+    is_brief = not plan and len(page.results) <= 12  # then it shares a page with the next
     return blocks.Box(found, f"floor{' brief' if is_brief else ''}", "article", f"floor-{at}")
 
 
@@ -113,7 +111,6 @@ def _caption_plan(view: View, page: FloorPage, plan: Plan) -> str:
 
 
 def _list_pieces(view: View, page: FloorPage, risky: Sequence[ItemResult], most: int, marks: str) -> list[blocks.Block]:
-    """Return the risky pieces of a floor, those that are counted apart, and how many classes were lowered."""
     counts, left = page.counts, list_risky(page.results, "formula")
     unconfirmed = list_apart(page.results, "unconfirmed")
     found: list[blocks.Block] = []
@@ -152,9 +149,6 @@ def _list_pieces(view: View, page: FloorPage, risky: Sequence[ItemResult], most:
             counts.lowered,
         )))  # fmt: skip
     return found
-
-
-# ---------------------------------------------------------------- all floors in two tables
 
 
 def build_motions(view: View) -> blocks.Section:

@@ -1,6 +1,6 @@
 """What the report rests on: methods with their equations, assumptions, limits, sources, input, and how it was made."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from assess.i18n import fill, ngettext, number
@@ -24,14 +24,12 @@ if TYPE_CHECKING:
 
 WHOLE = 14
 """Lines of equations that are kept on one page."""
-QUANTITIES: Mapping[str, str] = {"breadth_to_height": "B/H", "pfa": "PFA", "height": "H", "pfv": "PFV"}
-"""Symbols of the inputs that a method has ranges of."""
+
 MOST_ASSUMPTIONS = 36
 """Assumptions that the client's edition has room for on a page; where there are more, the annex has all."""
 MOST_NOTES, MOST_PROBLEMS, FEW = 150, 120, 6
 """Notes and problems that are shown; rows up to which a table is kept on one page."""
-MOST_RECORDS = 16
-"""Recorded motions that are drawn, those of the floors that are shaken most; the others are described."""
+
 ON_COVER = frozenset((
     "address", "client", "use", "organisation", "storeys", "height", "scenario_kind", "ground_pga", "sds", "hazard",
 ))  # fmt: skip
@@ -43,12 +41,10 @@ ELSEWHERE = frozenset((
 """What stands elsewhere in the report."""
 
 
-# ---------------------------------------------------------------- methods
-
-
 def build_methods(view: View) -> blocks.Section:
     """Return what is adopted, each method, the worked example, and the profiles of the codes."""
     listed: list[blocks.Block] = [blocks.Paragraph(view.content.verified.adopted)]
+    symbols = {"breadth_to_height": "B/H", "pfa": "PFA", "height": "H", "pfv": "PFV"}
     for method in view.run.methods:
         equations = [blocks.Equation(_(line)) for line in method.equations]
         found: list[blocks.Block] = [
@@ -57,7 +53,7 @@ def build_methods(view: View) -> blocks.Section:
         ]  # fmt: skip
         if method.valid:
             ranges = (
-                " ".join((QUANTITIES.get(name, name), _("{low:g} to {high:g}", low=one.low, high=one.high), one.unit))
+                " ".join((symbols.get(name, name), _("{low:g} to {high:g}", low=one.low, high=one.high), one.unit))
                 for name, one in method.valid.items()
             )
             shown = ", ".join(text.rstrip() for text in ranges)
@@ -95,7 +91,6 @@ def build_methods(view: View) -> blocks.Section:
 
 
 def _list_worked(view: View, example: ItemResult) -> list[blocks.Block]:
-    """Return the calculation of each method for the piece of the worked example."""
     found: list[blocks.Block] = [
         blocks.Heading(_("Worked example: {item}", item=words.cut(example.item.item, 40))),
         blocks.Paragraph(_(
@@ -155,9 +150,6 @@ def build_approach(view: View) -> blocks.Section:
     if named:
         found += [blocks.Heading(_("Sources")), blocks.Bullets(list(dict.fromkeys(named)), "references")]
     return blocks.Section(found)
-
-
-# ---------------------------------------------------------------- lists
 
 
 def build_assumptions(view: View) -> blocks.Section:
@@ -222,7 +214,7 @@ def build_appendix(view: View) -> blocks.Section:
 
 def _list_recorded(view: View) -> Iterator[blocks.Box]:
     found = [(page.title, one) for page in view.content.floors for one in page.motions if is_drawn(one)]
-    strongest = sorted((one for _title, one in found), key=lambda one: -one.pfa_g)[:MOST_RECORDS]
+    strongest = sorted((one for _title, one in found), key=lambda one: -one.pfa_g)[:16]  # the others are described
     for title, one in found:
         name = words.cut(one.record, 60)
         lines = [
@@ -243,9 +235,6 @@ def _list_recorded(view: View) -> Iterator[blocks.Box]:
 def is_drawn(one: MotionRow) -> bool:
     """Tell whether a motion is a record of its own floor and axis."""
     return one.has_record and not one.is_borrowed
-
-
-# ---------------------------------------------------------------- the building, and who answers for the report
 
 
 def list_facts(view: View) -> blocks.Table:

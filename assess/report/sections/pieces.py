@@ -16,17 +16,13 @@ from assess.text import natural_key
 
 MOST_GROUPS = 110
 """Groups of alike pieces that the client's edition has room for."""
-NAMED, LONGEST = 4, 16
-"""Runs of names that a group shows, and characters of a name."""
+
 MOST_RISKY = 60
 """Risky pieces that stand in place of the whole table."""
 MOST_REASONS = 15
 """Groups of disagreements that are shown."""
-LINES, MOST_LINES = 58, 5000
-"""Lines of a block of fixed columns, which a page holds; rows beyond which a PDF gets too long for anybody to read."""
-
-
-# ---------------------------------------------------------------- alike ones in one row
+MOST_LINES = 5000
+"""Rows beyond which a PDF gets too long for anybody to read."""
 
 
 def build_groups(view: View) -> blocks.Section:
@@ -57,7 +53,7 @@ def build_groups(view: View) -> blocks.Section:
     for floor, own in groupby(chosen, key=lambda one: one[0].item.floor):
         rows.append([blocks.part(view.floor_titles[floor], len(heads))])
         for group in own:
-            first, names = group[0], words.name_pieces([one.item.item for one in group], NAMED, LONGEST)
+            first, names = group[0], words.name_pieces([one.item.item for one in group], 4, 16)
             rooms = sorted({words.cut(one.item.room, 24) for one in group if one.item.room}, key=natural_key)
             rows[-1].append(blocks.Row((
                 f"{names} ({len(group)})" if len(group) > 1 else names, words.name_first(rooms, 2) or words.DASH,
@@ -83,9 +79,6 @@ def say_chances(group: Sequence[ItemResult]) -> str:
         return chance
     interval = f"({words.percents([min(lows), max(highs)])})".replace(" ", words.NO_BREAK)
     return f"{chance} {interval}"
-
-
-# ---------------------------------------------------------------- a row each
 
 
 def build_items(view: View) -> blocks.Section:
@@ -150,9 +143,6 @@ def _list_all(view: View) -> blocks.Table:
     return blocks.Table([one.column for one in columns], groups, "items", id="pieces", is_named=True)
 
 
-# ---------------------------------------------------------------- by every method
-
-
 def build_comparison(view: View) -> blocks.Section:
     """Return the disagreements by their reason, and the table of all methods where the rows have room."""
     found: list[blocks.Block] = [blocks.Paragraph(text) for text in view.content.total.say_cannot_rock()]
@@ -161,14 +151,15 @@ def build_comparison(view: View) -> blocks.Section:
     summary, groups = find_disagreements(view.run, view.results)
     rows: list[list[blocks.Cell | blocks.Words]] = []
     for one in groups[:MOST_REASONS]:
-        further = ngettext("and {n:,} more", "and {n:,} more", one.left) if one.left else ""
+        left = len(one.rows) - len(one.named)
+        further = ngettext("and {n:,} more", "and {n:,} more", left) if left else ""
         named = f"{words.plural(len(one.rows), 'row')}: {', '.join(one.named)} {further}".rstrip()
         rows.append([named, [one.highest, blocks.BREAK, one.lowest], " ".join(one.reasons)])
     heads = blocks.list_columns((_("Rows"), "w20"), (_("Highest and lowest"), "w20"), (_("Why"), ""))
     found += [blocks.Heading(_("Where the methods disagree by more than one class, and why")),
               blocks.Paragraph(summary)]  # fmt: skip
     found += [blocks.table(heads, rows, "disagreements")] if rows else []
-    if any(one.left for one in groups):
+    if any(len(one.rows) > len(one.named) for one in groups):
         found.append(blocks.Paragraph(_("The sheet Items of the Excel report has all rows."), "small"))
     if (left := len(groups) - MOST_REASONS) > 0:
         text = ngettext("{n:,} further group is left out.", "{n:,} further groups are left out.", left)
@@ -186,9 +177,6 @@ def build_comparison(view: View) -> blocks.Section:
     )
     table = build_table(view.columns("methods"), view.content.listed, "items methods")
     return blocks.Section([*found, blocks.Paragraph(text), table], "wide")
-
-
-# ---------------------------------------------------------------- as lines, which a PDF lays out many times faster
 
 
 def build_lists(view: View) -> blocks.Section:
@@ -217,7 +205,8 @@ def list_lines(results: Sequence[ItemResult], columns: Sequence[PageColumn]) -> 
             lines.append(f"{text}  {label} ({words.apart_note(one)})")
         else:
             lines.append([f"{text}  ", blocks.Span(f"{label}{marks}", f"badge {words.style_name(one)}")])
-    return [blocks.Listing(head, lines[at : at + LINES]) for at in range(0, len(lines), LINES)]
+    a_page = 58
+    return [blocks.Listing(head, lines[at : at + a_page]) for at in range(0, len(lines), a_page)]
 
 
 def _put(column: PageColumn, text: str) -> str:

@@ -25,9 +25,6 @@ def show_state(state: RouteState, text: str) -> blocks.Span:
     return blocks.Span(text, f"way-state {state.replace(' ', '-')}")
 
 
-# ---------------------------------------------------------------- the page of ways to the street
-
-
 class Line(NamedTuple):
     """A line of the page: a route, or rooms whose way to the street is alike; `one` stands for all of them."""
 
@@ -87,7 +84,6 @@ def _list_lines(view: View, lines: Sequence[Line], first: str) -> list[blocks.Bl
 
 
 def _list_route_lines(view: View) -> list[Line]:
-    """Return the routes that are not open, the worst first, and one line for open ones of which the same is said."""
     routes, lines = view.run.route_tables, []
     for one in route.list_at_risk(routes):
         name, (start, end) = words.cut(one.route, 40), map(_name_few, (one.from_places, one.to_places))
@@ -165,9 +161,6 @@ def _say_fixes(view: View, one: RouteRow | RoomRow) -> blocks.Words:
     if more := sum(map(len, runs[MOST_FIXES:])):
         found.append(" " + ngettext("and {n:,} more", "and {n:,} more", more))
     return [*found, f"; {advice}"] if advice else found
-
-
-# ---------------------------------------------------------------- in detail
 
 
 def build_detail(view: View) -> Sequence[blocks.Section]:
@@ -266,7 +259,6 @@ def _list_routes(view: View, columns: Sequence[PageColumn]) -> list[blocks.Block
 
 
 def _list_steps(view: View) -> list[blocks.Block]:
-    """Return what to fix for each route step by step, the routes that no fix opens, and those that are open."""
     found = view.run.route_tables
     listed: list[blocks.Block] = [blocks.Heading(_("What to fix for each route"))]
     steps = [(one, at, step) for one in found.routes for at, step in enumerate(one.fixes, start=1)]

@@ -19,32 +19,28 @@ from assess.results import ItemResult
 from assess.risk import RiskClass
 from assess.text import natural_key
 
-FIXES, FLOORS, ROUTES, CAUTIONS = 4, 6, 4, 3
-"""Fixes, floors, routes and cautions that the page has room for."""
-FLOORS_BESIDE = 3
-"""Floors that it has room for next to sentences on unconfirmed pieces."""
+FIXES, ROUTES = 4, 4
+"""Fixes and routes that the page has room for."""
 NEEDED = 28
 """Letters that it has room for of what to fix or fill in for a route."""
-TIGHT_FLOORS = 4
-"""Floors above which lists are shorter, so that they stay on one page."""
 
 
 def build(view: View) -> blocks.Section:
     """Return the page; with many floors or cautions its lists are shorter."""
     content, total = view.content, view.content.total
     furnished = [page.counts for page in content.floors if page.results]
-    most = FLOORS if not total.unconfirmed else FLOORS_BESIDE
-    floors = furnished  # those that there is room for: all, or those with most risky pieces
+    most = 3 if total.unconfirmed else 6  # floors that there is room for, next to sentences on unconfirmed pieces
+    floors = furnished  # all, or those with most risky pieces
     if len(floors) > most:
         floors = sorted(floors, key=lambda one: (-one.risky, -one.expected, -one.unconfirmed))[:most]
     short = list(dict.fromkeys(one.short for one in content.cautions))
     shaking = say_ground(view.run, shortly=True)
-    is_tight = len(floors) > TIGHT_FLOORS or len(short) > 1 or content.annual is not None
+    is_tight = len(floors) > 4 or len(short) > 1 or content.annual is not None
     worst = list_apart(view.results, "")
     found: list[blocks.Block] = [
         blocks.Paragraph(" ".join(say_plainly(total, worst, content.fixes, view.results)), "lead"),
         *(blocks.Paragraph(text, "caution apart") for text in say_apart(view.results)),
-        _say_conditions(view, shaking, short[: 2 if is_tight and total.has_apart else CAUTIONS]),
+        _say_conditions(view, shaking, short[: 2 if is_tight and total.has_apart else 3]),
         blocks.Tiles(list(_list_tiles(total))),
     ]
     title = _("Bars: pieces of each class on every floor; the numbers are in the table of the floors")
@@ -163,16 +159,10 @@ def _list_routes(view: View, *, is_tight: bool) -> list[blocks.Block]:
     return [lead, *([blocks.table(heads, rows, "short named")] if found else [])]
 
 
-# ---------------------------------------------------------------- the first paragraph
-
-
 def say_plainly(
     total: Counts, worst: Sequence[ItemResult], fixes: Sequence[Entry], rows: Sequence[ItemResult] = ()
 ) -> list[str]:
-    """Return the first paragraph.
-
-    `rows` are all pieces, of which the anchored ones are named whose brackets may fail.
-    """
+    """Return the first paragraph; `rows` are all pieces: the anchored ones are named whose brackets may fail."""
     texts = [_say_counts(total)]
     if total.anchored:
         texts.append(ngettext("{n:,} further piece is anchored and not classified: it depends on its anchors.",

@@ -1,9 +1,11 @@
 """What was simulated, under which motions, and what it changed; risk over breadth and PFA; chances a year."""
 
+import math
 import statistics
-from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
+from assess.annual_results import YEARS
 from assess.i18n import fill, ngettext, number
 from assess.i18n import gettext as _
 from assess.report import blocks, words
@@ -46,17 +48,12 @@ def build(view: View) -> blocks.Section:
 
 def _list_found(view: View) -> Iterator[str]:
     """Yield what simulation changed, and what is open, line by line."""
-    found = view.content.verified
-
-    def by_class(
-        rows: Sequence[ItemResult], risk_of: Callable[[ItemResult], RiskClass | None]
-    ) -> Iterator[dict[str, Any]]:
-        for risk in reversed(RiskClass):
-            if n := count_pieces(one for one in rows if risk_of(one) == risk):
-                yield {"n": n, "risk": words.risk_word(risk)}
-
-    lowered = [_("{n:,} from {risk}", **one) for one in by_class(found.lowered, lambda one: one.adopted.lowered_from)]
-    raised = [_("{n:,} to {risk}", **one) for one in by_class(found.raised, lambda one: one.adopted.risk)]
+    found, lowered, raised = view.content.verified, list[str](), list[str]()
+    for risk in reversed(RiskClass):
+        if n := count_pieces(one for one in found.lowered if one.adopted.lowered_from == risk):
+            lowered.append(_("{n:,} from {risk}", n=n, risk=words.risk_word(risk)))
+        if n := count_pieces(one for one in found.raised if one.adopted.risk == risk):
+            raised.append(_("{n:,} to {risk}", n=n, risk=words.risk_word(risk)))
     most = view.run.provenance.looks[-1]
     lines = [
         (_("Class lowered by simulation"), found.lowered, ", ".join(lowered)),
@@ -105,7 +102,6 @@ def _list_motions(view: View) -> list[blocks.Block]:
 
 
 def _list_fit(view: View, motion: MotionRow, ensemble: EnsembleRow) -> list[str]:
-    """Return the motions of one floor along one axis, and how they fit its own."""
     fit, suite = ensemble.fit, view.run.provenance.suite
     pfa = pfv = spectrum = words.DASH
     if suite is not None:
@@ -171,9 +167,6 @@ def _list_changes(view: View) -> list[blocks.Block]:
     return [*found, build_table(view.columns("risky"), fell[:LISTED], "pieces")]
 
 
-# ---------------------------------------------------------------- risk over breadth and PFA
-
-
 def build_contours(view: View) -> blocks.Section:
     """Return the figure; nothing where the pieces have none."""
     drawn = view.once("contours", lambda: draw_contours(view.run, view.progress))
@@ -182,9 +175,6 @@ def build_contours(view: View) -> blocks.Section:
         "this building."
     )
     return blocks.Section([blocks.Paragraph(text), drawn], "" if view.content.verified.done else "run-on")
-
-
-# ---------------------------------------------------------------- chances a year
 
 
 def build_annual(view: View) -> blocks.Section:
@@ -223,15 +213,22 @@ def _list_annual(title: str, name: str, lines: Sequence[AnnualLine], *, has_what
     )  # fmt: skip
     rows: list[list[blocks.Cell | blocks.Words]] = []
     for one in lines[:LISTED]:
-        row, fail, median = one.row, words.DASH, words.DASH
+        row, fail, median, interval, years = one.row, *[words.DASH] * 4
         if one.fail is not None:
             fail = annual.say_share(one.fail.chance_in_50_years, one.fail)
         if row.median_g is not None and row.dispersion is not None:
             median = f"{number(row.median_g, '.2f')} ({number(row.dispersion, '.2f')})"
+        if row.low is not None and row.high is not None:
+            plain = replace(row, at_least=False)
+            low, high = (annual.say_share(-math.expm1(-YEARS * rate), plain) for rate in (row.low, row.high))
+            interval = _("{low} to {high}", low=low, high=high)
+        if row.rate > 0:
+            once = 1 / row.rate
+            years = number(once, ".1f") if once < 10 else number(float(f"{once:.2g}"), ",.0f")
         rows.append([
             blocks.head(words.cut(one.name, 30)), *([words.cut(one.what, 40)] if has_what else []),
             words.cut(one.where, 24), annual.say_share(row.chance_a_year, row),
-            annual.say_share(row.chance_in_50_years, row), annual.say_interval(row), annual.say_years(row), median,
+            annual.say_share(row.chance_in_50_years, row), interval, years, median,
             *([fail] if has_fail else []),
         ])  # fmt: skip
     left = say_left(len(lines) - LISTED, is_likely=True)

@@ -10,7 +10,6 @@ import datetime
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from assess.i18n import fill
 from assess.i18n import gettext as _
@@ -18,12 +17,12 @@ from assess.progress import SILENT, Progress
 from assess.report import words
 from assess.report.content import Content, report_date
 from assess.report.say.ground import name_source
+from assess.report.say.route import list_unfixable
 from assess.report.say.simulation import say_scenario
 from assess.report.xlsx import floors_sheet, items_sheet, list_sheets, route_sheets, summary_sheet, work_sheet
-from assess.report.xlsx.pen import Pen, write_sheets
-from assess.workbook.formulas import write_plainly
+from assess.report.xlsx.pen import write_sheets
 
-SHEETS: tuple[tuple[str, Callable[[Pen, Any, Content], None], Callable[[Content], bool] | None], ...] = (
+SHEETS: tuple[tuple[str, Callable[..., None], Callable[[Content], bool] | None], ...] = (
     (fill("Summary"), summary_sheet.write_summary, None),
     (fill("Work list"), work_sheet.write_work, None),
     (fill("Floors"), floors_sheet.write_floors, None),
@@ -31,14 +30,16 @@ SHEETS: tuple[tuple[str, Callable[[Pen, Any, Content], None], Callable[[Content]
     (fill("Motions"), list_sheets.write_motions, None),
     (fill("Verification"), list_sheets.write_fits, lambda content: content.run.has_simulated),
     (fill("Routes"), route_sheets.write_routes, None),
-    (fill("Route pieces"), route_sheets.write_route_pieces, route_sheets.has_pieces),
+    (fill("Route pieces"), route_sheets.write_route_pieces, lambda content: bool(
+        list_unfixable(content.run.route_tables) or any(one.pieces for one in content.run.route_tables.segments))),
     (fill("Route rooms"), route_sheets.write_route_rooms, lambda content: bool(content.run.route_tables.rooms)),
     (fill("Annual"), list_sheets.write_annual, lambda content: content.annual is not None),
     (fill("Methods"), list_sheets.write_methods, None),
     (fill("Assumptions"), list_sheets.write_assumptions, None),
     (fill("Quality log"), list_sheets.write_quality, None),
-    (fill("Notes"), list_sheets.write_notes, lambda content: bool(list_sheets.list_notes(content))),
-)
+    (fill("Notes"), list_sheets.write_notes, lambda content: any(
+        (*(one.item.notes for one in content.results), *(one.notes for one in content.run.route_tables.segments)))),
+)  # fmt: skip
 """The sheets in order: title in English, what writes each, and whether it is there (None: always)."""
 
 
@@ -54,17 +55,10 @@ def write_xlsx(content: Content, path: Path, progress: Progress = SILENT) -> Non
     if run.settings.ideal:
         conditions.append(_("if exactly this motion recurred"))
 
-    def write_own(write: Callable[[Pen, Any, Content], None], pen: Pen, page: Any) -> None:
-        write_plainly(page)
-        write(pen, page, content)
-
+    sheets = [(title, write) for title, write, is_there in SHEETS if is_there is None or is_there(content)]
     write_sheets(
         path,
-        [
-            (str(title), _(title), partial(write_own, write))
-            for title, write, is_there in SHEETS
-            if is_there is None or is_there(content)
-        ],
+        [(str(title), _(title), partial(write, content=content)) for title, write in sheets],
         title=_("Furniture in earthquakes: {title}", title=content.title[:200]),
         created=datetime.datetime.fromisoformat(report_date()),
         texts=(words.cut(content.title, 80), ", ".join(conditions), say_scenario(run).rstrip(".")),

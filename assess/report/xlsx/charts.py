@@ -14,14 +14,8 @@ from assess.risk import RiskClass
 _PATTERNS = {RiskClass.MEDIUM: "percent_20", RiskClass.HIGH: "wide_upward_diagonal"}
 """Of the classes in between; the lowest and the highest are plain, light and dark."""
 _LINES = {"X": ("#1f3a4d", "solid", "square"), "Y": ("#b3541e", "dash", "circle")}
-LOWEST, HIGHEST = 320, 720
-"""Heights of the chart by floor [pixels]: it stays on one printed page."""
-OUTLINED = 40
-"""Floors up to which bars have an outline, which would cover thinner ones."""
-FLOOR_HEIGHT, LABEL_HEIGHT, AROUND = 22, 14, 120
-"""Height of the bar of a floor, of its label, and of what stands around them [pixels]."""
-ROW_HEIGHT = 20
-"""Height of a row [pixels]."""
+AROUND = 120
+"""Height of what stands around the bars of floors [pixels]."""
 
 Cell = tuple[int, int]
 Area = tuple[int, int, int, int]
@@ -68,23 +62,23 @@ def add_floors(pen: Pen, page: Any, cell: Cell, rows: Cell, basis: str) -> None:
     """Draw the pieces of each class on every floor; `rows` are those of the first and the last floor."""
     sheet, (first, last) = pen.sheets["Summary"], rows
     chart, floors = pen.book.add_chart({"type": "bar", "subtype": "stacked"}), last - first + 1
-    outlined, height = floors <= OUTLINED, _height(floors)
+    outlined, height = floors <= 40, _height(floors)  # an outline would cover thinner bars
     for at, risk in enumerate(RiskClass, 1):
         _add(chart, sheet, (first, 0, last, 0), (first, at, last, at),
              {"name": [sheet, first - 1, at], "gap": 40 * outlined, **fill(risk, outlined=outlined)})  # fmt: skip
-    every = math.ceil(floors * LABEL_HEIGHT / (height - AROUND))
+    every = math.ceil(floors * 14 / (height - AROUND))  # a label takes 14 pixels
     chart.set_y_axis({"reverse": True, "interval_unit": every, "num_font": {"size": 8}})
     description = _("Pieces of each class on every floor, as in the table above")
     _place(page, cell, chart, _("Pieces by class and floor: {basis}", basis=basis), (1185, height), description)
 
 
 def _height(floors: int) -> int:
-    return min(HIGHEST, max(LOWEST, AROUND + FLOOR_HEIGHT * floors))
+    return min(720, max(320, AROUND + 22 * floors))  # [pixels]: it stays on one printed page
 
 
 def count_rows(floors: int) -> int:
     """Return the rows that the chart by floor takes."""
-    return math.ceil(_height(floors) / ROW_HEIGHT) + 1
+    return math.ceil(_height(floors) / 20) + 1  # [pixels]
 
 
 def add_motion(pen: Pen, page: Any, cell: Cell, rows: Cell, columns: Mapping[str, int]) -> None:

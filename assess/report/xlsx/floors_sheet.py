@@ -61,11 +61,6 @@ def list_lines(results: Results) -> list[MotionLine]:
     return [*own, *below]
 
 
-def find_places(lines: Sequence[MotionLine]) -> dict[int, int]:
-    """Return the line of every motion by `MotionRow.index`, 1 for the first."""
-    return {motion.index: place for place, line in enumerate(lines, 1) for motion in line.motions.values()}
-
-
 def write_floors(pen: Pen, page: Any, content: Content) -> None:
     """Write the motions: Items and Summary follow what is edited here."""
     run, rows = content.run, len(content.floors)

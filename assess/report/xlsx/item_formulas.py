@@ -43,9 +43,6 @@ FLOOR_KEYS = (
 FLOOR_AT: Mapping[str, int] = {key: at for at, key in enumerate(FLOOR_KEYS)}
 
 
-# ---------------------------------------------------------------- texts in formulas
-
-
 def literal(text: str) -> str:
     """Return a text as formulas write it."""
     return '"' + text.replace('"', '""') + '"'
@@ -93,9 +90,6 @@ def build_terms() -> Terms:
         yes=_("yes"), no=_("no"), partly=_("partly"), edited=_("edited"), check=_("check"), again=_("run again"),
         bases=bases, labels=tuple(map(say_class, RiskClass)),
     )  # fmt: skip
-
-
-# ---------------------------------------------------------------- Items
 
 
 class ItemFormulas:
@@ -160,7 +154,6 @@ class ItemFormulas:
         return {key: f"={one}" for key, one in found.items()}
 
     def _of_run(self, basis: str) -> dict[str, str]:
-        """Return the formulas of a row whose class holds while its inputs are as run."""
         cells, mark, label = self._cells, self._known["MARK"], self._terms.label
         rank, upper, formula = cells["rank"], cells["rank_upper"], cells["rank_formula"]
         again, is_settled = self._known["AGAIN"], basis != "unconfirmed"
@@ -268,7 +261,6 @@ class ItemFormulas:
     # ------------------------------------------------------------ the motion of the row's floor
 
     def _area(self, key: str, last: int) -> str:
-        """Return the cells of a column of Floors."""
         letter = xl_col_to_name(FLOOR_AT[key])
         return f"{self._floors}${letter}$2:${letter}${last}"
 

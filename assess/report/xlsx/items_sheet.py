@@ -17,7 +17,7 @@ from assess.i18n import gettext as _
 from assess.report import words
 from assess.report.content import Content
 from assess.report.page_columns import say_flag
-from assess.report.xlsx.floors_sheet import find_places, list_lines
+from assess.report.xlsx.floors_sheet import list_lines
 from assess.report.xlsx.item_formulas import (
     ANCHORED,
     AT_RUN,
@@ -40,10 +40,6 @@ from assess.workbook.schema import BUILDING, ITEMS
 if TYPE_CHECKING:
     from assess.methods import MethodInfo
 
-FROZEN = 3
-"""Columns that stay in view: the item, its class and its upper class."""
-MOST_LINES = 6
-"""Lines of a row: a longer text is cut by its cell, and whole in it."""
 
 Read = Callable[[ItemResult], Any]
 
@@ -60,9 +56,6 @@ LISTED = tuple(basis for basis in BASES if basis != CANNOT_ROCK)
 """What has a list of the pieces most likely to fall."""
 ORDERS = tuple(f"order_{basis}" for basis in LISTED)
 """Columns that hold the order of the pieces: each basis has its own list."""
-
-
-# ---------------------------------------------------------------- what a row holds
 
 
 def is_as_run(one: ItemResult) -> bool:
@@ -193,9 +186,6 @@ def order_number(one: ItemResult, row: int) -> float | None:
     return CLASS_WEIGHT * int(upper or RiskClass.LOW) + chance - (row + 1) * 1e-9
 
 
-# ---------------------------------------------------------------- columns
-
-
 def item_columns(results: Results) -> list[Column]:
     """Return the columns of Items, in order: at the end those that the workbook had of its own, and hidden workings."""
     known, is_hidden = {one.key: one for one in item_fields(results.methods)}, not results.has_simulated
@@ -254,20 +244,19 @@ def item_columns(results: Results) -> list[Column]:
 
 def _given(field: Field) -> Column:
     def read(one: ItemResult) -> Any:
-        """Return the value in the language in use; the names of axes are the same in each."""
         value = field.read(one)
         if field.key == "assumed":
             return ", ".join(_(ITEMS.column(name).label) for name in value)
         if isinstance(value, list):
             return ", ".join(map(str, value))
-        return _(value) if value and field.choices and "axis" not in field.key else value
+        is_word = value and field.choices and "axis" not in field.key  # the names of axes are the same in each language
+        return _(value) if is_word else value
 
     look = "input" if field.key in INPUTS else "text" if field.kind == "text" else ""
     return of_field(field, read=read, look=look, align="center" if field.key == "axis_given" else "")
 
 
 def _list_found(results: Results) -> Iterator[Column]:
-    """Yield what the class rests on, and what simulation found."""
     is_hidden, is_ideal, bases = not results.has_simulated, results.settings.ideal, build_terms().bases
 
     def column(key: str, label: str, width: int, read: Read, **more: Any) -> Column:
@@ -275,7 +264,8 @@ def _list_found(results: Results) -> Iterator[Column]:
 
     yield column("basis", _("Basis"), 26, lambda one: bases[one.adopted.basis], is_hidden=False)
     for at, (key, label) in enumerate(zip(AT_RUN, name_found(is_ideal=is_ideal), strict=True)):
-        yield column(key, label, 12, _found(at, is_ideal=is_ideal), format=CHANCE, look="plain")
+        read = partial(lambda at, one: list_simulated(one, is_ideal=is_ideal)[at], at)
+        yield column(key, label, 12, read, format=CHANCE, look="plain")
     yield column("class_notes", _("Notes on the class"), 40, class_notes)
     found = attrgetter("governing.simulation")
     yield column("runs", _("Runs"), 7, lambda one: found(one) and found(one).runs, format=COUNT, look="plain")
@@ -290,12 +280,7 @@ def name_found(*, is_ideal: bool) -> tuple[str, str, str, str]:
     return ideal if is_ideal else like, _("Range low"), _("Range high"), like if is_ideal else ideal
 
 
-def _found(at: int, *, is_ideal: bool) -> Read:
-    return lambda one: list_simulated(one, is_ideal=is_ideal)[at]
-
-
 def _of_method(method: "MethodInfo") -> Column:
-    """Return the value of a method that is not live, a criterion in words."""
     is_criterion = method.kind == "criterion"
 
     def read(one: ItemResult) -> Any:
@@ -311,7 +296,8 @@ def _of_method(method: "MethodInfo") -> Column:
 
 def _list_workings(results: Results, shown: Mapping[str, Column]) -> Iterator[Column]:
     """Yield what is hidden at the far right: the inputs as run, and the classes as numbers from 0, low, to 3."""
-    is_ideal, places = results.settings.ideal, find_places(list_lines(results))
+    is_ideal = results.settings.ideal
+    places = {one.index: at for at, line in enumerate(list_lines(results), 1) for one in line.motions.values()}
 
     def column(key: str, label: str, read: Read, **more: Any) -> Column:
         return Column(label, 24, read, key=key, is_hidden=True, **more)
@@ -323,8 +309,8 @@ def _list_workings(results: Results, shown: Mapping[str, Column]) -> Iterator[Co
     for key in (*SAME, *SAME_WORDS, *BRACKET):
         yield column(f"{key}_run", _("{what} (as run)", what=shown[key].label), shown[key].read)
     yield column("rocks_from_run", _("Share of g b/z from which it may rock"), lambda one: one.adopted.rocks_from)
-    for at, (key, label) in enumerate(zip(AT_RUN, name_found(is_ideal=is_ideal), strict=True)):
-        read = if_as_run(listed_chance) if key == "chance" else _found(at, is_ideal=is_ideal)
+    for key, label in zip(AT_RUN, name_found(is_ideal=is_ideal), strict=True):
+        read = if_as_run(listed_chance) if key == "chance" else shown[key].read
         yield column(f"{key}_run", _("{what} (as run)", what=label), read)
     yield column("edited", _("Edited"), lambda one: "")
     yield column("fell", _("Fell under the record"), if_as_run(lambda one: 1 if one.fell_in_record else ""))
@@ -346,9 +332,6 @@ def _list_workings(results: Results, shown: Mapping[str, Column]) -> Iterator[Co
         yield column(key, _("Order: {basis}", basis=name), lambda one: None)
 
 
-# ---------------------------------------------------------------- the sheet
-
-
 def write_items(pen: Pen, page: Any, content: Content) -> None:
     """Write every row of furniture."""
     columns = widen(item_columns(content.run), content.results, ("text",))
@@ -368,7 +351,7 @@ def write_items(pen: Pen, page: Any, content: Content) -> None:
     texts = [(column.read, column.width) for column in columns if column.look == "text" and not column.is_hidden]
     for row, one in enumerate(content.results, HEAD):
         pen.progress.check()
-        lines = max(count_lines(read(one), width, MOST_LINES) for read, width in texts)
+        lines = max(count_lines(read(one), width, 6) for read, width in texts)  # a longer text is cut by its cell
         if lines > 1:
             page.set_row(row, LINE * lines)
         own, number = by_basis[one.adopted.basis, is_as_run(one)], str(row + 1)
@@ -392,7 +375,7 @@ def item_areas(pen: Pen, content: Content) -> dict[str, str]:
 def _dress(pen: Pen, page: Any, columns: Sequence[Column], live: Collection[str], last: int) -> None:
     """Freeze, filter, hide the workings, colour, let cells take only what formulas can work with, set up the print."""
     areas = {column.key: f"{xl_col_to_name(at)}2:{xl_col_to_name(at)}{last}" for at, column in enumerate(columns)}
-    page.freeze_panes(1, FROZEN)
+    page.freeze_panes(1, 3)  # the item, its class and its upper class stay in view
     page.autofilter(0, 0, last - 1, len(columns) - 1)
     for at, column in enumerate(columns):
         if column.is_hidden:

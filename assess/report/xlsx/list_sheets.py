@@ -26,11 +26,10 @@ from assess.results import MotionRow
 from assess.risk import LIMITS, RiskClass
 from assess.workbook.formulas import say_class
 
-RATE, RARE = "0.00E+00", "0.000%"
+RATE = "0.00E+00"
 
 
 def _of_texts(*heads: tuple[str, int]) -> list[Column]:
-    """Return the columns of rows that are tuples of texts."""
     return [Column(label, width, itemgetter(at)) for at, (label, width) in enumerate(heads)]
 
 
@@ -98,7 +97,7 @@ def write_annual(pen: Pen, page: Any, content: Content) -> None:
         Column(_("Name"), 24, lambda one: one[1].name),
         Column(_("Description"), 32, lambda one: one[1].what),
         Column(_("Floor, room"), 20, lambda one: one[1].where),
-        Column(_("Chance a year"), 12, of_row("chance_a_year"), RARE),
+        Column(_("Chance a year"), 12, of_row("chance_a_year"), "0.000%"),
         Column(_("Chance in 50 years"), 12, of_row("chance_in_50_years"), "0.0%"),
         Column(_("Times a year"), 12, of_row("rate"), RATE),
         Column(_("Sampling interval, from"), 12, of_row("low"), RATE),
@@ -214,14 +213,9 @@ def write_quality(pen: Pen, page: Any, content: Content) -> None:
     pen.listing(page, _of_texts((_("Kind"), 14), (_("Place"), 40), (_("What"), 84), (_("How to fix it"), 60)), rows)
 
 
-def list_notes(content: Content) -> list[tuple[str, str, str]]:
-    """Return the notes in the workbook: their sheet, their row and their text."""
+def write_notes(pen: Pen, page: Any, content: Content) -> None:
+    """Write the notes in the workbook: their sheet, their row and their text."""
     rows = [(_("Items"), one.item.item, one.item.notes) for one in content.results if one.item.notes]
     segments = (one for one in content.run.route_tables.segments if one.notes)
     rows += [(_("Routes"), ", ".join(filter(None, (one.route, one.segment))), one.notes) for one in segments]
-    return rows
-
-
-def write_notes(pen: Pen, page: Any, content: Content) -> None:
-    """Write the notes."""
-    pen.listing(page, _of_texts((_("Sheet"), 16), (_("Row"), 30), (_("Note"), 120)), list_notes(content))
+    pen.listing(page, _of_texts((_("Sheet"), 16), (_("Row"), 30), (_("Note"), 120)), rows)

@@ -14,6 +14,7 @@ from assess.report.xlsx.item_formulas import Terms, build_terms
 from assess.risk import RiskClass
 from assess.route_results import RouteState
 from assess.table import Field
+from assess.workbook.formulas import write_plainly
 from assess.workbook.writer import write_book
 
 HEAD = 1
@@ -22,14 +23,7 @@ LONGEST = 32_000
 """Characters of a text that are kept; a cell holds 32,767."""
 LINE = 15
 """Height of a line [points]: not every program grows a row to its text by itself."""
-MOST_LINES = 20
-"""Lines of a row; Excel allows 409 points."""
 CHANCE, COUNT = "0.0%", "#,##0"
-A4 = 9
-_LONGEST_NAME = 31
-"""Characters of a sheet's name."""
-_PAGE, _PAGES = "\ue000", "\ue001"
-"""Stand for the numbers of the page and of all pages: of the signs for private use."""
 
 LOOKS: Mapping[str, Mapping[str, Any]] = {
     "title": {"bold": True, "font_size": 15, "font_color": "#1f3a4d"},
@@ -44,10 +38,6 @@ LOOKS: Mapping[str, Mapping[str, Any]] = {
     "plain": {"valign": "top"},
 }  # fmt: skip
 """The looks of cells."""
-_INKS = {
-    RouteState.OPEN: "#1a1a1a", RouteState.DOUBTFUL: "#1a1a1a", RouteState.NOT_KNOWN: "#000000",
-    RouteState.BLOCKED: "#ffffff",
-}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,9 +94,10 @@ class Pen:
         self.terms: Terms = build_terms()
         self._formats: dict[str, Any] = {}
         self.classes = {risk: self.style("text", bg_color=risk.fill, font_color=risk.ink) for risk in RiskClass}
+        inks = {RouteState.NOT_KNOWN: "#000000", RouteState.BLOCKED: "#ffffff"}
         states = {
-            state.symbol: self.style("text", bold=True, bg_color=state.fill, font_color=ink)
-            for state, ink in _INKS.items()
+            state.symbol: self.style("text", bold=True, bg_color=state.fill, font_color=inks.get(state, "#1a1a1a"))
+            for state in RouteState
         }
         self._marked = {risk.symbol: style for risk, style in self.classes.items()} | states
 
@@ -200,12 +191,9 @@ def row_height(values: Iterable[Any], widths: Iterable[int]) -> int:
     return LINE * max(count_lines(value, width) for value, width in zip(values, widths, strict=False))
 
 
-def count_lines(value: Any, width: int, most: int = MOST_LINES) -> int:
-    """Return the lines that a text takes in a column of a width [characters], `most` at most."""
+def count_lines(value: Any, width: int, most: int = 20) -> int:
+    """Return the lines, at most `most`, that a text takes in a column of a width [characters]."""
     return min(most, max(1, math.ceil(len(value) * 1.1 / width))) if isinstance(value, str) else 1
-
-
-# ---------------------------------------------------------------- sheets
 
 
 def refer(name: str) -> str:
@@ -214,17 +202,14 @@ def refer(name: str) -> str:
 
 
 def name_sheets(titles: Mapping[str, str]) -> dict[str, str]:
-    """Return the names of sheets by their keys: of 31 characters at most, without those that Excel forbids, unique.
-
-    One that is taken, whatever its letter case, gets a number behind it.
-    """
+    """Return the names of sheets by their keys: at most 31 characters, none that Excel forbids, unique in any case."""
     names: dict[str, str] = {}
     for key, title in titles.items():
-        plain = re.sub(r"[\[\]:*?/\\]", " ", title).strip().strip("'")[:_LONGEST_NAME].strip() or key
+        plain = re.sub(r"[\[\]:*?/\\]", " ", title).strip().strip("'")[:31].strip() or key
         taken, at, found = {one.casefold() for one in names.values()}, 1, plain
         while found.casefold() in taken:
             at += 1
-            found = f"{plain[: _LONGEST_NAME - len(f' {at}')]} {at}"
+            found = f"{plain[: 31 - len(f' {at}')]} {at}"
         names[key] = found
     return names
 
@@ -250,14 +235,16 @@ def write_sheets(
         pages = [book.add_worksheet(name) for name in pen.sheets.values()]
         for page, name, (_key, _title, write_own) in zip(pages, pen.sheets.values(), sheets, strict=True):
             progress.check()
+            write_plainly(page)
             page.set_landscape()
-            page.set_paper(A4)
+            page.set_paper(9)  # A4
             page.set_margins(left=0.5, right=0.5, top=0.75, bottom=0.75)
             page.fit_to_pages(1, 0)
             middle = f"&C&8 {conditions}" if conditions else ""
             page.set_header(f"&L&8 {head}{middle}&R&8 {_plain(name)}")
-            number = _plain(_("Page {page} of {pages}", page=_PAGE, pages=_PAGES))
-            page.set_footer(f"&L&8 {foot}&R&8 {number.replace(_PAGE, '&P').replace(_PAGES, '&N')}")
+            number = _plain(_("Page {page} of {pages}", page="\ue000", pages="\ue001"))  # signs for private use
+            number = number.replace("\ue000", "&P").replace("\ue001", "&N")
+            page.set_footer(f"&L&8 {foot}&R&8 {number}")
             write_own(pen, page)
 
     write_book(path, write, by_row=True, progress=progress)

@@ -81,7 +81,6 @@ def _say_flags(flags: Sequence[str]) -> str:
 
 
 def _list_said(routes: RouteTables) -> dict[str, Read]:
-    """Return what reads the fields that routes and rooms have in common."""
     return {
         "decisive_segment": lambda one: _name_segments(
             routes, [] if one.decisive_segment is None else [one.decisive_segment]
@@ -95,9 +94,6 @@ def _list_said(routes: RouteTables) -> dict[str, Read]:
 
 def _name_segments(routes: RouteTables, places: Iterable[int]) -> str:
     return ", ".join(f"{routes.segments[at].route}: {routes.segments[at].segment}" for at in places)
-
-
-# ---------------------------------------------------------------- Routes
 
 
 def write_routes(pen: Pen, page: Any, content: Content) -> None:
@@ -158,9 +154,6 @@ def _list_outlook(row: type, routes: RouteTables) -> dict[str, Read]:
     )
 
 
-# ---------------------------------------------------------------- Route pieces
-
-
 @dataclass(frozen=True, slots=True)
 class _Beside:
     """A piece beside a segment; in the list of steps it stands for itself."""
@@ -182,20 +175,11 @@ class _Step:
     after: float
 
 
-def has_pieces(content: Content) -> bool:
-    """Tell whether any piece stands beside a segment, or a route is blocked as it stands."""
-    routes = content.run.route_tables
-    return any(one.pieces for one in routes.segments) or bool(say.list_unfixable(routes))
-
-
 def write_route_pieces(pen: Pen, page: Any, content: Content) -> None:
     """Write the pieces beside every segment, and the steps of every route."""
     routes, results, fields = content.run.route_tables, content.results, route_fields(BesideRow)
 
-    def say_remarks(row: _Beside) -> str:
-        held = _("anchored: its chances are those without the anchor") if row.result.is_anchored else ""
-        return "; ".join(filter(None, (held, _say_flags(row.near.flags))))
-
+    held = _("anchored: its chances are those without the anchor")
     of_segment: dict[str, Read] = {
         "route": lambda row: row.segment.route,
         "segment": lambda row: row.segment.segment,
@@ -204,7 +188,9 @@ def write_route_pieces(pen: Pen, page: Any, content: Content) -> None:
     near: dict[str, Read] = {key: partial(lambda read, row: read(row.near), fields[key].read) for key in BESIDE} | {
         "blocks_alone": lambda row: words.yes_or_no(row.near.blocks_alone),
         "by_plan": lambda row: _("plan") if row.near.by_plan else _("Edge distance"),
-        "flags": say_remarks,
+        "flags": lambda row: "; ".join(
+            filter(None, (held if row.result.is_anchored else "", _say_flags(row.near.flags)))
+        ),
     }
     columns = [
         *_columns(SegmentRow, {"route": 16, "segment": 18, "floor": 9}, of_segment),
@@ -259,17 +245,10 @@ def _list_piece_columns() -> list[Column]:
     ]
 
 
-# ---------------------------------------------------------------- Route rooms
-
-
 def write_route_rooms(pen: Pen, page: Any, content: Content) -> None:
     """Write every room with its safest way out, and the next, which shares as few segments with it as possible."""
     routes = content.run.route_tables
     name, fields = partial(_name_segments, routes), route_fields(RoomRow)
-
-    def say_exits(one: RoomRow) -> str:
-        exits = ", ".join(one.exits)
-        return _("{stairs} (stairs: beyond them nothing is known)", stairs=exits) if one.by_stairs else exits
 
     def name_shared(one: RoomRow) -> str:
         ways = [way.segment_indices for way in one.ways[:2]]
@@ -281,7 +260,8 @@ def write_route_rooms(pen: Pen, page: Any, content: Content) -> None:
     said = _list_said(routes) | {
         **{key: partial(_read_if, lambda one: one.is_known, fields[key].read)
            for key in ROOMS if key.startswith("loses_every")},
-        "exits": say_exits,
+        "exits": lambda one: ", ".join(one.exits) if not one.by_stairs
+        else _("{stairs} (stairs: beyond them nothing is known)", stairs=", ".join(one.exits)),
         "state": say.say_room_state,
         "loses_every_exit_is_joint": lambda one: say.say_basis(one.loses_every_exit),
         "ways": lambda one: len(one.ways),

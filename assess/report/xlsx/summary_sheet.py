@@ -40,16 +40,14 @@ from assess.workbook.formulas import OUTSIDE
 WIDTHS = (34, 14, 14, 14, 14, 14, 14, 14, 44)
 """Of the columns of the summary that are printed: of names, of numbers, and of classes."""
 LAST = len(WIDTHS) - 1
-LISTED = 10
-"""Pieces in a list."""
+
 PLACE, CHANCES = LAST + 1, LAST + 2
 """Hidden columns: the row of the piece in Items, and its chance in the column of its class."""
 LONGEST = 80
 """Characters of a name in a list."""
 CHART_ROWS = 15
 """Rows of the charts below the counts."""
-MOST_FLOORS = 12
-"""Floors up to which the summary is printed on one page."""
+
 SUM = 1 + len(RiskClass)
 """Column of the pieces of a basis: after those of its classes."""
 
@@ -90,7 +88,7 @@ def write_summary(pen: Pen, page: Any, content: Content) -> None:
             for row, one in enumerate(content.results, HEAD)
             if one.adopted.basis == basis and (number := order_number(one, row)) is not None
         )
-        worst[basis] = [(row, one) for _number, row, one in heapq.nlargest(LISTED, known, key=itemgetter(0))]
+        worst[basis] = [(row, one) for _number, row, one in heapq.nlargest(10, known, key=itemgetter(0))]
     lines = list(_list_lines(pen, content, areas, bases))
     top = 2 + len(lines)
     row = first = top + 3 + len(bases) + len(_list_apart()) + CHART_ROWS
@@ -113,9 +111,6 @@ def write_summary(pen: Pen, page: Any, content: Content) -> None:
     for basis in bases:
         _write_floors(plan, basis)
     _draw(plan, first - CHART_ROWS, worst)
-
-
-# ---------------------------------------------------------------- sentences
 
 
 def _list_lines(
@@ -180,8 +175,6 @@ def _list_lines(
         yield _("The text on routes is as run: it does not follow when a cell is edited."), ""
 
 
-# ---------------------------------------------------------------- the pieces most likely to fall
-
 Found = Sequence[tuple[int, ItemResult]]
 """Pieces with their places in Items, 1 for the first."""
 
@@ -230,9 +223,6 @@ def _write_worst(plan: _Plan, basis: str, found: Found) -> None:
     page.set_column(PLACE, CHANCES + len(RiskClass) - 1, 10, None, {"hidden": True})
 
 
-# ---------------------------------------------------------------- charts and pages
-
-
 def _draw(plan: _Plan, row: int, worst: Mapping[str, Found]) -> None:
     """Draw the charts, each of what rests on one basis alone, and set up the printed pages.
 
@@ -250,14 +240,11 @@ def _draw(plan: _Plan, row: int, worst: Mapping[str, Found]) -> None:
         top = tables[at] + 2
         charts.add_floors(pen, page, (first + at * charts.count_rows(floors), 0), (top, top + floors - 1), named)
     page.print_area(0, 0, first + len(plan.bases) * charts.count_rows(floors), LAST)
-    is_many = floors > MOST_FLOORS
+    is_many = floors > 12  # then the summary is printed on several pages
     is_short = not is_many and len(plan.bases) <= 1
     page.fit_to_pages(1, 1 if is_short else 0)
     if not is_short:
         page.set_h_pagebreaks([*list(plan.lists.values())[1:2], *(tables if is_many else tables[:1]), first - 1])
-
-
-# ---------------------------------------------------------------- counts
 
 
 def _list_apart() -> list[str]:
@@ -266,7 +253,6 @@ def _list_apart() -> list[str]:
 
 
 def _write_building(plan: _Plan) -> None:
-    """Write the counts of the building: a row a basis, then what has no class."""
     pen, page, row = plan.pen, plan.page, plan.top
     _write_heads(plan, row, _("Building"), [_("pieces")])
     for row, basis in enumerate(plan.bases, plan.top + 1):
@@ -284,7 +270,6 @@ def _write_building(plan: _Plan) -> None:
 
 
 def _count_as_run(results: Sequence[ItemResult], basis: str) -> list[int]:
-    """Return the free-standing pieces of a basis by class, and their sum."""
     own = [one for one in results if (one.apart or one.main_basis) == basis and not one.is_anchored]
     counts = [count_pieces(one for one in own if one.adopted.risk == risk) for risk in RiskClass]
     return [*counts, sum(counts)]
@@ -297,7 +282,6 @@ def _count_apart(results: Sequence[ItemResult]) -> list[int]:
 
 
 def _write_floors(plan: _Plan, basis: str) -> None:
-    """Write the counts of a basis by floor, and below them those of the building."""
     pen, page, content, top, below = plan.pen, plan.page, plan.content, plan.tables[basis], plan.total(basis)
     title = _("Pieces by class and floor: {basis}", basis=pen.terms.bases[basis])
     page.write_string(top, 0, title, pen.style("heading"))

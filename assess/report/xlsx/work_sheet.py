@@ -21,8 +21,6 @@ from assess.text import natural_key
 
 BOX = "☐"
 """To be ticked on paper."""
-DONE = "☑"
-FORCES = ("tension_kn", "tension_high_kn", "tension_code_kn", "shear_kn")
 FORCE, MONEY = "0.00", "#,##0.00"
 CHANGE = 7
 """Column of the numbers of the table before and after, which are wide enough for its labels before them."""
@@ -42,7 +40,7 @@ def write_work(pen: Pen, page: Any, content: Content) -> None:
     if not works:
         pen.put(page, 1, 0, _("No free-standing piece reaches medium, and no route needs one fixed."))
         return
-    page.data_validation(1, at["done"], len(works), at["done"], {"validate": "list", "source": [BOX, DONE]})
+    page.data_validation(1, at["done"], len(works), at["done"], {"validate": "list", "source": [BOX, "☑"]})
     page.autofilter(0, 0, len(works), len(columns) - 1)
     for row, work in enumerate(works, 1):
         values = [one.read(work) for one in columns]
@@ -89,10 +87,6 @@ def _list_columns(schedule: Schedule) -> list[Column]:
 
         return of_field(field, key=name, width=width, read=read, align=align)
 
-    def say_why(one: Work) -> str:
-        first = one.results[0]
-        return f"{words.class_symbol(first)} {words.risk_words(first)}; {one.chance}; {one.reason}"
-
     own = {
         name: of_field(field, key=name, read=partial(lambda field, one: field.read(one.row), field),
                        format=MONEY if name in ("unit_cost", "cost") else field.format)
@@ -100,7 +94,7 @@ def _list_columns(schedule: Schedule) -> list[Column]:
     }  # fmt: skip
     screening = _(say_work.SCREENING)
     has_code = any(work.tension_code_kn is not None for row in schedule.rows for work in row.works)
-    forces = [own[name] for name in FORCES if name != "tension_code_kn" or has_code]
+    forces = ["tension_kn", "tension_high_kn", *(["tension_code_kn"] if has_code else []), "shear_kn"]
     return [
         Column(_("Done"), 6, lambda _one: BOX, key="done", align="center"),
         of_entry("place", 5, align="center"),
@@ -109,9 +103,10 @@ def _list_columns(schedule: Schedule) -> list[Column]:
         replace(own["pieces"], align="center"),
         Column(_("Names"), 14, lambda one: ", ".join(sorted(one.row.items, key=natural_key))),
         Column(_("Description"), 16, lambda one: one.described),
-        Column(_("Why, as run"), 34, say_why, key="why"),
+        Column(_("Why, as run"), 34, key="why", read=lambda one: "; ".join(
+            (f"{words.class_symbol(one.results[0])} {words.risk_words(one.results[0])}", one.chance, one.reason))),
         Column(own["detail"].label, 13, lambda one: _(one.detail.title)),
-        *(replace(one, label=f"{one.label}: {screening}", format=FORCE) for one in forces),
+        *(replace(own[key], label=f"{own[key].label}: {screening}", format=FORCE) for key in forces),
         replace(own["fixings"], align="center", read=lambda one: say_work.say_fixings(one.row)),
         own["unit_cost"],
         own["cost"],
