@@ -204,9 +204,13 @@ def compare(before: PastRun, after: PastRun) -> Comparison:
     pieces = []
     for was, now in pairs:
         direction, is_within = _direct(was, now)
-        values = {name: (one, now.inputs.get(name)) for name, one in was.inputs.items()} if was and now else {}
         states = before.standing(was) if was else ABSENT, after.standing(now) if now else ABSENT
-        inputs = {name: (one, other) for name, (one, other) in values.items() if not _is_equal(one, other)}
+        inputs = {}
+        for name, one in was.inputs.items() if was and now else ():
+            other = now.inputs.get(name)
+            is_number = isinstance(one, int | float) and isinstance(other, int | float)
+            if not (math.isclose(one, other, rel_tol=SAME, abs_tol=1e-9) if is_number else one == other):
+                inputs[name] = one, other
         pieces.append(
             PieceChange(before=was, after=now, states=states, direction=direction, is_within=is_within, inputs=inputs)
         )
@@ -247,9 +251,6 @@ def _arrange(changes: Sequence[_Changed], rank: Callable[[_Changed], tuple[float
     return tuple(sorted(changes, key=lambda one: (ORDER.index(one.direction), rank(one)[0], natural_key(rank(one)[1]))))
 
 
-# ---------------------------------------------------------------- one row
-
-
 def _direct(before: PastPiece | None, after: PastPiece | None) -> tuple[Direction, bool | None]:
     if before is None or after is None:
         return (Direction.ADDED if before is None else Direction.REMOVED), None
@@ -263,12 +264,6 @@ def _direct(before: PastPiece | None, after: PastPiece | None) -> tuple[Directio
     if before.risk != after.risk:
         return (Direction.WORSE if after.risk > before.risk else Direction.BETTER), is_within
     return _direct_chance(before.chance, after.chance, is_within), is_within
-
-
-def _is_equal(one: object, other: object) -> bool:
-    if isinstance(one, int | float) and isinstance(other, int | float):
-        return math.isclose(one, other, rel_tol=SAME, abs_tol=1e-9)
-    return one == other
 
 
 def _direct_chance(before: PastChance, after: PastChance, is_within: bool | None) -> Direction:
@@ -298,15 +293,11 @@ def _direct_state(
     return _direct_chance(was, now, is_within), is_within
 
 
-# ---------------------------------------------------------------- sampling
-
-
 def lies_within(before: PastChance, after: PastChance) -> bool | None:
     """Whether no difference of two chances can be told from their intervals; None where one has no interval.
 
-    The interval of the difference is that of two independent samples, from the interval of each. Runs with the same
-    seed share their draws, which makes the true interval shorter: then this is on the safe side, and holds a difference
-    for sampling that may be none.
+    The interval of the difference is that of two independent samples. Runs with the same seed share their draws, which
+    makes the true interval shorter: then this is on the safe side.
 
     Source: Newcombe RG (1998). Interval estimation for the difference between independent proportions: comparison of
     eleven methods. Statistics in Medicine 17(8):873-890, method 10.

@@ -33,12 +33,8 @@ from assess.route_results import RouteState
 from assess.version import __version__
 from assess.workbook.schema import BUILDING
 
-NAMED, NAMED_VALUES = 6, 5
-"""Items, routes and rooms that a sentence names, and values that a line of the two runs lists."""
-LONGEST_VALUE, LONGEST_FACT = 60, 80
-"""Characters of a value from a run, and of a line of the two runs, that a table shows."""
-MOST_ROWS, MOST_PRINTED, MOST_STATES = 5000, 300, 300
-"""Rows of pieces on a screen and on paper, and rows of routes and of rooms; the Excel file has all."""
+MOST_STATES = 300
+"""Rows of routes and of rooms that the page shows; the Excel file has all."""
 
 SETTINGS: Mapping[str, Text] = {
     "scenario": fill("Source of the floor motion"),
@@ -60,8 +56,7 @@ SETTINGS: Mapping[str, Text] = {
     "route_risk": fill("Limit on the chance that a route is blocked"),
 }
 """Settings by name; of later versions' others the name is shown."""
-ALWAYS = ("scale", "anchor")
-"""Settings that are shown even where both runs have the same."""
+
 _KINDS: Mapping[Direction, tuple[Text, Text, str]] = {
     Direction.WORSE: (fill("worse"), fill("higher class, or no longer anchored"), "worse"),
     Direction.RISES: (fill("higher chance"), fill("in the same class"), "worse"),
@@ -110,9 +105,6 @@ _UNJOINED_IN_BOTH = nfill(
 )  # fmt: skip
 
 
-# ---------------------------------------------------------------- words
-
-
 def name_direction(direction: Direction) -> str:
     """Return a direction in words."""
     return _(_KINDS[direction][0])
@@ -133,19 +125,12 @@ def name_state(state: str) -> str:
     return blocks.DASH if state == ABSENT else _(state)
 
 
-def label_standing(standing: str) -> str:
+def mark_standing(standing: str) -> blocks.Span:
     """Return the standing of a piece with its symbol; a dash where the run lacks it."""
     if standing in CLASSES:
-        return words.risk_label(CLASSES[standing])
-    return words.apart_label(_APART[standing]) if standing in _APART else blocks.DASH
-
-
-def _mark_standing(standing: str) -> blocks.Span:
-    if standing in CLASSES:
-        style = words.class_name(CLASSES[standing])
-    else:
-        style = standing if standing == ANCHORED else f"apart-{_APART.get(standing)}"
-    return blocks.Span(label_standing(standing), f"badge {style}")
+        return blocks.Span(words.risk_label(CLASSES[standing]), f"badge {words.class_name(CLASSES[standing])}")
+    label = words.apart_label(_APART[standing]) if standing in _APART else blocks.DASH
+    return blocks.Span(label, f"badge {standing if standing == ANCHORED else f'apart-{_APART.get(standing)}'}")
 
 
 def _say_chance(chance: PastChance) -> str:
@@ -170,8 +155,8 @@ def _say_value(value: Any) -> str:
     if isinstance(value, int | float):
         return number(value, ".6g")
     if isinstance(value, tuple):
-        return words.name_first([words.cut(one, 30) for one in value], NAMED_VALUES)
-    return words.cut(_(str(value)), LONGEST_VALUE)
+        return words.name_first([words.cut(one, 30) for one in value], 5)
+    return words.cut(_(str(value)), 60)
 
 
 def say_anchor(value: Any) -> str:
@@ -184,7 +169,7 @@ def say_anchor(value: Any) -> str:
 def _name_all(sentence: Text, names: Sequence[str], n: int | None = None, mark: str = ", ", **values: str) -> str:
     if not names:
         return ""
-    listed, n = words.name_first(names, NAMED, mark), len(names) if n is None else n
+    listed, n = words.name_first(names, 6, mark), len(names) if n is None else n
     return ngettext(sentence.template, sentence.many, n, names=listed, **values)
 
 
@@ -204,7 +189,7 @@ def _say_sum(value: float) -> str:
 
 
 def _count_line(
-    label: str, total: Total, *, is_worse_up: bool = False, is_worse_down: bool = False, style: str = ""
+    label: blocks.Words, total: Total, *, is_worse_up: bool = False, is_worse_down: bool = False
 ) -> blocks.Row:
     """Return a count or sum of both runs; it is worse where it goes up or down as said, better the other way.
 
@@ -219,9 +204,7 @@ def _count_line(
         change = f"{'+' if difference > 0 else '−'}{_say_sum(abs(difference))}"
         change = _("{change} (within the sampling interval)", change=change) if total.is_within else change
     sides = (blocks.Cell(_say_sum(value), sort=value) for value in (total.before, total.after))
-    return blocks.Row(
-        (blocks.head(blocks.Span(label, style) if style else label), *sides, blocks.Cell(change, "change")), tone
-    )
+    return blocks.Row((blocks.head(label), *sides, blocks.Cell(change, "change")), tone)
 
 
 class Fact(NamedTuple):
@@ -388,11 +371,10 @@ class View:
         is_fair = not found.count(Direction.UNCLEAR, *ONE_SIDED)  # else a count changes for other reasons as well
         lines = [
             _count_line(
-                label_standing(one),
+                mark_standing(one),
                 found.count_standing(one),
                 is_worse_up=is_fair and CLASSES.get(one, RiskClass.LOW) >= RiskClass.HIGH,
                 is_worse_down=is_fair and CLASSES.get(one) == RiskClass.LOW,
-                style=_mark_standing(one).kind,
             )
             for one in found.standings()
         ]
@@ -460,11 +442,11 @@ class View:
         for was in rows:
             cells = [cell(moves.get((was, now), 0), find_tone(was, now)) for now in columns]
             every = cell(sum(moves.get((was, now), 0) for now in columns))
-            head = blocks.head(_mark_standing(was) if was else _("not in BEFORE"))
+            head = blocks.head(mark_standing(was) if was else _("not in BEFORE"))
             lines.append(blocks.Row((head, *cells, every)))
         totals = [sum(moves.get((was, now), 0) for was in rows) for now in columns]
         lines.append(blocks.Row((blocks.head(_("all")), *map(cell, (*totals, sum(totals)))), "total"))
-        heads = [*(label_standing(one) if one else _("not in AFTER") for one in columns), _("all")]
+        heads = [*(mark_standing(one).words if one else _("not in AFTER") for one in columns), _("all")]
         shown = [blocks.Column(_("BEFORE ↓ AFTER →")), *(blocks.Column(one, is_number=True) for one in heads)]
         return blocks.table(shown, lines, "matrix", is_cards=False)
 
@@ -495,7 +477,7 @@ class View:
         ]  # fmt: skip
         facts = []
         for label, texts in origins:
-            was, now = (words.cut(text, LONGEST_FACT) or blocks.DASH for text in texts)
+            was, now = (words.cut(text, 80) or blocks.DASH for text in texts)
             facts.append(Fact(label, was, now, differs=was != now))
         motions = []
         for run, other in ((before, after), (after, before)):
@@ -505,7 +487,7 @@ class View:
                            if own else ngettext("{n:,} file", "{n:,} files", len(run.motions)))  # fmt: skip
         return [
             *facts,
-            *_list_differing(before.settings, after.settings, settings, always=ALWAYS),
+            *_list_differing(before.settings, after.settings, settings, always=("scale", "anchor")),
             *_list_differing(before.uncertainty, after.uncertainty, uncertainty),
             *_list_differing({"": before.shaking}, {"": after.shaking}, {"": _("Assumed shaking")}),
             *_list_differing({"": before.site_ground}, {"": after.site_ground}, {"": _("Ground motion")}),
@@ -548,11 +530,29 @@ def render_comparison(
         authors = [str(view.after.building.get(name) or "") for name in ("prepared_by", "organisation")]
         about = _("Overturning of furniture in an earthquake: two runs compared")
         title = blocks.Title(view.title, words.cut(view.title, 60), view.footer, words.cut(view.conditions, 150))
-        pieces = _list_pieces(view, MOST_PRINTED if for_print else MOST_ROWS)
+        counts, *routes = view.tabulate_counts()
+        sums = _(
+            "Expected falls are sums over the free-standing pieces that have a class in their run: BEFORE {before}, "
+            "AFTER {after}. Unconfirmed pieces and pieces by formula only are not in them. For the interval of a sum "
+            "the pieces are taken as fully correlated.",
+            **view.bases,
+        )
+        counted: list[blocks.Block] = [counts, blocks.Paragraph(sums, "small")]
+        counted += routes or [blocks.Paragraph(_("Neither run has evacuation routes."))]
+        moved: list[blocks.Block] = [blocks.Paragraph(_("There are no pieces."))]
+        if view.found.pieces:
+            tones = (
+                _("Dark cells: a higher class or no longer anchored; light blue cells: a lower class or anchored.")
+                if view.found.has_same_basis
+                else _("The bases differ, so no change of class is marked as better or worse.")
+            )
+            matrix = blocks.Box([view.tabulate_moves()], "scroll", label=_("Pieces by class, before and after"))
+            moved = [matrix, blocks.Paragraph(f"{view.say_moves()} {tones}", "small")]
+        pieces = _list_pieces(view, 300 if for_print else 5000)  # rows on paper and on a screen; the Excel file has all
         sections = [
             blocks.Section(list(_say_worse(view)), "", "worse", _("What gets worse")),
-            blocks.Section(_list_counts(view), "run-on", "counts", _("Counts before and after")),
-            blocks.Section(_list_moves(view), "run-on", "moved", _("Pieces by class, before and after")),
+            blocks.Section(counted, "run-on", "counts", _("Counts before and after")),
+            blocks.Section(moved, "run-on", "moved", _("Pieces by class, before and after")),
             blocks.Section(list(pieces), "", "changes", _("Pieces that changed")),
         ]
         if view.found.routes or view.found.rooms:
@@ -602,30 +602,6 @@ def _say_worse(view: View) -> Iterator[blocks.Block]:
         ),
         "small",
     )
-
-
-def _list_counts(view: View) -> list[blocks.Block]:
-    pieces, *routes = view.tabulate_counts()
-    sums = _(
-        "Expected falls are sums over the free-standing pieces that have a class in their run: BEFORE {before}, "
-        "AFTER {after}. Unconfirmed pieces and pieces by formula only are not in them. For the interval of a sum "
-        "the pieces are taken as fully correlated.",
-        **view.bases,
-    )
-    none = blocks.Paragraph(_("Neither run has evacuation routes."))
-    return [pieces, blocks.Paragraph(sums, "small"), routes[0] if routes else none]
-
-
-def _list_moves(view: View) -> list[blocks.Block]:
-    if not view.found.pieces:
-        return [blocks.Paragraph(_("There are no pieces."))]
-    tones = (
-        _("Dark cells: a higher class or no longer anchored; light blue cells: a lower class or anchored.")
-        if view.found.has_same_basis
-        else _("The bases differ, so no change of class is marked as better or worse.")
-    )
-    table = blocks.Box([view.tabulate_moves()], "scroll", label=_("Pieces by class, before and after"))
-    return [table, blocks.Paragraph(f"{view.say_moves()} {tones}", "small")]
 
 
 def _list_runs(view: View) -> list[blocks.Block]:
@@ -679,7 +655,7 @@ def _list_pieces(view: View, most: int) -> Iterator[blocks.Block]:
         for side, state in zip(one.sides, one.states, strict=True):
             chance = _say_chance(side.chance) if side else ""
             chance = _("free-standing: {chance}", chance=chance) if side and side.is_held else chance
-            sides.append([_mark_standing(state), blocks.BREAK, blocks.note(chance)] if side else blocks.DASH)
+            sides.append([mark_standing(state), blocks.BREAK, blocks.note(chance)] if side else blocks.DASH)
         inputs = "; ".join(say_inputs(one) or [blocks.DASH])
         cells = (blocks.head(name), _mark_change(one), place, _say_sum(one.pieces), *sides, inputs)
         shown.append(blocks.Row(cells, find_tone(one.direction)))

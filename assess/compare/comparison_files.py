@@ -7,14 +7,15 @@ Standings, directions and states are the words of `assess.compare`; null is what
 """
 
 import json
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from assess.compare.changes import Comparison, PieceChange, StateChange, Total, count_states
+from assess.compare.changes import Change, Comparison, Total, count_states
 from assess.compare.comparison_document import View, render_comparison, write_print
 from assess.compare.comparison_sheets import write_tables
-from assess.compare.past_run import COMPARISON, PastChance, PastPiece, PastRun
+from assess.compare.past_run import COMPARISON, PastPiece, PastRun, PastState
 from assess.delivery.deliver import Written, deliver, explain_fault, stage_for
 from assess.delivery.disk import find_digest, flush_file
 from assess.delivery.folders import NEW
@@ -25,6 +26,8 @@ from assess.report.ownership import find_reports
 from assess.report.pages.pdf_seal import seal
 from assess.report.report_options import ReportOptions
 from assess.version import __version__
+
+_Past = TypeVar("_Past", PastPiece, PastState)
 
 SCHEMA = "1.1"
 """Version of the shape of compare.json."""
@@ -136,9 +139,6 @@ def _write_all(
     return missing
 
 
-# ---------------------------------------------------------------- compare.json
-
-
 def dump(record: Mapping[str, Any]) -> str:
     """Return a document in JSON."""
     return json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1) + "\n"
@@ -184,9 +184,37 @@ def describe(found: Comparison, files: Mapping[str, str | None] | None = None) -
         "moves": [
             {"before": one or None, "after": to or None, "pieces": count} for (one, to), count in found.moves.items()
         ],
-        "items": [_piece(one) for one in found.pieces],
-        "routes": [{"route": one.row.name} | _state(one) for one in found.routes],
-        "rooms": [{"room": one.row.name} | _state(one) | {"floor": one.row.floor} for one in found.rooms],
+        "items": [
+            {"item": one.row.item, **_change(one, _describe_piece),
+             "inputs": {name: {"before": was, "after": now} for name, (was, now) in one.inputs.items()}}
+            for one in found.pieces
+        ],
+        "routes": [{"route": one.row.name, **_change(one, _describe_state)} for one in found.routes],
+        "rooms": [
+            {"room": one.row.name, **_change(one, _describe_state), "floor": one.row.floor} for one in found.rooms
+        ],
+    }  # fmt: skip
+
+
+def _change(one: Change[_Past], describe_side: Callable[[_Past, str], dict[str, Any]]) -> dict[str, Any]:
+    before, after = (side and describe_side(side, state) for side, state in zip(one.sides, one.states, strict=True))
+    within = one.is_within
+    return {"change": one.direction.value, "within_sampling_interval": within, "before": before, "after": after}
+
+
+def _describe_state(state: PastState, _standing: str) -> dict[str, Any]:
+    return {"state": state.state, "chance": state.chance and asdict(state.chance)}
+
+
+def _describe_piece(piece: PastPiece, standing: str) -> dict[str, Any]:
+    return {
+        "floor": piece.floor,
+        "room": piece.room,
+        "quantity": piece.quantity,
+        "standing": standing,
+        "class": piece.risk.word,
+        "basis": piece.basis,
+        **asdict(piece.chance),
     }
 
 
@@ -205,42 +233,3 @@ def _run(run: PastRun) -> dict[str, Any]:
         "settings": dict(run.settings),
         "unjoined_rooms": list(run.unjoined_rooms),
     }
-
-
-def _change(one: PieceChange | StateChange, before: object, after: object) -> dict[str, Any]:
-    return {
-        "change": one.direction.value,
-        "within_sampling_interval": one.is_within,
-        "before": before,
-        "after": after,
-    }
-
-
-def _piece(one: PieceChange) -> dict[str, Any]:
-    def side(piece: PastPiece | None, standing: str) -> dict[str, Any] | None:
-        if piece is None:
-            return None
-        return {
-            "floor": piece.floor,
-            "room": piece.room,
-            "quantity": piece.quantity,
-            "standing": standing,
-            "class": piece.risk.word,
-            "basis": piece.basis,
-            **_chance(piece.chance),
-        }
-
-    return {
-        "item": one.row.item,
-        **_change(one, side(one.before, one.states[0]), side(one.after, one.states[1])),
-        "inputs": {name: {"before": was, "after": now} for name, (was, now) in one.inputs.items()},
-    }
-
-
-def _state(one: StateChange) -> dict[str, Any]:
-    sides = [run and {"state": run.state, "chance": run.chance and _chance(run.chance)} for run in one.sides]
-    return _change(one, *sides)
-
-
-def _chance(chance: PastChance) -> dict[str, Any]:
-    return {"probability": chance.probability, "low": chance.low, "high": chance.high}

@@ -45,7 +45,8 @@ def write_tables(view: View, path: Path, progress: Progress = SILENT) -> None:
         Column(_("Room"), 14, lambda one: one.row.room),
         *_of_both(lambda run: _("Pieces, {run}", run=run), 9,
                   lambda one, at: getattr(one.sides[at], "quantity", None), COUNT),
-        *_of_both(lambda run: _("Class, {run}", run=run), 16, lambda one, at: say.label_standing(one.states[at])),
+        *_of_both(lambda run: _("Class, {run}", run=run), 16,
+                  lambda one, at: plain_words(say.mark_standing(one.states[at]))),
         *_list_chances(lambda piece: piece.chance),
         *_of_both(lambda run: _("Basis, {run}", run=run), 13,
                   lambda one, at: say.name_basis(one.sides[at].basis) if one.sides[at] else None),
@@ -101,7 +102,6 @@ def _write_summary(view: View, pen: Pen, page: Any) -> None:
 
 
 def _write_rows(pen: Pen, page: Any, top: int, table: Table) -> int:
-    """Write the rows of a table, its numbers as what they are sorted by, and return the row below it."""
     for number, row in enumerate(table.groups[0], top):
         for at, one in enumerate(row.cells):
             cell = one if isinstance(one, Cell) else Cell(one)
