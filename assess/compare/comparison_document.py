@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from assess.compare.changes import (
@@ -25,7 +24,6 @@ from assess.progress import SILENT, Progress
 from assess.report import blocks, words
 from assess.report.data import building_key
 from assess.report.pages.html import render_document
-from assess.report.pages.pdf import attach, print_page
 from assess.report.provenance import say_date
 from assess.report.report_options import ReportOptions
 from assess.risk import RiskClass
@@ -429,7 +427,7 @@ class View:
                 _say_sum(pieces) if pieces else blocks.DASH, tone if pieces or tone == "same" else "", sort=pieces
             )
 
-        def find_tone(was: str, now: str) -> str:
+        def tone(was: str, now: str) -> str:
             if was == now:
                 return "same"
             if ANCHORED in (was, now) and ABSENT not in (was, now):
@@ -440,7 +438,7 @@ class View:
 
         lines = []
         for was in rows:
-            cells = [cell(moves.get((was, now), 0), find_tone(was, now)) for now in columns]
+            cells = [cell(moves.get((was, now), 0), tone(was, now)) for now in columns]
             every = cell(sum(moves.get((was, now), 0) for now in columns))
             head = blocks.head(mark_standing(was) if was else _("not in BEFORE"))
             lines.append(blocks.Row((head, *cells, every)))
@@ -512,13 +510,6 @@ def _list_differing(
 
 
 # ---------------------------------------------------------------- the document
-
-
-def write_print(view: View, path: Path, data: Path, options: ReportOptions, progress: Progress = SILENT) -> None:
-    """Write compare.pdf, which carries the file `data`; raises what `assess.report.pages.pdf.write_pdf` does."""
-    html = render_comparison(view, options, for_print=True, progress=progress)
-    files = [attach(data.name, "Data", _("The comparison, for other programs"), data.read_bytes())]
-    print_page(html, path, files, options, progress)
 
 
 def render_comparison(

@@ -13,16 +13,18 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from assess.compare.changes import Change, Comparison, Total, count_states
-from assess.compare.comparison_document import View, render_comparison, write_print
+from assess.compare.comparison_document import View, render_comparison
 from assess.compare.comparison_sheets import write_tables
 from assess.compare.past_run import COMPARISON, PastPiece, PastRun, PastState
 from assess.delivery.deliver import Written, deliver, explain_fault, stage_for
 from assess.delivery.disk import find_digest, flush_file
 from assess.delivery.folders import NEW
 from assess.errors import InputError, PdfUnavailableError
+from assess.i18n import gettext as _
 from assess.progress import SILENT, Progress
 from assess.report import check_folder
 from assess.report.ownership import find_reports
+from assess.report.pages.pdf import attach, print_page
 from assess.report.pages.pdf_seal import seal
 from assess.report.report_options import ReportOptions
 from assess.version import __version__
@@ -119,7 +121,9 @@ def _write_all(
                 write_data()
             elif name == "pdf":
                 try:
-                    write_print(view, path, data, options, progress)
+                    html = render_comparison(view, options, for_print=True, progress=progress)
+                    files = [attach(data.name, "Data", _("The comparison, for other programs"), data.read_bytes())]
+                    print_page(html, path, files, options, progress)
                 except PdfUnavailableError as error:
                     missing = error
                     del listed[path.name]

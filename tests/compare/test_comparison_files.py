@@ -8,7 +8,7 @@ import openpyxl
 import pypdfium2
 import pytest
 
-from assess.compare import comparison_document, comparison_files
+from assess.compare import comparison_files
 from assess.compare.changes import compare
 from assess.compare.comparison_document import View
 from assess.compare.comparison_files import write_comparison
@@ -121,7 +121,7 @@ def test_without_the_libraries_of_the_pdf_the_others_are_written(found, tmp_path
     def fail(*_given, **_named):
         raise PdfUnavailableError("no library")
 
-    monkeypatch.setattr(comparison_document, "print_page", fail)
+    monkeypatch.setattr(comparison_files, "print_page", fail)
     with pytest.raises(PdfUnavailableError):
         write_comparison(found, tmp_path)
     assert {path.name for path in tmp_path.iterdir()} == {"compare.html", "compare.json", "compare.xlsx"}

@@ -398,16 +398,6 @@ def name_source(found: "SiteGround") -> str:
     return _("ShakeMap {file}", file=file) if found.kind == "shakemap" else _("scenarios {file}", file=file)
 
 
-def say_dispersion(found: "SiteGround", own: float) -> str:
-    """Return what the dispersion of the motions is made of; `own` is Motion uncertainty [-]."""
-    if not own:
-        return _("the standard deviation of ln {measure} at the building", measure=found.measure)
-    return _(
-        "the root of {own}² + {sigma}²: Motion uncertainty, and the standard deviation of ln {measure} at the building",
-        own=number(own, ".3g"), sigma=number(found.dispersion, ".3g"), measure=found.measure,
-    )  # fmt: skip
-
-
 def _say_site(found: "SiteGround", results: Results) -> Iterator[str]:
     source = name_source(found)
     if found.kind == "shakemap" and found.facts:

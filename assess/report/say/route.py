@@ -298,21 +298,13 @@ def name_few(names: Sequence[str]) -> str:
 
 def say_way(way: WayRow, routes: RouteTables) -> str:
     """Return a way out: where it ends, by which segments, the chance of a blockage, and what the first way shares."""
-    segments = [routes.segments[at] for at in way.segment_indices]
-    said = _(
-        "{end} by {segments}: {chance}",
-        end=words.cut(way.end, 40),
-        segments=_name_segments([one.segment for one in segments]),
-        chance=say_between(way.blocked, way.blocked_if_unconfirmed_fall, is_known=way.is_known),
+    names = [routes.segments[at].segment for at in way.segment_indices]
+    segments, shared = (
+        words.name_first([words.cut(name, 30) for name in some], MOST_NAMED) for some in (names, way.shared)
     )
-    if not way.shared:
-        return said
-    shared = _name_segments(way.shared)
-    return _("{way}; shares {segments} with the first", way=said, segments=shared)
-
-
-def _name_segments(names: Sequence[str]) -> str:
-    return words.name_first([words.cut(name, 30) for name in names], MOST_NAMED)
+    chance = say_between(way.blocked, way.blocked_if_unconfirmed_fall, is_known=way.is_known)
+    said = _("{end} by {segments}: {chance}", end=words.cut(way.end, 40), segments=segments, chance=chance)
+    return _("{way}; shares {segments} with the first", way=said, segments=shared) if way.shared else said
 
 
 def say_left_out(unevaluated: Sequence[str]) -> str:

@@ -7,7 +7,7 @@ from assess.i18n import gettext as _
 from assess.model import SCANNED
 from assess.report import words
 from assess.report.provenance import say_reference
-from assess.report.say.ground import describe_suite, list_narrowing, name_source, say_dispersion, say_signs
+from assess.report.say.ground import describe_suite, list_narrowing, name_source, say_signs
 from assess.results import EarthquakeDraws, ItemResult, Results, count_pieces
 from assess.risk import RiskClass, classify
 from assess.settings import AUTO
@@ -409,8 +409,12 @@ def say_source(results: Results) -> str:
     shaking, given = results.provenance.shaking, results.building.motion_uncertainty
     if shaking and shaking.scatter == results.provenance.uncertainty.motion != given:
         return _("scatter of ln PGV given the intensity, {sources}", sources=", ".join(shaking.sources))
-    if site := results.provenance.site_ground:
-        return say_dispersion(site, given or 0.0)
+    if (site := results.provenance.site_ground) and given:
+        return _("the root of {own}² + {sigma}²: Motion uncertainty, and the standard deviation of ln {measure} at the "
+                 "building", own=number(given, ".3g"), sigma=number(site.dispersion, ".3g"),
+                 measure=site.measure)  # fmt: skip
+    if site:
+        return _("the standard deviation of ln {measure} at the building", measure=site.measure)
     return _("assumed") if given is None else _("as filled in")
 
 

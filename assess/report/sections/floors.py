@@ -9,7 +9,6 @@ from assess.report import blocks, words
 from assess.report.content import FloorPage
 from assess.report.counts import Counts, count
 from assess.report.figures.bars import draw_bars
-from assess.report.figures.plan import Plan
 from assess.report.figures.plan_drawing import draw_plan, list_legend
 from assess.report.page_columns import build_table, motion_columns
 from assess.report.say import ground
@@ -49,9 +48,28 @@ def _build_floor(view: View, page: FloorPage, at: int) -> blocks.Box:
         blocks.Paragraph(counted, "motion"),
     ]
     if plan:
+        if plan.pieces:
+            texts = [_(
+                "Plan: every piece with a position, to scale, with the symbol of its class; hatched: the floor that a "
+                "piece of medium class or above would cover if it fell: to either side, or away from its wall where "
+                "that is known."
+            ), view.marks]  # fmt: skip
+            if left := sum(one.item.x_m is None or one.item.y_m is None for one in page.results):
+                texts.append(ngettext("{n:,} row without a position is left out.",
+                                      "{n:,} rows without a position are left out.", left))  # fmt: skip
+        else:
+            texts = [_("Plan: no piece of this floor has a position.") if page.results
+                     else _("Plan: this floor has no pieces.")]  # fmt: skip
+        if plan.ways:
+            texts.append(_("Bands: segments of evacuation routes, as wide as they are clear, with the sign of their "
+                           "state. ? could be worse; ⚓ assumes the anchors hold."))  # fmt: skip
+            if drafts := sum(one.is_draft for one in plan.ways):
+                texts.append(ngettext("{n:,} of {all:,} segments drawn is drafted, not walked.",
+                                      "{n:,} of {all:,} segments drawn are drafted, not walked.",
+                                      drafts, all=len(plan.ways)))  # fmt: skip
         kind = f"plan rows-{min(len(risky), BESIDE_PLAN)}"
-        found.append(blocks.Figure(draw_plan(plan, view), _caption_plan(view, page, plan), kind,
-                                   list_legend(plan, view)))  # fmt: skip
+        about = " ".join(filter(None, texts))
+        found.append(blocks.Figure(draw_plan(plan, view), about, kind, list_legend(plan, view)))
     title = _("Bars: pieces of each class in every room of {floor}", floor=page.title)
     bars = draw_bars(count_rooms(page.results), title) if page.results and not (plan and plan.pieces) else None
     if bars:
@@ -84,30 +102,6 @@ def count_rooms(results: Sequence[ItemResult]) -> list[Counts]:
         for room in sorted(rooms, key=natural_key)
     ]
     return sorted(counts, key=lambda one: -one.risky)
-
-
-def _caption_plan(view: View, page: FloorPage, plan: Plan) -> str:
-    if plan.pieces:
-        first = _(
-            "Plan: every piece with a position, to scale, with the symbol of its class; hatched: the floor that a "
-            "piece of medium class or above would cover if it fell: to either side, or away from its wall where that "
-            "is known."
-        )
-        texts = [first, view.marks]
-        if left := sum(one.item.x_m is None or one.item.y_m is None for one in page.results):
-            texts.append(ngettext("{n:,} row without a position is left out.",
-                                  "{n:,} rows without a position are left out.", left))  # fmt: skip
-    else:
-        texts = [_("Plan: no piece of this floor has a position.") if page.results
-                 else _("Plan: this floor has no pieces.")]  # fmt: skip
-    if plan.ways:
-        texts.append(_("Bands: segments of evacuation routes, as wide as they are clear, with the sign of their state. "
-                       "? could be worse; ⚓ assumes the anchors hold."))  # fmt: skip
-        if drafts := sum(one.is_draft for one in plan.ways):
-            texts.append(ngettext("{n:,} of {all:,} segments drawn is drafted, not walked.",
-                                  "{n:,} of {all:,} segments drawn are drafted, not walked.",
-                                  drafts, all=len(plan.ways)))  # fmt: skip
-    return " ".join(filter(None, texts))
 
 
 def _list_pieces(view: View, page: FloorPage, risky: Sequence[ItemResult], most: int, marks: str) -> list[blocks.Block]:

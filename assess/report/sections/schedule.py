@@ -10,7 +10,6 @@ from assess.i18n import gettext as _
 from assess.report import blocks, words
 from assess.report.page_columns import mark
 from assess.report.say import work as say
-from assess.report.say.work import Work
 from assess.report.view import Part, View, say_left
 from assess.schedule_results import WorkRow
 
@@ -91,8 +90,28 @@ def _list_work(view: View) -> Iterator[blocks.Block]:
     for (floor, room), own in groupby(works, key=lambda one: (one.row.floor, one.row.room)):
         nowhere = _("no room given")
         heading = f"{view.floor_titles[floor]}: {words.cut(room, 60) or nowhere}"
-        rows = [blocks.Row(list(_list_cells(view, one, has_code=has_code, has_cost=has_cost))) for one in own]
-        groups.append([blocks.part(heading, len(columns)), *rows])
+        groups.append([blocks.part(heading, len(columns))])
+        for one in own:
+            row, entry = one.row, one.entry.row
+            count = f" ({words.plural(row.pieces, 'piece')})" if row.pieces > len(row.items) else ""
+            reason = f"; {one.reason}" if one.reason != words.DASH else ""
+            found: blocks.Runs = [blocks.strong(one.names), f": {words.cut(one.described, 50)}{count} "]
+            found += [*mark(one.results[0]), f" {one.chance}{reason}"]
+            if photo := view.photos.first_photo(one.results):
+                found.append(blocks.Image(photo[1], _("Photo of {piece}", piece=photo[0]), "photo"))
+            groups[-1].append(blocks.Row([
+                str(entry.place),
+                found,
+                blocks.join_words((_(one.detail.title), blocks.note(f"({one.marks})") if one.marks else "")),
+                say.say_force(row.tension_kn),
+                f"{say.say_force(row.tension_high_kn)}{f' {say.HELD}' if one.is_held_by_weight else ''}",
+                *([say.say_force(row.tension_code_kn)] if has_code else []),
+                say.say_force(row.shear_kn),
+                f"{say.say_fixings(row)} × {number(row.pieces, ',d')}",
+                *([say.say_cost(row.unit_cost), say.say_cost(row.cost)] if has_cost else []),
+                words.fixed(entry.falls_avoided, 2) if one.is_first else words.DASH,
+                words.fixed(entry.falls_left, 2) if one.is_first else words.DASH,
+            ]))  # fmt: skip
     caption = blocks.rich(_("Force on each piece [kN]: <em>{caveat}</em>"), caveat=_(say.SCREENING))
     yield blocks.Table(columns, groups, "named schedule", [*caption, "."], is_named=True)
     yield from say_left(len(schedule.rows) - len(shown))
@@ -100,29 +119,6 @@ def _list_work(view: View) -> Iterator[blocks.Block]:
     left_over = _("Falls left: once this entry and all of smaller number are fixed.")
     texts = (_(say.CHECKS), left_over, held, *say.list_marks(schedule), view.marks)
     yield blocks.Paragraph(blocks.join_words(texts), "small")
-
-
-def _list_cells(view: View, work: Work, *, has_code: bool, has_cost: bool) -> Iterator[blocks.Words]:
-    row, entry = work.row, work.entry.row
-    count = f" ({words.plural(row.pieces, 'piece')})" if row.pieces > len(row.items) else ""
-    reason = f"; {work.reason}" if work.reason != words.DASH else ""
-    yield str(entry.place)
-    found: blocks.Runs = [blocks.strong(work.names), f": {words.cut(work.described, 50)}{count} "]
-    found += [*mark(work.results[0]), f" {work.chance}{reason}"]
-    if photo := view.photos.first_photo(work.results):
-        found.append(blocks.Image(photo[1], _("Photo of {piece}", piece=photo[0]), "photo"))
-    yield found
-    yield blocks.join_words((_(work.detail.title), blocks.note(f"({work.marks})") if work.marks else ""))
-    yield say.say_force(row.tension_kn)
-    yield f"{say.say_force(row.tension_high_kn)}{f' {say.HELD}' if work.is_held_by_weight else ''}"
-    if has_code:
-        yield say.say_force(row.tension_code_kn)
-    yield say.say_force(row.shear_kn)
-    yield f"{say.say_fixings(row)} × {number(row.pieces, ',d')}"
-    if has_cost:
-        yield from (say.say_cost(cost) for cost in (row.unit_cost, row.cost))
-    yield words.fixed(entry.falls_avoided, 2) if work.is_first else words.DASH
-    yield words.fixed(entry.falls_left, 2) if work.is_first else words.DASH
 
 
 PARTS = (

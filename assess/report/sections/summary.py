@@ -1,6 +1,6 @@
 """One page that a manager can act on: what is expected, the worst pieces, what to fix first, and the routes at risk."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from assess.i18n import fill, ngettext, number
 from assess.i18n import gettext as _
@@ -41,8 +41,20 @@ def build(view: View) -> blocks.Section:
         blocks.Paragraph(" ".join(say_plainly(total, worst, content.fixes, view.results)), "lead"),
         *(blocks.Paragraph(text, "caution apart") for text in say_apart(view.results)),
         _say_conditions(view, shaking, short[: 2 if is_tight and total.has_apart else 3]),
-        blocks.Tiles(list(_list_tiles(total))),
     ]
+    tiles = []
+    for risk, limits in words.list_limits():
+        note = _("{share} of pieces; chance {limits}", share=total.share(risk), limits=limits)
+        tiles.append(blocks.Tile(words.class_name(risk), words.risk_label(risk), total.say(risk),
+                                 note.replace(" %", f"{words.NO_BREAK}%")))  # fmt: skip
+    for kind, name, pieces, note in (
+        ("apart-unconfirmed", "unconfirmed", total.unconfirmed, _("counted apart")),
+        ("apart-formula", "formula", total.by_formula, _("not simulated")),
+        ("anchored", "anchored", total.anchored, _("not classified")),
+    ):
+        if pieces or kind == "anchored":
+            tiles.append(blocks.Tile(kind, words.apart_label(name), number(pieces, ",d"), note))
+    found.append(blocks.Tiles(tiles))
     title = _("Bars: pieces of each class on every floor; the numbers are in the table of the floors")
     if bars := draw_bars(floors, title):
         texts = [_("Pieces by class and floor.")]
@@ -86,20 +98,6 @@ def _say_conditions(view: View, shaking: str, cautions: Sequence[str]) -> blocks
         lines[-1] += [" ", *view.lead_to("motions" if view.shows("motions") else "approach", all_)]
     lines += [[text] for text in view.content.total.say_cannot_rock()]
     return blocks.Paragraph(blocks.join_words(([*one, " "] for one in lines), blocks.BREAK), "caution")
-
-
-def _list_tiles(total: Counts) -> Iterator[blocks.Tile]:
-    for risk, limits in words.list_limits():
-        said = _("{share} of pieces; chance {limits}", share=total.share(risk), limits=limits)
-        note = said.replace(" %", f"{words.NO_BREAK}%")
-        yield blocks.Tile(words.class_name(risk), words.risk_label(risk), total.say(risk), note)
-    for kind, name, pieces, note in (
-        ("apart-unconfirmed", "unconfirmed", total.unconfirmed, _("counted apart")),
-        ("apart-formula", "formula", total.by_formula, _("not simulated")),
-        ("anchored", "anchored", total.anchored, _("not classified")),
-    ):
-        if pieces or kind == "anchored":
-            yield blocks.Tile(kind, words.apart_label(name), number(pieces, ",d"), note)
 
 
 def _list_fixes(view: View, *, is_tight: bool) -> list[blocks.Block]:

@@ -30,7 +30,7 @@ from assess.report.xlsx.item_formulas import (
     build_terms,
     live_formulas,
 )
-from assess.report.xlsx.pen import CHANCE, COUNT, HEAD, LINE, Column, Pen, count_lines, of_field, widen
+from assess.report.xlsx.pen import CHANCE, COUNT, HEAD, LINE, Column, Pen, count_lines, of_field, refer, widen
 from assess.results import BASES, CANNOT_ROCK, CaseRow, ItemResult, MethodResult, Results
 from assess.risk import RiskClass, classify
 from assess.table import Field
@@ -343,7 +343,7 @@ def write_items(pen: Pen, page: Any, content: Content) -> None:
     cells = {column.key: f"${xl_col_to_name(at)}{ROW}" for at, column in enumerate(columns)}
     last, lowest = HEAD + len(content.floors), HEAD + len(list_lines(content.run))
     formulas = ItemFormulas(
-        cells, pen.refer("Floors"), last, lowest, pen.terms, content.run.formula, content.run.paper_formula
+        cells, refer(pen.sheets["Floors"]), last, lowest, pen.terms, content.run.formula, content.run.paper_formula
     )
     by_basis = {(basis, is_run): formulas.of(basis, is_run=is_run) for basis in BASES for is_run in (False, True)}
     live = {key for own in by_basis.values() for key in own}
@@ -367,7 +367,7 @@ def write_items(pen: Pen, page: Any, content: Content) -> None:
 
 def item_areas(pen: Pen, content: Content) -> dict[str, str]:
     """Return the cells of each column of Items by its key, as formulas of other sheets refer to them."""
-    last, sheet = HEAD + max(1, len(content.results)), pen.refer("Items")
+    last, sheet = HEAD + max(1, len(content.results)), refer(pen.sheets["Items"])
     letters = {column.key: xl_col_to_name(at) for at, column in enumerate(item_columns(content.run))}
     return {key: f"{sheet}${letter}${HEAD + 1}:${letter}${last}" for key, letter in letters.items()}
 

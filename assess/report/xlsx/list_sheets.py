@@ -21,7 +21,7 @@ from assess.report.say.ground import (
 from assess.report.say.route import list_cautions, list_widths, say_default_width
 from assess.report.say.simulation import describe_trials, list_misfits, list_references
 from assess.report.xlsx.item_formulas import LIMITS as LIMIT_NAMES
-from assess.report.xlsx.pen import COUNT, Column, Pen, of_field, row_height
+from assess.report.xlsx.pen import COUNT, Column, Pen, of_field, refer, row_height
 from assess.results import MotionRow
 from assess.risk import LIMITS, RiskClass
 from assess.workbook.formulas import say_class
@@ -185,7 +185,7 @@ def write_assumptions(pen: Pen, page: Any, content: Content) -> None:
                         symbol=one.symbol, column=_(method.short_title))  # fmt: skip
             values.append((one.cell, meaning, getattr(content.run.settings, one.setting)))
     for row, (name, meaning, value) in enumerate(values, 1):
-        pen.book.define_name(name, f"={pen.refer('Assumptions')}$B${row + 1}")
+        pen.book.define_name(name, f"={refer(pen.sheets['Assumptions'])}$B${row + 1}")
         page.write_string(row, 0, meaning, pen.style("text"))
         page.write_number(row, 1, value, pen.style("input"))
     rule = {"validate": "decimal", "criteria": "between", "minimum": 0, "maximum": 1}

@@ -113,10 +113,6 @@ class Pen:
         """Return the format of one of `LOOKS`, with a number format and what differs."""
         return self.format(**LOOKS[name], num_format=code, **more)
 
-    def refer(self, sheet: str) -> str:
-        """Return a sheet by its key as formulas write it before a cell."""
-        return refer(self.sheets[sheet])
-
     def put(self, page: Any, row: int, column: int, value: Any, form: Any = None) -> None:
         """Write a value as what it is: a text is never a formula, a link or a number."""
         if value is None or value == "":

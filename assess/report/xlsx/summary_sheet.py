@@ -32,7 +32,7 @@ from assess.report.xlsx.items_sheet import (
     order_number,
     say_inputs_that_settle,
 )
-from assess.report.xlsx.pen import CHANCE, HEAD, LINE, Pen, count_lines, row_height
+from assess.report.xlsx.pen import CHANCE, HEAD, LINE, Pen, count_lines, refer, row_height
 from assess.results import CANNOT_ROCK, ItemResult, count_pieces
 from assess.risk import RiskClass
 from assess.workbook.formulas import OUTSIDE
@@ -105,7 +105,17 @@ def write_summary(pen: Pen, page: Any, content: Content) -> None:
             page.write_formula(at, 0, f"={formula}", pen.style("text"), text)
         else:
             pen.put(page, at, 0, text, pen.style("text"))
-    _write_building(plan)
+    row, results = top, content.results
+    _write_heads(plan, row, _("Building"), [_("pieces")])  # a row a basis, then what has no class
+    for row, basis in enumerate(bases, top + 1):
+        page.write_string(row, 0, pen.terms.bases[basis], pen.style("total"))
+        for at, value in enumerate(_count_as_run(results, basis), 1):
+            formula = f"={xl_col_to_name(at)}{plan.total(basis) + 1}"
+            page.write_formula(row, at, formula, pen.style("total"), value)
+    for at, (label, value) in enumerate(zip(_list_apart(), _count_apart(results), strict=True) if bases else (), 1):
+        page.write_string(row + at, 0, label, pen.style("total"))
+        formula = f"={xl_col_to_name(SUM + at)}{plan.total(bases[0]) + 1}"
+        page.write_formula(row + at, SUM, formula, pen.style("total"), value)
     for basis, found in worst.items():  # rows are written from the top: what is above the last one is left out
         _write_worst(plan, basis, found)
     for basis in bases:
@@ -252,23 +262,6 @@ def _list_apart() -> list[str]:
     return [_("run again"), _("anchored"), _("all")]
 
 
-def _write_building(plan: _Plan) -> None:
-    pen, page, row = plan.pen, plan.page, plan.top
-    _write_heads(plan, row, _("Building"), [_("pieces")])
-    for row, basis in enumerate(plan.bases, plan.top + 1):
-        page.write_string(row, 0, pen.terms.bases[basis], pen.style("total"))
-        for at, value in enumerate(_count_as_run(plan.content.results, basis), 1):
-            formula = f"={xl_col_to_name(at)}{plan.total(basis) + 1}"
-            page.write_formula(row, at, formula, pen.style("total"), value)
-    if not plan.bases:
-        return
-    values = _count_apart(plan.content.results)
-    total = plan.total(plan.bases[0]) + 1
-    for at, (label, value) in enumerate(zip(_list_apart(), values, strict=True), 1):
-        page.write_string(row + at, 0, label, pen.style("total"))
-        page.write_formula(row + at, SUM, f"={xl_col_to_name(SUM + at)}{total}", pen.style("total"), value)
-
-
 def _count_as_run(results: Sequence[ItemResult], basis: str) -> list[int]:
     own = [one for one in results if (one.apart or one.main_basis) == basis and not one.is_anchored]
     counts = [count_pieces(one for one in own if one.adopted.risk == risk) for risk in RiskClass]
@@ -300,7 +293,9 @@ def _write_floors(plan: _Plan, basis: str) -> None:
         row = top + 1 + number
         pen.put(page, row, 0, floor.title, pen.style("text"))
         page.set_row(row, row_height([floor.title], WIDTHS))
-        on_floor = f"({areas['floor']}={pen.refer('Floors')}$A${HEAD + number})"  # SUMIFS takes names for criteria
+        on_floor = (
+            f"({areas['floor']}={refer(pen.sheets['Floors'])}$A${HEAD + number})"  # SUMIFS takes names for criteria
+        )
         formulas = [f"=SUMPRODUCT({on_floor}*(1-{anchored})*({rests})*{one},{quantity})" for one in classes]
         formulas.append(f"=SUM(B{row + 1}:{xl_col_to_name(SUM - 1)}{row + 1})")
         values = _count_as_run(floor.results, basis)

@@ -14,7 +14,6 @@ from assess.i18n import gettext as _
 from assess.report import words
 from assess.report.content import Content
 from assess.report.say import work as say_work
-from assess.report.say.work import Work
 from assess.report.xlsx.pen import COUNT, LINE, Column, Pen, count_lines, of_field, row_height, widen
 from assess.schedule_results import Schedule, ScheduleRow, WorkRow
 from assess.text import natural_key
@@ -82,10 +81,9 @@ def _list_columns(schedule: Schedule) -> list[Column]:
         """Return a column of the whole entry, which stands with the most urgent part of it alone if `only_first`."""
         field = schedule_fields(ScheduleRow)[name]
 
-        def read(one: Work) -> Any:
-            return field.read(one.entry.row) if one.is_first or not only_first else None
-
-        return of_field(field, key=name, width=width, read=read, align=align)
+        return of_field(field, key=name, width=width, align=align,
+                        read=lambda one: field.read(one.entry.row) if one.is_first or not only_first else None
+                        )  # fmt: skip
 
     own = {
         name: of_field(field, key=name, read=partial(lambda field, one: field.read(one.row), field),
