@@ -205,12 +205,14 @@ def compare(before: PastRun, after: PastRun) -> Comparison:
     for was, now in pairs:
         direction, is_within = _direct(was, now)
         states = before.standing(was) if was else ABSENT, after.standing(now) if now else ABSENT
-        inputs = {}
-        for name, one in was.inputs.items() if was and now else ():
-            other = now.inputs.get(name)
-            is_number = isinstance(one, int | float) and isinstance(other, int | float)
-            if not (math.isclose(one, other, rel_tol=SAME, abs_tol=1e-9) if is_number else one == other):
-                inputs[name] = one, other
+        inputs: dict[str, tuple[object, object]] = {}
+        for name, one in was.inputs.items() if was else ():
+            other = now.inputs.get(name) if now else one
+            if isinstance(one, int | float) and isinstance(other, int | float):
+                is_equal = math.isclose(one, other, rel_tol=SAME, abs_tol=1e-9)
+            else:
+                is_equal = one == other
+            inputs |= {} if is_equal else {name: (one, other)}
         pieces.append(
             PieceChange(before=was, after=now, states=states, direction=direction, is_within=is_within, inputs=inputs)
         )
