@@ -13,6 +13,10 @@ from assess.results import Results
 from assess.settings import Settings
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.lists import LETTERS, PLACES
+from assess.workbook.open import Place
+from assess.workbook.patch import Value
+from assess.workbook.plain_rows import split_address
+from assess.workbook.read import open_workbook
 from assess.workbook.schema import CATALOGUE, SHEETS
 from assess.workbook.template import Units
 
@@ -75,3 +79,15 @@ def write(
 def assessed(path: Path, *args: Any, settings: Settings = UNVERIFIED, **named: Any) -> Results:
     """Write such a workbook and assess it, by the formulas alone where no settings are given."""
     return assess.run(assess.read_inventory(write(path, *args, **named)), settings)
+
+
+def edited(data: bytes, values: Mapping[str, Mapping[str, Value]], name: str = "book.xlsx") -> bytes:
+    """Return a workbook with cells set, by its own names of sheets and the addresses of cells."""
+    workbook = open_workbook(data, name)
+    return workbook.set(workbook.by_english({sheet: places(one) for sheet, one in values.items()})).to_bytes()
+
+
+def places(values: Mapping[str, Value]) -> dict[Place, Value]:
+    """Return values by the places of their cells."""
+    found = {split_address(address): value for address, value in values.items()}
+    return {(place[1], place[0] - 1): value for place, value in found.items() if place is not None}

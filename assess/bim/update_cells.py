@@ -11,14 +11,14 @@ from assess.errors import Problem
 from assess.i18n import Text, fill, nfill
 from assess.units import QUANTITIES
 from assess.workbook.habits import shorten
-from assess.workbook.held import HeldCells
 from assess.workbook.names import is_live, key, say_choices, split_header
-from assess.workbook.open import MAX_ROWS, UNSAVED, Percent, Place
+from assess.workbook.open import LOCKED, MAX_ROWS, UNSAVED, Percent, Place
 from assess.workbook.outlines import OutlineError, parse_outline
 from assess.workbook.parse import Row, Table
 from assess.workbook.patch import Value
 from assess.workbook.plain_rows import column_letters, split_range
 from assess.workbook.schema import NO, YES, Column
+from assess.workbook.store import MERGED, Worksheet
 from assess.workbook.values import is_blank, read_text
 
 Rows = Sequence[Mapping[str, Any]]
@@ -91,16 +91,15 @@ _DIGITS = 9
 class SheetUpdate:
     """One sheet of a workbook while it is updated; of one that the workbook lacks the table is empty.
 
-    All that happens is noted in `changes`, and why rows could not be added in `problems`: sheets share these. `totals`
-    are the rows that are totals rows of tables, `values` what is to be written, by address.
+    All that happens is noted in `changes`, and why rows could not be added in `problems`: sheets share these. `values`
+    is what is to be written.
     """
 
     table: Table
-    cells: HeldCells
+    cells: Worksheet
     changes: list[Change]
     problems: list[Problem]
-    totals: Sequence[int] = ()
-    values: dict[str, Value] = field(default_factory=dict)
+    values: dict[Place, Value] = field(default_factory=dict)
 
     def can_hold(self, name: str) -> bool:
         """Tell whether the sheet has a column, or a line, for a field, in a unit that is known."""
@@ -110,13 +109,14 @@ class SheetUpdate:
         """Return the cell of a field of a row."""
         return self.table.cell(name, row.number)
 
-    def _place(self, name: str, row: Row) -> Place:
+    def place(self, name: str, row: Row) -> Place:
+        """Return the row and the column of a field of a row."""
         at = self.table.places[name]
         return (at, 1) if self.table.sheet.layout == "form" else (row.number, at)
 
     def _raw(self, name: str, row: Row) -> Any:
         """Return what a cell holds, unread; None where it is blank."""
-        value = self.cells.value(self._place(name, row))
+        value = self.cells.value(self.place(name, row))
         return None if is_blank(value) else value
 
     def _to_cell(self, name: str, wanted: Any) -> Value:
@@ -140,10 +140,10 @@ class SheetUpdate:
         """Set a cell that the model owns, unless it holds the same but for rounding; nothing never clears a cell."""
         if not self._differs(row, name, wanted):
             return
-        why = self._find_lock(self._place(name, row))
+        why = self._find_lock(self.place(name, row))
         self._note("kept" if why else "changed", row, name, wanted, why)
         if not why:
-            self.values[self.address(name, row)] = self._to_cell(name, wanted)
+            self.values[self.place(name, row)] = self._to_cell(name, wanted)
 
     def fill_blank(self, row: Row, name: str, wanted: Any) -> None:
         """Set a cell if it is blank; note where it holds something else than the model has."""
@@ -168,14 +168,10 @@ class SheetUpdate:
 
     def _find_lock(self, place: Place) -> Text | str:
         """Return why a cell is left as it is, "" where it can be set; one of an array formula stops the update."""
-        row, at = place
-        areas = (area for area, _ in self.cells.marks.locked)
-        if place in self.cells.marks.formulas and not any(_is_inside(place, area) for area in areas):
+        why = self.cells.locks.find(*place)
+        if place in self.cells.marks.formulas and why not in LOCKED.values():
             return fill("the cell holds a formula")
-        merged = (span for one in self.cells.merged if (span := split_range(one)))
-        if any(_is_inside(place, area) and (at + 1, row) != (area[0], area[2]) for area in merged):
-            return fill("merged cells cover the cell")
-        return ""
+        return fill("merged cells cover the cell") if why == MERGED else ""
 
     def _note(self, kind: Kind, row: Row, name: str, wanted: Any, reason: Text | str = "") -> None:
         was, unit, label = self._raw(name, row), self.table.units.get(name), self.table.label(name)
@@ -220,7 +216,7 @@ class SheetUpdate:
             return True
         last = self._find_last()
         why: Text | str = fill("the workbook lacks the sheet")
-        total = next((row for row in sorted(self.totals) if last < row <= last + len(rows)), None)
+        total = next((row for row in sorted(self.cells.totals) if last < row <= last + len(rows)), None)
         if self.table.found:
             why = self._find_hindrance(last, len(rows))
             if not why and total is not None:
@@ -246,7 +242,7 @@ class SheetUpdate:
     def _write_row(self, number: int, row: Mapping[str, Any]) -> None:
         for name, wanted in row.items():
             if self.can_hold(name) and wanted not in (None, ""):
-                self.values[f"{column_letters(self.table.places[name])}{number}"] = self._to_cell(name, wanted)
+                self.values[number, self.table.places[name]] = self._to_cell(name, wanted)
         first = self.table.sheet.columns[0].name
         cell = f"{column_letters(self.table.places[first])}{number}"
         self.changes.append(Change("added", self.cells.title, cell, str(row[first])))
@@ -261,7 +257,7 @@ class SheetUpdate:
         for number in sorted(cells.cells, reverse=True):
             if number <= table.header:
                 break
-            if number in self.totals:
+            if number in cells.totals:
                 continue
             filled = {at for at, value in cells.cells[number].items() if at in typed and not is_blank(value)}
             if any(at in known or (number, at) not in formulas for at in filled):
@@ -310,8 +306,3 @@ def _is_same(column: Column, read: Any, wanted: Any) -> bool:
         period = HALF_TURN if column.name == "angle_deg" else TURN
         difference = min(difference % period, -difference % period)
     return bool(difference <= TOLERANCE.get(column.quantity, 1e-9 * abs(wanted * column.factor)))
-
-
-def _is_inside(place: Place, area: tuple[int, int, int, int]) -> bool:
-    left, right, top, bottom = area
-    return left <= place[1] + 1 <= right and top <= place[0] <= bottom

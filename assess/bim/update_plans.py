@@ -77,7 +77,7 @@ class PlanUpdate:
         for field in PLAN:
             sheet.replace(row, field, name if field == "plan" else model.get(field))
         if data is not None and sheet.can_hold("plan"):
-            held = sheet.values.get(sheet.address("plan", row), row.get("plan"))  # the cell may be one that is not set
+            held = sheet.values.get(sheet.place("plan", row), row.get("plan"))  # the cell may be one that is not set
             if key(str(held)) == key(name):
                 self._give(name, data)
 

@@ -26,15 +26,14 @@ from assess.bim.update_plans import PLAN, Files, PlanUpdate
 from assess.errors import InputError, Problem, WorkbookError
 from assess.i18n import LANGUAGES, fill, load_catalogue, speaking
 from assess.model import MEASURED
-from assess.pipeline.corrected import find_results
+from assess.pipeline.corrected import write_workbook
 from assess.progress import SILENT, Progress
 from assess.workbook.catalogue import read_catalogue
-from assess.workbook.held import HeldCells
 from assess.workbook.names import key
 from assess.workbook.parse import Row, Table
-from assess.workbook.patch import find_totals, patch_workbook
-from assess.workbook.read import hold_sheets, parse_held, read_inventory
+from assess.workbook.read import open_workbook, parse_workbook
 from assess.workbook.schema import CATALOGUE
+from assess.workbook.store import Worksheet
 from assess.workbook.values import read_text
 
 __all__ = ["Change", "Updated", "describe", "update_workbook"]
@@ -86,25 +85,23 @@ def update_workbook(
     Raises InputError if the model has no furniture, or the workbook has no Source ID of it; WorkbookError if the
     workbook cannot be opened, or something in it cannot be changed with certainty.
     """
-    held = hold_sheets(data, name, progress)
-    tables, found = parse_held(held)
+    workbook = open_workbook(data, name, progress)
+    tables, found = parse_workbook(workbook)
     if not tables["Items"].rows and any(
         one.severity == "error" and one.sheet == tables["Items"].sheet.name for one in found
     ):
-        raise WorkbookError(found, held.language)
+        raise WorkbookError(found, workbook.language)
     changes, problems = list[Change](), list[Problem]()
-    sheets = {one: SheetUpdate(table, HeldCells(one, {}), changes, problems) for one, table in tables.items()}
-    for one, cells in held.cells.items():
-        sheets[one] = replace(sheets[one], cells=cells, totals=find_totals(data, cells.title, name))
+    sheets = {
+        one: SheetUpdate(table, workbook.sheets.get(one, Worksheet(one, {})), changes, problems)
+        for one, table in tables.items()
+    }
     update = _Update(imported, name, sheets, records)
     update.run()
-    written = {sheet: one for sheet, one in sheets.items() if one.values}
-    if written:
-        patches = {one.cells.title: one.values for one in written.values()}
-        data = patch_workbook(data, patches, name=name, progress=progress).data
-        if not written.keys() <= _IDLE:
-            inventory = read_inventory(data, records=records, strict=False, progress=progress)
-            data = patch_workbook(data, {}, find_results(data, inventory), name=name, progress=progress).data
+    written = workbook.set({sheet: one.values for sheet, one in sheets.items() if one.values})
+    if written.differs(workbook):
+        is_idle = all(one in _IDLE for one, sheet in sheets.items() if sheet.values)
+        data = written.to_bytes(progress) if is_idle else write_workbook(written, Path(name), records, progress)[0]
     return Updated(data, tuple(changes), tuple(problems), update.moved, update.plans.files)
 
 

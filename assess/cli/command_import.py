@@ -124,10 +124,10 @@ def _update(source: Path, out: Path, progress: Progress, choices: Mapping[str, A
     from assess.bim.read_source import read_source
     from assess.bim.update_workbook import describe, update_workbook
     from assess.workbook.open import read_file
-    from assess.workbook.read import hold_sheets
+    from assess.workbook.read import open_workbook
 
     data = read_file(out)
-    with speaking(load_catalogue(hold_sheets(data, out.name, progress).language)):
+    with speaking(load_catalogue(open_workbook(data, out.name, progress).language)):
         found = read_source(source, source.name, progress, **choices)
         updated = progress.wait_for(lambda: update_workbook(data, found, out.name, progress, records=out.parent))
     is_whole = not updated.problems and not any(one.kind == "left_out" for one in updated.changes)

@@ -4,9 +4,9 @@ Only those cells change, and the stored results of the live columns, which rest 
 """
 
 import hashlib
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from itertools import islice
 from pathlib import Path
 
 from assess.errors import Correction, WorkbookError
@@ -14,13 +14,18 @@ from assess.i18n import LANGUAGES, load_catalogue, speaking
 from assess.model import Inventory
 from assess.pipeline.live_values import live_values
 from assess.progress import SILENT, Progress
-from assess.workbook.held import list_formulas
 from assess.workbook.names import find_live, is_live, plain, split_header
-from assess.workbook.open import HEADER_ROWS, Book
-from assess.workbook.patch import Value, Values, patch_workbook
-from assess.workbook.plain_rows import column_letters, split_address
-from assess.workbook.read import read_inventory
+from assess.workbook.open import UNSAVED, Place
+from assess.workbook.parse import Tables
+from assess.workbook.patch import Value
+from assess.workbook.plain_rows import split_address
+from assess.workbook.read import build_inventory, open_workbook, parse_workbook, read_inventory
+from assess.workbook.records import Files
 from assess.workbook.schema import ITEMS, LISTS, LIVE
+from assess.workbook.store import Workbook
+
+LiveRows = Mapping[int, list[float | str]]
+"""What the live columns show, by the row of the item."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,70 +48,105 @@ def correct_workbook(path: Path, progress: Progress = SILENT) -> Corrected:
     cannot be opened, or if a cell cannot be changed with certainty.
     """
     found = read_inventory(path, strict=False, progress=progress)
-    data, name = found.data or b"", path.name
-    formulas = {sheet: list_formulas(data, sheet, name=name) for sheet in {one.sheet for one in found.corrections}}
-    kept = tuple(one for one in found.corrections if one.cell in formulas[one.sheet])
-    changed = tuple(one for one in found.corrections if one.cell not in formulas[one.sheet])
+    if not found.corrections:
+        return Corrected(found, (), ())
+    workbook = open_workbook(found.data or b"", path.name, progress)
+    values: dict[str, dict[Place, Value]] = {}
+    changed, kept = list[Correction](), list[Correction]()
+    for one in found.corrections:
+        column, row = split_address(one.cell) or (0, 0)
+        if (row, column - 1) in workbook.sheet(one.sheet).marks.formulas:
+            kept.append(one)
+        else:
+            changed.append(one)
+            values.setdefault(one.sheet, {})[row, column - 1] = one.value
     if not changed:
-        return Corrected(found, (), kept)
-    changes: dict[str, dict[str, Value]] = {}
-    for one in changed:
-        changes.setdefault(one.sheet, {})[one.cell] = one.value
-    patched = patch_workbook(data, changes, name=name, progress=progress).data
-    inventory = read_inventory(patched, records=path.resolve().parent, strict=False, progress=progress)
-    results = find_results(patched, inventory)
-    patched = patch_workbook(patched, {}, results, name=name, progress=progress).data
-    hashed = hashlib.sha256(patched).hexdigest()
-    return Corrected(replace(inventory, source=path, sha256=hashed, data=patched), changed, kept)
+        return Corrected(found, (), tuple(kept))
+    workbook = workbook.set(workbook.by_english(values))
+    data, inventory = write_workbook(workbook, path, path.resolve().parent, progress)
+    hashed = hashlib.sha256(data).hexdigest()
+    return Corrected(replace(inventory, sha256=hashed, data=data), tuple(changed), tuple(kept))
+
+
+def write_workbook(
+    workbook: Workbook, path: Path, records: Files, progress: Progress = SILENT
+) -> tuple[bytes, Inventory]:
+    """Return the bytes of an edited workbook with the stored results that follow, and what it holds now.
+
+    `records` are the files that it names, or their folder. Raises WorkbookError if a cell cannot be changed with
+    certainty.
+    """
+    tables, problems = parse_workbook(workbook)
+    inventory = build_inventory(tables, problems, path, records, progress)
+    return workbook.store(find_results(workbook, tables, inventory)).to_bytes(progress), inventory
 
 
 # ---------------------------------------------------------------- stored results
 
+_WIDE = frozenset({"Building", "Floors", "Catalogue"})
+"""Sheets on which the live columns of every row, and the helper columns of Lists, rest."""
+_IDLE = ("latitude", "longitude", "azimuth_deg", "report_date", "logo", "hazard", "language")
+"""Lines of Building on which no live column rests, and that may be wrong: a logo is missing until it is handed over."""
+_CLOSE = 1e-9
+"""Relative difference up to which a stored number is left as it is: programs write 15 to 17 digits."""
 
-def find_results(data: bytes, inventory: Inventory) -> dict[str, Values]:
-    """Return what the live columns of a workbook have to store, by sheet and cell, for `patch_workbook`.
 
-    The results of the live columns of each item; None, by which every program computes them, for columns that they rest
-    on and for rows that cannot be used. LibreOffice keeps stored results when it opens a workbook, although the
-    workbook asks for recalculation.
+def find_results(
+    workbook: Workbook, tables: Tables, inventory: Inventory, was: LiveRows | None = None
+) -> dict[str, dict[Place, Value]]:
+    """Return the stored results of live formulas that edits have made wrong, by sheet and cell, for `Workbook.store`.
+
+    LibreOffice keeps stored results when it opens a workbook, although the workbook asks for recalculation. Those of
+    the live columns of Items become what the core computes; those of the columns that they rest on, and of the sheet
+    Lists, are taken out, so that every program computes them. `was` is what the live columns showed before the edits:
+    rows that were not edited and show the same keep what is stored; None: every row is compared.
     """
-    with Book(data, inventory.file_name) as book:
-        sheets = list(book.sheets)
-        lists = [name for name in sheets if is_lists(name)]
-        items = inventory.sheets.get(ITEMS.name, ITEMS.name)
-        columns = _find_columns(book, items) if items in sheets else {}
-    results: dict[str, Values] = {name: dict.fromkeys(list_formulas(data, name)) for name in lists}
-    if columns:
-        rows, found = find_live_rows(inventory), dict[str, Value]()
-        results[items] = found
-        for address, is_filled in list_formulas(data, items).items():
-            letters = address.rstrip("0123456789")
-            if letters in columns:
-                row, header = rows.get(int(address[len(letters) :])), columns[letters]
-                if row is not None and header in LIVE:
-                    found[address] = row[LIVE.index(header)]
-                elif row is not None or is_filled:
-                    found[address] = None
-    return {sheet: values for sheet, values in results.items() if values}
+    edited = {name for name, one in workbook.sheets.items() if one.is_changed}
+    is_wide = not _WIDE.isdisjoint(edited)
+    found: dict[str, dict[Place, Value]] = {}
+    for title in workbook.titles if is_wide else ():
+        if plain(title) in {plain(load_catalogue(code).find(LISTS)) for code in LANGUAGES}:
+            lists = workbook.sheet(title)
+            filled = (place for place in lists.marks.formulas if lists.value(place) not in (None, UNSAVED))
+            found[title] = dict.fromkeys(filled)
+    items, header = workbook.sheets.get(ITEMS.name), tables[ITEMS.name].header
+    heads = items.cells.get(header, {}).items() if items and header else ()
+    labels = {at: split_header(text)[0] for at, text in heads if isinstance(text, str)}
+    columns = {at: find_live(text) or "" for at, text in labels.items() if is_live(ITEMS, text)}
+    if items is None or not columns:
+        return found
+    rows, results = find_live_rows(tables, inventory), dict[Place, Value]()
+    for row, at in sorted(items.marks.formulas):
+        if at not in columns or row <= header:
+            continue
+        now, stored = rows.get(row), items.value((row, at))
+        if was is not None and not is_wide and row not in items.edited and was.get(items.opened_row(row) or 0) == now:
+            continue
+        shown = None if now is None or columns[at] not in LIVE else now[LIVE.index(columns[at])]
+        if shown is None and stored not in (None, UNSAVED):
+            results[row, at] = None
+        elif shown is not None and not _is_stored(stored, shown):
+            results[row, at] = shown
+    return {**found, ITEMS.name: results}
 
 
-def is_lists(name: str) -> bool:
-    """Tell whether a sheet is the one that holds what drop-downs and live columns refer to."""
-    return plain(name) in {plain(load_catalogue(code).find(LISTS)) for code in LANGUAGES}
+def _is_stored(stored: object, shown: float | str) -> bool:
+    if isinstance(shown, str) or isinstance(stored, bool) or not isinstance(stored, int | float):
+        return (stored or "") == shown
+    return math.isclose(stored, shown, rel_tol=_CLOSE)
 
 
-def _find_columns(book: Book, sheet: str) -> dict[str, str]:
-    """Return the header, of `LIVE` or `WORKINGS`, of each column that Excel computes, by its letters."""
-    best: dict[str, str] = {}
-    for _, cells in islice(book.cells(sheet).rows(), HEADER_ROWS):
-        heads = {at: split_header(value)[0] for at, value in cells.items() if isinstance(value, str)}
-        found = {column_letters(at): find_live(text) or "" for at, text in heads.items() if is_live(ITEMS, text)}
-        best = max(best, found, key=len)
-    return best
+def find_live_rows(tables: Tables, inventory: Inventory) -> LiveRows:
+    """Return the results of the live columns by the row of the item.
 
-
-def find_live_rows(inventory: Inventory) -> dict[int, list[float | str]]:
-    """Return the results of the live columns by the row of the item; none where the building lacks its motion."""
+    None where the building lacks its motion, or where a line of Building on which they rest is wrong: the formulas tell
+    of it, the core leaves it out.
+    """
+    building = tables["Building"]
+    harmless = {building.cell(name, 0) for name in _IDLE if name in building.places}
+    wrong = (one.cell for one in inventory.problems if one.severity == "error" and one.sheet == building.sheet.name)
+    if not harmless.issuperset(wrong):
+        return {}
     try:
         with speaking(load_catalogue(inventory.language)):
             rows = live_values(inventory)

@@ -1,8 +1,7 @@
 """One open workbook: its bytes, its cells in memory, what was edited, and the file on the disk that is saved.
 
-Edits change the cells that are held in memory; `Book.write` writes those that differ from what was opened into the
-bytes that were opened, so that a cell that is set back has its own rich text again. What differs from what was saved
-last is not saved yet. All methods may be called from any thread.
+The cells are those of `assess.workbook.store`, and are written by it. What differs from what was saved last is not
+saved yet. All methods may be called from any thread.
 """
 
 import secrets
@@ -13,16 +12,16 @@ from typing import Any, Literal, Self
 
 from assess.errors import AssessError, OutputError, WorkbookError
 from assess.i18n import fill
-from assess.web.cell_edits import CellPlace, Contents, EditsRefused, History, Locks, Step, say, take_edits
+from assess.pipeline.corrected import LiveRows, find_live_rows, find_results
+from assess.web.cell_edits import Contents, EditsRefused, History, Step, say, take_edits
 from assess.web.columns import PageSheet, find_sheets, find_units, show
 from assess.web.disk_file import ChangedOutsideError, DiskFile, find_hash
 from assess.web.file_names import FILES, add_file, list_missing
 from assess.web.request_errors import CONFLICT, RequestError
 from assess.web.snapshot import Snapshot
-from assess.web.stored_values import LiveRows, find_live, write_changes
-from assess.workbook.held import HeldSheets
 from assess.workbook.kept_files import KeptFiles
-from assess.workbook.read import hold_sheets, parse_held
+from assess.workbook.read import open_workbook, parse_workbook
+from assess.workbook.store import Workbook, is_same
 
 __all__ = ["Book", "ChangedOutsideError", "EditsRefused", "Snapshot", "VersionError"]
 
@@ -63,23 +62,22 @@ class Book:
         return cls(name, data, folder, None)
 
     def _take_in(self, data: bytes) -> None:
-        held = hold_sheets(data, self.name)
-        if not held.cells:
-            raise WorkbookError(held.problems)
-        tables, _ = parse_held(held)
-        self._opened_data = self._data = data
-        self._locks = Locks(data, self.name)
-        self.sheets: dict[str, PageSheet] = find_sheets(held, tables)
-        self.language, self.units = held.language, find_units(self.sheets)
-        self._history, self._edited, self._different = History(), set[CellPlace](), set[CellPlace]()
+        workbook = open_workbook(data, self.name)
+        if not workbook.sheets:
+            raise WorkbookError(workbook.problems)
+        tables, _ = parse_workbook(workbook)
+        self.sheets: dict[str, PageSheet] = find_sheets(workbook, tables)
+        self.language, self.units = workbook.language, find_units(self.sheets)
+        self._history = History()
         self._saved_version = self._read_version = self.version
-        self._now = self._base = self._opened = self._snap(held)
+        self._now = self._opened = self._snap(workbook)
+        self._saved, self._data, self._is_saved = workbook, data, True
         self._opened_live: LiveRows | None = None
-        self._written: tuple[int, bytes] = (self.version, data)
+        self._written: tuple[Workbook, bytes] = (workbook, data)
         self._missing: list[dict[str, Any]] | None = None
 
-    def _snap(self, held: HeldSheets) -> Snapshot:
-        return Snapshot(self.version, held, self.sheets, self.path or Path(self.name), self.folder, self._kept)
+    def _snap(self, workbook: Workbook) -> Snapshot:
+        return Snapshot(self.version, workbook, self.sheets, self.path or Path(self.name), self.folder, self._kept)
 
     # ------------------------------------------------------------ what it is
 
@@ -106,7 +104,7 @@ class Book:
                 "server": self.opening,
                 "saved_version": self._saved_version,
                 "read_version": self._read_version,
-                "unsaved": bool(self._different),
+                "unsaved": not self._is_saved,
                 "save_error": say(self._save_error or self._hindrance),
                 "changed_outside": self._changed_outside,
                 "can_undo": self._history.at > 0,
@@ -128,8 +126,8 @@ class Book:
                 "state": self.state(),
                 "missing": self._find_missing(anew=True),
             }
-        cells = now.cells.cells
-        return found | {"sheets": [one.describe(cells.get(name)) for name, one in now.sheets.items()]}
+        held = now.workbook.sheets
+        return found | {"sheets": [one.describe(held.get(name)) for name, one in now.sheets.items()]}
 
     # ------------------------------------------------------------ edits
 
@@ -142,11 +140,11 @@ class Book:
         """
         with self._lock:
             self._check_version(version)
-            held = self._now.cells
-            wanted = take_edits(edits, self.sheets, held, self._locks)
-            new = {place: held.cells[place[0]].as_read(place[1:], value) for place, value in wanted.items()}
-            old = {place: held.cells[place[0]].value(place[1:]) for place in new}
-            changed = {place: value for place, value in new.items() if not _is_same(old[place], value)}
+            workbook = self._now.workbook
+            wanted = take_edits(edits, self.sheets, workbook)
+            new = {place: workbook.sheets[place[0]].as_read(place[1:], value) for place, value in wanted.items()}
+            old = {place: workbook.sheets[place[0]].value(place[1:]) for place in new}
+            changed = {place: value for place, value in new.items() if not is_same(old[place], value)}
             if changed:
                 self._apply(changed)
                 self._history.add(Step(label, {place: old[place] for place in changed}, changed))
@@ -178,27 +176,20 @@ class Book:
         for (sheet, row, at), value in contents.items():
             by_sheet.setdefault(sheet, {})[row, at] = value
         self.version += 1
-        self._now = self._snap(self._now.cells.replaced(by_sheet))
-        self._compare(contents)
+        self._now = self._snap(self._now.workbook.put(by_sheet))
+        self._compare()
         columns = ((sheet, self.sheets[sheet].find(row, at)) for sheet, row, at in contents)
         if any(one and one.column and (sheet, one.column.name) in FILES for sheet, one in columns):
             self._missing = None
 
-    def _compare(self, places: Contents | set[CellPlace]) -> None:
-        now = self._now.cells.cells
-        for places_apart, other in ((self._different, self._base), (self._edited, self._opened)):
-            for place in places:
-                sheet, row, at = place
-                if _is_same(now[sheet].value((row, at)), other.cells.cells[sheet].value((row, at))):
-                    places_apart.discard(place)
-                else:
-                    places_apart.add(place)
-        if not self._different:
+    def _compare(self) -> None:
+        self._is_saved = not self._now.workbook.differs(self._saved)
+        if self._is_saved:
             self._saved_version = self.version
 
     def _describe_change(self, places: Contents) -> dict[str, Any]:
-        cells = self._now.cells.cells
-        shown = [[sheet, row, at, show(cells[sheet].value((row, at)))] for sheet, row, at in places]
+        held = self._now.workbook.sheets
+        shown = [[sheet, row, at, show(held[sheet].value((row, at)))] for sheet, row, at in places]
         return {
             "state": self.state(), "cells": shown, "language": self.language, "missing": self._find_missing(),
         }  # fmt: skip
@@ -212,23 +203,24 @@ class Book:
         """
         return self._write()[1]
 
-    def _write(self) -> tuple[Snapshot, bytes, list[CellPlace]]:
+    def _write(self) -> tuple[Snapshot, bytes]:
         with self._saving:
             with self._lock:
-                now, opened, data, live = self._now, self._opened, self._opened_data, self._opened_live
-                different, edited, written = sorted(self._different), sorted(self._edited), self._written
-                saved = self._data
-            if not different:
-                return now, saved, different
-            if written[0] == now.version:
-                return now, written[1], different
+                now, opened, live, written = self._now, self._opened, self._opened_live, self._written
+                if self._is_saved:
+                    return now, self._data
+            if written[0] is now.workbook:
+                return now, written[1]
             if live is None:
-                live = find_live(opened)
-            patched = write_changes(data, opened, now, edited, live) if edited else data
+                live = find_live_rows(opened.tables, opened.inventory)
+            data = now.workbook.data
+            if now.workbook.differs(opened.workbook):
+                results = find_results(now.workbook, now.tables, now.inventory, live)
+                data = now.workbook.store(results).to_bytes()
             with self._lock:
                 if self._opened is opened:
-                    self._opened_live, self._written = live, (now.version, patched)
-            return now, patched, different
+                    self._opened_live, self._written = live, (now.workbook, data)
+            return now, data
 
     def save(self) -> None:
         """Save the changes to the file, whole or not at all; ChangedOutsideError if another program has changed it.
@@ -239,15 +231,17 @@ class Book:
             return
         try:
             with self._saving:
-                now, data, different = self._write()
-                if different:
+                with self._lock:
+                    is_saved = self._is_saved
+                now, data = self._write()
+                if not is_saved:
                     self._file.replace(data)
                 with self._lock:
                     self._save_error = self._hindrance = ""
-                    if different:
+                    if not is_saved:
                         self._changed_outside, self._saved_version = False, now.version
-                        self._data, self._base = data, now
-                        self._compare({*different, *self._different})  # more may have been edited meanwhile
+                        self._saved, self._data = now.workbook, data
+                        self._compare()  # more may have been edited meanwhile
         except ChangedOutsideError:
             with self._lock:
                 self._changed_outside = True
@@ -272,7 +266,7 @@ class Book:
         One that cannot be read, such as one that is still being written, is tried at the next call.
         """
         with self._saving, self._lock, suppress(AssessError, OSError):
-            if self.check_outside() and not self._different:
+            if self.check_outside() and self._is_saved:
                 self.reload()
 
     def reload(self) -> None:
@@ -294,7 +288,7 @@ class Book:
 
     def _find_missing(self, *, anew: bool = False) -> list[dict[str, Any]]:
         if self._missing is None or anew:
-            self._missing = list_missing(self._now.cells, self.sheets, self.folder)
+            self._missing = list_missing(self._now.workbook, self.sheets, self.folder)
         return self._missing
 
     def add_file(self, name: str, data: bytes) -> None:
@@ -305,9 +299,4 @@ class Book:
         with self._lock:
             add_file(name, data, self._find_missing(anew=True), self.folder)
             self.version += 1
-            self._now, self._missing = self._snap(self._now.cells), None
-
-
-def _is_same(one: Any, other: Any) -> bool:
-    """Tell whether two cells hold the same: TRUE is not 1."""
-    return isinstance(one, bool) == isinstance(other, bool) and bool(one == other)
+            self._now, self._missing = self._snap(self._now.workbook), None

@@ -1,19 +1,18 @@
 """Edits of cells as they come from outside: each is taken as its column asks, or refused; steps to undo and redo."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from assess.errors import InputError, WorkbookError
-from assess.i18n import Text, fill, gettext, nfill
+from assess.errors import InputError
+from assess.i18n import fill, gettext, nfill
 from assess.web.columns import PageColumn, PageSheet
 from assess.web.request_errors import UNUSABLE, RequestError
 from assess.workbook.habits import CellError
-from assess.workbook.held import HeldCells, HeldSheets
-from assess.workbook.open import MAX_COLUMNS, MAX_ROWS, Area
-from assess.workbook.patch import LARGEST_NUMBER, LONGEST_TEXT, Value, find_headers, read_back
-from assess.workbook.plain_rows import split_range
+from assess.workbook.open import MAX_COLUMNS, MAX_ROWS
+from assess.workbook.patch import LARGEST_NUMBER, LONGEST_TEXT, Value, read_back
+from assess.workbook.store import Workbook
 from assess.workbook.typed import is_converted, is_free, understand
 from assess.workbook.values import is_blank
 
@@ -91,53 +90,10 @@ class EditsRefused(RequestError):  # noqa: N818 - what happened, as callers say 
         super().__init__(message, UNUSABLE, more={"refused": refused})
 
 
-@dataclass(slots=True)
-class Locks:
-    """Cells of a workbook that no edit may change; those of a sheet are listed when it is edited for the first time."""
-
-    data: bytes
-    name: str
-    _areas: dict[str, list[tuple[Area, Text]]] = field(default_factory=dict)
-    _faults: dict[str, str] = field(default_factory=dict)
-
-    def find(self, cells: HeldCells, row: int, at: int) -> str:
-        """Return why a cell of a sheet cannot be changed, "" where it can."""
-        place, title = (row, at), cells.title
-        if place in cells.marks.formulas:
-            return fill("it holds a formula: change it in your spreadsheet program.")
-        if place in cells.marks.unknown:
-            return fill("it holds something that is not known: change it in your spreadsheet program.")
-        if title not in self._areas:
-            self._areas[title] = [*cells.marks.locked, *_list_covered(cells.merged)]
-            try:
-                self._areas[title] += find_headers(self.data, title, name=self.name)
-            except WorkbookError as error:
-                self._faults[title] = error.problems[0].message
-        inside = (
-            why
-            for (left, right, top, bottom), why in self._areas[title]
-            if left <= at + 1 <= right and top <= row <= bottom
-        )
-        return self._faults.get(title) or next(inside, "")
-
-
-def _list_covered(merged: Iterable[str]) -> Iterable[tuple[Area, Text]]:
-    why = fill("it is covered by merged cells.")
-    for reference in merged:
-        if (span := split_range(reference)) is not None:
-            left, right, top, bottom = span
-            yield (left + 1, right, top, top), why
-            yield (left, right, top + 1, bottom), why
-
-
-def take_edits(
-    edits: object, sheets: Mapping[str, PageSheet], held: HeldSheets, locks: Locks
-) -> dict[CellPlace, Value]:
+def take_edits(edits: object, sheets: Mapping[str, PageSheet], workbook: Workbook) -> dict[CellPlace, Value]:
     """Return the values to write by their cells; of several for one cell the last.
 
     `edits`: a list of ``[sheet, row, at, value]``, as it came from outside.
-    `locks`: what cannot be changed.
-
     Raises InputError if it is no such list; EditsRefused if any cell cannot be changed so.
     """
     if not isinstance(edits, list) or len(edits) > MOST_EDITS:
@@ -148,7 +104,7 @@ def take_edits(
         sheet, row, at, value = _take_apart(edit)
         column, why = _find_column(sheets.get(sheet), row, at)
         if column is not None:
-            why = locks.find(held.cells[sheet], row, at) or _refuse_value(column, value)
+            why = workbook.find_lock(sheet, (row, at)) or _refuse_value(column, value)
         if column is None or why:
             refused.append([sheet, row, at, say(why)])
             continue

@@ -8,13 +8,13 @@ from typing import Any
 
 from assess.i18n import load_catalogue, speaking
 from assess.units import QUANTITIES
-from assess.workbook.held import HeldCells, HeldSheets
 from assess.workbook.lists import FROZEN, PLACES
 from assess.workbook.names import find_live, is_live, say_choices, split_header, translate
 from assess.workbook.open import MAX_ROWS, UNSAVED, Percent
 from assess.workbook.parse import Table, Tables
 from assess.workbook.plain_rows import column_letters
 from assess.workbook.schema import CLASS, SHEETS, Column, Sheet
+from assess.workbook.store import Workbook, Worksheet
 from assess.workbook.template import describe
 from assess.workbook.values import is_blank, read_text
 
@@ -115,7 +115,7 @@ class PageSheet:
         one = self.field(name)
         return None if one is None else (one.row or row, one.at)
 
-    def describe(self, cells: HeldCells | None) -> dict[str, Any]:
+    def describe(self, cells: Worksheet | None) -> dict[str, Any]:
         """Return it as the page takes it, with its rows."""
         is_form, live, rows = self.sheet.layout == "form", self.live, list[list[Any]]()
         if cells is not None and self.found:
@@ -165,9 +165,9 @@ def _show_row(cells: Mapping[int, Any], live: Collection[int]) -> list[Shown]:
 # ---------------------------------------------------------------- finding them
 
 
-def find_sheets(held: HeldSheets, tables: Tables) -> dict[str, PageSheet]:
+def find_sheets(workbook: Workbook, tables: Tables) -> dict[str, PageSheet]:
     """Return the sheets of the schema with their columns, by their English names."""
-    return {sheet.name: _find_sheet(sheet, tables[sheet.name], held.cells.get(sheet.name)) for sheet in SHEETS}
+    return {sheet.name: _find_sheet(sheet, tables[sheet.name], workbook.sheets.get(sheet.name)) for sheet in SHEETS}
 
 
 def find_units(sheets: Mapping[str, PageSheet]) -> str:
@@ -177,7 +177,7 @@ def find_units(sheets: Mapping[str, PageSheet]) -> str:
     return "imperial" if 2 * sum(one in IMPERIAL for one in lengths) > len(lengths) else "si"
 
 
-def _find_sheet(sheet: Sheet, table: Table, cells: HeldCells | None) -> PageSheet:
+def _find_sheet(sheet: Sheet, table: Table, cells: Worksheet | None) -> PageSheet:
     language = table.language
     if cells is None:
         return PageSheet(sheet, translate(sheet, language).name, language)
@@ -195,7 +195,7 @@ def _known(table: Table, name: str, at: int, row: int, label: str, *, is_hidden:
     return PageColumn(at, row, text, unit, table.sheet.column(name), is_blind=is_blind, is_hidden=is_hidden)
 
 
-def _list_lines(table: Table, cells: HeldCells) -> Iterator[PageColumn]:
+def _list_lines(table: Table, cells: Worksheet) -> Iterator[PageColumn]:
     names = {row: name for name, row in table.places.items()}
     for row, one in cells.cells.items():
         label = one.get(0)
@@ -205,7 +205,7 @@ def _list_lines(table: Table, cells: HeldCells) -> Iterator[PageColumn]:
         yield _known(table, names[row], 1, row, text) if row in names else PageColumn(1, row, text)
 
 
-def _list_columns(sheet: Sheet, table: Table, cells: HeldCells) -> Iterator[PageColumn]:
+def _list_columns(sheet: Sheet, table: Table, cells: Worksheet) -> Iterator[PageColumn]:
     names = {at: name for name, at in table.places.items()}
     headers = {at: read_text(one) for at, one in cells.cells[table.header].items() if one is not UNSAVED}
     filled = {at for number, row in cells.cells.items() if number > table.header for at in row}

@@ -12,8 +12,8 @@ from assess.model import split_names
 from assess.web.columns import PageSheet
 from assess.web.request_errors import UNUSABLE, RequestError
 from assess.workbook.habits import CellError
-from assess.workbook.held import HeldSheets
 from assess.workbook.records import find_place, list_beside
+from assess.workbook.store import Workbook
 from assess.workbook.values import is_blank, read_text
 
 LONGEST = 120
@@ -85,24 +85,24 @@ def _find_fault(text: str) -> str:
 # ---------------------------------------------------------------- the files that a workbook names
 
 
-def list_missing(held: HeldSheets, sheets: Mapping[str, PageSheet], folder: Path) -> list[dict[str, Any]]:
+def list_missing(workbook: Workbook, sheets: Mapping[str, PageSheet], folder: Path) -> list[dict[str, Any]]:
     """Return the files that a workbook names and that are not in its folder, each with the cells that name it.
 
     Names that lead out of the folder are left out: no file can be added under them.
     """
     found: dict[str, dict[str, Any]] = {}
-    for name, kind, cell in _list_named(held, sheets):
+    for name, kind, cell in _list_named(workbook, sheets):
         found.setdefault(name, {"name": name, "kind": kind, "cells": []})["cells"].append(cell)
     paths = {name: _find(name, folder) for name in found}
     return [one for name, one in found.items() if (path := paths[name]) is not None and not path.exists()]
 
 
-def list_present(held: HeldSheets, sheets: Mapping[str, PageSheet], folder: Path) -> dict[str, Path]:
+def list_present(workbook: Workbook, sheets: Mapping[str, PageSheet], folder: Path) -> dict[str, Path]:
     """Return the files that a workbook names and that are in its folder, by their names.
 
     With the grid of a ShakeMap the file of its uncertainties is listed, which lies beside it and is named by nobody.
     """
-    named = [(name, kind) for name, kind, _ in _list_named(held, sheets)]
+    named = [(name, kind) for name, kind, _ in _list_named(workbook, sheets)]
     beside = [other for name, kind in named if kind == "hazard" for other in list_beside(name)]
     names = dict.fromkeys([*(name for name, _ in named), *beside])
     return {name: path for name in names if (path := _find(name, folder)) is not None and path.is_file()}
@@ -116,12 +116,12 @@ def _find(name: str, folder: Path) -> Path | None:
         return None
 
 
-def _list_named(held: HeldSheets, sheets: Mapping[str, PageSheet]) -> Iterator[tuple[str, str, list[Any]]]:
+def _list_named(workbook: Workbook, sheets: Mapping[str, PageSheet]) -> Iterator[tuple[str, str, list[Any]]]:
     for (sheet, field), kind in FILES.items():
         column = sheets[sheet].field(field)
         if column is None:
             continue
-        rows = held.cells[sheet].cells
+        rows = workbook.sheets[sheet].cells
         numbers = [column.row] if column.row else [row for row in rows if row > sheets[sheet].header]
         for row in numbers:
             value = rows.get(row, {}).get(column.at)

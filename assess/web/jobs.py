@@ -282,7 +282,7 @@ def prepare(book: "Book", body: Mapping[str, Any], folder: Path) -> tuple[dict[s
     source = folder / INPUT
     source.mkdir(parents=True)
     (source / book.name).write_bytes(data)
-    for name, path in list_present(snapshot.cells, snapshot.sheets, snapshot.files).items():
+    for name, path in list_present(snapshot.workbook, snapshot.sheets, snapshot.files).items():
         target = find_place(name, source)
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(path, target)

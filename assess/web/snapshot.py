@@ -10,11 +10,11 @@ from assess.model import Inventory
 from assess.plans import Drawing
 from assess.progress import SILENT
 from assess.web.columns import PageSheet
-from assess.workbook.held import HeldSheets
 from assess.workbook.kept_files import KeptFiles
 from assess.workbook.parse import Tables
 from assess.workbook.picture_files import PictureReader
-from assess.workbook.read import build_held, parse_held
+from assess.workbook.read import build_inventory, parse_workbook
+from assess.workbook.store import Workbook
 
 T = TypeVar("T")
 
@@ -27,10 +27,10 @@ class Snapshot:
     """
 
     def __init__(
-        self, version: int, cells: HeldSheets, sheets: Mapping[str, PageSheet], path: Path, files: Path,
+        self, version: int, workbook: Workbook, sheets: Mapping[str, PageSheet], path: Path, files: Path,
         kept: KeptFiles,
     ) -> None:  # fmt: skip
-        self.version, self.cells, self.sheets, self.path, self.files = version, cells, sheets, path, files
+        self.version, self.workbook, self.sheets, self.path, self.files = version, workbook, sheets, path, files
         self._kept = kept
         self._lock, self._keeping = Lock(), RLock()
         self._found: dict[Hashable, object] = {}
@@ -70,8 +70,8 @@ class Snapshot:
         """Return what is read of the cells: once, by the first who asks."""
         with self._lock:
             if self._read is None:
-                tables, problems = parse_held(self.cells)
+                tables, problems = parse_workbook(self.workbook)
                 with self._kept:
-                    inventory = build_held(tables, problems, self.path, self.files, SILENT, self._kept)
+                    inventory = build_inventory(tables, problems, self.path, self.files, SILENT, self._kept)
                 self._read = tables, inventory
             return self._read

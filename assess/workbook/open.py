@@ -13,7 +13,7 @@ import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Self, TypeVar
+from typing import IO, Any, Self, TypeVar
 from xml.parsers import expat
 
 from assess.errors import Problem, WorkbookError
@@ -231,8 +231,8 @@ class Part:
 
     limits: tuple[int, int] | None = _SMALL
 
-    def __init__(self, archive: zipfile.ZipFile, path: str, name: str, progress: Progress = SILENT) -> None:
-        self.archive, self.path, self.name, self.progress = archive, path, name, progress
+    def __init__(self, book: "Book", path: str) -> None:
+        self.book, self.path, self.name, self.progress = book, path, book.name, book.progress
         self.parser = expat.ParserCreate()
         self.parser.buffer_text = True
         self.parser.StartElementHandler, self.parser.EndElementHandler = self.enter, self.leave
@@ -280,9 +280,9 @@ class Part:
     def feed(self) -> Iterator[int]:
         """Read the part; yield after every stretch how many bytes have been read."""
         done = tags = 0
-        if self.limits and self.archive.getinfo(self.path).file_size > self.limits[0]:
+        if self.limits and self.book.part_size(self.path) > self.limits[0]:
             raise _bomb(self.name)
-        with self.archive.open(self.path) as file:
+        with self.book.open_part(self.path) as file:
             while piece := file.read(_CHUNK):
                 self.progress.check()
                 tags += piece.count(b"<")
@@ -380,7 +380,8 @@ class Marks:
     * `formats`: The format of a cell that shows its number as a date, a time or a percentage; None for a cell that does
       not, although its row or column does.
     * `row_formats`, `column_formats`: That of the rows that have one; first and last column, from 0, and that of these.
-    * `low`: Last row of a cell that holds something but no value that is read, such as a formula whose result is blank.
+    * `hollow`: Cells that hold something but no value that is read, such as a formula whose result is blank: columns by
+      row.
     * `is_1904`: Whether dates are counted from 1904.
     """
 
@@ -390,7 +391,7 @@ class Marks:
     formats: dict[Place, str | None] = field(default_factory=dict)
     row_formats: dict[int, str | None] = field(default_factory=dict)
     column_formats: list[tuple[int, int, str | None]] = field(default_factory=list)
-    low: int = 0
+    hollow: dict[int, set[int]] = field(default_factory=dict)
     is_1904: bool = False
 
     def format_at(self, place: Place) -> str | None:
@@ -422,10 +423,8 @@ class SheetCells(Part):
         """Return how messages call a cell, ``C3``; that of the first column where no column is given."""
         return f"{column_letters(at or 0)}{row}"
 
-    def __init__(
-        self, archive: zipfile.ZipFile, path: str, name: str, shared: _Shared, progress: Progress, marks: Marks | None
-    ) -> None:
-        super().__init__(archive, path, name, progress)
+    def __init__(self, book: "Book", path: str, shared: _Shared, marks: Marks | None) -> None:
+        super().__init__(book, path)
         self.shared, self.marks = shared, marks
         self.last_row, self.far, self.merged = 0, "", list[str]()
         self.hidden_rows, self.hidden_columns = list[int](), set[int]()
@@ -581,7 +580,7 @@ class SheetCells(Part):
         if not self._tags <= _CONTENT:
             marks.unknown.add(place)
         if place[1] not in self._cells and not self._tags.isdisjoint(("v", "f", "is")):
-            marks.low = self._number
+            marks.hollow.setdefault(self._number, set()).add(place[1])
         code = self._format(self._style)
         if code is not None or marks.column_formats or marks.row_formats:
             marks.formats[place] = code
@@ -640,7 +639,8 @@ class Book:
     `sheets` tells the parts of its worksheets by their names, in their order, and `sheet_ids` their numbers; `parts`
     the parts that the workbook refers to, such as its calcChain, by kind. `archive` is the zip.
 
-    `hidden` holds the names of those that are not shown.
+    `hidden` holds the names of those that are not shown, `changed` the parts that have other bytes now, None for one
+    that is gone.
 
     Raises WorkbookError: also while its sheets are read: if the file is damaged, is no workbook, or is larger than an
     honest one.
@@ -648,6 +648,7 @@ class Book:
 
     def __init__(self, data: bytes, name: str, progress: Progress = SILENT) -> None:
         self.name, self.progress, self._shared = name, progress, _Shared()
+        self.changed: dict[str, bytes | None] = {}
         self.archive = _open_archive(data, name)
         self._present = {one.lower(): one for one in self.archive.namelist()}
         with self:
@@ -693,11 +694,25 @@ class Book:
 
     def read(self, kind: type[_Kind], path: str) -> _Kind:
         """Return a part of the zip, read as one kind of part."""
-        return kind(self.archive, path, self.name, self.progress).read()
+        return kind(self, path).read()
+
+    def part_bytes(self, path: str) -> bytes:
+        """Return the bytes of a part as they are now."""
+        return self.changed.get(path) or self.archive.read(path)
+
+    def open_part(self, path: str) -> IO[bytes]:
+        """Open a part as it is now."""
+        changed = self.changed.get(path)
+        return self.archive.open(path) if changed is None else io.BytesIO(changed)
+
+    def part_size(self, path: str) -> int:
+        """Return how many bytes a part has now."""
+        changed = self.changed.get(path)
+        return self.archive.getinfo(path).file_size if changed is None else len(changed)
 
     def cells(self, sheet: str, *, is_marked: bool = False) -> SheetCells:
         """Return the cells of a sheet, with marks if these are asked for."""
         marks = Marks(is_1904=self._shared.is_1904) if is_marked else None
-        cells = SheetCells(self.archive, self.sheets[sheet], self.name, self._shared, self.progress, marks)
+        cells = SheetCells(self, self.sheets[sheet], self._shared, marks)
         cells.title = sheet
         return cells

@@ -22,7 +22,7 @@ from assess.workbook.schema import Column, Sheet
 from assess.workbook.values import ERRORS, CellReader, cell_reader, is_blank, read_text
 
 if TYPE_CHECKING:
-    from assess.workbook.held import HeldCells
+    from assess.workbook.store import Worksheet
 
 _ROWS = re.compile(r"\brow (\d+)|^[A-Z]+(\d+)(?::[A-Z]+(\d+))?$")
 
@@ -71,7 +71,7 @@ def _native(value: Any) -> Any:
     return None if isinstance(value, float) and value != value else value
 
 
-Source: TypeAlias = "SheetCells | HeldCells | CodeCells"
+Source: TypeAlias = "SheetCells | Worksheet | CodeCells"
 """The cells of one sheet; `last_row`, `far` and `merged` are known once `rows` has ended."""
 
 

@@ -18,7 +18,6 @@ from html import escape
 
 from assess.errors import Problem, WorkbookError
 from assess.i18n import Text, fill
-from assess.progress import SILENT, Progress
 from assess.workbook.open import (
     LOCKED,
     RELATIONS,
@@ -29,18 +28,17 @@ from assess.workbook.open import (
     Area,
     Book,
     Part,
+    Place,
     Tree,
     damaged,
     decode_text,
     unreadable,
 )
 from assess.workbook.plain_rows import column_letters, split_address, split_range
+from assess.workbook.row_shift import Growth, NotMovedError, PartShift, RowShift, shift_drawing, shift_shapes
 
 Value = float | str | bool | None
 """What a cell may hold; None leaves it blank."""
-Values = Mapping[str, Value]
-"""Values by the addresses of cells, ``{"H14": 45.0}``."""
-
 LONGEST_TEXT = 32_767
 """Characters that a cell of a spreadsheet program holds."""
 LARGEST_NUMBER = 9.99999999999999e307
@@ -49,7 +47,7 @@ MOST_CHECKED = 4 * 2**20
 """Bytes up to which a sheet is read, before it is changed, to see whether it can be."""
 MOST_NESTED = 100
 """Elements in one another; a sheet has a dozen."""
-_HEADER = fill("it is a header of a table.")
+_FEW_ROWS = 8
 _UNWRITABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]|_(?=x[0-9A-Fa-f]{4}_)")
 _TAG = re.compile(rb"""<[^>"']*(?:(?:"[^"]*"|'[^']*')[^>"']*)*>""")
 _ATTRIBUTE = re.compile(rb"""\s+([^\s=/>]+)\s*=\s*(?:"[^"]*"|'[^']*')""")
@@ -58,82 +56,189 @@ _CONTENT = frozenset({"f", "v", "is"})
 _LEVEL = 6
 
 
+Values = Mapping[Place, Value]
+
+
 @dataclass(frozen=True, slots=True)
-class Patched:
-    """A workbook with cells changed: its bytes, and sheet and address of each formula that a value replaced."""
+class SheetEdits:
+    """What is to be written into one sheet.
 
-    data: bytes
-    formulas: tuple[tuple[str, str], ...] = ()
+    * `shifts`: Rows inserted and deleted, in their order, before all else.
+    * `values`: A cell keeps its format; a formula in it is replaced; None leaves it blank. A cell or row that is
+      missing is added in its place, with the format of its row or column.
+    * `results`: The stored results of formulas, which stay; None takes the result out, so that every program computes
+      it when it opens the workbook.
+    * `growth`: Rows that were filled in directly below others: tables, filters, print areas, validations and
+      conditional formats that end above them take them in.
+    """
+
+    values: Values = field(default_factory=dict)
+    results: Values = field(default_factory=dict)
+    shifts: tuple[RowShift, ...] = ()
+    growth: Growth = field(default_factory=Growth)
 
 
-def patch_workbook(
-    data: bytes,
-    changes: Mapping[str, Values],
-    results: Mapping[str, Values] | None = None,
-    *,
-    name: str = "workbook.xlsx",
-    progress: Progress = SILENT,
-) -> Patched:
-    """Set cells of a workbook and leave every other byte of its parts as it is.
-
-    * `data`: The .xlsx or .xlsm.
-    * `changes`: The values by the workbook's own names of its sheets and the addresses of cells. A cell keeps its
-      format; a formula in it is replaced; None leaves it blank. A cell or row that is missing is added in its place,
-      with the format of its row or column.
-    * `results`: Likewise the stored results of formulas, which stay; None takes the result out, so that every program
-      computes it when it opens the workbook.
-    * `name`: How messages call the workbook.
-    * `progress`: Checked while it is read.
+def write_edits(book: Book, edits: Mapping[str, SheetEdits]) -> bytes:
+    """Return the bytes of a workbook with sheets edited, by its own names of them; every other byte of its parts stays.
 
     The same values set again give the same bytes. Where anything changed, programs are asked to recalculate the
     workbook when they open it.
 
-    Raises WorkbookError if it cannot be opened, or if something in it cannot be changed with certainty; nothing is
-    changed then. The problems name every cell that is refused: one where a formula of several cells begins, one of an
-    array or data table, a header of a table, a value that a cell cannot hold.
+    Raises WorkbookError if something in it cannot be changed with certainty. The problems name every cell that is
+    refused: one where a formula of several cells begins, one of an array or data table, a header of a table, a value
+    that a cell cannot hold.
     """
-    kept = {sheet: values for sheet, values in (results or {}).items() if values}
-    wanted = {sheet: values for sheet, values in changes.items() if values}
-    with Book(data, name, progress) as book:
-        _check_names(book, [*wanted, *kept])
-        parts: dict[str, bytes | None] = {}
-        formulas: list[tuple[str, str]] = []
-        problems: list[Problem] = []
-        for sheet in dict.fromkeys([*wanted, *kept]):
-            one = _SheetPatch(book, sheet, wanted.get(sheet, {}), kept.get(sheet, {}))
-            parts[book.sheets[sheet]] = one.write()
-            formulas += [(sheet, address) for address in one.formulas]
-            problems += one.problems
-        if problems:
-            raise WorkbookError(problems)
-        if not parts:
-            return Patched(data)
-        parts |= set_recalculation(book)
-        parts |= drop_from_chain(book, formulas)
-        return Patched(_pack(book, parts), tuple(formulas))
-
-
-def find_headers(data: bytes, sheet: str, *, name: str = "workbook.xlsx") -> list[tuple[Area, Text]]:
-    """Return the cells of a sheet that `patch_workbook` refuses to change since they are headers of tables, with why.
-
-    Raises WorkbookError if the workbook cannot be opened, or if the sheet cannot be changed at all. Of a large sheet
-    this shows only when it is changed.
-    """
-    with Book(data, name) as book:
-        _check_names(book, [sheet])
+    check_sheets(book, list(edits))
+    formulas: list[tuple[str, str]] = []
+    problems: list[Problem] = []
+    for sheet, one in edits.items():
         path = book.sheets[sheet]
-        if book.archive.getinfo(path).file_size <= MOST_CHECKED:
-            _ = SheetPlaces(book.archive, path, name, {}, SILENT).read().sheet_data
-        return [((left, right, top, top), _HEADER) for left, right, top in find_headings(book, path)]
+        for shift in one.shifts:
+            _shift_rows(book, sheet, shift)
+        if one.values or one.results:
+            patch = _SheetPatch(book, sheet, one)
+            book.changed[path] = patch.write()
+            formulas += [(sheet, address) for address in patch.formulas]
+            problems += patch.problems
+        if one.growth.blocks:
+            _grow(book, sheet, one.growth)
+    if problems:
+        raise WorkbookError(problems)
+    book.changed |= set_recalculation(book)
+    book.changed |= drop_from_chain(book, formulas, is_whole=any(one.shifts for one in edits.values()))
+    return _pack(book)
 
 
-def _check_names(book: Book, names: Sequence[str]) -> None:
+def check_sheets(book: Book, names: Sequence[str]) -> None:
+    """Raise WorkbookError if a sheet is missing, or the workbook may not be changed."""
     missing = [one for one in names if one not in book.sheets]
     if missing:
         raise WorkbookError([Problem("error", one, "", fill("the sheet is missing.")) for one in missing])
     if any(part.startswith("_xmlsignatures/") for part in book.archive.namelist()):
         message = fill("{name} is digitally signed; a change would break the signature.", name=book.name)
         raise unreadable(message, fill("Save it from Excel without the signature."))
+
+
+def check_layout(book: Book, sheet: str) -> None:
+    """Raise WorkbookError if a sheet cannot be changed at all. Of a large one this shows only when it is changed."""
+    check_sheets(book, [sheet])
+    if book.part_size(book.sheets[sheet]) <= MOST_CHECKED:
+        _ = SheetPlaces(book, book.sheets[sheet], {}).read().sheet_data
+
+
+# ---------------------------------------------------------------- rows that move, and tables that grow
+
+_OWN = ("table", "comments", "threadedComment", "pivotTable")
+"""Parts that belong to a sheet and name its cells, by the ends of the kinds of their relations."""
+_ALSO = ("xl/charts/", "xl/pivotCache/pivotCacheDefinition", "xl/ctrlProps/", "xl/tables/", "xl/worksheets/")
+"""Where parts lie that name cells of any sheet."""
+
+
+def _shift_rows(book: Book, sheet: str, shift: RowShift) -> None:
+    """Insert or delete rows of a sheet; whatever refers to its cells follows."""
+    own = {path: kind for kind, path in _list_related(book, book.sheets[sheet])}
+    for path in book.archive.namelist():
+        kind = own.get(path, "")
+        is_own = path == book.sheets[sheet] or kind in _OWN
+        if kind == "drawing":
+            book.changed[path] = shift_drawing(book.part_bytes(path), shift)
+        elif kind == "vmlDrawing":
+            book.changed[path] = shift_shapes(book.part_bytes(path), shift)
+        elif is_own or path == WORKBOOK or (path.startswith(_ALSO) and path.endswith(".xml")):
+            data = book.part_bytes(path)
+            if is_own or escape(sheet, quote=False).encode() in data:
+                book.changed[path] = _move(path, PartShift(sheet, is_own, shift), data)
+
+
+def _grow(book: Book, sheet: str, growth: Growth) -> None:
+    path = book.sheets[sheet]
+    for one in (path, WORKBOOK):
+        book.changed[one] = _move(one, PartShift(sheet, one == path, growth), book.part_bytes(one))
+    for table in list_tables(book, path):
+        if not table.totals:
+            left, right, _, _ = table.area
+            move = PartShift(sheet, True, growth.of_columns(left, right))
+            book.changed[table.path] = _move(table.path, move, book.part_bytes(table.path))
+
+
+def _move(path: str, move: PartShift, data: bytes) -> bytes:
+    try:
+        return move.apply(data)
+    except (NotMovedError, UnicodeDecodeError) as error:
+        why = error.why if isinstance(error, NotMovedError) else fill("it is not written in UTF-8")
+        raise not_understood(path, why) from None
+
+
+@dataclass(frozen=True, slots=True)
+class SheetTable:
+    """A table of a sheet: its cells with the rows of its headers and its totals, and how many rows these are."""
+
+    path: str
+    area: Area
+    headers: int
+    totals: int
+
+
+def list_tables(book: Book, path: str) -> list[SheetTable]:
+    """Return the tables of a sheet. One keeps a copy of its headers; where they differ, Excel repairs the file."""
+    found = []
+    for kind, target in _list_related(book, path):
+        for table in book.read(Tree, target).find("table") if kind == "table" else ():
+            headers, totals = (table.get(name, "01"[at]) for at, name in ((1, "headerRowCount"), (0, "totalsRowCount")))
+            if area := split_range(table.get("ref", "")):
+                found.append(SheetTable(target, area, int(headers != "0"), int(totals) if totals.isdigit() else 0))
+    return found
+
+
+def _list_related(book: Book, path: str) -> list[tuple[str, str]]:
+    """Return kind and path of the parts that a sheet refers to."""
+    folder, name = posixpath.split(path)
+    relations = book.find_part(folder, f"_rels/{name}.rels")
+    links = book.read(Tree, relations).find("Relationship") if relations else iter(())
+    found = [(one.get("Type", "").rpartition("/")[2], book.find_part(folder, one.get("Target", ""))) for one in links]
+    return [(kind, target) for kind, target in found if target is not None]
+
+
+# ---------------------------------------------------------------- cells that no edit may change
+
+
+class Locks:
+    """Why cells cannot be changed, by the areas that hold them.
+
+    A sheet may have thousands of merged cells, and an edit hundreds of thousands of cells: areas of a few rows are
+    listed by row, and of the others each stretch of rows that no edge of one parts is looked at once.
+    """
+
+    def __init__(self, areas: Iterable[tuple[Area, Text]]) -> None:
+        self._rows: dict[int, list[tuple[int, int, Text]]] = {}
+        self._tall: list[tuple[Area, Text]] = []
+        for area, why in areas:
+            left, right, top, bottom = area
+            if bottom - top > _FEW_ROWS:
+                self._tall.append((area, why))
+            for row in range(top, bottom + 1) if bottom - top <= _FEW_ROWS else ():
+                self._rows.setdefault(row, []).append((left, right, why))
+        self._edges = sorted({edge for (_, _, top, bottom), _ in self._tall for edge in (top, bottom + 1)})
+        self._stretches: dict[int, list[tuple[int, int, Text]]] = {}
+
+    def find(self, row: int, at: int) -> Text | str:
+        """Return why a cell cannot be changed, "" where it can."""
+        stretch = bisect_right(self._edges, row)
+        if stretch not in self._stretches:
+            inside = ((left, right, why) for (left, right, top, bottom), why in self._tall if top <= row <= bottom)
+            self._stretches[stretch] = list(dict.fromkeys(inside))
+        areas = (*self._rows.get(row, ()), *self._stretches[stretch])
+        return next((why for left, right, why in areas if left <= at + 1 <= right), "")
+
+
+def list_headings(tables: Iterable[SheetTable]) -> Iterator[tuple[Area, Text]]:
+    """Yield the areas of tables that no edit may change: their headers and totals."""
+    for one in tables:
+        left, right, top, bottom = one.area
+        if one.headers:
+            yield (left, right, top, top), fill("it is a header of a table.")
+        if one.totals:
+            yield (left, right, bottom - one.totals + 1, bottom), fill("it is in the totals row of a table.")
 
 
 # ---------------------------------------------------------------- where elements lie
@@ -193,14 +298,20 @@ class Element:
         return next((one for one in self.parts if one.bare == name), None)
 
 
+def not_understood(part: str, why: Text) -> WorkbookError:
+    """Build the error for a part that cannot be changed with certainty."""
+    message = fill("{part} cannot be changed without risk: {why}.", part=part, why=why)
+    return unreadable(message, fill("Open the workbook in Excel, save it under another name, and use that."))
+
+
 class SmallPart(Part):
     """A part of the zip whose `elements`, down to the third level, can be found again in its bytes, `data`."""
 
     limits: tuple[int, int] | None = (24 * 2**20, 1_000_000)
 
-    def __init__(self, archive: zipfile.ZipFile, path: str, name: str, progress: Progress = SILENT) -> None:
-        super().__init__(archive, path, name, progress)
-        self.data = archive.read(path)
+    def __init__(self, book: Book, path: str) -> None:
+        super().__init__(book, path)
+        self.data = book.part_bytes(path)
         self.parser.CharacterDataHandler = None
         self.parser.StartDoctypeDeclHandler = self._refuse_types
         self.parser.XmlDeclHandler = self._check_encoding
@@ -244,8 +355,7 @@ class SmallPart(Part):
 
     def not_understood(self, why: Text) -> WorkbookError:
         """Build the error for XML that cannot be changed with certainty."""
-        message = fill("{part} cannot be changed without risk: {why}.", part=self.path, why=why)
-        return unreadable(message, fill("Open the workbook in Excel, save it under another name, and use that."))
+        return not_understood(self.path, why)
 
     def _refuse_types(self, *_: object) -> None:
         raise self.not_understood(fill("it declares a document type"))
@@ -273,10 +383,8 @@ class SheetPlaces(SmallPart):
 
     limits = None
 
-    def __init__(
-        self, archive: zipfile.ZipFile, path: str, name: str, wanted: Mapping[int, Collection[int]], progress: Progress
-    ) -> None:
-        super().__init__(archive, path, name, progress)
+    def __init__(self, book: Book, path: str, wanted: Mapping[int, Collection[int]]) -> None:
+        super().__init__(book, path)
         self.wanted = wanted
         self.rows: dict[int, RowPlace] = {}
         self.dimension: Element | None = None
@@ -378,17 +486,28 @@ class SheetPlaces(SmallPart):
 # ---------------------------------------------------------------- one sheet
 
 
-class _SheetPatch:
-    """Changes and results of one sheet; `problems` tells what is refused, `formulas` what values replace."""
+def check_value(place: Place, value: Value) -> Text | str:
+    """Return why a value cannot be written into a cell, "" where it can."""
+    if not (1 <= place[0] <= SHEET_ROWS and 0 <= place[1] < SHEET_COLUMNS):
+        return fill("it is no cell of a sheet.")
+    if isinstance(value, str) and len(value) > LONGEST_TEXT:
+        return fill("the text is longer than a cell holds: {most:,} characters.", most=LONGEST_TEXT)
+    is_number = not isinstance(value, int | float) or abs(value) <= LARGEST_NUMBER
+    return "" if is_number else fill("the value is not a number that a cell holds.")
 
-    def __init__(self, book: Book, sheet: str, changes: Values, results: Values) -> None:
+
+class _SheetPatch:
+    """Values and results of one sheet; `problems` tells what is refused, `formulas` what values replace."""
+
+    def __init__(self, book: Book, sheet: str, edits: SheetEdits) -> None:
         self.sheet, path = sheet, book.sheets[sheet]
         self.formulas, self.problems = list[str](), list[Problem]()
-        self.changes, self.results = self._by_row(changes), self._by_row(results)
+        self.changes, self.results = self._by_row(edits.values), self._by_row(edits.results)
         numbers = sorted({*self.changes, *self.results})
         wanted = {one: {*self.changes.get(one, ()), *self.results.get(one, ())} for one in numbers}
-        self.headings = find_headings(book, path)
-        self.places = SheetPlaces(book.archive, path, book.name, wanted, book.progress).read()
+        self.places = SheetPlaces(book, path, wanted).read()
+        areas = [(area, LOCKED[kind]) for area, kind in self.places.locked]
+        self.locks = Locks([*areas, *list_headings(list_tables(book, path))])
         self.added: list[tuple[int, int]] = []
 
     def write(self) -> bytes:
@@ -396,7 +515,9 @@ class _SheetPatch:
         edits: list[Edit] = []
         new_rows: list[tuple[int, bytes]] = []
         for number in self.places.wanted:
-            self._check_areas(number)
+            for column in self.changes.get(number, ()):
+                if why := self.locks.find(number, column - 1):
+                    self._refuse((column, number), why)
             if number in self.places.rows:
                 edits += self._edit_row(number, self.places.rows[number])
             elif cells := self._write_row(number):
@@ -406,31 +527,15 @@ class _SheetPatch:
         return apply_edits(self.places.data, [*edits, *_widen(self.places, self.added)])
 
     def _by_row(self, values: Values) -> dict[int, dict[int, Value]]:
+        """Return values by row and column, both from 1."""
         found: dict[int, dict[int, Value]] = {}
-        for address, value in values.items():
-            place = split_address(address)
-            if place is None or place[0] > SHEET_COLUMNS or place[1] > SHEET_ROWS:
-                self._refuse(address, fill("{address} is no cell of a sheet.", address=address[:20]))
-            elif isinstance(value, str) and len(value) > LONGEST_TEXT:
-                message = fill("the text is longer than a cell holds: {most:,} characters.", most=LONGEST_TEXT)
-                self._refuse(address, message)
-            elif isinstance(value, int | float) and not abs(value) <= LARGEST_NUMBER:
-                self._refuse(address, fill("the value is not a number that a cell holds."))
-            else:
-                found.setdefault(place[1], {})[place[0]] = value
+        for (row, at), value in values.items():
+            found.setdefault(row, {})[at + 1] = value
         return found
 
-    def _refuse(self, cell: str | tuple[int, int], message: Text) -> None:
-        address = cell if isinstance(cell, str) else f"{column_letters(cell[0] - 1)}{cell[1]}"
+    def _refuse(self, cell: tuple[int, int], message: Text | str) -> None:
+        address = f"{column_letters(cell[0] - 1)}{cell[1]}"
         self.problems.append(Problem("error", self.sheet, address, message, fill("Change this cell in Excel.")))
-
-    def _check_areas(self, number: int) -> None:
-        for column in self.changes.get(number, ()):
-            for (left, right, top, bottom), kind in self.places.locked:
-                if left <= column <= right and top <= number <= bottom:
-                    self._refuse((column, number), LOCKED[kind])
-            if any(left <= column <= right and number == top for left, right, top in self.headings):
-                self._refuse((column, number), _HEADER)
 
     def _write_row(self, number: int) -> bytes:
         """Return the cells of a row that the sheet lacks."""
@@ -563,13 +668,13 @@ def _widen(places: SheetPlaces, added: Sequence[tuple[int, int]]) -> list[Edit]:
 # ---------------------------------------------------------------- the zip
 
 
-def _pack(book: Book, parts: Mapping[str, bytes | None]) -> bytes:
+def _pack(book: Book) -> bytes:
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED, compresslevel=_LEVEL) as out:
         out.comment = book.archive.comment
         for info in book.archive.infolist():
             book.progress.check()
-            content = parts.get(info.filename, b"") if info.filename in parts else book.archive.read(info)
+            content = book.changed[info.filename] if info.filename in book.changed else book.archive.read(info)
             if content is not None:
                 found = zipfile.ZipInfo(info.filename, info.date_time)
                 for name in ("compress_type", "comment", "extra", "create_system", "create_version", "extract_version",
@@ -605,13 +710,16 @@ def set_recalculation(book: Book) -> dict[str, bytes]:
     return {WORKBOOK: apply_edits(part.data, [(at, at, f'<{prefix}{colon}calcPr fullCalcOnLoad="1"/>'.encode())])}
 
 
-def drop_from_chain(book: Book, formulas: Sequence[tuple[str, str]]) -> dict[str, bytes | None]:
+def drop_from_chain(book: Book, formulas: Sequence[tuple[str, str]], *, is_whole: bool) -> dict[str, bytes | None]:
     """Return the parts that change when cells lose their formulas: the calculation chain loses their entries.
 
     A chain with an entry for a cell without a formula makes Excel repair the file. One that would be empty is left
-    out, with what refers to it. An entry without a sheet is on the sheet of the one before it.
+    out, with what refers to it, as is the whole one where formulas have moved: Excel makes it anew. An entry without a
+    sheet is on the sheet of the one before it.
     """
     path = book.parts.get("calcChain")
+    if path is not None and is_whole:
+        return {path: None, **_drop_references(book, path)}
     if path is None or not formulas:
         return {}
     part = book.read(SmallPart, path)
@@ -647,39 +755,3 @@ def _drop_references(book: Book, path: str) -> Mapping[str, bytes]:
         if found:
             changed[name] = apply_edits(part.data, [(one.start, one.end, b"") for one in found])
     return changed
-
-
-def find_headings(book: Book, path: str) -> list[tuple[int, int, int]]:
-    """Return first and last column and the row of the headers of each table of a sheet.
-
-    A table keeps a copy of its headers; where they differ, Excel repairs the file.
-    """
-    return [span[:3] for span, table in _list_tables(book, path) if table.get("headerRowCount", "1") != "0"]
-
-
-def find_totals(data: bytes, sheet: str, name: str) -> list[int]:
-    """Return the rows of a sheet that are totals rows of tables; WorkbookError if the workbook cannot be opened."""
-    with Book(data, name) as book:
-        tables = _list_tables(book, book.sheets[sheet]) if sheet in book.sheets else []
-    return [
-        row
-        for (_, _, _, bottom), table in tables
-        if (count := table.get("totalsRowCount", "0")).isdigit()
-        for row in range(bottom - int(count) + 1, bottom + 1)
-    ]
-
-
-def _list_tables(book: Book, path: str) -> list[tuple[tuple[int, int, int, int], Mapping[str, str]]]:
-    folder, name = posixpath.split(path)
-    relations = book.find_part(folder, f"_rels/{name}.rels")
-    if relations is None:
-        return []
-    found: list[tuple[tuple[int, int, int, int], Mapping[str, str]]] = []
-    for one in book.read(Tree, relations).find("Relationship"):
-        target = book.find_part(folder, one.get("Target", ""))
-        if one.get("Type", "").endswith("/table") and target is not None:
-            for table in book.read(Tree, target).find("table"):
-                span = split_range(table.get("ref", ""))
-                if span is not None:
-                    found.append((span, table))
-    return found

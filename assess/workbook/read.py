@@ -38,7 +38,7 @@ from assess.workbook.schema import SHEETS, Sheet
 if TYPE_CHECKING:
     import pandas as pd
 
-    from assess.workbook.held import HeldSheets
+    from assess.workbook.store import Workbook
 
 _MAX_LIST = 2**20
 _SHEET = re.compile(rb"<(?:\w+:)?sheet\s[^>]*?\bname=[\"']([^\"']*)", re.IGNORECASE)
@@ -145,31 +145,35 @@ def read_tables(data: bytes, name: str, progress: Progress = SILENT) -> tuple[Ta
         return _parse({name: (book.cells(own), code) for name, (own, code) in found.items()}, language, problems)
 
 
-def hold_sheets(data: bytes, name: str, progress: Progress = SILENT) -> "HeldSheets":
-    """Read the cells of every sheet of a workbook and hold them in memory, for `parse_held`.
+def open_workbook(data: bytes, name: str, progress: Progress = SILENT) -> "Workbook":
+    """Read the cells of every sheet of a workbook and hold them in memory, for `parse_workbook` and to be changed.
 
     Raises WorkbookError if the file cannot be opened as a workbook at all.
     """
-    from assess.workbook.held import HeldSheets, hold_cells
+    from assess.workbook.store import Workbook, read_sheet
 
     with Book(data, name, progress) as book:
         found, language, problems = _find_sheets(list(book.sheets), book.hidden)
-        return HeldSheets(
+        return Workbook(
             name=name,
-            cells={sheet: hold_cells(book, own) for sheet, (own, _) in found.items()},
+            data=data,
+            sheets={sheet: read_sheet(book, own) for sheet, (own, _) in found.items()},
             languages={sheet: code for sheet, (_, code) in found.items()},
             language=language,
             problems=tuple(problems),
+            titles=tuple(book.sheets),
         )
 
 
-def parse_held(held: "HeldSheets") -> tuple[Tables, list[Problem]]:
-    """Return the tables of sheets that are held in memory, and all problems, as `read_tables` does."""
-    found: dict[str, tuple[Source, str]] = {name: (one, held.languages[name]) for name, one in held.cells.items()}
-    return _parse(found, held.language, held.problems)
+def parse_workbook(workbook: "Workbook") -> tuple[Tables, list[Problem]]:
+    """Return the tables of a workbook in memory, and all problems, as `read_tables` does."""
+    found: dict[str, tuple[Source, str]] = {
+        name: (one, workbook.languages[name]) for name, one in workbook.sheets.items() if name in workbook.languages
+    }
+    return _parse(found, workbook.language, workbook.problems)
 
 
-def build_held(
+def build_inventory(
     tables: Tables,
     problems: Sequence[Problem],
     path: Path,
@@ -177,7 +181,7 @@ def build_held(
     progress: Progress = SILENT,
     kept: KeptFiles | None = None,
 ) -> Inventory:
-    """Return the inventory of tables that `parse_held` returned, as ``read_inventory(strict=False)`` does.
+    """Return the inventory of tables that `parse_workbook` returned, as ``read_inventory(strict=False)`` does.
 
     The workbook, `path`, is not read. `records` are the files that it names or their folder, `kept` what earlier
     readings made of them.

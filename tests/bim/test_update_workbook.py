@@ -17,7 +17,6 @@ from assess.bim.update_workbook import describe, update_workbook
 from assess.errors import CancelledError, InputError, WorkbookError
 from assess.i18n import gettext, load_catalogue, speaking
 from assess.progress import Progress
-from assess.workbook.patch import patch_workbook
 from tests.bim import cobie_files
 from tests.bim.update_books import (
     FLOORS,
@@ -44,7 +43,7 @@ from tests.bim.update_books import (
 )
 from tests.workbook import books
 from tests.workbook.books import change_parts, write_book
-from tests.workbooks import address
+from tests.workbooks import address, edited
 
 TYPED = {
     "axis": "X", "anchored": "yes", "friction": 0.4, "route": "R1", "segment": "a", "edge_distance": 0.2,
@@ -243,7 +242,7 @@ def test_a_workbook_or_model_that_does_not_fit_is_refused(book: bytes) -> None:
 def test_what_is_no_workbook_of_an_import_is_refused(book: bytes, tmp_path: Path) -> None:
     handover = cobie_files.write_cobie(tmp_path / "handover.xlsx").read_bytes()
     bare = write_book(tmp_path / "book.xlsx", {"Floors": [["Floor"], ["1"]], "Things": [["a"]]}).read_bytes()
-    stray = patch_workbook(book, {"Items": {"A200001": "stray"}}).data
+    stray = edited(book, {"Items": {"A200001": "stray"}})
     for data, message in (
         (b"", "is empty"), (b"PK\x03\x04 no zip", "is damaged"), (b"text", "is not an Excel workbook"),
         (handover, "this is a COBie handover file"), (bare, "Items: the sheet is missing"),
@@ -304,7 +303,7 @@ def renamed(data: bytes, names: dict[str, str]) -> bytes:
             for name in ("floor", "room", "place", "type"):
                 if one.get(name) in names:
                     changes.setdefault(sheet, {})[found.cell(name, one.number)] = names[one.get(name)]
-    return patch_workbook(data, changes).data
+    return edited(data, changes)
 
 
 NEW_ON_2 = piece(7, "Level 2", "B201 Office")

@@ -16,11 +16,11 @@ from assess.model import Inventory
 from assess.pipeline.live_values import store_live
 from assess.units import QUANTITIES
 from assess.workbook.parse import Row, Table
-from assess.workbook.patch import Value, patch_workbook
+from assess.workbook.patch import Value
 from assess.workbook.read import read_inventory, read_tables
 from assess.workbook.schema import SHEETS, Column
 from assess.workbook.template import Content, write_workbook
-from tests.workbooks import address
+from tests.workbooks import address, edited
 
 Rows = list[dict[str, Any]]
 
@@ -80,7 +80,7 @@ def changed(**changes: Mapping[str, Any]) -> ImportedBuilding:
 
 def typed(data: bytes, sheet: str = "Items", row: int = 2, **fields: Value) -> bytes:
     """Type values into a row of a workbook as the import wrote it; row 2 is that of the first piece."""
-    return patch_workbook(data, {sheet: {address(name, row, sheet): value for name, value in fields.items()}}).data
+    return edited(data, {sheet: {address(name, row, sheet): value for name, value in fields.items()}})
 
 
 def line(data: bytes, **fields: Value) -> bytes:
@@ -89,7 +89,7 @@ def line(data: bytes, **fields: Value) -> bytes:
     for name, value in fields.items():
         at = next(at for at, one in enumerate(SHEETS[0].columns, 1) if one.name == name)
         values[f"B{at}"] = value
-    return patch_workbook(data, {"Building": values}).data
+    return edited(data, {"Building": values})
 
 
 def resaved(data: bytes, change: Any = None) -> bytes:

@@ -2,10 +2,9 @@
 
 from pathlib import Path
 
-from assess.workbook.patch import patch_workbook
 from assess.workbook.read import read_inventory
 from tests.cli.calling import error, run
-from tests.workbooks import ITEMS, RECORDS, address, write
+from tests.workbooks import ITEMS, RECORDS, address, edited, write
 
 BREADTH = address("breadth", 2)
 HEIGHTS = [address("height", row) for row in (2, 3, 4, 5)]
@@ -16,7 +15,7 @@ def habits(path: Path, *typed: str, **cells: str) -> Path:
     """A workbook with the first breadth and heights as they are typed, and with other cells of Items."""
     write(path)
     items = dict(zip((BREADTH, *HEIGHTS), typed, strict=False)) | cells
-    path.write_bytes(patch_workbook(path.read_bytes(), {"Items": items}).data)
+    path.write_bytes(edited(path.read_bytes(), {"Items": items}))
     return path
 
 
@@ -47,7 +46,7 @@ def test_errors_that_remain_are_named_and_the_copy_is_written(tmp_path):
 def test_the_problems_are_those_that_a_check_of_the_copy_names(tmp_path):
     path = habits(tmp_path / "book.xlsx", "30 cm")
     floor = {address("pfa_x", 2, "Floors"): "far too strong"}
-    path.write_bytes(patch_workbook(path.read_bytes(), {"Floors": floor}).data)
+    path.write_bytes(edited(path.read_bytes(), {"Floors": floor}))
     shown = run("check", path, "--fix", tmp_path / "out.xlsx").stderr.splitlines()
     assert shown[:-1] == run("check", tmp_path / "out.xlsx").stderr.splitlines()[:-1]
     assert not any("left out" in line for line in shown)
@@ -66,7 +65,7 @@ def test_files_that_the_workbook_names_are_looked_for_next_to_it(tmp_path):
     record = next(one for one in sorted(RECORDS.rglob("*")) if one.suffix == ".csv")
     path = write(tmp_path / "book.xlsx", floors=[{"floor": "1", "pfa_x": 0.3}, {"floor": "2", "record_x": record.name}])
     (tmp_path / record.name).write_bytes(record.read_bytes())
-    path.write_bytes(patch_workbook(path.read_bytes(), {"Items": {BREADTH: "30 cm"}}).data)
+    path.write_bytes(edited(path.read_bytes(), {"Items": {BREADTH: "30 cm"}}))
     (tmp_path / "other").mkdir()
     done = run("check", path, "--fix", tmp_path / "other" / "out.xlsx")
     assert "The files that the workbook names lie next to book.xlsx: copy them next to out.xlsx as well." in done.stdout

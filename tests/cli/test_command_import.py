@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 from assess.workbook.lists import PLACES
-from assess.workbook.patch import patch_workbook
 from assess.workbook.read import read_inventory, read_tables
 from tests.bim.cobie_files import COMPONENTS, TYPES, one_type, write_cobie
 from tests.bim.model_here import models_read_here
 from tests.cli.calling import error, run
+from tests.workbooks import edited
 
 MODELS = Path(__file__).parents[2] / "samples" / "models"
 DUPLEX = MODELS / "duplex.ifc"
@@ -79,7 +79,7 @@ def test_names_that_command_a_terminal_are_printed_clean(tmp_path):
 def fill_in(path: Path, **building: float | str) -> None:
     """Set lines of Building, as a person does."""
     cells = {f"B{PLACES['Building', name] + 1}": value for name, value in building.items()}
-    path.write_bytes(patch_workbook(path.read_bytes(), {"Building": cells}).data)
+    path.write_bytes(edited(path.read_bytes(), {"Building": cells}))
 
 
 def set_item(path: Path, row: int, **values: float | str) -> None:
@@ -87,7 +87,7 @@ def set_item(path: Path, row: int, **values: float | str) -> None:
     from assess.workbook.plain_rows import column_letters
 
     cells = {f"{column_letters(PLACES['Items', name])}{row}": value for name, value in values.items()}
-    path.write_bytes(patch_workbook(path.read_bytes(), {"Items": cells}).data)
+    path.write_bytes(edited(path.read_bytes(), {"Items": cells}))
 
 
 @pytest.fixture(scope="module")

@@ -17,12 +17,11 @@ from typing import Any
 import pytest
 
 from assess.cli.app import list_names
-from assess.workbook.patch import patch_workbook
 from tests.alike import differences, strip_numbers
 from tests.cli.calling import run
 from tests.nets.lines import read_excel, read_html
 from tests.shaking import write_records
-from tests.workbooks import address, write, write_sheets
+from tests.workbooks import address, edited, write, write_sheets
 
 SHOWN = Path(__file__).parent / "shown"
 SAMPLES = Path(__file__).parents[2] / "samples"
@@ -110,7 +109,7 @@ def make(folder: Path) -> None:
     write(folder / "before.xlsx", building="Town hall", period=0.8)
     habits = {address("breadth", 2): "30 cm", address("height", 2): "2 m", address("anchored", 4): "N"}
     typed = write(folder / "typed.xlsx")
-    typed.write_bytes(patch_workbook(typed.read_bytes(), {"Items": habits}).data)
+    typed.write_bytes(edited(typed.read_bytes(), {"Items": habits}))
 
 
 def make_refused(folder: Path) -> None:

@@ -13,15 +13,14 @@ import pytest
 from assess.pipeline.corrected import Corrected, correct_workbook
 from assess.pipeline.live_values import live_values, with_live
 from assess.workbook.example import example_content
-from assess.workbook.held import list_formulas
-from assess.workbook.patch import patch_workbook
-from assess.workbook.read import read_inventory
+from assess.workbook.plain_rows import column_letters
+from assess.workbook.read import open_workbook, read_inventory
 from assess.workbook.schema import LIVE
 from assess.workbook.template import write_workbook
 from tests.recalculate import libreoffice, needs_libreoffice, stored_cells
 from tests.workbook.books import change_parts
 from tests.workbook.test_patch import changed_parts
-from tests.workbooks import address
+from tests.workbooks import address, edited
 
 BREADTH, WIDTH, HEIGHT = (address(field, 2) for field in ("breadth", "width", "height"))
 SECOND, ANCHORED, WRONG = address("height", 3), address("anchored", 4), address("breadth", 5)
@@ -42,8 +41,13 @@ def uncorrected() -> bytes:
 
 def example(path: Path, changes: dict[str, dict[str, Any]]) -> Path:
     """The example of `assess new` with some cells as people type them."""
-    path.write_bytes(patch_workbook(uncorrected(), changes).data)
+    path.write_bytes(edited(uncorrected(), changes))
     return path
+
+
+def list_formulas(data: bytes, sheet: str) -> list[str]:
+    marks = open_workbook(data, "book.xlsx").sheet(sheet).marks
+    return [f"{column_letters(at)}{row}" for row, at in sorted(marks.formulas)]
 
 
 def stored(done: Corrected, path: Path) -> dict[tuple[str, str], Any]:
@@ -131,7 +135,7 @@ def test_an_italian_workbook(tmp_path: Path) -> None:
     with speaking(load_catalogue("it")):
         write_workbook(path, with_live(example_content()))
     (sheet,) = (name for english, name in read_inventory(path).sheets.items() if english == "Items")
-    path.write_bytes(patch_workbook(path.read_bytes(), {sheet: {BREADTH: "30 cm"}}).data)
+    path.write_bytes(edited(path.read_bytes(), {sheet: {BREADTH: "30 cm"}}))
     done = correct_workbook(path)
     assert [one.value for one in done.changed] == [30]
     with speaking(load_catalogue("it")):

@@ -64,11 +64,11 @@ def cells_of(part):
 
 def refusals(book, *edits):
     """Why edits are refused, by cell; nothing may have changed."""
-    before, cells = book.state(), book.snapshot().cells
+    before, cells = book.state(), book.snapshot().workbook
     with pytest.raises(EditsRefused) as caught:
         edit(book, *edits)
     assert book.state() == before
-    assert book.snapshot().cells is cells
+    assert book.snapshot().workbook is cells
     return {tuple(one[:3]): one[3] for one in caught.value.refused}
 
 
@@ -260,8 +260,8 @@ def test_hostile_texts_stay_texts(book, tmp_path):
     for row, text in enumerate(texts):
         if text.isprintable():
             assert shown[10 + row] == text
-    again = Book.hold("again.xlsx", data, tmp_path).snapshot().cells.cells["Items"]
-    held = book.snapshot().cells.cells["Items"]
+    again = Book.hold("again.xlsx", data, tmp_path).snapshot().workbook.sheets["Items"]
+    held = book.snapshot().workbook.sheets["Items"]
     places = [(10 + row, at("description")) for row in range(len(texts))]
     assert [again.value(place) for place in places] == [held.value(place) for place in places]
 
@@ -270,19 +270,19 @@ def test_hostile_texts_stay_texts(book, tmp_path):
 
 
 def test_undo_and_redo_across_sheets(book):
-    first = book.snapshot().cells
+    first = book.snapshot().workbook
     edit(book, ("Items", 2, at("breadth"), 50), ("Floors", 2, at("pfa_x", "Floors"), 0.7))
-    second = book.snapshot().cells
+    second = book.snapshot().workbook
     edit(book, ("Items", 2, at("breadth"), None))
     assert book.undo(book.version)["cells"] == [["Items", 2, at("breadth"), 50]]
-    assert book.snapshot().cells == second
+    assert book.snapshot().workbook == second
     found = book.undo(book.version)
     assert sorted(found["cells"]) == [["Floors", 2, at("pfa_x", "Floors"), 0.3], ["Items", 2, at("breadth"), 30]]
-    assert book.snapshot().cells == first
+    assert book.snapshot().workbook == first
     assert not book.state()["can_undo"]
     assert book.undo(book.version)["cells"] == []
     book.redo(book.version)
-    assert book.snapshot().cells == second
+    assert book.snapshot().workbook == second
     edit(book, ("Items", 3, at("breadth"), 50))
     assert not book.state()["can_redo"]
     assert book.redo(book.version)["cells"] == []
@@ -310,7 +310,7 @@ def test_edits_from_many_threads(book):
     with ThreadPoolExecutor(8) as pool:
         found = list(pool.map(add, range(50, 90)))
     assert found == [[["Items", row, 0, f"T{row}"]] for row in range(50, 90)]
-    cells = book.snapshot().cells.cells["Items"]
+    cells = book.snapshot().workbook.sheets["Items"]
     assert [cells.value((row, 0)) for row in range(50, 90)] == [f"T{row}" for row in range(50, 90)]
     assert book.version == 41
 

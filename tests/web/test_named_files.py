@@ -36,6 +36,6 @@ def test_a_job_works_with_the_uncertainties_that_lie_beside_it(book, tmp_path):
     for file in EPICENTRE.parent.iterdir():
         shutil.copy(file, tmp_path / "own")
     snapshot = book.snapshot()
-    assert list(list_present(snapshot.cells, snapshot.sheets, snapshot.files)) == ["grid.xml", "uncertainty.xml"]
+    assert list(list_present(snapshot.workbook, snapshot.sheets, snapshot.files)) == ["grid.xml", "uncertainty.xml"]
     prepare(book, {"formats": ["json"]}, tmp_path / "job")
     assert sorted(one.name for one in (tmp_path / "job").rglob("*.xml")) == ["grid.xml", "uncertainty.xml"]

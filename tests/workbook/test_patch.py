@@ -15,14 +15,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from assess.errors import WorkbookError
-from assess.workbook.held import list_formulas
-from assess.workbook.open import Book
-from assess.workbook.patch import patch_workbook
+from assess.workbook.open import UNSAVED, Book
 from assess.workbook.plain_rows import column_letters
+from assess.workbook.read import open_workbook
 from tests.pictures import picture
 from tests.recalculate import libreoffice, needs_libreoffice, stored_cells
 from tests.workbook.books import change_parts, replace
 from tests.workbook.raw import MAIN, RELATIONS, SHEET, zip_bytes
+from tests.workbooks import edited, places
 
 BOOK, CHAIN, TYPES = "xl/workbook.xml", "xl/calcChain.xml", "[Content_Types].xml"
 
@@ -61,8 +61,13 @@ def own_values(data: bytes, sheet: str = "Items") -> dict[str, Any]:
 
 def refusals(data: bytes, changes: Mapping[str, Mapping[str, Any]], **named: Any) -> set[str]:
     with pytest.raises(WorkbookError) as caught:
-        patch_workbook(data, changes, **named)
+        edited(data, changes, **named)
     return {str(one) for one in caught.value.problems}
+
+
+def with_results(data: bytes, results: Mapping[str, Any]) -> bytes:
+    """A workbook with other stored results of the formulas of Items."""
+    return open_workbook(data, "book.xlsx").store({"Items": places(results)}).to_bytes()
 
 
 def minimal(rows: str, *, head: str = "", tail: str = "", root: str = f'<worksheet xmlns="{MAIN}">') -> bytes:
@@ -122,11 +127,11 @@ CHANGES: dict[str, Any] = {f"C{row}": 30.0 + row for row in range(2, 8)} | {
 
 def test_every_other_byte_of_a_rich_workbook_stays(tmp_path: Path) -> None:
     before = rich(tmp_path / "book.xlsx").read_bytes()
-    after = patch_workbook(before, {"Items": CHANGES}).data
+    after = edited(before, {"Items": CHANGES})
     assert changed_parts(before, after) == {SHEET}
     assert directory_of(before) == directory_of(after)
-    assert patch_workbook(after, {"Items": CHANGES}).data == after
-    assert patch_workbook(before, {"Items": {}}).data == before
+    assert edited(after, {"Items": CHANGES}) == after
+    assert edited(before, {"Items": {}}) == before
     assert values_of(after) == values_of(before) | CHANGES
     assert {**own_values(after), "E2": 0} == {**own_values(before), **CHANGES, "E2": 0}
     assert refusals(before, {"Other": {"B2": "u", "B3": 5, "E2": 1}}) == {
@@ -142,7 +147,7 @@ def test_every_other_byte_of_a_rich_workbook_stays(tmp_path: Path) -> None:
 
 def test_the_format_of_a_cell_stays(tmp_path: Path) -> None:
     """A number in a cell of the format Text is a number all the same."""
-    after = patch_workbook(rich(tmp_path / "book.xlsx").read_bytes(), {"Items": {"C2": 45.5, "C3": None, "U9": 2}}).data
+    after = edited(rich(tmp_path / "book.xlsx").read_bytes(), {"Items": {"C2": 45.5, "C3": None, "U9": 2}})
     page = openpyxl.load_workbook(io.BytesIO(after))["Items"]
     assert (page["C2"].value, page["C2"].data_type, page["C2"].number_format) == (45.5, "n", "@")
     assert (page["C3"].value, page["C3"].fill.fgColor.rgb) == (None, "FFFFEE00")
@@ -154,7 +159,7 @@ def test_the_format_of_a_cell_stays(tmp_path: Path) -> None:
 @pytest.mark.libreoffice
 @pytest.mark.slow
 def test_libreoffice_reads_it(tmp_path: Path) -> None:
-    after = patch_workbook(rich(tmp_path / "book.xlsx").read_bytes(), {"Items": CHANGES | {"E5": 7}}).data
+    after = edited(rich(tmp_path / "book.xlsx").read_bytes(), {"Items": CHANGES | {"E5": 7}})
     (tmp_path / "after.xlsx").write_bytes(after)
     found = stored_cells(libreoffice(tmp_path / "after.xlsx", tmp_path / "out.xlsx"))
     assert {cell: found["Items", cell] for cell in CHANGES} == CHANGES
@@ -185,16 +190,16 @@ IN_ORDER: list[tuple[str, dict[str, Any], str]] = [
 
 def test_rows_and_cells_are_put_in_their_order() -> None:
     for rows, changes, expected in IN_ORDER:
-        sheet = parts_of(patch_workbook(minimal(rows), {"Items": changes}).data)[SHEET].decode()
+        sheet = parts_of(edited(minimal(rows), {"Items": changes}))[SHEET].decode()
         assert sheet == f'<worksheet xmlns="{MAIN}">{expected}</worksheet>'
 
 
 def test_a_prefix_of_names() -> None:
     before = minimal(
-        '<x:sheetData><x:row r="1"><x:c r="A1" t="s"><x:v>0</x:v></x:c></x:row></x:sheetData>',
+        '<x:sheetData><x:row r="1"><x:c r="A1" t="b"><x:v>1</x:v></x:c></x:row></x:sheetData>',
         root=f'<x:worksheet xmlns:x="{MAIN}">',
     )
-    after = patch_workbook(before, {"Items": {"A1": "text", "B1": 2, "A3": True}}).data
+    after = edited(before, {"Items": {"A1": "text", "B1": 2, "A3": True}})
     assert values_of(after) == own_values(after) == {"A1": "text", "B1": 2, "A3": True}
 
 
@@ -205,7 +210,7 @@ def test_what_only_looks_like_a_cell() -> None:
  <!-- </row> --><c r="C1"><v>3</v></c></row ></sheetData >"""
     tail = '<extLst><ext uri="u"><c r="A1"><v>7</v></c></ext></extLst>'
     before = minimal(rows, tail=tail)
-    after = patch_workbook(before, {"Items": {"B1": 2, "C1": 4}}).data
+    after = edited(before, {"Items": {"B1": 2, "C1": 4}})
     text = parts_of(after)[SHEET].decode()
     expected = rows.replace('<c r="C1"><v>3</v>', '<c r="B1"><v>2</v></c><c r="C1"><v>4</v>')
     assert text == f'<worksheet xmlns="{MAIN}">{expected}{tail}</worksheet>'
@@ -214,8 +219,8 @@ def test_what_only_looks_like_a_cell() -> None:
 
 def test_the_extent_of_the_cells_is_kept_true() -> None:
     before = minimal('<sheetData><row r="3"><c r="B3"/></row></sheetData>', head='<dimension ref="B3"/>')
-    assert b'<dimension ref="B3"/>' in parts_of(patch_workbook(before, {"Items": {"B3": 1}}).data)[SHEET]
-    assert b'<dimension ref="A2:B3"/>' in parts_of(patch_workbook(before, {"Items": {"A2": 1}}).data)[SHEET]
+    assert b'<dimension ref="B3"/>' in parts_of(edited(before, {"Items": {"B3": 1}}))[SHEET]
+    assert b'<dimension ref="A2:B3"/>' in parts_of(edited(before, {"Items": {"A2": 1}}))[SHEET]
 
 
 AWKWARD = ["", " padded ", "a\nb\tc", "a\rb", "<&>\"'", "_x0041_", "_x005F_", "é€𝄞", "=1+1", "0123", "]]>"]
@@ -224,12 +229,12 @@ AWKWARD = ["", " padded ", "a\nb\tc", "a\rb", "<&>\"'", "_x0041_", "_x005F_", "�
 def test_texts_and_numbers() -> None:
     before = minimal("<sheetData/>")
     for text in AWKWARD:
-        after = patch_workbook(before, {"Items": {"A1": text}}).data
+        after = edited(before, {"Items": {"A1": text}})
         assert own_values(after).get("A1", "") == text
         coded = re.sub("_(?=x[0-9A-F]{4}_)", "_x005F_", text)  # which openpyxl leaves as it is
-        assert values_of(after).get("A1") == coded
+        assert values_of(after).get("A1", "") == coded
     for value in (0, -0.0, 45.0, 0.1, 1 / 3, 1e22, 5e-324, -1.5e300, 2**53 + 1, 10**20):
-        after = patch_workbook(before, {"Items": {"A1": value}}).data
+        after = edited(before, {"Items": {"A1": value}})
         assert own_values(after)["A1"] == values_of(after)["A1"] == float(value)
 
 
@@ -240,9 +245,9 @@ def test_what_cannot_be_changed() -> None:
     for value in values:
         (problem,) = refusals(before, {"Items": {"A1": value, "A2": 3}})
         assert problem.startswith("Items!A1: the ")
-    for address in ("", "A", "1", "A0", "a1", "A1:B2", "$A$1", "XFE1", "A1048577", "A01", "A1\n"):
-        (problem,) = refusals(before, {"Items": {address: 1}})
-        assert "is no cell of a sheet" in problem
+    for place in ((0, 0), (-1, 3), (1, -1), (1, 16_384), (1_048_577, 0)):
+        with pytest.raises(WorkbookError, match="is no cell of a sheet"):
+            open_workbook(before, "book.xlsx").set({"Items": {place: 1}})
     assert refusals(before, {"Itmes": {"A1": 1}}) == {"Itmes: the sheet is missing."}
 
 
@@ -273,17 +278,16 @@ def test_a_value_in_place_of_a_formula_leaves_the_chain() -> None:
     """An entry without a sheet is on the sheet of the one before it."""
     chain = '<c r="A1" i="2"/><c r="D1" i="1" l="1"/><c r="A1"/><c r="B1"/><c r="A1" i="2"/>'
     before = with_chain(minimal(FORMULAS), chain)
-    done = patch_workbook(before, {"Items": {"D1": 5, "A1": 3}})
-    assert done.formulas == (("Items", "A1"), ("Items", "D1"))
-    assert changed_parts(before, done.data) == {SHEET, CHAIN}
-    assert b'><c r="A1" i="2"/><c r="B1" i="1"/><c r="A1" i="2"/></' in parts_of(done.data)[CHAIN]
-    assert values_of(done.data)["D1"] == 5
+    after = edited(before, {"Items": {"D1": 5, "A1": 3}})
+    assert changed_parts(before, after) == {SHEET, CHAIN}
+    assert b'><c r="A1" i="2"/><c r="B1" i="1"/><c r="A1" i="2"/></' in parts_of(after)[CHAIN]
+    assert values_of(after)["D1"] == 5
 
 
 def test_a_chain_that_would_be_empty_goes() -> None:
     plain = minimal('<sheetData><row r="1"><c r="A1"><f>1+1</f><v>2</v></c></row></sheetData>')
     before = with_chain(plain, '<c r="A1" i="1"/>')
-    after = patch_workbook(before, {"Items": {"A1": 3}}).data
+    after = edited(before, {"Items": {"A1": 3}})
     assert changed_parts(before, after) == {SHEET, CHAIN, TYPES, RELATIONS}
     assert {name: parts_of(after)[name] for name in (TYPES, RELATIONS)} == {
         name: parts_of(plain)[name] for name in (TYPES, RELATIONS)
@@ -300,25 +304,26 @@ def test_formulas_of_several_cells_are_refused_by_name() -> None:
         "Items!D2: it belongs to a data table. Change this cell in Excel.",
         "Items!E3: it belongs to a data table. Change this cell in Excel.",
     }
-    after = patch_workbook(minimal(FORMULAS), {"Items": {"B2": 1}})
-    assert after.formulas == (("Items", "B2"),)
-    assert values_of(after.data)["B2"] == 1
+    assert values_of(edited(minimal(FORMULAS), {"Items": {"B2": 1}}))["B2"] == 1
 
 
 def test_stored_results_of_formulas() -> None:
     results: dict[str, Any] = {"A1": 0.5, "B1": "a<b", "D1": None, "C1": True}
-    assert list_formulas(minimal(FORMULAS), "Items") == {"A1": True, "B1": True, "C1": True, "D1": True, "B2": True,
-                                                         "D2": True}  # fmt: skip
     before = minimal(FORMULAS)
-    after = patch_workbook(before, {}, {"Items": results}).data
+    items = open_workbook(before, "book.xlsx").sheet("Items")
+    assert items.marks.formulas == {*places(dict.fromkeys(["A1", "B1", "C1", "D1", "B2", "D2"]))}
+    assert all(items.value(place) not in (None, UNSAVED) for place in items.marks.formulas)
+    after = with_results(before, results)
     assert data_of(after).startswith(
         '<sheetData><row r="1"><c r="A1"><f>1+1</f><v>0.5</v></c>'
         '<c r="B1" t="str"><f t="shared" ref="B1:B3" si="0">A1</f><v>a&lt;b</v></c>'
         '<c r="C1" cm="1" t="b"><f t="array" ref="C1:C2">A1:A2</f><v>1</v></c><c r="D1"><f>"x"</f></c></row>'
     )
-    assert not list_formulas(after, "Items")["D1"]
-    assert patch_workbook(after, {}, {"Items": results}).data == after
-    assert refusals(before, {}, results={"Items": {"A2": 1, "Z9": 1}}) == {
+    assert open_workbook(after, "book.xlsx").sheet("Items").value((1, 3)) is UNSAVED
+    assert with_results(after, results) == after
+    with pytest.raises(WorkbookError) as caught:
+        with_results(before, {"A2": 1, "Z9": 1})
+    assert {str(one) for one in caught.value.problems} == {
         "Items!A2: it holds no formula. Change this cell in Excel.",
         "Items!Z9: it holds no formula. Change this cell in Excel.",
     }
@@ -336,7 +341,7 @@ def test_programs_are_asked_to_recalculate() -> None:
         text = re.sub("<calcPr[^>]*>", "", parts[BOOK].decode())
         old, new = (text.replace("</sheets>", f"</sheets>{one}").encode() for one in (before, after))
         data = zip_bytes(parts | {BOOK: old})
-        assert parts_of(patch_workbook(data, {"Items": {"A1": 1}}).data)[BOOK] == new
+        assert parts_of(edited(data, {"Items": {"A1": 1}}))[BOOK] == new
 
 
 ODD: dict[str, tuple[str, str]] = {
@@ -389,14 +394,13 @@ def test_hostile_parts() -> None:
 def test_a_signed_workbook_is_refused() -> None:
     signed = zip_bytes(parts_of(minimal("<sheetData/>")) | {"_xmlsignatures/sig1.xml": b"<Signature/>"})
     assert refusals(signed, {"Items": {"A1": 1}}) == {
-        "workbook.xlsx is digitally signed; a change would break the signature. Save it from Excel without the "
-        "signature."
+        "book.xlsx is digitally signed; a change would break the signature. Save it from Excel without the signature."
     }
 
 
 def test_characters_that_xml_lacks_are_coded() -> None:
-    after = patch_workbook(minimal("<sheetData/>"), {"Items": {"A1": "a\x07b\uffff\ud800"}}).data
-    assert b">a_x0007_b_xFFFF__xD800_</t>" in parts_of(after)[SHEET]
+    after = edited(minimal("<sheetData/>"), {"Items": {"A1": "a\x07b\uffff\ud800"}})
+    assert ">a_x0007_b_xFFFF_\ufffd</t>".encode() in parts_of(after)[SHEET]  # a surrogate alone is no character
 
 
 @given(
@@ -424,7 +428,7 @@ def test_any_sheet(old: dict[tuple[int, int], Any], new: dict[tuple[int, int], A
             page.write(row - 1, column - 1, value)
     changes = {f"{column_letters(column - 1)}{row}": value for (column, row), value in new.items()}
     before = packed.getvalue()
-    after = patch_workbook(before, {"Items": changes}).data
+    after = edited(before, {"Items": changes})
     expected = {cell: value for cell, value in (own_values(before) | changes).items() if value not in (None, "")}
     assert {cell: value for cell, value in own_values(after).items() if value != ""} == expected
-    assert patch_workbook(after, {"Items": changes}).data == after
+    assert edited(after, {"Items": changes}) == after

@@ -9,7 +9,7 @@ import pytest
 from assess.errors import WorkbookError
 from assess.workbook.open import UNSAVED, Book, read_file
 from assess.workbook.plain_rows import RowCutter
-from assess.workbook.read import hold_sheets
+from assess.workbook.read import open_workbook
 from tests.conftest import EXAMPLE
 from tests.workbook.books import change_parts, read_part, write
 from tests.workbook.raw import MAIN, SHEET
@@ -36,7 +36,7 @@ def look(data: bytes) -> Any:
             for name in book.sheets:
                 cells = book.cells(name)
                 found += [name, [*cells.rows()], cells.last_row, cells.far, cells.merged, cells.hidden_rows]
-        found += [hold_sheets(data, "book.xlsx")]
+        found += [open_workbook(data, "book.xlsx")]
     except WorkbookError as error:
         found.append(str(error))
     return found

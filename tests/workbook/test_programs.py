@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 from assess.errors import WorkbookError
-from assess.workbook.patch import patch_workbook
 from assess.workbook.read import read_inventory
 from tests.recalculate import libreoffice, needs_libreoffice
 from tests.workbook.books import FLOORS, ITEMS, change_parts, read_part, write, write_book, write_shared
 from tests.workbook.raw import zip_bytes
+from tests.workbooks import edited
 
 SHEET = "xl/worksheets/sheet1.xml"  # Items
 FLOOR_SHEET = "xl/worksheets/sheet2.xml"
@@ -106,5 +106,5 @@ def test_names_of_parts_in_another_case_or_with_a_backslash(tmp_path: Path) -> N
         path, saved = tmp_path / "other.xlsx", tmp_path / "saved.xlsx"
         path.write_bytes(zip_bytes({other if one == name else one: data for one, data in parts.items()}))
         assert items_of(path) == [("A1", "1", 0.4, 1.8)]
-        saved.write_bytes(patch_workbook(path.read_bytes(), {"Items": {"D2": 150}}).data)
+        saved.write_bytes(edited(path.read_bytes(), {"Items": {"D2": 150}}))
         assert items_of(saved) == [("A1", "1", 0.4, 1.5)]

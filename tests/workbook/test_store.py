@@ -1,29 +1,33 @@
 """Cells held in memory: what is read of them is what would be read of the bytes, and files are read once."""
 
 import io
+import random
 import shutil
+import zipfile
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import pytest
 import xlsxwriter
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from assess.errors import WorkbookError
 from assess.model import Inventory
 from assess.plans import Drawing, read_plan
-from assess.workbook.held import HeldSheets
 from assess.workbook.kept_files import KeptFiles
 from assess.workbook.lists import PLACES
 from assess.workbook.open import Place
-from assess.workbook.patch import Value, patch_workbook
-from assess.workbook.plain_rows import column_letters
-from assess.workbook.read import build_held, hold_sheets, parse_held, read_inventory
+from assess.workbook.patch import Value
+from assess.workbook.read import build_inventory, open_workbook, parse_workbook, read_inventory
+from assess.workbook.store import Workbook, Worksheet
 from assess.workbook.template import Content, write_workbook
 from tests.pictures import picture
 
+TESTS = Path(__file__).parents[1]
 RECORD = "891018_1.cra-1.0210a.smc"
 RECORDS = Path(__file__).parents[2] / "inventories" / "records" / "575-market"
 
@@ -82,14 +86,9 @@ def _by_sheet(edits: Mapping[tuple[str, int, int], Value]) -> dict[str, dict[Pla
     return found
 
 
-def _addressed(edits: Mapping[str, Mapping[Place, Value]]) -> dict[str, dict[str, Value]]:
-    return {name: {f"{column_letters(at)}{row}": value for (row, at), value in one.items()}
-            for name, one in edits.items()}  # fmt: skip
-
-
-def _read(held: HeldSheets, folder: Path | None = None, kept: KeptFiles | None = None) -> Inventory:
-    tables, problems = parse_held(held)
-    return build_held(tables, problems, Path("inventory.xlsx"), folder, kept=kept)
+def _read(held: Workbook, folder: Path | None = None, kept: KeptFiles | None = None) -> Inventory:
+    tables, problems = parse_workbook(held)
+    return build_inventory(tables, problems, Path("inventory.xlsx"), folder, kept=kept)
 
 
 def _read_bytes(data: bytes, folder: Path | None = None) -> Inventory:
@@ -100,40 +99,109 @@ def _read_bytes(data: bytes, folder: Path | None = None) -> Inventory:
 @settings(max_examples=40, deadline=None)
 @pytest.mark.slow
 def test_what_is_held_reads_as_the_bytes_do(first: dict[Any, Any], second: dict[Any, Any]) -> None:
-    held = hold_sheets(ODD, "inventory.xlsx")
+    held = open_workbook(ODD, "inventory.xlsx")
     assert _read(held) == _read_bytes(ODD)
-    data = ODD
     for edits in map(_by_sheet, (first, second)):
-        held, data = held.changed(edits), patch_workbook(data, _addressed(edits)).data
-        anew = hold_sheets(data, "inventory.xlsx")
-        assert {name: one.cells for name, one in held.cells.items()} == {
-            name: one.cells for name, one in anew.cells.items()
+        held = held.set(edits)
+        data = held.to_bytes()
+        anew = open_workbook(data, "inventory.xlsx")
+        assert {name: one.cells for name, one in held.sheets.items()} == {
+            name: one.cells for name, one in anew.sheets.items()
         }
         assert _read(held) == _read_bytes(data)
 
 
+# ---------------------------------------------------------------- any edit of any workbook
+
+RICH = sorted(one for folder in ("nets/workbooks", "data/workbooks") for one in (TESTS / folder).glob("*.xls[xm]"))
+SOME = [None, None, True, False, 7, -2.5, 1e15, 45000.25, 0.3, "", " x ", "45 cm", "=1+1", "<b>&\"'", "_x0041_", "a\r\nb",
+        "\u200b", "è" * 40, "12,5 %", "2024-05-01"]  # fmt: skip
+
+
+def _edit(book: Workbook, draw: random.Random) -> Workbook:
+    """One random edit: some cells set, or rows inserted or deleted; the same workbook where it is refused."""
+    name = draw.choice(
+        [*book.sheets, *(one for one in book.titles if one not in {s.title for s in book.sheets.values()})]
+    )
+    sheet = book.sheet(name)
+    row, kind = draw.randint(1, sheet.last_row + 3), draw.random()
+    try:
+        if kind < 0.15:
+            return book.insert_rows(name, row, draw.randint(1, 3), like=draw.choice([0, max(row - 1, 1), row]))
+        if kind < 0.3:
+            return book.delete_rows(name, row, draw.randint(1, 3))
+        places = {(max(1, row + draw.randint(-2, 6)), draw.randint(0, 20)) for _ in range(draw.randint(1, 12))}
+        free = [one for one in places if not book.find_lock(name, one) or draw.random() < 0.02]
+        return book.set({name: {place: draw.choice(SOME) for place in free}})
+    except WorkbookError as error:
+        if error.problems[0].sheet != sheet.title:
+            raise
+        return book
+
+
+def _show(sheet: Worksheet) -> dict[str, Any]:
+    """What reading tells of a sheet. A format counts where a number would get it."""
+    marks, rows = sheet.marks, range(1, sheet.last_row + 5)
+    return {
+        "cells": {row: {at: (type(one), one) for at, one in cells.items()} for row, cells in sheet.rows()},
+        "formulas": marks.formulas, "unknown": marks.unknown, "locked": sorted(marks.locked), "hollow": marks.hollow,
+        "formats": {(row, at): code for row in rows for at in range(24) if (code := marks.format_at((row, at)))},
+        "merged": sorted(sheet.merged), "hidden rows": list(sheet.hidden_rows), "hidden columns": sheet.hidden_columns,
+        "tables": [(one.area[:3], one.headers, one.totals) for one in sheet.tables],
+        "locks": {(row, at): why for row in rows for at in range(24) if (why := sheet.find_lock((row, at)))},
+    }  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", RICH, ids=lambda path: path.name)
+def test_any_edits_of_a_rich_workbook_read_as_they_were_made(path: Path) -> None:
+    """read(bytes(edit(x))) == edit(read(x)): cells, formulas, formats, merged cells, tables, what is hidden or locked."""
+    draw = random.Random(path.name)
+    for _ in range(8):
+        book = open_workbook(path.read_bytes(), path.name)
+        for _ in range(10):
+            book = _edit(book, draw)
+        try:
+            data = book.to_bytes()
+        except WorkbookError as error:
+            if any(not one.cell for one in error.problems):
+                raise
+            continue  # a cell of an array formula, or the like, was set all the same
+        anew = open_workbook(data, path.name)
+        assert anew.titles == book.titles
+        for name, sheet in book.sheets.items():
+            assert _show(anew.sheet(name)) == _show(sheet), name
+        assert anew.set({}).to_bytes() is data
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            for part in archive.namelist():
+                if part.endswith((".xml", ".rels")):
+                    ElementTree.fromstring(archive.read(part))
+
+
 def test_what_was_held_stays() -> None:
-    held = hold_sheets(ODD, "inventory.xlsx")
+    held = open_workbook(ODD, "inventory.xlsx")
     before = _read(held)
-    changed = held.changed({"Items": {(2, 2): 50, (30, 0): "new", (3, 0): None}})
-    assert changed.cells["Items"].value((2, 2)) == 50
-    assert changed.cells["Floors"] is held.cells["Floors"]
-    assert changed.cells["Items"].cells[5] is held.cells["Items"].cells[5]  # rows that no edit touches are shared
-    assert list(changed.cells["Items"].cells) == sorted(changed.cells["Items"].cells)
+    changed = held.set({"Items": {(2, 2): 50, (30, 0): "new", (3, 0): None}})
+    assert changed.sheets["Items"].value((2, 2)) == 50
+    assert changed.sheets["Floors"] is held.sheets["Floors"]
+    assert changed.sheets["Items"].cells[5] is held.sheets["Items"].cells[5]  # rows that no edit touches are shared
+    assert list(changed.sheets["Items"].cells) == sorted(changed.sheets["Items"].cells)
     assert _read(changed) != before
     assert _read(held) == before
 
 
 def test_a_value_that_was_read_is_written_back() -> None:
     """A date that an edit replaced returns as the number that its cell shows as a date."""
-    held = hold_sheets(ODD, "inventory.xlsx")
-    cells = held.cells["Items"]
+    held = open_workbook(ODD, "inventory.xlsx")
+    cells = held.sheets["Items"]
     places = [(3, 4), (4, 5), (5, 6), (2, 0), (6, 5)]
     old = {place: cells.value(place) for place in places}
-    gone = patch_workbook(ODD, _addressed({"Items": dict.fromkeys(places)})).data
+    gone = held.set({"Items": dict.fromkeys(places)})
     back = {place: cells.as_written(value) for place, value in old.items()}
-    again = hold_sheets(patch_workbook(gone, _addressed({"Items": back})).data, "inventory.xlsx").cells["Items"]
-    assert {place: again.value(place) for place in places} == old
+    again = open_workbook(gone.to_bytes(), "inventory.xlsx").set({"Items": back})
+    anew = open_workbook(again.to_bytes(), "inventory.xlsx").sheet("Items")
+    assert {place: anew.value(place) for place in places} == old
+    assert gone.set({"Items": back}).to_bytes() == ODD, "what is set back is as it was opened"
 
 
 @pytest.fixture
@@ -155,7 +223,7 @@ def named(tmp_path: Path) -> Path:
 
 
 def _read_kept(folder: Path, kept: KeptFiles) -> Inventory:
-    held = hold_sheets((folder / "book.xlsx").read_bytes(), "inventory.xlsx")
+    held = open_workbook((folder / "book.xlsx").read_bytes(), "inventory.xlsx")
     with kept:
         return _read(held, folder, kept)
 
@@ -187,7 +255,7 @@ def test_a_drawing_is_read_once_whatever_the_width_of_the_plan(named: Path, monk
     (named / "plan.png").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><path d="M0 0 L9 9"/></svg>'
     )
-    kept, held = KeptFiles(), hold_sheets((named / "book.xlsx").read_bytes(), "inventory.xlsx")
+    kept, held = KeptFiles(), open_workbook((named / "book.xlsx").read_bytes(), "inventory.xlsx")
     read: list[float | None] = []
 
     def count(data: bytes, width: float | None) -> Drawing:
@@ -198,14 +266,14 @@ def test_a_drawing_is_read_once_whatever_the_width_of_the_plan(named: Path, monk
     place = (2, PLACES["Floors", "plan_width"])
     for width in (10, 11, 12):
         with kept:
-            plan = _read(held.changed({"Floors": {place: width}}), named, kept).floors[0].plan
+            plan = _read(held.set({"Floors": {place: width}}), named, kept).floors[0].plan
         assert plan is not None
         assert plan.width == width
     assert read == [10]
     (named / "plan.png").write_bytes(picture("PNG"))
     for width in (10, 11, 200, 300):
         with kept:
-            _read(held.changed({"Floors": {place: width}}), named, kept)
+            _read(held.set({"Floors": {place: width}}), named, kept)
     assert read == [10, 10, 11, 200]  # as many pixels for 300 m as for 200 m
 
 
