@@ -357,22 +357,22 @@ class PartShift:
         """Return the XML of the new rows: styles and formulas of the row that they are like."""
         reader = PartShift(self.sheet, True, RowShift(SHEET_ROWS, 0))
         begin = re.search(r"<(?:\w+:)?sheetData[\s>]", text)
-        row = re.search(rf"<((?:\w+:)?)row((?=[^<>]*\sr\s*=\s*[\"']{shift.like}[\"'])[^<>]*?)(?:/>|>.*?</\1row>)", text,
+        source = re.search(rf"<((?:\w+:)?)row((?=[^<>]*\sr\s*=\s*[\"']{shift.like}[\"'])[^<>]*?)(?:/>|>.*?</\1row>)", text,
                         re.DOTALL)  # fmt: skip
-        if begin is None or row is None:
+        if begin is None or source is None:
             return ""
-        prefix, own = row[1], _OWN.sub("", row[2])
+        prefix, own = source[1], _OWN.sub("", source[2])
         cells: list[tuple[str, str, str]] = []
         for tag, attributes, closed, after in re.findall(
-            r"<(?:\w+:)?(row|c|f)((?:\s[^<>]*?)?)(/?)>([^<]*)", text[begin.start() : row.end()]
+            r"<(?:\w+:)?(row|c|f)((?:\s[^<>]*?)?)(/?)>([^<]*)", text[begin.start() : source.end()]
         ):
             if tag == "row":
                 reader._move_row(attributes, RowShift(SHEET_ROWS, 0))
             elif tag == "c":
                 reader._move_cell(attributes)
                 if reader.place[0] == shift.like:
-                    style = _STYLE.search(attributes)
-                    cells.append((column_letters(reader.place[1] - 1), style[0] if style else "", ""))
+                    found = _STYLE.search(attributes)
+                    cells.append((column_letters(reader.place[1] - 1), found[0] if found else "", ""))
             elif (is_shared := bool(_SHARED.search(attributes))) or "t=" not in attributes:
                 own_text = "" if closed else after
                 formula = reader._take_shared(attributes, own_text) if is_shared else unescape(own_text)
