@@ -357,8 +357,8 @@ class PartShift:
         """Return the XML of the new rows: styles and formulas of the row that they are like."""
         reader = PartShift(self.sheet, True, RowShift(SHEET_ROWS, 0))
         begin = re.search(r"<(?:\w+:)?sheetData[\s>]", text)
-        source = re.search(rf"<((?:\w+:)?)row((?=[^<>]*\sr\s*=\s*[\"']{shift.like}[\"'])[^<>]*?)(?:/>|>.*?</\1row>)", text,
-                        re.DOTALL)  # fmt: skip
+        number = rf"(?=[^<>]*\sr\s*=\s*[\"']{shift.like}[\"'])"
+        source = re.search(rf"<((?:\w+:)?)row({number}[^<>]*?)(?:/>|>.*?</\1row>)", text, re.DOTALL)
         if begin is None or source is None:
             return ""
         prefix, own = source[1], _OWN.sub("", source[2])
@@ -379,13 +379,13 @@ class PartShift:
                 if reader.place[0] == shift.like and cells and formula:
                     cells[-1] = (*cells[-1][:2], shift_formula(formula, self.sheet, True, shift))
         here, rows = shift.row(shift.like) or 0, []
-        for number in range(shift.at, shift.at + shift.count):
+        for new in range(shift.at, shift.at + shift.count):
             made = []
             for letters, style, formula in cells:
-                written = escape(translate_formula(formula, number - here), quote=False)
+                written = escape(translate_formula(formula, new - here), quote=False)
                 content = f"><{prefix}f>{written}</{prefix}f></{prefix}c>" if formula else "/>"
-                made.append(f'<{prefix}c r="{letters}{number}"{style}{content}')
-            rows.append(f'<{prefix}row r="{number}"{own}>{"".join(made)}</{prefix}row>')
+                made.append(f'<{prefix}c r="{letters}{new}"{style}{content}')
+            rows.append(f'<{prefix}row r="{new}"{own}>{"".join(made)}</{prefix}row>')
         return "".join(rows)
 
     # ------------------------------------------------------------ all else
