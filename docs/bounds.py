@@ -27,7 +27,7 @@ ROWS: tuple[tuple[str, str, str, float, str, str], ...] = (
     ("Building model (IFC): size of the file", MODEL, "MOST_BYTES", 2**20, "{:.0f} MiB", REFUSED),
     ("Building model: processor time", PROCESS, "SECONDS", 1, "{:.0f} s", REFUSED),
     ("Building model: memory", PROCESS, "MEMORY", 2**30, "{:.0f} GiB", REFUSED),
-    ("Building model: pieces", "assess.bim.ifc_pieces", "MOST_PIECES", 1, "{:,.0f}", REFUSED),
+    ("Building model: pieces", "assess.bim.ifc_model", "MOST_PIECES", 1, "{:,.0f}", REFUSED),
     ("Scan (RoomPlan): size of the file", SCAN, "MOST_BYTES", 2**20, "{:.0f} MiB", REFUSED),
     ("Scan (RoomPlan): objects", SCAN, "MOST_OBJECTS", 1, "{:,.0f}", REFUSED),
     ("Home (Sweet Home 3D): size of the file", HOME, "MOST_BYTES", 2**20, "{:.0f} MiB", REFUSED),

@@ -1,33 +1,63 @@
-"""A building model in IFC (ISO 16739-1: IFC2X3, IFC4, IFC4X3) as plain data.
+"""A building model in IFC (ISO 16739-1: IFC2X3, IFC4, IFC4X3) as plain data: its furniture, rooms, doors and stairs.
 
 Shapes are trusted, names and properties are not: sizes are those of the shapes, exits are found by the rooms on both
 sides of a door, whatever its IsExternal says.
 """
 
 import math
-from collections.abc import Collection, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from shapely import Polygon
 
-from assess.bim.building_model import Area, BuildingModel, Door, Piece, Point, Space, Stair, Storey, bring_near
-from assess.bim.ifc_elements import (
+from assess.bim.building_model import (
+    NOT_ON_FLOOR,
+    ON_FLOOR,
+    Area,
+    BuildingModel,
+    Door,
+    Piece,
+    Point,
+    Skipped,
+    Space,
+    Stair,
+    Storey,
+    bring_near,
+    count_skipped,
+    name_skipped,
+)
+from assess.bim.ifc_file import (
     Element,
+    find_holders,
+    find_key,
     find_storey,
     find_unit,
+    find_whole,
     join_parts,
     list_elements,
     list_outer,
     list_shapes,
+    read_with,
     say,
     tell_apart,
 )
-from assess.bim.ifc_file import read_with
-from assess.bim.ifc_pieces import FURNITURE, find_pieces
-from assess.bim.plan_shapes import FloatArray, cut, find_base, find_rectangle, merge
+from assess.bim.plan_shapes import (
+    FloatArray,
+    Shape,
+    SpaceSearch,
+    cut,
+    find_base,
+    find_box,
+    find_rectangle,
+    find_stacks,
+    join,
+    merge,
+    note_stacked,
+)
 from assess.errors import ModelError
 from assess.i18n import Text, fill, nfill
 
@@ -47,6 +77,30 @@ RISER = 0.35
 AT_FOOT, LEAST_RISE, ABOVE_HEAD = 0.7, 1.5, 0.3
 """A stair's foot lies within this of its storey's floor; its head is at the highest storey between these above its foot
 and its top [m]."""
+FURNITURE = ("IfcFurnishingElement", "IfcElectricAppliance", "IfcMedicalDevice")
+"""Classes whose elements are pieces of furniture, with their subclasses (IfcFurniture, IfcSystemFurnitureElement)."""
+APPLIANCES = ("IfcElectricApplianceType", "IfcMedicalDeviceType")
+"""Types by which an element is a piece in IFC2X3, where it has no class of its own."""
+OTHERS = (
+    "IfcBuildingElementProxy", "IfcTransportElement", "IfcFlowTerminal", "IfcFlowStorageDevice",
+    "IfcFlowMovingDevice", "IfcFlowTreatmentDevice", "IfcEnergyConversionDevice", "IfcDistributionControlElement",
+)  # fmt: skip
+"""Classes that may hold furniture or equipment, and mostly hold something else: they are listed, and taken by name."""
+FITTED = (
+    "base cabinet", "casework", "kitchen", "counter", "vanity", "built-in", "builtin", "worktop", "einbau", "küche",
+    "kueche", "cucina", "incasso",
+)  # fmt: skip
+"""Words in names of fitted furniture, which is usually fixed."""
+MOST_PIECES = 20_000
+"""Pieces of a model that are read."""
+NO_SHAPE = fill("no geometry")
+NO_PIECE = fill("its class is not furniture; it can be imported by the name of its class")
+_FEWEST, _NEARLY_ALL, _ALIKE = 3, 0.8, 0.03
+"""Pieces, their share [-] and their heights [m] by which furniture tells the floor of its storey."""
+_HUNG = (0.6, 2.4)
+"""Heights at which furniture hangs on walls [m]."""
+_NEAR_FLOOR = 0.3
+"""How far below the floor of a room a piece may begin to stand in it [m]."""
 
 
 def read_model(path: Path, name: str, also: Sequence[str] = ()) -> BuildingModel:
@@ -62,87 +116,79 @@ def read_model(path: Path, name: str, also: Sequence[str] = ()) -> BuildingModel
 def _understand(model: Any, name: str, also: Sequence[str]) -> BuildingModel:
     unit = find_unit(model, name)
     storeys, warnings = _list_storeys(model, unit)
-    if not storeys:
-        storeys = [_stand_in(model, name)]
+    if not storeys:  # the floor of all is the lowest point of rooms, furniture or walls
+        kinds = (list_elements(model, classes) for classes in (("IfcSpace",), FURNITURE, ("IfcWall",)))
+        bottoms = ([shape.bottom for _, shape in list_shapes(model, elements)] for elements in kinds)
+        lowest = next((min(one) for one in bottoms if one), None)
+        if lowest is None:
+            raise ModelError(
+                fill("{name} holds neither storeys nor rooms, furniture or walls with a shape. Export the building "
+                     "with its storeys.", name=name)
+            )  # fmt: skip
+        storeys = [Storey("", "1", 0.0, lowest)]
         warnings.append(
             fill("The model has no storeys: all of it was put on one floor, {floor}. Check Floor in Items.",
                  floor=storeys[0].name)
         )  # fmt: skip
     known = {one.key for one in storeys}
     spaces = tuple(_list_spaces(model, known))
-    pieces, levelled, skipped, doubts = find_pieces(model, storeys, spaces, also)
+    pieces, levelled, skipped, doubts = _find_pieces(model, storeys, spaces, also)
     walls, windows = _cut_walls(model, levelled)
-    title, address = _find_names(model)
-    latitude, longitude = _find_position(model) or (None, None)
+    remarks = []
+    missing = len(model.by_type("IfcSpace")) - len(spaces)
+    if not spaces and not missing:
+        remarks.append(
+            fill("The model has no rooms (IfcSpace): Room stays blank, and heights are taken from the storeys.")
+        )
+    if missing:
+        remarks.append(
+            nfill("{n:,} room of the model has no plan or no storey: left out.",
+                  "{n:,} rooms of the model have no plan or no storey: left out.", missing)
+        )  # fmt: skip
+    outside = sum(not piece.space for piece in pieces) if spaces else 0
+    if outside:
+        remarks.append(
+            nfill("{n:,} piece stands in no room of the model: its Room stays blank.",
+                  "{n:,} pieces stand in no room of the model: their Room stays blank.", outside)
+        )  # fmt: skip
     read = BuildingModel(
-        source=name, schema=model.schema_identifier, name=title, address=address, storeys=levelled,
-        spaces=spaces, doors=tuple(_list_doors(model, known, unit)), stairs=tuple(_list_stairs(model, levelled)),
-        pieces=tuple(pieces), walls=walls, windows=windows, skipped=skipped,
-        azimuth_deg=_find_azimuth(model), latitude=latitude, longitude=longitude,
-        warnings=(*warnings, *doubts), remarks=tuple(_note_rooms(model, spaces, pieces)),
+        source=name, schema=model.schema_identifier, storeys=levelled, spaces=spaces,
+        doors=tuple(_list_doors(model, known, unit)), stairs=tuple(_list_stairs(model, levelled)),
+        pieces=tuple(pieces), walls=walls, windows=windows, skipped=skipped, warnings=(*warnings, *doubts),
+        remarks=tuple(remarks), **_describe_site(model),
     )  # fmt: skip
     return bring_near(read)
 
 
-def _stand_in(model: Any, name: str) -> Storey:
-    """Return a storey for a model that has none: its floor is the lowest point of its furniture or rooms."""
-    for classes in (("IfcSpace",), FURNITURE, ("IfcWall",)):
-        bottoms = [shape.bottom for _, shape in list_shapes(model, list_elements(model, classes))]
-        if bottoms:
-            return Storey("", "1", 0.0, min(bottoms))
-    raise ModelError(
-        fill("{name} holds neither storeys nor rooms, furniture or walls with a shape. Export the building with its "
-             "storeys.", name=name)
-    )  # fmt: skip
+def _describe_site(model: Any) -> dict[str, Any]:
+    """Return name, address, latitude, longitude and the compass direction of X [deg], as far as they are given.
 
-
-def _note_rooms(model: Any, spaces: Sequence[Space], pieces: Sequence[Piece]) -> Iterator[Text]:
-    missing = len(model.by_type("IfcSpace")) - len(spaces)
-    if not spaces and not missing:
-        yield fill("The model has no rooms (IfcSpace): Room stays blank, and heights are taken from the storeys.")
-    if missing:
-        yield nfill("{n:,} room of the model has no plan or no storey: left out.",
-                    "{n:,} rooms of the model have no plan or no storey: left out.", missing)  # fmt: skip
-    outside = sum(not piece.space for piece in pieces) if spaces else 0
-    if outside:
-        yield nfill("{n:,} piece stands in no room of the model: its Room stays blank.",
-                    "{n:,} pieces stand in no room of the model: their Room stays blank.", outside)  # fmt: skip
-
-
-def _find_names(model: Any) -> tuple[str, str]:
-    """Return the name and the address of the building, "" where it has none."""
+    Latitude and longitude are left out where both are 0, or one of them is out of range.
+    """
     buildings, projects = model.by_type("IfcBuilding"), model.by_type("IfcProject")
     named = [say(one.LongName) or say(one.Name) for one in (*buildings, *projects)]
     address = next((one.BuildingAddress for one in buildings if one.BuildingAddress), None)
     lines = [*(address.AddressLines or ())] if address is not None else []
     lines += [getattr(address, name, None) for name in ("PostalCode", "Town", "Region", "Country")]
-    return next(filter(None, named), ""), ", ".join(filter(None, map(say, lines)))
-
-
-def _find_position(model: Any) -> tuple[float, float] | None:
-    """Return latitude and longitude of the site [deg], None where the model gives none, no such, or both are 0."""
+    found: dict[str, Any] = {"name": next(filter(None, named), ""), "address": ", ".join(filter(None, map(say, lines)))}
     for site in model.by_type("IfcSite"):
-        latitude, longitude = _to_degrees(site.RefLatitude), _to_degrees(site.RefLongitude)
-        if latitude is not None and longitude is not None and (latitude or longitude) and abs(latitude) <= 90:
-            return latitude, longitude
-    return None
-
-
-def _to_degrees(angle: Sequence[int] | None) -> float | None:
-    """Return an IfcCompoundPlaneAngleMeasure in degrees; None if there is none, or it is no angle of a site."""
-    if not angle or len(angle) > len(_ARC):
-        return None
-    degrees = sum(part / size for part, size in zip(angle, _ARC, strict=False))
-    return round(degrees, 6) if abs(degrees) <= 180 else None
-
-
-def _find_azimuth(model: Any) -> float | None:
-    """Return the compass direction of the X axis [deg], None where no true north is given."""
+        latitude, longitude = (
+            round(sum(part / size for part, size in zip(angle, _ARC, strict=False)), 6)
+            if angle and len(angle) <= len(_ARC) else math.nan
+            for angle in (site.RefLatitude, site.RefLongitude)
+        )  # fmt: skip
+        if abs(latitude) <= 90 and abs(longitude) <= 180 and (latitude or longitude):
+            found |= {"latitude": latitude, "longitude": longitude}
+            break
     for context in model.by_type("IfcGeometricRepresentationContext", include_subtypes=False):
         if context.TrueNorth is not None:
             x, y = context.TrueNorth.DirectionRatios[:2]
-            return round(math.degrees(math.atan2(y, x)), 3) % 360
-    return None
+            found["azimuth_deg"] = round(math.degrees(math.atan2(y, x)), 3) % 360
+            break
+    return found
+
+
+# ---------------------------------------------------------------- storeys, rooms, doors, stairs, walls
 
 
 def _list_storeys(model: Any, unit: float) -> tuple[list[Storey], list[Text]]:
@@ -260,3 +306,162 @@ def _cut_walls(model: Any, storeys: Sequence[Storey]) -> tuple[Plans, Plans]:
         for storey, polygons in zip(storeys, cuts[number], strict=True):
             kept.setdefault(storey.key, []).extend(polygons)
     return {key: merge(some) for key, some in walls.items()}, {key: merge(some) for key, some in windows.items()}
+
+
+# ---------------------------------------------------------------- furniture
+
+
+def _find_pieces(
+    model: Any, storeys: Sequence[Storey], spaces: Sequence[Space], also: Sequence[str]
+) -> tuple[list[Piece], tuple[Storey, ...], tuple[Skipped, ...], list[Text]]:
+    """Return the pieces of a model, its storeys with the levels of their floors, what was left out, and warnings.
+
+    Raises ModelError if `also` names a class that the schema of the model does not have, or there are over
+    `MOST_PIECES` pieces.
+    """
+    import ifcopenshell
+    from ifcopenshell.util.element import get_type
+
+    schema = ifcopenshell.ifcopenshell_wrapper.schema_by_name(model.schema_identifier)
+    for name in also:
+        entity = None
+        with suppress(RuntimeError):
+            entity = schema.declaration_by_name(name).as_entity()
+        if entity is None:
+            raise ModelError(
+                fill("{name} is not a class of {schema}. Classes have names such as {example}.", name=name[:60],
+                     schema=model.schema_identifier, example="IfcBuildingElementProxy")
+            )  # fmt: skip
+    wanted = {one.id() for one in list_elements(model, (*FURNITURE, *also))}
+    elements: dict[int, Element] = {}
+    skipped: list[tuple[str, Text, bool]] = []
+    for one in list_outer(list_elements(model, (*FURNITURE, *OTHERS, *also))):
+        kind = get_type(one) if one.is_a("IfcDistributionElement") else None
+        if one.id() in wanted or (kind is not None and kind.is_a() in APPLIANCES):
+            elements[one.id()] = one
+        else:
+            skipped.append((name_skipped(one.is_a(), _name_type(one)), NO_PIECE, False))
+    if len(elements) > MOST_PIECES:
+        raise ModelError(
+            fill("The model holds {n:,} pieces of furniture, more than {most:,}. Export fewer storeys.",
+                 n=len(elements), most=MOST_PIECES)
+        )  # fmt: skip
+    shaped = _Shaped(model, elements, storeys, spaces)
+    warnings = shaped.settle_levels()
+    parts = shaped.join_groups()
+    on_floor = [number for number, one in shaped.pieces.items() if one.bottom <= ON_FLOOR]
+    off = [number for number, one in shaped.pieces.items() if one.bottom > ON_FLOOR]
+    for number, element in elements.items():
+        if number not in shaped.pieces and number not in parts:
+            skipped.append((name_skipped(element.is_a(), _name_type(element)), NO_SHAPE, True))
+        elif number in shaped.pieces and shaped.pieces[number].bottom > ON_FLOOR:
+            skipped.append((name_skipped(element.is_a(), _name_type(element)), NOT_ON_FLOOR, True))
+    names = [shaped.pieces[number].name or shaped.pieces[number].type for number in on_floor]
+    warnings += note_stacked(names, *(np.array([shaped.bounds[one] for one in own]) for own in (on_floor, off)))
+    pieces = [piece for number in elements if (piece := shaped.pieces.get(number)) and piece.bottom <= ON_FLOOR]
+    return pieces, tuple(shaped.storeys.values()), count_skipped(skipped), warnings
+
+
+class _Shaped:
+    """The pieces that have a shape, by the number of their element, and the box round each in the model's axes."""
+
+    def __init__(
+        self, model: Any, elements: Mapping[int, Element], storeys: Sequence[Storey], spaces: Sequence[Space]
+    ) -> None:
+        self.elements, self.keys = elements, tell_apart(elements.values())
+        self.storeys = {one.key: one for one in storeys}
+        self.pieces: dict[int, Piece] = {}
+        self.bounds: dict[int, FloatArray] = {}
+        self._spaces, self._search = {one.key: one for one in spaces}, SpaceSearch(spaces)
+        self._wholes = {number: whole for number, one in elements.items() if (whole := find_whole(one)) is not None}
+        self._shapes: dict[int, Shape] = {}  # of parts alone: a building may hold thousands of chairs
+        for number, shape in join_parts(model, list(elements.values())):
+            self._take(number, shape)
+            if number in self._wholes:
+                self._shapes[number] = shape
+
+    def _take(self, number: int, shape: Shape, name: str = "") -> None:
+        element, box, bottom = self.elements[number], find_box(shape), shape.bottom
+        # storey and room are what holds it in the model, else the smallest that it stands in
+        holder = next((find_key(one) for one in find_holders(element) if one.is_a("IfcSpace")), "")
+        space = self._spaces.get(holder)
+        if space is not None:
+            storey = space.storey
+        else:
+            storey = find_storey(element)
+            if storey not in self.storeys:
+                below = [one for one in self.storeys.values() if one.level <= bottom + _NEAR_FLOOR]
+                storey = (max(below, key=lambda one: one.level) if below else next(iter(self.storeys.values()))).key
+            there = self._search.find(storey, (box.x, box.y))
+            space = next((one for one in there if one.bottom - _NEAR_FLOOR <= bottom <= one.top), None)
+        floor = space.bottom if space is not None else self.storeys[storey].level
+        kind = name or _name_type(element)
+        self.pieces[number] = Piece(
+            key=self.keys[number], storey=storey, space=space.key if space is not None else "",
+            ifc_class=element.is_a(), name=name or say(element.Name), type=kind, bottom=bottom - floor,
+            is_fitted=any(word in kind.casefold() for word in FITTED), **asdict(box),
+        )  # fmt: skip
+        self.bounds[number] = np.concatenate([shape.points.min(axis=0), shape.points.max(axis=0)])
+
+    def settle_levels(self) -> list[Text]:
+        """Move the floor of a storey where nearly all pieces are off it by one height; return warnings."""
+        warnings = []
+        for storey in self.storeys.values():
+            own = [number for number, one in self.pieces.items() if one.storey == storey.key and not one.space]
+            shift = find_shift([self.pieces[number].bottom for number in own], storey.elevation - storey.level)
+            if shift:
+                for number in own:
+                    self.pieces[number] = replace(self.pieces[number], bottom=self.pieces[number].bottom - shift)
+                self.storeys[storey.key] = replace(storey, level=storey.level + shift)
+                warnings.append(
+                    fill("The furniture of {storey} stands {shift:.2f} m above where the model has its floor: that "
+                         "height was taken as its floor. Check Elevation in Floors.", storey=storey.name, shift=shift)
+                )  # fmt: skip
+        return warnings
+
+    def join_groups(self) -> set[int]:
+        """Make one piece of the parts that stand on each other; return the elements that are pieces no longer."""
+        groups: dict[int, list[int]] = {}
+        for number, whole in self._wholes.items():
+            if number in self._shapes:
+                groups.setdefault(whole.id(), []).append(number)
+        gone = set[int]()
+        on_floor = {number for number, one in self.pieces.items() if one.bottom <= ON_FLOOR}
+        for (first, *others), is_whole in list(find_stacks(groups.values(), self.bounds, on_floor, beside=True)):
+            name = say(self._wholes[first].Name) if is_whole else ""
+            self._take(first, join([self._shapes[number] for number in (first, *others)]), name)
+            gone |= {*others}
+        for number in gone:
+            del self.pieces[number], self.bounds[number]
+        return gone
+
+
+def find_shift(bottoms: Sequence[float], stated: float) -> float:
+    """Return by what height nearly all pieces of a storey stand above its floor, 0 where they do not [m].
+
+    `bottoms`: heights of the lowest points of its pieces. `stated`: how much higher the floor is by the Elevation of
+    the model: where that is the height, one piece tells it. At heights of `_HUNG` furniture may hang on walls.
+    """
+    height = float(np.median(bottoms)) if bottoms else 0.0
+    nearly_all = sum(abs(one - height) <= _ALIKE for one in bottoms) >= _NEARLY_ALL * len(bottoms)
+    is_clear = len(bottoms) >= _FEWEST and not _HUNG[0] <= height <= _HUNG[1]
+    is_told = nearly_all and (is_clear or abs(height - stated) <= _ALIKE)
+    return height if abs(height) > ON_FLOOR and is_told else 0.0
+
+
+def _name_type(element: Element) -> str:
+    """Return the type of an element in words: as a program for buildings shows it, without its number.
+
+    Revit writes ``Family:Type:Number`` as the name, others the name of the type alone.
+    """
+    from ifcopenshell.util.element import get_type
+
+    kind = get_type(element)
+    type_name = say(kind.Name) if kind is not None else ""
+    name, tag = say(element.Name), say(getattr(element, "Tag", None))
+    parts = [part.strip() for part in name.split(":")]
+    if len(parts) > 1:
+        if parts[-1] == tag or parts[-1].isdigit():
+            parts.pop()
+        return " ".join(dict.fromkeys(filter(None, parts)))
+    return type_name or say(getattr(element, "ObjectType", None)) or name or element.is_a()

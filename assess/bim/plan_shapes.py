@@ -97,23 +97,38 @@ class Box:
 def find_box(shape: Shape) -> Box:
     """Return the box round a piece in its own axes.
 
-    Where the piece is tilted, or the smallest rectangle round its plan is clearly smaller, that rectangle is taken.
+    Where the piece is tilted, or the smallest rectangle round its plan is clearly smaller, that rectangle is taken. Of
+    edges of the base that are as near to the middle, that along the short side is taken.
     """
-    plan = shape.points[:, :2]
-    rectangle = _in_own_axes(shape)
+    plan, box = shape.points[:, :2], None
+    if abs(shape.axes[2, 2]) >= UPRIGHT:
+        own = shape.axes[:2, 0] / math.hypot(*shape.axes[:2, 0])
+        other = np.array([-own[1], own[0]])
+        p, q = plan @ own, plan @ other
+        centre = own * (p.max() + p.min()) / 2 + other * (q.max() + q.min()) / 2
+        box = _order(centre, own, float(np.ptp(p)), float(np.ptp(q)))
     smallest = find_rectangle(plan)
-    if smallest is not None and (rectangle is None or smallest.area < CLEARLY_SMALLER * rectangle.area):
-        rectangle = smallest
-    if rectangle is None:  # a line: no breadth
-        middle = plan.mean(axis=0)
-        rectangle = Rectangle(float(middle[0]), float(middle[1]), 0.0, float(np.ptp(plan, axis=0).max()), 0.0)
+    if smallest is not None and (box is None or smallest.area < CLEARLY_SMALLER * box.area):
+        box = smallest
+    if box is None:  # a line: no breadth
+        x, y = plan.mean(axis=0)
+        box = Rectangle(float(x), float(y), 0.0, float(np.ptp(plan, axis=0).max()), 0.0)
     feet = plan[shape.points[:, 2] <= shape.bottom + AT_FLOOR]
-    x, y = direction_of(rectangle.angle_deg)
-    along, across = np.array([x, y]), np.array([-y, x])
-    supports = float(np.ptp(feet @ along)), float(np.ptp(feet @ across))
-    sides, height = (rectangle.short, rectangle.long), shape.top - shape.bottom
-    edge = _find_base_edge(plan, feet, rectangle)
-    return Box(rectangle.x, rectangle.y, *sides, height, rectangle.angle_deg, *supports, *edge)
+    u, v = direction_of(box.angle_deg)
+    supports = float(np.ptp(feet @ np.array([u, v]))), float(np.ptp(feet @ np.array([-v, u])))
+    edge = 0.0, box.angle_deg, box.long
+    middle, hull = np.array([box.x, box.y]), MultiPoint(feet).convex_hull
+    if isinstance(hull, Polygon) and hull.covers(shapely.Point(middle)):
+        corners = np.array(shapely.geometry.polygon.orient(hull).exterior.coords)
+        edges = np.diff(corners, axis=0)
+        normals = np.stack([edges[:, 1], -edges[:, 0]], axis=1) / np.hypot(edges[:, 0], edges[:, 1])[:, None]
+        far = ((corners[:-1] - middle) * normals).sum(axis=1)
+        near = np.flatnonzero(far < far.min() + NEAREST)
+        x, y = normals[near[np.abs(normals @ np.array([u, v]))[near].argmax()]].tolist()
+        across = float(np.ptp(plan @ np.array([-y, x])))
+        edge = max(float(far.min()), 0.0), half_turn(math.degrees(math.atan2(y, x))), across
+    height = shape.top - shape.bottom
+    return Box(box.x, box.y, box.short, box.long, height, box.angle_deg, *supports, *edge)
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,38 +143,8 @@ class Rectangle:
 
     @property
     def area(self) -> float:
-        """Its area [m2]."""
+        """In m2."""
         return self.short * self.long
-
-
-def _find_base_edge(plan: FloatArray, feet: FloatArray, rectangle: Rectangle) -> tuple[float, float, float]:
-    """Return distance and direction of the nearest edge of the base, and the extent of the plan across that.
-
-    Of edges that are as near, that along the short side is taken.
-    """
-    middle, hull = np.array([rectangle.x, rectangle.y]), MultiPoint(feet).convex_hull
-    if not isinstance(hull, Polygon) or not hull.covers(shapely.Point(middle)):
-        return 0.0, rectangle.angle_deg, rectangle.long
-    corners = np.array(shapely.geometry.polygon.orient(hull).exterior.coords)
-    edges = np.diff(corners, axis=0)
-    normals = np.stack([edges[:, 1], -edges[:, 0]], axis=1) / np.hypot(edges[:, 0], edges[:, 1])[:, None]
-    far = ((corners[:-1] - middle) * normals).sum(axis=1)
-    along = np.abs(normals @ np.array(direction_of(rectangle.angle_deg)))
-    near = np.flatnonzero(far < far.min() + NEAREST)
-    x, y = normals[near[along[near].argmax()]].tolist()
-    angle = half_turn(math.degrees(math.atan2(y, x)))
-    return max(float(far.min()), 0.0), angle, float(np.ptp(plan @ np.array([-y, x])))
-
-
-def _in_own_axes(shape: Shape) -> Rectangle | None:
-    if abs(shape.axes[2, 2]) < UPRIGHT:
-        return None
-    x = shape.axes[:2, 0] / math.hypot(*shape.axes[:2, 0])
-    y = np.array([-x[1], x[0]])
-    plan = shape.points[:, :2]
-    p, q = plan @ x, plan @ y
-    centre = x * (p.max() + p.min()) / 2 + y * (q.max() + q.min()) / 2
-    return _order(centre, x, float(np.ptp(p)), float(np.ptp(q)))
 
 
 def _order(centre: FloatArray, x: FloatArray, along: float, across: float) -> Rectangle:
@@ -188,7 +173,7 @@ def find_base(shape: Shape) -> Area | None:
     corners = shape.points[shape.triangles]
     low = corners[:, :, 2].max(axis=1) < shape.bottom + BASE
     for chosen in (corners[low], corners):
-        flat = _list(shapely.polygons(chosen[:, :, :2])) if len(chosen) else []
+        flat: Any = shapely.polygons(chosen[:, :, :2])
         parts = [one for one in flat if one.area > SMALLEST]
         area = shapely.union_all(parts).buffer(JOINED, join_style="mitre").buffer(-JOINED, join_style="mitre")
         if not area.is_empty:
@@ -203,34 +188,21 @@ def cut(shape: Shape, level: float) -> list[Polygon]:
     height = shape.points[:, 2] - level
     height[np.abs(height) < 1e-9] = 1e-9
     above = height[shape.triangles] > 0
-    crossing = shape.triangles[above.any(axis=1) & ~above.all(axis=1)]
+    is_cut = above.any(axis=1) & ~above.all(axis=1)
+    crossing, above = shape.triangles[is_cut], above[is_cut]
     if not len(crossing):
         return []
-    lines = _list(shapely.linestrings(np.round(_cross(shape.points, height, crossing), 4)))
-    noded = shapely.union_all([one for one in lines if one.length > 0])
-    rings = shapely.polygonize([noded]).geoms
-    return _nest([one for one in rings if isinstance(one, Polygon)])
-
-
-def _list(made: Any) -> list[Any]:
-    return list(made) if isinstance(made, np.ndarray) else [made]
-
-
-def _cross(points: FloatArray, height: FloatArray, triangles: IntArray) -> FloatArray:
-    """Return where triangles cross the plane, (m, 2, 2): one corner of each lies alone on its side."""
-    above = height[triangles] > 0
+    # one corner of each triangle lies alone on its side of the plane
     alone = np.where(above.sum(axis=1) == 1, above.argmax(axis=1), (~above).argmax(axis=1))
-    rows = np.arange(len(triangles))
-    first, second, third = (triangles[rows, (alone + step) % 3] for step in range(3))
-    found = []
+    first, second, third = (crossing[np.arange(len(crossing)), (alone + step) % 3] for step in range(3))
+    ends = []
     for other in (second, third):
         share = (height[first] / (height[first] - height[other]))[:, None]
-        found.append((points[first] + share * (points[other] - points[first]))[:, :2])
-    return np.stack(found, axis=1)
-
-
-def _nest(rings: list[Polygon]) -> list[Polygon]:
-    """Return polygons without those that fill the holes of others: a hollow column is a ring."""
+        ends.append((shape.points[first] + share * (shape.points[other] - shape.points[first]))[:, :2])
+    lines: Any = shapely.linestrings(np.round(np.stack(ends, axis=1), 4))
+    noded = shapely.union_all([one for one in lines if one.length > 0])
+    rings = [one for one in shapely.polygonize([noded]).geoms if isinstance(one, Polygon)]
+    # without those that fill the holes of others: a hollow column is a ring
     holes = {shapely.normalize(Polygon(hole)).wkb for one in rings for hole in one.interiors}
     return [one for one in rings if not holes or shapely.normalize(Polygon(one.exterior)).wkb not in holes]
 
@@ -313,10 +285,7 @@ def find_width(area: shapely.geometry.base.BaseGeometry) -> float:
 
 
 class SpaceSearch:
-    """Finds the spaces that hold points of a storey.
-
-    Some programs export the gross area of a storey, or a zone, as a space beside its rooms, and before them.
-    """
+    """Finds the spaces that hold a point: some programs export the gross area of a storey as a space, too."""
 
     def __init__(self, spaces: Iterable[Space]) -> None:
         self._spaces: dict[str, list[Space]] = {}
@@ -363,22 +332,14 @@ def find_pairs(upper: Bounds, lower: Bounds, *, beside: bool = False) -> list[tu
     least = lower[below, 2 if beside else 5] - gap
     reach = (least <= bottom) & (bottom <= lower[below, 5] + gap)
     over = np.minimum(upper[above, 3:5], lower[below, 3:5]) - np.maximum(upper[above, :2], lower[below, :2])
-    cover = _areas(upper)[above] if beside else over.clip(0).prod(axis=1)
-    found = reach & (cover >= LEAST_COVER * _areas(lower)[below])
+    own, area = ((one[:, 3:5] - one[:, :2]).prod(axis=1) for one in (upper, lower))
+    cover = own[above] if beside else over.clip(0).prod(axis=1)
+    found = reach & (cover >= LEAST_COVER * area[below])
     return [(int(one), int(other)) for one, other in zip(above[found], below[found], strict=True)]
 
 
-def _areas(bounds: Bounds) -> FloatArray:
-    found: FloatArray = (bounds[:, 3:5] - bounds[:, :2]).prod(axis=1)
-    return found
-
-
 def find_stacks(
-    groups: Iterable[Sequence[int]],
-    bounds: Mapping[int, FloatArray],
-    on_floor: Collection[int],
-    *,
-    beside: bool = False,
+    groups: Iterable[Sequence[int]], bounds: Mapping[int, Bounds], on_floor: Collection[int], *, beside: bool = False
 ) -> Iterator[tuple[list[int], bool]]:
     """Yield the bodies of a group that are one piece, the lowest first, and whether they are the whole group.
 

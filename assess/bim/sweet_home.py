@@ -31,6 +31,7 @@ from assess.bim.building_model import (
     Door,
     Piece,
     Point,
+    Skipped,
     Space,
     Stair,
     Storey,
@@ -94,12 +95,6 @@ def read_sweet_home(data: bytes, name: str) -> BuildingModel:
     Raises ModelError if it is no home, of a version that is not read, damaged, or beyond a limit; with the place in its
     Home.xml.
     """
-    home = _Home(name)
-    home.parse(_unpack(data, name))
-    return home.build()
-
-
-def _unpack(data: bytes, name: str) -> bytes:
     too_large = ModelError(
         fill("{name} is too large: at most {file} MB are read, and {home} MB of the Home.xml in it. Save fewer "
              "levels.", name=name, file=MOST_BYTES // 2**20, home=MOST_HOME // 2**20)
@@ -122,7 +117,7 @@ def _unpack(data: bytes, name: str) -> bytes:
         raise _damaged(name) from None
     if len(found) > MOST_HOME:
         raise too_large
-    return found
+    return _Home(name, found).build()
 
 
 def _no_home(name: str) -> ModelError:
@@ -140,7 +135,9 @@ def _damaged(name: str) -> ModelError:
 
 
 class _Home:
-    def __init__(self, name: str) -> None:
+    """The elements of a Home.xml; ModelError if it is damaged, is no home or holds too many."""
+
+    def __init__(self, name: str, data: bytes) -> None:
         self.name = name
         self.levels: list[_Element] = []
         self.furniture: list[_Element] = []
@@ -153,28 +150,25 @@ class _Home:
             **dict.fromkeys(FURNITURE, (self.furniture, MOST_PIECES)),
         }
         self.compass: _Element | None = None
-        self.root = ""
-        self.remarks: list[Text] = []
-        self.skipped: list[tuple[str, Text, bool]] = []
+        self._root = ""
         self._open: list[_Element] = []
         self._counts: Counter[str] = Counter()
 
-    def parse(self, data: bytes) -> None:
+        def refuse(*_: object) -> None:
+            raise _damaged(name)
+
         parser = expat.ParserCreate()
         parser.StartElementHandler, parser.EndElementHandler = self._enter, lambda _: self._open.pop()
-        parser.EntityDeclHandler = self._refuse
+        parser.EntityDeclHandler = refuse
         try:
             parser.Parse(data, True)
         except (expat.ExpatError, ValueError, LookupError):  # an encoding that is not known
-            raise _damaged(self.name) from None
-        if self.root != "home":
-            raise _no_home(self.name)
-
-    def _refuse(self, *_: object) -> None:
-        raise _damaged(self.name)
+            raise _damaged(name) from None
+        if self._root != "home":
+            raise _no_home(name)
 
     def _enter(self, tag: str, values: dict[str, str]) -> None:
-        self.root = self.root or tag
+        self._root = self._root or tag
         self._counts[""] += 1
         if self._counts[""] > MOST_ELEMENTS or len(self._open) >= DEEPEST:
             raise self._too_many(fill("elements"), MOST_ELEMENTS)
@@ -227,81 +221,63 @@ class _Home:
     # ------------------------------------------------------------ the model
 
     def build(self) -> BuildingModel:
-        storeys = self._list_storeys()
-        spaces = tuple(self._list_spaces(storeys))
-        boxes = _join_groups([self._box(one, storeys) for one in self.furniture])
-        drawn = [one for one in boxes if not one.is_hidden]
-        passages = [one for one in drawn if one.is_opening]
-        doors = [one for one in passages if one.bottom <= SILL]
-        pieces, search = list[Piece](), SpaceSearch(spaces)
-        for one in (one for one in boxes if not one.is_opening):
-            reason = one.why_left_out()
-            if reason is None:
-                rooms = search.find(one.storey, (one.x, one.y))
-                pieces.append(one.to_piece(rooms[0].key if rooms else ""))
-            else:
-                self.skipped.append((name_skipped(SCHEMA, one.name), reason, reason is not IS_STAIR))
-        north = self.number(self.compass, "northDirection", 0.0) if self.compass else 0.0
-        return BuildingModel(
-            source=self.name,
-            schema=SCHEMA,
-            storeys=storeys,
-            spaces=spaces,
-            doors=tuple(one.to_door() for one in doors),
-            stairs=tuple(_list_stairs(drawn, storeys)),
-            pieces=tuple(pieces),
-            walls={one.key: self._draw_walls(one.key, passages) for one in storeys},
-            windows={
-                one.key: merge(box.plan() for box in passages if box.storey == one.key and box not in doors)
-                for one in storeys
-            },
-            skipped=count_skipped(self.skipped),
-            azimuth_deg=round((90 - math.degrees(north)) % 360, 1) if north else None,
-            warnings=(*((DRAWN_SIZES,) if pieces else ()), *_note_stacked(boxes)),
-            remarks=tuple(self.remarks),
-        )
-
-    def _list_storeys(self) -> tuple[Storey, ...]:
         levels = ((one, self.metres(one, "elevation")) for one in self.levels)
         found = [Storey(one.values.get("id", one.place), one.name or one.place, z, z) for one, z in levels]
-        return tuple(sorted(found, key=lambda one: one.level)) or (Storey("", gettext("Storey {n}", n=0), 0.0, 0.0),)
-
-    def _storey_of(self, element: _Element, storeys: Sequence[Storey]) -> Storey:
-        own = element.values.get("level")
-        return next((one for one in storeys if one.key == own), storeys[0])
-
-    def _list_spaces(self, storeys: Sequence[Storey]) -> Iterator[Space]:
-        """Yield the rooms; their height is left out, as a ceiling tells nothing of the roof of the building."""
-        for number, one in enumerate(self.rooms, 1):
-            storey = self._storey_of(one, storeys)
-            polygon = to_polygon((tuple(one.corners),)) if len(one.corners) >= 3 else Polygon()
+        storeys = tuple(sorted(found, key=lambda one: one.level)) or (Storey("", gettext("Storey {n}", n=0), 0.0, 0.0),)
+        by_key = {one.key: one for one in reversed(storeys)}
+        spaces = []
+        for number, room in enumerate(self.rooms, 1):
+            storey = by_key.get(room.values.get("level", ""), storeys[0])
+            polygon = to_polygon((tuple(room.corners),)) if len(room.corners) >= 3 else Polygon()
             if polygon.area >= SMALLEST_ROOM:
-                name = one.name or gettext("Room {n}", n=number)
-                key = f"{one.values.get('id', '')} {one.place}".strip()
-                yield Space(key, storey.key, name, "", to_area(polygon), storey.level, storey.level)
+                name, key = room.name or gettext("Room {n}", n=number), f"{room.values.get('id', '')} {room.place}"
+                # without height, as a ceiling tells nothing of the roof of the building
+                spaces.append(Space(key.strip(), storey.key, name, "", to_area(polygon), storey.level, storey.level))
+        boxes = _join_groups([
+            _Box(
+                element=one, storey=by_key.get(one.values.get("level", ""), storeys[0]).key, name=one.name or one.tag,
+                x=self.metres(one, "x"), y=-self.metres(one, "y"),
+                angle=math.remainder(-self.number(one, "angle", 0.0), math.tau),  # clockwise in the file
+                width=self.metres(one, "width"), depth=self.metres(one, "depth"), height=self.metres(one, "height"),
+                bottom=self.metres(one, "elevation", 0.0),
+                is_tilted=any(abs(self.number(one, name, 0.0)) > math.radians(2.6) for name in ("pitch", "roll")),
+            )
+            for one in self.furniture
+        ])  # fmt: skip
+        passages = [one for one in boxes if one.is_opening and not one.is_hidden]
+        doors = [one for one in passages if one.bottom <= SILL]
+        pieces, skipped = _sort_pieces(boxes, SpaceSearch(spaces))
+        warnings, remarks = [DRAWN_SIZES] if pieces else [], list[Text]()
+        walls, windows = dict[str, tuple[Area, ...]](), dict[str, tuple[Area, ...]]()
+        for storey in storeys:
+            walls[storey.key] = self._draw_walls(storey.key, passages, remarks)
+            windows[storey.key] = merge(
+                one.plan() for one in passages if one.storey == storey.key and one.bottom > SILL
+            )
+        for key in dict.fromkeys(one.storey for one in boxes):
+            own = [(one, one.why_left_out()) for one in boxes if one.storey == key and not one.is_opening]
+            taken, left = ([one for one, reason in own if reason == why] for why in (None, NOT_ON_FLOOR))
+            bounds = (np.array([one.bounds for one in each]) for each in (taken, left))
+            warnings += note_stacked([one.name for one in taken], *bounds)
+        north = self.number(self.compass, "northDirection", 0.0) if self.compass else 0.0
+        return BuildingModel(
+            source=self.name, schema=SCHEMA, storeys=storeys, spaces=tuple(spaces),
+            doors=tuple(
+                Door(key=one.own_key, storey=one.storey, name=one.name, x=one.x, y=one.y, overall=one.width,
+                     normal_deg=math.degrees(one.angle) + 90, width=one.width, thickness=one.depth)
+                for one in doors
+            ),
+            stairs=tuple(_list_stairs(boxes, [one.key for one in storeys])), pieces=pieces, walls=walls,
+            windows=windows, skipped=skipped, warnings=tuple(warnings), remarks=tuple(remarks),
+            azimuth_deg=round((90 - math.degrees(north)) % 360, 1) if north else None,
+        )  # fmt: skip
 
-    def _box(self, one: _Element, storeys: Sequence[Storey]) -> "_Box":
-        angle = -self.number(one, "angle", 0.0)  # clockwise in the file
-        return _Box(
-            element=one,
-            storey=self._storey_of(one, storeys).key,
-            name=one.name or one.tag,
-            x=self.metres(one, "x"),
-            y=-self.metres(one, "y"),
-            angle=math.remainder(angle, math.tau),
-            width=self.metres(one, "width"),
-            depth=self.metres(one, "depth"),
-            height=self.metres(one, "height"),
-            bottom=self.metres(one, "elevation", 0.0),
-            is_tilted=any(abs(self.number(one, name, 0.0)) > math.radians(2.6) for name in ("pitch", "roll")),
-        )
-
-    def _draw_walls(self, storey: str, passages: Sequence["_Box"]) -> tuple[Area, ...]:
+    def _draw_walls(self, storey: str, passages: Sequence["_Box"], remarks: list[Text]) -> tuple[Area, ...]:
         own = [one for one in self.walls if self.levels == [] or one.values.get("level", storey) == storey]
         straight = [one for one in own if not self.number(one, "arcExtent", 0.0)]
         if len(straight) < len(own):
             left = len(own) - len(straight)
-            self.remarks.append(nfill("{n:,} round wall is not drawn.", "{n:,} round walls are not drawn.", left))
+            remarks.append(nfill("{n:,} round wall is not drawn.", "{n:,} round walls are not drawn.", left))
         bands = [
             LineString([(self.metres(one, f"x{end}"), -self.metres(one, f"y{end}")) for end in ("Start", "End")])
             .buffer(self.metres(one, "thickness") / 2, cap_style="square")
@@ -341,6 +317,11 @@ class _Box:
         return self.element.values.get("id", "")
 
     @property
+    def own_key(self) -> str:
+        """Its identifier and its place in the file, which tells it from others."""
+        return f"{self.key} {self.element.place}".strip()
+
+    @property
     def is_hidden(self) -> bool:
         return self.element.values.get("visible") == "false"
 
@@ -374,37 +355,39 @@ class _Box:
         left, low, right, high = self.plan().bounds
         return left, low, self.bottom, right, high, self.bottom + self.height
 
-    def to_piece(self, space: str) -> Piece:
-        """Return it as a piece; what is part of the base plan, which the program calls not movable, as fitted."""
-        short, long = sorted((self.width, self.depth))
-        feet = (self.feet or (self.width, self.depth))[:: 1 if self.width <= self.depth else -1]
-        angle = math.degrees(self.angle) + (0 if self.width <= self.depth else 90)
-        return Piece(
-            key=self.key, storey=self.storey, space=space, ifc_class=SCHEMA, name=self.name, type=self.name,
-            x=self.x, y=self.y, breadth=short, width=long, height=self.height, angle_deg=half_turn(angle),
-            support_breadth=feet[0], support_width=feet[1], bottom=self.bottom,
-            is_fitted=self.element.values.get("movable") == "false",
+
+def _sort_pieces(boxes: Sequence[_Box], search: SpaceSearch) -> tuple[tuple[Piece, ...], tuple[Skipped, ...]]:
+    """Return the pieces, and what is left out; what is part of the base plan, not movable in the program, as fitted."""
+    pieces, skipped = list[Piece](), list[tuple[str, Text, bool]]()
+    for one in (one for one in boxes if not one.is_opening):
+        reason = one.why_left_out()
+        if reason is not None:
+            skipped.append((name_skipped(SCHEMA, one.name), reason, reason is not IS_STAIR))
+            continue
+        rooms, is_broad = search.find(one.storey, (one.x, one.y)), one.width > one.depth
+        short, long = sorted((one.width, one.depth))
+        feet = (one.feet or (one.width, one.depth))[:: -1 if is_broad else 1]
+        pieces.append(
+            Piece(
+                key=one.key, storey=one.storey, space=rooms[0].key if rooms else "", ifc_class=SCHEMA, name=one.name,
+                type=one.name, x=one.x, y=one.y, breadth=short, width=long, height=one.height,
+                angle_deg=half_turn(math.degrees(one.angle) + (90 if is_broad else 0)), support_breadth=feet[0],
+                support_width=feet[1], bottom=one.bottom, is_fitted=one.element.values.get("movable") == "false",
+            )
         )  # fmt: skip
-
-    def to_door(self) -> Door:
-        """Return it as a door."""
-        return Door(
-            key=f"{self.key} {self.element.place}".strip(), storey=self.storey, name=self.name, x=self.x, y=self.y,
-            normal_deg=math.degrees(self.angle) + 90, width=self.width, thickness=self.depth, overall=self.width,
-        )  # fmt: skip
+    return tuple(pieces), count_skipped(skipped)
 
 
-def _list_stairs(boxes: Sequence[_Box], storeys: Sequence[Storey]) -> Iterator[Stair]:
-    keys = [one.key for one in storeys]
+def _list_stairs(boxes: Sequence[_Box], storeys: Sequence[str]) -> Iterator[Stair]:
     for one in boxes:
-        if one.is_stair and not one.is_opening:
-            key = f"{one.key} {one.element.place}".strip()
-            yield Stair(key, one.storey, one.name, "foot", one.x, one.y)
-            above = keys[keys.index(one.storey) + 1 :]
-            yield from (Stair(key, storey, one.name, "head", one.x, one.y) for storey in above[:1])
+        if one.is_stair and not (one.is_opening or one.is_hidden):
+            yield Stair(one.own_key, one.storey, one.name, "foot", one.x, one.y)
+            for above in storeys[storeys.index(one.storey) + 1 :][:1]:
+                yield Stair(one.own_key, above, one.name, "head", one.x, one.y)
 
 
 def _join_groups(boxes: Sequence[_Box]) -> list[_Box]:
+    """Return pieces of which those that stand on each other are one, in the axes of the one that carries the others."""
     groups: dict[tuple[str, str], list[int]] = {}
     for at, one in enumerate(boxes):
         if one.element.group is not None and one.why_left_out() in (None, NOT_ON_FLOOR) and not one.is_opening:
@@ -413,34 +396,21 @@ def _join_groups(boxes: Sequence[_Box]) -> list[_Box]:
     on_floor = {at for at in bounds if boxes[at].bottom <= ON_FLOOR}
     joined: dict[int, _Box] = {}
     gone = set[int]()
-    for (first, *others), is_whole in find_stacks(groups.values(), bounds, on_floor):
-        group = boxes[first].element.group if is_whole else None
-        joined[first] = _join_boxes([boxes[at] for at in (first, *others)], group.name if group is not None else "")
-        gone |= {*others}
+    for stack, is_whole in find_stacks(groups.values(), bounds, on_floor):
+        first, own = boxes[stack[0]], [boxes[at] for at in stack]
+        group = first.element.group if is_whole else None
+        c, s = math.cos(first.angle), math.sin(first.angle)
+        turn = np.array([[c, -s], [s, c]])
+        turned = [(np.array(one.plan().exterior.coords) - (first.x, first.y)) @ turn for one in own]
+        points = np.concatenate(turned)
+        standing = [corners for corners, one in zip(turned, own, strict=True) if one.bottom <= ON_FLOOR]
+        feet_width, feet_depth = np.ptp(np.concatenate(standing), axis=0).tolist()
+        u, v = ((points.min(axis=0) + points.max(axis=0)) / 2).tolist()
+        width, depth = np.ptp(points, axis=0).tolist()
+        joined[stack[0]] = replace(
+            first, x=first.x + (c * u - s * v), y=first.y + (s * u + c * v), width=width, depth=depth,
+            height=max(one.bottom + one.height for one in own) - first.bottom, feet=(feet_width, feet_depth),
+            name=(group.name if group is not None else "") or first.name,
+        )  # fmt: skip
+        gone |= {*stack[1:]}
     return [joined.get(at, one) for at, one in enumerate(boxes) if at not in gone]
-
-
-def _join_boxes(boxes: Sequence[_Box], name: str) -> _Box:
-    """Return the box round several in the axes of the first, which carries the others."""
-    first = boxes[0]
-    c, s = math.cos(first.angle), math.sin(first.angle)
-    turn = np.array([[c, -s], [s, c]])
-    turned = [(np.array(one.plan().exterior.coords) - (first.x, first.y)) @ turn for one in boxes]
-    points = np.concatenate(turned)
-    feet = np.ptp(
-        np.concatenate([own for own, one in zip(turned, boxes, strict=True) if one.bottom <= ON_FLOOR]), axis=0
-    )
-    (u, v), (width, depth) = (points.min(axis=0) + points.max(axis=0)) / 2, np.ptp(points, axis=0)
-    top = max(one.bottom + one.height for one in boxes)
-    return replace(
-        first, x=first.x + float(c * u - s * v), y=first.y + float(s * u + c * v), width=float(width),
-        depth=float(depth), height=top - first.bottom, name=name or first.name, feet=(float(feet[0]), float(feet[1])),
-    )  # fmt: skip
-
-
-def _note_stacked(boxes: Sequence[_Box]) -> Iterator[Text]:
-    for storey in dict.fromkeys(one.storey for one in boxes):
-        own = [(one, one.why_left_out()) for one in boxes if one.storey == storey and not one.is_opening]
-        taken, left = ([one for one, reason in own if reason == why] for why in (None, NOT_ON_FLOOR))
-        lists = (np.array([one.bounds for one in each]) for each in (taken, left))
-        yield from note_stacked([one.name for one in taken], *lists)
