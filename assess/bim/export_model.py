@@ -1,6 +1,7 @@
 """What an export needs to know of a building model, as plain data; call `read_elements` in a process of its own."""
 
 import math
+import uuid
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -16,6 +17,8 @@ NOT_FURNITURE = (
     "IfcStair", "IfcStairFlight", "IfcRamp", "IfcRampFlight", "IfcRailing", "IfcFeatureElement",
 )  # fmt: skip
 """Classes whose elements, with their subclasses, are no pieces: an import may take all others by name."""
+_NAMESPACE = uuid.UUID("07e57c2d-3231-4d20-9929-8e605d3154f5")
+"""Of identifiers that are made from what they stand for, so that the same export gives the same ones."""
 Place = tuple[float, float, float]
 Box = tuple[Place, Place]
 
@@ -62,6 +65,11 @@ class ModelPart:
     refused: Mapping[str, str] = field(default_factory=dict)
 
 
+def make_uuid(kind: str, *keys: str) -> uuid.UUID:
+    """Return the identifier of what is made of something in a model: always the same for the same kind and keys."""
+    return uuid.uuid5(_NAMESPACE, "\n".join((kind, *keys)))
+
+
 def read_elements(path: Path, name: str, keys: Sequence[str], placed: Sequence[str] | None) -> ModelPart:
     """Find elements in a building model by their GlobalIds.
 
@@ -69,56 +77,58 @@ def read_elements(path: Path, name: str, keys: Sequence[str], placed: Sequence[s
     `placed`: those of which the place is needed, and with them the doors; None where no place is.
     Raises ModelError if it is no whole building model, or names no unit of length and places are needed.
     """
-    return read_with(path, name, lambda model: _understand(model, name, keys, placed))
+
+    def understand(model: Any) -> ModelPart:
+        from ifcopenshell.util.element import get_psets
+
+        known: dict[str, Any] = {}
+        for key in keys:
+            with suppress(RuntimeError):  # nothing has it
+                known[key] = model.by_guid(key)
+        found = {
+            key: one
+            for key, one in known.items()
+            if one.is_a("IfcElement") and not any(one.is_a(name) for name in NOT_FURNITURE)
+        }
+        boxes, rooms, doors = dict[int, Box](), list[Box](), list[ModelDoor]()
+        if placed is not None:
+            unit = find_unit(model, name)
+            boxes = _find_boxes(model, [found[key] for key in placed if key in found], unit)
+            rooms = list(_find_boxes(model, model.by_type("IfcSpace"), unit).values()) if boxes else []
+            doors = list(_list_doors(model, unit))
+        elements = []
+        for key, one in found.items():
+            box, owner, around = boxes.get(one.id()), one.OwnerHistory, list[Box]()
+            if box is not None:
+                at = find_middle(box)
+                around = [
+                    room
+                    for room in rooms
+                    if all(low <= x <= high for low, x, high in zip(room[0], at, room[1], strict=True))
+                ]
+            if not owner and model.schema == "IFC2X3":  # which demands one
+                owner = next(iter(model.by_type("IfcOwnerHistory")), None)
+            elements.append(
+                ModelElement(
+                    key=key, name=str(one.Name or ""), number=one.id(), owner=owner.id() if owner else 0, box=box,
+                    has_set=PROPERTY_SET in get_psets(one, psets_only=True, should_inherit=False),
+                    room=min(around, key=_find_volume, default=None),
+                )
+            )  # fmt: skip
+        projects = model.by_type("IfcProject")
+        return ModelPart(
+            project=str(projects[0].GlobalId) if projects else "",
+            last_number=max((one.id() for one in model), default=0),
+            elements=tuple(elements),
+            doors=tuple(doors),
+            refused={key: str(one.is_a()) for key, one in known.items() if key not in found},
+        )
+
+    return read_with(path, name, understand)
 
 
-def _understand(model: Any, name: str, keys: Sequence[str], placed: Sequence[str] | None) -> ModelPart:
-    from ifcopenshell.util.element import get_psets
-
-    known: dict[str, Any] = {}
-    for key in keys:
-        with suppress(RuntimeError):  # nothing has it
-            known[key] = model.by_guid(key)
-    found = {
-        key: one
-        for key, one in known.items()
-        if one.is_a("IfcElement") and not any(one.is_a(name) for name in NOT_FURNITURE)
-    }
-    boxes: dict[int, Box] = {}
-    rooms: dict[int, Box] = {}
-    doors: list[ModelDoor] = []
-    if placed is not None:
-        unit = find_unit(model, name)
-        boxes = _find_boxes(model, [found[key] for key in placed if key in found], unit)
-        rooms = _find_boxes(model, model.by_type("IfcSpace"), unit) if boxes else {}
-        doors = list(_list_doors(model, unit))
-    elements = []
-    for key, one in found.items():
-        has_set = PROPERTY_SET in get_psets(one, psets_only=True, should_inherit=False)
-        box, owner, room = boxes.get(one.id()), one.OwnerHistory, None
-        if box is not None:
-            around = [room for room in rooms.values() if _holds(room, find_middle(box))]
-            room = min(
-                around, key=lambda box: math.prod(high - low for low, high in zip(*box, strict=True)), default=None
-            )
-        if not owner and model.schema == "IFC2X3":  # which demands one
-            owner = next(iter(model.by_type("IfcOwnerHistory")), None)
-        elements.append(
-            ModelElement(key=key, name=str(one.Name or ""), number=one.id(), owner=owner.id() if owner else 0,
-                         has_set=has_set, box=box, room=room)
-        )  # fmt: skip
-    projects = model.by_type("IfcProject")
-    return ModelPart(
-        project=str(projects[0].GlobalId) if projects else "",
-        last_number=max((one.id() for one in model), default=0),
-        elements=tuple(elements),
-        doors=tuple(doors),
-        refused={key: str(one.is_a()) for key, one in known.items() if key not in found},
-    )
-
-
-def _holds(box: Box, point: Place) -> bool:
-    return all(low <= at <= high for low, at, high in zip(box[0], point, box[1], strict=True))
+def _find_volume(box: Box) -> float:
+    return math.prod(high - low for low, high in zip(*box, strict=True))
 
 
 def find_middle(box: Box) -> Place:

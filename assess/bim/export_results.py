@@ -1,24 +1,46 @@
-"""What an export takes from results.json: its pieces with their identifiers, its schedule, and what obstructs routes.
+"""The results of a run as an export takes them from results.json, and what it says of them in the report's words.
 
-The file is read and checked as `assess compare` does it, and further values by the same reader.
+Taken are pieces with their identifiers, the schedule, and what obstructs routes. The file is read and checked as
+`assess compare` does it, and further values by the same reader.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from assess.compare.past_run import Part, PastPiece, PastRun, read_record
+from assess.compare.past_run import UNCONFIRMED, Part, PastPiece, PastRun, read_record
 from assess.details import DETAILS
 from assess.errors import InputError
-from assess.i18n import fill
+from assess.i18n import fill, ngettext
+from assess.i18n import gettext as _
+from assess.intensity import SHAKINGS
 from assess.methods import simulation
-from assess.report.say.work import RouteStep
-from assess.risk import RiskClass
+from assess.report import words
+from assess.report.say.work import (
+    CHECKS,
+    HOLDS,
+    NAMED,
+    RouteStep,
+    join_names,
+    say_effect,
+    say_force,
+    shorten_names,
+)
+from assess.results import CANNOT_ROCK
+from assess.risk import RiskClass, classify
 from assess.route_results import RouteState
 from assess.schedule_results import ScheduleRow, WorkRow
+from assess.settings import SCENARIOS
 from assess.workbook.names import key
+
+LONGEST = 60
+"""Characters of a description that a title shows."""
+MOST_KINDS = 3
+"""Kinds of pieces that a title names; the rest are counted."""
+MOST_CHANCES = 20
+"""Pieces of a topic whose chances its description lists; the Excel report holds all."""
 
 Point = tuple[float, float]
 
@@ -81,9 +103,9 @@ def list_items(entry: ScheduleRow) -> list[str]:
 
 
 def read_export(path: Path) -> ExportRun:
-    """Read results.json for an export.
+    """Read the results of a run, from results.json or its folder.
 
-    Raises InputError if it cannot be read (see `assess.compare.past_run.read_run`), or holds no identifier of any
+    Raises InputError if they cannot be read (see `assess.compare.past_run.read_run`), or hold no identifier of any
     piece.
     """
     run, record = read_record(path)
@@ -95,13 +117,35 @@ def read_export(path: Path) -> ExportRun:
         )  # fmt: skip
     routes, schedule = record.part("routes"), record.part("schedule")
     places = {one.item: at for at, one in enumerate(pieces)}
+    entries = tuple(_read_entry(row, places) for row in schedule.rows("entries"))
+    segments = []
+    for row in routes.rows("segments"):
+        is_open = row.text("state") == RouteState.OPEN
+        items = frozenset(
+            one.text("item") for one in row.rows("pieces") if not is_open or one.values.get("blocks_alone") is True
+        )
+        if items:
+            start, end = (_point(row, f"{side}_x_m", f"{side}_y_m") for side in ("start", "end"))
+            ends = None if start is None or end is None else (start, end)
+            segments.append(ExportSegment(route=row.text("route"), ends=ends, items=items))
+    # what to fix for every route, as `assess.report.say.work.list_steps` lists it of results
+    steps, at_key = [], {key(item): at for item, at in places.items()}
+    for row in routes.rows("routes"):
+        route, fixes = row.text("route"), row.rows("fixes")
+        is_bound = row.values.get("blocked_if_unconfirmed_fall") is not None
+        left = [one.share("left") for one in fixes]
+        for number, one in enumerate(fixes):
+            known = at_key.get(key(one.text("item")))
+            if known is not None:
+                before = left[number] + one.share("gain")
+                steps.append(RouteStep(route, known, number + 1, len(fixes), before, left[number], left[-1], is_bound))
     return ExportRun(
         run=run,
         language=str(record.part("assess").values.get("language") or ""),
         pieces=pieces,
-        entries=tuple(_read_entry(row, places) for row in schedule.rows("entries")),
-        segments=tuple(_read_segments(routes)),
-        steps=tuple(_read_steps(routes, {key(item): at for item, at in places.items()})),
+        entries=entries,
+        segments=tuple(segments),
+        steps=tuple(steps),
     )
 
 
@@ -144,52 +188,182 @@ def _read_plain(kind: type, row: Part, other: set[str]) -> dict[str, Any]:
 
 
 def _read_entry(row: Part, known: Mapping[str, int]) -> ScheduleRow:
-    works = tuple(_read_work(work, known) for work in row.rows("works"))
+    """Return an entry, without its costs; pieces that the results do not hold are left out."""
+    works = []
+    for work in row.rows("works"):
+        items = tuple(one for one in work.list_texts("items") if one in known)
+        has_code = work.values.get("tension_code_kn") is not None
+        works.append(
+            WorkRow(
+                **_read_plain(WorkRow, work, {"detail", "cost_source"}), items=items,
+                item_indices=tuple(known[one] for one in items), detail=work.choice("detail", tuple(DETAILS)),
+                tension_code_kn=work.number("tension_code_kn") if has_code else None,
+                is_per_metre=work.values.get("is_per_metre") is True, unit_cost=None, cost=None, cost_source="",
+            )
+        )  # fmt: skip
     return ScheduleRow(
         **_read_plain(ScheduleRow, row, set()),
         item_indices=tuple(at for work in works for at in work.item_indices),
         is_together=row.values.get("only_together") is True,
-        works=works,
+        works=tuple(works),
     )
 
 
-def _read_work(row: Part, known: Mapping[str, int]) -> WorkRow:
-    """Return a part of an entry, without its costs; pieces that the results do not hold are left out."""
-    items = tuple(one for one in row.list_texts("items") if one in known)
-    has_code = row.values.get("tension_code_kn") is not None
-    return WorkRow(
-        **_read_plain(WorkRow, row, {"detail", "cost_source"}),
-        items=items,
-        item_indices=tuple(known[one] for one in items),
-        detail=row.choice("detail", tuple(DETAILS)),
-        tension_code_kn=row.number("tension_code_kn") if has_code else None,
-        is_per_metre=row.values.get("is_per_metre") is True,
-        unit_cost=None,
-        cost=None,
-        cost_source="",
-    )
+# ---------------------------------------------------------------- in words
 
 
-def _read_segments(routes: Part) -> Iterator[ExportSegment]:
-    for row in routes.rows("segments"):
-        is_open = row.text("state") == RouteState.OPEN
-        items = frozenset(
-            one.text("item") for one in row.rows("pieces") if not is_open or one.values.get("blocks_alone") is True
-        )
-        if items:
-            start, end = (_point(row, f"{side}_x_m", f"{side}_y_m") for side in ("start", "end"))
-            ends = None if start is None or end is None else (start, end)
-            yield ExportSegment(route=row.text("route"), ends=ends, items=items)
+def say_risk(run: PastRun, pieces: Sequence[ExportPiece]) -> str:
+    """Return the highest class of some pieces in words, with what any of them could be, and why it is no lower."""
+    highest = max(pieces, key=lambda one: one.risk)
+    return say_class(run, highest, max(one.upper for one in pieces), is_short=False)
 
 
-def _read_steps(routes: Part, index: Mapping[str, int]) -> Iterator[RouteStep]:
-    """Yield what to fix for every route, as `assess.report.say.work.list_steps` does of results."""
-    for row in routes.rows("routes"):
-        route, fixes = row.text("route"), row.rows("fixes")
-        left = [one.share("left") for one in fixes]
-        for number, one in enumerate(fixes):
-            known = index.get(key(one.text("item")))
-            if known is not None:
-                before = left[number] + one.share("gain")
-                is_bound = row.values.get("blocked_if_unconfirmed_fall") is not None
-                yield RouteStep(route, known, number + 1, len(fixes), before, left[number], left[-1], is_bound)
+def say_class(run: PastRun, one: ExportPiece, upper: RiskClass, *, is_short: bool) -> str:
+    """Return the class of a piece in words, with what it could be; of one outside the classes, on what it rests."""
+    apart = "" if one.basis in (run.main_basis, CANNOT_ROCK) else one.basis
+    is_by_faster = one.basis == UNCONFIRMED and one.has_simulated  # nothing is known of the building
+    notes = [words.say_apart(one.risk, apart, has_simulated=one.has_simulated) or words.risk_word(one.risk)]
+    if not (is_short or is_by_faster) and classify(one.chance.probability) != one.risk:
+        notes.append(_("as it overturns under the record itself"))
+    if upper > one.risk:
+        notes.append(words.could_be(words.risk_word(upper)))
+    return words.join_notes(notes, is_anchored=one.is_held)
+
+
+def describe(one: ExportPiece) -> str:
+    """Return what a piece is."""
+    return one.description or str(one.inputs.get("type") or "") or _("no description")
+
+
+def list_routes(found: ExportRun, items: Sequence[str]) -> list[str]:
+    """Return the routes that any of some pieces may block."""
+    wanted = set(items)
+    return list(dict.fromkeys(one.route for one in found.segments if one.items & wanted))
+
+
+def say_scenario(run: PastRun) -> str:
+    """Return the earthquake in words, and where the floor motion comes from."""
+    building, settings = run.building, run.settings
+    kind = str(settings.get("scenario") or building.get("scenario_kind") or "")
+    choice = next((one.choice for one in SHAKINGS.values() if one.name == run.shaking), run.shaking)
+    parts = [
+        str(building.get("scenario") or ""),
+        _("{intensity} (assumed)", intensity=_(choice)) if choice else "",
+        run.site_ground,
+        "" if kind == SCENARIOS[0] else kind,  # as filled in
+    ]
+    pga, scale = building.get("ground_pga_g"), settings.get("scale")
+    if isinstance(pga, int | float):
+        parts.append(_("ground PGA {pga} g", pga=words.in_g(pga)))
+    if isinstance(scale, int | float) and scale != 1:
+        parts.append(_("motions times {scale:g}", scale=scale))
+    return "; ".join(dict.fromkeys(part for part in parts if part)) or _("floor motions of the workbook")
+
+
+def say_report(run: PastRun) -> str:
+    """Return what names the report: building, revision, date, and the hash of its results."""
+    building = run.building
+    parts = [run.name, run.workbook]
+    if building.get("revision"):
+        parts.append(_("revision {revision}", revision=building["revision"]))
+    parts += [str(building.get("report_date") or ""), f"{run.path.name} SHA-256 {run.sha256[:16]}"]
+    return ", ".join(part for part in parts if part)
+
+
+def say_program(run: PastRun) -> str:
+    """Return the program that assessed it, with its version."""
+    return f"assess {run.version}"
+
+
+def say_title(found: ExportRun, entry: ScheduleRow, pieces: Sequence[ExportPiece]) -> str:
+    """Return the title of the topic of an entry: class, pieces, and why they are to be fixed."""
+    routes = list_routes(found, list_items(entry))
+    values = {"risk": say_risk(found.run, pieces), "names": _name_with_kind(entry, pieces)}
+    if routes:
+        text = ngettext(
+            "{risk}: {names} may overturn and block route {routes}",
+            "{risk}: {names} may overturn and block routes {routes}",
+            len(routes), routes=words.name_first([words.cut(one, LONGEST) for one in routes], NAMED), **values,
+        )  # fmt: skip
+    else:
+        text = _("{risk}: {names} may overturn", **values)
+    return ", ".join((text, *map(_, list_importance(pieces))))
+
+
+def _name_with_kind(entry: ScheduleRow, pieces: Sequence[ExportPiece]) -> str:
+    names = join_names(shorten_names(one.item for one in pieces))
+    kind = words.name_first(list(dict.fromkeys(words.cut(describe(one), LONGEST) for one in pieces)), MOST_KINDS, "; ")
+    names = _("{names} together", names=names) if entry.is_together else names
+    return names if kind == names else f"{names} ({kind})"
+
+
+def list_importance(pieces: Sequence[ExportPiece]) -> list[str]:
+    """Return what is told of the importance of some pieces, each once."""
+    return list(dict.fromkeys(one.importance for one in pieces if one.importance))
+
+
+def list_lines(found: ExportRun, entry: ScheduleRow, pieces: Sequence[ExportPiece]) -> Iterator[str]:
+    """Yield the lines of the description of a topic: where, how likely, why, how to fix it, with what force."""
+    run = found.run
+    where = _("Floor {floor}, room {room}.", floor=entry.floor, room=entry.room or words.DASH)
+    yield f"{_name_with_kind(entry, pieces)}: {words.plural(entry.pieces, 'piece')}. {where}"
+    yield _("Risk of overturning: {risk}.", risk=say_risk(run, pieces))
+    are_alike = len(set(map(describe, pieces))) == 1
+    for one in pieces[:MOST_CHANCES]:
+        item, kind, pfa, chance = one.item, describe(one), one.inputs.get("pfa_g"), one.chance
+        said = f"{words.say_chance(chance.probability, chance.low, chance.high)}, {_(words.BASES[one.basis])}"
+        yield _("{item}: chance of overturning {chance}; PFA {pfa} g ({source}).",
+                item=item if are_alike or kind == item else f"{item} ({kind})", chance=said,
+                pfa=words.in_g(float(pfa)) if isinstance(pfa, int | float) else words.DASH,
+                source=one.pfa_source or words.DASH)  # fmt: skip
+    yield _("Earthquake: {scenario}. The chance is for this earthquake, not per year.",
+            scenario=say_scenario(run))  # fmt: skip
+    # its importance, its routes, and the effect of fixing it on them
+    steps: dict[str, list[RouteStep]] = {}
+    for step in sorted(found.steps, key=lambda step: (step.route, step.place)):
+        if step.item_index in entry.item_indices:
+            steps.setdefault(step.route, []).append(step)
+    others = [words.cut(one, LONGEST) for one in list_routes(found, list_items(entry)) if one not in steps]
+    reasons = [*map(_, list_importance(pieces)), *map(say_effect, steps.values())]
+    if others:
+        named = words.name_first(others, NAMED)
+        reasons.append(ngettext("route {routes}", "routes {routes}", len(others), routes=named))
+    if reasons:
+        yield _("Why it comes here: {reason}.", reason=", ".join(reasons))
+    if entry.is_together:
+        yield _("Fix all of these pieces: fixing only some of them opens no route.")
+    for work in entry.works:
+        yield from _list_work(work, is_only=len(entry.works) == 1)
+    for detail in dict.fromkeys(work.detail for work in entry.works):
+        known = DETAILS[detail]
+        title = _capital(_(known.title))
+        yield _("{title}: {what}. One fixing is: {fixing}.", title=title, what=_(known.what), fixing=_(known.fixing))
+        yield _("Known against it: {weakness} ({source}).", weakness=_(known.weakness), source=_(known.source))
+    yield _(CHECKS)
+    yield _("Entry {place:,} of {n:,} of the schedule. {report}; {program}.", place=entry.place,
+            n=len(found.entries), report=say_report(run), program=say_program(run))  # fmt: skip
+
+
+def _list_work(work: WorkRow, *, is_only: bool) -> Iterator[str]:
+    title = _(DETAILS[work.detail].title)
+    named = "" if is_only else f"{join_names(shorten_names(work.items))}: "
+    least = _("at least {n}, as no capacity is printed", n=work.fixings) if work.is_least else f"{work.fixings:,}"
+    yield _("{names}How to fix: {title}. Fixings of each piece: {fixings}.", names=named, title=title, fixings=least)
+    lines = [_("Force on the fixings of each piece: tension {pfa} kN at PFA, {high} kN at 84 % of PFA; shear at the "
+               "base {shear} kN.", pfa=say_force(work.tension_kn), high=say_force(work.tension_high_kn),
+               shear=say_force(work.shear_kn))]  # fmt: skip
+    if work.tension_code_kn is not None:
+        lines.append(_("Tension by the code: {code} kN.", code=say_force(work.tension_code_kn)))
+    if work.tension_high_kn == 0:
+        lines.append(f"{_capital(_(HOLDS))}.")
+    if work.is_per_metre:
+        lines.append(_("Forces and fixings are per metre of width, as the width is not known."))
+    if work.weights_assumed:
+        lines.append(_("The weight is assumed."))
+    if work.heights_assumed:
+        lines.append(_("The height of the bracket is assumed: 0.9 of the piece's height."))
+    yield " ".join(lines)
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]

@@ -16,9 +16,8 @@ import pytest
 from lxml import etree
 
 from assess.bim import export_topics as topics_module
-from assess.bim.export_camera import FIELD_OF_VIEW
 from assess.bim.export_results import read_export
-from assess.bim.export_topics import PRIORITIES, Topics, find_date
+from assess.bim.export_topics import FIELD_OF_VIEW, PRIORITIES, Topics, find_date
 from assess.i18n import load_catalogue, speaking
 from assess.risk import RiskClass
 from tests.bim.export_runs import (
