@@ -19,11 +19,10 @@ from assess.bim.export_files import (
     LONGEST_LABEL,
     append_lines,
     make_global_id,
-    make_uuid,
     write_label,
     write_real,
 )
-from assess.bim.export_model import PROPERTY_SET
+from assess.bim.export_model import PROPERTY_SET, make_uuid
 from assess.errors import InputError, ModelError
 from assess.i18n import load_catalogue, speaking
 from assess.text import plain_line
