@@ -108,31 +108,27 @@ def _list_shapes(found: Any, where: str, depth: int) -> Iterator[tuple[str, list
         if found.get("geometry") is not None:
             yield from _list_shapes(found["geometry"], where, depth + 1)
     elif kind in _DIMENSIONS:
-        yield kind, _read_shapes(kind, found.get("coordinates"), where)
+        shapes = found.get("coordinates")
+        for _level in range(3 - _DIMENSIONS[kind]):
+            shapes = [shapes]
+        least, drawn = 4 if "Polygon" in kind else 2, []
+        try:
+            for shape in filter(None, shapes):
+                lines = []
+                for given in shape:
+                    line = tuple(_read_point(point, where) for point in given)
+                    if len(line) < least:
+                        raise InputError(fill("{where}: a ring or line has {count} points, expected at least {least}",
+                                              where=where, count=len(line), least=least))  # fmt: skip
+                    lines.append(line)
+                drawn.append(tuple(lines))
+        except TypeError:
+            raise InputError(
+                fill("{where}: the coordinates are not lists of points as a {kind} has them", where=where, kind=kind)
+            ) from None
+        yield kind, drawn
     elif kind not in _NO_DRAWING:
         raise InputError(fill("{where}: {kind} is not a type of GeoJSON", where=where, kind=repr(named)))
-
-
-def _read_shapes(kind: str, shapes: Any, where: str) -> list[Any]:
-    for _level in range(3 - _DIMENSIONS[kind]):
-        shapes = [shapes]
-    least = 4 if "Polygon" in kind else 2
-    found = []
-    try:
-        for shape in filter(None, shapes):
-            lines = []
-            for given in shape:
-                line = tuple(_read_point(point, where) for point in given)
-                if len(line) < least:
-                    raise InputError(fill("{where}: a ring or line has {count} points, expected at least {least}",
-                                          where=where, count=len(line), least=least))  # fmt: skip
-                lines.append(line)
-            found.append(tuple(lines))
-    except TypeError:
-        raise InputError(
-            fill("{where}: the coordinates are not lists of points as a {kind} has them", where=where, kind=kind)
-        ) from None
-    return found
 
 
 def _read_point(given: Any, where: str) -> Place:

@@ -159,17 +159,11 @@ class _Kind:
     sizes: Mapping[str, float | None]
     source: str
 
-    def count(self, area: float) -> Quantity:
-        """Return how many an area [m2] has: whole pieces, of two equally near the larger."""
-        low, median, high = (int(rate * area / SQUARE_FOOT + 0.5) for rate in self.rates)
-        return Quantity(low, max(median, min(high, 1)), high)
-
 
 def build_assumed(row: IndexRow) -> tuple[Origin, Mapping[str, Sequence[Mapping[str, Any]]], tuple[Problem, ...]]:
     """Return the furniture that is assumed of a building of an index, by its use, storeys and floor area.
 
-    Returns its 10 % and 90 % quantities by item, its rows by sheet with the 50 % quantity, and what is said of that:
-    that it is assumed, from what, and in which range.
+    Returns its 10 % and 90 % quantities by item, its rows by sheet with the 50 % quantity, and remarks on both.
 
     Raises InputError if one of them is blank, the use is none that P-58 gives quantities for, or the area is too small
     or too large.
@@ -188,7 +182,10 @@ def build_assumed(row: IndexRow) -> tuple[Origin, Mapping[str, Sequence[Mapping[
         text = "no inventory can be assumed without {columns}. Give it in the index, or survey the building."
         raise InputError.about(text, columns=", ".join(missing))
     area, storeys = row.floor_area_m2, row.storeys
-    counts = [(kind, kind.count(area)) for kind in _read_kinds()[use]]
+    counts = []
+    for kind in _read_kinds()[use]:  # whole pieces, of two equally near the larger
+        few, median, many = (int(rate * area / SQUARE_FOOT + 0.5) for rate in kind.rates)
+        counts.append((kind, Quantity(few, max(median, min(many, 1)), many)))
     if not any(one.median for _kind, one in counts):
         text = "no inventory can be assumed for a floor area of {area:g} m2: FEMA P-58 gives less than one piece."
         raise InputError.about(text, area=area)

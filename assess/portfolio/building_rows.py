@@ -1,7 +1,7 @@
 """What a run found of one building, as rows of the tables of a portfolio."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -49,11 +49,44 @@ def build_tables(
     source: Source, origin: Origin, inventory: Inventory, results: Results, sums: DrawSums
 ) -> dict[str, list[list[Any]]]:
     """Return the rows of the tables buildings, pieces, routes and problems."""
+    path, tables = source.path, results.route_tables
+    works = {
+        index: {"work_place": entry.place, "detail": DETAILS[work.detail].title, "unit_cost": work.unit_cost}
+        for entry in results.schedule.rows
+        for work in entry.works
+        for index in work.item_indices
+    }
+    pieces: list[Record] = [
+        {
+            "path": path,
+            "inventory": origin.inventory,
+            "one": one,
+            **works.get(one.item.index, {}),
+            "quantity_low": None if origin.low is None else origin.low[one.item.item],
+            "quantity_high": None if origin.high is None else origin.high[one.item.item],
+        }
+        for one in results
+    ]
+    routes: list[Record] = []
+    for one in tables.routes:
+        blocked = None if one.state is RouteState.NOT_KNOWN else one.blocked
+        chances: dict[str, float] = {}
+        for near in (near for at in one.segment_indices for near in tables.segments[at].pieces):
+            chance = 1.0 if near.falls_while_blocked is None else near.falls_while_blocked
+            chances[near.item] = max(chance, chances.get(near.item, 0.0))
+        likeliest = sorted((-chance, item) for item, chance in chances.items() if chance > 0)
+        # only simulation gives a range, and one of no width would look exact
+        is_ranged = results.main_basis == SIMULATED and blocked and blocked.low < blocked.high
+        routes.append({
+            "path": path, "one": one, "chance": blocked, "range": blocked if is_ranged else None,
+            "occupants": count_people(tables, one), "to_fill_in": say_missing(one.missing),
+            "blockers": [item for _chance, item in likeliest[:MOST_BLOCKERS]],
+        })  # fmt: skip
     return {
         "buildings": [to_row("buildings", _describe_building(source, origin, inventory, results, sums))],
-        "pieces": [to_row("pieces", one) for one in _list_pieces(source.path, origin, results)],
-        "routes": [to_row("routes", one) for one in _list_routes(source.path, results)],
-        "problems": list_problems(source.path, results.problem_rows),
+        "pieces": [to_row("pieces", one) for one in pieces],
+        "routes": [to_row("routes", one) for one in routes],
+        "problems": list_problems(path, results.problem_rows),
     }
 
 
@@ -163,48 +196,6 @@ def _describe_shaking(inventory: Inventory) -> Record:
         "ground_pga_g": None if pga is None else to_edge(pga, BUILDING.column("ground_pga").factor),
         "ground_pgv_cm_s": None if pgv is None else to_edge(pgv, BUILDING.column("ground_pgv").factor),
     }
-
-
-def _list_pieces(path: str, origin: Origin, results: Results) -> list[Record]:
-    works = {
-        index: {"work_place": entry.place, "detail": DETAILS[work.detail].title, "unit_cost": work.unit_cost}
-        for entry in results.schedule.rows
-        for work in entry.works
-        for index in work.item_indices
-    }
-    return [
-        {
-            "path": path,
-            "inventory": origin.inventory,
-            "one": one,
-            **works.get(one.item.index, {}),
-            "quantity_low": None if origin.low is None else origin.low[one.item.item],
-            "quantity_high": None if origin.high is None else origin.high[one.item.item],
-        }
-        for one in results
-    ]
-
-
-def _list_routes(path: str, results: Results) -> Iterator[Record]:
-    """Yield the routes; one has a range only where simulation gave it one, as a range of no width would look exact."""
-    tables = results.route_tables
-    for one in tables.routes:
-        blocked = None if one.state is RouteState.NOT_KNOWN else one.blocked
-        ranged = blocked if results.main_basis == SIMULATED and blocked and blocked.low < blocked.high else None
-        chances: dict[str, float] = {}
-        for near in (near for at in one.segment_indices for near in tables.segments[at].pieces):
-            chance = 1.0 if near.falls_while_blocked is None else near.falls_while_blocked
-            chances[near.item] = max(chance, chances.get(near.item, 0.0))
-        likeliest = sorted((-chance, item) for item, chance in chances.items() if chance > 0)
-        yield {
-            "path": path,
-            "one": one,
-            "chance": blocked,
-            "range": ranged,
-            "occupants": count_people(tables, one),
-            "blockers": [item for _chance, item in likeliest[:MOST_BLOCKERS]],
-            "to_fill_in": say_missing(one.missing),
-        }
 
 
 def list_problems(path: str, problems: Sequence[Problem]) -> list[list[Any]]:

@@ -24,7 +24,6 @@ from typing import Any
 from assess.delivery.disk import find_digest
 from assess.errors import AssessError, Problem, WorkbookError
 from assess.i18n import fill
-from assess.model import Inventory
 from assess.motion.site_ground import GroundField
 from assess.portfolio.building_rows import build_skipped, build_tables
 from assess.portfolio.sources import Source
@@ -36,7 +35,7 @@ FOLDER = "parts"
 """Folder of the parts in the folder of the results."""
 ENDING = ".part"
 _COMPRESSION = 6
-_WRITING = ".writing-"
+WRITING = ".writing-"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,9 +99,14 @@ def run_task(task: Task) -> Summary:
     ground = None if task.ground is None else (type(task.ground).__name__, task.ground.file, task.ground.sha256)
     row = None if source.index is None else asdict(replace(source.index, line=0))  # a row may move in the index
     key = find_key(source.path, source.kind, content, row, task.settings.as_record(), ground, find_code())
-    lost = None
+    lost, is_kept = None, False
     part = read_part(task.out, key)
-    is_kept = _is_done(part, None if source.file is None else source.file.parent)
+    if part is not None and part.status == "assessed":  # else tried again: a file may be there, or memory free now
+        with suppress(OSError):  # the files that its workbook names are to be the same
+            is_kept = all(
+                source.file is not None and find_digest(source.file.parent / name) == digest
+                for name, digest in part.files.items()
+            )
     if part is None or not is_kept:
         part = _assess(task, key, data)
         try:
@@ -144,13 +148,21 @@ def _assess(task: Task, key: str, data: bytes | None) -> Part:
         sums = sum_draws(assessment, results)
         drawn = {"falls": sums.falls, "people_blocked": sums.people_blocked, "routes_blocked": sums.routes_blocked}
         known = {name: values.tolist() for name, values in drawn.items() if values is not None}
+        named: dict[str, str] = {}  # by the workbook, relative to its folder, with SHA-256
+        if source.file is not None:
+            folder = source.file.resolve().parent
+            named = {name.replace("\\", "/"): digest for name, digest in inventory.files.items()}
+            pictures = [inventory.building.logo, *(floor.plan.path for floor in inventory.floors if floor.plan)]
+            for path in filter(None, (*pictures, *(folder / name for name in inventory.photos))):
+                if digest := find_digest(path):
+                    named[path.relative_to(folder).as_posix()] = digest
         return Part(
             path=source.path,
             key=key,
             status="assessed",
             tables=build_tables(source, origin, inventory, results, sums),
             draws=known if len(known) == len(drawn) else {},
-            files={} if source.file is None else _list_files(inventory, source.file.resolve().parent),
+            files=dict(sorted(named.items())),
         )
     except WorkbookError as error:
         return _skip(source, key, "", problems=error.problems)
@@ -165,17 +177,6 @@ def _assess(task: Task, key: str, data: bytes | None) -> Part:
             _write_whole(task.out / trace, traceback.format_exc().encode("utf-8", "backslashreplace"))
         fault = fill("it cannot be assessed: an unforeseen error ({kind}) in this program.", kind=type(error).__name__)
         return _skip(source, key, fault, fill("Please report it, with the file {file}.", file=f"{trace}"))
-
-
-def _list_files(inventory: Inventory, folder: Path) -> Mapping[str, str]:
-    """Return the files that a workbook names, relative to its folder, with their SHA-256."""
-    named = {name.replace("\\", "/"): digest for name, digest in inventory.files.items()}
-    pictures = [inventory.building.logo, *(floor.plan.path for floor in inventory.floors if floor.plan)]
-    paths = [one for one in pictures if one is not None] + [folder / name for name in inventory.photos]
-    for path in paths:
-        if digest := find_digest(path):
-            named[path.relative_to(folder).as_posix()] = digest
-    return dict(sorted(named.items()))
 
 
 def find_key(*parts: object) -> str:
@@ -199,7 +200,7 @@ def write_part(out: Path, part: Part) -> None:
 def _write_whole(place: Path, data: bytes) -> None:
     """Write a file under another name and rename it; OSError if it cannot be written, and nothing is left then."""
     place.parent.mkdir(parents=True, exist_ok=True)
-    writing = place.with_name(f"{_WRITING}{os.getpid()}-{os.urandom(4).hex()}")
+    writing = place.with_name(f"{WRITING}{os.getpid()}-{os.urandom(4).hex()}")
     try:
         writing.write_bytes(data)
         writing.replace(place)
@@ -219,22 +220,3 @@ def read_part(out: Path, key: str) -> Part | None:
     is_whole = part.key == key and part.status != ""
     is_whole = is_whole and all(len(row) == width for name, width in widths.items() for row in part.rows(name))
     return part if is_whole else None
-
-
-def _is_done(part: Part | None, folder: Path | None) -> bool:
-    """Whether a part need not be computed again: it was assessed, and the files that its workbook names are the same.
-
-    What was skipped is tried again: a file may have been put there, or memory be free now.
-    """
-    if part is None or part.status != "assessed":
-        return False
-    with suppress(OSError):
-        return all(folder is not None and find_digest(folder / name) == found for name, found in part.files.items())
-    return False
-
-
-def sweep_parts(out: Path) -> None:
-    """Remove what killed processes have left half written; nobody else may write to the folder."""
-    for path in (out / FOLDER).glob(f"*/{_WRITING}*"):
-        with suppress(OSError):
-            path.unlink()

@@ -260,10 +260,17 @@ def draw_map(
         live = f' data-at="{one.at}" data-x="{x:.1f}" data-y="{y:.1f}" data-size="{one.size:g}"' if is_live else ""
         said = "" if is_live else f"<title>{escape(one.name)}</title>"
         parts.append(f'<g transform="translate({x:.1f} {y:.1f}){size}"{live}>{draw_sign(one.sign)}{said}</g>')
-    x, said = frame.wide - 28, _("N")
+    length, x, said = find_bar(frame), frame.wide - 28, _("N")
+    long, y = length * frame.scale, frame.high - 18
+    scale = (
+        _("{length} km", length=number(length, "g")) if length >= 1 else _("{length} m", length=f"{1000 * length:g}")
+    )
     parts += [
         "</g>",
-        _draw_scale(frame),
+        f'<g class="scale-bar" data-km="{length:g}">'
+        f'<rect x="10" y="{y - 22:.1f}" width="{long + 24:.1f}" height="32" fill="#ffffff" fill-opacity="0.85"/>'
+        f'<path d="M22 {y - 5:.1f}V{y:.1f}H{22 + long:.1f}V{y - 5:.1f}" fill="none" stroke="#1c1c1c" stroke-width="2"/>'
+        f'<text x="{22 + long / 2:.1f}" y="{y - 8:.1f}" text-anchor="middle" fill="#1c1c1c">{scale}</text></g>',
         f'<g class="north"><rect x="{x - 16:g}" y="8" width="32" height="48" fill="#ffffff" fill-opacity="0.85"/>'
         f'<path d="M{x:g} 12L{x + 8:g} 34L{x:g} 29L{x - 8:g} 34Z" fill="#1c1c1c"/>'
         f'<text x="{x:g}" y="51" text-anchor="middle" font-weight="bold" fill="#1c1c1c">{said}</text></g>',
@@ -365,19 +372,6 @@ def find_bar(frame: Frame) -> float:
     most = frame.wide / frame.scale / 4
     power = 10.0 ** math.floor(math.log10(most))
     return max(step * power for step in _STEPS if step * power <= most)
-
-
-def _draw_scale(frame: Frame) -> str:
-    length = find_bar(frame)
-    long, y = length * frame.scale, frame.high - 18
-    said = _("{length} km", length=number(length, "g")) if length >= 1 else _("{length} m", length=f"{1000 * length:g}")
-    box = f'<rect x="10" y="{y - 22:.1f}" width="{long + 24:.1f}" height="32" fill="#ffffff" fill-opacity="0.85"/>'
-    path = f"M22 {y - 5:.1f}V{y:.1f}H{22 + long:.1f}V{y - 5:.1f}"
-    return (
-        f'<g class="scale-bar" data-km="{length:g}">{box}'
-        f'<path d="{path}" fill="none" stroke="#1c1c1c" stroke-width="2"/>'
-        f'<text x="{22 + long / 2:.1f}" y="{y - 8:.1f}" text-anchor="middle" fill="#1c1c1c">{said}</text></g>'
-    )
 
 
 # ---------------------------------------------------------------- lines of equal PGA

@@ -74,15 +74,28 @@ def render_page(
     options = options or ReportOptions()
     with options.spoken():
         document = progress.wait_for(lambda: _build_document(city, background, isolines, is_live=True))
+        uses = sorted({words.cut(city.spell_use(row), 60) for row in city.ranked if row["use"]})
+        used = {row["inventory"] for row in city.ranked}
+        signs = {key: [(one.key, _(one.label)) for one, _count in list_legend(city, key)] for key in ("kind", "state")}
+        storeys = []
+        for low, high in STOREYS:
+            label = _("{low} to {high}", low=low, high=high) if high < STOREYS[-1][1] else _("{low} or more", low=low)
+            storeys.append((f"{low}-{high}", str(low) if low == high else label))
         more = {
             "data": progress.wait_for(lambda: write_data(city, repeat, indexed)),
-            "filters": _list_filters(city),
+            "filters": [
+                ("use", _("Use"), [(use, use) for use in uses]),
+                ("kind", _("Highest class"), signs["kind"]),
+                ("state", _("Routes"), signs["state"]),
+                ("inventory", _("Inventory"), [(one, say.name(one)) for one in INVENTORIES if one in used]),
+                ("storeys", _("Storeys"), storeys),
+            ],
             "map_views": [(key, _(view.label)) for key, view in VIEWS.items()] if list_points(city) else [],
         }
-        script = options.read("script/city.js")
         return render_document(
-            document, options, "city.css", script=script, template="city.html.j2", more=more, progress=progress
-        ).encode()
+            document, options, "city.css", script=options.read("script/city.js"), template="city.html.j2", more=more,
+            progress=progress,
+        ).encode()  # fmt: skip
 
 
 def render_summary(
@@ -266,24 +279,6 @@ def _show_map(
     yield blocks.Section([figure], kind, "map-drawing" if is_live else "map", "" if is_live else _("Map"))
 
 
-def _list_filters(city: City) -> list[tuple[str, str, list[tuple[str, str]]]]:
-    def say_storeys(low: int, high: int) -> str:
-        if low == high:
-            return str(low)
-        return _("{low} or more", low=low) if high >= STOREYS[-1][1] else _("{low} to {high}", low=low, high=high)
-
-    uses = sorted({words.cut(city.spell_use(row), 60) for row in city.ranked if row["use"]})
-    used = {row["inventory"] for row in city.ranked}
-    signs = {key: [(sign.key, _(sign.label)) for sign, _count in list_legend(city, key)] for key in ("kind", "state")}
-    return [
-        ("use", _("Use"), [(use, use) for use in uses]),
-        ("kind", _("Highest class"), signs["kind"]),
-        ("state", _("Routes"), signs["state"]),
-        ("inventory", _("Inventory"), [(one, say.name(one)) for one in INVENTORIES if one in used]),
-        ("storeys", _("Storeys"), [(f"{low}-{high}", say_storeys(low, high)) for low, high in STOREYS]),
-    ]
-
-
 def _list_ranking(city: City) -> list[blocks.Section]:
     """Return the head of the ranking, behind which the page has its filters, and the table that its script fills."""
     apart = _("Buildings of different inventories and bases stand in one list and are marked; their numbers are not "
@@ -393,25 +388,29 @@ def write_data(city: City, repeat: str, indexed: Collection[str] = ()) -> str:
     `repeat` is the command that assesses one building alone, with ``{path}`` in it; "" where there is none. `indexed`
     are the paths of the buildings of which an index fills in something.
     """
-
-    def list_cells(row: Row) -> list[str]:
-        """Return the cells of the ranking after the first, in its columns; the class is written by its sign."""
-        if row["status"] != "assessed":
-            return [str(row["use"] or ""), "", "", *("" for _at in range(6))]
-        inventory = say.name(row["inventory"])
-        basis = "" if row["basis"] == "simulated" else f", {say.name(row['basis'])}"
-        return [
-            words.cut(str(row["use"] or ""), 60), say.mark_own_motions(f"{inventory}{basis}", row), "",
-            say.say_whole(row["pieces"]), words.percent(find_share(row)), say.say_falls(row),
-            say.say_range(row["falls_p05"], row["falls_p95"]), say.say_people(row), say.say_blocked(row),
-        ]  # fmt: skip
-
-    def find_command(row: Row) -> str:
-        is_workbook = row["status"] == "assessed" and row["inventory"] == "surveyed"
-        if not repeat or not is_workbook or not row["path"].isprintable():
-            return ""
-        return repeat.replace("{path}", shlex.quote(row["path"]))
-
+    buildings = []
+    for row in city.ranked:
+        # the cells of the ranking after the first, in its columns; the class is written by its sign
+        cells = [str(row["use"] or ""), "", "", *("" for _at in range(6))]
+        command = ""
+        if row["status"] == "assessed":
+            basis = "" if row["basis"] == "simulated" else f", {say.name(row['basis'])}"
+            cells = [
+                words.cut(str(row["use"] or ""), 60),
+                say.mark_own_motions(f"{say.name(row['inventory'])}{basis}", row), "",
+                say.say_whole(row["pieces"]), words.percent(find_share(row)), say.say_falls(row),
+                say.say_range(row["falls_p05"], row["falls_p95"]), say.say_people(row), say.say_blocked(row),
+            ]  # fmt: skip
+            if repeat and row["inventory"] == "surveyed" and row["path"].isprintable():
+                command = repeat.replace("{path}", shlex.quote(row["path"]))
+        buildings.append({
+            "name": words.cut(city.name_building(row), LONGEST), "path": words.cut(row["path"], LONGEST),
+            "share": sign_of_share(row).key, "kind": sign_of_class(row).key, "state": sign_of_routes(row).key,
+            "use": words.cut(city.spell_use(row), 60), "inventory": row["inventory"] or "",
+            "basis": row["basis"] or "", "storeys": row["storeys"], "cells": cells,
+            "facts": [words.cut(text, LONGEST) for text in _list_facts(row)],
+            "command": command, "indexed": row["path"] in indexed,
+        })  # fmt: skip
     apart = {words.ANCHORED: "anchored", words.UNCONFIRMED: "apart-unconfirmed", words.BY_FORMULA: "apart-formula"}
     data = {
         "heads": [
@@ -421,24 +420,7 @@ def write_data(city: City, repeat: str, indexed: Collection[str] = ()) -> str:
             _("Falls with few and with many pieces (10 and 90 % quantities)"), _("People on blocked routes"),
             _("Falls that the work list avoids"), _("Known costs"),
         ],
-        "buildings": [
-            {
-                "name": words.cut(city.name_building(row), LONGEST),
-                "path": words.cut(row["path"], LONGEST),
-                "share": sign_of_share(row).key,
-                "kind": sign_of_class(row).key,
-                "state": sign_of_routes(row).key,
-                "use": words.cut(city.spell_use(row), 60),
-                "inventory": row["inventory"] or "",
-                "basis": row["basis"] or "",
-                "storeys": row["storeys"],
-                "cells": list_cells(row),
-                "facts": [words.cut(text, LONGEST) for text in _list_facts(row)],
-                "command": find_command(row),
-                "indexed": row["path"] in indexed,
-            }
-            for row in city.ranked
-        ],
+        "buildings": buildings,
         "tables": _pack_tables(city),
         "styles": {
             **dict(zip("○◇▲■", ("low", "medium", "high", "very-high"), strict=True)),
@@ -524,25 +506,21 @@ def _pack_tables(city: City) -> dict[str, Any]:
             place, row["detail"] or "",
         ]  # fmt: skip
 
-    def read_route(row: Row, _basis: str | None) -> list[str]:
-        return [row["route"] or "", say.label_state(row["state"]), say.say_probability(row),
-                say.say_whole(row["occupants"]), row["blockers"] or "", row["to_fill_in"] or ""]  # fmt: skip
-
-    def read_problem(row: Row, _basis: str | None) -> list[str]:
-        return [say.name(row["severity"]), say.say_spot(row), row["message"] or "", row["fix"] or ""]
-
-    piece_heads = [_("Item"), _("Floor"), _("Room"), _("What"), _("Size [cm]"), _("Pieces"), _("Class"), _("Chance"),
-                   _("Fix: place"), _("How to fix it")]  # fmt: skip
-    route_heads = [_("Route"), _("State"), _("Chance of a blockage"), _("People"), _("Pieces that may block it"),
-                   _("To fill in")]  # fmt: skip
-    problem_heads = [_("Severity"), _("Place"), _("What"), _("How to fix it")]
     pieces = {path: sorted(rows, key=order) for path, rows in city.pieces_of.items()}
     packed: dict[str, Any] = {}
     for name, heads, numeric, rows_of, read in (
-        ("pieces", piece_heads, [5, 7, 8], pieces, read_piece),
-        ("routes", route_heads, [2, 3], city.routes_of, read_route),
-        ("problems", problem_heads, [], city.problems_of, read_problem),
-    ):
+        ("pieces", [_("Item"), _("Floor"), _("Room"), _("What"), _("Size [cm]"), _("Pieces"), _("Class"), _("Chance"),
+                    _("Fix: place"), _("How to fix it")], [5, 7, 8], pieces, read_piece),
+        ("routes", [_("Route"), _("State"), _("Chance of a blockage"), _("People"), _("Pieces that may block it"),
+                    _("To fill in")], [2, 3], city.routes_of,
+         lambda row, _basis: [
+             row["route"] or "", say.label_state(row["state"]), say.say_probability(row),
+             say.say_whole(row["occupants"]), row["blockers"] or "", row["to_fill_in"] or "",
+         ]),
+        ("problems", [_("Severity"), _("Place"), _("What"), _("How to fix it")], [], city.problems_of,
+         lambda row, _basis: [say.name(row["severity"]), " ".join(str(row[at]) for at in ("sheet", "cell") if row[at]),
+                              row["message"] or "", row["fix"] or ""]),
+    ):  # fmt: skip
         known: list[dict[str, int]] = [{} for _head in heads]
         columns: list[list[int]] = [[] for _head in heads]
         starts, left = [0], []

@@ -73,7 +73,20 @@ def write_example_city(folder: Path, buildings: int = BUILDINGS) -> bool:
     if not is_filled or set(_find_digests(folder)) == names:
         with staging(folder.parent) as stage:
             made = stage / NEW
-            _write_city(made, city)
+            for one in city:
+                if one.path:
+                    (made / one.path).parent.mkdir(exist_ok=True)
+                    write_workbook(made / one.path, _fill_workbook(one), spare=10)
+            with (made / INDEX).open("w", encoding="utf-8", newline="") as file:
+                writer = csv.writer(file, lineterminator="\n")
+                writer.writerow(COLUMNS)
+                for one in city:  # of a building with a workbook its floor area alone, which the workbook does not hold
+                    known = (one.name, one.latitude, one.longitude, one.use, one.storeys, one.height)
+                    writer.writerow((one.path, *(("",) * len(known) if one.path else known), one.area, ""))
+            for name in (GRID, COAST):
+                shutil.copyfile(resources.city_file(name), made / name)
+            text = DRAWN["readme"].format(buildings=len(city), unsurveyed=sum(not one.path for one in city))
+            (made / README).write_text(text, encoding="utf-8", newline="\n")
             if not is_filled:
                 with moving():
                     if not folder.exists():
@@ -94,23 +107,6 @@ def _find_digests(folder: Path) -> dict[str, str | None]:
     """Return the digests of all files in a folder by their names, without those that the system hides."""
     found = [one for one in folder.rglob("*") if not (one.is_dir() or one.name.startswith("."))]
     return {one.relative_to(folder).as_posix(): find_digest(one) for one in found}
-
-
-def _write_city(folder: Path, city: list[Building]) -> None:
-    for one in city:
-        if one.path:
-            (folder / one.path).parent.mkdir(exist_ok=True)
-            write_workbook(folder / one.path, _fill_workbook(one), spare=10)
-    with (folder / INDEX).open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(COLUMNS)
-        for one in city:  # of a building with a workbook its floor area alone, which the workbook does not hold
-            known = (one.name, one.latitude, one.longitude, one.use, one.storeys, one.height)
-            writer.writerow((one.path, *(("",) * len(known) if one.path else known), one.area, ""))
-    for name in (GRID, COAST):
-        shutil.copyfile(resources.city_file(name), folder / name)
-    text = DRAWN["readme"].format(buildings=len(city), unsurveyed=sum(not one.path for one in city))
-    (folder / README).write_text(text, encoding="utf-8", newline="\n")
 
 
 def list_buildings(count: int) -> list[Building]:

@@ -88,7 +88,22 @@ def read_index(file: Path) -> tuple[IndexRow, ...]:
             raise InputError.about("the index is larger than {most:.0f} MB. Split it.", most=LARGEST_FILE / 1e6)
         if b"\0" in data or data.startswith((b"PK", b"\xff\xfe", b"\xfe\xff")):
             raise InputError.about("the index is not plain text. Save it as CSV UTF-8.")
-        return _read_rows(_split(decode(data)))
+        lines = _split(decode(data))
+        line, heading = next(lines, (0, []))
+        if not line:
+            raise InputError.about("the index is empty. Its first line holds the names of the columns.")
+        names = _read_heading(line, heading)
+        rows = list(islice(lines, MOST_ROWS + 1))
+        if not rows:
+            raise InputError.about("no building is listed below the headings.")
+        if len(rows) > MOST_ROWS:
+            raise InputError.about("more than {most:,} buildings are listed. Split the index.", most=MOST_ROWS)
+        faults: list[Text] = []
+        found = tuple(_read_row(number, names, cells, faults) for number, cells in rows)
+        if every := [*faults, *_list_repeated(found)]:
+            more = (fill("and {n:,} more.", n=len(every) - MOST_FAULTS),) if len(every) > MOST_FAULTS else ()
+            raise InputError(join("\n", (*every[:MOST_FAULTS], *more)))
+        return found
     except InputError as error:
         raise InputError(join(": ", (plain_line(file.name), error.message))) from None
 
@@ -115,25 +130,6 @@ def _split(text: str) -> Iterator[tuple[int, list[str]]]:
             raise InputError.about("line {line}: a cell is longer than {most:,} characters.", line=number, most=LONGEST)
         if any(cell.strip() for cell in cells):
             yield number, [cell.strip() for cell in cells]
-
-
-def _read_rows(lines: Iterator[tuple[int, list[str]]]) -> tuple[IndexRow, ...]:
-    line, heading = next(lines, (0, []))
-    if not line:
-        raise InputError.about("the index is empty. Its first line holds the names of the columns.")
-    names = _read_heading(line, heading)
-    faults: list[Text] = []
-    rows = list(islice(lines, MOST_ROWS + 1))
-    if not rows:
-        raise InputError.about("no building is listed below the headings.")
-    if len(rows) > MOST_ROWS:
-        raise InputError.about("more than {most:,} buildings are listed. Split the index.", most=MOST_ROWS)
-    found = tuple(_read_row(number, names, cells, faults) for number, cells in rows)
-    every = [*faults, *_list_repeated(found)]
-    if every:
-        more = (fill("and {n:,} more.", n=len(every) - MOST_FAULTS),) if len(every) > MOST_FAULTS else ()
-        raise InputError(join("\n", (*every[:MOST_FAULTS], *more)))
-    return found
 
 
 def _read_heading(line: int, heading: Sequence[str]) -> list[str]:

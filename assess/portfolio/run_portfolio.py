@@ -20,7 +20,7 @@ from assess.errors import InputError, OutputError, PdfUnavailableError, Problem
 from assess.i18n import fill
 from assess.motion.site_ground import GroundField
 from assess.portfolio.building_rows import list_problems
-from assess.portfolio.building_task import ENDING, FOLDER, Part, Summary, Task, read_part, sweep_parts
+from assess.portfolio.building_task import ENDING, FOLDER, WRITING, Part, Summary, Task, read_part
 from assess.portfolio.sources import Source, find_sources
 from assess.portfolio.table_schemas import STATUSES, TABLES
 from assess.progress import Listener, Progress, Report
@@ -98,11 +98,7 @@ def run_portfolio(
     * `ground`: a ShakeMap, or computed scenarios: they take the place of the ground motions of the workbooks.
     * `jobs`: processes, as many as there are processors by default: they do not change a result.
     * `scheduler`: address of a dask scheduler whose workers do the work.
-    * `formats`: some of `FORMATS`.
-    * `background`: of the map.
-    * `language`: code of the language of the reports.
     * `repeat`: command that assesses one building alone, with ``{path}`` in place of its workbook: the page shows it.
-    * `progress`: notified of how far the work is.
     * `cancel`: stops the work; what is done is kept for the next run.
 
     Raises InputError if a setting, the folder, the index or the scheduler cannot be used, or a format needs a package
@@ -202,8 +198,10 @@ def _reserving(out: Path) -> Iterator[None]:
     if not lock.take():
         raise OutputError.about("{folder} is in use: another run is writing to it.", folder=plain_line(str(out)))
     try:
-        if lock.is_held:
-            sweep_parts(out)
+        if lock.is_held:  # what killed processes have left half written
+            for path in (out / FOLDER).glob(f"*/{WRITING}*"):
+                with suppress(OSError):
+                    path.unlink()
         yield
     finally:
         lock.release()
@@ -241,7 +239,8 @@ def _assess_all(job: _Job, jobs: int, scheduler: str | None) -> dict[str, Summar
 def _write_output(job: _Job, summaries: Mapping[str, Summary]) -> "tuple[tuple[Path, ...], tuple[Path, ...], City]":
     """Write tables and reports; return the files, those that were removed, and the city.
 
-    Whatever it raises leaves all as it was; but PdfUnavailableError is raised once all else has been written.
+    What writes a format is imported only where it is wanted. Whatever it raises leaves all as it was; but
+    PdfUnavailableError is raised once all else has been written.
     """
     from assess.portfolio.city import City
     from assess.portfolio.city_tables import write_tables
@@ -253,10 +252,25 @@ def _write_output(job: _Job, summaries: Mapping[str, Summary]) -> "tuple[tuple[P
             folder = stage / NEW
             frames = write_tables(_list_parts(job, summaries), folder if "parquet" in job.formats else None)
             city = City(**frames, settings=job.settings, ground=_describe_ground(job.ground, frames["buildings"]))
-            try:
-                _write_reports(job, city, folder)
-            except PdfUnavailableError as error:
-                missing = error
+            if "xlsx" in job.formats:
+                from assess.portfolio.ranking_workbook import render_ranking
+
+                write_through(folder / FILES["xlsx"], render_ranking(city, options=job.options, progress=job.progress))
+            if {"html", "pdf"} & set(job.formats):
+                from assess.portfolio.city_map import list_isolines
+                from assess.portfolio.city_page import render_page, render_summary
+
+                common: dict[str, Any] = {"options": job.options, "progress": job.progress,
+                                          "isolines": list_isolines(city, job.ground)}  # fmt: skip
+            if "html" in job.formats:
+                indexed = {one.path for one in job.sources if one.index is not None and one.index.as_building()}
+                page = render_page(city, job.background, repeat=job.repeat, indexed=indexed, **common)
+                write_through(folder / FILES["html"], page)
+            if "pdf" in job.formats:
+                try:
+                    write_through(folder / FILES["pdf"], render_summary(city, job.background, **common))
+                except PdfUnavailableError as error:
+                    missing = error
             names = sorted(path.name for path in folder.iterdir())
             write_through(folder / DATA, _describe_run(job, city, folder, names))
             names.append(DATA)
@@ -292,27 +306,6 @@ def _list_parts(job: _Job, summaries: Mapping[str, Summary]) -> Iterator[Part]:
             changed = {"buildings": rows, "problems": [*part.rows("problems"), *notes]}
             part = replace(part, tables={**part.tables, **changed})
         yield part
-
-
-def _write_reports(job: _Job, city: "City", folder: Path) -> None:
-    """Write the reports, the PDF last; what writes a format is imported only where it is wanted."""
-    if "xlsx" in job.formats:
-        from assess.portfolio.ranking_workbook import render_ranking
-
-        write_through(folder / FILES["xlsx"], render_ranking(city, options=job.options, progress=job.progress))
-    if not {"html", "pdf"} & set(job.formats):
-        return
-    from assess.portfolio.city_map import list_isolines
-    from assess.portfolio.city_page import render_page, render_summary
-
-    common: dict[str, Any] = {"options": job.options, "progress": job.progress,
-                              "isolines": list_isolines(city, job.ground)}  # fmt: skip
-    if "html" in job.formats:
-        indexed = {one.path for one in job.sources if one.index is not None and one.index.as_building()}
-        page = render_page(city, job.background, repeat=job.repeat, indexed=indexed, **common)
-        write_through(folder / FILES["html"], page)
-    if "pdf" in job.formats:
-        write_through(folder / FILES["pdf"], render_summary(city, job.background, **common))
 
 
 def _describe_ground(ground: GroundField | None, buildings: Any) -> "RunGround | None":
