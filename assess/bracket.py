@@ -12,11 +12,10 @@ F_p = 0.4 S_DS I_p W (H_f/R_mu)(C_AR/R_po), at least 0.3 and at most 1.6 S_DS I_
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from assess.arrays import FloatArray
 from assess.motion.scenario import PROFILES
-
-FloatArray = NDArray[np.float64]
 
 LEAST, MOST = 0.3, 1.6
 """Limits of F_p over S_DS I_p W [-]."""

@@ -11,8 +11,6 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-CHOSEN = "NUMBA_CACHE_DIR"
-"""The environment variable that names another folder."""
 _OTHERS = stat.S_IWGRP | stat.S_IWOTH
 
 
@@ -27,14 +25,12 @@ def cache_folder() -> Path:
 
 
 def choose_folder(chosen: str | None = None) -> tuple[Path | None, str]:
-    """Return the folder that compiled code is kept in, and what is wrong with one that is not used.
+    """Return the folder that compiled code is kept in, None if none is safe, and what is wrong with one not used.
 
-    `chosen`: the folder that numba has been given, "" for none; by default what NUMBA_CACHE_DIR names.
-
-    * `folder`: The one that was chosen, else the user's own, which is made for the user alone; None if neither is safe.
-    * `fault`: "" where the first of them is used.
+    `chosen` is the folder that numba has been given, "" for none; by default what NUMBA_CACHE_DIR names. Where that is
+    not safe, it is the user's own, which is made for the user alone.
     """
-    named = os.environ.get(CHOSEN, "") if chosen is None else chosen
+    named = os.environ.get("NUMBA_CACHE_DIR", "") if chosen is None else chosen
     faults: list[str] = []
     for folder in (*((Path(named),) if named else ()), cache_folder()):
         fault = examine_folder(folder)

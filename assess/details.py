@@ -21,10 +21,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from assess.i18n import LANGUAGES, Text, fill, load_catalogue
+from assess.units import FORCE
 
-POUND_FORCE = 4.4482216152605
-"""[N]"""
-SCREW = 2 * 96 * POUND_FORCE
+SCREW = 2 * 96 * FORCE["lbf"]
 """Withdrawal of a No. 10 wood screw, 2 in of thread in spruce-pine-fir of G 0.42, by the NDS equation [N]."""
 LEAST_FIXINGS = 2
 """Brackets or straps a piece has at least: each to a stud of its own."""
@@ -32,14 +31,10 @@ LEAST_FIXINGS = 2
 
 @dataclass(frozen=True, slots=True)
 class Detail:
-    """A generic way to fix a piece.
+    """A generic way to fix a piece: how it is done, what is known against it, and where that is printed.
 
-    * `key`: By which results name it.
-    * `title`, `what`, `weakness`: In words: its name, how it is done, and what is known against it.
-    * `source`: Where that is printed.
-    * `fixing`: One of its fixings, with its capacity where one is printed.
-    * `capacity`: Of one fixing [N]; None where no source prints one.
-    * `is_at_base`: Whether it holds the piece at its base, where the lever of its fixings is the piece's breadth.
+    `capacity` is that of one fixing [N], None where no source prints one; `is_at_base`: it holds the piece at its base,
+    where the lever of its fixings is the piece's breadth.
     """
 
     key: str

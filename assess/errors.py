@@ -68,11 +68,8 @@ class FurnitureGap(Gap):
 class Correction:
     """A cell that was understood although it is not typed as its column asks.
 
-    * `sheet`, `cell`: Where: the sheet as the workbook calls it, and the address, ``H14``.
-    * `was`: What the cell shows.
-    * `value`: What belongs there: a number in the unit of its header, a text or a choice in the language of the
-      workbook; None for a cell that is to be blank.
-    * `why`: What was done, such as "the unit cm is in the header".
+    `was` is what it shows, `value` what belongs there: a number in the unit of its header, a text or a choice in the
+    language of the workbook, None for blank. `why` says what was done, such as "the unit cm is in the header".
     """
 
     sheet: str
@@ -109,11 +106,7 @@ class ModelError(InputError):
 
 
 class WorkbookError(InputError):
-    """The workbook cannot be used; `problems` holds all that was found, errors first.
-
-    `language` is the code of the workbook's language, as far as it was known. `is_incomplete` tells whether nothing is
-    wrong with what is filled in: every error is a `Gap`.
-    """
+    """The workbook, in the language of this code, cannot be used; `problems` holds all that was found, errors first."""
 
     def __init__(self, problems: Sequence[Problem], language: str = "en") -> None:
         self.language = language

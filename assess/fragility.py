@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from assess.arrays import FloatArray
 from assess.i18n import Text, fill
 
-FloatArray = NDArray[np.float64]
 Kind = Literal["fitted", "none fell", "all fell", "one level", "separated", "not rising"]
 
 MOST_MISFIT = 0.05
@@ -40,14 +40,10 @@ WHY: Mapping[Kind, Text] = {
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Fragility:
-    """How many fell at each level, and the lognormal fitted to it.
+    """How many `fallen` of `trials` at each of the rising `levels` of one intensity measure, (n,), and the lognormal.
 
-    * `levels` (n,): rising levels of the intensity measure, above 0, in any one unit.
-    * `fallen`, `trials` (n,): how many fell at each, and of how many, above 0.
-    * `kind`: "fitted", or why there is no fit: a key of `WHY`.
-    * `median`: level at which half fall, in the unit of `levels`; NaN where nothing was fitted.
-    * `dispersion`: logarithmic standard deviation [-]; NaN likewise.
-    * `misfit`: largest |fitted - observed share| over the levels [-]; NaN likewise.
+    Its median (in the unit of `levels`), dispersion and misfit, the largest difference from a share, are NaN where
+    nothing was fitted; `kind` tells why: a key of `WHY`.
     """
 
     levels: FloatArray

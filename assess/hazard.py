@@ -12,16 +12,14 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from assess.arrays import FloatArray
 from assess.errors import InputError
 from assess.i18n import Text, fill, join, nfill
 from assess.motion.formats.plain_csv import decode, is_comment
 from assess.resources import read_input
 from assess.text import split_text
 from assess.units import GRAVITY
-
-FloatArray = NDArray[np.float64]
 
 COLUMNS = ("pga_g", "annual_rate")
 SHORTEST_TIME, LONGEST_TIME = 0.01, 1e6
@@ -51,11 +49,8 @@ Line = tuple[int, list[str]]
 class HazardCurve:
     """Annual rates at which peak ground accelerations are exceeded at a site.
 
-    * `file`: as shown to people.
-    * `pga` (n,): rising peak ground accelerations, above 0 [m/s2]; n is 2 or more.
-    * `rate` (n,): annual rate of exceedance of each, above 0, nowhere rising [1/year].
-    * `latitude`, `longitude`: of the site of the curve [deg], where the file tells.
-    * `distance`: from there to the building [m], where both are known.
+    * `pga`, `rate` (n,): rising accelerations [m/s2] and how often each is exceeded [1/year], above 0, nowhere rising.
+    * `latitude`, `longitude`, `distance`: of its site [deg], and from there to the building [m], as far as known.
     * `notes`: what reading left out or found unusual.
     """
 
@@ -79,14 +74,6 @@ class HazardCurve:
             return self.notes
         far = fill("the site of the hazard curve is {km:.0f} km from the building", km=self.distance / 1000)
         return (*self.notes, far)
-
-
-def read_hazard(path: Path, *, latitude: float | None = None, longitude: float | None = None) -> HazardCurve:
-    """Read the hazard curve of a file, as `parse_hazard`.
-
-    Raises InputError if it cannot be read or used; the message names the file, and the line where there is one.
-    """
-    return parse_hazard(read_bytes(path), path.name, latitude=latitude, longitude=longitude)
 
 
 def read_bytes(path: Path) -> bytes:

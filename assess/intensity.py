@@ -86,16 +86,11 @@ def invert_jma(intensity: float) -> float:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Shaking:
-    """A class of intensity as the motion of the ground.
+    """A class of intensity (`choice` as the workbook offers it, `name` in short) as the motion of the ground.
 
-    * `choice`, `name`: The class as the workbook offers it, and in short.
-    * `intensity`: What it is taken for: MMI, or JMA instrumental intensity.
-    * `pga`, `pgv`: Medians [m/s2], [m/s].
-    * `scatter`: Standard deviation of ln PGV given the class, rounded up to 0.01 [-].
-    * `sources`: The relations in short.
-    * `references`: The relations in full.
-    * `is_derived`: Whether PGA follows from PGV, by the ratio that is drawn.
-    * `is_open`: Whether the class has no upper limit.
+    `intensity` is what it is taken for, MMI or JMA; `pga` and `pgv` are medians [m/s2], [m/s], `scatter` the standard
+    deviation of ln PGV given the class, rounded up to 0.01. `is_derived`: PGA follows from PGV, by the ratio that is
+    drawn; `is_open`: the class has no upper limit.
     """
 
     choice: str

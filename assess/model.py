@@ -68,14 +68,12 @@ def split_names(text: str | None) -> list[str]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Building:
-    """The building and the earthquake; a blank text or None where the workbook says nothing.
+    """The building and the earthquake, in SI units; a blank text or None where the workbook says nothing.
 
-    Lengths in m, `period` in s, accelerations in m/s2, velocities in m/s, `azimuth_deg` clockwise from north,
-    `latitude` and `longitude` in degrees, north and east positive. `structure` is one of `STRUCTURES`, `shaking` a key
-    of `assess.intensity.SHAKINGS`, `class_by` one of `assess.settings.CLASS_BY`; `shakemap` and `hazard` name files: of
-    the grid of a ShakeMap, and of the curve. `motion_uncertainty` is a standard deviation of the natural logarithm of
-    PFA [-], `piece_uncertainty` whether pieces vary from one simulated earthquake to the next; None where blank.
-    `cells` tells in which cell of the sheet a field stands.
+    `azimuth_deg` is clockwise from north, `latitude` and `longitude` in degrees, north and east positive. `structure`
+    is one of `STRUCTURES`, `shaking` a key of `assess.intensity.SHAKINGS`; `shakemap` and `hazard` name files.
+    `motion_uncertainty` is a standard deviation of ln PFA [-], `piece_uncertainty` whether pieces vary from one
+    simulated earthquake to the next. `cells` tells in which cell of the sheet a field stands.
     """
 
     building: str = ""
@@ -132,26 +130,16 @@ class FloorRecord:
     """One recorded motion that a floor names, referred to by the hash of its file.
 
     It pickles without its waveform, unless it comes from no file; two are equal where their hashes and channels are.
-
-    * `name`: The text of the floor's cell (one of those split by ;).
-    * `record`: The waveform, once it has been read.
-    * `file`, `channel`: The file as the cell names it, and its channel; "" for the only one.
-    * `sha256`: Hash of the file's bytes; "" where the waveform comes from no file.
-    * `path`: Where the file is, if it is in a folder.
+    `name` is the text of the floor's cell (one of those split by ;), `file` and `channel` ("" for the only one) as it
+    names them, `sha256` "" where the waveform comes from no file, `path` where the file is, if it is in a folder.
     """
 
     __slots__ = ("_record", "channel", "file", "name", "path", "sha256")
 
     def __init__(
-        self,
-        *,
-        name: str,
-        record: Record | None = None,
-        file: str = "",
-        channel: str = "",
-        sha256: str = "",
+        self, *, name: str, record: Record | None = None, file: str = "", channel: str = "", sha256: str = "",
         path: Path | None = None,
-    ) -> None:
+    ) -> None:  # fmt: skip
         self.name, self.file, self.channel, self.sha256, self.path = name, file, channel, sha256, path
         self._record = record
 
@@ -214,13 +202,9 @@ def _parse_checked(data: bytes, file: str, sha256: str) -> tuple[Record, ...]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FloorPlan:
-    """A plan as it lies under the pieces of a floor.
+    """A plan as it lies under the pieces of a floor: its lower left corner and sides [m], turned about that corner.
 
-    * `path`: The user's file.
-    * `content`: What is drawn of it: a grey JPEG; or, if `is_lines`, what `assess.plans.linework.unpack` reads.
-    * `left`, `bottom`: Where its lower left corner lies [m].
-    * `width`, `height`: Its sides [m].
-    * `turn_deg`: By how much it is turned about that corner, anticlockwise.
+    `content` is a grey JPEG; or, if `is_lines`, what `assess.plans.linework.unpack` reads. `turn_deg`: anticlockwise.
     """
 
     path: Path
@@ -263,16 +247,13 @@ class Floor:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Item:
-    """One row of furniture. Sizes, positions and distances in m; `angle_deg` anticlockwise from X to Breadth.
+    """One row of furniture. Lengths in m, `weight` in kg, `bracket_capacity` in N; None where blank.
 
-    `weight` is in kg, `bracket_height` in m above the floor, `bracket_capacity` in N; None where blank.
-
-    `centre_of_gravity` is its height above the floor as a share of the piece's height [-]. `against_wall`: whether one
-    of its long sides stands against a wall, None where that is not known. `sizes_from` is one of `SIZES_FROM`.
-    `assumed` names the fields that were blank in the workbook and were filled in: sizes, weight and centre of
-    gravity from the catalogue, the axis from the angle. A blank `friction` is the building's: see `Inventory.complete`.
-    `extra` holds what stood in columns that `assess` does not know; `more` the values of columns of the schema that
-    have no field here, since nothing is computed with them.
+    `angle_deg` is anticlockwise from X to Breadth, `bracket_height` above the floor, `centre_of_gravity` its height as
+    a share of the piece's [-]; `against_wall`: whether one of its long sides stands against a wall. `assumed` names the
+    fields that were blank and were filled in: sizes, weight and centre of gravity from the catalogue, the axis from the
+    angle. A blank `friction` is the building's: see `Inventory.complete`. `extra` holds what stood in columns that
+    `assess` does not know; `more` the values of columns of the schema that nothing is computed with.
     """
 
     row: int
@@ -452,7 +433,8 @@ class Inventory:
         given = {_file_key(name): data for name, data in files.items()}
 
         def load(one: FloorRecord) -> FloorRecord:
-            return one.with_bytes(given[_file_key(one.file)]) if one.sha256 and _file_key(one.file) in given else one
+            data = given.get(_file_key(one.file)) if one.sha256 else None
+            return one if data is None else one.with_bytes(data)
 
         floors = (
             replace(floor, records={axis: tuple(map(load, ones)) for axis, ones in floor.records.items()})

@@ -21,12 +21,10 @@ _Found = TypeVar("_Found")
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """How far a stage is.
+    """How far a stage, such as "reading" or "motions", is: the `share` that is done [-] is 1.0 once at its end.
 
-    * `stage`: Its key: "reading", "motions", "routes", "rendering" and the like.
-    * `share`: Share that is done [-]; 1.0 once at its end.
-    * `detail`: What is worked on, in plain English: "121 rows on 4 floors".
-    * `seconds_left`: Estimate of the time left in this stage [s]; None while too little is done.
+    `detail` is what is worked on, in plain English: "121 rows on 4 floors"; `seconds_left` is an estimate for this
+    stage [s], None while too little is done.
     """
 
     stage: str
@@ -42,9 +40,7 @@ class Progress:
     """Passes reports on to a listener, and raises `CancelledError` in the work once `cancel` is set.
 
     It may be used from several threads at once. Work calls `check` at least every 0.2 s, or goes through `wait_for`.
-
-    * `listener`: Called with each `Report`, from whichever thread does the work, never from two at once.
-    * `cancel`: Set by the caller, from any thread, to stop the work.
+    The listener is called from whichever thread does the work, never from two at once.
     """
 
     def __init__(self, listener: Listener | None = None, cancel: Event | None = None) -> None:

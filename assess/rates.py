@@ -20,14 +20,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from assess.arrays import FloatArray
 from assess.fragility import Fragility, lognormal_chance
 from assess.hazard import HazardCurve
 from assess.i18n import Text, fill
 from assess.units import GRAVITY
-
-FloatArray = NDArray[np.float64]
 
 MOST_OUTSIDE = 0.05
 """Share of a rate [-] above which it is remarked that it comes, or could come, from outside the curve."""
@@ -39,11 +38,9 @@ REACH = 10.0
 class AnnualRate:
     """How often a year, and how much of it the ends of the hazard curve decide.
 
-    * `rate`: [1/year]: all that the curve holds, and what lies beyond its last point at the chance there.
-    * `most`: the same if all beyond the last point made it fall [1/year].
-    * `beyond`: share of `rate` that lies beyond the last point [-].
-    * `below`: share that would be added below the first point, if the curve's first power law went on for a decade [-]
-      of the sum; it is not counted in `rate`.
+    * `rate` [1/year]: all that the curve holds, and what lies beyond its last point at the chance there (the share
+      `beyond`); `most` if all beyond it made it fall.
+    * `below`: share of the sum that the curve's first power law would add, if it went on for a decade; not in `rate`.
     """
 
     rate: float

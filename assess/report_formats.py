@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 class Format:
     """A format of reports.
 
-    * `key`, `file`: what it is called, and the name of its file.
-    * `is_default`: whether it is written where no format is named.
     * `edition`: of a PDF, which is begun before all others and written last, as it carries results.json.
     * `needs`: packages beyond those of every report, by the modules that they bring, and `extra` which brings them.
     """

@@ -52,16 +52,12 @@ class Field:
     * `source`: Attributes that lead from the row to its value, ``governing.motion.pfa_g``; by default the key. What is
       behind a None is None; an entry of a mapping is named like an attribute, one of a tuple by its number.
     * `path`: Its place in a record of results.json; by default ``(key,)``.
-    * `label`, `short`, `unit`, `format`: Heading in reports without the unit, a shorter one for the lists of pages, the
-      unit, and how Excel shows it.
-    * `width`: Width of its column in Excel, in characters.
-    * `kind`, `is_optional`, `choices`: What it may hold, and whether it may be None; a field of a group, whether it may
-      be where the group is there.
+    * `label`, `short`: Heading in reports without the unit, and a shorter one for the lists of pages.
+    * `format`, `width`: How Excel shows it, and the width of its column there, in characters.
+    * `is_optional`: Whether it may be None; a field of a group, whether it may be where the group is there.
     * `is_blank_unknown`: Whether "" stands for what is unknown.
-    * `shows`: Where it is shown.
-    * `help`: What it means, for the schema and the documentation.
-    * `records`: The fields of the rows within the row, of kind "records".
-    * `line`: What items.csv says of each of these: a text with their keys in braces.
+    * `records`, `line`: The fields of the rows within the row, of kind "records", and what items.csv says of each: a
+      text with their keys in braces.
     * `flat`: From its value to the one of items.csv, where that differs.
     """
 

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from assess.errors import InputError
-from assess.hazard import find_distance, parse_hazard, read_hazard
+from assess.hazard import find_distance, parse_hazard
 from assess.i18n import Text
 from assess.units import GRAVITY as G
+from tests.hazards import read_hazard
 
 DATA = Path(__file__).parent / "data" / "hazard"
 CASE_33, CASE_44 = (DATA / f"oq-case{number}-hazard_curve-mean-PGA.csv" for number in (33, 44))

@@ -10,10 +10,11 @@ from scipy.integrate import quad
 from scipy.stats import norm
 
 from assess.fragility import fit_fragility, lognormal_chance
-from assess.hazard import HazardCurve, read_hazard
+from assess.hazard import HazardCurve
 from assess.i18n import Text
 from assess.rates import AnnualRate, evaluate_rate, integrate_lognormal, integrate_table, list_remarks
 from assess.units import GRAVITY as G
+from tests.hazards import read_hazard
 
 DATA = Path(__file__).parent / "data" / "hazard"
 K0, K = 2.13038e-4, 2.5

@@ -44,10 +44,6 @@ Start here:
 assess COMMAND --help shows the options of a command, with examples.
 """
 """What stands below the list of commands."""
-ONE_LINE = "1000"
-"""Width at which typer does not break the help of an option that it hands to a shell, which would lose the rest."""
-GARBAGE = 50_000
-"""New objects after which Python looks for cycles: a short process makes many rows and no cycles worth looking for."""
 
 
 def main() -> None:
@@ -57,13 +53,13 @@ def main() -> None:
     an exit status, and no traceback. A blank word is refused: as a path it would mean the folder that one is in.
     """
     answer_signals()
-    gc.set_threshold(GARBAGE)
+    gc.set_threshold(50_000)  # a short process makes many rows, and no cycles worth looking for
     typed = sys.argv[1] if len(sys.argv) > 1 else ""
     if ASKED in os.environ:  # the command in the line that is to be completed, if it is typed to its end
         line = next((os.environ[name] for name in TYPED if os.environ.get(name)), "")
         words = line.split()
         typed = words[1] if len(words) > 2 or (len(words) == 2 and line[-1].isspace()) else ""
-        os.environ["COLUMNS"] = ONE_LINE
+        os.environ["COLUMNS"] = "1000"  # a shell would lose the help of an option after a line break
     app = build_app([typed] if typed in list_names() else ())
     if (blank := find_blank(sys.argv[1:])) is not None:
         print_error(f"{blank} is blank: fill it in, or leave it out.")

@@ -19,8 +19,6 @@ from assess.version import __version__
 ORDER = 9
 EXAMPLES = ("assess doctor", "assess doctor > doctor.txt")
 
-DEVELOPMENT = "dev"
-"""The extra that only developers need; it is not examined."""
 FONTS = 8
 """Fonts of the reports."""
 _REQUIREMENT = re.compile(
@@ -87,7 +85,7 @@ def list_requirements() -> list[Requirement]:
     found: dict[str, Requirement] = {}
     for line in lines:
         parts = _REQUIREMENT.match(line)
-        if parts and parts["extra"] != DEVELOPMENT:
+        if parts and parts["extra"] != "dev":  # that only developers need
             one = Requirement(parts["name"], parts["least"] or "", parts["extra"] or "")
             found.setdefault(one.name.lower(), one)  # two extras may need the same package
     return list(found.values())

@@ -58,7 +58,6 @@ NOTES = (
 """What ends the text: always, where values are inserted, and where a wide step has a jump."""
 
 
-@dataclass(frozen=True, eq=False)
 class Verdict:
     """What a sweep comes to, at the values of PFA that were evaluated; a value is None where there is none [g].
 
@@ -67,16 +66,30 @@ class Verdict:
     anchors fail this may be at a smaller value. `reaching` counts the routes that reach the limit at any value.
     """
 
-    fragility: Fragility
-    pfa_g: Sequence[float]
-    evaluated: list[RouteFragility]
-    not_evaluated: list[RouteFragility]
-    below_up_to_g: float | None
-    reached_at_g: float | None
-    first: list[RouteFragility]
-    anchored_at_g: float | None
-    anchored: list[RouteFragility]
-    reaching: int
+    def __init__(self, fragility: Fragility, pfa_g: Sequence[float]) -> None:
+        def reach(chances: Sequence[Chance] | None) -> int | None:
+            """Return the number of the first value at which a chance is not below the limit."""
+            return next((at for at, one in enumerate(chances or ()) if one.probability >= fragility.limit), None)
+
+        self.fragility, self.pfa_g = fragility, pfa_g
+        self.evaluated: list[RouteFragility] = []
+        self.not_evaluated: list[RouteFragility] = []
+        for one in fragility.routes:
+            is_judged = one.is_evaluated and (not one.unevaluated or reach(one.blocked) is not None)
+            (self.evaluated if is_judged else self.not_evaluated).append(one)
+        reached = [(reach(one.blocked), one) for one in self.evaluated]
+        failed = [(reach(one.if_anchors_fail), one) for one in self.evaluated]
+        at, early = (min((n for n, _one in ways if n is not None), default=None) for ways in (reached, failed))
+        first = [one for n, one in reached if n is not None and n == at]
+        self.first = sorted(first, key=lambda one: -one.blocked[at or 0].probability)
+        self.reaching = sum(n is not None for n, _one in reached)
+        if early is not None and at is not None and early >= at:
+            early = None
+        self.anchored = [one for n, one in failed if n is not None and n == early]
+        self.anchored_at_g = None if early is None else pfa_g[early]
+        last = len(pfa_g) - 1 if at is None else at - 1
+        self.below_up_to_g = pfa_g[last] if last >= 0 and self.evaluated else None
+        self.reached_at_g = None if at is None else pfa_g[at]
 
     @property
     def lower_bounds(self) -> list[str]:
@@ -151,40 +164,6 @@ class Verdict:
         return " ".join(said)
 
 
-def judge(fragility: Fragility, pfa_g: Sequence[float]) -> Verdict:
-    """Return what a sweep comes to at its values of PFA [g]."""
-
-    def reach(chances: Sequence[Chance] | None) -> int | None:
-        """Return the number of the first value at which a chance is not below the limit."""
-        return next((at for at, one in enumerate(chances or ()) if one.probability >= fragility.limit), None)
-
-    def find_first(ways: Mapping[int, int | None]) -> tuple[int | None, list[RouteFragility]]:
-        """Return the first of all these numbers, and the routes of it."""
-        early = min((at for at in ways.values() if at is not None), default=None)
-        return early, [evaluated[place] for place, at in ways.items() if at is not None and at == early]
-
-    evaluated: list[RouteFragility] = []
-    others: list[RouteFragility] = []
-    for one in fragility.routes:
-        is_judged = one.is_evaluated and (not one.unevaluated or reach(one.blocked) is not None)
-        (evaluated if is_judged else others).append(one)
-    reached = {place: reach(one.blocked) for place, one in enumerate(evaluated)}
-    at, first = find_first(reached)
-    early, anchored = find_first({place: reach(one.if_anchors_fail) for place, one in enumerate(evaluated)})
-    if early is None or (at is not None and early >= at):
-        early, anchored = None, []
-    last = len(pfa_g) - 1 if at is None else at - 1
-    return Verdict(
-        fragility, pfa_g, evaluated, others,
-        below_up_to_g=pfa_g[last] if last >= 0 and evaluated else None,
-        reached_at_g=None if at is None else pfa_g[at],
-        first=sorted(first, key=lambda one: -one.blocked[at or 0].probability),
-        anchored_at_g=None if early is None else pfa_g[early],
-        anchored=anchored,
-        reaching=sum(place is not None for place in reached.values()),
-    )  # fmt: skip
-
-
 def _name(names: Sequence[str], most: int) -> str:
     return words.name_first([_quote(name) for name in names], most)
 
@@ -225,7 +204,7 @@ class Sweep:
     @cached_property
     def verdict(self) -> Verdict:
         """Up to which PFA every route stays below the limit, and which one first does not."""
-        return judge(self.fragility, self.pfa_g)
+        return Verdict(self.fragility, self.pfa_g)
 
     def describe(self) -> dict[str, Any]:
         """Return the document of `assess routes --json`."""

@@ -41,8 +41,6 @@ from assess.workbook.schema import BUILDING, ITEMS
 
 APART = 0.01
 """Degrees, some 1 km, by which a place of the index may differ from that of the workbook."""
-ROUGH = 0.01
-"""Share by which a height of the index may differ."""
 
 
 def read_building(source: Source, data: bytes | None, ground: GroundField | None) -> tuple[Origin, Inventory]:
@@ -118,7 +116,7 @@ _ALIKE: Mapping[str, Callable[[Any, Any], bool]] = {
     "longitude": _is_near,
     "use": lambda one, other: key(spell_use(one)) == key(spell_use(other)),
     "storeys": lambda one, other: bool(one == other),
-    "height": lambda one, other: math.isclose(one, other, rel_tol=ROUGH),
+    "height": lambda one, other: math.isclose(one, other, rel_tol=0.01),
 }
 """Whether the index and the workbook mean the same, by field of Building."""
 
@@ -138,7 +136,6 @@ USES: Mapping[str, tuple[str, ...]] = {
     "laboratory": ("laboratory", "laboratories", "research laboratory"),
 }
 """How an index names the occupancies of P-58; names of the sheet Building in other languages count as well."""
-_SOURCE = "FEMA P-58 normative quantities"
 
 
 class Quantity(NamedTuple):
@@ -204,7 +201,7 @@ def build_assumed(row: IndexRow) -> tuple[Origin, Mapping[str, Sequence[Mapping[
                 items.append({
                     "item": name, "floor": str(level), "description": f"{kind.piece} (inventory assumed)",
                     "type": kind.type, "quantity": one.median, **kind.sizes,
-                    "notes": f"inventory assumed: {_SOURCE}; {one.low} to {one.high}",
+                    "notes": f"inventory assumed: FEMA P-58 normative quantities; {one.low} to {one.high}",
                 })  # fmt: skip
     rows: dict[str, Sequence[Mapping[str, Any]]] = {
         "Building": [{"building": row.building or row.path, **row.as_building(), "height": height}],

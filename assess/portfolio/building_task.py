@@ -34,7 +34,6 @@ from assess.version import find_code
 FOLDER = "parts"
 """Folder of the parts in the folder of the results."""
 ENDING = ".part"
-_COMPRESSION = 6
 WRITING = ".writing-"
 
 
@@ -194,7 +193,7 @@ def write_part(out: Path, part: Part) -> None:
     """Write a part; OSError if it cannot be written."""
     record = {name: getattr(part, name) for name in Part.__slots__}
     text = json.dumps(record, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-    _write_whole(find_place(out, part.key), gzip.compress(text.encode("utf-8", "replace"), _COMPRESSION, mtime=0))
+    _write_whole(find_place(out, part.key), gzip.compress(text.encode("utf-8", "replace"), compresslevel=6, mtime=0))
 
 
 def _write_whole(place: Path, data: bytes) -> None:

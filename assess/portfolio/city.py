@@ -17,8 +17,8 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from assess.arrays import FloatArray
 from assess.i18n import Text, fill
 from assess.portfolio.table_schemas import CLASS_COLUMNS, INVENTORIES, MADE_UP, STATE_COLUMNS
 from assess.results import CANNOT_ROCK
@@ -26,8 +26,6 @@ from assess.risk import NORMAL_95, RiskClass, find_ends, wilson_interval
 from assess.rocking.draws import name_number
 from assess.route_results import RouteState
 from assess.settings import Settings
-
-FloatArray = NDArray[np.float64]
 
 FEW = 10
 """Draws with anything in them below which the normal distribution of a mean is not relied on."""

@@ -31,7 +31,6 @@ TRIANGLE = "M0-6.5 6.5 5.2-6.5 5.2Z"
 SQUARE = "M-5.4-5.4H5.4V5.4H-5.4Z"
 CROSS = "M-5-5 5 5M5-5-5 5"
 TICK = "M-5 0-1.5 4 5-5"
-_INK = "#3a4045"
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +60,7 @@ _SHAPES = {
     RiskClass.LOW: CIRCLE, RiskClass.MEDIUM: DIAMOND, RiskClass.HIGH: TRIANGLE, RiskClass.VERY_HIGH: SQUARE,
 }  # fmt: skip
 BY_CLASS: Mapping[str, Sign] = {
-    "skipped": Sign("skipped", "×", _INK, CROSS, 0, fill("not assessed"), is_open=True),
+    "skipped": Sign("skipped", "×", "#3a4045", CROSS, 0, fill("not assessed"), is_open=True),
     "none": Sign("none", "–", "#ffffff", "M-5-1.5H5V1.5H-5Z", 1, fill("no pieces")),
     "anchored": Sign("anchored", ANCHORED, ANCHORED_FILL, CIRCLE, 2, fill("all pieces anchored")),
     "by-formula": Sign("by-formula", BY_FORMULA, APART_FILL, DIAMOND, 3, fill("by formula only"), is_dashed=True),

@@ -518,8 +518,7 @@ def _pack_tables(city: City) -> dict[str, Any]:
              say.say_whole(row["occupants"]), row["blockers"] or "", row["to_fill_in"] or "",
          ]),
         ("problems", [_("Severity"), _("Place"), _("What"), _("How to fix it")], [], city.problems_of,
-         lambda row, _basis: [say.name(row["severity"]), " ".join(str(row[at]) for at in ("sheet", "cell") if row[at]),
-                              row["message"] or "", row["fix"] or ""]),
+         lambda row, _basis: [say.name(row["severity"]), say.say_spot(row), row["message"] or "", row["fix"] or ""]),
     ):  # fmt: skip
         known: list[dict[str, int]] = [{} for _head in heads]
         columns: list[list[int]] = [[] for _head in heads]

@@ -36,7 +36,6 @@ WINDOW = 8
 CONNECTING, JOINING = 10.0, 30.0
 """Times [s] that the scheduler, and its first worker, are waited for."""
 _ASKED_EVERY = 0.5
-_RETRIES = 2
 _PROBE = ".probe-"
 _ADDRESS = re.compile(
     r"(?:(?:tcp|tls|ucx|wss?)://)?(?:\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9][A-Za-z0-9._-]*):(\d{1,5})", re.ASCII
@@ -268,7 +267,7 @@ def _hand_over(
                 task = left.popleft()
                 name = hashlib.sha256(f"{task.out}\n{task.source.path}".encode()).hexdigest()
                 key = f"assess-{name[:20]}-{os.getpid()}"  # no other run on the scheduler has it
-                running[client.submit(run_checked, site, task, key=key, pure=False, retries=_RETRIES)] = task
+                running[client.submit(run_checked, site, task, key=key, pure=False, retries=2)] = task
             # an answer is lost with the worker that held it: the scheduler has the task done again
             while not (done := [future for future in running if future.status not in ("pending", "lost")]):
                 progress.check()

@@ -77,10 +77,6 @@ def _write_summary(city: City, pen: Pen, page: Any) -> None:
 
 
 def _list_sums() -> list[tuple[str, Callable[[Group], float | None], str]]:
-    def if_known(name: str) -> Callable[[Group], float | None]:
-        read = attrgetter(name)
-        return lambda group: read(group) if group.people_known else None
-
     return [
         (_("Buildings"), attrgetter("buildings"), COUNT),
         (_("Pieces"), attrgetter("pieces"), COUNT),
@@ -102,9 +98,21 @@ def _list_sums() -> list[tuple[str, Callable[[Group], float | None], str]]:
         (_("Expected falls with many pieces (90 % quantities)"), attrgetter("falls_high_inventory"), SUM),
         (_("Falls that the work lists avoid"), attrgetter("falls_avoided"), SUM),
         (_("People on routes whose state is known"), attrgetter("people_known"), COUNT),
-        (_("Expected people on blocked routes"), if_known("people.expected"), SUM),
-        (_("People that 5 % of the earthquakes do not exceed"), if_known("people.low"), COUNT),
-        (_("People that 95 % of the earthquakes do not exceed"), if_known("people.high"), COUNT),
+        (
+            _("Expected people on blocked routes"),
+            lambda group: group.people.expected if group.people_known else None,
+            SUM,
+        ),
+        (
+            _("People that 5 % of the earthquakes do not exceed"),
+            lambda group: group.people.low if group.people_known else None,
+            COUNT,
+        ),
+        (
+            _("People that 95 % of the earthquakes do not exceed"),
+            lambda group: group.people.high if group.people_known else None,
+            COUNT,
+        ),
         (_("People on routes whose state is not known"), attrgetter("people_not_known"), COUNT),
         (_("Routes open"), lambda group: group.routes[RouteState.OPEN], COUNT),
         (_("Routes doubtful"), lambda group: group.routes[RouteState.DOUBTFUL], COUNT),
@@ -214,21 +222,19 @@ def list_first_pieces(city: City) -> list[Row]:
 
 
 def _list_routes(city: City) -> Listing:
-    def if_known(name: str) -> Callable[[Row], Any]:
-        """Return what reads a chance; a route whose state is not known has none, as it leaves out something."""
-        return lambda row: None if row["state"] == RouteState.NOT_KNOWN else row[name]
-
+    rows = [row for building in city.ranked for row in city.routes_of.get(building["path"], [])]
+    no_chance = dict.fromkeys(("probability", "probability_low", "probability_high"))  # it would leave out something
     return [
         Column(_("File"), 28, itemgetter("path")),
         Column(_("Route"), 22, itemgetter("route")),
         Column(_("State"), 14, lambda row: say.label_state(row["state"])),
-        Column(_("Chance of a blockage"), 10, if_known("probability"), CHANCE),
-        Column(_("Interval, low"), 9, if_known("probability_low"), CHANCE),
-        Column(_("Interval, high"), 9, if_known("probability_high"), CHANCE),
+        Column(_("Chance of a blockage"), 10, itemgetter("probability"), CHANCE),
+        Column(_("Interval, low"), 9, itemgetter("probability_low"), CHANCE),
+        Column(_("Interval, high"), 9, itemgetter("probability_high"), CHANCE),
         Column(_("People"), 8, itemgetter("occupants"), COUNT),
         Column(_("Pieces that may block it"), 40, itemgetter("blockers")),
         Column(_("To fill in"), 40, itemgetter("to_fill_in")),
-    ], [row for building in city.ranked for row in city.routes_of.get(building["path"], [])]
+    ], [{**row, **no_chance} if row["state"] == RouteState.NOT_KNOWN else row for row in rows]
 
 
 def _list_skipped(city: City) -> Listing:

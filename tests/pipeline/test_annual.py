@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from assess.fragility import lognormal_chance
-from assess.hazard import read_hazard
 from assess.motion.suite import read_suite
 from assess.pipeline.annual import evaluate_annual
 from assess.pipeline.levels import Sweep
@@ -17,7 +16,7 @@ from assess.progress import SILENT
 from assess.rates import integrate_lognormal
 from assess.settings import Settings
 from assess.units import GRAVITY
-from tests.hazards import K_0, K, write_hazard
+from tests.hazards import K_0, K, read_hazard, write_hazard
 from tests.pipeline.rows import read_sheets
 from tests.shaking import write_records
 
