@@ -11,7 +11,7 @@ import math
 import re
 import shutil
 import time
-from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
+from collections.abc import AsyncIterator, Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -28,11 +28,11 @@ from assess.errors import AssessError
 from assess.i18n import fill, load_catalogue, speaking
 from assess.web.file_names import clean_name
 from assess.web.guard import MODELS, MOST_MODEL, MOST_SKIPPED, SESSION, skip_body
-from assess.web.importing import FOLDER, SOURCE, choose_routes
+from assess.web.importing import FOLDER, ROUTES, SOURCE
 from assess.web.jobs import REPORT, Job
 from assess.web.request_errors import BAD_REQUEST, NOT_FOUND, TOO_LARGE, UNUSABLE, RequestError, describe_fault
 from assess.web.sessions import Session
-from assess.web.starting import choose_shaking, describe_start
+from assess.web.starting import choose, choose_shaking, describe_start
 from assess.web.texts import COOKIE, PAGE, choose_language, describe_texts
 
 if TYPE_CHECKING:
@@ -57,6 +57,7 @@ TYPES = {
 LOG = logging.getLogger("assess.web")
 
 Answer = dict[str, Any] | Response
+Handler = Callable[["Asked"], Answer]
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,10 +96,6 @@ class Asked:
 
 
 # ---------------------------------------------------------------- the book
-
-
-def _describe_book(asked: Asked) -> Answer:
-    return _note_download(asked, asked.book.describe())
 
 
 def _note_download(asked: Asked, answer: dict[str, Any]) -> dict[str, Any]:
@@ -154,16 +151,6 @@ def _attach(data: bytes, media_type: str, name: str) -> Response:
     return Response(data, media_type=media_type, headers=headers)
 
 
-def _save(asked: Asked) -> Answer:
-    asked.book.save()
-    return asked.book.state()
-
-
-def _reload(asked: Asked) -> Answer:
-    asked.book.reload()
-    return asked.book.describe()
-
-
 def _close(asked: Asked) -> Answer:
     session = asked.session
     with session.lock:
@@ -205,38 +192,26 @@ def _describe_live(asked: Asked) -> Answer:
     return view.answer(book, int(text) if text.isascii() and text.isdigit() and len(text) < 10 else None)
 
 
-def _describe_routes(asked: Asked) -> Answer:
+def _evaluate(what: str, asked: Asked) -> Answer:
+    """Answer with what follows from the workbook by the formulas; what that takes is imported when it is asked for."""
+    from assess.web.floor_plan import describe_catalogue, describe_plan, find_picture
     from assess.web.route_states import describe_routes
-
-    return describe_routes(asked.book.snapshot())
-
-
-def _describe_plan(asked: Asked) -> Answer:
-    from assess.web.floor_plan import describe_plan
-
-    return describe_plan(asked.book.snapshot(), asked.query.get("floor"))
-
-
-def _find_picture(asked: Asked) -> Answer:
-    """Answer with the picture of a floor; as an address of its own it could hold scripts, which are not run."""
-    from assess.web.floor_plan import find_picture
-
-    found = find_picture(asked.book.snapshot(), asked.query.get("floor", ""))
-    if found is None:
-        raise RequestError(fill("This floor has no picture."), NOT_FOUND)
-    return Response(found[0], media_type=found[1], headers={"content-security-policy": PICTURE_POLICY})
-
-
-def _describe_catalogue(asked: Asked) -> Answer:
-    from assess.web.floor_plan import describe_catalogue
-
-    return describe_catalogue(asked.book.snapshot())
-
-
-def _try_out(asked: Asked) -> Answer:
     from assess.web.what_if_answer import try_out
 
-    return try_out(asked.book.snapshot(), dict(asked.body))
+    snapshot, floor = asked.book.snapshot(), asked.query.get("floor")
+    if what == "routes":
+        return describe_routes(snapshot)
+    if what == "plan":
+        return describe_plan(snapshot, floor)
+    if what == "catalogue":
+        return describe_catalogue(snapshot)
+    if what == "what-if":
+        return try_out(snapshot, dict(asked.body))
+    found = find_picture(snapshot, floor or "")
+    if found is None:
+        raise RequestError(fill("This floor has no picture."), NOT_FOUND)
+    # as an address of its own it could hold scripts, which are not run
+    return Response(found[0], media_type=found[1], headers={"content-security-policy": PICTURE_POLICY})
 
 
 # ---------------------------------------------------------------- the job
@@ -247,20 +222,10 @@ def _describe_job(asked: Asked) -> Answer:
     return {"job": session.job.describe(session.book) if session.job else None}
 
 
-def _simulate(asked: Asked) -> Answer:
-    asked.session.simulate(asked.body)
-    return _describe_job(asked)
-
-
 def _cancel(asked: Asked) -> Answer:
     if asked.session.job is not None:
         asked.session.job.cancel()
     return _describe_job(asked)
-
-
-def _find_job_file(asked: Asked) -> Answer:
-    name = asked.query.get("name", "")
-    return _attach(asked.job.read_file(name), "application/octet-stream", name)
 
 
 def _find_report(asked: Asked) -> Answer:
@@ -287,7 +252,7 @@ def _import(asked: Asked) -> Answer:
     if asked.file is None:
         raise RequestError(fill("The request cannot be read."), UNUSABLE)
     try:
-        name, routes = clean_name(asked.name), choose_routes(asked.query.get("routes", ""))
+        name, routes = clean_name(asked.name), choose(asked.query, "routes", ROUTES)
     except RequestError:
         shutil.rmtree(asked.file.parent, ignore_errors=True)
         raise
@@ -304,16 +269,75 @@ def _describe_import(asked: Asked) -> Answer:
     }
 
 
-def _cancel_import(asked: Asked) -> Answer:
-    asked.session.cancel_import()
-    return _describe_import(asked)
+# ---------------------------------------------------------------- what answers
 
 
-def _open_import(asked: Asked) -> Answer:
-    return asked.session.open_imported(choose_shaking(asked.body)).describe()
+def _after(act: Callable[[Asked], object], describe: Handler) -> Handler:
+    """Return a handler that does something, and then answers as another one."""
+
+    def handle(asked: Asked) -> Answer:
+        act(asked)
+        return describe(asked)
+
+    return handle
 
 
-# ---------------------------------------------------------------- files of the page
+TABLE: tuple[tuple[str, int, Mapping[str, Handler]], ...] = (
+    ("GET", 0, {
+        "/api/book": lambda asked: _note_download(asked, asked.book.describe()),
+        "/api/state": _describe_state, "/api/download": _download, "/api/live": _describe_live,
+        **{f"/api/{one}": partial(_evaluate, one) for one in ("routes", "plan", "picture", "catalogue")},
+        "/api/job": _describe_job, "/api/job/report": _find_report,
+        "/api/job/file/{name:path}": lambda asked: _attach(
+            asked.job.read_file(asked.query["name"]), "application/octet-stream", asked.query["name"]
+        ),
+        MODELS: _describe_import,
+        "/api/start": lambda asked: describe_start(asked.session.home),
+        "/api/texts": lambda asked: describe_texts(asked.query.get("language") or asked.language),
+    }),
+    ("POST", MOST_JSON, {
+        "/api/edit": _edit, "/api/close": _close, "/api/what-if": partial(_evaluate, "what-if"),
+        "/api/save": _after(lambda asked: asked.book.save(), lambda asked: asked.book.state()),
+        "/api/reload": _after(lambda asked: asked.book.reload(), lambda asked: asked.book.describe()),
+        "/api/undo": lambda asked: _change(asked, lambda book, version: book.undo(version)),
+        "/api/redo": lambda asked: _change(asked, lambda book, version: book.redo(version)),
+        "/api/job": _after(lambda asked: asked.session.simulate(asked.body), _describe_job),
+        "/api/job/cancel": _cancel,
+        "/api/import/cancel": _after(lambda asked: asked.session.cancel_import(), _describe_import),
+        "/api/import/open": lambda asked: asked.session.open_imported(choose_shaking(asked.body)).describe(),
+        "/api/start": lambda asked: asked.session.begin(asked.body).describe(),
+    }),
+    ("POST", MOST_FILE, {"/api/upload": _upload, "/api/file": _add_file}),
+    ("POST", MOST_MODEL, {MODELS: _import}),
+)  # fmt: skip
+"""By method, the bytes that a body may have, and address what answers: bodies up to `MOST_JSON` are JSON, larger ones
+files, and building models are saved in a folder."""
+
+
+def build_application(note_edit: Callable[[Session], None]) -> Starlette:
+    """Return the application; `note_edit` is called after every change of a workbook."""
+
+    def route(path: str, method: str, most: int, handler: Handler) -> Route:
+        async def serve(request: Request) -> Response:
+            asked, fault = _ask(request, note_edit), None
+            try:
+                if most == MOST_MODEL:
+                    asked = replace(asked, file=await _save_model(request, asked.session))
+                elif most:
+                    data = b"".join([part async for part in _stream(request, most, partial(_check_size, most))])
+                    asked = replace(asked, data=data) if most == MOST_FILE else replace(asked, body=_parse_body(data))
+            except (RequestError, OSError) as error:
+                fault = error
+            return await run_in_threadpool(_carry_out, handler, asked, fault)
+
+        return Route(path, serve, methods=[method])
+
+    def give_file(request: Request) -> Response:
+        found = find_page_file(request.path_params["name"])
+        return found or _refuse(RequestError(fill("There is nothing at this address."), NOT_FOUND))
+
+    routes = [route(path, method, most, one) for method, most, every in TABLE for path, one in every.items()]
+    return Starlette(routes=[*routes, Route("/{name:path}", give_file, methods=["GET"])])
 
 
 def find_page_file(name: str) -> Response | None:
@@ -325,28 +349,60 @@ def find_page_file(name: str) -> Response | None:
     return Response(path.read_bytes(), media_type=TYPES.get(path.suffix, "application/octet-stream"))
 
 
+def _ask(request: Request, note_edit: Callable[[Session], None]) -> Asked:
+    session: Session = request.scope[SESSION]
+    if request.url.path not in POLLED:
+        session.seen = time.monotonic()
+    language = session.language or (session.book.language if session.book else "")
+    accepted = request.headers.get("accept-language", "")
+    language = choose_language(request.cookies.get(COOKIE, ""), language, accepted)
+    return Asked(session, {**request.query_params, **request.path_params}, language=language, note_edit=note_edit)
+
+
+def _carry_out(handler: Handler, asked: Asked, fault: Exception | None) -> Response:
+    with speaking(load_catalogue(asked.language)):
+        try:
+            if fault is not None:
+                raise fault
+            answer = handler(asked)
+            return answer if isinstance(answer, Response) else _to_json(answer)
+        except Exception as error:
+            if not isinstance(error, AssessError | OSError):
+                LOG.exception("a request failed")
+            return _refuse(error)
+
+
+def _refuse(error: Exception) -> Response:
+    status, body = describe_fault(error)
+    return _to_json(body, status)
+
+
+def _to_json(body: dict[str, Any], status: int = 200) -> Response:
+    """Return JSON; a number that is not finite is null, numbers of numpy and rows of them are Python's own."""
+    dump = partial(
+        json.dumps, ensure_ascii=False, allow_nan=False, separators=(",", ":"),
+        default=lambda value: _finite(value.tolist() if hasattr(value, "tolist") else str(value)),
+    )  # fmt: skip
+    try:
+        text = dump(body)
+    except ValueError:
+        text = dump(_finite(body))
+    return Response(text.encode("utf-8", "replace"), status, media_type="application/json")
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _finite(one) for name, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(one) for one in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
 # ---------------------------------------------------------------- bodies
 
 
-async def _take_nothing(_request: Request, asked: Asked) -> Asked:
-    return asked
-
-
-async def _take_json(request: Request, asked: Asked) -> Asked:
-    return replace(asked, body=_parse_body(await _read_body(request, MOST_JSON)))
-
-
-async def _take_file(request: Request, asked: Asked) -> Asked:
-    return replace(asked, data=await _read_body(request, MOST_FILE))
-
-
-async def _read_body(request: Request, most: int) -> bytes:
-    return b"".join([part async for part in _stream(request, most, partial(_check_size, most))])
-
-
-async def _take_model(request: Request, asked: Asked) -> Asked:
+async def _save_model(request: Request, session: Session) -> Path:
     """Save a file that is too large for the memory in a folder of its own, one at a time."""
-    session = asked.session
 
     def begin() -> tuple[Path, int]:
         session.sending_slots.take()
@@ -376,7 +432,7 @@ async def _take_model(request: Request, asked: Asked) -> Asked:
         raise
     finally:
         session.sending_slots.leave()
-    return replace(asked, file=path)
+    return path
 
 
 async def _stream(request: Request, most: int, check: Callable[[int], None]) -> AsyncIterator[bytes]:
@@ -418,106 +474,3 @@ def _parse_body(data: bytes) -> dict[str, Any]:
     if not isinstance(found, dict):
         raise RequestError(fill("The request cannot be read."), BAD_REQUEST)
     return found
-
-
-# ---------------------------------------------------------------- answers
-
-Handler = Callable[[Asked], Answer]
-Take = Callable[[Request, Asked], Awaitable[Asked]]
-"""Takes in the body of a request; RequestError or OSError where it cannot be taken."""
-
-ROUTES: tuple[tuple[str, Take, Mapping[str, Handler]], ...] = (
-    ("GET", _take_nothing, {
-        "/api/book": _describe_book, "/api/state": _describe_state, "/api/download": _download,
-        "/api/live": _describe_live, "/api/routes": _describe_routes, "/api/plan": _describe_plan,
-        "/api/picture": _find_picture, "/api/catalogue": _describe_catalogue, "/api/job": _describe_job,
-        "/api/job/file/{name:path}": _find_job_file, "/api/job/report": _find_report, MODELS: _describe_import,
-        "/api/start": lambda asked: describe_start(asked.session.home),
-        "/api/texts": lambda asked: describe_texts(asked.query.get("language") or asked.language),
-    }),
-    ("POST", _take_json, {
-        "/api/edit": _edit, "/api/save": _save, "/api/reload": _reload, "/api/close": _close,
-        "/api/undo": lambda asked: _change(asked, lambda book, version: book.undo(version)),
-        "/api/redo": lambda asked: _change(asked, lambda book, version: book.redo(version)),
-        "/api/what-if": _try_out, "/api/job": _simulate, "/api/job/cancel": _cancel,
-        "/api/import/cancel": _cancel_import, "/api/import/open": _open_import,
-        "/api/start": lambda asked: asked.session.begin(asked.body).describe(),
-    }),
-    ("POST", _take_file, {"/api/upload": _upload, "/api/file": _add_file}),
-    ("POST", _take_model, {MODELS: _import}),
-)  # fmt: skip
-"""What takes the body of a request, and what answers it, by its method and its address."""
-
-
-def build_application(note_edit: Callable[[Session], None]) -> Starlette:
-    """Return the application; `note_edit` is called after every change of a workbook."""
-
-    def route(path: str, method: str, take: Take, handler: Handler) -> Route:
-        async def serve(request: Request) -> Response:
-            asked, fault = _ask(request, note_edit), None
-            try:
-                asked = await take(request, asked)
-            except (RequestError, OSError) as error:
-                fault = error
-            return await run_in_threadpool(_carry_out, handler, asked, fault)
-
-        return Route(path, serve, methods=[method])
-
-    routes = [route(path, method, take, one) for method, take, every in ROUTES for path, one in every.items()]
-    return Starlette(routes=[*routes, Route("/{name:path}", _give_file, methods=["GET"])])
-
-
-def _give_file(request: Request) -> Response:
-    found = find_page_file(request.path_params["name"])
-    return found or _refuse(RequestError(fill("There is nothing at this address."), NOT_FOUND))
-
-
-def _ask(request: Request, note_edit: Callable[[Session], None]) -> Asked:
-    session: Session = request.scope[SESSION]
-    if request.url.path not in POLLED:
-        session.seen = time.monotonic()
-    language = session.language or (session.book.language if session.book else "")
-    accepted = request.headers.get("accept-language", "")
-    language = choose_language(request.cookies.get(COOKIE, ""), language, accepted)
-    return Asked(session, {**request.query_params, **request.path_params}, language=language, note_edit=note_edit)
-
-
-def _carry_out(handler: Handler, asked: Asked, fault: Exception | None) -> Response:
-    with speaking(load_catalogue(asked.language)):
-        try:
-            if fault is not None:
-                raise fault
-            answer = handler(asked)
-            return answer if isinstance(answer, Response) else _to_json(answer)
-        except Exception as error:
-            if not isinstance(error, AssessError | OSError):
-                LOG.exception("a request failed")
-            return _refuse(error)
-
-
-def _refuse(error: Exception) -> Response:
-    status, body = describe_fault(error)
-    return _to_json(body, status)
-
-
-def _to_json(body: dict[str, Any], status: int = 200) -> Response:
-    """Return JSON; a number that is not finite is null."""
-    dump = partial(json.dumps, ensure_ascii=False, allow_nan=False, separators=(",", ":"), default=_simplify)
-    try:
-        text = dump(body)
-    except ValueError:
-        text = dump(_finite(body))
-    return Response(text.encode("utf-8", "replace"), status, media_type="application/json")
-
-
-def _simplify(value: Any) -> Any:
-    """Return a number of numpy, or rows of them, as Python's own."""
-    return _finite(value.tolist() if hasattr(value, "tolist") else str(value))
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {name: _finite(one) for name, one in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(one) for one in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -64,23 +64,33 @@ def _evaluate(snapshot: "Snapshot", inventory: Inventory, settings: Settings) ->
     demands, faults = serve_floors(inventory, kind, ductility_reduction=settings.ductility_reduction)
     served = {floor for floor, _axis in demands}
     left_out = {one.floor for one in inventory.floors} - served
-    unserved = frozenset(map(key, left_out)) | _find_gaps(snapshot)
+    unserved = set(map(key, left_out))
+    if snapshot.tables["Floors"].found:  # those that the reading left out, as nothing tells how they shake
+        cells = {one.cell for one in snapshot.problems if isinstance(one, Gap) and one.severity == "error"}
+        names = {row.number: key(row.get("floor")) for row in list_floors(snapshot.tables)}
+        unserved |= {names[number] for number in map(first_row, cells) if number in names}
     if not served:
-        return Evaluation(None, unserved, tuple(faults))
+        return Evaluation(None, frozenset(unserved), tuple(faults))
     known = len(inventory.problems)
     if left_out:
-        inventory, settings = _keep_floors(inventory, served), _keep_anchors(inventory, settings, served)
+        if isinstance(settings.anchor, tuple):
+            on = {one.item: one.floor for one in inventory.items}
+            settings = replace(settings, anchor=tuple(one for one in settings.anchor if on.get(one) in served))
+        places = tuple(one for one in inventory.places if one.floor in served)
+        named = {one.place for one in places} | {""}
+        inventory = replace(
+            inventory,
+            floors=tuple(one for one in inventory.floors if one.floor in served),
+            items=tuple(one for one in inventory.items if one.floor in served),
+            places=places,
+            routes=tuple(  # segments that have no floor of their own stay, if their places do
+                one
+                for one in inventory.routes
+                if (not one.floor or one.floor in served) and {one.start, one.end} <= named
+            ),
+        )
     assessment = compute(inventory, settings)
-    return Evaluation(assessment, unserved, (*faults, *assessment.problems[known:]))
-
-
-def _find_gaps(snapshot: "Snapshot") -> frozenset[str]:
-    """Return the floors that the reading left out as nothing tells how they shake, as names are compared."""
-    if not snapshot.tables["Floors"].found:
-        return frozenset()
-    cells = {one.cell for one in snapshot.problems if isinstance(one, Gap) and one.severity == "error"}
-    gaps = {row.number: key(row.get("floor")) for row in list_floors(snapshot.tables)}
-    return frozenset(gaps[number] for number in map(first_row, cells) if number in gaps)
+    return Evaluation(assessment, frozenset(unserved), (*faults, *assessment.problems[known:]))
 
 
 def list_floors(tables: Tables) -> list[Row]:
@@ -89,27 +99,3 @@ def list_floors(tables: Tables) -> list[Row]:
     for row in tables["Floors"].with_all("floor"):
         found.setdefault(key(row.get("floor")), row)
     return list(found.values())
-
-
-def _keep_floors(inventory: Inventory, floors: set[str]) -> Inventory:
-    """Return an inventory with some floors alone; segments that have no floor of their own stay, if their places do."""
-    places = tuple(one for one in inventory.places if one.floor in floors)
-    named = {one.place for one in places}
-    return replace(
-        inventory,
-        floors=tuple(one for one in inventory.floors if one.floor in floors),
-        items=tuple(one for one in inventory.items if one.floor in floors),
-        places=places,
-        routes=tuple(
-            one
-            for one in inventory.routes
-            if (not one.floor or one.floor in floors) and {one.start, one.end} - {""} <= named
-        ),
-    )
-
-
-def _keep_anchors(inventory: Inventory, settings: Settings, floors: set[str]) -> Settings:
-    if not isinstance(settings.anchor, tuple):
-        return settings
-    on = {one.item: one.floor for one in inventory.items}
-    return replace(settings, anchor=tuple(one for one in settings.anchor if on.get(one) in floors))

@@ -60,26 +60,22 @@ def check_name(name: object) -> str:
     text = name.strip() if isinstance(name, str) else ""
     if text and not text.lower().endswith(ENDINGS[0]):
         text = f"{text}{ENDINGS[0]}"
-    if fix := _find_fault(text):
-        raise RequestError(fill("{name} cannot be the name of a workbook.", name=repr(text[:LONGEST])), UNUSABLE, fix)
-    return text
-
-
-def _find_fault(text: str) -> str:
     stem = text[: -len(ENDINGS[0])]
     if not stem.strip(". "):
-        return fill("Choose a name, such as office.xlsx.")
-    if signs := " ".join(dict.fromkeys(one for one in text if one in _FORBIDDEN)):
-        return fill("A name cannot have {signs}: leave it out.", signs=signs)
-    if any(map(_is_unseen, text)):
-        return fill("It has signs that cannot be seen: type it again.")
-    if len(text) > LONGEST:
-        return fill("A name has at most {most} signs: shorten it.", most=LONGEST)
-    if stem.endswith((".", " ")) or text.startswith((".", "-", "~")):
-        return fill("A name cannot begin with . - or ~, and cannot end with a point or a space.")
-    if make_safe(text) != text:
-        return fill("Windows keeps that name for itself: choose another, such as office.xlsx.")
-    return ""
+        fix = fill("Choose a name, such as office.xlsx.")
+    elif signs := " ".join(dict.fromkeys(one for one in text if one in _FORBIDDEN)):
+        fix = fill("A name cannot have {signs}: leave it out.", signs=signs)
+    elif any(map(_is_unseen, text)):
+        fix = fill("It has signs that cannot be seen: type it again.")
+    elif len(text) > LONGEST:
+        fix = fill("A name has at most {most} signs: shorten it.", most=LONGEST)
+    elif stem.endswith((".", " ")) or text.startswith((".", "-", "~")):
+        fix = fill("A name cannot begin with . - or ~, and cannot end with a point or a space.")
+    elif make_safe(text) != text:
+        fix = fill("Windows keeps that name for itself: choose another, such as office.xlsx.")
+    else:
+        return text
+    raise RequestError(fill("{name} cannot be the name of a workbook.", name=repr(text[:LONGEST])), UNUSABLE, fix)
 
 
 # ---------------------------------------------------------------- the files that a workbook names

@@ -68,9 +68,16 @@ class Guard:
         elif scope["type"] == "websocket":
             await send({"type": "websocket.close", "code": 1008})
         elif scope["type"] == "http":
-            send = _with_headers(send)
+
+            async def send_on(message: Message) -> None:
+                if message["type"] == "http.response.start":
+                    own = {name.lower() for name, _ in message.get("headers", ())}
+                    added = [(name, value) for name, value in HEADERS.items() if name not in own]
+                    message = {**message, "headers": [*message.get("headers", ()), *added]}
+                await send(message)
+
             answer = await self._refuse(HTTPConnection(scope), receive) or self._app
-            await answer(scope, receive, send)
+            await answer(scope, receive, send_on)
 
     async def _refuse(self, visit: HTTPConnection, receive: Receive) -> Response | None:
         """Return the answer to a request that does not get any further; None of one that does, in its session."""
@@ -80,7 +87,14 @@ class Guard:
         session = self._keys.find(visit)
         if session is None or path == ENTRANCE:
             return self._enter(visit, session)
-        if not self._is_ours(visit):
+        site = visit.headers.get("sec-fetch-site", "same-origin")
+        if visit.scope["method"] in READING:  # which may also be a visit, such as a link
+            is_visit = visit.headers.get("sec-fetch-dest") == "document" and path == "/"
+            is_ours = site in ("same-origin", "none") or is_visit
+        else:
+            is_own = visit.headers.get("origin", "") in self._origins
+            is_ours = site == "same-origin" and is_own and "x-assess" in visit.headers
+        if not is_ours:
             return _refuse(visit, FORBIDDEN, fill("The request does not come from this page."))
         length = visit.headers.get("content-length", "0")
         size = int(length) if length.isascii() and length.isdigit() and len(length) < 20 else MOST_MODEL + 1
@@ -112,15 +126,6 @@ class Guard:
             answer.headers["set-cookie"] = cookie + secure
         return answer
 
-    def _is_ours(self, visit: HTTPConnection) -> bool:
-        """Tell whether a request comes from our page; what only reads may also be a visit, such as a link."""
-        site = visit.headers.get("sec-fetch-site", "same-origin")
-        if visit.scope["method"] in READING:
-            is_visit = visit.headers.get("sec-fetch-dest") == "document" and visit.scope["path"] == "/"
-            return site in ("same-origin", "none") or is_visit
-        is_own = visit.headers.get("origin", "") in self._origins
-        return site == "same-origin" and is_own and "x-assess" in visit.headers
-
 
 async def skip_body(receive: Receive) -> None:
     """Read what is sent and is refused: a browser that is still sending when the connection ends shows no answer."""
@@ -129,17 +134,6 @@ async def skip_body(receive: Receive) -> None:
         message = await receive()
         size += len(message.get("body", b""))
         is_more = message.get("more_body", False)
-
-
-def _with_headers(send: Send) -> Send:
-    async def send_on(message: Message) -> None:
-        if message["type"] == "http.response.start":
-            own = {name.lower() for name, _ in message.get("headers", ())}
-            added = [(name, value) for name, value in HEADERS.items() if name not in own]
-            message = {**message, "headers": [*message.get("headers", ()), *added]}
-        await send(message)
-
-    return send_on
 
 
 def _refuse(visit: HTTPConnection, status: int, message: Text | str, fix: Text | str = "") -> Response:

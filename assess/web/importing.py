@@ -13,7 +13,7 @@ from contextvars import copy_context
 from dataclasses import replace
 from itertools import count
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING, Any, Literal, cast
+from typing import TYPE_CHECKING, Any, Literal
 
 from assess.errors import AssessError, CancelledError
 from assess.i18n import fill, gettext
@@ -21,7 +21,7 @@ from assess.progress import Progress, Report
 from assess.web.file_names import ENDINGS, make_safe
 from assess.web.jobs import STAGES, Slots
 from assess.web.request_errors import CONFLICT, NOT_FOUND, RequestError, describe_fault
-from assess.web.starting import Made, choose
+from assess.web.starting import Made
 
 if TYPE_CHECKING:
     from assess.bim.import_workbook import ImportedBuilding
@@ -39,38 +39,6 @@ LOG = logging.getLogger("assess.web")
 
 Routes = Literal["none", "draft"]
 ROUTES: tuple[Routes, ...] = ("none", "draft")
-
-
-def choose_routes(text: str) -> Routes:
-    """Return what is asked for of routes; RequestError where there is no such choice."""
-    return cast(Routes, choose({"routes": text}, "routes", ROUTES))
-
-
-# ---------------------------------------------------------------- what came out
-
-
-def _summarise(found: "ImportedBuilding") -> dict[str, Any]:
-    """Return what was taken of a building and what was skipped, what may be furniture first.
-
-    It is all that is kept of a reading once its workbook is open. Of `skipped` each group has its reason, whether it
-    may be furniture, and types with the number of pieces of each.
-    """
-    from assess.bim.import_workbook import group_skipped
-
-    return {
-        "pieces": len(found.items),
-        "types": len({row.get("type") for row in found.items}),
-        "floors": len({row.get("floor") for row in found.items}),
-        "rooms": sum(row.get("kind") == "room" for row in found.places),
-        "routes": len({row.get("route") for row in found.routes}),
-        "plans": sum(name.endswith(".svg") for name in found.files),
-        "skipped": [
-            (reason, group[0].is_furniture, [(one.type, one.count) for one in group])
-            for reason, group in group_skipped(found.skipped)
-        ],
-        "warnings": found.warnings,
-        "remarks": found.remarks,
-    }
 
 
 def _describe_taken(taken: Mapping[str, Any]) -> dict[str, Any]:
@@ -125,6 +93,7 @@ class Import:
         self._thread.start()
 
     def _run(self) -> None:
+        from assess.bim.import_workbook import group_skipped
         from assess.bim.read_source import read_source
 
         def listen(report: Report) -> None:
@@ -143,10 +112,24 @@ class Import:
         shutil.rmtree(self._folder, ignore_errors=True)
         self._slots.leave()
         with self._lock:
-            if self.state == "running":
-                self._found, self._error = found, error
-                self._taken = _summarise(found) if found is not None else None
-                self.state = state
+            if self.state != "running":
+                return
+            self._found, self._error, self.state = found, error, state
+            if found is not None:  # all that is kept of a reading once its workbook is open
+                self._taken = {
+                    "pieces": len(found.items),
+                    "types": len({row.get("type") for row in found.items}),
+                    "floors": len({row.get("floor") for row in found.items}),
+                    "rooms": sum(row.get("kind") == "room" for row in found.places),
+                    "routes": len({row.get("route") for row in found.routes}),
+                    "plans": sum(name.endswith(".svg") for name in found.files),
+                    "skipped": [  # the reason, whether it may be furniture, and the number of pieces of each type
+                        (reason, group[0].is_furniture, [(one.type, one.count) for one in group])
+                        for reason, group in group_skipped(found.skipped)
+                    ],
+                    "warnings": found.warnings,
+                    "remarks": found.remarks,
+                }
 
     def close(self) -> None:
         """End it at once, and forget what was read; nothing of it is kept."""

@@ -20,7 +20,6 @@ from assess.i18n import gettext, load_catalogue, speaking
 from assess.progress import Progress, Report
 from assess.results import Results
 from assess.risk import RiskClass
-from assess.schedule_results import State
 from assess.settings import Settings, count_processors
 from assess.web.request_errors import describe_problem
 
@@ -38,8 +37,21 @@ Tell = Callable[[dict[str, Any]], None]
 def main() -> None:
     """Do the job of the folder that is named."""
     folder = Path(sys.argv[1])
-    tell = _take_output()
-    threading.Thread(target=_end_with_server, args=(folder,), name="assess-server", daemon=True).start()
+    stream = os.fdopen(os.dup(sys.stdout.fileno()), "w", encoding="utf-8")
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # whatever else is printed goes to the standard error
+    lock = threading.Lock()
+
+    def tell(message: dict[str, Any]) -> None:
+        with lock:
+            stream.write(json.dumps(message) + "\n")
+            stream.flush()
+
+    def end_with_server() -> None:
+        sys.stdin.buffer.read()
+        shutil.rmtree(folder, ignore_errors=True)
+        os._exit(1)
+
+    threading.Thread(target=end_with_server, name="assess-server", daemon=True).start()
     if hasattr(os, "nice"):
         os.nice(LOWER_PRIORITY)
     order = json.loads((folder / ORDER).read_text(encoding="utf-8"))
@@ -52,26 +64,6 @@ def main() -> None:
         except OSError as error:
             tell({"state": "failed", "message": error.strerror or type(error).__name__, "problems": []})
     os._exit(0)  # without waiting for anything that is still computed aside
-
-
-def _take_output() -> Tell:
-    """Return what writes to the server; whatever else is printed goes to the standard error."""
-    stream = os.fdopen(os.dup(sys.stdout.fileno()), "w", encoding="utf-8")
-    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
-    lock = threading.Lock()
-
-    def tell(message: dict[str, Any]) -> None:
-        with lock:
-            stream.write(json.dumps(message) + "\n")
-            stream.flush()
-
-    return tell
-
-
-def _end_with_server(folder: Path) -> None:
-    sys.stdin.buffer.read()
-    shutil.rmtree(folder, ignore_errors=True)
-    os._exit(1)
 
 
 def assess_workbook(folder: Path, order: dict[str, Any], tell: Tell) -> dict[str, Any]:
@@ -115,30 +107,24 @@ def summarise(results: Results) -> dict[str, Any]:
     items = {
         "row": [one.item.row for one in rows],
         "quantity": [one.item.quantity for one in rows],
-        "class": ["" if one.is_anchored else key(one.adopted.risk) for one in rows],
-        "formula": ["" if one.is_anchored else key(one.formula_class) for one in rows],
+        "class": ["" if one.is_anchored else one.adopted.risk.name.lower() for one in rows],
+        "formula": ["" if one.is_anchored else one.formula_class.name.lower() for one in rows],
         "chance": [one.adopted.probability for one in rows],
         "low": [found and found[0] for found in map(find_range, rows)],
         "high": [found and found[1] for found in map(find_range, rows)],
         "simulated": [one.adopted.is_simulated or not one.adopted.can_rock for one in rows],
     }
     schedule, anchor = results.schedule, results.settings.anchor
-    sums = {"before": _sum(schedule.before), "after": _sum(schedule.after), "cost": schedule.cost}
-    first = anchor if isinstance(anchor, int) else 0
-    return {"items": items, "before_after": {**sums, "entries": len(schedule.rows), "first": first}}
-
-
-def key(risk: RiskClass) -> str:
-    """Return what the page calls a class."""
-    return risk.name.lower()
-
-
-def _sum(state: State) -> dict[str, Any]:
     names = ("falls", "falls_low", "falls_high", "anchored", "apart", "blocked_routes", "cut_off_rooms")
-    return {
-        "counts": {key(risk): state.count(risk) for risk in RiskClass},
-        **{name: getattr(state, name) for name in names},
+    sums: dict[str, Any] = {
+        when: {
+            "counts": {risk.name.lower(): state.count(risk) for risk in RiskClass},
+            **{name: getattr(state, name) for name in names},
+        }
+        for when, state in (("before", schedule.before), ("after", schedule.after))
     }
+    sums |= {"cost": schedule.cost, "entries": len(schedule.rows), "first": anchor if isinstance(anchor, int) else 0}
+    return {"items": items, "before_after": sums}
 
 
 if __name__ == "__main__":

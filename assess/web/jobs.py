@@ -84,10 +84,20 @@ class Job:
             "problems": [],
         }  # fmt: skip
         slots.take()
+        root = str(Path(__file__).parents[2])
+        paths = os.pathsep.join(filter(None, (root, os.environ.get("PYTHONPATH"))))
+        temporary = str(self._folder / TEMPORARY)  # out of the reach of a Ctrl-C in the terminal, too
+        variables = {"TMPDIR": temporary, "TEMP": temporary, "TMP": temporary, "PYTHONPATH": paths}
         try:
             self._folder.mkdir(mode=0o700)
             self._order, self._inventory = prepare(book, body, self._folder)
-            self._process = _start(self._folder)
+            Path(temporary).mkdir()
+            with (self._folder / ERRORS).open("wb") as errors:
+                self._process = subprocess.Popen(  # noqa: S603 - our own module, in a folder that we named
+                    [sys.executable, "-m", "assess.web.job_process", str(self._folder)], stdin=subprocess.PIPE,
+                    stdout=subprocess.PIPE, stderr=errors, cwd=self._folder, creationflags=_OWN_GROUP,
+                    env={**os.environ, **variables, "PYTHONSAFEPATH": "1"}, start_new_session=True,
+                )  # fmt: skip
         except BaseException:
             slots.leave()
             shutil.rmtree(self._folder, ignore_errors=True)
@@ -202,22 +212,7 @@ class Job:
 
 
 _OWN_GROUP: int = getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0)
-"""Windows only; elsewhere the process gets a session of its own."""
-
-
-def _start(folder: Path) -> "subprocess.Popen[bytes]":
-    """Start the process: with temporary files in its own folder, and out of the reach of a Ctrl-C in the terminal."""
-    temporary = folder / TEMPORARY
-    temporary.mkdir()
-    root = str(Path(__file__).parents[2])
-    paths = os.pathsep.join(filter(None, (root, os.environ.get("PYTHONPATH"))))
-    variables = {"TMPDIR": temporary, "TEMP": temporary, "TMP": temporary, "PYTHONPATH": paths, "PYTHONSAFEPATH": "1"}
-    with (folder / ERRORS).open("wb") as errors:
-        return subprocess.Popen(  # noqa: S603 - our own module, in a folder that we named
-            [sys.executable, "-m", "assess.web.job_process", str(folder)],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=errors, cwd=folder, creationflags=_OWN_GROUP,
-            env={**os.environ, **{name: str(value) for name, value in variables.items()}}, start_new_session=True,
-        )  # fmt: skip
+"""Out of the reach of a Ctrl-C in the terminal on Windows; elsewhere the process gets a session of its own."""
 
 
 # ---------------------------------------------------------------- what it takes from the workbook
@@ -238,42 +233,32 @@ BUILDING_INPUTS = (
 )  # fmt: skip
 """Fields of the building by which the chances of all pieces are found."""
 FLOOR_INPUTS = ("floor", "elevation", "pfa", "pfv", "records")
-"""Likewise of a floor; those of one floor serve the floors between, so that a change counts for all."""
-
-
-def _read_changes(body: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the settings that a request changes; SettingsError where one cannot be used."""
-    given = {name: body[name] for name in OPTIONS if body.get(name) not in (None, "")}
-    first = body.get("first") or 0
-    if isinstance(first, bool) or not isinstance(first, int) or first < 0:
-        raise RequestError(fill("first is {first}, expected a whole number, 0 or above.", first=str(first)), UNUSABLE)
-    changes = given | ({"anchor": f"first:{first}"} if first else {})
-    change_settings(None, changes)
-    return changes
-
-
-def _read_formats(body: Mapping[str, Any], folder: Path) -> list[str]:
-    """Return the formats of a request; InputError if one is unknown, or needs a package that is not installed."""
-    from assess.report import check_folder
-
-    given = body.get("formats", ["html"])
-    wanted = [str(one) for one in given] if isinstance(given, list) else [str(given)]
-    unknown = [one for one in wanted if one not in FORMATS] or ([] if wanted else [""])
-    if unknown:
-        known = ", ".join(FORMATS)
-        text = fill("formats: {name!r} is unknown, expected some of: {known}", name=unknown[0][:40], known=known)
-        raise RequestError(text, UNUSABLE)
-    check_folder(folder, wanted)
-    return list(dict.fromkeys(wanted))
+"""Fields of a floor; those of one floor serve the floors between, so that a change counts for all."""
 
 
 def prepare(book: "Book", body: Mapping[str, Any], folder: Path) -> tuple[dict[str, Any], Inventory]:
     """Write the order of a job and a copy of the workbook with the files that it names.
 
     Returns what the process is told, with the version of the workbook, and what that holds. Raises InputError if an
-    option cannot be used, or the workbook has errors: as `assess run`, which works with whole workbooks only.
+    option cannot be used, a format needs a package that is not installed, or the workbook has errors: as `assess run`,
+    which works with whole workbooks only.
     """
-    changes, formats = _read_changes(body), _read_formats(body, folder / OUT)
+    from assess.report import check_folder
+
+    changes = {name: body[name] for name in OPTIONS if body.get(name) not in (None, "")}
+    first = body.get("first") or 0
+    if isinstance(first, bool) or not isinstance(first, int) or first < 0:
+        raise RequestError(fill("first is {first}, expected a whole number, 0 or above.", first=str(first)), UNUSABLE)
+    changes |= {"anchor": f"first:{first}"} if first else {}
+    change_settings(None, changes)
+    given = body.get("formats", ["html"])
+    formats = list(dict.fromkeys(map(str, given if isinstance(given, list) else [given])))
+    unknown = [one for one in formats if one not in FORMATS] or ([] if formats else [""])
+    if unknown:
+        known = ", ".join(FORMATS)
+        text = fill("formats: {name!r} is unknown, expected some of: {known}", name=unknown[0][:40], known=known)
+        raise RequestError(text, UNUSABLE)
+    check_folder(folder / OUT, formats)
     snapshot, data = book.snapshot(), book.write()
     while book.version != snapshot.version:
         snapshot, data = book.snapshot(), book.write()

@@ -9,7 +9,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -107,20 +107,16 @@ def bind(place: Place) -> socket.socket:
     return listening
 
 
-class Keeper:
-    """Saves workbooks of the disk a moment after their last change, and ends sessions, in a thread of its own."""
+class Keeper(threading.Thread):
+    """Saves workbooks of the disk a moment after their last change, and ends sessions."""
 
     def __init__(self, keys: Keys) -> None:
+        super().__init__(name="assess-keeper", daemon=True)
         self._keys, self._due = keys, dict[Session, float]()
         self._latest = dict[Session, float]()
         self._took = 0.0  # by the last save [s]
         self._woken, self._is_ended = threading.Condition(), False
         self._next_look = time.monotonic() + LOOKED_EVERY
-        self._thread = threading.Thread(target=self._run, name="assess-keeper", daemon=True)
-
-    def start(self) -> None:
-        """Begin."""
-        self._thread.start()
 
     def note_edit(self, session: Session) -> None:
         """Have a workbook be saved, once nothing more is changed for a moment, or soon."""
@@ -131,27 +127,25 @@ class Keeper:
                 self._due[session] = min(now + max(SAVED_AFTER, pause), latest)
                 self._woken.notify()
 
-    def _try_again(self, session: Session) -> None:
-        """Have a workbook that could not be saved be saved a little later: what stood in the way may be gone."""
-        state = session.book.state() if session.book else {}
-        if state.get("unsaved") and state["save_error"] and not state["changed_outside"]:
-            with self._woken:
-                self._due.setdefault(session, time.monotonic() + max(SAVED_AGAIN_AFTER, self._took / SAVING_SHARE))
-
     def end(self) -> None:
         """End, after what is being saved."""
         with self._woken:
             self._is_ended = True
             self._woken.notify()
-        self._thread.join()
+        self.join()
 
-    def _run(self) -> None:
+    def run(self) -> None:
+        """Save what is due and end sessions until the end."""
         while (sessions := self._wait()) is not None:
             for session in sessions:
                 started = time.monotonic()
                 session.save()
                 self._took = time.monotonic() - started
-                self._try_again(session)
+                state = session.book.state() if session.book else {}
+                if state.get("unsaved") and state["save_error"] and not state["changed_outside"]:
+                    pause = max(SAVED_AGAIN_AFTER, self._took / SAVING_SHARE)  # what stood in the way may be gone
+                    with self._woken:
+                        self._due.setdefault(session, time.monotonic() + pause)
             if time.monotonic() >= self._next_look:
                 self._next_look = time.monotonic() + LOOKED_EVERY
                 self._keys.expire(time.monotonic())
@@ -166,7 +160,7 @@ class Keeper:
                         del self._due[session]
                         self._latest.pop(session, None)
                     return due
-                self._woken.wait(min(*self._due.values(), self._next_look, self._next_look) - now)
+                self._woken.wait(min([*self._due.values(), self._next_look]) - now)
         return None
 
 
@@ -216,7 +210,18 @@ class Server:
 
         `started` is called at once: who asks while the server begins waits for it, as the socket listens already.
         """
-        with _stopped_by(signals, self._uvicorn):
+
+        def stop(_number: int, _frame: object = None) -> None:
+            """Have the first signal end the server, and the next one no longer wait for requests."""
+            self._uvicorn.force_exit = self._uvicorn.should_exit
+            self._uvicorn.should_exit = True
+
+        before = {number: signal.getsignal(number) for number in signals}
+        with ExitStack() as stack:
+            for number, handler in before.items():
+                if handler not in (signal.SIG_IGN, None):
+                    stack.callback(signal.signal, number, handler)
+                    signal.signal(number, stop)
             self._keeper.start()
             try:
                 started()
@@ -236,7 +241,7 @@ class Server:
                 continue
             session.save()
             is_unsaved = book.state()["unsaved"] and (book.mode == "disk" or session.downloaded != book.version)
-            path = keep_changes(session) if is_unsaved and not self._place.is_hosted else None
+            path = _keep_changes(book, session.home) if is_unsaved and not self._place.is_hosted else None
             if path is not None:
                 ending.kept.append((book.name, str(path)))
             elif is_unsaved:
@@ -255,38 +260,11 @@ class _Uvicorn(uvicorn.Server):
         yield
 
 
-@contextmanager
-def _stopped_by(signals: Sequence[int], server: uvicorn.Server) -> Iterator[None]:
-    """Have the first signal end the server, and the next one no longer wait for requests."""
-
-    def stop(_number: int, _frame: object = None) -> None:
-        server.force_exit = server.should_exit
-        server.should_exit = True
-
-    before = {number: signal.getsignal(number) for number in signals}
-    taken = {number: handler for number, handler in before.items() if handler not in (signal.SIG_IGN, None)}
-    for number in taken:
-        signal.signal(number, stop)
-    try:
-        yield
-    finally:
-        for number, handler in taken.items():
-            signal.signal(number, handler)
-
-
-def keep_changes(session: Session) -> Path | None:
-    """Write the workbook of a session, with its changes, under a new name: next to its file, else where one may.
-
-    Returns the new file; None where none can be written.
-    """
-    book = session.book
-    if book is None:
-        return None
-    folders = [book.path.parent] if book.path else []
-    folders += [session.home] if session.home else []
+def _keep_changes(book: "Book", home: Path | None) -> Path | None:
+    """Write a workbook, with its changes, under a new name: next to its file, else where one may; None if nowhere."""
     with suppress(AssessError):
         data = book.write()
-        for folder in (*folders, Path.home()):
+        for folder in filter(None, (book.path and book.path.parent, home, Path.home())):
             with suppress(OSError):
                 path = folder / find_free(f"{Path(book.name).stem}-changes{Path(book.name).suffix}", folder)
                 with saving(path) as part:

@@ -118,46 +118,37 @@ class Session:
             self.save()
             self.drop_book(kept=book.folder)
             self.book, self.downloaded = book, book.version
-            self._note_opened(book)
+            if book.path is not None and self.folder.parent.name.startswith(PREFIX):
+                other = _find_other(self.folder, book.path)
+                note = json.dumps({"path": str(book.path.resolve()), "pid": os.getpid()})
+                with suppress(OSError):  # it only serves a warning
+                    (self.folder / NOTE).write_text(note, encoding="utf-8")
+                if other is not None:
+                    book.remark = fill(
+                        "{name} is also open in another window that assess started (process {pid}). Use only one of "
+                        "them, so that the changes of one do not stand in the way of the other's.",
+                        name=book.name, pid=str(other),
+                    )  # fmt: skip
         return book
-
-    def _note_opened(self, book: "Book") -> None:
-        """Tell other servers of this user which workbook is open, and the user where one of them has it open too."""
-        if book.path is None or not self.folder.parent.name.startswith(PREFIX):
-            return
-        other = _find_other(self.folder, book.path)
-        note = json.dumps({"path": str(book.path.resolve()), "pid": os.getpid()})
-        with suppress(OSError):  # it only serves a warning
-            (self.folder / NOTE).write_text(note, encoding="utf-8")
-        if other is not None:
-            book.remark = fill(
-                "{name} is also open in another window that assess started (process {pid}). Use only one of them, so "
-                "that the changes of one do not stand in the way of the other's.",
-                name=book.name,
-                pid=str(other),
-            )
 
     def hold(self, name: str, data: bytes) -> "Book":
         """Open a workbook that was sent."""
         with self.lock:
-            return self._hold(Made(make_safe(name), data))
+            return self._open(Made(make_safe(name), data), None)
 
-    def _hold(self, made: Made) -> "Book":
+    def begin(self, body: Mapping[str, Any]) -> "Book":
+        """Open a new workbook: in the folder of new workbooks where there is one, else held."""
+        return self._open(build_workbook(body), self.home)
+
+    def _open(self, made: Made, home: Path | None) -> "Book":
         from assess.web.book import Book
 
+        if home is not None:
+            return self.take(Book.open_disk(place_workbook(made, home)))
         self.check_room(len(made.data))
         folder = self.make_folder("files-")
         place_files(made, folder)
         return self.take(Book.hold(made.name, made.data, folder))
-
-    def begin(self, body: Mapping[str, Any]) -> "Book":
-        """Open a new workbook: in the folder of new workbooks where there is one, else held."""
-        return self._open_new(build_workbook(body))
-
-    def _open_new(self, made: Made) -> "Book":
-        from assess.web.book import Book
-
-        return self._hold(made) if self.home is None else self.take(Book.open_disk(place_workbook(made, self.home)))
 
     def read_model(self, folder: Path, name: str, routes: Routes = "none") -> None:
         """Read a building model in such a folder; an earlier one that is not opened is dropped."""
@@ -180,7 +171,7 @@ class Session:
             if self.reading is None:
                 raise RequestError(fill("No building model has been read."), NOT_FOUND)
             found = self.reading
-            book = self._open_new(found.build(self.home or self.folder, shaking))
+            book = self._open(found.build(self.home or self.folder, shaking), self.home)
             found.note_opened(book.opening)
             self.reading, self.imported = None, found
             return book

@@ -4,13 +4,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import Any, Literal, cast
+from typing import Any, Literal, TypeVar
 
 from assess import resources
 from assess.delivery.folders import private_folder
 from assess.errors import OutputError
 from assess.i18n import LANGUAGES, Text, fill, gettext, list_languages, load_catalogue, speaking
 from assess.intensity import SHAKINGS
+from assess.model import split_names
 from assess.web.file_names import check_name
 from assess.web.request_errors import CONFLICT, UNUSABLE, RequestError
 from assess.workbook.names import key
@@ -36,10 +37,19 @@ GROUND = ("1", "0", "g", "gf", "t", "pt", "ground", "ground floor", "piano terra
 """Names of a floor that lies on the ground; of any other the height is not known until one fills it in."""
 
 Units = Literal["si", "imperial"]
+UNITS: tuple[Units, ...] = ("si", "imperial")
+Choice = TypeVar("Choice", bound=str)
 
 
 def describe_start(home: Path | None) -> dict[str, Any]:
     """Return what a new workbook can be made of, in the language in use; `home` is the folder that it is made in."""
+    from assess.workbook.catalogue import read_catalogue
+
+    types: dict[str, list[dict[str, Any]]] = {use: [] for use in USES}
+    for use, listed in types.items():
+        for row in read_catalogue("si", use):
+            sizes = {name: row[name] / CENTIMETRES if name in row else None for name in ("breadth", "width", "height")}
+            listed.append({"type": row["type"], **sizes})
     return {
         "start": True,
         "can_save": home is not None,
@@ -48,16 +58,8 @@ def describe_start(home: Path | None) -> dict[str, Any]:
         "shakings": [[one, gettext(one)] for one in SHAKINGS],
         "languages": [list(pair) for pair in list_languages()],
         "rooms": {use: [gettext(room) for room in ROOMS[use]] for use in USES},
-        "types": {use: list(_list_types(use)) for use in USES},
+        "types": types,
     }
-
-
-def _list_types(use: str) -> Iterator[dict[str, Any]]:
-    from assess.workbook.catalogue import read_catalogue
-
-    for row in read_catalogue("si", use):
-        sizes = {name: row[name] / CENTIMETRES if name in row else None for name in ("breadth", "width", "height")}
-        yield {"type": row["type"], **sizes}
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,9 +73,11 @@ class Made:
 
 def build_workbook(request: Mapping[str, Any]) -> Made:
     """Return a new workbook; raises RequestError if the request asks for something that there is not."""
+    from assess.workbook.read import read_tables
+
     kind = choose(request, "kind", ("template", "blank", "example"))
     called = request.get("name") or (EXAMPLE if kind == "example" else request.get("building") or gettext("building"))
-    name, units = check_name(called), cast(Units, choose(request, "units", ("si", "imperial")))
+    name, units = check_name(called), choose(request, "units", UNITS)
     use, language = choose(request, "use", ("", *USES)), choose(request, "language", LANGUAGES)
     building = {
         "building": _text(request, "building"), "address": _text(request, "town"), "use": use,
@@ -82,7 +86,11 @@ def build_workbook(request: Mapping[str, Any]) -> Made:
     floor, room = _text(request, "floor") or "1", _text(request, "room")
     pieces = list(_list_pieces(request.get("pieces") or []))
     if kind == "example":
-        return _take_example(name)
+        data = resources.example().read_bytes()
+        tables, _ = read_tables(data, name)
+        cells = [row.get(f"record_{axis}") for row in tables[FLOORS.name].rows for axis in "xy"]
+        names = {one.partition("#")[0].strip() for cell in cells if cell for one in split_names(cell)}
+        return Made(name, data, {one: resources.example_file(one) for one in sorted(names)})
     from assess.pipeline.live_values import store_live
     from assess.workbook.catalogue import read_catalogue
     from assess.workbook.template import Content, write_workbook
@@ -119,14 +127,15 @@ def _text(request: Mapping[str, Any], name: str) -> str:
     return text
 
 
-def choose(request: Mapping[str, Any], name: str, choices: tuple[str, ...]) -> str:
+def choose(request: Mapping[str, Any], name: str, choices: tuple[Choice, ...]) -> Choice:
     """Return one of the choices, the first where nothing is asked for; RequestError where there is no such choice."""
     value = _text(request, name) or choices[0]
-    if value not in choices:
-        known = ", ".join(filter(None, choices))
-        text = fill("{name} is {value!r}, expected one of: {known}", name=name, value=value[:40], known=known)
-        raise RequestError(text, UNUSABLE)
-    return value
+    for choice in choices:
+        if choice == value:
+            return choice
+    known = ", ".join(filter(None, choices))
+    text = fill("{name} is {value!r}, expected one of: {known}", name=name, value=value[:40], known=known)
+    raise RequestError(text, UNUSABLE)
 
 
 def _list_pieces(pieces: object) -> Iterator[str]:
@@ -149,17 +158,6 @@ def _types() -> Mapping[str, str]:
 
     names = [line["type"] for line in catalogue_rows()]
     return {key(load_catalogue(code).find(name)): name for code in LANGUAGES for name in names}
-
-
-def _take_example(name: str) -> Made:
-    from assess.model import split_names
-    from assess.workbook.read import read_tables
-
-    data = resources.example().read_bytes()
-    tables, _ = read_tables(data, name)
-    cells = [row.get(f"record_{axis}") for row in tables[FLOORS.name].rows for axis in "xy"]
-    names = {one.partition("#")[0].strip() for cell in cells if cell for one in split_names(cell)}
-    return Made(name, data, {one: resources.example_file(one) for one in sorted(names)})
 
 
 def place_workbook(made: Made, folder: Path) -> Path:

@@ -2,7 +2,6 @@
 
 import json
 import re
-from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -43,24 +42,22 @@ def list_texts() -> list[tuple[str, str, str]]:
 
 @cache
 def _list_texts(modules: tuple[tuple[Path, int], ...]) -> tuple[tuple[str, str, str], ...]:
-    return tuple(found for path, _ in modules for found in _scan(path))
-
-
-def _scan(path: Path) -> Iterator[tuple[str, str, str]]:
-    name = path.relative_to(PAGE).as_posix()
-    for found in _CALL.finditer(path.read_text(encoding="utf-8")):
-        yield _evaluate(found["text"] or found["one"]), _evaluate(found["many"] or ""), name
+    return tuple(
+        (_evaluate(found["text"] or found["one"]), _evaluate(found["many"] or ""), path.relative_to(PAGE).as_posix())
+        for path, _ in modules
+        for found in _CALL.finditer(path.read_text(encoding="utf-8"))
+    )
 
 
 def _evaluate(source: str) -> str:
-    return "".join(_unquote(literal) for literal in re.findall(_STRING, source))
-
-
-def _unquote(literal: str) -> str:
-    inner = literal[1:-1]
-    if literal[0] != '"':
-        inner = re.sub(r"\\(['`$])", r"\1", inner).replace('"', '\\"').replace("\n", "\\n")
-    return str(json.loads(f'"{inner}"'))
+    """Return the text that a sum of literals is."""
+    parts = []
+    for literal in re.findall(_STRING, source):
+        inner = literal[1:-1]
+        if literal[0] != '"':
+            inner = re.sub(r"\\(['`$])", r"\1", inner).replace('"', '\\"').replace("\n", "\\n")
+        parts.append(str(json.loads(f'"{inner}"')))
+    return "".join(parts)
 
 
 def choose_language(chosen: str, of_book: str, accepted: str) -> str:

@@ -3,7 +3,7 @@
 Nothing is written: the workbook as it is held is assessed anew with other settings, by the formulas.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -43,7 +43,8 @@ def try_out(snapshot: "Snapshot", request: object) -> dict[str, Any]:
         entries = snapshot.keep("entries", lambda: _name_entries(present))
         if first and settings != BY_FORMULAS:
             entries = _name_entries(evaluate_other(snapshot, settings))
-        named = tuple(dict.fromkeys((*_list_anchored(settings), *(one for each in entries[:first] for one in each))))
+        anchored = settings.anchor if isinstance(settings.anchor, tuple) else ()
+        named = tuple(dict.fromkeys((*anchored, *(one for each in entries[:first] for one in each))))
         settings = replace(settings, anchor=named)
         after = before
         if settings != BY_FORMULAS:
@@ -66,59 +67,36 @@ def try_out(snapshot: "Snapshot", request: object) -> dict[str, Any]:
     }
 
 
-def _list_anchored(settings: Settings) -> tuple[str, ...]:
-    return settings.anchor if isinstance(settings.anchor, tuple) else ()
-
-
 def _read_request(inventory: Inventory, tables: Tables, request: object) -> tuple[Settings, int]:
     """Return the settings that a request asks for, and how many of the first fixes it has anchored besides."""
     if not isinstance(request, Mapping):
         raise InputError.about("The request cannot be read.")
     unknown = [str(name) for name in request if name not in ASKED]
     if unknown:
-        known = ", ".join(ASKED)
-        raise InputError.about(
-            "{name} is not known, expected one of: {known}.", name=show_given(unknown[0]), known=known
-        )
+        name, listed = show_given(unknown[0]), ", ".join(ASKED)
+        raise InputError.about("{name} is not known, expected one of: {known}.", name=name, known=listed)
     given = {name: value for name, value in request.items() if value is not None}
-    names = _read_names(given.get("anchor", ()))
-    _check_left_out(inventory, tables, names)
-    scale, scenario = _read_scale(given.get("scale", 1.0)), given.get("scenario") or None
-    settings = replace(BY_FORMULAS, scale=scale, scenario=scenario, anchor=spell_names(inventory, names))
-    return settings, _read_first(given.get("first", 0))
-
-
-def _read_scale(value: Any) -> float:
-    is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not is_number or not abs(value) < FAR:  # NaN among them
-        raise InputError.about("scale is {value}, expected a number.", value=show_given(value))
-    return float(value)
-
-
-def _read_first(value: object) -> int:
-    if isinstance(value, float) and value.is_integer():
-        value = int(value)
-    if isinstance(value, bool) or not isinstance(value, int) or value < 0:
-        raise InputError.about("first is {value}, expected a whole number, 0 or above.", value=show_given(value))
-    return value
-
-
-def _read_names(value: object) -> tuple[str, ...]:
-    if isinstance(value, str) or not isinstance(value, Sequence) or not all(isinstance(one, str) for one in value):
-        raise InputError.about("anchor is {value}, expected a list of names of items.", value=show_given(value))
-    return tuple(dict.fromkeys(one.strip() for one in value if one.strip()))
-
-
-def _check_left_out(inventory: Inventory, tables: Tables, names: Iterable[str]) -> None:
+    anchor, scale, first = (given.get(name, usual) for name, usual in (("anchor", ()), ("scale", 1.0), ("first", 0)))
+    if isinstance(anchor, str) or not isinstance(anchor, Sequence) or not all(isinstance(one, str) for one in anchor):
+        raise InputError.about("anchor is {value}, expected a list of names of items.", value=show_given(anchor))
+    names = tuple(dict.fromkeys(one.strip() for one in anchor if one.strip()))
     known = {key(one.item) for one in inventory.items}
     rows = {key(row.get("item")): row.number for row in tables["Items"].with_all("item")}
-    for name in names:
-        if key(name) not in known and key(name) in rows:
-            raise InputError.about(
-                "{name} cannot be anchored: its row {row} has an error or a blank.",
-                name=show_given(name),
-                row=rows[key(name)],
-            )
+    if left := next((name for name in names if key(name) not in known and key(name) in rows), None):
+        raise InputError.about(
+            "{name} cannot be anchored: its row {row} has an error or a blank.",
+            name=show_given(left),
+            row=rows[key(left)],
+        )
+    if not isinstance(scale, int | float) or isinstance(scale, bool) or not abs(scale) < FAR:  # NaN among them
+        raise InputError.about("scale is {value}, expected a number.", value=show_given(scale))
+    scenario = given.get("scenario") or None
+    settings = replace(BY_FORMULAS, scale=float(scale), scenario=scenario, anchor=spell_names(inventory, names))
+    if isinstance(first, float) and first.is_integer():
+        first = int(first)
+    if isinstance(first, bool) or not isinstance(first, int) or first < 0:
+        raise InputError.about("first is {value}, expected a whole number, 0 or above.", value=show_given(first))
+    return settings, first
 
 
 def _name_entries(found: Evaluation) -> list[list[str]]:
