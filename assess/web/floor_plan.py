@@ -17,7 +17,7 @@ from assess.plans.linework import unpack
 from assess.report.figures.labels import Point
 from assess.report.figures.plan import BORDER
 from assess.report.figures.underlay import Ring, cut_falls, find_edge, list_rooms, widen
-from assess.routes.geometry import Band, angle_apart, build_bands, fallen, rectangle
+from assess.routes.geometry import angle_apart, build_bands, fallen, rectangle
 from assess.routes.walls import find_walls
 from assess.web.evaluation import list_floors
 from assess.workbook.names import key
@@ -120,85 +120,55 @@ def _find_picture(snapshot: "Snapshot", row: Row | None) -> FloorPicture | None:
 # ---------------------------------------------------------------- the pieces
 
 
-@dataclass(frozen=True, slots=True)
-class PlacedPiece:
-    """A piece with a position: its sizes [m], those that are not known, and what it may cover beyond its footprint."""
-
-    row: Row
-    at: Point
-    angle: float
-    breadth: float
-    width: float
-    height: float | None
-    missing: list[str]
-    falls: tuple[Ring, ...] = ()
-
-    @property
-    def corners(self) -> Ring:
-        """Its footprint [m]."""
-        return rectangle(self.at, self.angle, (-self.breadth / 2, self.breadth / 2), self.width)
-
-    def describe(self) -> dict[str, Any]:
-        """Return it as the page takes it."""
-        return {
-            **_name_piece(self.row),
-            "x": round(self.at[0], DECIMALS),
-            "y": round(self.at[1], DECIMALS),
-            "angle": self.angle,
-            "breadth": round(self.breadth, DECIMALS),
-            "width": round(self.width, DECIMALS),
-            "height": None if self.height is None else round(self.height, DECIMALS),
-            "anchored": self.row.get("anchored") or "unknown",
-            "quantity": self.row.get("quantity") or 1,
-            "fallen": [_round_points(ring) for ring in self.falls],
-            "missing": self.missing,
-        }
-
-
 def _name_piece(row: Row) -> dict[str, Any]:
     described = row.get("description") or row.get("type") or ""
     return {"row": row.number, "item": row.get("item") or "", "description": described}
 
 
-def _place(table: Table, row: Row, types: Mapping[str, CatalogueType], away: float | None) -> PlacedPiece:
-    """Return a piece; `away` is the direction in which one against a wall falls [deg]."""
+def _place(
+    table: Table, row: Row, types: Mapping[str, CatalogueType], away: float | None
+) -> tuple[dict[str, Any], Ring, list[Ring]]:
+    """Return a piece with a position as the page takes it, its footprint, and what it may cover beyond that [m].
+
+    `away` is the direction in which one against a wall falls [deg].
+    """
     sizes = filled_sizes(table, row, types)
     breadth, height = sizes.get("breadth"), sizes.get("height")
     width = sizes.get("width", breadth)
     angle = row.get("angle_deg")
     if angle is None:
         angle = 90.0 if row.get("axis") == AXES[1] else 0.0
-    drawn = min(DEFAULT_SIZE, width or DEFAULT_SIZE) if breadth is None else breadth
-    missing = [name for name in SIZES if sizes.get(name) is None]
-    piece = PlacedPiece(row, (row.get("x"), row.get("y")), angle, drawn, width or DEFAULT_SIZE, height, missing)
-    if breadth is None or height is None:
-        return piece
-    ahead, behind = fallen(piece.at, angle, breadth, piece.width, height)
-    if away is None:
-        return replace(piece, falls=(ahead, behind))
-    return replace(piece, falls=(ahead if abs(angle_apart(away, angle)) < 90 else behind,))
+    drawn, wide = min(DEFAULT_SIZE, width or DEFAULT_SIZE) if breadth is None else breadth, width or DEFAULT_SIZE
+    at, falls = (row.get("x"), row.get("y")), list[Ring]()
+    if breadth is not None and height is not None:
+        ahead, behind = fallen(at, angle, breadth, wide, height)
+        falls = [ahead, behind] if away is None else [ahead if abs(angle_apart(away, angle)) < 90 else behind]
+    described = {
+        **_name_piece(row),
+        "x": round(at[0], DECIMALS),
+        "y": round(at[1], DECIMALS),
+        "angle": angle,
+        "breadth": round(drawn, DECIMALS),
+        "width": round(wide, DECIMALS),
+        "height": None if height is None else round(height, DECIMALS),
+        "anchored": row.get("anchored") or "unknown",
+        "quantity": row.get("quantity") or 1,
+        "missing": [name for name in SIZES if sizes.get(name) is None],
+    }
+    return described, rectangle(at, angle, (-drawn / 2, drawn / 2), wide), falls
 
 
-def _find_away(inventory: Inventory, floor: str) -> dict[int, float]:
-    """Return the direction in which the pieces of a floor that stand against a wall fall [deg], by their rows."""
-    own = tuple(one for one in inventory.items if one.floor == floor and one.against_wall)
-    walls = find_walls(replace(inventory, items=own))
-    return {own[at].row: one.falls_toward for at, one in walls.items() if one.falls_toward is not None}
-
-
-def _cut_all(pieces: Sequence[PlacedPiece], edge: "BaseGeometry") -> list[PlacedPiece]:
-    """Return pieces with what they may cover cut at the building's edge."""
+def _cut_all(pieces: Sequence[list[Ring]], edge: "BaseGeometry") -> list[list[Ring]]:
+    """Return what pieces may cover, cut at the building's edge."""
     import shapely
 
     shapely.prepare(edge)
-    rings = np.array([ring for one in pieces for ring in one.falls])
+    rings = np.array([ring for falls in pieces for ring in falls])
     is_inside = iter(np.asarray(shapely.covers(edge, shapely.polygons(rings)), dtype=np.bool_).tolist())
-
-    def cut(falls: Iterable[Ring]) -> Iterator[Ring]:
-        for ring in falls:
-            yield from (ring,) if next(is_inside) else cut_falls([ring], edge)
-
-    return [replace(one, falls=tuple(cut(one.falls))) for one in pieces]
+    return [
+        [part for ring in falls for part in ([ring] if next(is_inside) else cut_falls([ring], edge))]
+        for falls in pieces
+    ]
 
 
 def _round_points(points: Iterable[Point] | Outline) -> list[list[float]]:
@@ -241,25 +211,42 @@ def _draw(tables: Tables, inventory: Inventory, floor: str, picture: FloorPictur
         return [row for row in tables[name].rows if floor and key(row.get("floor") or "") == key(floor)]
 
     items, places = list_own("Items"), list_own("Places")
-    types, away = {key(one.type): one for one in build_catalogue(tables["Catalogue"])}, _find_away(inventory, floor)
+    types = {key(one.type): one for one in build_catalogue(tables["Catalogue"])}
+    leaning = tuple(one for one in inventory.items if one.floor == floor and one.against_wall)
+    walls = find_walls(replace(inventory, items=leaning))
+    away = {leaning[at].row: one.falls_toward for at, one in walls.items()}
     pieces = [_place(tables["Items"], row, types, away.get(row.number)) for row in items if _is_placed(row)]
+    covered = [falls for _, _, falls in pieces]
     rooms = list_rooms([one for one in inventory.places if one.floor == floor])
     placed = [(one.x, one.y) for one in inventory.items if one.floor == floor]
     stand = [(x, y) for x, y in placed if x is not None and y is not None]
     edge = find_edge(rooms, picture.corners if picture else (), stand)
-    if edge is not None and any(one.falls for one in pieces):
-        pieces = _cut_all(pieces, edge[0])
+    if edge is not None and any(covered):
+        covered = _cut_all(covered, edge[0])
     segments = list(_describe_segments(tables, inventory, floor))
     outlines = [_round_points(row.get("outline")) for row in places if row.get("outline")]
-    drawn: list[Iterable[Sequence[float]]] = [ring for one in pieces for ring in (one.corners, *one.falls)]
+    drawn: list[Iterable[Sequence[float]]] = [footprint for _, footprint, _ in pieces]
+    drawn += [ring for falls in covered for ring in falls]
     drawn += [*outlines, *(one["outline"] or one["points"] for one in segments)]
     drawn.append([(row.get("x"), row.get("y")) for row in places if _is_placed(row)])
     return {
         "frame": _frame([(x, y) for points in drawn for x, y in points], picture),
         "picture": None if picture is None else picture.describe(floor),
-        "pieces": [one.describe() for one in pieces],
+        "pieces": [
+            {**described, "fallen": [_round_points(ring) for ring in falls]}
+            for (described, *_), falls in zip(pieces, covered, strict=True)
+        ],
         "unplaced": [_name_piece(row) for row in items if not _is_placed(row)],
-        "places": [_describe_place(row) for row in places],
+        "places": [
+            {
+                "row": row.number,
+                "place": row.get("place") or "",
+                "kind": row.get("kind") or "",
+                "outline": _round_points(row.get("outline")) if row.get("outline") else None,
+                **{side: None if row.get(side) is None else round(row.get(side), DECIMALS) for side in ("x", "y")},
+            }
+            for row in places
+        ],
         "segments": segments,
         "walls": [[one, two] for ring in outlines for one, two in zip(ring, [*ring[1:], ring[0]], strict=True)],
     }
@@ -267,18 +254,6 @@ def _draw(tables: Tables, inventory: Inventory, floor: str, picture: FloorPictur
 
 def _is_placed(row: Row) -> bool:
     return row.get("x") is not None and row.get("y") is not None
-
-
-def _describe_place(row: Row) -> dict[str, Any]:
-    outline, x, y = (row.get(name) for name in ("outline", "x", "y"))
-    return {
-        "row": row.number,
-        "place": row.get("place") or "",
-        "kind": row.get("kind") or "",
-        "outline": _round_points(outline) if outline else None,
-        "x": None if x is None else round(x, DECIMALS),
-        "y": None if y is None else round(y, DECIMALS),
-    }
 
 
 def _describe_segments(tables: Tables, inventory: Inventory, floor: str) -> Iterator[dict[str, Any]]:
@@ -291,7 +266,12 @@ def _describe_segments(tables: Tables, inventory: Inventory, floor: str) -> Iter
         if own != {key(floor)} or not floor:
             continue
         here = [end for end in ends if end is not None and _is_placed(end) and key(end.get("floor") or "") in own]
-        band = bands.get(row.number)
+        band, outline = bands.get(row.number), None
+        if band is not None:  # as far as it goes on round a bend
+            (x, y), half, along = band.start, band.width / 2, (-band.extends_start, band.length + band.extends_end)
+            local = ((along[0], -half), (along[1], -half), (along[1], half), (along[0], half))
+            cos, sin = (band.end[0] - x) / band.length, (band.end[1] - y) / band.length
+            outline = _round_points(_move(local, (x, y), cos, sin))
         yield {
             "row": row.number,
             "route": row.get("route") or "",
@@ -300,16 +280,8 @@ def _describe_segments(tables: Tables, inventory: Inventory, floor: str) -> Iter
             "width": row.get("clear_width") or row.get("required_width") or DEFAULT_WIDTH,
             "from": row.get("start") or "",
             "to": row.get("end") or "",
-            "outline": None if band is None else _round_points(_outline_band(band)),
+            "outline": outline,
         }
-
-
-def _outline_band(band: Band) -> list[Point]:
-    """Return the corners of a band on the plan, as far as it goes on round a bend [m]."""
-    (x, y), long, half = band.start, band.length, band.width / 2
-    before, behind = -band.extends_start, long + band.extends_end
-    local = ((before, -half), (behind, -half), (behind, half), (before, half))
-    return _move(local, (x, y), (band.end[0] - x) / long, (band.end[1] - y) / long)
 
 
 def _move(local: Iterable[Point], to: Point, cos: float, sin: float) -> list[Point]:

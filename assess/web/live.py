@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from assess.errors import AssessError, Gap, Problem
 from assess.i18n import gettext, load_catalogue, speaking
 from assess.methods import Method, adopted_formula, paper_formula
-from assess.model import AXES, CatalogueType, Inventory
+from assess.model import AXES, Inventory
 from assess.pipeline.assessment import Assessment
 from assess.risk import RiskClass, classify_all
 from assess.units import GRAVITY, LENGTH, VELOCITY
@@ -92,8 +92,16 @@ class LiveView:
             if book is not self._book:
                 self._book, self._states = book, OrderedDict()
             snapshot = book.snapshot()
-            before = None if since is None else self._states.get(since)
-            now = self._states.get(snapshot.version) or self._evaluate(snapshot)
+            before, now = None if since is None else self._states.get(since), self._states.get(snapshot.version)
+            if now is None:
+                now = _describe_state(snapshot)
+                if self._states:  # rows that are alike are held once
+                    known = next(reversed(self._states.values())).rows
+                    rows = {at: known[at] if known.get(at) == row else row for at, row in now.rows.items()}
+                    now = replace(now, rows=rows)
+                self._states[now.version] = now
+                while len(self._states) > MOST_VERSIONS:
+                    self._states.popitem(last=False)
         is_whole = before is None or before.columns != now.columns
         old: Rows = {} if is_whole or before is None else before.rows
         changed = {number: row for number, row in now.rows.items() if old.get(number) != row}
@@ -104,17 +112,6 @@ class LiveView:
             "gone": [number for number in old if number not in now.rows],
             **now.rest,
         }
-
-    def _evaluate(self, snapshot: "Snapshot") -> _State:
-        state = _describe_state(snapshot)
-        if self._states:  # rows that are alike are held once
-            known = next(reversed(self._states.values())).rows
-            rows = {at: known[at] if known.get(at) == row else row for at, row in state.rows.items()}
-            state = replace(state, rows=rows)
-        self._states[state.version] = state
-        while len(self._states) > MOST_VERSIONS:
-            self._states.popitem(last=False)
-        return state
 
 
 def describe_rows(rows: Rows, columns: Iterable[int] = ()) -> dict[str, Any]:
@@ -147,11 +144,16 @@ def _describe_state(snapshot: "Snapshot") -> _State:
             fault = gettext(error.message)
         rows = list_rows(snapshot.tables, inventory, found, columns.values())
         problems = describe_problems((*snapshot.problems, *found.problems), inventory.sheets)
+        demands, floors = {} if found.assessment is None else found.assessment.demands, []
+        for row in list_floors(snapshot.tables):
+            peaks = {axis: [one.pfa for one in demands.get((row.get("floor"), axis), ())] for axis in AXES}
+            largest = {f"pfa_{axis.lower()}": max(own) / GRAVITY if own else None for axis, own in peaks.items()}
+            floors.append({"row": row.number, "floor": row.get("floor"), **largest})
         rest = {
             "problems": problems[:MOST_PROBLEMS],
             "more": max(0, len(problems) - MOST_PROBLEMS),
             "counts": count_classes(rows, snapshot.tables["Items"]),
-            "floors": [_describe_floor(row, found) for row in list_floors(snapshot.tables)],
+            "floors": floors,
             "error": fault,
         }
         return _State(snapshot.version, rows, tuple(columns), rest)
@@ -168,15 +170,6 @@ def say_fault(problems: Sequence[Problem], found: Evaluation) -> str:
     return " ".join(gettext(one.message) for one in dict.fromkeys(why[:MOST_NAMED]))
 
 
-def _describe_floor(row: Row, found: Evaluation) -> dict[str, Any]:
-    """Return the peaks of a floor [g], None where its motion is not known."""
-    name = row.get("floor")
-    demands = {} if found.assessment is None else found.assessment.demands
-    peaks = {axis: [one.pfa for one in demands.get((name, axis), ())] for axis in AXES}
-    largest = {f"pfa_{axis.lower()}": max(own) / GRAVITY if own else None for axis, own in peaks.items()}
-    return {"row": row.number, "floor": name, **largest}
-
-
 # ---------------------------------------------------------------- rows
 
 
@@ -185,17 +178,51 @@ def list_rows(
 ) -> dict[int, LiveRow]:
     """Return what is shown of each row of Items that holds anything, by its number, in the language in use.
 
-    `columns`: the live ones, by their headers in English.
+    `columns`: the live ones, by their headers in English. A piece without a class has the word that the class column of
+    the workbook shows in its place.
     """
-    labels = tuple(columns)
+    labels, table, rows = tuple(columns), tables["Items"], dict[int, LiveRow]()
     known = {} if evaluation.assessment is None else _list_assessed(evaluation.assessment, labels)
-    types = {key(one.type): one for one in build_catalogue(tables["Catalogue"])}
-    words = _Words(tables["Items"], types, defined(tables["Floors"]), evaluation.unserved)
-    anchored = {one.row: one.anchored for one in inventory.items}
-    return {
-        row.number: known.get(row.number) or words.describe(row, labels, anchored.get(row.number))
-        for row in tables["Items"].rows
-    }
+    types, floors = {key(one.type): one for one in build_catalogue(tables["Catalogue"])}, defined(tables["Floors"])
+    anchored = {one.row: one.anchored for one in inventory.items}  # counts in place of the cell
+    for row in table.rows:
+        if row.number in known:
+            rows[row.number] = known[row.number]
+            continue
+        sizes = filled_sizes(table, row, types)
+        word = gettext(found) if (found := _find_word(table, row, sizes, types, floors, evaluation.unserved)) else ""
+        shown: dict[str, float | str] = dict.fromkeys(LIVE, word)
+        if found == NO_SHAKING:
+            shown[LIVE[0]] = round(sizes["breadth"] / sizes["height"], DECIMALS)
+            if (anchored.get(row.number) or row.get("anchored")) == YES:
+                is_known = row.get("bracket_capacity") is not None and row.get("anchored") == YES
+                word = shown[CLASS] = shown[CLASS_OR] = gettext(RUN_ASSESS if is_known else IS_ANCHORED)
+        rows[row.number] = LiveRow("", word, None, False, tuple(shown.get(label) for label in labels))
+    return rows
+
+
+def _find_word(
+    table: Table, row: Row, filled: Mapping[str, float], types: Collection[str], floors: Collection[str],
+    unserved: Collection[str],
+) -> str:  # fmt: skip
+    """Return why a row has no class; "" where it is not filled in as far as its name and sizes.
+
+    `types`, `floors` and those whose motion is not known, `unserved`, are as names are compared.
+    """
+    sizes, kind, floor = ("breadth", "height"), row.get("type"), key(row.get("floor") or "")
+    if row.get("item") is None:
+        return ""
+    if any(name in table.blind for name in sizes):
+        return NO_UNIT
+    if any(table.spoilt(name, row) for name in sizes):
+        return WRONG
+    if not filled.keys() >= set(sizes):
+        return "" if kind is None or key(kind) in types else NO_TYPE
+    if floor not in floors:
+        return NO_FLOOR
+    if table.spoilt("axis", row):
+        return NO_AXIS
+    return NO_SHAKING if floor in unserved else WRONG
 
 
 def count_classes(rows: Rows, items: Table) -> dict[str, int]:
@@ -214,7 +241,7 @@ def _list_assessed(assessment: Assessment, labels: Sequence[str]) -> dict[int, L
     """Return what is shown of each piece under the motion that governs it."""
     at, adoption, held = assessment.governing, assessment.adoption, assessment.held.tolist()
     risks, outside = adoption.risk[at], _find_outside(assessment, adopted_formula(assessment.settings.class_by))
-    texts = _say_classes(assessment, risks, outside)
+    texts = _name_classes(assessment, risks, outside)
     columns, blank = _list_columns(assessment, texts) if labels else {}, [None] * len(texts)
     values = zip(*(columns.get(label, blank) for label in labels), strict=True) if labels else [()] * len(texts)
     found = zip(
@@ -235,7 +262,7 @@ def _find_outside(assessment: Assessment, method: Method) -> NDArray[np.bool_]:
     return np.asarray(found[assessment.governing])
 
 
-def _say_classes(assessment: Assessment, risks: NDArray[Any], outside: NDArray[np.bool_]) -> list[str]:
+def _name_classes(assessment: Assessment, risks: NDArray[Any], outside: NDArray[np.bool_]) -> list[str]:
     words, anchored = {risk: say_class(risk) for risk in RiskClass}, gettext(IS_ANCHORED)
     found = zip(risks.tolist(), outside.tolist(), assessment.held.tolist(), strict=True)
     return [anchored if held else words[RiskClass(risk)] + OUTSIDE * marked for risk, marked, held in found]
@@ -262,55 +289,10 @@ def _list_columns(assessment: Assessment, classes: Sequence[str]) -> dict[str, S
             for name, values in numbers.items()
         },
         risk: classes,
-        by_paper: _say_classes(assessment, of_paper, _find_outside(assessment, paper)),
+        by_paper: _name_classes(assessment, of_paper, _find_outside(assessment, paper)),
         can_rock: [yes if one else no for one in can_rock_at.tolist()],
         axis: [assessment.case_demand[case].axis for case in at.tolist()],
     }
-
-
-# ---------------------------------------------------------------- pieces without a class
-
-
-@dataclass(frozen=True, slots=True)
-class _Words:
-    """Why rows have no class, in the words of the class column of the workbook.
-
-    `types` and `floors` by their names as names are compared; `unserved` are the floors whose motion is not known.
-    """
-
-    table: Table
-    types: Mapping[str, CatalogueType]
-    floors: Collection[str]
-    unserved: Collection[str]
-
-    def describe(self, row: Row, labels: Sequence[str], anchored: str | None) -> LiveRow:
-        """Return what is shown of a row; `anchored` is what counts in place of its own cell, if anything does."""
-        sizes = filled_sizes(self.table, row, self.types)
-        word = self._explain(row, sizes)
-        shown: dict[str, float | str] = dict.fromkeys(LIVE, word)
-        if word == gettext(NO_SHAKING):
-            shown[LIVE[0]] = round(sizes["breadth"] / sizes["height"], DECIMALS)
-            if (anchored or row.get("anchored")) == YES:
-                is_known = row.get("bracket_capacity") is not None and row.get("anchored") == YES
-                word = shown[CLASS] = shown[CLASS_OR] = gettext(RUN_ASSESS if is_known else IS_ANCHORED)
-        return LiveRow("", word, None, False, tuple(shown.get(label) for label in labels))
-
-    def _explain(self, row: Row, filled: Mapping[str, float]) -> str:
-        """Return the word; "" where the row is not filled in as far as its name and sizes."""
-        table, sizes, kind, floor = self.table, ("breadth", "height"), row.get("type"), key(row.get("floor") or "")
-        if row.get("item") is None:
-            return ""
-        if any(name in table.blind for name in sizes):
-            return gettext(NO_UNIT)
-        if any(table.spoilt(name, row) for name in sizes):
-            return gettext(WRONG)
-        if not filled.keys() >= set(sizes):
-            return "" if kind is None or key(kind) in self.types else gettext(NO_TYPE)
-        if floor not in self.floors:
-            return gettext(NO_FLOOR)
-        if table.spoilt("axis", row):
-            return gettext(NO_AXIS)
-        return gettext(NO_SHAKING if floor in self.unserved else WRONG)
 
 
 # ---------------------------------------------------------------- problems
@@ -318,28 +300,19 @@ class _Words:
 
 def describe_problems(problems: Iterable[Problem], sheets: Mapping[str, str]) -> list[dict[str, Any]]:
     """Return problems as `GET /api/live` answers them, the errors first; `sheets` are own names by English ones."""
-    english = {own: name for name, own in sheets.items()}
-    found = [_describe(shown, alike, english) for shown, alike in list_groups(dict.fromkeys(problems))]
-    return sorted(found, key=lambda one: _SEVERITIES.index(one["severity"]))
-
-
-def _describe(shown: Problem, alike: list[Problem], english: Mapping[str, str]) -> dict[str, Any]:
-    sheet = english.get(shown.sheet) or (find_sheet(shown.sheet) or (shown.sheet,))[0]
-    found = [(cell, one) for one in alike for cell in _list_cells(sheet, one.cell)]
-    row, at = found[0][0] if found else (None, None)
-    return {
-        "severity": shown.severity,
-        "sheet": sheet,
-        "cell": shown.cell,
-        "row": row,
-        "at": at,
-        "message": gettext(shown.message),
-        "fix": gettext(shown.fix),
-        "count": len(alike),
-        "cells": [cell for cell, _ in found],
-        "own": [(gettext(one.message), gettext(one.fix)) for _, one in found] if len(alike) > 1 else [],
-        "lacks": shown.lacks if isinstance(shown, Gap) else "",
-    }
+    english, described = {own: name for name, own in sheets.items()}, []
+    for shown, alike in list_groups(dict.fromkeys(problems)):
+        sheet = english.get(shown.sheet) or (find_sheet(shown.sheet) or (shown.sheet,))[0]
+        found = [(cell, one) for one in alike for cell in _list_cells(sheet, one.cell)]
+        row, at = found[0][0] if found else (None, None)
+        described.append({
+            "severity": shown.severity, "sheet": sheet, "cell": shown.cell, "row": row, "at": at,
+            "message": gettext(shown.message), "fix": gettext(shown.fix), "count": len(alike),
+            "cells": [cell for cell, _ in found],
+            "own": [(gettext(one.message), gettext(one.fix)) for _, one in found] if len(alike) > 1 else [],
+            "lacks": shown.lacks if isinstance(shown, Gap) else "",
+        })  # fmt: skip
+    return sorted(described, key=lambda one: _SEVERITIES.index(one["severity"]))
 
 
 def _list_cells(sheet: str, address: str) -> list[tuple[int, int]]:

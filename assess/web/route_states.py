@@ -1,6 +1,6 @@
 """States of routes, rooms and segments as the reports word them, for the page."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from assess.errors import AssessError
@@ -8,20 +8,8 @@ from assess.i18n import gettext, load_catalogue, ngettext, speaking
 from assess.model import Inventory
 from assess.pipeline.run import evaluate_route_tables
 from assess.progress import SILENT
-from assess.report.say.route import describe_routes as say_routes
-from assess.report.say.route import (
-    name_few,
-    say_blocked,
-    say_lost,
-    say_missing,
-    say_outlook,
-    say_room_state,
-    say_state,
-    say_to_fill_in,
-    say_uncounted,
-    say_way,
-)
-from assess.route_results import Chance, RoomRow, RouteRow, RouteState, RouteTables, SegmentRow
+from assess.report.say import route as say
+from assess.route_results import RoomRow, RouteRow, RouteState, RouteTables, SegmentRow
 from assess.routes.obstructions import find_route_problems
 from assess.web.evaluation import BY_FORMULAS, Evaluation, evaluate_once, list_floors
 from assess.web.live import describe_problems
@@ -54,10 +42,16 @@ def describe_states(tables: Tables, inventory: Inventory, found: Evaluation) -> 
     Where the shaking of a floor with a segment is not known nothing is known of routes. Those with a segment that was
     left out for an error are not known either.
     """
-    crossed = _find_crossed(tables, found.unserved)
+    places_by_key, crossed = places_by_name(tables["Places"]), dict[str, str]()  # floors whose motion is not known
+    for row in tables["Routes"].rows:
+        ends = [places_by_key.get(key(row.get(name) or "")) for name in ("start", "end")]
+        for name in (row.get("floor"), *(end.get("floor") for end in ends if end)):
+            if name and key(name) in found.unserved:
+                crossed.setdefault(key(name), name)
     if tables["Routes"].rows and (found.assessment is None or crossed):
+        floors = [*crossed.values()] or [row.get("floor") for row in list_floors(tables)]
         text = gettext("Routes are not evaluated, as it is not known how these floors shake: {floors}.",
-                       floors=name_few(crossed or [row.get("floor") for row in list_floors(tables)]))  # fmt: skip
+                       floors=say.name_few(floors))  # fmt: skip
         return describe_unknown(tables, text)
     left_out = _find_left_out(tables, inventory)
     routes = RouteTables(risk=0.0)
@@ -67,22 +61,19 @@ def describe_states(tables: Tables, inventory: Inventory, found: Evaluation) -> 
     lost = [(name, why) for name, why in left_out.items() if name and name not in known]
     return {
         "routes": [
-            *({"route": one.route, **_describe_route(one, routes, left_out)} for one in routes.routes),
+            *({"route": one.route, **(
+                _unknown(left_out[key(one.route)]) if key(one.route) in left_out else _describe(one, routes)
+            )} for one in routes.routes),
             *({"route": name, **_unknown(why)} for name, why in lost),
         ],
         "rooms": [
-            *(
-                {"room": one.room, "floor": one.floor, "place_row": places[one.room].row, **_describe_room(one, routes)}
-                for one in routes.rooms
-            ),
-            *(
-                {"room": name, "floor": places[name].floor, "place_row": places[name].row,
-                 **_unknown(gettext("no segment joins it to an exit or a stair"))}
-                for name in routes.unjoined_rooms
-            ),
+            *({"room": one.room, "floor": one.floor, "place_row": places[one.room].row, **_describe(one, routes)}
+              for one in routes.rooms),
+            *({"room": name, "floor": places[name].floor, "place_row": places[name].row,
+               **_unknown(gettext("no segment joins it to an exit or a stair"))} for name in routes.unjoined_rooms),
         ],
         "segments": [
-            {"row": one.workbook_row, "route": one.route, "segment": one.segment, **_describe_segment(one, routes)}
+            {"row": one.workbook_row, "route": one.route, "segment": one.segment, **_describe(one, routes)}
             for one in routes.segments
         ],
         "remarks": list(_list_remarks(tables, inventory, routes, is_left_out=bool(left_out))),
@@ -109,56 +100,32 @@ def describe_unknown(tables: Tables, why: str) -> dict[str, Any]:
     }
 
 
-def _find_crossed(tables: Tables, unserved: Collection[str]) -> list[str]:
-    """Return the floors of segments and of their places whose motion is not known."""
-    places, found = places_by_name(tables["Places"]), dict[str, str]()
-    for row in tables["Routes"].rows:
-        ends = [places.get(key(row.get(name) or "")) for name in ("start", "end")]
-        for name in (row.get("floor"), *(end.get("floor") for end in ends if end)):
-            if name and key(name) in unserved:
-                found.setdefault(key(name), name)
-    return list(found.values())
-
-
 def _unknown(detail: str = "") -> dict[str, Any]:
-    return _state(RouteState.NOT_KNOWN, say_state(RouteState.NOT_KNOWN), None, detail)
-
-
-def _state(
-    state: RouteState, word: str, chance: Chance | None, detail: str, *, is_standing: bool = False
-) -> dict[str, Any]:
+    state = RouteState.NOT_KNOWN
     return {
-        "state": state.name.lower(),
-        "standing": is_standing,
+        "state": state.name.lower(), "standing": False, "word": say.say_state(state), "chance": None, "detail": detail
+    }  # fmt: skip
+
+
+def _describe(one: SegmentRow | RouteRow | RoomRow, routes: RouteTables) -> dict[str, Any]:
+    """Return a state; after its chance stands what is missing, or the piece that decides."""
+    if isinstance(one, RoomRow):
+        word, chance, details = say.say_room_state(one), one.loses_every_exit, [say.say_lost(one)]
+        further = [say.say_way(way, routes) for way in one.ways[:1]]
+    else:
+        word, chance, details = say.say_outlook(one, routes.risk), one.blocked, [say.say_blocked(one)]
+        further = []
+    if one.missing:
+        details.append(say.say_missing(one.missing))
+    elif one.state != RouteState.OPEN and one.most_likely_piece is not None:
+        details.append(gettext("most likely by {item}", item=one.most_likely_piece.item))
+    return {
+        "state": one.state.name.lower(),
+        "standing": one.is_blocked_standing if isinstance(one, SegmentRow) else not one.is_fixed,
         "word": word,
-        "chance": None if state == RouteState.NOT_KNOWN or chance is None else chance.probability,
-        "detail": detail,
+        "chance": None if one.state == RouteState.NOT_KNOWN or chance is None else chance.probability,
+        "detail": "; ".join(details + further),
     }
-
-
-def _describe_route(one: RouteRow, routes: RouteTables, left_out: dict[str, str]) -> dict[str, Any]:
-    if key(one.route) in left_out:
-        return _unknown(left_out[key(one.route)])
-    word, detail = say_outlook(one, routes.risk), _join_details(one, say_blocked(one))
-    return _state(one.state, word, one.blocked, detail, is_standing=not one.is_fixed)
-
-
-def _describe_segment(one: SegmentRow, routes: RouteTables) -> dict[str, Any]:
-    word, detail = say_outlook(one, routes.risk), _join_details(one, say_blocked(one))
-    return _state(one.state, word, one.blocked, detail, is_standing=one.is_blocked_standing)
-
-
-def _describe_room(one: RoomRow, routes: RouteTables) -> dict[str, Any]:
-    detail = _join_details(one, say_lost(one), *(say_way(way, routes) for way in one.ways[:1]))
-    return _state(one.state, say_room_state(one), one.loses_every_exit, detail, is_standing=not one.is_fixed)
-
-
-def _join_details(one: SegmentRow | RouteRow | RoomRow, chance: str, *further: str) -> str:
-    """Return the chance, what is missing or the piece that decides, and what else there is to say."""
-    reason = say_missing(one.missing) if one.missing else ""
-    if not one.missing and one.state != RouteState.OPEN and one.most_likely_piece is not None:
-        reason = gettext("most likely by {item}", item=one.most_likely_piece.item)
-    return "; ".join([chance, *([reason] if reason else []), *further])
 
 
 def _find_left_out(tables: Tables, inventory: Inventory) -> dict[str, str]:
@@ -186,6 +153,6 @@ def _list_remarks(tables: Tables, inventory: Inventory, routes: RouteTables, *, 
             lost,
         )
     if routes.routes:
-        yield from say_routes(routes)
-        yield from say_to_fill_in(routes)
-        yield from filter(None, [say_uncounted(routes)])
+        yield from say.describe_routes(routes)
+        yield from say.say_to_fill_in(routes)
+        yield from filter(None, [say.say_uncounted(routes)])
