@@ -36,8 +36,7 @@ from assess.workbook.names import find_sheet, key, plain
 from assess.workbook.open import HEADER_ROWS, MAX_ROWS, UNSAVED, Book, read_file, unreadable
 from assess.workbook.plain_rows import column_letters
 from assess.workbook.schema import BUILDING, CATALOGUE, FLOORS, Column
-from assess.workbook.typed import is_within
-from assess.workbook.values import ERRORS, cell_reader, is_blank, read_text
+from assess.workbook.values import ERRORS, cell_reader, is_blank, is_within, read_text
 
 COLUMNS: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "Facility": (("Name", "LinearUnits"), ("Category", "SiteName")),

@@ -32,9 +32,10 @@ from assess.bim.import_workbook import LOWEST_ROOF, ImportedBuilding, name_apart
 from assess.bim.plan_shapes import SpaceSearch, find_rectangle, find_width, to_polygon
 from assess.i18n import Text, fill, gettext, nfill
 from assess.text import natural_key
+from assess.workbook.habits import CellError
 from assess.workbook.names import key
-from assess.workbook.outlines import MOST, OutlineError, parse_outline
 from assess.workbook.schema import BUILDING, FLOORS, ITEMS
+from assess.workbook.values import MOST_CORNERS, parse_outline
 
 Row = dict[str, Any]
 Drafts = Literal["none", "draft"]
@@ -208,11 +209,11 @@ class _Building:
             row: Row = {"place": self.places[one.key], "floor": self.floors[one.storey], "x": x, "y": y, "kind": kind}
             outer, coarse = to_polygon(one.area).exterior, 0.0
             corners = outer.coords[:-1]
-            while len(corners) > MOST:
+            while len(corners) > MOST_CORNERS:
                 coarse = 2 * coarse or 0.01
                 corners = outer.simplify(coarse).coords[:-1]
             outline = "; ".join(f"{round(x, 3):g} {round(y, 3):g}" for x, y in corners)
-            with suppress(OutlineError):
+            with suppress(CellError):
                 parse_outline(outline, 1.0)
                 row["outline"] = outline
             yield row

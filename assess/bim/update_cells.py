@@ -10,16 +10,15 @@ from typing import Any, Literal
 from assess.errors import Problem
 from assess.i18n import Text, fill, nfill
 from assess.units import QUANTITIES
-from assess.workbook.habits import shorten
+from assess.workbook.habits import CellError, shorten
 from assess.workbook.names import is_live, key, say_choices, split_header
 from assess.workbook.open import LOCKED, MAX_ROWS, UNSAVED, Percent, Place
-from assess.workbook.outlines import OutlineError, parse_outline
 from assess.workbook.parse import Row, Table
 from assess.workbook.patch import Value
 from assess.workbook.plain_rows import column_letters, split_range
 from assess.workbook.schema import NO, YES, Column
 from assess.workbook.store import MERGED, Worksheet
-from assess.workbook.values import is_blank, read_text
+from assess.workbook.values import is_blank, parse_outline, read_text
 
 Rows = Sequence[Mapping[str, Any]]
 Kind = Literal["changed", "added", "missing", "kept", "left_out"]
@@ -127,7 +126,7 @@ class SheetUpdate:
         if column.kind == "outline" and unit != column.unit:
             try:
                 corners = parse_outline(str(wanted), 1.0)
-            except OutlineError:
+            except CellError:
                 return None
             return "; ".join(f"{_convert(column, unit, x):.10g} {_convert(column, unit, y):.10g}" for x, y in corners)
         if not isinstance(wanted, str):
@@ -293,7 +292,7 @@ def _is_same(column: Column, read: Any, wanted: Any) -> bool:
     if column.kind == "outline":
         try:
             corners = parse_outline(str(wanted), column.factor)
-        except OutlineError:
+        except CellError:
             return False
         close = TOLERANCE["length"]
         return len(corners) == len(read) and all(

@@ -65,7 +65,7 @@ def read_size(text: str | float) -> float:
     """Return a length in cm, typed as in the workbook: 40, 40 cm, 12in, 1' 6"; typer.BadParameter if it is none."""
     from assess.workbook.habits import CellError
     from assess.workbook.schema import ITEMS
-    from assess.workbook.typed import understand
+    from assess.workbook.values import understand
 
     try:
         return float(text)

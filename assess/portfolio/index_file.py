@@ -16,7 +16,7 @@ from assess.motion.formats.plain_csv import decode, is_comment
 from assess.resources import read_input
 from assess.text import plain_line
 from assess.workbook.schema import BUILDING
-from assess.workbook.typed import read_digits, straighten
+from assess.workbook.values import read_digits, straighten
 
 LARGEST_FILE = 64_000_000
 """Bytes: some hundred thousand rows."""

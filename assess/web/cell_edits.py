@@ -13,8 +13,7 @@ from assess.workbook.habits import CellError
 from assess.workbook.open import MAX_COLUMNS, MAX_ROWS
 from assess.workbook.patch import LARGEST_NUMBER, LONGEST_TEXT, Value, read_back
 from assess.workbook.store import Workbook
-from assess.workbook.typed import is_converted, is_free, understand
-from assess.workbook.values import is_blank
+from assess.workbook.values import is_blank, is_converted, is_free, understand
 
 MOST_STEPS, MOST_CELLS = 200, 1_000_000
 """Steps, and cells of all of them together, that are kept; the oldest are forgotten first."""

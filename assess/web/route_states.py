@@ -109,12 +109,12 @@ def _unknown(detail: str = "") -> dict[str, Any]:
 
 def _describe(one: SegmentRow | RouteRow | RoomRow, routes: RouteTables) -> dict[str, Any]:
     """Return a state; after its chance stands what is missing, or the piece that decides."""
-    if isinstance(one, RoomRow):
-        word, chance, details = say.say_room_state(one), one.loses_every_exit, [say.say_lost(one)]
-        further = [say.say_way(way, routes) for way in one.ways[:1]]
-    else:
+    if not isinstance(one, RoomRow):
         word, chance, details = say.say_outlook(one, routes.risk), one.blocked, [say.say_blocked(one)]
         further = []
+    else:
+        word, chance, details = say.say_room_state(one), one.loses_every_exit, [say.say_lost(one)]
+        further = [say.say_way(way, routes) for way in one.ways[:1]]
     if one.missing:
         details.append(say.say_missing(one.missing))
     elif one.state != RouteState.OPEN and one.most_likely_piece is not None:

@@ -10,7 +10,7 @@ from assess.bim.building_model import BuildingModel, Door, Piece, Space, Storey
 from assess.bim.floor_drawing import name_plan, name_plans
 from assess.bim.model_rows import find_kind, find_sizes, list_building
 from assess.plans import read_plan
-from assess.workbook.outlines import parse_outline
+from assess.workbook.values import parse_outline
 
 STOREY = Storey("s", "Level 1", 0.0, 0.0)
 ROOM = ((0.0, 0.0), (6.0, 0.0), (6.0, 4.0), (0.0, 4.0))

@@ -5,8 +5,9 @@ import re
 import pytest
 
 from assess.units import LENGTH
-from assess.workbook.outlines import OutlineError, parse_outline
+from assess.workbook.habits import CellError
 from assess.workbook.read import read_inventory
+from assess.workbook.values import parse_outline
 from tests.workbook.books import Sheet, errors_of, write
 
 SQUARE = ((0.0, 0.0), (6.0, 0.0), (6.0, 4.0), (0.0, 4.0))
@@ -46,7 +47,7 @@ DAMAGED = [
 
 def test_damaged_outlines():
     for text, fault in DAMAGED:
-        with pytest.raises(OutlineError) as raised:
+        with pytest.raises(CellError) as raised:
             parse_outline(text, 1.0)
         assert re.search(fault, str(raised.value.message))
 

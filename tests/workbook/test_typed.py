@@ -15,7 +15,7 @@ from assess.workbook.names import translate
 from assess.workbook.open import Percent
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import BUILDING, FLOORS, ITEMS, Column
-from assess.workbook.typed import find_meant, understand
+from assess.workbook.values import find_meant, understand
 from tests.workbook.books import Sheet, read, remarks, write
 
 HEIGHT, WEIGHT, CENTRE = (ITEMS.column(name) for name in ("height", "weight", "centre_of_gravity"))
